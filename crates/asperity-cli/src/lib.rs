@@ -16,6 +16,7 @@ mod progress;
 mod terminal;
 mod threads;
 mod trace;
+mod verb;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -46,7 +47,7 @@ const STACK: usize = 8 << 20;
 
 fn command_here(words: &[OsString]) -> u8 {
     let code = match Args::try_parse_from(words) {
-        Ok(args) => obey(args),
+        Ok(args) => obey(&args),
         Err(error) if commands::plot::lacks_figure(words, &error) => {
             let failure = commands::plot::no_figure();
             failure.print();
@@ -67,39 +68,14 @@ fn command_here(words: &[OsString]) -> u8 {
     code
 }
 
-fn obey(args: Args) -> u8 {
+fn obey(args: &Args) -> u8 {
     trace::listen(if let Command::Run(run) = &args.command { run.verbose } else { 0 });
-    let checked = output_paths::check(&args.command).and_then(|()| threads::start(&args.command));
-    match checked.and_then(|()| run(args.command)) {
+    match args.command.verb().carry_out() {
         Ok(()) => 0,
         Err(failure) => {
             failure.print();
             failure.code()
         }
-    }
-}
-
-fn run(command: Command) -> Result<(), Failure> {
-    match command {
-        Command::Run(run) => commands::run::run(&run),
-        Command::Check(check) => commands::check::run(&check),
-        Command::New(new) => commands::new::run(&new),
-        Command::Verify(verify) => commands::verify::run(&verify),
-        Command::Surface(surface) => commands::surface::run(&surface),
-        Command::Show(show) => commands::show::run(&show),
-        Command::VerifyResult(verify) => commands::verify_result::run(&verify),
-        Command::Report(report) => commands::report::run(&report),
-        Command::View(view) => commands::view::run(&view),
-        Command::Stress(stress) => commands::stress::run(&stress),
-        Command::Compare(compare) => commands::compare::run(&compare),
-        Command::Plot(plot) => commands::plot::run(&plot),
-        Command::Leak(leak) => commands::leak::run(&leak),
-        Command::Material(material) => commands::material::run(&material),
-        Command::FitIndentation(fit) => commands::fit_indentation::run(&fit),
-        Command::Export(export) => commands::export::run(&export),
-        Command::Reproduce(reproduce) => commands::reproduce::run(&reproduce),
-        Command::Schema => commands::schema::run(),
-        Command::Completions { shell } => commands::completions::run(shell),
     }
 }
 

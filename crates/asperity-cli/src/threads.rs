@@ -1,25 +1,19 @@
 //! The threads of the whole command, started before anything else: a system that refuses them is told, where the first
 //! parallel loop would panic.
 
-use crate::args::Command;
 use crate::failure::Failure;
+use crate::verb::Threads;
 
 /// The limit of `--threads`, and of the variable `RAYON_NUM_THREADS`.
 pub const MOST: u16 = 1024;
 
-/// Starts as many threads as the option `--threads` says, else the variable `RAYON_NUM_THREADS`, else one per core.
-pub fn start(command: &Command) -> Result<(), Failure> {
-    let asked = match command {
-        Command::Run(run) => run.common.threads,
-        Command::Check(check) => check.common.threads,
-        Command::Verify(verify) => verify.threads,
-        Command::Stress(stress) => stress.threads,
-        Command::Leak(leak) => leak.threads,
-        Command::Reproduce(reproduce) => reproduce.threads,
-        Command::New(_) | Command::Schema | Command::Completions { .. } => return Ok(()),
-        _ => None,
+/// Starts the threads of a verb.
+pub fn start(threads: Threads) -> Result<(), Failure> {
+    let threads = match threads {
+        Threads::None => return Ok(()),
+        Threads::Default => of_variable(std::env::var("RAYON_NUM_THREADS").ok()),
+        Threads::Number(number) => usize::from(number),
     };
-    let threads = asked.map_or_else(|| of_variable(std::env::var("RAYON_NUM_THREADS").ok()), usize::from);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| {
         let many = if threads == 0 { "one thread per core".to_owned() } else { format!("{threads} threads") };
         Failure::System(format!(

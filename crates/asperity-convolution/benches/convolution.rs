@@ -1,7 +1,7 @@
 //! One convolution: the lane-batched engine on every instruction set, against the rustfft form.
 //!
-//! `cargo bench -p asperity-convolution --bench convolution -- [SECONDS] [N ...]`: alternates the forms, so that a
-//! busy machine slows all of them, and prints the least and the median time of each [ms].
+//! `cargo bench -p asperity-convolution --bench convolution -- [SECONDS] [N ...]`: alternates the forms, so that a busy machine
+//! slows down all of them, and prints the shortest and the median time of each [ms].
 
 use std::time::Instant;
 

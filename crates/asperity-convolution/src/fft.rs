@@ -1,4 +1,4 @@
-//! Fourier transforms of rustfft and realfft in f64. They are generic: planned here, they are compiled once.
+//! Fourier transforms of rustfft and realfft in f64. These crates are generic; planning them here compiles them only once.
 
 use std::sync::Arc;
 

@@ -1,10 +1,9 @@
 //! The convolution engine: u = F^-1 [ S F p ] with a real, even spectrum S, planned once and
 //! applied many times.
 //!
-//! The transform lengths \[mx, my\] are at least the domain's cells \[nx, ny\]; the cells beyond the
-//! domain are zeros on the way in and are not computed on the way out. With mx >= 2 nx - 1 the
-//! cyclic convolution is the linear one of the free half-space (DC-FFT: Liu, Wang & Liu, Wear 243,
-//! 2000); with mx = nx it is the periodic one.
+//! The transform lengths \[mx, my\] are at least the domain's cells \[nx, ny\]; the cells beyond the domain are zeros in the
+//! input and are not computed in the output. With mx >= 2 nx - 1 the cyclic convolution is the linear one of the free half-space
+//! (DC-FFT: Liu, Wang & Liu, Wear 243, 2000); with mx = nx it is the periodic one.
 //!
 //! Normalisation: forward and inverse transforms together are the identity.
 
@@ -50,13 +49,13 @@ impl Convolution {
     /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and ky.
     ///
     /// # Panics
-    /// Where the shapes contradict each other: they come from the operators of this crate.
+    /// If the shapes are inconsistent.
     pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
         Convolution { engine: Engine::Batched(BatchedFft::new(cells, lengths, spectrum)) }
     }
 
-    /// The same on rustfft, slower, with another rounding, and with buffers that each application allocates: the oracle and
-    /// yardstick of the engine.
+    /// The same convolution on rustfft. It is slower, rounds differently, and allocates buffers in each application. It serves as
+    /// the reference for results and speed of the engine.
     ///
     /// # Panics
     /// As [`Self::new`].
@@ -65,7 +64,7 @@ impl Convolution {
         Convolution { engine: Engine::OnRustfft(Box::new(OnRustfft::new(cells, lengths, spectrum))) }
     }
 
-    /// A length of at least `minimum` that transforms fast.
+    /// A length of at least `minimum` with a fast transform.
     pub fn good_length(minimum: usize) -> usize {
         BatchedFft::<f64>::good_length(minimum)
     }
@@ -78,7 +77,7 @@ impl Convolution {
         }
     }
 
-    /// Bytes that [`Self::new`] takes for these cells and lengths.
+    /// Bytes that [`Self::new`] needs for these cells and lengths.
     pub fn bytes(cells: [usize; 2], lengths: [usize; 2]) -> usize {
         BatchedFft::<f64>::bytes(cells, lengths, 1)
     }
@@ -89,7 +88,7 @@ mod tests {
     use super::*;
     use ndarray::Array2;
 
-    /// The slow truth: sum over all cells with the kernel K(min(i, mx - i), min(j, my - j)).
+    /// The slow reference: the sum over all cells with the kernel K(min(i, mx - i), min(j, my - j)).
     fn direct(cells: [usize; 2], lengths: [usize; 2], kernel: &Array2<f64>, input: &[f64]) -> Vec<f64> {
         let wrap = |d: usize, m: usize| d.min(m - d);
         let mut out = vec![0.0; input.len()];

@@ -1,4 +1,4 @@
-//! The convolution on rustfft: the oracle and yardstick of the batched engine.
+//! The convolution on rustfft: the reference for results and speed of the batched engine.
 
 use ndarray::{Array2, ArrayView2};
 use rustfft::num_complex::Complex64;
@@ -7,7 +7,7 @@ use crate::plane::RealPlane;
 
 pub(super) struct OnRustfft {
     plane: RealPlane,
-    /// S / (mx my), stored (ky, kx) as the columns read it.
+    /// S / (mx my), stored as (ky, kx), in the order of the columns.
     spectrum: Array2<f64>,
     columns: Vec<Complex64>,
 }

@@ -1,15 +1,15 @@
-//! Transforms of real fields in two dimensions, on rustfft, with what a caller does to the waves in between.
+//! Two-dimensional transforms of real fields on rustfft, with an operation of the caller on the waves in between.
 //!
 //! ```text
 //! X(kx, ky) = sum over i, j of x(i, j) exp(-2 pi i (kx i/mx + ky j/my))
 //! ```
 //!
-//! The nx rows of a field are padded with zeros and transformed along y; of each only the waves 0 <= ky <= my/2 are kept, since
-//! x is real. They lie in columns of constant ky: wave ky of row i at `ky * nx + i`. Then a column at a time is padded and
-//! transformed along x, and back; the padded plane never exists. A caller keeps the transformed rows of a field where it
-//! needs them again, and multiplies its columns by whatever it has: complex, odd, or made on the fly.
+//! The nx rows of a field are padded with zeros and transformed along y; of each row only the waves 0 <= ky <= my/2 are stored,
+//! since x is real. They are stored in columns of constant ky: wave ky of row i at `ky * nx + i`. Then one column at a time is
+//! padded and transformed along x, and back; the padded plane is never stored. A caller stores the transformed rows of a field if
+//! it needs them again, and may multiply the columns by any numbers: complex, odd, or computed on the fly.
 //!
-//! Real, even spectra are served faster by [`Convolution`](crate::Convolution). Forward and back together are mx my.
+//! For real, even spectra [`Convolution`](crate::Convolution) is faster. Forward and back together multiply by mx my.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use rustfft::num_complex::Complex64;
 
 use crate::fft;
 
-/// Rows that are transformed together: what they share of a column fills whole cache lines.
+/// Number of rows that are transformed together: their part of a column fills whole cache lines.
 const ROWS: usize = 8;
 
 /// Planned transforms of fields of `cells` = \[nx, ny\] on a torus of `lengths` = \[mx, my\]. Bit-identical for any number of
@@ -58,7 +58,7 @@ impl RealPlane {
     /// Plans the transforms.
     ///
     /// # Panics
-    /// Where a length is less than its cells.
+    /// If a length is less than the number of cells.
     pub fn new(cells: [usize; 2], lengths: [usize; 2]) -> Self {
         assert!(lengths[0] >= cells[0] && lengths[1] >= cells[1]);
         RealPlane {
@@ -81,22 +81,22 @@ impl RealPlane {
         self.lengths[1] / 2 + 1
     }
 
-    /// Room for the transformed rows of a field: my/2 + 1 columns of nx numbers.
+    /// Allocates the transformed rows of a field: my/2 + 1 columns of nx numbers.
     pub fn columns(&self) -> Vec<Complex64> {
         vec![Complex64::ZERO; self.waves_along_y() * self.cells[0]]
     }
 
-    /// The rows of a field along y, into columns.
+    /// Transforms the rows of a field along y, into columns.
     ///
     /// # Panics
-    /// Where a length is not that of the plan, here and below.
+    /// If a length is not that of the plan; this also holds for the functions below.
     pub fn rows_forward(&self, field: &[f64], columns: &mut [Complex64]) {
         let [nx, ny] = self.cells;
         assert_eq!(field.len(), nx * ny);
         self.rows_forward_of(|i, row| row.copy_from_slice(&field[i * ny..][..ny]), columns);
     }
 
-    /// The same of the rows that `read(i, row)` writes.
+    /// The same for the rows that `read(i, row)` writes.
     pub fn rows_forward_of(&self, read: impl Fn(usize, &mut [f64]) + Sync, columns: &mut [Complex64]) {
         let ([nx, ny], half, fft) = (self.cells, self.waves_along_y(), &self.rows_forward);
         assert_eq!(columns.len(), nx * half);
@@ -118,7 +118,7 @@ impl RealPlane {
         }
     }
 
-    /// The first ny numbers of every row, back from columns.
+    /// Computes the first ny numbers of every row from the columns.
     pub fn rows_back(&self, columns: &[Complex64], field: &mut [f64]) {
         let ([nx, ny], my, half, fft) = (self.cells, self.lengths[1], self.waves_along_y(), &self.rows_back);
         assert!(field.len() == nx * ny && columns.len() == nx * half);
@@ -130,7 +130,7 @@ impl RealPlane {
                     column.iter().enumerate().for_each(|(i, x)| waves[i * half + ky] = *x);
                 }
                 for (row, waves) in rows.chunks_exact_mut(ny).zip(waves.chunks_exact_mut(half)) {
-                    // The ends of a real signal's spectrum are real; rounding left a trace.
+                    // The ends of the spectrum of a real signal are real, except for rounding errors.
                     waves[0].im = 0.0;
                     if my.is_multiple_of(2) {
                         waves[my / 2].im = 0.0;
@@ -143,7 +143,7 @@ impl RealPlane {
         );
     }
 
-    /// The transforms of one column at a time, with buffers of their own.
+    /// The transforms of one column at a time, with separate buffers.
     pub fn column(&self) -> Column<'_> {
         let (forward, back) = (&*self.columns_forward, &*self.columns_back);
         let scratch = forward.get_inplace_scratch_len().max(back.get_inplace_scratch_len());
@@ -156,7 +156,7 @@ impl RealPlane {
         }
     }
 
-    /// `visit(transforms, ky, column)` for every column, on all threads.
+    /// Calls `visit(transforms, ky, column)` for every column, on all threads.
     pub fn each_column(
         &self,
         columns: &mut [Complex64],
@@ -174,7 +174,7 @@ pub struct Column<'a> {
     forward: &'a dyn Fft<f64>,
     back: &'a dyn Fft<f64>,
     cells: usize,
-    /// X(kx, ky), kx = 0, .., mx - 1: what [`forward`](Self::forward) leaves and [`back`](Self::back) takes.
+    /// X(kx, ky), kx = 0, .., mx - 1: the output of [`forward`](Self::forward) and the input of [`back`](Self::back).
     pub waves: Vec<Complex64>,
     scratch: Vec<Complex64>,
 }
@@ -188,14 +188,14 @@ impl Column<'_> {
         &mut self.waves
     }
 
-    /// The same into mx numbers of the caller.
+    /// The same, into mx numbers of the caller.
     pub fn forward_into(&mut self, column: &[Complex64], waves: &mut [Complex64]) {
         waves[..self.cells].copy_from_slice(column);
         waves[self.cells..].fill(Complex64::ZERO);
         self.forward.process_with_scratch(waves, &mut self.scratch);
     }
 
-    /// The first nx numbers of the column that the waves are of, mx times; the waves are lost.
+    /// The first nx numbers of the column with these waves, multiplied by mx; the waves are overwritten.
     pub fn back(&mut self) -> &[Complex64] {
         self.back.process_with_scratch(&mut self.waves, &mut self.scratch);
         &self.waves[..self.cells]

@@ -1,4 +1,4 @@
-//! From a kernel in space to its real, even spectrum.
+//! Converts a kernel in space to its real, even spectrum.
 
 use crate::fft;
 use ndarray::parallel::prelude::*;

@@ -2,6 +2,7 @@
 
 pub mod case;
 pub mod choice;
+mod classic;
 pub mod compare;
 pub mod curve;
 pub mod cycles;
@@ -11,11 +12,14 @@ pub mod finding;
 mod instants;
 pub mod leakage;
 pub mod material_export;
+mod npz;
 pub mod output;
 pub mod preparation;
+pub mod quantity;
 pub mod readable;
 pub mod resources;
 pub mod session;
 pub mod store;
 pub mod stress;
 pub mod topography;
+mod xml;

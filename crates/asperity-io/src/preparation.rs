@@ -124,8 +124,9 @@ fn sentence(operation: &Operation, before: usize, after: usize) -> String {
 
 fn in_step(error: Error, number: usize, of: usize) -> Error {
     match error {
-        Error::Invalid { what, value, expected } if of > 1 => {
-            Error::Invalid { what: format!("step {number} of the preparation: {what}"), value, expected }
+        Error::Invalid { parameter, what, value, expected } if of > 1 => {
+            let what = format!("step {number} of the preparation: {what}");
+            Error::Invalid { parameter, what, value, expected }
         }
         other => other,
     }

@@ -3,16 +3,13 @@
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use asperity::contact::Hardness;
+use asperity::drive::Elastic as Contacts;
 use asperity::finding::{Diagnostics, Known};
+use asperity::kernel::{HalfSpace, Kernel};
 use asperity::material::Creep;
-use asperity::operator::{Operator, half_space, plan};
 use asperity::quantities::ContactStiffness;
 use asperity::step::Row;
-use asperity::{
-    Boundary, ContactState, Control, History, Loading, Outcome, Prescribed, Problem, Simulation, Solver,
-    SolverOptions,
-};
+use asperity::{Boundary, Control, Drive, Simulation, Solver};
 use ndarray::{Array2, ArrayView2};
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -35,20 +32,17 @@ pub struct Elastic {
 }
 
 struct Planned {
-    /// Gap, boundary, modulus and hardness, as the diagnostics take them.
-    simulation: Simulation,
+    contacts: Contacts,
     /// Whether the body is the half-space: what findings are about.
     half_space: bool,
-    options: SolverOptions,
-    operator: Box<dyn Operator>,
-    solver: Solver,
     stiffness: Option<ContactStiffness>,
 }
 
-/// A solution: its state, the numbers of its row, findings as a JSON list, and the iterations if they were asked for.
-struct Solved {
-    state: ContactState,
+/// A solution: the numbers of its row, pressure and displacement, findings as a JSON list, and the iterations if they were asked for.
+struct Solution {
     row: Row,
+    pressure: Array2<f64>,
+    displacement: Array2<f64>,
     findings: String,
     iterations: Vec<Iteration>,
 }
@@ -98,24 +92,31 @@ impl Elastic {
                 format!("hardness holds {value}, but must be finite and greater than 0 Pa in every cell");
             return Err(CaseError::new_err(words));
         }
-        let options = SolverOptions { method: choose("method", method)?, tolerance, max_iterations };
+        let options =
+            asperity::SolverOptions { method: choose("method", method)?, tolerance, max_iterations };
         options.validate().map_err(|error| raised(py, error))?;
         let kernel = kernel.map(|values| Table::new(grid, boundary, values.as_array().to_owned()));
         let kernel = kernel.transpose().map_err(|error| raised(py, error))?;
-        let half = kernel.is_none();
+        let half_space = kernel.is_none();
+        let kernel: Arc<dyn Kernel> = match kernel {
+            None => Arc::new(HalfSpace),
+            Some(table) => Arc::new(table),
+        };
         let bytes =
             asperity::operator::bytes(&grid, boundary) + Solver::bytes(options.method, &grid, boundary);
         memory(&grid, bytes)?;
         let planned = without_python(py, &AtomicBool::new(false), || {
-            let operator = match kernel {
-                None => half_space(grid, boundary),
-                Some(table) => plan(grid, boundary, Arc::new(table))?,
-            };
-            let solver = Solver::new(options.method, &*operator);
             let creep = Creep::elastic(1.0 / contact_modulus);
-            let simulation =
-                Simulation { boundary, creep, hardness, hardness_map, ..Simulation::new(grid, gap) };
-            Ok(Planned { simulation, half_space: half, options, operator, solver, stiffness: None })
+            let simulation = Simulation {
+                boundary,
+                kernel,
+                creep,
+                hardness,
+                hardness_map,
+                solver: options,
+                ..Simulation::new(grid, gap)
+            };
+            Ok(Planned { contacts: Contacts::new(simulation, [])?, half_space, stiffness: None })
         })?;
         let planned = Mutex::new(planned.map_err(|error| raised(py, error))?);
         let is_free_line = grid.is_line() && boundary == Boundary::Free;
@@ -144,30 +145,26 @@ impl Elastic {
         if start.as_ref().is_some_and(|start| start.len() != shape.0 * shape.1) {
             return Err(CaseError::new_err(format!("the start needs a pressure of shape {shape:?}")));
         }
-        let interrupt = AtomicBool::new(false);
+        let interrupt = Arc::new(AtomicBool::new(false));
         let solved = without_python(py, &interrupt, || {
             let mut planned = self.planned.lock().unwrap_or_else(PoisonError::into_inner);
-            planned.solve(prescribed, start, history, &interrupt)
+            planned.solve(prescribed, start, history, interrupt.clone())
         })?;
-        let map = |values: Vec<f64>| {
-            let array = Array2::from_shape_vec(shape, values);
-            array.map(|array| array.into_pyarray(py)).map_err(|error| CaseError::new_err(error.to_string()))
-        };
-        let Solved { state, row, findings, iterations } = match solved {
-            Ok(solved) => solved,
+        let Solution { row, pressure, displacement, findings, iterations } = match solved {
+            Ok(solution) => solution,
             Err(failed) => {
                 let (error, best) = *failed;
                 let raised = raised(py, error);
                 if raised.is_instance_of::<ConvergenceError>(py) {
-                    map(best).and_then(|best| raised.value(py).setattr("best", best))?;
+                    raised.value(py).setattr("best", best.into_pyarray(py))?;
                 }
                 return Err(raised);
             }
         };
         let out = PyDict::new(py);
         fill(&out, &row)?;
-        out.set_item("pressure", map(state.pressure)?)?;
-        out.set_item("displacement", map(state.unit_displacement)?)?;
+        out.set_item("pressure", pressure.into_pyarray(py))?;
+        out.set_item("displacement", displacement.into_pyarray(py))?;
         out.set_item("findings", findings)?;
         let steps: Vec<_> = iterations
             .into_iter()
@@ -194,79 +191,66 @@ const FREE_LINE: &str = "a free line contact needs two cells at least, and a loa
 impl Planned {
     fn solve(
         &mut self,
-        prescribed: (Control, f64),
+        (control, value): (Control, f64),
         start: Option<Vec<f64>>,
         history: bool,
-        interrupt: &AtomicBool,
-    ) -> Result<Solved, Box<(asperity::Error, Vec<f64>)>> {
-        let Planned { simulation, half_space, options, operator, solver, .. } = self;
-        let grid = simulation.grid;
-        let free_line = grid.is_line() && simulation.boundary == Boundary::Free;
-        let (control, value) = prescribed;
-        let prescribed = match control {
-            Control::Approach => Prescribed::Approach(value),
-            Control::Load | Control::Pressure => Prescribed::Load(value),
-        };
-        let mut state = ContactState::new(grid.len());
-        if let Some(pressure) = start {
-            state.pressure = pressure;
-        }
-        let gap = simulation.gap.as_slice().unwrap_or_default();
-        let hardnesses = simulation.hardness_map.as_ref().and_then(|map| map.as_slice());
-        let hardness = hardnesses.map_or(simulation.hardness.into(), Hardness::Cells);
-        let compliance = simulation.creep.instantaneous;
-        let problem = Problem { gap, compliance, hardness, prescribed };
-        let mut solve = || solver.solve(&mut **operator, &problem, options, &mut state, Some(interrupt));
+        interrupt: Arc<AtomicBool>,
+    ) -> Result<Solution, Box<(asperity::Error, Array2<f64>)>> {
+        let contacts = &mut self.contacts;
+        let grid = contacts.simulation().grid;
+        contacts.interrupt_with(interrupt);
+        contacts.ask(control, value, &start.unwrap_or_else(|| vec![0.0; grid.len()]));
+        let mut solve = || contacts.advance().map(|_| ());
         let (solved, mut iterations) = if history { traced(solve) } else { (solve(), vec![]) };
-        let outcome = match solved {
-            Ok(outcome) => outcome,
-            Err(error) => return Err(Box::new((error, state.pressure))),
+        let mut displacement = Array2::zeros(grid.shape());
+        let step = contacts.last();
+        let pressure = step.map_or(displacement.clone(), |step| step.pressure().to_owned());
+        let row = match (solved, step) {
+            (Ok(()), Some(step)) => {
+                step.displacement_into(&mut displacement);
+                step.row()
+            }
+            (Ok(()), None) => Row::default(),
+            (Err(error), _) => return Err(Box::new((error, pressure))),
         };
         if history {
-            iterations.push(last(&outcome, &iterations));
+            iterations.push(last(&row, &iterations));
         }
-        let row = Row::of_contact(&grid, simulation.boundary, (gap, hardness, compliance), &state, &outcome);
-        // Of a free line contact displacements are measured from the domain's end, x = L, as those of a march are.
-        let datum = match state.unit_displacement.as_slice() {
-            [.., before, last] if free_line => (last + 0.5 * (last - before)) * compliance,
-            _ => 0.0,
+        let findings = match self.half_space {
+            true => judged(contacts.simulation(), control, &row, pressure.view()),
+            false => "[]".into(),
         };
-        let row = Row { approach: row.approach - datum, ..row };
-        simulation.loading = Loading { control, history: History::Step { value } }.into();
-        let findings = if *half_space { judged(simulation, control, &row, &state) } else { "[]".into() };
-        state.unit_displacement.iter_mut().for_each(|u| *u = *u * compliance - datum);
-        Ok(Solved { state, row, findings, iterations })
+        Ok(Solution { row, pressure, displacement, findings, iterations })
     }
 
     fn stiffness(&mut self, pressure: &[f64], interrupt: &AtomicBool) -> asperity::Result<f64> {
-        let Planned { simulation, operator, stiffness, .. } = self;
-        let solver = stiffness.get_or_insert_with(|| ContactStiffness::new(&**operator));
-        let hardnesses = simulation.hardness_map.as_ref().and_then(|map| map.as_slice());
-        let below = |n: usize| pressure[n] < hardnesses.map_or(simulation.hardness, |map| map[n]);
+        let Planned { contacts, stiffness, .. } = self;
+        let simulation = contacts.simulation();
+        let (compliance, all) = (simulation.creep.instantaneous, simulation.hardness);
+        let hardness = simulation.hardness_map.as_ref().map(|map| map.iter().copied().collect::<Vec<f64>>());
+        let below = |n: usize| pressure[n] < hardness.as_ref().map_or(all, |map| map[n]);
         let bears = |n: usize| pressure[n] > 0.0 && below(n);
-        let found = solver.of(&mut **operator, simulation.creep.instantaneous, bears, Some(interrupt))?;
-        Ok(found.0)
+        let operator = contacts.operator();
+        let solver = stiffness.get_or_insert_with(|| ContactStiffness::new(operator));
+        Ok(solver.of(operator, compliance, bears, Some(interrupt))?.0)
     }
 }
 
 /// The state at the end as one more entry of the history.
-fn last(outcome: &Outcome, iterations: &[Iteration]) -> Iteration {
+fn last(row: &Row, iterations: &[Iteration]) -> Iteration {
     Iteration {
-        number: outcome.iterations as u64,
-        residual: outcome.residual,
+        number: row.iterations as u64,
+        residual: row.residual,
         working: iterations.last().map_or(0.0, |before| before.working),
         step: "converged".into(),
-        convolutions: outcome.convolutions as u64,
+        convolutions: row.convolutions as u64,
     }
 }
 
 /// What is to be said of a contact, as a JSON list.
-fn judged(simulation: &Simulation, control: Control, row: &Row, state: &ContactState) -> String {
+fn judged(simulation: &Simulation, control: Control, row: &Row, pressure: ArrayView2<'_, f64>) -> String {
     let mut diagnostics = Diagnostics::new(simulation, Known::default());
-    let pressure = ArrayView2::from_shape(simulation.grid.shape(), &state.pressure);
-    if let Ok(pressure) = pressure {
-        diagnostics.see_contact(0, row, pressure, control, simulation.creep.instantaneous);
-    }
+    diagnostics.see_contact(0, row, pressure, control, simulation.creep.instantaneous);
     asperity_io::finding::list(&diagnostics.findings(simulation)).to_string()
 }
 

@@ -1,6 +1,6 @@
-//! Arrays that are walked together, and how they are divided.
+//! Arrays that a sweep processes together, and how they are divided.
 
-/// Arrays that are walked together: slices and tuples of slices of one length.
+/// Arrays that a sweep processes together: slices and tuples of slices of one length.
 pub trait Cells: Send + Sized {
     /// Number of cells.
     fn cells(&self) -> usize;
@@ -26,7 +26,7 @@ impl<T: Send> Cells for &mut [T] {
     }
 }
 
-/// Cells that some sweeps have: never the first of a tuple, which knows their number.
+/// Optional cells. They are never the first element of a tuple, because the first determines the number of cells.
 impl<C: Cells> Cells for Option<C> {
     fn cells(&self) -> usize {
         self.as_ref().map_or(0, Cells::cells)
@@ -50,7 +50,7 @@ impl Cells for std::ops::Range<usize> {
 /// A set of cells, eight in a byte (see [`crate::simd`]).
 pub struct Set<'a>(pub &'a [u8]);
 
-/// A set of cells to be found.
+/// A set of cells that a sweep determines.
 pub struct SetMut<'a>(pub &'a mut [u8]);
 
 impl Cells for Set<'_> {
@@ -58,7 +58,7 @@ impl Cells for Set<'_> {
         8 * self.0.len()
     }
     fn split(self, mid: usize) -> (Self, Self) {
-        let (first, second) = self.0.split_at(mid / 8);
+        let (first, second) = self.0.split_at(mid.div_ceil(8));
         (Set(first), Set(second))
     }
 }
@@ -68,7 +68,7 @@ impl Cells for SetMut<'_> {
         8 * self.0.len()
     }
     fn split(self, mid: usize) -> (Self, Self) {
-        let (first, second) = self.0.split_at_mut(mid / 8);
+        let (first, second) = self.0.split_at_mut(mid.div_ceil(8));
         (SetMut(first), SetMut(second))
     }
 }

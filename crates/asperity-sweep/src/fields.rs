@@ -1,4 +1,4 @@
-//! Sweeps that say what happens to one cell.
+//! Sweeps that are defined by the operation on one cell.
 //!
 //! ```
 //! use asperity_sweep::{each, sums};
@@ -15,9 +15,9 @@ use crate::sweep::{strands, sweep};
 
 /// Fields that are read cell by cell: slices, and tuples of them.
 pub trait Fields: Cells {
-    /// What a cell holds.
+    /// The value of a cell.
     type Cell;
-    /// That of a cell.
+    /// The value of this cell.
     fn at(&self, cell: usize) -> Self::Cell;
 }
 
@@ -64,7 +64,7 @@ fields_of_tuple!(A, B, C, D);
 fields_of_tuple!(A, B, C, D, E);
 fields_of_tuple!(A, B, C, D, E, F);
 
-/// Changes each cell of `to` by those of `fields`.
+/// Updates each cell of `to` from those of `fields`.
 pub fn each<T: Send, F: Fields>(to: &mut [T], fields: F, change: impl Fn(&mut T, F::Cell) + Sync) {
     sweep((to, fields), &|(to, fields): (&mut [T], F)| {
         // The number of cells is that of `to`: known to the compiler, which then checks no bounds.
@@ -89,4 +89,23 @@ pub fn each_with_sums<F: Fields, const K: usize>(
 /// Sums over the cells of fields.
 pub fn sums<F: Fields, const K: usize>(fields: F, of: impl Fn(F::Cell) -> [f64; K] + Sync) -> [f64; K] {
     sweep(fields, &|fields: F| strands(fields.cells(), |n| of(fields.at(n))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_are_read_to_their_last_cell() {
+        for cells in [1, 7, 8, 13, 8192, 8192 + 9] {
+            let set = vec![0xff; cells.div_ceil(8)];
+            let mut field = vec![0.0; cells];
+            each(&mut field, Set(&set), |to, on| *to = f64::from(u8::from(on)));
+            assert_eq!(sums(&field[..], |x| [x]), [cells as f64]);
+            assert_eq!(
+                each_with_sums(&mut field, Set(&set), |_, on| [f64::from(u8::from(on))]),
+                [cells as f64]
+            );
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! Which vector instructions a processor has.
+//! The vector instructions of a processor.
 
 /// Vector instructions. All give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -7,12 +7,12 @@ pub enum Instructions {
     Avx512,
     /// Vectors of 256 bits with fused multiply-add (AVX2, FMA).
     Avx2,
-    /// What the compiler makes of plain Rust: NEON on aarch64. Slow on x86-64 without FMA.
+    /// Code that the compiler generates from plain Rust: NEON on aarch64. Slow on x86-64 without FMA.
     Portable,
 }
 
 impl Instructions {
-    /// Those that this processor has, fastest first.
+    /// Those available on this processor, fastest first.
     pub fn available() -> Vec<Self> {
         let mut found = Vec::new();
         #[cfg(target_arch = "x86_64")]

@@ -1,8 +1,8 @@
 //! The declaration of a sweep kernel.
 
-/// Declares a sweep kernel: fields of one number of cells, which are walked together, numbers that are the same for all cells, and
-/// what is done with a part of the cells, eight at a time in vectors `V`. The first field must have all cells. [`run`](crate::run())
-/// applies it to all of them and merges what it yields.
+/// Declares a sweep kernel: fields with the same number of cells, which are processed together, numbers that are the same for all
+/// cells, and the operation on a part of the cells, eight at a time in vectors `V`. The first field must have all cells.
+/// [`run`](crate::run()) applies it to all of them and merges the results.
 ///
 /// ```
 /// use asperity_sweep::{kernel, run};

@@ -1,9 +1,9 @@
-//! Sweeps over fields: several arrays of cells walked together, in parallel, with sums whose order
-//! never depends on the number of threads.
+//! Sweeps over fields: several arrays of cells are processed together, in parallel, and the order of sums never depends on the
+//! number of threads.
 //!
-//! A sweep halves its arrays down to blocks of [`BLOCK`] cells, works on each block, and merges the
-//! blocks' sums pairwise up the same tree. The tree depends on the length alone, so the same field
-//! gives the same bits on one thread and on many; nothing is allocated.
+//! A sweep halves its arrays down to blocks of [`BLOCK`] cells, works on each block, and merges the blocks' sums pairwise up the
+//! same tree. The tree depends only on the length, so the same field gives the same bits on one thread and on many; nothing is
+//! allocated.
 
 mod cells;
 mod fields;

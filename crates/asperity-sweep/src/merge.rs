@@ -1,8 +1,8 @@
-//! What the blocks of a sweep yield, and how two neighbours' yields become one.
+//! The results of the blocks of a sweep, and how the results of two neighbours are merged.
 
-/// What a block yields and how two neighbours' yields become one.
+/// The result of a block, and how the results of two neighbours are merged.
 pub trait Merge: Send {
-    /// The yield of both blocks; `self` comes first.
+    /// The result of both blocks; `self` comes first.
     fn merge(self, next: Self) -> Self;
 }
 

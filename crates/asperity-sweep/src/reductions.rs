@@ -4,8 +4,8 @@
 use crate::merge::{Max, Min};
 use crate::sweep::run;
 
-/// Declares a reduction of one field or more, eight cells at a time, by what one sweep over a block does: the value that it
-/// starts from, that of the cells beyond the end, the step, what the block yields, and what is told of all yields.
+/// Declares a reduction of one or more fields, eight cells at a time. The arguments describe one sweep over a block: the initial
+/// value, the value of cells beyond the end, the step, the result of the block, and the final result from all blocks.
 macro_rules! reduction {
     ($(#[$doc:meta])* $name:ident($first:ident $(, $next:ident)*) -> $result:ty {
         from $start:expr, beyond $beyond:expr, |$value:ident| $step:expr, $yield:ty: $end:expr, $tell:expr
@@ -35,19 +35,19 @@ reduction! {
 }
 
 reduction! {
-    /// Sum of the products of the cells of two fields of one length.
+    /// Sum of the products of the cells of two fields of the same length.
     dot(a, b) -> f64 { from 0.0, beyond 0.0, |sum| sum + a * b, f64: sum.sum(), |sum| sum }
 }
 
 reduction! {
-    /// Smallest cell; infinity where there is none. NaN does not count.
+    /// Smallest cell; infinity if there is none. NaN does not count.
     minimum(x) -> f64 {
         from f64::INFINITY, beyond f64::INFINITY, |least| x.smaller(least), Min: Min(least.least()), |min: Min| min.0
     }
 }
 
 reduction! {
-    /// Largest cell; minus infinity where there is none. NaN does not count.
+    /// Largest cell; minus infinity if there is none. NaN does not count.
     maximum(x) -> f64 {
         from f64::NEG_INFINITY, beyond f64::NEG_INFINITY, |most| x.larger(most), Max: Max(most.largest()), |max: Max| max.0
     }
@@ -78,7 +78,7 @@ reduction! {
 }
 
 reduction! {
-    /// True where every cell is 0, of either sign.
+    /// True if every cell is 0, of either sign.
     is_zero(x) -> bool {
         from 0.0, beyond 0.0, |others| others + V::count(!x.abs().at_most(V::splat(0.0))),
         f64: others.sum(), |others| others == 0.0

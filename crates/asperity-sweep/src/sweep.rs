@@ -1,4 +1,4 @@
-//! The sweep: blocks in parallel, their yields merged up a fixed tree.
+//! The sweep: it processes blocks in parallel and merges their results up a fixed tree.
 
 use rayon::prelude::*;
 
@@ -6,16 +6,16 @@ use crate::cells::Cells;
 use crate::merge::Merge;
 use crate::simd::{Work, vectorize};
 
-/// Cells in one block, a multiple of eight: a few arrays of it fit the second-level cache.
+/// Cells in one block, a multiple of eight: a few arrays of this size fit into the second-level cache.
 pub const BLOCK: usize = 8192;
 
-/// A field of zeros, written by all threads: memory that a system hands out as zeros without writing them would be fetched
-/// when it is first used, cell by cell in the middle of a solve, and twice where it is read first.
+/// A field of zeros, written by all threads. Otherwise, the system would only reserve the memory and provide each page at its
+/// first use, in the middle of a solve, and twice if it is read first.
 pub fn zeros<T: Default + Send>(cells: usize) -> Vec<T> {
     (0..cells).into_par_iter().with_min_len(BLOCK).map(|_| T::default()).collect()
 }
 
-/// Applies `block` to every block of the cells and merges what they yield.
+/// Applies `block` to every block of the cells and merges the results.
 pub fn sweep<C: Cells, M: Merge>(cells: C, block: &(impl Fn(C) -> M + Sync)) -> M {
     let n = cells.cells();
     if n <= BLOCK {
@@ -45,13 +45,13 @@ impl<C: Cells, M: Merge> Half<C, M> {
     }
 }
 
-/// Runs both, on two threads where there are. Not generic, so that the machinery of threads is compiled once.
+/// Runs both, on two threads if available. Not generic, so that the threading code is compiled once.
 fn both(first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
     rayon::join(first, second);
 }
 
-/// Runs a kernel over all of its cells, in the widest vectors of the processor and on all threads, and merges what the blocks
-/// yield in a fixed order.
+/// Runs a kernel over all of its cells, in the widest vectors of the processor and on all threads, and merges the results of the
+/// blocks in a fixed order.
 pub fn run<K: Cells + Work>(kernel: K) -> K::Yield
 where
     K::Yield: Merge,
@@ -59,7 +59,7 @@ where
     sweep(kernel, &|part: K| vectorize(part))
 }
 
-/// Sums over `n` cells in eight interleaved strands: the order that vector units prefer, fixed here.
+/// Sums over `n` cells in eight interleaved lanes: the order suits vector units, and is fixed here.
 #[inline(always)]
 pub fn strands<const K: usize>(n: usize, mut term: impl FnMut(usize) -> [f64; K]) -> [f64; K] {
     let mut strand = [[0.0; K]; 8];

@@ -44,7 +44,7 @@ fn steady(n: usize) -> (f64, Vec<usize>) {
     };
     let parts = [Part::SelfAffine(rough)];
     let gap = undeformed_gap(&grid, &parts).expect("a gap");
-    let slopes = Slopes::of(&grid, Boundary::Periodic, &parts, &gap).expect("slopes");
+    let slopes = Slopes::of(&grid, Boundary::Periodic, &parts).expect("slopes");
     let simulation = Simulation {
         boundary: Boundary::Periodic,
         creep: rubber(),

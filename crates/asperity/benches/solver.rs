@@ -11,7 +11,6 @@ use asperity::Drive;
 use std::hint::black_box;
 use std::time::Instant;
 
-use asperity::contact::ProjectedCg;
 use asperity::drive::March;
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
@@ -101,10 +100,10 @@ impl Size {
         let single: Vec<f32> = input.iter().map(|x| *x as f32).collect();
         let (mut output, mut rough) = (vec![0.0; n * n], vec![0.0; n * n]);
         let convolution = timed(|| operator.apply_into(&input, &mut output));
-        let mut solver = ProjectedCg::new(&*operator);
+        let mut inverse = operator.approximate_inverse();
         let set = vec![0b0101_1100; (n * n).div_ceil(8)];
-        let preconditioner = timed(|| solver.precondition(&single, &set, &mut rough));
-        drop((operator, solver, input, single, output, rough));
+        let preconditioner = timed(|| inverse.apply_on_set_into(&single, &set, &mut rough));
+        drop((operator, inverse, input, single, output, rough));
         let (elastic, creep) = creep(n, 2, if n > 1024 { 5 } else { 20 });
         Size { n, convolution, preconditioner, elastic, creep }
     }

@@ -1,11 +1,11 @@
-//! Cyclic loading: what a period of load and approach tells of the contact.
+//! Cyclic loading: evaluation of one period of load and approach.
 //!
-//! Over a period T = 1/f the external work is the area of the hysteresis loop, integral W dw, the energy dissipated
-//! where the cycle closes (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., Wiley 1980, chapter 1). Where the approach
-//! drifts by dw over the period, the work of the mean load over this drift, mean(W) dw, is a part of it, and is not the loop's. The
-//! first harmonics W_1, w_1, complex amplitudes of exp(i 2 pi f t), give the dynamic stiffness K* = W_1/w_1 =
+//! Over a period T = 1/f the external work is the area of the hysteresis loop, integral W dw. If the cycle is closed, it is the
+//! energy dissipated (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., Wiley 1980, chapter 1). If the approach drifts
+//! by dw over the period, the integral includes the work of the mean load over this drift, mean(W) dw, which is not part of the
+//! loop. The first harmonics W_1, w_1, complex amplitudes of exp(i 2 pi f t), give the dynamic stiffness K* = W_1/w_1 =
 //! |K*| exp(i delta) with the loss angle delta: the load leads the approach. In full contact tan delta is that of
-//! the material, E''/E'; where the contact area changes within the cycle it is not, and higher harmonics are left out.
+//! the material, E''/E'. If the contact area changes within the cycle it is not, and there are higher harmonics, which are ignored.
 
 use crate::error::{Error, Result, positive};
 
@@ -14,10 +14,11 @@ use crate::error::{Error, Result, positive};
 pub struct Cycle {
     /// Start and end \[s\].
     pub span: [f64; 2],
-    /// External work integral W dw over the period, on cubics through the rows \[J\]: the dissipated energy, and what a cycle that does not close
-    /// stores besides.
+    /// External work integral W dw over the period, on cubics through the rows \[J\]: the dissipated energy, plus the energy
+    /// stored in a cycle that is not closed.
     pub dissipated_energy: f64,
-    /// What of it the mean load does over the drift of the approach from start to end \[J\]: 0 where the cycle closes.
+    /// Part of `dissipated_energy` that is the work of the mean load over the drift of the approach from start to end \[J\]: 0 if
+    /// the cycle is closed.
     pub drift_work: f64,
     /// Dynamic stiffness |K*| of the first harmonics \[N/m\].
     pub stiffness: f64,
@@ -25,14 +26,14 @@ pub struct Cycle {
     pub loss_angle: f64,
 }
 
-/// The fewest rows within a period that say something of its first harmonic.
+/// Smallest number of rows within a period that determine its first harmonic.
 const FEWEST: usize = 8;
 
-/// The full periods from `start` \[s\] on, of rows in order of `time` \[s\] with `load` \[N\] and `approach` \[m\]; steps
-/// need not be equal, nor ends of periods be rows. Periods with fewer than 8 steps are left out.
+/// The full periods from `start` \[s\] on, of rows in order of `time` \[s\] with `load` \[N\] and `approach` \[m\]; steps need
+/// not be equal, and ends of periods need not be rows. Periods with fewer than 8 steps are left out.
 ///
-/// Each first harmonic is the least-squares fit of mean, drift, cosine and sine to the rows of the period, weighted by
-/// their steps: exact for a harmonic on a straight line, whatever the steps.
+/// Each first harmonic is the least-squares fit of mean, drift, cosine and sine to the rows of the period, weighted by their
+/// steps: exact for a harmonic on a straight line, for any steps.
 ///
 /// ```
 /// // K* = 100 exp(0.3 i) N/m at 2 Hz, an amplitude of 1 um: a cycle dissipates pi |K*| sin(delta) w1^2.
@@ -50,7 +51,7 @@ const FEWEST: usize = 8;
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where the frequency is not positive, the lists differ in length, or time runs back.
+/// [`Error::Invalid`] if the frequency is not positive, the lists differ in length, or times decrease.
 pub fn cycles(
     time: &[f64],
     load: &[f64],
@@ -74,9 +75,9 @@ pub fn cycles(
     let period = 1.0 / frequency;
     let rows = Rows { time, load, approach };
     let mut found = vec![];
-    // Past the end by rounding is the end.
+    // A time past the end by rounding counts as the end.
     let last = end + 1e-9 * period;
-    // Only the periods that rows lie in: there may be a billion others.
+    // Only periods that contain rows: there may be a billion others.
     let mut numbers: Vec<f64> = time.iter().map(|t| ((t - start) / period).floor()).collect();
     numbers.dedup();
     for n in numbers.into_iter().filter(|n| *n >= 0.0) {
@@ -122,7 +123,7 @@ impl Rows<'_> {
             return None;
         }
         let mut points: Vec<Point> = (first..last).map(|n| self.at(n)).collect();
-        // Ends that are no rows lie between rows.
+        // Ends of periods that are not rows lie between rows.
         if points.first()?[0] > start + close {
             points.insert(0, self.between(first, start)?);
         }
@@ -151,8 +152,9 @@ impl Rows<'_> {
     }
 }
 
-/// Integral of W dw from point n - 1 to n, on the cubics in time through the four points around: chords alone would be a share of
-/// (2 pi/N)^2/6 short with N rows to the period. On the chord next to a jump and where the four points are not apart.
+/// Integral of W dw from point n - 1 to n, on the cubics in time through the four surrounding points: chords alone would be too
+/// small by a relative (2 pi/N)^2/6 with N rows per period. The chord is used next to a jump and if the four points are not far
+/// enough apart.
 fn work(points: &[Point], n: usize) -> f64 {
     let [a, b] = [points[n - 1], points[n]];
     let chord = 0.5 * (a[1] + b[1]) * (b[2] - a[2]);
@@ -172,7 +174,7 @@ fn work(points: &[Point], n: usize) -> f64 {
     0.5 * step * (5.0 * at(-node) + 8.0 * at(0.0) + 5.0 * at(node)) / 9.0
 }
 
-/// Whether four points are far enough from each other for a cubic, measured by a step.
+/// Whether four points are far enough apart for a cubic, relative to the step.
 fn apart(around: &[Point], step: f64) -> bool {
     around.len() == 4 && around.windows(2).all(|pair| pair[1][0] - pair[0][0] >= 0.05 * step)
 }
@@ -193,7 +195,7 @@ fn cubic(around: &[Point], column: usize, t: f64) -> [f64; 2] {
     [value, slope]
 }
 
-/// Cosine and sine amplitudes of column `which`, beside a mean and a drift.
+/// Cosine and sine amplitudes of column `which`, fitted with a mean and a drift.
 fn harmonic(points: &[Point], which: usize, omega: f64) -> Option<[f64; 2]> {
     let (start, end) = (points.first()?[0], points.last()?[0]);
     let middle = 0.5 * (start + end);
@@ -216,7 +218,7 @@ fn harmonic(points: &[Point], which: usize, omega: f64) -> Option<[f64; 2]> {
     Some([scale * solution[2], scale * solution[3]])
 }
 
-/// Gauss elimination with pivots; `None` where the rows say too little.
+/// Gaussian elimination with pivots; `None` if the rows do not determine the solution.
 fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
     for k in 0..4 {
         let pivot = (k..4).max_by(|a, b| m[*a][k].abs().total_cmp(&m[*b][k].abs()))?;

@@ -1,4 +1,4 @@
-//! What can go wrong, with the numbers that a user needs to mend it.
+//! The errors, with the numbers that a user needs to correct the input.
 
 use thiserror::Error;
 
@@ -9,42 +9,44 @@ pub enum Error {
     /// An argument is outside its domain.
     #[error("{what} is {value}, but must be {expected}")]
     Invalid {
-        /// The quantity, in the field's words ("Poisson's ratio", "radius").
+        /// Path of the argument among those of the call, in the names of case files ("longest", "histogram.bins",
+        /// "body\[0\].layer\[1\]"); empty if it concerns the whole.
+        parameter: String,
+        /// The quantity, in terms of the field ("Poisson's ratio", "radius").
         what: String,
         /// The value as given.
         value: String,
-        /// What is accepted, with unit.
+        /// The accepted values, with unit.
         expected: String,
     },
-    /// The load cannot be carried: W > H A (no solution exists).
+    /// The contact cannot carry the load: W > H A (no solution exists).
     #[error(
         "the load {} N exceeds {} N, the hardness times the area that can touch; \
          lower the load, raise the hardness or enlarge the domain",
         four(*load), four(*max)
     )]
     Infeasible {
-        /// Load asked for \[N\].
+        /// Prescribed load \[N\].
         load: f64,
         /// Largest load that the hardness allows \[N\].
         max: f64,
     },
-    /// A periodic body pressed into full contact under approach control: the mean pressure is
-    /// not determined by the approach.
+    /// A periodic body is pressed into full contact under approach control: the approach does not determine the mean pressure.
     #[error(
         "the approach {} m closes the whole periodic gap (largest with a determined load: \
          {} m); use load control for full contact",
         four(*approach), four(*max)
     )]
     Undetermined {
-        /// Approach asked for \[m\].
+        /// Prescribed approach \[m\].
         approach: f64,
         /// The approach at which the mean gap closes \[m\].
         max: f64,
     },
-    /// The solver stopped before it met its tolerance; the state that it reached is kept by the caller.
+    /// The solver stopped before it reached its tolerance; the caller keeps the state reached.
     #[error(transparent)]
     NotConverged(#[from] NotConverged),
-    /// A stage waited for an event that did not come; the rows so far are complete.
+    /// The event that ends a stage did not occur; the rows so far are complete.
     #[error(
         "stage {stage} waits for {event}, but the run ends at t = {end} s without it (approach {approach:e} m, load \
          {load:e} N); end the run later, change the event, or give the stage a duration"
@@ -61,12 +63,12 @@ pub enum Error {
         /// Load at the end \[N\].
         load: f64,
     },
-    /// Somebody asked to stop; the rows so far are complete.
+    /// The run was interrupted on request; the rows so far are complete.
     #[error("interrupted")]
     Interrupted,
 }
 
-/// Where a solve stopped that did not meet its tolerance.
+/// State of a solve that did not reach its tolerance.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error(
     "{method} stopped after {iterations} iterations at residual {residual:.2e} (tolerance {tolerance:.1e}, \
@@ -84,11 +86,11 @@ pub struct NotConverged {
     pub iterations: usize,
     /// KKT residual of the state reached (see `contact`).
     pub residual: f64,
-    /// Tolerance asked for.
+    /// Required tolerance.
     pub tolerance: f64,
     /// Certified relative energy-norm error of the state reached.
     pub certificate: f64,
-    /// Time of the step, where the solve belongs to a march \[s\].
+    /// Time of the step \[s\], if the solve belongs to a run over time.
     pub time: Option<f64>,
     /// Velocity of a steady state of motion \[m/s\].
     pub velocity: Option<f64>,
@@ -98,17 +100,30 @@ pub struct NotConverged {
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 impl Error {
-    /// `what` is `value`, but must be `expected`.
+    /// The error that `what` is `value`, but must be `expected`.
     pub fn invalid(
         what: impl Into<String>,
         value: impl std::fmt::Display,
         expected: impl Into<String>,
     ) -> Self {
-        Error::Invalid { what: what.into(), value: value.to_string(), expected: expected.into() }
+        let (what, expected) = (what.into(), expected.into());
+        Error::Invalid { parameter: String::new(), what, value: value.to_string(), expected }
+    }
+
+    /// The same error, for the argument `outer` or one inside it.
+    #[must_use]
+    pub fn of(self, outer: &str) -> Self {
+        match self {
+            Error::Invalid { parameter, what, value, expected } => {
+                let dot = if parameter.is_empty() { "" } else { "." };
+                Error::Invalid { parameter: format!("{outer}{dot}{parameter}"), what, value, expected }
+            }
+            other => other,
+        }
     }
 }
 
-/// The error of a `what` that is `value`, but must be `expected`, unless that `holds`.
+/// The error that `what` is `value`, but must be `expected`, unless `holds` is true.
 pub(crate) fn require(
     holds: bool,
     what: impl Into<String>,
@@ -118,7 +133,7 @@ pub(crate) fn require(
     if holds { Ok(()) } else { Err(Error::invalid(what, value, expected)) }
 }
 
-/// `Ok(value)` where it is finite and > 0.
+/// `Ok(value)` if it is finite and > 0.
 pub(crate) fn positive(what: &str, value: f64, unit: &str) -> Result<f64> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
@@ -127,7 +142,7 @@ pub(crate) fn positive(what: &str, value: f64, unit: &str) -> Result<f64> {
     }
 }
 
-/// `Ok(value)` for a length that bodies may have: products of four of them do not overflow or vanish.
+/// `Ok(value)` for a valid length of a body: products of four such lengths do not overflow or underflow.
 pub(crate) fn length(what: &str, value: f64) -> Result<f64> {
     const LENGTHS: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
     match LENGTHS.contains(&value) {
@@ -136,7 +151,7 @@ pub(crate) fn length(what: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// `Ok(value)` where it is finite and >= 0.
+/// `Ok(value)` if it is finite and >= 0.
 pub(crate) fn non_negative(what: &str, value: f64, unit: &str) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
@@ -155,7 +170,7 @@ pub(crate) fn rounded(x: f64) -> String {
     format!("{x:.3e}").parse::<f64>().map_or_else(|_| x.to_string(), |x| x.to_string())
 }
 
-/// A number in four digits: "5", "0.025", "1.234e-7".
+/// A number with four digits: "5", "0.025", "1.234e-7".
 fn four(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-3..1e5).contains(&size) {

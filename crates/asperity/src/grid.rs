@@ -36,8 +36,8 @@ impl Grid {
     /// A grid of `cells` = \[nx, ny\] over `size` = \[Lx, Ly\] in metres.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a count is 0, a size is not from 1e-60 m to 1e60 m, the cells are
-    /// more than 2^31, or a cell is longer than 1000 times its width.
+    /// [`Error::Invalid`] if a count is 0, a size is not from 1e-60 m to 1e60 m, there are more than 2^31 cells, or a cell is
+    /// longer than 1000 times its width.
     pub fn new(cells: [usize; 2], size: [f64; 2]) -> Result<Self> {
         for (count, axis) in cells.iter().zip(["x", "y"]) {
             if *count == 0 {
@@ -68,7 +68,7 @@ impl Grid {
     }
 
     /// A line of cells along x in plane strain: nothing changes along y. The grid has one cell along y, one metre long, so loads,
-    /// areas and energies are those of a metre: \[N/m\], \[m\] and \[J/m\].
+    /// areas and energies are per metre: \[N/m\], \[m\] and \[J/m\].
     ///
     /// ```
     /// let grid = asperity::Grid::line(4, 2e-3)?;
@@ -77,7 +77,7 @@ impl Grid {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the count is 0 or more than 2^31, or the length not from 1e-60 m to 1e60 m.
+    /// [`Error::Invalid`] if the count is 0 or more than 2^31, or the length is not from 1e-60 m to 1e60 m.
     pub fn line(cells: usize, side: f64) -> Result<Self> {
         length("size of the domain along x", side)?;
         if cells == 0 || cells > 1 << 31 {
@@ -86,7 +86,7 @@ impl Grid {
         Ok(Grid { cells: [cells, 1], size: [side, 1.0], line: true })
     }
 
-    /// The same domain with other cells; of a line the number along y is 1.
+    /// The same domain with another number of cells; for a line, the number along y is 1.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Grid::new`].
@@ -99,12 +99,12 @@ impl Grid {
         self.line
     }
 
-    /// Number of directions in which fields vary: 1 of a line, else 2.
+    /// Number of directions in which fields vary: 1 for a line, otherwise 2.
     pub fn dimensions(&self) -> usize {
         if self.line { 1 } else { 2 }
     }
 
-    /// The unit of a quantity whose unit on a surface is `units`: on a line forces, areas and energies are per length.
+    /// The unit of a quantity with the unit `units` on a surface: on a line, forces, areas and energies are per length.
     ///
     /// ```
     /// use asperity::Grid;
@@ -182,7 +182,7 @@ impl Grid {
         self.cells[0] * self.cells[1]
     }
 
-    /// Shape of a field, as ndarray takes it.
+    /// Shape of a field for ndarray.
     pub fn shape(&self) -> (usize, usize) {
         (self.cells[0], self.cells[1])
     }

@@ -1,7 +1,7 @@
-//! What is prescribed over time: a load, a mean pressure or an approach.
+//! The prescribed quantity over time: a load, a mean pressure or an approach.
 //!
-//! A history is piecewise smooth. Where it jumps it has two values, `before(t)` and `after(t)`;
-//! the march takes a jump as a step of zero length. Every history is zero before t = 0.
+//! A history is piecewise smooth. At a jump it has two values, `before(t)` and `after(t)`; in time stepping a jump is a step of
+//! zero length. Every history is zero before t = 0.
 
 mod programme;
 mod time_grid;
@@ -26,7 +26,7 @@ pub enum Control {
     Approach,
 }
 
-/// A history with more turns than this is not looked at one by one.
+/// The extrema of a history with more than this number are not listed individually.
 const MOST_EXTREMES: usize = 100_000;
 
 /// A value over time, from t = 0 on.
@@ -83,7 +83,7 @@ pub enum History {
 /// A control and its history, for a whole run: the [`Programme`] of one stage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loading {
-    /// What is prescribed.
+    /// The prescribed quantity of the run.
     pub control: Control,
     /// Its value over time.
     pub history: History,
@@ -134,7 +134,7 @@ impl History {
         if t < 0.0 { 0.0 } else { self.limit(t, Side::After) }
     }
 
-    /// Times in (0, end) where the history bends or jumps, in order.
+    /// Times in (0, end) at which the history has a kink or a jump, in order.
     pub fn breaks(&self, end: f64) -> Vec<f64> {
         let mut times = match self {
             History::Step { .. } | History::Sine { .. } => vec![],
@@ -150,7 +150,7 @@ impl History {
         times
     }
 
-    /// Times in (0, end) where the history is largest or smallest, besides its breaks, in order.
+    /// Times in (0, end) at which the history has an extremum that is not a kink or jump, in order.
     pub(crate) fn extremes(&self, end: f64) -> Vec<f64> {
         let History::Sine { frequency, .. } = self else { return vec![] };
         let quarters = (0..).map(|n| (0.25 + 0.5 * f64::from(n)) / frequency);
@@ -195,7 +195,7 @@ enum Side {
 
 fn trapezoid(t: f64, peak: f64, rise: f64, hold: f64, fall: f64) -> f64 {
     if t >= rise + hold + fall {
-        // Exactly, whatever the rounding of the times.
+        // Exact for any rounding of the times.
         0.0
     } else if t < rise {
         peak * t / rise
@@ -207,7 +207,7 @@ fn trapezoid(t: f64, peak: f64, rise: f64, hold: f64, fall: f64) -> f64 {
 }
 
 fn interpolate(points: &[(f64, f64)], t: f64, side: Side) -> f64 {
-    // The first point that lies after t; at a jump, `Before` stops at the first of the pair.
+    // The first point after t; at a jump, `Before` stops at the first point of the pair.
     let next = match side {
         Side::After => points.partition_point(|p| p.0 <= t),
         Side::Before => points.partition_point(|p| p.0 < t),
@@ -220,7 +220,7 @@ fn interpolate(points: &[(f64, f64)], t: f64, side: Side) -> f64 {
             if t == t1 {
                 return v1;
             }
-            // Rounding goes beyond neither end: a load that falls to 0 is not negative before.
+            // Rounding must not exceed either end: a load that falls to 0 is not negative before.
             (v0 + (v1 - v0) * (t - t0) / (t1 - t0)).clamp(v0.min(v1), v0.max(v1))
         }
     }

@@ -2,17 +2,17 @@
 
 use rayon::prelude::*;
 
-/// Bytes of a set that are looked at together.
+/// Number of bytes of a set that are processed together.
 const WORD: usize = 8;
 
-/// The cells that are not of the set and touch one of it: the eight around each in memory, so that the last cell of a row
-/// counts as a neighbour of the first of the next.
+/// The cells outside the set that are adjacent to one in it. Adjacent are the eight around each in memory, so the last cell of a
+/// row is a neighbour of the first cell of the next row.
 pub(crate) fn find_adjacent(set: &[u8], row: usize, adjacent: &mut [u8]) {
     let row = row as isize;
     adjacent.par_chunks_mut(1024 * WORD).enumerate().for_each(|(chunk, adjacent)| {
         for (n, bytes) in (1024 * chunk..).zip(adjacent.chunks_mut(WORD)) {
             let at = (8 * WORD * n) as isize;
-            // Any of three rows, at the cells one before and one after these; what lies between is in both.
+            // Any of three rows, at the cells one before and one after these; the cells in between are in both.
             let [before, after] = [at - 1, at + 1]
                 .map(|at| sixty_four(set, at - row) | sixty_four(set, at) | sixty_four(set, at + row));
             let near = before | before >> 1 | after << 1 | after;
@@ -22,7 +22,7 @@ pub(crate) fn find_adjacent(set: &[u8], row: usize, adjacent: &mut [u8]) {
     });
 }
 
-/// Cells `at`..`at + 64` of a set, as bits; none beyond its ends.
+/// Cells `at`..`at + 64` of a set, as bits; 0 beyond its ends.
 fn sixty_four(set: &[u8], at: isize) -> u64 {
     let (byte, shift) = (at.div_euclid(8), at.rem_euclid(8));
     let nine = usize::try_from(byte).ok().and_then(|byte| set.get(byte..)?.first_chunk().copied());
@@ -30,12 +30,12 @@ fn sixty_four(set: &[u8], at: isize) -> u64 {
         let within = |k| usize::try_from(byte + k).ok().and_then(|byte| set.get(byte).copied());
         std::array::from_fn(|k| within(k as isize).unwrap_or(0))
     });
-    // Shifted in two steps: 64 at once is more than there are.
+    // Shifted in two steps, because a shift by 64 is not allowed.
     u64::from_le_bytes(first) >> shift | u64::from(last) << 1 << (63 - shift)
 }
 
-/// Lines of cells without one of the set at both ends of each direction together, of which no more than `most` (at most 64)
-/// are counted at one end.
+/// Total number of lines without a cell of the set at both ends of each direction. At each end no more than `most` (at most 64)
+/// are counted.
 pub(crate) fn margins(set: &[u8], [nx, ny]: [usize; 2], most: usize) -> [usize; 2] {
     let empty = |i: usize| (0..ny).step_by(64).all(|j| some(set, i * ny + j, ny - j) == 0);
     let above = (0..nx.min(most)).take_while(|i| empty(*i)).count();
@@ -50,7 +50,7 @@ pub(crate) fn margins(set: &[u8], [nx, ny]: [usize; 2], most: usize) -> [usize; 
     [above + below, width.min(left as usize) + width.min(right as usize)]
 }
 
-/// The first `cells` from `at` on as bits, no more than 64.
+/// The first `cells` cells from `at` on as bits, at most 64.
 fn some(set: &[u8], at: usize, cells: usize) -> u64 {
     let bits = sixty_four(set, at as isize);
     if cells < 64 { bits & ((1 << cells) - 1) } else { bits }
@@ -102,7 +102,7 @@ pub(crate) mod tests {
                 if rows.is_empty() || columns.is_empty() {
                     continue;
                 }
-                // Two corners of what is left.
+                // Two corners of the remainder.
                 for n in [top * ny + left, (rows.end - 1) * ny + columns.end - 1] {
                     set[n / 8] |= 1 << (n % 8);
                 }

@@ -1,8 +1,8 @@
-//! Contact spots: the connected patches of the contact area.
+//! Contact spots: the connected parts of the contact area.
 //!
-//! Two cells belong to one spot where they share an edge and both touch; on a periodic domain the opposite
-//! borders share their edges. The labelling is the union-find of two rows at a time (C. Fiorio & J. Gustedt,
-//! Theor. Comput. Sci. 154 (1996) 165).
+//! Two cells belong to the same spot if they share an edge and are both in contact; on a periodic domain cells at opposite
+//! borders share their edges. The labelling is a union-find method on two rows at a time (C. Fiorio & J. Gustedt, Theor. Comput.
+//! Sci. 154 (1996) 165).
 
 use ndarray::{Array2, ArrayView2};
 
@@ -16,7 +16,7 @@ pub struct Spots {
 }
 
 impl Spots {
-    /// Bytes that finding them takes at most: the forest of cells and its counts.
+    /// Largest number of bytes needed to find them: the forest of cells and its counts.
     pub(crate) fn bytes(grid: &Grid) -> usize {
         16 * grid.len()
     }
@@ -53,19 +53,19 @@ impl Spots {
         self.areas.len()
     }
 
-    /// Whether nothing touches.
+    /// Whether there is no contact.
     pub fn is_empty(&self) -> bool {
         self.areas.is_empty()
     }
 
-    /// Mean area of a spot \[m^2\]; 0 where nothing touches.
+    /// Mean area of a spot \[m^2\]; 0 if there is no contact.
     pub fn mean_area(&self) -> f64 {
         if self.areas.is_empty() { 0.0 } else { self.areas.iter().sum::<f64>() / self.areas.len() as f64 }
     }
 }
 
-/// The number of the spot of each cell, 1 for the largest, and 0 where nothing touches. Of two spots of one size the one
-/// that has the earlier cell comes first.
+/// The number of the spot of each cell, 1 for the largest, and 0 outside the contact. Of two spots of the same size, the one with
+/// the earlier cell comes first.
 ///
 /// ```
 /// use asperity::{Boundary, spots::labels};
@@ -83,7 +83,7 @@ pub fn labels<T>(boundary: Boundary, cells: ArrayView2<T>, touches: impl Fn(&T) 
     labels
 }
 
-/// The cell that stands for the spot of each cell, `None` where nothing touches; and how many cells each stands for.
+/// The representative cell of the spot of each cell, `None` outside the contact, and the number of cells of each spot.
 fn roots<T>(
     boundary: Boundary,
     cells: ArrayView2<T>,
@@ -157,16 +157,16 @@ fn spans_x<T>(boundary: Boundary, cells: ArrayView2<T>, on: impl Fn(&T) -> bool)
     (0..ny).any(|j| nx > 0 && on(nx - 1, j) && reached[forest.root(at(nx - 1, j))])
 }
 
-/// Cells that point to another of their spot; the least cell of a spot points to itself.
+/// Cells that point to another cell of their spot; the first cell of a spot points to itself.
 pub(crate) struct Forest(Vec<usize>);
 
 impl Forest {
-    /// Cells that are all apart.
+    /// Cells that are all separate.
     pub(crate) fn new(cells: usize) -> Self {
         Forest((0..cells).collect())
     }
 
-    /// The cell that stands for its spot.
+    /// The representative cell of its spot.
     pub(crate) fn root(&mut self, mut cell: usize) -> usize {
         while self.0[cell] != cell {
             // Halve the path on the way.
@@ -176,7 +176,7 @@ impl Forest {
         cell
     }
 
-    /// Makes the spots of two cells one.
+    /// Merges the spots of two cells.
     pub(crate) fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         self.0[a.max(b)] = a.min(b);
@@ -221,11 +221,11 @@ mod tests {
         // Rows run along y.
         let across = ["....", "####", "...."];
         assert_eq!(spans(&across, Boundary::Free), [false, true]);
-        // A path along x that goes on across the side: only a periodic domain has it.
+        // A path along x that continues across the side: only a periodic domain has it.
         let around = ["#...", "#..#", "...#"];
         assert_eq!(spans(&around, Boundary::Free), [false, false]);
         assert_eq!(spans(&around, Boundary::Periodic), [true, false]);
-        // The border that the path must reach does not wrap: a gap in the middle stays one.
+        // The border that the path must reach is not periodic: a gap in the middle remains a gap.
         assert_eq!(spans(&["##", "..", "##"], Boundary::Periodic), [false, true]);
         assert_eq!(spans(&["#.", ".#"], Boundary::Free), [false, false]);
         assert_eq!(spans(&["..", ".."], Boundary::Periodic), [false, false]);

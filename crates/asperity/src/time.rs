@@ -1,4 +1,4 @@
-//! When the state is computed: the time grid, joined with the breaks and jumps of the history.
+//! The times at which the state is computed: the time grid, combined with the kinks and jumps of the history.
 
 mod plan;
 
@@ -9,22 +9,22 @@ use crate::load::Control;
 pub(crate) use crate::load::SHORTEST;
 pub use crate::load::TimeGrid;
 
-/// One row of the result: a step in time, or a jump in none.
+/// One row of the result: a step in time, or a jump at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
     /// t \[s\].
     pub time: f64,
-    /// Length of the step that leads here \[s\]; 0 at t = 0+ and for a jump.
+    /// Length of the step that ends here \[s\]; 0 at t = 0+ and for a jump.
     pub dt: f64,
     /// The prescribed value.
     pub value: f64,
-    /// True at t = 0+ and where the history jumps.
+    /// True at t = 0+ and at jumps of the history.
     pub jump: bool,
-    /// What is prescribed.
+    /// The prescribed quantity.
     pub control: Control,
     /// Number of the stage, from 0.
     pub stage: usize,
 }
 
-/// Share of the last time below which two instants are one.
+/// Fraction of the last time below which two times are equal.
 pub(crate) const SAME: f64 = 1e-12;

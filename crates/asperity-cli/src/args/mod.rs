@@ -22,6 +22,8 @@ pub use surface::{
     SurfaceProcess,
 };
 
+use crate::verb::Verb;
+
 /// A parser of the words of a choice; help and completions list them.
 fn choice<T: Choice + Clone + Send + Sync + 'static>() -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(choices::words::<T>().iter().copied())
@@ -76,12 +78,51 @@ pub enum Command {
     /// Compute the figures of Spinu and Cerlinca (2017), each with an independent curve and the difference
     Reproduce(Reproduce),
     /// Print the JSON Schema of the case file
-    Schema,
+    Schema(Schema),
     /// Print the completion script for a shell
-    Completions {
-        /// bash, elvish, fish, powershell or zsh
-        shell: Shell,
-    },
+    Completions(Completions),
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Schema {}
+
+#[derive(Debug, clap::Args)]
+pub struct Completions {
+    /// bash, elvish, fish, powershell or zsh
+    pub shell: Shell,
+}
+
+impl Command {
+    /// What is to be done.
+    pub fn verb(&self) -> &dyn Verb {
+        match self {
+            Command::Run(verb) => verb,
+            Command::Check(verb) => verb,
+            Command::New(verb) => verb,
+            Command::Verify(verb) => verb,
+            Command::Surface(Surface::Info(verb)) => verb,
+            Command::Surface(Surface::Generate(verb)) => &**verb,
+            Command::Surface(Surface::FromProfile(verb)) => &**verb,
+            Command::Surface(Surface::Process(verb)) => &**verb,
+            Command::Surface(Surface::Convert(verb)) => verb,
+            Command::Show(verb) => verb,
+            Command::VerifyResult(verb) => verb,
+            Command::Report(verb) => verb,
+            Command::View(verb) => verb,
+            Command::Plot(verb) => verb,
+            Command::Compare(verb) => verb,
+            Command::Stress(verb) => verb,
+            Command::Leak(verb) => verb,
+            Command::Material(Material::Show(verb)) => verb,
+            Command::Material(Material::Fit(verb)) => verb,
+            Command::Material(Material::Export(verb)) => verb,
+            Command::FitIndentation(verb) => verb,
+            Command::Export(verb) => verb,
+            Command::Reproduce(verb) => verb,
+            Command::Schema(verb) => verb,
+            Command::Completions(verb) => verb,
+        }
+    }
 }
 
 #[cfg(test)]

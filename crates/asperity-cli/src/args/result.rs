@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use asperity_report::result::Plot as Figure;
+
 #[derive(Debug, clap::Args)]
 pub struct ShowResult {
     /// The result (a Zarr directory)
@@ -69,8 +71,7 @@ pub struct Plot {
     /// The result (a Zarr directory); several: their curves in the same panels, their maps side by side
     #[arg(required = true, value_name = "RESULT")]
     pub results: Vec<PathBuf>,
-    /// evolution, load-displacement, pressure, gap, displacement, contact, flattening, initial-gap, profile,
-    /// histogram, spots, work, quantities, stress, leak or friction
+    #[arg(help = format!("What to draw: {}", Figure::names()))]
     pub what: String,
     /// The file to write; its extension selects the format: png, svg or pdf [default: RESULT-WHAT.png]
     #[arg(short, long, value_name = "PATH")]

@@ -7,33 +7,36 @@ use asperity_io::store::Reader;
 use crate::args;
 use crate::failure::Failure;
 use crate::format::{counted, quantity};
+use crate::verb::Verb;
 
-/// Prints the table.
-pub fn run(args: &args::Compare) -> Result<(), Failure> {
-    let failed = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
-    let first = Reader::open(&args.first).map_err(|error| failed(&error))?;
-    let second = Reader::open(&args.second).map_err(|error| failed(&error))?;
-    let kind = |reader: &Reader| (reader.header().grid.is_line(), reader.header().axis());
-    if kind(&first) != kind(&second) {
-        let words = |reader: &Reader| match kind(reader) {
-            (_, Axis::Velocity) => "a sweep over velocities",
-            (true, _) => "a line contact",
-            (false, _) => "a contact over an area",
-        };
-        return Err(Failure::input(format!(
-            "{} is {}, and {} is {}: their numbers have different units",
-            args.first.display(),
-            words(&first),
-            args.second.display(),
-            words(&second)
-        )));
+impl Verb for args::Compare {
+    /// Prints the table.
+    fn run(&self) -> Result<(), Failure> {
+        let failed = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
+        let first = Reader::open(&self.first).map_err(|error| failed(&error))?;
+        let second = Reader::open(&self.second).map_err(|error| failed(&error))?;
+        let kind = |reader: &Reader| (reader.header().grid.is_line(), reader.header().axis());
+        if kind(&first) != kind(&second) {
+            let words = |reader: &Reader| match kind(reader) {
+                (_, Axis::Velocity) => "a sweep over velocities",
+                (true, _) => "a line contact",
+                (false, _) => "a contact over an area",
+            };
+            return Err(Failure::input(format!(
+                "{} is {}, and {} is {}: their numbers have different units",
+                self.first.display(),
+                words(&first),
+                self.second.display(),
+                words(&second)
+            )));
+        }
+        let found = compare(&first, &second).map_err(|error| failed(&error))?;
+        if self.json {
+            let object = serde_json::to_string(&found).map_err(|error| failed(&error))?;
+            return crate::print(&format!("{object}\n"));
+        }
+        crate::print(&text(&found, &first))
     }
-    let found = compare(&first, &second).map_err(|error| failed(&error))?;
-    if args.json {
-        let object = serde_json::to_string(&found).map_err(|error| failed(&error))?;
-        return crate::print(&format!("{object}\n"));
-    }
-    crate::print(&text(&found, &first))
 }
 
 fn text(found: &Comparison, first: &Reader) -> String {

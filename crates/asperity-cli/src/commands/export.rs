@@ -6,29 +6,40 @@ use asperity_report::pictures::pictures;
 
 use crate::args::Export;
 use crate::failure::Failure;
+use crate::verb::{Paths, Verb};
 
-/// Writes the result in the format asked for and prints the files written.
-pub fn run(args: &Export) -> Result<(), Failure> {
-    if args.to == "png" {
-        return png(args);
+impl Verb for Export {
+    fn reads(&self) -> Paths<'_> {
+        vec![Some(&self.result)]
     }
-    let Some(format) = Format::from_name(&args.to) else {
-        let names: Vec<_> = Format::ALL.iter().map(|f| f.name()).collect();
-        return Err(Failure::input(format!(
-            "there is no export to \"{}\"; choose one of {}, png",
-            args.to,
-            names.join(", ")
-        )));
-    };
-    let options = Options { fields: fields(args)?, force: args.force, ..Options::default() };
-    let reader = Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
-    let output = args.output.clone().unwrap_or_else(|| args.result.with_extension(format.extension()));
-    let written = export(&reader, format, &output, &options);
-    let written = written.map_err(Failure::of)?;
-    if let Some(sentence) = format.left_out(&reader) {
-        crate::messages::message!("{sentence}");
+
+    fn writes(&self) -> Paths<'_> {
+        vec![self.output.as_ref()]
     }
-    crate::print(&written.iter().map(|path| format!("{}\n", path.display())).collect::<String>())
+
+    /// Writes the result in the format asked for and prints the files written.
+    fn run(&self) -> Result<(), Failure> {
+        if self.to == "png" {
+            return png(self);
+        }
+        let Some(format) = Format::from_name(&self.to) else {
+            let names: Vec<_> = Format::ALL.iter().map(|f| f.name()).collect();
+            return Err(Failure::input(format!(
+                "there is no export to \"{}\"; choose one of {}, png",
+                self.to,
+                names.join(", ")
+            )));
+        };
+        let options = Options { fields: fields(self)?, force: self.force, ..Options::default() };
+        let reader = Reader::open(&self.result).map_err(|error| Failure::input(error.to_string()))?;
+        let output = self.output.clone().unwrap_or_else(|| self.result.with_extension(format.extension()));
+        let written = export(&reader, format, &output, &options);
+        let written = written.map_err(Failure::of)?;
+        if let Some(sentence) = format.left_out(&reader) {
+            crate::messages::message!("{sentence}");
+        }
+        crate::print(&written.iter().map(|path| format!("{}\n", path.display())).collect::<String>())
+    }
 }
 
 /// A directory of pictures.

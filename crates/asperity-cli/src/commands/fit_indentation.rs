@@ -17,71 +17,84 @@ use super::material::{columns, failed, parsed, write};
 use crate::args::FitIndentation;
 use crate::failure::Failure;
 use crate::format::quantity;
+use crate::verb::{Paths, Verb};
 
-/// Fits a record.
-pub fn run(args: &FitIndentation) -> Result<(), Failure> {
-    let profile = match (&args.radius, &args.cone) {
-        (_, Some(slope)) => {
-            MdrProfile::Cone { slope: parsed::<Number<range::Positive>>("--cone", slope)?.get() }
+impl Verb for FitIndentation {
+    fn reads(&self) -> Paths<'_> {
+        vec![Some(&self.record)]
+    }
+
+    fn writes(&self) -> Paths<'_> {
+        vec![self.output.as_ref(), self.plot.as_ref()]
+    }
+
+    /// Fits a record.
+    fn run(&self) -> Result<(), Failure> {
+        let profile = match (&self.radius, &self.cone) {
+            (_, Some(slope)) => {
+                MdrProfile::Cone { slope: parsed::<Number<range::Positive>>("--cone", slope)?.get() }
+            }
+            (Some(radius), None) => {
+                MdrProfile::Sphere { radius: parsed::<Length<range::Positive>>("--radius", radius)?.get() }
+            }
+            (None, None) => return Err(Failure::input("--radius or --cone is needed".to_owned())),
+        };
+        let poisson = parsed::<Number>("--poisson", &self.poisson)?.get();
+        if !(poisson > -1.0 && poisson <= 0.5) {
+            let message =
+                format!("--poisson is {poisson}, but must be greater than -1 and not greater than 0.5");
+            return Err(Failure::input(message));
         }
-        (Some(radius), None) => {
-            MdrProfile::Sphere { radius: parsed::<Length<range::Positive>>("--radius", radius)?.get() }
+        let layer = match &self.thickness {
+            None => None,
+            Some(thickness) => {
+                let thickness = parsed::<Length<range::Positive>>("--thickness", thickness)?.get();
+                Some(SampleLayer { thickness, poisson, interface: self.interface })
+            }
+        };
+        let of = MaterialOf { modulus: self.modulus, poisson };
+        let columns = columns(&self.column, &self.unit)?;
+        let options = IndentationOptions {
+            given: self.given,
+            terms: self.terms,
+            long_time: self.long_time,
+            fit_touch: self.fit_touch,
+            layer,
+            ..IndentationOptions::default()
+        };
+        // What cannot be written is said before the work.
+        for path in self.output.iter().chain(&self.plot) {
+            super::free(path, self.force)?;
         }
-        (None, None) => return Err(Failure::input("--radius or --cone is needed".to_owned())),
-    };
-    let poisson = parsed::<Number>("--poisson", &args.poisson)?.get();
-    if !(poisson > -1.0 && poisson <= 0.5) {
-        let message = format!("--poisson is {poisson}, but must be greater than -1 and not greater than 0.5");
-        return Err(Failure::input(message));
-    }
-    let layer = match &args.thickness {
-        None => None,
-        Some(thickness) => {
-            let thickness = parsed::<Length<range::Positive>>("--thickness", thickness)?.get();
-            Some(SampleLayer { thickness, poisson, interface: args.interface })
+        let record = Indentation::read(&self.record, &columns).map_err(failed)?;
+        let taken = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
+        let fit = fit_indentation(profile, &taken, &options)
+            .map_err(|error| Failure::input(format!("{}: {error}", self.record.display())))?;
+        let block = indentation_block(&record, &fit, of);
+        if let Some(path) = &self.output {
+            write(path, &block, self.force)?;
         }
-    };
-    let of = MaterialOf { modulus: args.modulus, poisson };
-    let columns = columns(&args.column, &args.unit)?;
-    let options = IndentationOptions {
-        given: args.given,
-        terms: args.terms,
-        long_time: args.long_time,
-        fit_touch: args.fit_touch,
-        layer,
-        ..IndentationOptions::default()
-    };
-    // What cannot be written is said before the work.
-    for path in args.output.iter().chain(&args.plot) {
-        super::free(path, args.force)?;
-    }
-    let record = Indentation::read(&args.record, &columns).map_err(failed)?;
-    let taken = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
-    let fit = fit_indentation(profile, &taken, &options)
-        .map_err(|error| Failure::input(format!("{}: {error}", args.record.display())))?;
-    let block = indentation_block(&record, &fit, of);
-    if let Some(path) = &args.output {
-        write(path, &block, args.force)?;
-    }
-    if let Some(path) = &args.plot {
-        let title = args.record.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
-        super::picture::write(&picture(&title, &record, &fit), path, args.force)?;
-    }
-    if args.json {
-        let mut object = json_of(&fit, of);
-        object["notes"] = json!(record.notes.iter().chain(&fit.notes).collect::<Vec<_>>());
-        object["output"] = json!(args.output);
-        object["material"] = json!(block);
-        return crate::print(&format!("{object}\n"));
-    }
-    let mut text = report(args, &record, &fit, of);
-    match &args.output {
-        Some(path) => {
-            let _ = writeln!(text, "written     {}", path.display());
+        if let Some(path) = &self.plot {
+            let title =
+                self.record.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+            super::picture::write(&picture(&title, &record, &fit), path, self.force)?;
         }
-        None => text = format!("{text}\n{block}"),
+        if self.json {
+            let mut object = json_of(&fit, of);
+            object["notes"] = json!(record.notes.iter().chain(&fit.notes).collect::<Vec<_>>());
+            object["output"] = json!(self.output);
+            object["material"] = json!(block);
+            return crate::print(&format!("{object}\n"));
+        }
+        let mut text = report(self, &record, &fit, of);
+        match &self.output {
+            Some(path) => {
+                let _ = writeln!(text, "written     {}", path.display());
+            }
+            None => text = format!("{text}\n{block}"),
+        }
+        crate::print(&text)
     }
-    crate::print(&text)
 }
 
 fn given(fit: &IndentationFit) -> (&'static str, &'static str, &'static str) {

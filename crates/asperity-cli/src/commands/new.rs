@@ -9,32 +9,40 @@ use asperity_io::output;
 use crate::args::New;
 use crate::failure::Failure;
 use crate::input::meant;
+use crate::verb::{Threads, Verb};
 
-/// Writes the starter case, or lists them.
-pub fn run(args: &New) -> Result<(), Failure> {
-    let Some(name) = &args.template else {
-        let width = TEMPLATES.iter().map(|t| t.name.len()).max().unwrap_or(0);
-        let list: String = TEMPLATES.iter().map(|t| format!("{:width$}  {}\n", t.name, t.title())).collect();
-        return crate::print(&list);
-    };
-    let Some(template) = Template::find(name) else {
-        let names: Vec<_> = TEMPLATES.iter().map(|t| t.name).collect();
-        return Err(Failure::input(format!(
-            "there is no starter case \"{name}\"{}; choose one of {}",
-            meant(name, &names),
-            names.join(", ")
-        )));
-    };
-    let path = args.path.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
-    let written = output::write(&path, args.force, |file| file.write_all(template.text.as_bytes()));
-    written.map_err(|error| {
-        Failure::input(match error.kind() {
-            ErrorKind::AlreadyExists => {
-                format!("{} already exists; choose another file or use --force", path.display())
-            }
-            _ => format!("cannot write {}: {error}", path.display()),
-        })
-    })?;
-    crate::messages::message!("wrote {}; run it with: asperity run {}", path.display(), path.display());
-    Ok(())
+impl Verb for New {
+    fn threads(&self) -> Threads {
+        Threads::None
+    }
+
+    /// Writes the starter case, or lists them.
+    fn run(&self) -> Result<(), Failure> {
+        let Some(name) = &self.template else {
+            let width = TEMPLATES.iter().map(|t| t.name.len()).max().unwrap_or(0);
+            let list: String =
+                TEMPLATES.iter().map(|t| format!("{:width$}  {}\n", t.name, t.title())).collect();
+            return crate::print(&list);
+        };
+        let Some(template) = Template::find(name) else {
+            let names: Vec<_> = TEMPLATES.iter().map(|t| t.name).collect();
+            return Err(Failure::input(format!(
+                "there is no starter case \"{name}\"{}; choose one of {}",
+                meant(name, &names),
+                names.join(", ")
+            )));
+        };
+        let path = self.path.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
+        let written = output::write(&path, self.force, |file| file.write_all(template.text.as_bytes()));
+        written.map_err(|error| {
+            Failure::input(match error.kind() {
+                ErrorKind::AlreadyExists => {
+                    format!("{} already exists; choose another file or use --force", path.display())
+                }
+                _ => format!("cannot write {}: {error}", path.display()),
+            })
+        })?;
+        crate::messages::message!("wrote {}; run it with: asperity run {}", path.display(), path.display());
+        Ok(())
+    }
 }

@@ -5,16 +5,27 @@ use asperity_report::page::{Options, write};
 
 use crate::args::Report;
 use crate::failure::Failure;
+use crate::verb::{Paths, Verb};
 
-/// Writes the page and prints where it is.
-pub fn run(args: &Report) -> Result<(), Failure> {
-    let output = args.output.clone().unwrap_or_else(|| args.result.with_extension("html"));
-    let options = Options {
-        bytes: args.megabytes as usize * 1_000_000,
-        instants: args.instants as usize,
-        force: args.force,
-    };
-    let reader = Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
-    write(&reader, &output, &options).map_err(Failure::of)?;
-    crate::print(&format!("{}\n", output.display()))
+impl Verb for Report {
+    fn reads(&self) -> Paths<'_> {
+        vec![Some(&self.result)]
+    }
+
+    fn writes(&self) -> Paths<'_> {
+        vec![self.output.as_ref()]
+    }
+
+    /// Writes the page and prints where it is.
+    fn run(&self) -> Result<(), Failure> {
+        let output = self.output.clone().unwrap_or_else(|| self.result.with_extension("html"));
+        let options = Options {
+            bytes: self.megabytes as usize * 1_000_000,
+            instants: self.instants as usize,
+            force: self.force,
+        };
+        let reader = Reader::open(&self.result).map_err(|error| Failure::input(error.to_string()))?;
+        write(&reader, &output, &options).map_err(Failure::of)?;
+        crate::print(&format!("{}\n", output.display()))
+    }
 }

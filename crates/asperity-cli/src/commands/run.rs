@@ -14,51 +14,58 @@ use crate::args::Run;
 use crate::failure::Failure;
 use crate::format::{bytes, coordinate, duration, in_contact, mean_gap, quantity};
 use crate::progress::ProgressDisplay;
+use crate::verb::{Threads, Verb};
 
-/// Runs the case, tells the progress on stderr and a summary on stdout.
-pub fn run(args: &Run) -> Result<(), Failure> {
-    let case = Case::read(&args.case, &args.common.set)?;
-    print_materials(args, &case);
-    let known = print_findings(args, &case.findings, &[]);
-    let options = RunOptions {
-        output: args.output.clone(),
-        force: args.force,
-        resume: args.resume,
-        interrupt: crate::interrupt::flag(),
-    };
-    let mut display = ProgressDisplay::new(args.quiet, args.verbose > 0);
-    let done = run_case(&case, &options, |progress| display.update(&progress));
-    display.end();
-    match done {
-        Ok(summary) => {
-            print_findings(args, &summary.findings, &known);
-            print_summary(args, &case, &summary, None)?;
-            if summary.status != Status::Interrupted {
-                return super::findings::strict(args.strict, &summary.findings);
-            }
-            let (rows, result) = (summary.rows, summary.result.display());
-            Err(Failure::Interrupted(format!("{rows} rows are in {result}; continue with --resume")))
-        }
-        Err(RunError::Case(errors)) => Err(Failure::Case(errors)),
-        Err(error @ RunError::Output(_)) => Err(Failure::of(error)),
-        Err(error) => {
-            let message = match &error {
-                RunError::Solve { best: Some(best), .. } => {
-                    format!("{error}\n{}", best_state(best, &case))
+impl Verb for Run {
+    fn threads(&self) -> Threads {
+        Threads::of(self.common.threads)
+    }
+
+    /// Runs the case, tells the progress on stderr and a summary on stdout.
+    fn run(&self) -> Result<(), Failure> {
+        let case = Case::read(&self.case, &self.common.set)?;
+        print_materials(self, &case);
+        let known = print_findings(self, &case.findings, &[]);
+        let options = RunOptions {
+            output: self.output.clone(),
+            force: self.force,
+            resume: self.resume,
+            interrupt: crate::interrupt::flag(),
+        };
+        let mut display = ProgressDisplay::new(self.quiet, self.verbose > 0);
+        let done = run_case(&case, &options, |progress| display.update(&progress));
+        display.end();
+        match done {
+            Ok(summary) => {
+                print_findings(self, &summary.findings, &known);
+                print_summary(self, &case, &summary, None)?;
+                if summary.status != Status::Interrupted {
+                    return super::findings::strict(self.strict, &summary.findings);
                 }
-                _ => error.to_string(),
-            };
-            if let RunError::Leakage { source: LeakError::Interrupted, .. } = error {
-                return Err(Failure::Interrupted(message));
+                let (rows, result) = (summary.rows, summary.result.display());
+                Err(Failure::Interrupted(format!("{rows} rows are in {result}; continue with --resume")))
             }
-            if let RunError::Solve { summary, .. }
-            | RunError::Storage { summary, .. }
-            | RunError::Leakage { summary, .. } = &error
-            {
-                print_findings(args, &summary.findings, &known);
-                print_summary(args, &case, summary, Some(&error))?;
+            Err(RunError::Case(errors)) => Err(Failure::Case(errors)),
+            Err(error @ RunError::Output(_)) => Err(Failure::of(error)),
+            Err(error) => {
+                let message = match &error {
+                    RunError::Solve { best: Some(best), .. } => {
+                        format!("{error}\n{}", best_state(best, &case))
+                    }
+                    _ => error.to_string(),
+                };
+                if let RunError::Leakage { source: LeakError::Interrupted, .. } = error {
+                    return Err(Failure::Interrupted(message));
+                }
+                if let RunError::Solve { summary, .. }
+                | RunError::Storage { summary, .. }
+                | RunError::Leakage { summary, .. } = &error
+                {
+                    print_findings(self, &summary.findings, &known);
+                    print_summary(self, &case, summary, Some(&error))?;
+                }
+                Err(Failure::Solve(message))
             }
-            Err(Failure::Solve(message))
         }
     }
 }

@@ -1,11 +1,19 @@
 //! `asperity schema`.
 
+use crate::args::Schema;
 use crate::failure::Failure;
+use crate::verb::{Threads, Verb};
 
-/// Prints the JSON Schema of the case file.
-pub fn run() -> Result<(), Failure> {
-    let schema = asperity_io::case::schema();
-    let text = serde_json::to_string_pretty(&schema)
-        .map_err(|error| Failure::input(format!("cannot write the schema: {error}")))?;
-    crate::print(&format!("{text}\n"))
+impl Verb for Schema {
+    fn threads(&self) -> Threads {
+        Threads::None
+    }
+
+    /// Prints the JSON Schema of the case file.
+    fn run(&self) -> Result<(), Failure> {
+        let schema = asperity_io::case::schema();
+        let text = serde_json::to_string_pretty(&schema)
+            .map_err(|error| Failure::input(format!("cannot write the schema: {error}")))?;
+        crate::print(&format!("{text}\n"))
+    }
 }

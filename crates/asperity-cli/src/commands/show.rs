@@ -15,17 +15,20 @@ use crate::args::ShowResult;
 use crate::failure::Failure;
 use crate::format::{bytes, duration, in_contact, mean_gap, quantity};
 use crate::terminal::{shares, sparkline};
+use crate::verb::Verb;
 
 /// Letters of the map and of the curves.
 const COLUMNS: usize = 56;
 const SPARKS: usize = 40;
 
-/// Prints the summary.
-pub fn run(args: &ShowResult) -> Result<(), Failure> {
-    let reader = Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
-    let at = instant(&reader, args.time.as_deref())?;
-    let text = if args.json { object(&reader) } else { text(&reader, at) };
-    crate::print(&text.map_err(|error| Failure::input(error.to_string()))?)
+impl Verb for ShowResult {
+    /// Prints the summary.
+    fn run(&self) -> Result<(), Failure> {
+        let reader = Reader::open(&self.result).map_err(|error| Failure::input(error.to_string()))?;
+        let at = instant(&reader, self.time.as_deref())?;
+        let text = if self.json { object(&reader) } else { text(&reader, at) };
+        crate::print(&text.map_err(|error| Failure::input(error.to_string()))?)
+    }
 }
 
 fn object(reader: &Reader) -> Result<String, StoreError> {

@@ -5,33 +5,42 @@ use serde_json::json;
 
 use crate::args::Verify;
 use crate::failure::Failure;
+use crate::verb::{Threads, Verb};
 
-/// Runs the cases and prints case, quantity, error, tolerance.
-pub fn run(args: &Verify) -> Result<(), Failure> {
-    if let Some(unknown) = args.cases.iter().find(|name| CASES.iter().all(|(case, _)| case != name)) {
-        let names: Vec<_> = CASES.iter().map(|(name, _)| *name).collect();
-        return Err(Failure::input(format!(
-            "there is no case \"{unknown}\"; choose from {}",
-            names.join(", ")
-        )));
+impl Verb for Verify {
+    fn threads(&self) -> Threads {
+        Threads::of(self.threads)
     }
-    let mut checks = Vec::new();
-    let chosen =
-        CASES.iter().filter(|(name, _)| args.cases.is_empty() || args.cases.iter().any(|c| c == name));
-    for (name, case) in chosen {
-        crate::messages::message!("{name} ...");
-        checks.extend(case().map_err(|error| Failure::Solve(format!("{name}: {error}")))?);
-    }
-    crate::print(&if args.json {
-        json(&checks)
-    } else if args.markdown {
-        markdown(&checks)
-    } else {
-        table(&checks)
-    })?;
-    match checks.iter().filter(|c| !c.ok()).count() {
-        0 => Ok(()),
-        failed => Err(Failure::Solve(format!("{failed} of {} checks are out of tolerance", checks.len()))),
+
+    /// Runs the cases and prints case, quantity, error, tolerance.
+    fn run(&self) -> Result<(), Failure> {
+        if let Some(unknown) = self.cases.iter().find(|name| CASES.iter().all(|(case, _)| case != name)) {
+            let names: Vec<_> = CASES.iter().map(|(name, _)| *name).collect();
+            return Err(Failure::input(format!(
+                "there is no case \"{unknown}\"; choose from {}",
+                names.join(", ")
+            )));
+        }
+        let mut checks = Vec::new();
+        let chosen =
+            CASES.iter().filter(|(name, _)| self.cases.is_empty() || self.cases.iter().any(|c| c == name));
+        for (name, case) in chosen {
+            crate::messages::message!("{name} ...");
+            checks.extend(case().map_err(|error| Failure::Solve(format!("{name}: {error}")))?);
+        }
+        crate::print(&if self.json {
+            json(&checks)
+        } else if self.markdown {
+            markdown(&checks)
+        } else {
+            table(&checks)
+        })?;
+        match checks.iter().filter(|c| !c.ok()).count() {
+            0 => Ok(()),
+            failed => {
+                Err(Failure::Solve(format!("{failed} of {} checks are out of tolerance", checks.len())))
+            }
+        }
     }
 }
 

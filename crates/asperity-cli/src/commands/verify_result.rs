@@ -6,17 +6,20 @@ use serde_json::json;
 use crate::args::VerifyResult;
 use crate::failure::Failure;
 use crate::format::counted;
+use crate::verb::Verb;
 
-/// Reads all of the result and prints what is damaged.
-pub fn run(args: &VerifyResult) -> Result<(), Failure> {
-    let found = verify(&args.result).map_err(|error| Failure::input(error.to_string()))?;
-    crate::print(&if args.json { object(args, &found) } else { text(args, &found) })?;
-    match found.damage.len() {
-        0 => Ok(()),
-        files => Err(Failure::System(format!(
-            "{} damaged; restore the result from a copy or run the case again",
-            if files == 1 { "1 file is".to_owned() } else { format!("{files} files are") }
-        ))),
+impl Verb for VerifyResult {
+    /// Reads all of the result and prints what is damaged.
+    fn run(&self) -> Result<(), Failure> {
+        let found = verify(&self.result).map_err(|error| Failure::input(error.to_string()))?;
+        crate::print(&if self.json { object(self, &found) } else { text(self, &found) })?;
+        match found.damage.len() {
+            0 => Ok(()),
+            files => Err(Failure::System(format!(
+                "{} damaged; restore the result from a copy or run the case again",
+                if files == 1 { "1 file is".to_owned() } else { format!("{files} files are") }
+            ))),
+        }
     }
 }
 

@@ -15,7 +15,7 @@ pub struct F64x4(__m256d);
 #[repr(transparent)]
 pub struct F32x8(__m256);
 
-/// The arithmetic, from the names of the intrinsics.
+/// Declares the arithmetic, given the names of the intrinsics.
 macro_rules! arithmetic {
     ($vector:ident, $add:ident, $sub:ident, $mul:ident) => {
         impl Add for $vector {
@@ -50,7 +50,7 @@ macro_rules! arithmetic {
 arithmetic!(F64x4, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd);
 arithmetic!(F32x8, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps);
 
-/// Splat, the fused products and the entry point, from the names of the intrinsics.
+/// Declares splat, the fused products and the entry point, given the names of the intrinsics.
 macro_rules! lane_methods {
     ($vector:ident, $scalar:ty, $splat:ident, $fmadd:ident, $fnmadd:ident) => {
         type Scalar = $scalar;
@@ -123,8 +123,7 @@ unsafe impl Vector for F32x8 {
 /// The 8 x 8 transpose in f32: pairs, then fours, then halves.
 ///
 /// # Safety
-/// AVX must be there; eight rows of eight scalars, a stride apart, must be readable at `from` and
-/// writable at `to`.
+/// AVX must be available; eight rows of eight scalars, a stride apart, must be readable at `from` and writable at `to`.
 #[inline(always)]
 pub unsafe fn transpose_8x8(from: *const f32, from_stride: usize, to: *mut f32, to_stride: usize) {
     // SAFETY: as the caller promises.

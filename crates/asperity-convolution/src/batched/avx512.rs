@@ -16,7 +16,7 @@ pub struct F64x8(__m512d);
 #[repr(transparent)]
 pub struct F32x16(__m512);
 
-/// The arithmetic, from the names of the intrinsics.
+/// Declares the arithmetic, given the names of the intrinsics.
 macro_rules! arithmetic {
     ($vector:ident, $add:ident, $sub:ident, $mul:ident) => {
         impl Add for $vector {
@@ -51,7 +51,7 @@ macro_rules! arithmetic {
 arithmetic!(F64x8, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd);
 arithmetic!(F32x16, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps);
 
-/// Splat, the fused products and the entry point, from the names of the intrinsics.
+/// Declares splat, the fused products and the entry point, given the names of the intrinsics.
 macro_rules! lane_methods {
     ($vector:ident, $scalar:ty, $splat:ident, $fmadd:ident, $fnmadd:ident) => {
         type Scalar = $scalar;

@@ -1,8 +1,8 @@
-//! The discrete Fourier transforms of 2, 3, 4, 5 and 8 numbers that the long ones are made of:
-//! X(k) = sum over q of x(q) exp(-2 pi i q k / R).
+//! The discrete Fourier transforms of 2, 3, 4, 5 and 8 numbers, of which long transforms consist: X(k) = sum over q of x(q)
+//! exp(-2 pi i q k / R).
 //!
-//! The long transform of a domain padded with zeros needs them twice more: with the second half of
-//! the input zero (`OfHalf`), and with only the first half of the output wanted (`HalfOf`).
+//! The long transform of a domain padded with zeros needs two more variants: one where the second half of the input is zero
+//! (`OfHalf`), and one where only the first half of the output is needed (`HalfOf`).
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -15,7 +15,7 @@ fn constant<V: Vector>(c: f64) -> V {
     V::splat(V::Scalar::nearest(c))
 }
 
-/// A transform of R numbers, of which P are known not to be zero or P are wanted.
+/// A transform of R numbers, of which only P are non-zero or only P are needed.
 pub trait Butterfly<V, const IN: usize, const OUT: usize> {
     /// X of x.
     fn transform(x: [Complex<V>; IN]) -> [Complex<V>; OUT];

@@ -1,4 +1,4 @@
-//! Complex numbers in lanes, real and imaginary parts apart.
+//! Complex numbers in lanes, with separate real and imaginary parts.
 
 use std::ops::{Add, Sub};
 
@@ -132,7 +132,7 @@ pub fn scalars<V: Vector>(numbers: &[Complex<V>]) -> &[V::Scalar] {
     unsafe { std::slice::from_raw_parts(numbers.as_ptr().cast(), 2 * V::LANES * numbers.len()) }
 }
 
-/// As [`scalars`], to write.
+/// As [`scalars`], but mutable.
 #[inline(always)]
 pub fn scalars_mut<V: Vector>(numbers: &mut [Complex<V>]) -> &mut [V::Scalar] {
     const { assert!(size_of::<Complex<V>>() == 2 * V::LANES * size_of::<V::Scalar>(), "padded") };

@@ -1,4 +1,4 @@
-//! The three passes: rows forward, columns there and back, rows back.
+//! The three passes: rows forward, columns forward and back, rows back.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -25,15 +25,16 @@ pub struct Engine<V: Vector> {
     /// The half spectrum, see `work`.
     work: Vec<Complex<V>>,
     stride: usize,
-    /// One for each thread; a lock is held while a block is worked on, and never contended.
+    /// One buffer per thread. A lock is held while a block is processed, and is never contended.
     scratch: Vec<Mutex<Scratch<V>>>,
     /// The energy of every column, block by block.
     energies: Vec<V>,
-    /// Where the column of each frequency ky lies.
+    /// Position of the column of each frequency ky.
     columns: Vec<usize>,
 }
 
-/// Rows that a caller modifies together: as many as the widest vectors hold, so that a group starts at a multiple of eight cells.
+/// Number of rows that a caller modifies together: that of the lanes of the widest vectors, so that a group starts at a multiple
+/// of eight cells.
 fn group<V: Vector>() -> usize {
     V::LANES.max(64 / size_of::<V::Scalar>())
 }
@@ -79,7 +80,8 @@ impl<V: Vector> Engine<V> {
         group::<V>() * self.row_plan.cells()
     }
 
-    /// Inverse transform of every group of rows, `modify(first, rows, kept)`, and where `forward` is set the transform back.
+    /// For every group of rows: the inverse transform, then `modify(first, rows, kept)`, and if `forward` is set the forward
+    /// transform.
     fn modify_rows<K: Send>(
         &mut self,
         kept: impl IndexedParallelIterator<Item = K>,
@@ -115,9 +117,9 @@ impl<V: Vector> Engine<V> {
     }
 }
 
-/// The multiplier in the order in which the columns need it.
+/// The multiplier in the order in which the columns use it.
 ///
-/// Both passes over rows leave their result doubled, and both transforms lack their 1/m.
+/// Both passes over rows return twice the result, and both transforms omit the factor 1/m.
 fn blocked_spectrum<V: Vector>(
     [mx, my]: [usize; 2],
     row_plan: &Rows<V::Scalar>,
@@ -142,7 +144,7 @@ fn blocked_spectrum<V: Vector>(
     blocked
 }
 
-/// One block of columns: transformed, multiplied, transformed back.
+/// Transforms one block of columns, multiplies it, and transforms it back.
 struct Columns<'a, V: Vector> {
     plan: &'a Transform<V::Scalar>,
     columns: &'a mut [Complex<V>],
@@ -156,31 +158,31 @@ impl<V: Vector> Kernel for Columns<'_, V> {
     #[inline(always)]
     fn run(self) {
         let (margin, transform) = self.scratch.buffers(self.plan.signal_length(), self.plan.length());
-        // A vector on the stack aligns it, and with it whatever the butterflies spill.
+        // A vector on the stack aligns the stack, and with it the values that the butterflies spill.
         std::hint::black_box(&Complex::<V>::zero());
-        // The block that follows is likely the next of this thread.
+        // The following block is likely the next of this thread.
         let following = self.columns.as_ptr().wrapping_add(self.stride);
         let mut ahead = PrefetchAhead::of(following, self.columns.len(), self.plan.steps());
         self.plan.convolve(self.columns, margin, transform, self.spectrum, self.energy, &mut ahead);
     }
 }
 
-/// What a caller does with a group of rows: the number of the first cell, the convolved rows, and the same cells of a field
-/// that the caller keeps (empty where there is none).
+/// The operation of a caller on a group of rows: its arguments are the number of the first cell, the convolved rows, and the same
+/// cells of a field of the caller (empty if there is none).
 pub type Modify<'a, T> = dyn Fn(usize, &mut [T], &mut [T]) + Sync + 'a;
 
-/// The passes of a convolution, whatever its vectors.
+/// The passes of a convolution, for any kind of vector.
 pub trait Convolve<T>: Send {
     /// The rows of the input, forward.
     fn forward(&mut self, input: &[T]);
 
-    /// The columns: times a spectrum S. Returns x'S x of the field x.
+    /// Multiplies the columns by a spectrum S. Returns x'S x of the field x.
     fn multiply(&mut self, spectrum: usize) -> f64;
 
     /// The rows back into `output`.
     fn back(&mut self, output: &mut [T]);
 
-    /// The rows back, through `modify`, and forward again where that is set. `kept` is empty or a field.
+    /// The rows back, through `modify`, and forward again if requested. `kept` is empty or a field.
     fn modify(&mut self, kept: &mut [T], modify: &Modify<T>, forward: bool);
 }
 
@@ -212,7 +214,7 @@ impl<V: Vector> Convolve<V::Scalar> for Engine<V> {
         let mut sum = 0.0;
         for (ky, column) in self.columns.iter().enumerate() {
             let energy = self.energies[column / V::LANES].scalars_mut()[column % V::LANES].widened();
-            // The columns 0 < ky < my/2 stand for -ky too. Their numbers are twice the field's, the spectrum half of it.
+            // The columns 0 < ky < my/2 also represent -ky. Their values are twice those of the field, the spectrum half of it.
             sum += if ky == 0 || ky == last { 0.5 * energy } else { energy };
         }
         sum

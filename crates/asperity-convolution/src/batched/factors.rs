@@ -1,17 +1,17 @@
-//! Which lengths are transformed, and in which radices.
+//! The lengths that can be transformed, and their radices.
 
 /// A length as a product of radices: m = first * inner * leaf.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Factors {
-    /// The radix of the first pass, which skips the zero padding: 8, 4, 2, 5 or 3, the first that divides.
+    /// The radix of the first pass, which skips the zero padding: the first divisor among 8, 4, 2, 5 and 3.
     pub first: usize,
-    /// The passes after it, longest blocks first: 3, 4, 5, 8.
+    /// The radices of the passes after it, longest blocks first: 3, 4, 5, 8.
     pub inner: Vec<usize>,
-    /// The last, which needs no roots: 1, 2, 3, 4, 5, 8.
+    /// The radix of the last pass, which needs no roots: 1, 2, 3, 4, 5, 8.
     pub leaf: usize,
 }
 
-/// The radices of a length; `None` where the length is not 2^a 3^b 5^c, or is 1.
+/// The radices of a length; `None` if the length is 1 or not of the form 2^a 3^b 5^c.
 pub fn factors(length: usize) -> Option<Factors> {
     let first = [8, 4, 2, 5, 3].into_iter().find(|radix| length > 0 && length.is_multiple_of(*radix))?;
     let mut rest = length / first;
@@ -27,7 +27,7 @@ pub fn factors(length: usize) -> Option<Factors> {
     if rest != 1 {
         return None;
     }
-    // What the leaf leaves of the power of two is a product of fours and eights.
+    // The rest of the power of two after the leaf is a product of fours and eights.
     let (leaf, twos) = match twos {
         0 if fives > 0 => (5, 0),
         0 if threes > 0 => (3, 0),
@@ -47,9 +47,9 @@ pub fn factors(length: usize) -> Option<Factors> {
     Some(Factors { first, inner, leaf })
 }
 
-/// The least multiple of 16 of the form 2^a 3^b 5^c that is at least `minimum`.
+/// The smallest multiple of 16 of the form 2^a 3^b 5^c that is at least `minimum`.
 ///
-/// Sixteen: the rows are transformed in half their length, and both first passes like radix 8.
+/// Sixteen, because the rows are transformed at half their length, and both first passes are fastest with radix 8.
 pub fn good_length(minimum: usize) -> usize {
     let sixteens = minimum.div_ceil(16).max(1);
     let mut best = sixteens.next_power_of_two();

@@ -1,4 +1,4 @@
-//! The leaves of a transform: R numbers whose transform is taken in registers, and there multiplied by the spectrum.
+//! The leaves of a transform: R numbers are transformed in registers and multiplied by the spectrum there.
 
 use super::butterfly::{Butterfly, Whole};
 use super::complex::Complex;
@@ -17,15 +17,15 @@ where
     }
 }
 
-/// What happens at the leaves, where R numbers and their transform are in registers.
+/// The operation at the leaves, where R numbers and their transform are in registers.
 pub trait Leaf<V: Vector> {
-    /// With the R numbers x from position `at` of a part on.
+    /// Processes the R numbers x from position `at` of a part on.
     fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
     where
         Whole<R>: Butterfly<V, R, R>;
 }
 
-/// The transform alone.
+/// Only the transform.
 pub struct Plain;
 
 impl<V: Vector> Leaf<V> for Plain {
@@ -38,7 +38,7 @@ impl<V: Vector> Leaf<V> for Plain {
     }
 }
 
-/// Sum of S |y|^2 over the numbers y of a spectrum, lane by lane; real and imaginary parts are summed apart.
+/// Sum of S |y|^2 over the numbers y of a spectrum, lane by lane; real and imaginary parts have separate sums.
 #[derive(Clone, Copy)]
 pub struct Energy<V> {
     re: V,
@@ -65,10 +65,10 @@ impl<V: Vector> Energy<V> {
     }
 }
 
-/// The spectrum is prefetched so many bytes before it is needed.
+/// Distance in bytes by which the spectrum is prefetched.
 const SPECTRUM_AHEAD: usize = 4096;
 
-/// Transform, times the spectrum, transform back on exchanged parts.
+/// Transforms, multiplies by the spectrum, and transforms back with exchanged real and imaginary parts.
 pub struct Product<'a, V>(pub &'a [V], pub &'a mut Energy<V>);
 
 impl<V: Vector> Leaf<V> for Product<'_, V> {

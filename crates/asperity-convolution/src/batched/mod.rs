@@ -1,8 +1,8 @@
 //! The lane-batched back end: a vector holds the same element of several rows, or columns.
 //!
-//! Most fast Fourier transforms vectorise inside of one signal and pay with shuffles. A convolution
-//! of a field has hundreds of signals of the same length, so here every lane of a vector belongs to
-//! another one, and each runs the scalar algorithm undisturbed:
+//! Most fast Fourier transforms vectorise within one signal, which requires shuffles. A convolution of a field has hundreds of
+//! signals of the same length, so here every lane of a vector belongs to a different signal, and each lane runs the scalar
+//! algorithm:
 //!
 //! 1. `rows`: a block of rows is transposed into lanes, transformed along y as packed real signals,
 //!    and transposed into blocks of columns (`work`);
@@ -10,25 +10,23 @@
 //!    transformed back while it is in the cache;
 //! 3. `rows` again, backwards.
 //!
-//! The transforms (`transform`) leave the spectrum in digit-reversed order; the multiplier is stored in the same
-//! order. Zero padding is never stored: the first pass of a transform takes the second half of its
-//! input as zero, the last one back computes the first half only.
+//! The transforms (`transform`) leave the spectrum in digit-reversed order; the multiplier is stored in the same order. Zero
+//! padding is never stored: the first pass of a transform takes the second half of its input as zero, and the last pass back
+//! computes only the first half.
 //!
-//! Every lane does the same IEEE 754 operations in the same order on all processors, fused
-//! multiply-adds included, and no sum depends on how work is shared out: results are bit-identical
-//! for all instruction sets, vector lengths and numbers of threads.
+//! Every lane does the same IEEE 754 operations in the same order on all processors, fused multiply-adds included, and no sum
+//! depends on the distribution of the work: results are bit-identical for all instruction sets, vector lengths and numbers of
+//! threads.
 //!
 //! # Memory
-//! For cells nx ny and lengths \[mx, my\] in scalars of s bytes: the half spectrum, nx (my + 2) s; the
-//! multiplier, 5/8 mx (my/2 + 1) s; per thread two blocks of lanes, of some 3 mx numbers each. On
-//! a free domain of N x N cells (lengths 2 N) that is 26 bytes per cell in f64 and 13 in f32; on a
-//! periodic one 10.5 and 5.25.
+//! For cells nx ny and lengths \[mx, my\] in scalars of s bytes: the half spectrum, nx (my + 2) s; the multiplier, 5/8 mx (my/2 +
+//! 1) s; per thread two blocks of lanes, of about 3 mx numbers each. On a free domain of N x N cells (lengths 2 N) that is 26
+//! bytes per cell in f64 and 13 in f32; on a periodic one 10.5 and 5.25.
 //!
-//! This room is the only one with `unsafe`: the intrinsics, which need their processor; scalars seen
-//! as vectors and back; and the transposition, where threads write to rows of their own in a shared
-//! array.
+//! Only this module has `unsafe` code: the intrinsics, which need a suitable processor; the conversion between scalars and
+//! vectors; and the transposition, where each thread writes to its own rows in a shared array.
 #![allow(unsafe_code)]
-// Butterflies read like their sums: elements by number.
+// Butterflies are written like their sums, with elements by number.
 #![allow(clippy::needless_range_loop)]
 
 #[cfg(target_arch = "x86_64")]
@@ -82,20 +80,19 @@ pub struct BatchedFft<T> {
 }
 
 impl<T: Real> BatchedFft<T> {
-    /// A length of at least `minimum` that this engine transforms fast, for padding with zeros.
+    /// The smallest fast length of at least `minimum` for padding with zeros.
     pub fn good_length(minimum: usize) -> usize {
         factors::good_length(minimum)
     }
 
     /// Plans a convolution of `cells` = \[nx, ny\], cyclic on `lengths` = \[mx, my\] cells.
     ///
-    /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and
-    /// ky, for transforms without normalisation. The fastest lengths are [`Self::good_length`] and,
-    /// for periodic domains, 2^a 3^b 5^c with my even; any others are wrapped into a padded
-    /// convolution, at some three times the work of a periodic one.
+    /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and ky, for transforms without
+    /// normalisation. The fastest lengths are [`Self::good_length`] and, for periodic domains, 2^a 3^b 5^c with my even. All
+    /// other lengths are converted to a padded convolution, which needs about three times the work of a periodic one.
     ///
     /// # Panics
-    /// Where a length is less than its cells, a count is 0, or the spectrum has another shape.
+    /// If a length is less than the number of cells, a count is 0, or the spectrum has another shape.
     pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
         Self::with_spectra(cells, lengths, &[spectrum])
     }
@@ -103,15 +100,15 @@ impl<T: Real> BatchedFft<T> {
     /// As [`Self::new`], with several spectra for a [`Chain`] of convolutions; the first is that of [`Self::apply_into`].
     ///
     /// # Panics
-    /// Also where there is none.
+    /// Also if there is no spectrum.
     pub fn with_spectra(cells: [usize; 2], lengths: [usize; 2], spectra: &[ArrayView2<f64>]) -> Self {
         Self::on(Instructions::available()[0], cells, lengths, spectra)
     }
 
-    /// As [`Self::with_spectra`], on chosen instructions.
+    /// As [`Self::with_spectra`], on the given instructions.
     ///
     /// # Panics
-    /// Also where the processor does not have them.
+    /// Also if the processor does not have them.
     pub fn on(
         instructions: Instructions,
         cells: [usize; 2],
@@ -138,14 +135,14 @@ impl<T: Real> BatchedFft<T> {
     /// `output` = S * `input`; both C-order, nx ny cells.
     ///
     /// # Panics
-    /// Where a length is not nx ny.
+    /// If a length is not nx ny.
     pub fn apply_into(&mut self, input: &[T], output: &mut [T]) {
         self.engine.forward(input);
         self.engine.multiply(0);
         self.engine.back(output);
     }
 
-    /// Bytes that a plan with so many spectra takes, without the buffers of its threads (a few rows and columns).
+    /// Bytes of a plan with this number of spectra, without the buffers of its threads (a few rows and columns).
     pub fn bytes(cells: [usize; 2], lengths: [usize; 2], spectra: usize) -> usize {
         let along_y = if lengths[1].is_multiple_of(2) { factors(lengths[1] / 2) } else { None };
         let [mx, my] = match (factors(lengths[0]), along_y) {
@@ -156,18 +153,18 @@ impl<T: Real> BatchedFft<T> {
         size_of::<T>() * (2 * cells[0] * columns + spectra * (5 * mx).div_ceil(8) * columns)
     }
 
-    /// Starts several convolutions one after the other, with something done to the field in between.
+    /// Starts several consecutive convolutions with an operation on the field in between.
     ///
     /// # Panics
-    /// Where the length is not nx ny.
+    /// If the length is not nx ny.
     pub fn chain(&mut self, input: &[T]) -> Chain<'_, T> {
         self.engine.forward(input);
         Chain { engine: &mut *self.engine }
     }
 }
 
-/// Several convolutions of a field, one after the other, with an operation on the cells in between. The operation runs on a few
-/// rows at a time while they are in the cache, and only what it keeps is written to memory.
+/// Several consecutive convolutions of a field, with an operation on the cells in between. The operation runs on a few rows at a
+/// time while they are in the cache, and only the values that it stores are written to memory.
 ///
 /// ```
 /// use asperity_convolution::batched::BatchedFft;
@@ -189,20 +186,20 @@ pub struct Chain<'a, T> {
 }
 
 impl<T: Real> Chain<'_, T> {
-    /// x becomes S * x with the spectrum of that number; returns x'S x, of the x before (Parseval's theorem).
+    /// Replaces x by S * x with the spectrum of this number; returns x'S x of the previous x (Parseval's theorem).
     ///
     /// # Panics
-    /// Where there is none.
+    /// If there is no such spectrum.
     pub fn multiply(&mut self, spectrum: usize) -> f64 {
         self.engine.multiply(spectrum)
     }
 
-    /// `modify(first, x, kept)` changes x, eight rows (sixteen in f32) at a time; `kept` are the same cells of a field of the
-    /// caller, or none where that is empty. `first` is the number of the first cell, a multiple of eight. `modify` must not wait
-    /// for another thread.
+    /// `modify(first, x, kept)` changes x, eight rows (sixteen in f32) at a time; `kept` holds the same cells of a field of the
+    /// caller, or is empty if there is no field. `first` is the number of the first cell, a multiple of eight. `modify` must not
+    /// wait for another thread.
     ///
     /// # Panics
-    /// Where `kept` has another length.
+    /// If `kept` has another length.
     pub fn modify(&mut self, kept: &mut [T], modify: &Modify<T>) {
         self.engine.modify(kept, modify, true);
     }
@@ -210,7 +207,7 @@ impl<T: Real> Chain<'_, T> {
     /// The last operation: x is not convolved again.
     ///
     /// # Panics
-    /// Where `kept` has another length.
+    /// If `kept` has another length.
     pub fn finish(self, kept: &mut [T], modify: &Modify<T>) {
         self.engine.modify(kept, modify, false);
     }

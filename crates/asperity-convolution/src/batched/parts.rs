@@ -1,10 +1,10 @@
-//! R equal parts of a block of numbers: what a butterfly of radix R takes one number each of.
+//! R equal parts of a block of numbers. A butterfly of radix R takes one number from each part.
 
 use std::marker::PhantomData;
 
 use super::complex::Complex;
 
-/// R stretches of `length` numbers, to be read and written across: number j of every stretch.
+/// R ranges of `length` numbers, which are read and written across: number j of every range.
 pub struct Parts<'a, V, const R: usize> {
     starts: [*mut Complex<V>; R],
     length: usize,
@@ -12,7 +12,7 @@ pub struct Parts<'a, V, const R: usize> {
 }
 
 impl<'a, V: Copy, const R: usize> Parts<'a, V, R> {
-    /// A block in R parts, one after the other.
+    /// A block in R consecutive parts.
     #[inline(always)]
     pub fn of(block: &'a mut [Complex<V>]) -> Self {
         let length = block.len() / R;
@@ -24,11 +24,11 @@ impl<'a, V: Copy, const R: usize> Parts<'a, V, R> {
         Parts { starts, length, block: PhantomData }
     }
 
-    /// The first R stretches of `length` numbers of a signal: its own where it is long enough, those
-    /// at the same place of `margin` where it is not.
+    /// The first R ranges of `length` numbers of a signal. Beyond the end of the signal, those at the same position of `margin`
+    /// are used.
     ///
     /// # Panics
-    /// Where the margin, too, is too short.
+    /// If the margin is too short as well.
     #[inline(always)]
     pub fn of_signal(signal: &'a mut [Complex<V>], margin: &'a mut [Complex<V>], length: usize) -> Self {
         let mut starts = [signal.as_mut_ptr(); R];

@@ -1,8 +1,8 @@
-//! Lanes in plain Rust: the truth that the other vectors are compared with, and NEON on aarch64, where
-//! the compiler turns the loops into its vectors and `mul_add` is an instruction.
+//! Lanes in plain Rust. They are the reference for the other vectors, and are compiled to NEON on aarch64, where the compiler
+//! vectorises the loops and `mul_add` is an instruction.
 //!
-//! Without an instruction for it, `mul_add` is a correctly rounded library call: slow, but with the
-//! same bits (x86-64 processors older than 2013). Inlined everywhere, these calls would be half of the code of the crate.
+//! Without such an instruction (x86-64 processors older than 2013), `mul_add` is a correctly rounded library call, which is slow
+//! but gives the same bits. If inlined everywhere, these calls would be half of the code of the crate.
 
 use std::ops::{Add, Mul, Sub};
 

@@ -1,17 +1,17 @@
-//! Asking for memory before it is needed. The results are the same without.
+//! Prefetching of memory. It does not change the results.
 
-/// For what.
+/// The purpose of a prefetch.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Purpose {
-    /// To be read at once: into the first cache.
+    /// To be read immediately: into the first-level cache.
     Reading,
-    /// To be read in a while: into the second.
+    /// To be read later: into the second-level cache.
     ReadingLater,
     /// To be written.
     Writing,
 }
 
-/// Asks for the cache lines of `count` items from `start` on, which need not be a valid address.
+/// Prefetches the cache lines of `count` items from `start` on, which need not be a valid address.
 #[inline(always)]
 pub fn prefetch<T>(what: Purpose, start: *const T, count: usize) {
     #[cfg(target_arch = "x86_64")]
@@ -38,7 +38,7 @@ pub struct PrefetchAhead<T> {
 }
 
 impl<T> PrefetchAhead<T> {
-    /// `count` items from `start` on, in so many steps.
+    /// `count` items from `start` on, in this number of steps.
     pub fn of(start: *const T, count: usize, steps: usize) -> Self {
         PrefetchAhead { next: start, step: count.div_ceil(steps) }
     }
@@ -48,7 +48,7 @@ impl<T> PrefetchAhead<T> {
         PrefetchAhead { next: std::ptr::null(), step: 0 }
     }
 
-    /// Asks for the next step.
+    /// Prefetches the next step.
     #[inline(always)]
     pub fn advance(&mut self) {
         prefetch(Purpose::ReadingLater, self.next, self.step);

@@ -1,10 +1,10 @@
-//! The scalars that the engine computes with, each with its vectors of every instruction set.
+//! The scalar types of the engine, each with its vectors of every instruction set.
 //!
-//! The engine is compiled here, once for each kind of vector, and not with every crate that plans one.
+//! The engine is compiled here, once for each kind of vector, and not in every crate that uses it.
 
 use super::vector::Scalar;
 
-/// The scalars that the engine computes with: `f64` and `f32`.
+/// The scalar types of the engine: `f64` and `f32`.
 pub trait Real: Scalar + sealed::Sealed {}
 
 impl Real for f64 {}

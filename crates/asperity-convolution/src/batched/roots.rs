@@ -1,12 +1,12 @@
-//! Roots of unity, to the last bit the same on every machine.
+//! Roots of unity, with the same bits on every machine.
 
 use super::complex::Root;
 use super::vector::Scalar;
 
-/// exp(-2 pi i k / n), from an angle of the first octant: rounded well, and exact where it is 0 or 1.
+/// exp(-2 pi i k / n), from an angle in the first octant: accurately rounded, and exact if the value is 0 or 1.
 pub fn root<T: Scalar>(k: usize, n: usize) -> Root<T> {
     let k = k % n;
-    // The quarter turn, then the rest of it as an angle of at most an eighth of a turn either way.
+    // The quarter turn, then the rest as an angle of at most an eighth of a turn in either direction.
     let quarter = (8 * k + n) / (2 * n);
     let rest = 4 * k as i64 - (quarter * n) as i64;
     let angle = std::f64::consts::FRAC_PI_2 * rest as f64 / n as f64;
@@ -30,7 +30,7 @@ mod tests {
             for k in 0..2 * n {
                 let w: Root<f64> = root(k, n);
                 let angle = 2.0 * std::f64::consts::PI * (k % n) as f64 / n as f64;
-                // The angle itself is rounded on this side: 6.3 * 2^-53.
+                // The angle of the expected value is rounded too: 6.3 * 2^-53.
                 assert!((w.re - angle.cos()).abs() < 2e-15 && (w.im + angle.sin()).abs() < 2e-15);
             }
         }

@@ -16,7 +16,7 @@ use super::transform::Transform;
 use super::vector::{Kernel, MAX_LANES, Scalar, Vector};
 use super::work::{Scratch, Tiles};
 
-/// Tiles are prefetched so many blocks before they are needed.
+/// Number of blocks by which tiles are prefetched in advance.
 const AHEAD: usize = 4;
 
 /// A planned pass over rows.
@@ -24,24 +24,23 @@ pub struct Rows<T> {
     /// Numbers in a row, ny.
     cells: usize,
     transform: Transform<T>,
-    /// For k = 0..=H/2, and the last again and again.
+    /// For k = 0..=H/2; the last one is repeated.
     pairs: Vec<Pair<T>>,
 }
 
 /// The frequencies k and H - k.
 struct Pair<T> {
     k: usize,
-    /// Where Z(k) lies in the digit-reversed spectrum.
+    /// Position of Z(k) in the digit-reversed spectrum.
     position: usize,
-    /// Where Z(H - k) lies.
+    /// Position of Z(H - k).
     mirror: usize,
     /// -i w^k.
     root: Root<T>,
 }
 
 impl<T: Scalar> Rows<T> {
-    /// Rows of `cells` numbers, transformed with 2 H = twice the transform's length, for vectors of
-    /// that many lanes.
+    /// Rows of `cells` numbers, where 2 H is twice the length of the transform, for vectors with this number of lanes.
     pub fn new(cells: usize, transform: Transform<T>, lanes: usize) -> Self {
         let half = transform.length();
         let positions = transform.positions();
@@ -100,7 +99,7 @@ impl<T: Scalar> Rows<T> {
         signal[packed..].fill(Complex::zero());
     }
 
-    /// The way back of [`Rows::pack`].
+    /// The inverse of [`Rows::pack`].
     #[inline(always)]
     fn unpack<V: Vector<Scalar = T>>(&self, signal: &[Complex<V>], rows: &mut [T]) {
         let (ny, lanes) = (self.cells, V::LANES);

@@ -1,4 +1,4 @@
-//! One pass of a transform: blocks of m numbers, each in R parts of m/R.
+//! One pass of a transform, on blocks of m numbers, each in R parts of m/R.
 
 use super::butterfly::{Butterfly, HalfOf, OfHalf, Whole};
 use super::complex::{Complex, Root};
@@ -20,14 +20,14 @@ impl<T: Scalar> Stage<T> {
         Stage { radix, span, roots }
     }
 
-    /// How many numbers a part has.
+    /// Number of values in a part.
     #[inline(always)]
     pub fn part(&self) -> usize {
         self.span / self.radix
     }
 
-    /// The first pass: from the signal, its missing parts in the margin, into the buffer. `half`:
-    /// the second half of the signal is zero.
+    /// The first pass: it reads the signal (and its missing parts from the margin) and writes the buffer. With `half`, the second
+    /// half of the signal is zero.
     #[inline(always)]
     pub fn open<V: Vector<Scalar = T>>(
         &self,
@@ -48,8 +48,8 @@ impl<T: Scalar> Stage<T> {
         }
     }
 
-    /// The last pass: from the buffer into the signal, its missing parts into the margin. `half`: only
-    /// the first half of the signal is wanted.
+    /// The last pass: it reads the buffer and writes the signal (and its missing parts into the margin). With `half`, only the
+    /// first half of the signal is needed.
     #[inline(always)]
     pub fn close<V: Vector<Scalar = T>>(
         &self,
@@ -107,7 +107,7 @@ impl<T: Scalar> Stage<T> {
         }
     }
 
-    /// The way back of the first pass; exchanges real and imaginary parts for good.
+    /// The inverse of the first pass; it exchanges real and imaginary parts finally.
     #[inline(always)]
     fn last_pass<V: Vector<Scalar = T>, B: Butterfly<V, R, P>, const P: usize, const R: usize>(
         &self,

@@ -1,4 +1,4 @@
-//! The engine against a plain two-dimensional transform, and against itself on other instructions.
+//! Compares the engine with a plain two-dimensional transform, and with itself on other instructions.
 
 use ndarray::Array2;
 use proptest::prelude::*;
@@ -10,8 +10,8 @@ use super::factors::factors;
 use super::portable::Portable;
 use super::*;
 
-/// Domains and lengths: padded, periodic, wrapped, rectangles, one cell, more lanes than cells; the small
-/// ones in the interpreter Miri, which takes about a thousand times as long.
+/// Domains and lengths: padded, periodic, wrapped, rectangles, one cell, more lanes than cells. The interpreter Miri runs only
+/// the small ones, because it takes about a thousand times as long.
 fn shapes() -> impl Iterator<Item = ([usize; 2], [usize; 2])> {
     SHAPES.into_iter().filter(|(_, [mx, my])| !cfg!(miri) || mx * my <= 130)
 }
@@ -220,7 +220,7 @@ fn a_chain_is_one_convolution_after_the_other() {
                 let mut chain = plan.chain(&input);
                 let before = chain.multiply(0);
                 chain.modify(&mut kept, &|n, x, kept| {
-                    // Groups of the same rows on all instructions, each of which begins with a whole byte of a set.
+                    // All instructions use groups of the same rows, and each group begins at a whole byte of a set.
                     assert!(n.is_multiple_of(8) && n.is_multiple_of(rows * cells[1]));
                     groups.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
                     kept.copy_from_slice(x);
@@ -237,7 +237,7 @@ fn a_chain_is_one_convolution_after_the_other() {
                 chain.finish(&mut output, &|_, x, output| output.copy_from_slice(x));
                 assert!(kept == first && output == third, "{instructions:?} {cells:?} {lengths:?}");
 
-                // x'S x by Parseval's theorem, and as it is written: a column is a sum of so many terms.
+                // x'S x by Parseval's theorem, and by its definition: a column is a sum of this number of terms.
                 for (found, x, y) in [(before, &input, &first), (energy, &between, &second)] {
                     let error =
                         (found - dot(x, y)).abs() / dot(y, y).sqrt().max(1e-30) / dot(x, x).sqrt().max(1e-30);
@@ -268,11 +268,11 @@ fn zero_gives_zero_and_one_cell_its_response() {
     assert!(error(&response, &exact) < 4e-15);
 }
 
-/// The most cells along one side of a random shape, and cells of padding.
+/// Largest number of cells along one side of a random shape, and of cells of padding.
 const MOST: usize = if cfg!(miri) { 16 } else { 90 };
 
 proptest! {
-    // Each case is a few thousand cells, so some hundred stay within seconds.
+    // Each case has a few thousand cells, so about a hundred cases take only seconds.
     #![proptest_config(ProptestConfig::with_cases(if cfg!(miri) { 3 } else { 96 }))]
 
     #[test]

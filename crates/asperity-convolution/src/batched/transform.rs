@@ -1,13 +1,12 @@
-//! The transform of one block: LANES complex signals of the same length, side by side.
+//! The transform of one block, that is LANES complex signals of the same length, side by side.
 //!
-//! Forward by decimation in frequency (Gentleman & Sande 1966), back by decimation in time (Cooley &
-//! Tukey 1965), in place: the spectrum between them lies in digit-reversed order and is never
-//! sorted. After the first pass each of its parts is finished alone, depth first, so that the work
-//! stays in the nearest cache. With a length m = R t the first pass takes the numbers j, j + t, j +
-//! 2t, ..: where the signal is padded to twice its length the second half of them is zero, and the
-//! last pass back need not compute them.
+//! Forward by decimation in frequency (Gentleman & Sande 1966), back by decimation in time (Cooley & Tukey 1965), in place: the
+//! spectrum between them is in digit-reversed order and is never sorted. After the first pass each part is finished separately,
+//! depth first, so that the data stay in the first-level cache. With a length m = R t the first pass takes the numbers j, j + t,
+//! j + 2t, ..: if the signal is padded to twice its length, the second half of them is zero, and the last pass back need not
+//! compute them.
 //!
-//! The inverse transform is the forward one of the number with real and imaginary part exchanged.
+//! The inverse transform is the forward transform with real and imaginary parts exchanged.
 
 use super::complex::Complex;
 use super::factors::Factors;
@@ -19,7 +18,7 @@ use super::vector::{Scalar, Vector};
 /// A planned transform of `length` complex numbers.
 pub struct Transform<T> {
     length: usize,
-    /// Whether the signal fills at most the first half: the rest is taken as zero, and not computed.
+    /// Whether the signal fills at most the first half: the rest is taken as zero and not computed.
     half: bool,
     first: Stage<T>,
     inner: Vec<Stage<T>>,
@@ -44,12 +43,12 @@ impl<T: Scalar> Transform<T> {
         self.length
     }
 
-    /// How many numbers the first pass reads and the last pass back writes: m, or m / 2.
+    /// Number of values that the first pass reads and the last pass back writes: m or m / 2.
     pub fn signal_length(&self) -> usize {
         if self.half { self.length / 2 } else { self.length }
     }
 
-    /// Where every frequency lies in the digit-reversed spectrum.
+    /// Position of every frequency in the digit-reversed spectrum.
     pub fn positions(&self) -> Vec<usize> {
         let radices = || {
             let inner = self.inner.iter().map(|stage| stage.radix);
@@ -67,8 +66,8 @@ impl<T: Scalar> Transform<T> {
         (0..self.length).map(position).collect()
     }
 
-    /// How many of the first pass's parts of the spectrum must be stored of a real, even one: the
-    /// others, r > R/2, are the parts R - r read backwards.
+    /// Number of parts of the first pass that must be stored for a real, even spectrum: the others, r > R/2, are the parts R - r
+    /// read backwards.
     pub fn mirrored_length(&self) -> usize {
         (self.first.radix / 2 + 1) * (self.first.part())
     }
@@ -79,7 +78,7 @@ impl<T: Scalar> Transform<T> {
         self.inner.last().map_or(self.leaf, |stage| stage.span)
     }
 
-    /// How often [`Transform::convolve`] advances what it is given to ask for.
+    /// Number of prefetch steps in [`Transform::convolve`].
     pub fn steps(&self) -> usize {
         self.length / self.deepest()
     }
@@ -105,9 +104,9 @@ impl<T: Scalar> Transform<T> {
 
     /// signal = m times the inverse of (spectrum times transform of signal), in place.
     ///
-    /// `signal` may be shorter than `signal_length`; `margin` has that length and takes what is
-    /// missing; `spectrum` is real, even, digit-reversed, of `mirrored_length`; `energy` sums S |y|^2 over
-    /// the transform y, and `ahead` prefetches meanwhile.
+    /// `signal` may be shorter than `signal_length`; `margin` has that length and holds the missing part. `spectrum` is real,
+    /// even, digit-reversed, of `mirrored_length`. `energy` sums S |y|^2 over the transform y, and `ahead` prefetches at the same
+    /// time.
     #[inline(always)]
     pub fn convolve<V: Vector<Scalar = T>>(
         &self,

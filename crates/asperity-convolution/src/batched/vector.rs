@@ -1,8 +1,8 @@
-//! A vector of lanes: the same operation on a few independent numbers.
+//! A vector of lanes: it applies the same operation to a few independent numbers.
 //!
-//! Lanes never mix: lane n holds row (or column) n of a block, so a transform of the block is the
-//! scalar transform with every number replaced by a vector. Each operation rounds as IEEE 754 says,
-//! hence every implementation, of any width, gives the same bits.
+//! Lanes never mix: lane n holds row (or column) n of a block, so a transform of the block is the scalar transform with every
+//! number replaced by a vector. Each operation rounds according to IEEE 754, so every implementation, of any width, gives the
+//! same bits.
 
 use std::fmt::Debug;
 use std::ops::{Add, Mul, Sub};
@@ -39,21 +39,21 @@ impl Scalar for f32 {
     }
 }
 
-/// The most lanes of any implementation.
+/// Largest number of lanes of any implementation.
 pub const MAX_LANES: usize = 16;
 
 /// A vector of `LANES` scalars.
 ///
 /// # Safety
-/// The type has the layout of `[Scalar; LANES]` (its alignment may be stricter), any bit pattern of
-/// it is valid, and `LANES` is even and at most [`MAX_LANES`]. Where it needs instructions that not
-/// every processor has, the engine plans with it only after detecting them (`Instructions`).
+/// The type has the layout of `[Scalar; LANES]` (its alignment may be stricter), any bit pattern of it is valid, and `LANES` is
+/// even and at most [`MAX_LANES`]. If it needs instructions that not every processor has, the engine uses it only after detecting
+/// them (`Instructions`).
 pub unsafe trait Vector:
     Copy + Send + Sync + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + 'static
 {
     /// What one lane holds.
     type Scalar: Scalar;
-    /// How many lanes there are.
+    /// Number of lanes.
     const LANES: usize;
 
     /// x in every lane.
@@ -66,7 +66,7 @@ pub unsafe trait Vector:
     /// to\[j, i\] = from\[i, j\] for `LANES` x `LANES` scalars; the rows of either side are a stride apart.
     ///
     /// # Panics
-    /// Where a side is shorter than its last row's end.
+    /// If a side ends before its last row.
     fn transpose(from: &[Self::Scalar], from_stride: usize, to: &mut [Self::Scalar], to_stride: usize);
 
     /// The lanes, one by one.
@@ -80,14 +80,13 @@ pub unsafe trait Vector:
     fn vectorize(kernel: impl Kernel);
 }
 
-/// Work that [`Vector::vectorize`] compiles for a processor: `run` and all that it calls is
-/// `#[inline(always)]`.
+/// Work that [`Vector::vectorize`] compiles for a processor: `run` and everything that it calls is `#[inline(always)]`.
 pub trait Kernel {
-    /// Does it.
+    /// Does the work.
     fn run(self);
 }
 
-/// Where the last of `lanes` rows ends: what [`Vector::transpose`] reads and writes at most.
+/// End of the last of `lanes` rows, up to which [`Vector::transpose`] reads and writes.
 #[inline(always)]
 pub fn tile_end(lanes: usize, stride: usize) -> usize {
     (lanes - 1) * stride + lanes

@@ -1,8 +1,8 @@
 //! The memory that the passes share.
 //!
-//! The half spectrum between them: complex numbers in blocks of LANES columns, each block the
-//! nx rows of its columns one after the other. The pass over columns takes one block after the other; a block of rows writes a tile, its rows,
-//! into every block of columns.
+//! It holds the half spectrum: complex numbers in blocks of LANES columns. Each block has the nx rows of its columns one after
+//! the other. The pass over columns processes one block after the other. A block of rows writes its rows, a tile, into every
+//! block of columns.
 
 use std::marker::PhantomData;
 
@@ -10,27 +10,27 @@ use super::complex::Complex;
 use super::prefetch::{Purpose, prefetch};
 use super::vector::Vector;
 
-/// Bytes that keep what is used together apart modulo the page of 4096 bytes. Powers of two would
-/// otherwise put it into the same sets of the cache, where it displaces itself, and a load would wait
-/// for a store of which it knows the last twelve bits of the address only.
+/// Bytes of padding, so that data used together have different addresses modulo the page of 4096 bytes. With powers of two they
+/// would otherwise use the same sets of the cache and evict each other, and a load would wait for a store whose address agrees in
+/// the last twelve bits.
 const STAGGER: usize = 1088;
 
-/// From block to block, in complex numbers.
+/// Distance from block to block, in complex numbers.
 pub fn block_stride<V>(rows: usize) -> usize {
     rows + STAGGER.div_ceil(size_of::<Complex<V>>())
 }
 
 /// The buffers of one thread.
 pub struct Scratch<V: Vector> {
-    /// Rows that a caller visits.
+    /// Rows for use by a caller.
     pub rows: Vec<V::Scalar>,
     numbers: Vec<Complex<V>>,
-    /// Where the second buffer starts.
+    /// Start of the second buffer.
     second: usize,
 }
 
 impl<V: Vector> Scratch<V> {
-    /// A buffer for a signal and one for its transform, and room for rows of so many cells.
+    /// Allocates a buffer for a signal, one for its transform, and one for rows of this number of cells.
     pub fn new(signal: usize, transform: usize, cells: usize) -> Self {
         let size = size_of::<Complex<V>>();
         let second = ((signal * size).next_multiple_of(4096) + STAGGER).div_ceil(size);
@@ -38,7 +38,7 @@ impl<V: Vector> Scratch<V> {
         Scratch { rows, numbers: vec![Complex::zero(); second + transform], second }
     }
 
-    /// The two, in these lengths.
+    /// The first two buffers, with these lengths.
     #[inline(always)]
     pub fn buffers(&mut self, signal: usize, transform: usize) -> (&mut [Complex<V>], &mut [Complex<V>]) {
         let (first, second) = self.numbers.split_at_mut(self.second);
@@ -54,7 +54,7 @@ pub struct SharedTiles<'a, V> {
     work: PhantomData<&'a mut [Complex<V>]>,
 }
 
-// SAFETY: what is shared is the right to call `of_rows`, whose caller keeps the rows apart.
+// SAFETY: threads share only the right to call `of_rows`, whose caller ensures that rows do not overlap.
 unsafe impl<V: Send> Sync for SharedTiles<'_, V> {}
 
 /// The tiles of one block of rows, one in every block of columns.
@@ -88,11 +88,11 @@ impl<V> Tiles<'_, V> {
     pub fn tile(&mut self, block: usize) -> &mut [Complex<V>] {
         let offset = block * self.stride + self.first;
         assert!(offset + self.count <= self.length);
-        // SAFETY: inside of the borrowed work array; these rows are this value's alone.
+        // SAFETY: inside the borrowed work array; these rows belong only to this value.
         unsafe { std::slice::from_raw_parts_mut(self.start.add(offset), self.count) }
     }
 
-    /// Asks for a tile that will be wanted soon.
+    /// Prefetches a tile that will be needed soon.
     #[inline(always)]
     pub fn prefetch(&self, what: Purpose, block: usize) {
         let offset = block * self.stride + self.first;

@@ -1,4 +1,4 @@
-//! Any cyclic convolution as a padded one of a length that the engine likes.
+//! Converts any cyclic convolution to a padded one of a length that the engine supports.
 //!
 //! On n cells a cyclic convolution of length m >= n only uses the distances |d| < n. Its kernel
 //! K(d mod m), laid out for a linear convolution on L >= 2 n - 1 cells, gives the same sums:
@@ -9,7 +9,7 @@ use ndarray::{Array2, ArrayView2};
 
 use crate::spectrum::even_spectrum;
 
-/// The spectrum on `longer` lengths that does what `spectrum` does on `lengths`, for fields of `cells`.
+/// The spectrum on the `longer` lengths that is equivalent to `spectrum` on `lengths`, for fields of `cells`.
 ///
 /// Both are real and even, shape (m/2 + 1) along each axis.
 pub fn wrapped_spectrum(
@@ -18,7 +18,7 @@ pub fn wrapped_spectrum(
     longer: [usize; 2],
     spectrum: ArrayView2<f64>,
 ) -> Array2<f64> {
-    // An even transform is its own inverse, but for the number of cells.
+    // An even transform is its own inverse, except for a factor of the number of cells.
     let kernel = even_spectrum(&spectrum.to_owned(), lengths);
     let normalisation = 1.0 / (lengths[0] as f64 * lengths[1] as f64);
     let nearest = |distance: usize, axis: usize| distance.min(lengths[axis] - distance);

@@ -4,8 +4,9 @@ use asperity::kernel::Kernel;
 use asperity::layer::{Base, Interface, Layered, Stack};
 use asperity::material::{Body, Creep, Shift, VerticalShift};
 use asperity::quantities::Quantity;
+use asperity::sliding::Steady;
 use asperity::surface::Part;
-use asperity::{Course, History, Simulation};
+use asperity::{Axis, Course, History, Simulation};
 use serde::Serialize;
 
 use super::plan::Surface;
@@ -198,7 +199,11 @@ impl Case {
         let simulation = Simulation { quantities, ..self.with_gap(ndarray::Array2::default((0, 0))) };
         let copies = if self.output.fields.is_empty() { KEPT } else { STORED };
         let stress = self.stress.as_ref().map_or(0, |plan| plan.bytes(&self.grid, self.boundary));
-        let run = simulation.bytes() + copies * 8 * self.grid.len() + stress;
+        let own = match &self.motion {
+            Some(motion) if self.axis() == Axis::Velocity => Steady::bytes(&simulation, motion.direction),
+            _ => simulation.bytes(),
+        };
+        let run = own + copies * 8 * self.grid.len() + stress;
         // The run has given its memory back when the leakage is computed.
         let leak = self.leakage.as_ref().map_or(0, |leak| leak.bytes(self.grid.len()) as usize);
         let rows = self.usual_rows.saturating_mul(ROW);

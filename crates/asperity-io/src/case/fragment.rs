@@ -6,11 +6,11 @@ use asperity::Grid;
 use asperity::surface::Part;
 use toml::Value;
 
-use super::convert::{self, Checks};
+use super::document;
 use super::error::CaseError;
 use super::given;
-use super::raw;
-use super::read;
+use super::place::Checks;
+use super::surface::Kind;
 use super::text::Text;
 use crate::preparation::Step;
 use crate::stress::{StressBody, StressPlan};
@@ -68,7 +68,7 @@ pub fn step(words: &str) -> Result<Step, String> {
     surface.insert("kind".into(), Value::String("file".into()));
     surface.insert("path".into(), Value::String(String::new()));
     surface.insert("process".into(), Value::Array(vec![Value::Table(table)]));
-    let document = document(vec![("surface", Value::Array(vec![Value::Table(surface)]))]);
+    let document = written(vec![("surface", Value::Array(vec![Value::Table(surface)]))]);
 
     let place = "surface[0].process[0]";
     let told = |errors: Vec<CaseError>| {
@@ -82,14 +82,14 @@ pub fn step(words: &str) -> Result<Step, String> {
         }
     };
     let text = Text::parse(&document).map_err(told)?;
-    let surfaces = read::surfaces(&text).map_err(told)?;
-    let mut checks = Checks { text: &text, dir: Path::new(""), errors: Vec::new() };
-    let process = surfaces.iter().find_map(|surface| match &surface.value {
-        raw::Surface::File(file) => file.process.as_ref()?.value.first(),
+    let surfaces = document::surfaces(&text).map_err(told)?;
+    let checks = Checks::new(&text, Path::new(""));
+    let process = surfaces.iter().find_map(|surface| match &surface.kind {
+        Kind::File(file) => file.process.as_ref()?.first(),
         _ => None,
     });
-    let step = process.and_then(|at| convert::prepare::operation(&mut checks, at));
-    step.ok_or_else(|| told(checks.errors))
+    let step = process.and_then(|operation| operation.step(&checks.at(place)));
+    step.ok_or_else(|| told(checks.into_errors()))
 }
 
 /// "KEY=VALUE KEY=VALUE"; a word without "=" belongs to the value before it ("size=50 um").
@@ -125,7 +125,8 @@ pub(super) fn value(text: &str) -> Value {
     }
 }
 
-fn document(sections: Vec<(&str, Value)>) -> String {
+/// A document of these sections.
+fn written(sections: Vec<(&str, Value)>) -> String {
     sections.into_iter().map(|(key, value)| (key.to_owned(), value)).collect::<toml::Table>().to_string()
 }
 
@@ -213,13 +214,13 @@ pub fn stress(keys: &[(&str, &str)], grid: &Grid, bodies: &[StressBody]) -> Resu
         }
         table.insert((*key).to_owned(), given);
     }
-    let document = document(vec![("stress", Value::Table(table))]);
+    let document = written(vec![("stress", Value::Table(table))]);
     let text = Text::parse(&document).map_err(faults)?;
-    let section = read::stress(&text).map_err(faults)?;
-    let mut checks = Checks { text: &text, dir: Path::new(""), errors: Vec::new() };
-    match convert::stress::plan(&mut checks, &section, grid, bodies) {
-        Some(plan) if checks.errors.is_empty() => Ok(plan),
-        _ => Err(faults(checks.errors)),
+    let section = document::stress(&text).map_err(faults)?;
+    let checks = Checks::new(&text, Path::new(""));
+    match section.plan(&checks.at("stress"), grid, bodies) {
+        Some(plan) if !checks.any() => Ok(plan),
+        _ => Err(faults(checks.into_errors())),
     }
 }
 

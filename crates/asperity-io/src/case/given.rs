@@ -12,13 +12,18 @@ use asperity::layer::NonseparableLayers;
 use asperity::material::{Body, Creep};
 use asperity::surface::Part;
 use asperity::time::{Instant, Plan};
-use asperity::{Control, Grid};
+use asperity::{Control, Grid, Scheme};
 use ndarray::Array2;
 use toml::Table;
 
+use super::document::{self, Document};
 use super::error::CaseError;
+use super::material::Dependence;
+use super::place::Checks;
+use super::read::Reader;
+use super::shift::Shift;
 use super::text::Text;
-use super::{Case, CaseErrors, MaterialReport, convert, read};
+use super::{Case, CaseErrors, MaterialReport, assemble};
 use crate::curve::{ShiftRequest, VerticalRequest};
 
 /// Arrays of shape (nx, ny) by their names.
@@ -50,8 +55,8 @@ impl Case {
     /// [`CaseErrors`] with what is wrong; their lines are those of [`CaseErrors::source`].
     pub fn given(keys: &Table, arrays: &Arrays, dir: &Path) -> Result<Case, CaseErrors> {
         from_keys(keys, arrays, |text| {
-            let document = read::document(text)?;
-            convert::case(text, &document, dir, "result.zarr".into())
+            let document = Document::read(text)?;
+            assemble::case(text, &document, dir, "result.zarr".into())
         })
     }
 }
@@ -85,8 +90,8 @@ pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<GivenBodies, Cas
     };
     let plan = Plan { instants: window.into_iter().map(instant).collect(), exact: true };
     let pair = from_keys(keys, &Arrays::new(), |text| {
-        let (bodies, temperature) = read::bodies(text)?;
-        convert::bodies(text, &bodies, temperature.as_ref(), &plan)
+        let (bodies, temperature) = document::bodies(text)?;
+        assemble::bodies(text, &bodies, temperature.as_ref(), &plan)
     })?;
     let kernel: Arc<dyn Kernel> = match pair.layers {
         Some(layers) => layers,
@@ -107,8 +112,17 @@ pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<GivenBodies, Cas
 /// [`CaseErrors`] with what is wrong.
 pub fn surface(keys: &Table) -> Result<(Grid, Part), CaseErrors> {
     from_keys(keys, &Arrays::new(), |text| {
-        let (domain, surfaces) = read::roughness(text)?;
-        convert::surface_alone(text, &domain, &surfaces)
+        let (domain, surfaces) = document::roughness(text)?;
+        let checks = Checks::new(text, Path::new(""));
+        let grid = domain.grid(&checks.at("domain"), &[]);
+        domain.fits(&checks.at("domain"), grid.as_ref(), 0, 0, Scheme::Linear);
+        let line = grid.as_ref().is_some_and(Grid::is_line);
+        let place = checks.at("surface").item(0);
+        let part = surfaces.first().and_then(|surface| surface.part(&place, grid.as_ref(), line));
+        match (grid, part, checks.any()) {
+            (Some(grid), Some(part), false) => Ok((grid, part)),
+            _ => Err(checks.into_errors()),
+        }
     })
 }
 
@@ -118,7 +132,12 @@ pub fn surface(keys: &Table) -> Result<(Grid, Part), CaseErrors> {
 /// [`CaseErrors`] with what is wrong.
 pub fn shift(keys: Table) -> Result<(ShiftRequest, VerticalRequest), CaseErrors> {
     let keys = Table::from_iter([("shift".to_owned(), keys.into())]);
-    from_keys(&keys, &Arrays::new(), |text| convert::shift(text, &read::shift(text)?))
+    from_keys(&keys, &Arrays::new(), |text| {
+        let mut reader = Reader::new(text);
+        let shift = reader.required::<Shift>("shift");
+        let Dependence { shift, vertical } = reader.finish(shift)?.alone(text)?;
+        Ok((shift, vertical))
+    })
 }
 
 /// What `make` makes of these keys as a text.
@@ -133,26 +152,6 @@ fn from_keys<T>(
     })?;
     let made = Text::parse(&source).and_then(|text| make(&Text { arrays, ..text }));
     made.map_err(|errors| CaseErrors { name: name.to_owned(), source, errors })
-}
-
-/// The array that a key names, where it has a number for each cell of the grid; or what is wrong, and what was expected.
-pub(super) fn of_grid<'t>(
-    arrays: &'t Arrays,
-    name: &str,
-    grid: &Grid,
-) -> Result<&'t Array2<f64>, (String, String)> {
-    let (expected, (nx, ny)) = (format!("{:?}", grid.shape()), grid.shape());
-    match arrays.get(name) {
-        None => Err((
-            format!("there is no array \"{name}\""),
-            "an array given beside the keys (by a program)".into(),
-        )),
-        Some(array) if array.dim() != (nx, ny) => Err((
-            format!("the array has shape {:?}", array.dim()),
-            format!("shape {expected}, a number for each cell"),
-        )),
-        Some(array) => Ok(array),
-    }
 }
 
 #[cfg(test)]

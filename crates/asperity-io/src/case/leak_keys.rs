@@ -48,14 +48,8 @@ impl Leak {
     /// What is wrong, and what to do.
     pub fn changed(&self, given: LeakageKeys, boundary: Boundary) -> Result<Leak, String> {
         let mut keys = self.keys();
-        let of_gas = given.gas.is_some()
-            || given.molar_mass.is_some()
-            || given.inlet.is_some()
-            || given.outlet.is_some()
-            || given.temperature.is_some()
-            || given.rarefaction.is_some();
         let other_kind = match self.fluid {
-            Some(Fluid::Liquid { .. }) => of_gas,
+            Some(Fluid::Liquid { .. }) => given.of_gas().is_some(),
             Some(Fluid::Gas { .. }) => given.pressure_drop.is_some(),
             None => false,
         };

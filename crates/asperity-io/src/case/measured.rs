@@ -1,6 +1,5 @@
 //! Measured surfaces of a case: from a topography file to heights on the grid.
 
-use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -17,8 +16,8 @@ use crate::topography::{ReadOptions, TopographyError, read, read_profile};
 pub struct Measured {
     /// The file.
     pub path: PathBuf,
-    /// Place of the path in the case file's source.
-    pub(super) span: Range<usize>,
+    /// Path of the key in the case that names the file.
+    pub(super) key: String,
     /// Channel, physical size and unit, where the case gives them.
     pub options: ReadOptions,
     /// Whether the case gives a size, and of a profile; `None` where it gives none.
@@ -48,12 +47,12 @@ impl Measured {
     /// `size_of_line` says whether the size among the options is that of a profile.
     pub(super) fn new(
         path: PathBuf,
-        span: Range<usize>,
+        key: String,
         options: ReadOptions,
         size_of_line: Option<bool>,
         steps: Vec<Step>,
     ) -> Self {
-        Measured { path, span, options, size_of_line, steps, prepared: Arc::default() }
+        Measured { path, key, options, size_of_line, steps, prepared: Arc::default() }
     }
 
     /// The heights as they are in the file, and what was done to read them.

@@ -1,12 +1,12 @@
 //! Case files: TOML text with units to the objects of the solver.
 //!
 //! ```text
-//! text --overrides--> text --read--> raw structs --convert--> Case --simulation--> asperity's Simulation
-//!                                     (one key)   (many keys)       (files, gap)
+//! text --overrides--> text --read--> Document --assemble--> Case --simulation--> asperity's Simulation
+//!                                     (one key)   (many keys)      (files, gap)
 //! ```
 //!
 //! A fault is reported with its key, line and value, what was expected and what to do: see [`CaseErrors`].
-//! The format is described by its JSON [`schema`], which is made from the same structs that read it, and by
+//! The format is described by its JSON [`schema`], which is made from the same structs that read it, one for each table, and by
 //! the commented examples of the crate `asperity-examples`.
 //!
 //! ```
@@ -39,28 +39,51 @@
 //! # Ok::<(), asperity_io::case::CaseErrors>(())
 //! ```
 
-mod convert;
+mod assemble;
+mod body;
 mod cost;
 mod describe;
+mod document;
+mod domain;
 mod error;
 mod examine;
+mod form;
 pub mod fragment;
 pub mod given;
+mod hardness;
+mod history;
+mod history_file;
+mod keys;
 mod leak_keys;
+mod leakage;
+mod list;
+mod load;
+mod material;
 mod measured;
 mod memory;
+mod motion;
+mod output;
 mod overrides;
+mod pair;
+mod place;
 mod plan;
-pub mod quantity;
-mod raw;
+mod prepare;
+
 mod read;
+mod roughness;
 mod schema;
+mod shift;
 mod specimen;
+mod stored_times;
+mod stress;
+mod surface;
+mod temperature;
 mod text;
+mod time;
+mod warmth;
 mod words;
 
 use std::io::Read;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -81,15 +104,19 @@ pub use describe::{Description, MaterialReport, Preparation, WaveReport};
 pub use error::{CaseError, CaseErrors};
 pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
 pub use given::Arrays;
+pub use leakage::{LeakageKeys, leak};
 pub use measured::Measured;
 pub use plan::{Motion, Output, Rows, Surface, Travel};
-pub use raw::Leakage as LeakageKeys;
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
 pub use words::nearest;
 
+pub use crate::quantity;
+
 use crate::leakage::Leak;
 use crate::stress::StressPlan;
+use document::Document;
+use output::Conditions;
 use overrides::Override;
 use text::Text;
 
@@ -159,8 +186,8 @@ pub struct Case {
     rows: Option<usize>,
     /// About as many.
     usual_rows: usize,
-    /// Place of the history in the source.
-    history: Range<usize>,
+    /// Path of the key that holds what is prescribed.
+    history: String,
 }
 
 impl Case {
@@ -195,8 +222,8 @@ impl Case {
     ) -> Result<Case, CaseErrors> {
         let (source, set) = overridden(name, source, overrides)?;
         let result = Text::parse(&source).and_then(|text| {
-            let document = read::document(&text)?;
-            convert::case(&text, &document, dir, output)
+            let document = Document::read(&text)?;
+            assemble::case(&text, &document, dir, output)
         });
         match result {
             Ok(case) => Ok(Case { name: name.to_owned(), ..case }),
@@ -219,7 +246,7 @@ impl Case {
     pub fn parts(&self) -> Result<Vec<Part>, CaseErrors> {
         let part = |surface: &Surface| match surface {
             Surface::Part(part) => Ok(part.clone()),
-            Surface::File(file) => file.part(&self.grid).map_err(|reason| self.fault(&file.span, reason)),
+            Surface::File(file) => file.part(&self.grid).map_err(|reason| self.fault(&file.key, reason)),
         };
         self.surfaces.iter().map(part).collect()
     }
@@ -270,13 +297,13 @@ impl Case {
     fn moving(&self, parts: &[Part], motion: &Motion) -> Result<MovingGap, CaseErrors> {
         let parts: Vec<(Part, bool)> = parts.iter().cloned().zip(motion.moves.iter().copied()).collect();
         MovingGap::new(&self.grid, self.boundary, &parts)
-            .map_err(|error| self.fault(&motion.span, error.to_string()))
+            .map_err(|error| self.fault("motion", error.to_string()))
     }
 
     /// The gap at the start of a motion.
     fn moving_gap(&self, parts: &[Part], motion: &Motion) -> Result<Array2<f64>, CaseErrors> {
         let gap = self.moving(parts, motion)?.at(0.0, motion.direction);
-        gap.map(|(gap, _)| gap).map_err(|error| self.fault(&motion.span, error.to_string()))
+        gap.map(|(gap, _)| gap).map_err(|error| self.fault("motion", error.to_string()))
     }
 
     /// The motion in time, where there is one.
@@ -311,7 +338,7 @@ impl Case {
         let (_, slopes) = self
             .moving(parts, motion)?
             .at(0.0, motion.direction)
-            .map_err(|error| self.fault(&motion.span, error.to_string()))?;
+            .map_err(|error| self.fault("motion", error.to_string()))?;
         let steady = SteadyMotion {
             direction: motion.direction,
             velocities: velocities.clone(),
@@ -320,7 +347,7 @@ impl Case {
         };
         match steady.validate(simulation) {
             Ok(()) => Ok(Some(steady)),
-            Err(error) => Err(self.fault(&motion.span, error.to_string())),
+            Err(error) => Err(self.fault("motion", error.to_string())),
         }
     }
 
@@ -365,14 +392,18 @@ impl Case {
         let steady = self.axis() == Axis::Velocity;
         let mut wanted = self.output.quantities.clone();
         if self.output.all_quantities {
+            let conditions = Conditions {
+                scheme: simulation.scheme,
+                up_to_a_constant: simulation.is_up_to_a_constant(),
+                waves: self.waves.is_some(),
+                moves: self.motion.is_some(),
+            };
             let possible = |quantity: &Quantity| {
                 let alone = Quantities { list: vec![*quantity], ..wanted.clone() };
-                // Displacements may be known up to a constant, and those of steady motion have no history.
-                let by_history = quantity.is_energy() || *quantity == Quantity::ContactStiffness;
-                let unknown = quantity.is_energy() && simulation.scheme == Scheme::Direct
-                    || self.waves.is_some() && by_history
-                    || (simulation.is_up_to_a_constant() || steady) && quantity.is_of_time();
-                !unknown && simulation.columns_of(&alone).is_ok()
+                // Steady motion has no history.
+                conditions.refuse(*quantity).is_none()
+                    && !(steady && quantity.is_of_time())
+                    && simulation.columns_of(&alone).is_ok()
             };
             wanted.list = Quantity::at_rest().filter(possible).collect();
         }
@@ -392,25 +423,13 @@ impl Case {
         wanted
     }
 
-    fn fault(&self, span: &Range<usize>, reason: String) -> CaseErrors {
+    fn fault(&self, key: &str, reason: String) -> CaseErrors {
         let errors = match Text::parse(&self.source) {
-            Ok(text) => {
-                vec![text.fault(span, reason, "", None)]
-            }
+            Ok(text) => vec![text.fault(text.of(key), &reason, "", "")],
             Err(errors) => errors, // cannot be: the source was read before
         };
         CaseErrors { name: self.name.clone(), source: self.source.clone(), errors }
     }
-}
-
-/// The leakage that keys describe which stand in no case: those of a command.
-///
-/// # Errors
-/// What is wrong, and what to do.
-pub fn leak(keys: &LeakageKeys, boundary: Boundary) -> Result<Leak, String> {
-    convert::leakage::leak(keys, boundary).map_err(|convert::leakage::Fault(message, expected, help)| {
-        format!("{message}; expected {expected}; {help}")
-    })
 }
 
 /// Whether `key` is `outer` or a key below it.

@@ -5,7 +5,7 @@
 
 use std::str::FromStr;
 
-use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value};
+use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 
 /// One change.
 #[derive(Clone, Debug)]
@@ -76,21 +76,19 @@ fn path(key: &str) -> Result<Vec<Step>, String> {
 /// No key of a case file lies deeper.
 const DEEPEST: usize = 16;
 
-fn set_in_table(table: &mut Table, path: &[Step], value: &Value) -> Result<(), String> {
-    let (key, rest) = first_key(path)?;
-    match (table.get_mut(key), rest) {
-        (Some(item), _) => set_in_item(item, rest, value),
-        (None, []) => {
-            table.insert(key, Item::Value(value.clone()));
-            Ok(())
-        }
-        (None, _) => {
-            let mut inner = Table::new();
-            set_in_table(&mut inner, rest, value)?;
-            table.insert(key, Item::Table(inner));
-            Ok(())
-        }
+fn set_in_table(table: &mut dyn TableLike, path: &[Step], value: &Value) -> Result<(), String> {
+    let (key, rest) = match path {
+        [Step::Key(key), rest @ ..] => (key, rest),
+        [Step::Index(n), ..] => return Err(format!("{n} is a number, but a table has names")),
+        [] => return Err("the path ends at a table".to_owned()),
+    };
+    if let Some(item) = table.get_mut(key) {
+        return set_in_item(item, rest, value);
     }
+    let mut item = if rest.is_empty() { Item::None } else { Item::Table(Table::new()) };
+    set_in_item(&mut item, rest, value)?;
+    table.insert(key, item);
+    Ok(())
 }
 
 fn set_in_item(item: &mut Item, path: &[Step], value: &Value) -> Result<(), String> {
@@ -123,43 +121,13 @@ fn set_in_value(old: &mut Value, path: &[Step], value: &Value) -> Result<(), Str
             *old.decor_mut() = decor;
             Ok(())
         }
-        (Value::InlineTable(table), _) => set_in_inline(table, path, value),
-        (Value::Array(array), _) => set_in_array(array, path, value),
+        (Value::InlineTable(table), _) => set_in_table(table, path, value),
+        (Value::Array(array), _) => {
+            let count = array.len();
+            let (n, rest) = first_index(path, count)?;
+            set_in_value(array.get_mut(n).ok_or_else(|| beyond(n, count))?, rest, value)
+        }
         _ => Err("the path leads through a value that is neither table nor list".to_owned()),
-    }
-}
-
-fn set_in_inline(table: &mut InlineTable, path: &[Step], value: &Value) -> Result<(), String> {
-    let (key, rest) = first_key(path)?;
-    match (table.get_mut(key), rest) {
-        (Some(old), _) => set_in_value(old, rest, value),
-        (None, []) => {
-            table.insert(key, value.clone());
-            Ok(())
-        }
-        (None, _) => {
-            let mut inner = InlineTable::new();
-            set_in_inline(&mut inner, rest, value)?;
-            table.insert(key, Value::InlineTable(inner));
-            Ok(())
-        }
-    }
-}
-
-fn set_in_array(array: &mut Array, path: &[Step], value: &Value) -> Result<(), String> {
-    let count = array.len();
-    let (n, rest) = first_index(path, count)?;
-    match array.get_mut(n) {
-        Some(old) => set_in_value(old, rest, value),
-        None => Err(beyond(n, count)),
-    }
-}
-
-fn first_key(path: &[Step]) -> Result<(&str, &[Step]), String> {
-    match path {
-        [Step::Key(key), rest @ ..] => Ok((key, rest)),
-        [Step::Index(n), ..] => Err(format!("{n} is a number, but a table has names")),
-        [] => Err("the path ends at a table".to_owned()),
     }
 }
 

@@ -1,7 +1,6 @@
 //! What is stored of a run, and the parts of the gap as a case names them.
 
 use std::collections::BTreeSet;
-use std::ops::Range;
 use std::path::PathBuf;
 
 use asperity::quantities::Quantities;
@@ -35,8 +34,6 @@ pub struct Motion {
     pub cells_per_step: f64,
     /// A shear stress on the area in contact \[Pa\].
     pub shear_stress: Option<f64>,
-    /// Where in the case it stands.
-    pub span: Range<usize>,
 }
 
 /// A motion in time, or steady states.

@@ -1,6 +1,6 @@
 //! The JSON Schema of the case file, and look-ups in it.
 //!
-//! The schema is made from the structs in `raw`, so it cannot differ from what is read.
+//! The schema is made from the structs of the tables, so it cannot differ from what is read.
 
 use std::sync::OnceLock;
 
@@ -9,7 +9,7 @@ use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
 use serde_json::{Map, Value};
 
-use super::raw::Document;
+use super::document::Document;
 
 /// The JSON Schema (draft 2020-12) of a case file: every key with description, unit and example.
 pub fn schema() -> Value {
@@ -21,6 +21,7 @@ fn generated() -> &'static Value {
     SCHEMA.get_or_init(|| {
         let settings = SchemaSettings::draft2020_12()
             .with_transform(RecursiveTransform(without_null))
+            .with_transform(RecursiveTransform(shared_keys))
             .with_transform(RecursiveTransform(first_paragraph));
         let generator = settings.into_generator();
         let mut schema = Value::from(generator.into_root_schema_for::<Document>());
@@ -49,6 +50,27 @@ fn without_null(schema: &mut Schema) {
         object.remove("anyOf");
         for (key, value) in one {
             object.entry(key).or_insert(value);
+        }
+    }
+}
+
+/// Keys that the members of a union share stand in each of them: then each lists all its keys.
+fn shared_keys(schema: &mut Schema) {
+    let Some(object) = schema.as_object_mut() else { return };
+    let (Some(Value::Object(shared)), true) =
+        (object.get("properties").cloned(), object.contains_key("oneOf"))
+    else {
+        return;
+    };
+    for key in ["properties", "unevaluatedProperties", "additionalProperties", "type"] {
+        object.remove(key);
+    }
+    for member in object.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten() {
+        if let Some(Value::Object(own)) = member.get_mut("properties") {
+            own.extend(shared.clone());
+        }
+        if let Some(member) = member.as_object_mut() {
+            member.insert("additionalProperties".into(), false.into());
         }
     }
 }

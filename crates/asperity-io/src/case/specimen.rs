@@ -5,9 +5,9 @@ use std::path::Path;
 
 use asperity::material::{Lateral, Material, Shift};
 
-use super::convert;
+use super::place::Checks;
 use super::text::Text;
-use super::{Case, CaseErrors, MaterialReport, file_text, overridden, read};
+use super::{Case, CaseErrors, MaterialReport, document, file_text, overridden, warmth};
 
 /// A material with its name and where it comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,8 +75,10 @@ pub fn specimens(
     let stem = path.file_stem().map_or("material".into(), |stem| stem.to_string_lossy().into_owned());
     let dir = path.parent().unwrap_or(Path::new(""));
     let made = Text::parse(&source).and_then(|text| {
-        let raw = read::material(&text)?;
-        convert::material_alone(&text, &raw, dir, window)
+        let (material, checks) = (document::material(&text)?, Checks::new(&text, dir));
+        let place = checks.at("material");
+        let made = material.sample(&place).and_then(|sample| warmth::alone(&place, &sample, window));
+        made.filter(|_| !checks.any()).ok_or_else(|| checks.into_errors())
     });
     match made {
         Ok((material, report)) => {

@@ -32,25 +32,16 @@ impl<'t> Text<'t> {
     fn grammar(&self, error: &toml::de::Error) -> CaseError {
         let span = error.span().map(|span| self.inside(span));
         let found = error.message();
-        let help = match () {
-            () if found.contains("duplicate key") => Some(
-                "write each key and each table once; several bodies, surfaces or stages begin each with a line \
-                 in double brackets: [[body]]",
-            ),
-            () if found.contains("string values must be quoted") => {
-                Some("write texts and values with a unit between quotes: value = \"50 N\"")
-            }
-            () => None,
+        let help = if found.contains("duplicate key") {
+            "write each key and each table once; several bodies, surfaces or stages begin each with a line in double \
+             brackets: [[body]]"
+        } else if found.contains("string values must be quoted") {
+            "write texts and values with a unit between quotes: value = \"50 N\""
+        } else {
+            ""
         };
-        CaseError {
-            key: String::new(),
-            line: span.as_ref().map(|span| self.line(span.start)),
-            value: None,
-            expected: "TOML".into(),
-            help: help.map(str::to_owned),
-            message: format!("this is not TOML: {}", found.replace('\n', ", ")),
-            span,
-        }
+        let message = format!("this is not TOML: {}", found.replace('\n', ", "));
+        self.error(Spot { key: String::new(), span }, None, "TOML", help, message)
     }
 
     /// Line of the byte, from 1.
@@ -59,18 +50,55 @@ impl<'t> Text<'t> {
         1 + before.filter(|b| **b == b'\n').count()
     }
 
-    /// What is written at the place, shortened where it is long.
-    pub fn value(&self, span: &Range<usize>) -> String {
-        let text = self.source.get(span.clone()).unwrap_or_default();
+    /// What is written at the spot, shortened where it is long.
+    pub fn value(&self, spot: &Spot) -> String {
+        let text = spot.span.clone().and_then(|span| self.source.get(span)).unwrap_or_default();
         match text.char_indices().nth(MOST_CHARACTERS) {
             Some((end, _)) => format!("{}...", &text[..end]),
             None => text.to_owned(),
         }
     }
 
-    /// Path of the value, the key or the table header at the place: "body[0].poisson".
-    pub fn path(&self, span: &Range<usize>) -> String {
-        self.find(span).map(|place| place.path).unwrap_or_default()
+    /// The spot whose value, key or table header stands at these bytes: the smallest that holds them.
+    pub fn at(&self, span: &Range<usize>) -> Spot {
+        let mut best = (usize::MAX, String::new());
+        visit_table(&self.root, "", &mut |path, key, value| {
+            for place in [key, Some(value.span())].into_iter().flatten() {
+                let holds = place.start <= span.start && span.end <= place.end;
+                // The deepest where places are equal.
+                if holds && place.len() <= best.0 {
+                    best = (place.len(), path.to_owned());
+                }
+            }
+        });
+        Spot { key: best.1, span: Some(span.clone()) }
+    }
+
+    /// The spot of the key with this path; where the text does not have it, in the innermost table that leads to it.
+    pub fn of(&self, key: &str) -> Spot {
+        Spot { key: key.to_owned(), span: self.walk(key).0 }
+    }
+
+    /// Whether the text has the key with this path.
+    pub fn has(&self, key: &str) -> bool {
+        self.walk(key).1
+    }
+
+    fn walk(&self, key: &str) -> (Option<Range<usize>>, bool) {
+        let mut here: Option<&Spanned<DeValue<'t>>> = None;
+        for name in key.split(['.', '[']) {
+            let next = match (name.strip_suffix(']'), here.map(Spanned::get_ref)) {
+                (Some(n), Some(DeValue::Array(array))) => n.parse().ok().and_then(|n: usize| array.get(n)),
+                (None, Some(DeValue::Table(table))) => table.get(name),
+                (None, None) => self.root.get(name),
+                _ => None,
+            };
+            if next.is_none() {
+                return (here.map(Spanned::span), false);
+            }
+            here = next;
+        }
+        (here.map(Spanned::span), true)
     }
 
     /// Paths of all tables whose place is `span`: a header `[load.history]` stands for two.
@@ -84,61 +112,47 @@ impl<'t> Text<'t> {
         paths
     }
 
-    fn find(&self, span: &Range<usize>) -> Option<Place> {
-        let mut best: Option<Place> = None;
-        visit_table(&self.root, "", &mut |path, key, value| {
-            for place in [key, Some(value.span())].into_iter().flatten() {
-                let holds = place.start <= span.start && span.end <= place.end;
-                let size = place.len();
-                // The smallest place that holds the span; the deepest where places are equal.
-                if holds && best.as_ref().is_none_or(|best| size <= best.size) {
-                    best = Some(Place { path: path.to_owned(), size });
-                }
-            }
-        });
-        best
-    }
-
     fn inside(&self, span: Range<usize>) -> Range<usize> {
         let end = span.end.min(self.source.len());
         span.start.min(end)..end
     }
 
-    /// The value at the place is not what is expected there.
-    pub fn wrong(&self, span: &Range<usize>, expected: &str, help: Option<String>) -> CaseError {
-        let key = self.path(span);
-        let value = self.value(span);
+    /// The value at the spot is not what is expected there.
+    pub fn wrong(&self, spot: Spot, expected: &str, help: &str) -> CaseError {
+        let (key, value) = (&spot.key, self.value(&spot));
         let message = match value.contains('\n') {
             true => format!("{key} must be {expected}"),
             false => format!("{key} is {value}, but must be {expected}"),
         };
-        self.error(span, key, Some(value), expected, help, message)
+        self.error(spot, Some(value), expected, help, message)
     }
 
-    /// Something is wrong with the value at the place that a sentence says best; the key is put before it.
-    pub fn fault(
-        &self,
-        span: &Range<usize>,
-        message: String,
-        expected: &str,
-        help: Option<String>,
-    ) -> CaseError {
-        let key = self.path(span);
-        let message = format!("{key}: {message}");
-        self.error(span, key, Some(self.value(span)), expected, help, message)
+    /// Something is wrong with the value at the spot that a sentence says best; the key is put before it.
+    pub fn fault(&self, spot: Spot, message: &str, expected: &str, help: &str) -> CaseError {
+        let (message, value) = (format!("{}: {message}", spot.key), self.value(&spot));
+        self.error(spot, Some(value), expected, help, message)
     }
 
+    /// The same with a message that names the key itself. No `help` is an empty one.
     pub fn error(
         &self,
-        span: &Range<usize>,
-        key: String,
+        spot: Spot,
         value: Option<String>,
         expected: &str,
-        help: Option<String>,
+        help: &str,
         message: String,
     ) -> CaseError {
-        let line = Some(self.line(span.start));
-        CaseError { key, span: Some(span.clone()), line, value, expected: expected.to_owned(), help, message }
+        let line = spot.span.as_ref().map(|span| self.line(span.start));
+        let help = (!help.is_empty()).then(|| help.to_owned());
+        CaseError {
+            key: spot.key,
+            span: spot.span,
+            line,
+            value,
+            expected: expected.to_owned(),
+            help,
+            message,
+        }
     }
 }
 
@@ -149,9 +163,11 @@ pub const MOST_ERRORS: usize = 20;
 /// Longer values are cut in messages.
 const MOST_CHARACTERS: usize = 60;
 
-struct Place {
-    path: String,
-    size: usize,
+/// A spot of the text: the path of a key, and its bytes.
+#[derive(Clone, Debug)]
+pub struct Spot {
+    pub key: String,
+    pub span: Option<Range<usize>>,
 }
 
 /// Path of `key` inside the table at `path`.

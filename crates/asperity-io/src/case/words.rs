@@ -5,8 +5,8 @@ use std::ops::Range;
 use serde_json::Value;
 
 use super::error::CaseError;
-use super::schema;
-use super::text::{Text, join};
+use super::text::{Spot, Text, join};
+use super::{read, schema};
 
 /// Names that the format has, or will have, but this version does not know: they are refused, never ignored.
 const NOT_AVAILABLE: &[(&str, &str)] =
@@ -24,72 +24,69 @@ const RETIRED: &[(&str, &str)] =
 pub fn translate(text: &Text<'_>, error: &toml::de::Error, section: Range<usize>) -> CaseError {
     let message = error.message();
     let span = error.span().unwrap_or(section);
+    let spot = text.at(&span);
     // The user's name stands between the first backtick and the last "`, expected"; the rest is serde's.
     let named = |prefix| {
         let rest = message.strip_prefix(prefix)?;
         rest.rsplit_once("`, expected ").or_else(|| rest.rsplit_once("`, there "))
     };
     if let Some((name, known)) = named("unknown field `") {
-        return unknown_key(text, &span, name, &backticked(known));
+        return unknown_key(text, spot, name, &backticked(known));
+    }
+    // The same of a member of a union, in the words of the crate toml.
+    if let Some((_, known)) = message.rsplit_once(", available keys: ") {
+        let (name, known) = (text.value(&spot), known.split(", ").filter(|key| !key.is_empty()));
+        return unknown_key(text, spot, &name, &known.collect::<Vec<_>>());
     }
     if let Some((name, known)) = named("unknown variant `") {
-        return wrong_choice(text, &span, Some((name, &backticked(known))));
+        return wrong_choice(text, spot, Some((name, &backticked(known))));
     }
     if let Some(key) = message.strip_prefix("missing field `") {
         return missing_key(text, &span, key.trim_end_matches('`'));
     }
     if message.starts_with("wanted ") || message.starts_with("expected ") {
-        return wrong_choice(text, &span, None);
+        return wrong_choice(text, spot, None);
     }
     for prefix in ["invalid type: ", "invalid value: ", "invalid length "] {
         let rest = message.strip_prefix(prefix).and_then(|rest| rest.split_once(", expected "));
         if let Some((_, expected)) = rest {
-            return text.wrong(&span, plain(expected), None);
+            return text.wrong(spot, plain(expected), "");
         }
     }
     // The quantities' own words: what was expected, then what is wrong with the value.
-    match message.split_once('\n') {
-        Some((expected, help)) => text.wrong(&span, expected, Some(help.to_owned())),
-        None => text.wrong(&span, message, None),
-    }
+    let (expected, help) = message.split_once('\n').unwrap_or((message, ""));
+    text.wrong(spot, expected, help)
 }
 
-/// A key that the table at its place does not have.
-pub fn unknown_key(text: &Text<'_>, span: &Range<usize>, name: &str, known: &[&str]) -> CaseError {
-    let key = text.path(span);
+/// A key that the table at its spot does not have.
+pub fn unknown_key(text: &Text<'_>, spot: Spot, name: &str, known: &[&str]) -> CaseError {
+    let key = spot.key.clone();
     let table = match key.strip_suffix(name).map(|table| table.trim_end_matches('.')) {
-        None | Some("") => "the case file".to_owned(),
-        Some(table) => table.to_owned(),
+        None | Some("") => "the case file",
+        Some(table) => table,
     };
-    let expected = match known {
-        [] => "no key".to_owned(),
-        _ => format!("one of {}", known.join(", ")),
-    };
+    let known = [known, read::shared(table)].concat();
+    let names = known.join(", ");
+    let expected = if known.is_empty() { "no key".to_owned() } else { format!("one of {names}") };
     if let Some((_, reason)) = RETIRED.iter().find(|retired| retired.0 == key) {
-        return text.error(span, key.clone(), None, "no such key", None, format!("{key} {reason}"));
+        return text.error(spot, None, "no such key", "", format!("{key} {reason}"));
     }
-    let (message, help) = match (not_available(name), nearest(name, known)) {
-        (Some(reason), _) => (format!("{key} {reason}"), None),
-        (None, Some(near)) => {
-            (format!("{table} has no key `{name}`"), Some(format!("did you mean `{near}`?")))
-        }
-        (None, None) => {
-            let keys = if known.is_empty() {
-                "it has none".into()
-            } else {
-                format!("its keys: {}", known.join(", "))
-            };
-            (format!("{table} has no key `{name}`"), Some(keys))
-        }
+    if let Some(reason) = not_available(name) {
+        return text.error(spot, None, &expected, "", format!("{key} {reason}"));
+    }
+    let help = match nearest(name, &known) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if known.is_empty() => "it has none".to_owned(),
+        None => format!("its keys: {names}"),
     };
-    text.error(span, key, None, &expected, help, message)
+    text.error(spot, None, &expected, &help, format!("{table} has no key `{name}`"))
 }
 
 /// A value that is none of the words that its key takes.
-pub fn wrong_choice(text: &Text<'_>, span: &Range<usize>, found: Option<(&str, &[&str])>) -> CaseError {
+pub fn wrong_choice(text: &Text<'_>, spot: Spot, found: Option<(&str, &[&str])>) -> CaseError {
     let names = match found {
         Some((_, known)) => known.iter().map(|name| (*name).to_owned()).collect(),
-        None => schema::choices(&text.path(span)),
+        None => schema::choices(&spot.key),
     };
     let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
     let expected = match quoted.as_slice() {
@@ -97,16 +94,13 @@ pub fn wrong_choice(text: &Text<'_>, span: &Range<usize>, found: Option<(&str, &
         [one] => one.clone(),
         _ => format!("one of {}", quoted.join(", ")),
     };
-    if let Some((name, known)) = found {
-        if let Some(reason) = not_available(name) {
-            let message = format!("\"{name}\" {reason}");
-            return text.fault(span, message, &expected, Some(format!("available: {}", quoted.join(", "))));
-        }
-        if let Some(near) = nearest(name, known) {
-            return text.wrong(span, &expected, Some(format!("did you mean \"{near}\"?")));
-        }
+    let Some((name, known)) = found else { return text.wrong(spot, &expected, "") };
+    if let Some(reason) = not_available(name) {
+        let help = format!("available: {}", quoted.join(", "));
+        return text.fault(spot, &format!("\"{name}\" {reason}"), &expected, &help);
     }
-    text.wrong(span, &expected, None)
+    let help = nearest(name, known).map(|near| format!("did you mean \"{near}\"?"));
+    text.wrong(spot, &expected, &help.unwrap_or_default())
 }
 
 /// A key that the table at `span` needs and does not have.
@@ -114,28 +108,27 @@ pub fn missing_key(text: &Text<'_>, span: &Range<usize>, name: &str) -> CaseErro
     // A header line can stand for several tables; the schema knows which of them has the key.
     let mut paths = text.tables(span).into_iter().map(|table| join(&table, name));
     let key = paths.rfind(|path| !schema::find(path).is_empty());
-    let key = key.unwrap_or_else(|| join(&text.path(span), name));
-    let (expected, help) = wanted(&key, name);
-    let message = format!("{key} is missing");
-    text.error(span, key, None, &expected, help, message)
+    let key = key.unwrap_or_else(|| join(&text.at(span).key, name));
+    missing(text, Spot { key, span: Some(span.clone()) }, name)
+}
+
+/// The key `name`, whose path the spot has, is needed in the table at the spot.
+pub fn missing(text: &Text<'_>, spot: Spot, name: &str) -> CaseError {
+    let (expected, help) = wanted(&spot.key, name);
+    let message = format!("{} is missing", spot.key);
+    text.error(spot, None, &expected, &help.unwrap_or_default(), message)
 }
 
 /// A section that the file needs and does not have.
-pub fn missing_section(name: &str) -> CaseError {
+pub fn missing_section(text: &Text<'_>, name: &str) -> CaseError {
     let header = match name {
         "surface" | "body" => format!("[[{name}]]"),
         _ => format!("[{name}]"),
     };
-    let description = schema::find(name).iter().find_map(description);
-    CaseError {
-        key: name.to_owned(),
-        span: None,
-        line: None,
-        value: None,
-        expected: format!("a section {header}"),
-        help: description,
-        message: format!("the section {header} is missing"),
-    }
+    let help = schema::find(name).iter().find_map(description).unwrap_or_default();
+    let spot = Spot { key: name.to_owned(), span: None };
+    let message = format!("the section {header} is missing");
+    text.error(spot, None, &format!("a section {header}"), &help, message)
 }
 
 /// What a key means and how it is written, from the schema.

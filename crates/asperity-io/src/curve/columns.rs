@@ -9,8 +9,8 @@ use super::error::{Fault, Remedy, fault};
 use super::role::{self, Role, unnumbered};
 use super::table::Table;
 use super::units::{convert, taken, tidy};
-use crate::case::quantity::unit::Unit;
-use crate::case::quantity::{Dimension, dimension};
+use crate::quantity::unit::Unit;
+use crate::quantity::{Dimension, dimension};
 
 /// The columns of a kind of file.
 #[derive(Clone, Copy)]

@@ -11,7 +11,7 @@ use super::role::{Role, bare};
 use super::table::{Table, split_unit};
 use super::units::tidy;
 use super::workbook::{Sheet, sheets};
-use crate::case::quantity::Temperature;
+use crate::quantity::Temperature;
 
 /// What a file says of its shift.
 #[derive(Clone, Debug, Default, PartialEq)]

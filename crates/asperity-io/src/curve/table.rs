@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use super::error::{Fault, fault};
 use super::{role, wide};
-use crate::case::quantity::unit::Unit;
+use crate::quantity::unit::Unit;
 use crate::topography::{dialect, is_numbers, to_text};
 
 /// Columns of a file and its rows of cells.

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::role::{self, Role};
-use crate::case::quantity::unit::Unit;
-use crate::case::quantity::{Dimension, Quantity, QuantityError, Temperature, dimension, range};
+use crate::quantity::unit::Unit;
+use crate::quantity::{Dimension, Quantity, QuantityError, Temperature, dimension, range};
 
 /// A unit as programs write it in the way that it is read here.
 pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {

@@ -5,6 +5,7 @@ use ndarray::Array2;
 use serde_json::Value;
 
 use super::error::Result;
+pub(super) use crate::classic::Attribute;
 use crate::store::{At, FieldKind, LeakTable, Leaks, Reader, Series, coordinates};
 
 /// A result as variables over dimensions.
@@ -45,13 +46,6 @@ pub(super) enum Data {
 pub(super) enum Map {
     Real(Array2<f64>),
     Byte(Array2<u8>),
-}
-
-/// An attribute of the result.
-pub(super) enum Attribute {
-    Text(String),
-    Reals(Vec<f64>),
-    Counts(Vec<i64>),
 }
 
 pub(super) const TIME: usize = 0;

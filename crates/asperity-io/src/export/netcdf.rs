@@ -6,32 +6,11 @@
 
 use std::io::Write;
 
-use super::contents::{Attribute, Contents, Data, FIELD_TIME, Map, Variable};
+use super::contents::{Contents, Data, FIELD_TIME, Map, Variable};
 use super::error::WriteError;
+use crate::classic::{ATTRIBUTE, Attribute, DIMENSION, Header, Type, VARIABLE, padded};
 use crate::output::Output;
 
-/// Types of the classic format.
-#[derive(Clone, Copy, PartialEq)]
-enum Type {
-    Byte = 1,
-    Char = 2,
-    Int = 4,
-    Double = 6,
-}
-
-impl Type {
-    fn size(self) -> u64 {
-        match self {
-            Type::Byte | Type::Char => 1,
-            Type::Int => 4,
-            Type::Double => 8,
-        }
-    }
-}
-
-const DIMENSION: u32 = 0x0a;
-const VARIABLE: u32 = 0x0b;
-const ATTRIBUTE: u32 = 0x0c;
 /// Largest slab of CDF-2.
 const LARGEST: u64 = (1 << 32) - 4;
 
@@ -92,10 +71,6 @@ fn slab<'a>(contents: &Contents<'_>, variable: &'a Variable) -> Slab<'a> {
     Slab { variable, kind, record, bytes }
 }
 
-fn padded(bytes: u64) -> u64 {
-    bytes.div_ceil(4) * 4
-}
-
 fn write_slab(
     contents: &Contents<'_>,
     slab: &Slab<'_>,
@@ -145,8 +120,7 @@ fn write_slab(
 }
 
 fn header(contents: &Contents<'_>, slabs: &[Slab<'_>], wide: bool, begins: &[u64]) -> Vec<u8> {
-    let mut header = Header { bytes: vec![b'C', b'D', b'F', if wide { 5 } else { 2 }], wide };
-    header.size(contents.instants.len() as u64);
+    let mut header = Header::new(contents.instants.len() as u64, wide);
     header.list(DIMENSION, contents.dimensions.len());
     for (index, (name, length)) in contents.dimensions.iter().enumerate() {
         header.text(name);
@@ -170,63 +144,6 @@ fn header(contents: &Contents<'_>, slabs: &[Slab<'_>], wide: bool, begins: &[u64
         header.bytes.extend(begin.to_be_bytes());
     }
     header.bytes
-}
-
-struct Header {
-    bytes: Vec<u8>,
-    wide: bool,
-}
-
-impl Header {
-    fn tag(&mut self, tag: u32) {
-        self.bytes.extend(tag.to_be_bytes());
-    }
-
-    /// A count or length: 32 bits, 64 in the wide form.
-    fn size(&mut self, size: u64) {
-        if self.wide {
-            self.bytes.extend(size.to_be_bytes());
-        } else {
-            self.tag(u32::try_from(size).unwrap_or(u32::MAX));
-        }
-    }
-
-    fn list(&mut self, tag: u32, length: usize) {
-        self.tag(if length == 0 { 0 } else { tag });
-        self.size(length as u64);
-    }
-
-    fn text(&mut self, text: &str) {
-        self.size(text.len() as u64);
-        self.padded(text.as_bytes());
-    }
-
-    fn padded(&mut self, bytes: &[u8]) {
-        self.bytes.extend(bytes);
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-    }
-
-    fn attribute(&mut self, name: &str, attribute: &Attribute) {
-        self.text(name);
-        let doubles =
-            |values: &mut dyn Iterator<Item = f64>| values.flat_map(f64::to_be_bytes).collect::<Vec<u8>>();
-        let (kind, length, bytes) = match attribute {
-            Attribute::Text(text) => (Type::Char, text.len(), text.as_bytes().to_vec()),
-            Attribute::Reals(reals) => (Type::Double, reals.len(), doubles(&mut reals.iter().copied())),
-            Attribute::Counts(counts) => {
-                let ints: Option<Vec<i32>> = counts.iter().map(|n| i32::try_from(*n).ok()).collect();
-                match ints {
-                    Some(ints) => {
-                        (Type::Int, ints.len(), ints.into_iter().flat_map(i32::to_be_bytes).collect())
-                    }
-                    None => (Type::Double, counts.len(), doubles(&mut counts.iter().map(|n| *n as f64))),
-                }
-            }
-        };
-        self.tag(kind as u32);
-        self.size(length as u64);
-        self.padded(&bytes);
-    }
 }
 
 #[cfg(test)]

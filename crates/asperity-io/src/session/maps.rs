@@ -32,65 +32,46 @@ impl<'a> Maps<'a> {
         }
     }
 
-    /// All fields of the case.
+    /// All fields of the case. Those of a contact that has moved are in its frame: beyond the ends of a free track nothing is known but
+    /// that there is no pressure.
     pub(super) fn of<'b>(&'b mut self, step: &Step<'b>) -> Vec<Field<'b>> {
         let output = &self.case.output;
         let keeps = |field| output.fields.contains(&field);
-        let mut fields = vec![];
-        if step.frame_shift() != [0; 2] {
-            return self.in_contact_frame(step);
-        }
-        if keeps(FieldKind::Pressure) {
-            fields.push(Field::Pressure(step.pressure()));
+        let (shift, boundary) = (step.frame_shift(), step.simulation().boundary);
+        let has_moved = shift != [0; 2];
+        let follow = |field: &mut Array2<f64>| {
+            if has_moved {
+                *field = in_contact_frame(field.view(), boundary, shift, f64::NAN);
+            }
+        };
+        if keeps(FieldKind::Pressure) && has_moved {
+            self.pressure = in_contact_frame(step.pressure(), boundary, shift, 0.0);
         }
         if keeps(FieldKind::Gap) {
             step.gap_into(&mut self.gap);
-            fields.push(Field::Gap(self.gap.view()));
+            follow(&mut self.gap);
         }
         if keeps(FieldKind::Displacement) {
             step.displacement_into(&mut self.displacement);
-            fields.push(Field::Displacement(self.displacement.view()));
+            follow(&mut self.displacement);
         }
         if keeps(FieldKind::Contact) {
             step.contact_into(&mut self.contact);
-            fields.push(Field::Contact(self.contact.view()));
+            if has_moved {
+                self.contact = in_contact_frame(self.contact.view(), boundary, shift, 0);
+            }
         }
         if keeps(FieldKind::Flattening) {
             step.flattening_into(&mut self.flattening);
-            fields.push(Field::Flattening(self.flattening.view()));
         }
-        fields
-    }
-
-    /// The fields of a contact that has moved, in its frame. Beyond the ends of a free track nothing is known but that there is no
-    /// pressure.
-    fn in_contact_frame<'b>(&'b mut self, step: &Step<'b>) -> Vec<Field<'b>> {
-        let (shift, boundary) = (step.frame_shift(), step.simulation().boundary);
-        let keeps = |field| self.case.output.fields.contains(&field);
-        let moved = |field: &Array2<f64>, beyond| in_contact_frame(field.view(), boundary, shift, beyond);
-        let (pressure, gap) = (keeps(FieldKind::Pressure), keeps(FieldKind::Gap));
-        let (displacement, contact) = (keeps(FieldKind::Displacement), keeps(FieldKind::Contact));
-        if pressure {
-            self.pressure = in_contact_frame(step.pressure(), boundary, shift, 0.0);
-        }
-        if gap {
-            step.gap_into(&mut self.gap);
-            self.gap = moved(&self.gap, f64::NAN);
-        }
-        if displacement {
-            step.displacement_into(&mut self.displacement);
-            self.displacement = moved(&self.displacement, f64::NAN);
-        }
-        if contact {
-            step.contact_into(&mut self.contact);
-            self.contact = in_contact_frame(self.contact.view(), boundary, shift, 0);
-        }
+        let pressure = if has_moved { self.pressure.view() } else { step.pressure() };
         let all = [
-            (pressure, Field::Pressure(self.pressure.view())),
-            (gap, Field::Gap(self.gap.view())),
-            (displacement, Field::Displacement(self.displacement.view())),
-            (contact, Field::Contact(self.contact.view())),
+            (FieldKind::Pressure, Field::Pressure(pressure)),
+            (FieldKind::Gap, Field::Gap(self.gap.view())),
+            (FieldKind::Displacement, Field::Displacement(self.displacement.view())),
+            (FieldKind::Contact, Field::Contact(self.contact.view())),
+            (FieldKind::Flattening, Field::Flattening(self.flattening.view())),
         ];
-        all.into_iter().filter_map(|(kept, field)| kept.then_some(field)).collect()
+        all.into_iter().filter_map(|(kind, field)| keeps(kind).then_some(field)).collect()
     }
 }

@@ -22,7 +22,7 @@ use crate::case::{Case, CaseErrors};
 use crate::leakage::{self, LeakError};
 use crate::readable::counted;
 use crate::resources::free_disk;
-use crate::store::{Outcome, Reader, SCALARS, Status, StoreError, Writer};
+use crate::store::{Outcome, Reader, SCALARS, Status, StoreError, Work, Writer};
 use crate::stress::{self, Below, StressError};
 use maps::Maps;
 use record::{Earlier, Record};
@@ -92,6 +92,26 @@ pub struct Summary {
     pub stress: Option<Below>,
     /// What leaks, in a few words, where the case asks for it.
     pub leak: Option<String>,
+}
+
+impl Summary {
+    /// Of what is stored at `result`: its rows and the work that they took.
+    fn of(status: Status, rows: usize, work: &Work, result: &Path) -> Summary {
+        Summary {
+            status,
+            rows,
+            iterations: work.iterations,
+            convolutions: work.convolutions,
+            wall_s: work.wall_s,
+            peak_memory_bytes: work.peak_memory_bytes,
+            result: result.to_owned(),
+            last: None,
+            friction: None,
+            findings: vec![],
+            stress: None,
+            leak: None,
+        }
+    }
 }
 
 /// Why a run did not complete.
@@ -279,20 +299,11 @@ fn ended(case: &Case, complete: &StoreError, path: &Path, options: &RunOptions) 
 /// What the run did that stored the complete result at `path`.
 fn stored(path: &Path) -> Result<Summary, StoreError> {
     let reader = Reader::open(path)?;
-    let work = reader.work();
     Ok(Summary {
-        status: reader.status(),
-        rows: reader.len(),
-        iterations: work.iterations,
-        convolutions: work.convolutions,
-        wall_s: work.wall_s,
-        peak_memory_bytes: work.peak_memory_bytes,
-        result: path.to_owned(),
         last: reader.rows()?.last().copied(),
-        friction: None,
         findings: reader.findings().to_vec(),
         stress: Below::of(&reader)?,
-        leak: None,
+        ..Summary::of(reader.status(), reader.len(), reader.work(), path)
     })
 }
 

@@ -114,27 +114,19 @@ impl Record<'_> {
             threads: Some(rayon::current_num_threads()),
             ..outcome
         };
-        let (status, result, last) = (outcome.status, self.path.to_owned(), self.last);
-        let friction = self.friction;
+        let (status, path, last, friction) = (outcome.status, self.path, self.last, self.friction);
         let stress = self.stress.take();
-        let summary = |status, work: Work| Summary {
-            status,
-            rows,
-            iterations: work.iterations,
-            convolutions: work.convolutions,
-            wall_s: work.wall_s,
-            peak_memory_bytes: work.peak_memory_bytes,
-            result,
+        let summary = |status, work: &Work| Summary {
             last,
             friction,
             findings,
             stress,
-            leak: None,
+            ..Summary::of(status, rows, work, path)
         };
         match self.writer.finish(&outcome) {
-            Ok(work) => Ok(summary(status, work)),
+            Ok(work) => Ok(summary(status, &work)),
             Err(source) => {
-                Err(RunError::Storage { source, summary: Box::new(summary(Status::Failed, before)) })
+                Err(RunError::Storage { source, summary: Box::new(summary(Status::Failed, &before)) })
             }
         }
     }

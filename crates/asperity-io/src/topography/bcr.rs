@@ -11,13 +11,8 @@ use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::{Problem, Reader, Request};
 
-pub(super) const BCR: Reader = Reader {
-    name: "bcr",
-    aliases: &["bcrf"],
-    sniff: |bytes| characters(bytes).is_some(),
-    read: read,
-    write: None,
-};
+pub(super) const BCR: Reader =
+    Reader { name: "bcr", aliases: &["bcrf"], sniff: |bytes| characters(bytes).is_some(), read, write: None };
 
 const START: &str = "fileformat = bcr";
 const LEAST_HEADER: usize = 2048;

@@ -21,7 +21,7 @@ pub(super) const GWY: Reader = Reader {
     name: "gwy",
     aliases: &[],
     sniff: |bytes| bytes.starts_with(SIGNATURE),
-    read: read,
+    read,
     write: Some(write::gwy::encode),
 };
 

@@ -19,7 +19,7 @@ pub(super) const METROPRO: Reader = Reader {
     name: "metropro",
     aliases: &["dat"],
     sniff: |bytes| header_length(bytes).is_some(),
-    read: read,
+    read,
     write: None,
 };
 

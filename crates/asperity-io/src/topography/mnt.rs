@@ -26,8 +26,7 @@ use super::unpack::{most_unpacked, read_bounded};
 use super::{Problem, Reader, Request, foreign};
 
 // Other documents of this kind are refused by the reader.
-pub(super) const MNT: Reader =
-    Reader { name: "mnt", aliases: &[], sniff: is_compound, read: read, write: None };
+pub(super) const MNT: Reader = Reader { name: "mnt", aliases: &[], sniff: is_compound, read, write: None };
 
 const CONTENTS: &str = "ScopedContents";
 /// Tag of the part that an entry extends.

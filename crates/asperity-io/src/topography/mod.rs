@@ -19,6 +19,7 @@ mod format;
 mod frt;
 mod grid;
 mod groups;
+mod gsf;
 mod gwy;
 mod ibw;
 mod metropro;
@@ -75,6 +76,8 @@ formats! {
     Sur: sur::SUR;
     /// Gwyddion.
     Gwy: gwy::GWY;
+    /// Gwyddion simple field.
+    Gsf: gsf::GSF;
     /// Alicona Imaging.
     Al3d: al3d::AL3D;
     /// Wyko.

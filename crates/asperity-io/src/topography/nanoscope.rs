@@ -23,7 +23,7 @@ use super::unit::{LoneA, metres};
 use super::{Problem, Reader, Request};
 
 pub(super) const NANOSCOPE: Reader =
-    Reader { name: "di", aliases: &["spm", "nanoscope"], sniff: is_nanoscope, read: read, write: None };
+    Reader { name: "di", aliases: &["spm", "nanoscope"], sniff: is_nanoscope, read, write: None };
 
 /// First words of a file; "?" in place of "\\" says that the numbers are written as text.
 const STARTS: [&str; 3] = ["*file list", "*force file list", "*ec file list"];

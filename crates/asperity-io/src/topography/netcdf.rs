@@ -25,12 +25,11 @@ pub(super) const NETCDF: Reader = Reader {
     name: "nc",
     aliases: &["netcdf"],
     sniff: |bytes| matches!(bytes, [b'C', b'D', b'F', 1 | 2 | 5, ..]),
-    read: read,
+    read,
     write: Some(write::netcdf::encode),
 };
 
-pub(super) const HDF5: Reader =
-    Reader { name: "h5", aliases: &["hdf5"], sniff: is_hdf5, read: read, write: None };
+pub(super) const HDF5: Reader = Reader { name: "h5", aliases: &["hdf5"], sniff: is_hdf5, read, write: None };
 
 fn is_hdf5(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x89HDF\r\n\x1a\n")

@@ -19,8 +19,7 @@ use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::{Problem, Reader, Request};
 
-pub(super) const NID: Reader =
-    Reader { name: "nid", aliases: &["ezd"], sniff: is_nid, read: read, write: None };
+pub(super) const NID: Reader = Reader { name: "nid", aliases: &["ezd"], sniff: is_nid, read, write: None };
 
 const START: &[u8] = b"[DataSet]";
 /// Headers have some 30 kB.

@@ -14,13 +14,8 @@ use super::unit::LoneA;
 use super::unpack::{Archive, holds_member};
 use super::{HISTORY, Problem, Reader, Request, write};
 
-pub(super) const NPY: Reader = Reader {
-    name: "npy",
-    aliases: &[],
-    sniff: |bytes| bytes.starts_with(SIGNATURE),
-    read: read,
-    write: None,
-};
+pub(super) const NPY: Reader =
+    Reader { name: "npy", aliases: &[], sniff: |bytes| bytes.starts_with(SIGNATURE), read, write: None };
 
 pub(super) const NPZ: Reader = Reader {
     name: "npz",

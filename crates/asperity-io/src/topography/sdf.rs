@@ -16,7 +16,7 @@ use super::text::numbers;
 use super::{Problem, Reader, Request, write};
 
 pub(super) const SDF: Reader =
-    Reader { name: "sdf", aliases: &[], sniff: is_sdf, read: read, write: Some(write::sdf::encode) };
+    Reader { name: "sdf", aliases: &[], sniff: is_sdf, read, write: Some(write::sdf::encode) };
 
 /// Whether the bytes are an SDF file.
 fn is_sdf(bytes: &[u8]) -> bool {

@@ -25,7 +25,7 @@ pub(super) const SUR: Reader = Reader {
     name: "sur",
     aliases: &[],
     sniff: |bytes| bytes.starts_with(b"DIGITAL SURF") || bytes.starts_with(b"DSCOMPRESSED"),
-    read: read,
+    read,
     write: None,
 };
 

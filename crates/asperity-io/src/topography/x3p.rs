@@ -7,20 +7,19 @@
 
 use ndarray::Array2;
 
-use quick_xml::events::Event;
-
 use super::entries::Entries;
 use super::finish::{Lateral, Measured, Unit};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unpack::{Archive, holds_member};
 use super::{HISTORY, Problem, Reader, Request, write};
+use crate::xml::{Malformed, Piece, walk};
 
 pub(super) const X3P: Reader = Reader {
     name: "x3p",
     aliases: &[],
     sniff: |bytes| holds_member(bytes, |name| name == "main.xml"),
-    read: read,
+    read,
     write: Some(write::x3p::encode),
 };
 
@@ -71,6 +70,12 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
         .with(metadata(main.elements)))
 }
 
+impl From<Malformed> for Problem {
+    fn from(Malformed(why): Malformed) -> Self {
+        Problem::malformed("main.xml", why, "well-formed XML")
+    }
+}
+
 /// The elements of main.xml by their path below the root, and the list of data.
 struct Main {
     elements: Entries,
@@ -79,35 +84,23 @@ struct Main {
 
 impl Main {
     fn parse(xml: &[u8]) -> Result<Self, Problem> {
-        let broken = |e: String| Problem::malformed("main.xml", e, "well-formed XML");
-        let xml = String::from_utf8_lossy(xml);
-        let mut reader = quick_xml::Reader::from_str(xml.trim_start_matches('\u{feff}'));
         let mut main = Main { elements: Entries::new("main.xml"), data: Vec::new() };
         let mut path: Vec<String> = Vec::new();
         let mut content = String::new();
-        loop {
-            match reader.read_event().map_err(|e| broken(e.to_string()))? {
-                Event::Start(element) => {
-                    if path.len() == DEEPEST {
-                        return Err(broken(format!("more than {DEEPEST} elements deep")));
-                    }
-                    path.push(element.local_name().as_ref().to_owned());
+        walk(&String::from_utf8_lossy(xml), |piece| {
+            match piece {
+                Piece::Open(..) if path.len() == DEEPEST => {
+                    return Err(Malformed(format!("more than {DEEPEST} elements deep")).into());
+                }
+                Piece::Open(name, _) => {
+                    path.push(name.to_owned());
                     content.clear();
                 }
-                // <Datum/> is an undefined point.
-                Event::Empty(element) if element.local_name().as_ref() == "Datum" => main.data.push(f64::NAN),
-                Event::Text(text) => content.push_str(&text.xml10_content()),
-                Event::GeneralRef(reference) => {
-                    let character = match reference.resolve_char_ref() {
-                        Ok(Some(character)) => Some(character.to_string()),
-                        _ => quick_xml::escape::resolve_predefined_entity(&reference).map(str::to_owned),
-                    };
-                    content.push_str(&character.unwrap_or_default());
-                }
-                Event::CData(text) => content.push_str(&text),
-                Event::End(_) => {
+                Piece::Text(text) => content.push_str(text),
+                Piece::Close(_) => {
                     let text = content.trim();
                     match path.last().map(String::as_str) {
+                        // <Datum/> is an undefined point.
                         Some("Datum") => main.data.push(datum(text)?),
                         Some(_) if !text.is_empty() && main.elements.len() < MOST_ELEMENTS => {
                             main.elements.push(&path[1..].join("/"), text);
@@ -117,11 +110,10 @@ impl Main {
                     path.pop();
                     content.clear();
                 }
-                Event::Eof if path.is_empty() => return Ok(main),
-                Event::Eof => return Err(broken("it ends inside an element".into())),
-                _ => {}
             }
-        }
+            Ok::<(), Problem>(())
+        })?;
+        Ok(main)
     }
 
     /// The heights of one layer from a member of the archive; `all` is the number of points in all layers.

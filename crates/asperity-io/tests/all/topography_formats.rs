@@ -244,3 +244,20 @@ fn the_caller_replaces_what_the_file_says() {
         assert!(matches!(error.problem, Problem::Option { .. }), "{error}");
     }
 }
+
+#[test]
+fn a_gwyddion_simple_field_is_read_with_its_units() {
+    let file = crate::samples::gsf();
+    let surface = read(&file);
+    assert_map(&surface, Format::Gsf, NM, [6e-6, 4e-6], true);
+    assert_eq!(surface.channel.as_deref(), Some("Topography"));
+    // The lengths have a default of 1 without a unit, which says nothing.
+    let text = String::from_utf8_lossy(&file[..file.iter().position(|b| *b == 0).unwrap()]).into_owned();
+    let mut bare = text.replace("XReal", "Xreal-").into_bytes();
+    bare.resize(bare.len() / 4 * 4 + 4, 0);
+    bare.extend(NUMBERS.iter().flat_map(|n| (*n as f32).to_le_bytes()));
+    let error = read_bytes(&bare, &ReadOptions::default()).unwrap_err();
+    assert!(matches!(error.problem, Problem::MissingSize { format: Format::Gsf, .. }), "{error}");
+    let error = read_bytes(text.as_bytes(), &ReadOptions::default()).unwrap_err();
+    assert!(matches!(error.problem, Problem::Malformed { .. }), "{error}");
+}

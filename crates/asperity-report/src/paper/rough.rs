@@ -1,8 +1,9 @@
 //! Figures 5 to 8: the rough sphere on PMMA.
 
-use asperity::operator::half_space;
+use asperity::drive::Elastic;
+use asperity::material::Creep;
 use asperity::surface::statistics::rms_gradient;
-use asperity::{ContactState, Grid, Method, Prescribed, Problem, Solver};
+use asperity::{Control, Drive, Method, Simulation, SolverOptions};
 use asperity_examples::paper::FIGURES_5_TO_8 as CASE;
 use asperity_io::case::Case;
 use asperity_io::readable::quantity;
@@ -129,17 +130,16 @@ fn evolution(case: &Case, ours: &Reader, theirs: &Reader) -> Result<Reproduction
 /// Contact area and approach of an elastic body of that compliance under the same load and limit, by Polonsky and
 /// Keer's method.
 fn elastic(case: &Case, reader: &Reader, compliance: f64) -> Result<[f64; 2]> {
-    let grid: Grid = case.grid;
-    let gap = reader.initial_gap()?;
-    let gap: Vec<f64> = gap.iter().copied().collect();
-    let mut operator = half_space(grid, case.boundary);
-    let mut solver = Solver::new(Method::PolonskyKeer, operator.as_ref());
-    let problem =
-        Problem { gap: &gap, compliance, hardness: case.hardness.into(), prescribed: Prescribed::Load(0.5) };
-    let mut state = ContactState::new(grid.len());
-    solver.solve(operator.as_mut(), &problem, &case.solver, &mut state, None)?;
-    let touching = state.pressure.iter().filter(|p| **p > 0.0).count() as f64;
-    Ok([touching * grid.cell_area(), state.approach])
+    let simulation = Simulation {
+        boundary: case.boundary,
+        creep: Creep::elastic(compliance),
+        hardness: case.hardness,
+        solver: SolverOptions { method: Method::PolonskyKeer, ..case.solver },
+        ..Simulation::new(case.grid, reader.initial_gap()?)
+    };
+    let mut contact = Elastic::new(simulation, [(Control::Load, 0.5)])?;
+    let row = contact.advance()?.map(|step| step.row()).unwrap_or_default();
+    Ok([row.contact_area, row.approach])
 }
 
 /// A plot of a result that was just written can fail as the store does, not by its line.

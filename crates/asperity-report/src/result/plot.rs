@@ -106,6 +106,11 @@ impl Plot {
         Plot::ALL.into_iter().find(|plot| plot.name() == name)
     }
 
+    /// The names of all plots, with commas between them.
+    pub fn names() -> String {
+        Plot::ALL.map(Plot::name).join(", ")
+    }
+
     /// The map of a field.
     pub fn of_field(kind: FieldKind) -> Option<Plot> {
         Plot::ALL.into_iter().find(|plot| plot.field() == Some(kind))
@@ -127,6 +132,11 @@ impl Plot {
             Shows::Undeformed => Some("m"),
             _ => None,
         }
+    }
+
+    /// Whether it has a map whose colours can be chosen.
+    pub fn has_colours(self) -> bool {
+        self.unit().is_some() || self.declaration().shows == Shows::Both
     }
 
     /// Whether it shows an instant.

@@ -10,7 +10,7 @@ pub(super) fn run<W: Work>(work: W) -> W::Yield {
     fn compiled<W: Work>(work: W) -> W::Yield {
         work.run::<Avx2F64x8>()
     }
-    // SAFETY: `vectorize` and `vectorize_on` come here where AVX2 was detected.
+    // SAFETY: `vectorize` and `vectorize_on` call this only if AVX2 was detected.
     unsafe { compiled(work) }
 }
 

@@ -10,7 +10,7 @@ pub(super) fn run<W: Work>(work: W) -> W::Yield {
     fn compiled<W: Work>(work: W) -> W::Yield {
         work.run::<Avx512F64x8>()
     }
-    // SAFETY: `vectorize` and `vectorize_on` come here where AVX-512F and AVX2 were detected.
+    // SAFETY: `vectorize` and `vectorize_on` call this only if AVX-512F and AVX2 were detected.
     unsafe { compiled(work) }
 }
 

@@ -1,4 +1,4 @@
-//! Which vectors a sweep runs in.
+//! Selects the vectors of a sweep.
 
 use super::portable;
 use super::vector::Work;
@@ -20,10 +20,10 @@ pub fn vectorize<W: Work>(work: W) -> W::Yield {
     portable::run(work)
 }
 
-/// Does the work on chosen instructions; the bits do not depend on them.
+/// Does the work on the given instructions; the bits do not depend on them.
 ///
 /// # Panics
-/// Where the processor does not have them.
+/// If the processor does not have them.
 pub fn vectorize_on<W: Work>(instructions: Instructions, work: W) -> W::Yield {
     assert!(Instructions::available().contains(&instructions), "{instructions:?} is not available");
     match instructions {

@@ -1,12 +1,11 @@
 //! Sweeps over fields, eight cells at a time: one formula, compiled for every instruction set.
 //!
-//! A formula that is generic over [`F64x8`] reads like the scalar one; [`vectorize`] runs it in the
-//! widest vectors that the processor has (one of 512 bits, two of 256 bits, or plain Rust). Sums run in
-//! eight strands, cell n in strand n mod 8, on all of them, and nothing is contracted to fused
-//! multiply-adds: the bits are the same on every processor.
+//! A formula that is generic over [`F64x8`] reads like the scalar one; [`vectorize`] runs it in the widest vectors that the
+//! processor has (one of 512 bits, two of 256 bits, or plain Rust). On all of them, sums run in eight lanes, cell n in lane n mod
+//! 8, and nothing is contracted to fused multiply-adds, so the bits are the same on every processor.
 //!
-//! Loads and stores take the place of the first cell. Beyond the end of a field a load gives a chosen value and
-//! a store writes nothing, so that a field of any length is walked in steps of eight.
+//! Loads and stores take the position of the first cell. Beyond the end of a field a load gives a chosen value and a store writes
+//! nothing, so a field of any length is processed in steps of eight.
 //!
 //! Sets of cells are bits, one byte for eight cells: `set[n / 8] >> (n % 8) & 1`.
 //!
@@ -29,8 +28,8 @@
 //! assert_eq!(vectorize(Pushing(&[1.0, -2.0, 3.0])), 4.0);
 //! ```
 //!
-//! `unsafe` is here for the intrinsics, which need their processor, and for loads and stores whose bounds were
-//! just checked.
+//! `unsafe` is used for the intrinsics, which need a suitable processor, and for loads and stores whose bounds were checked
+//! immediately before.
 #![allow(unsafe_code)]
 
 #[cfg(target_arch = "x86_64")]

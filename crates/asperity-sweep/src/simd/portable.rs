@@ -1,4 +1,4 @@
-//! Eight cells in plain Rust: the truth that the vectors are compared with.
+//! Eight cells in plain Rust: the reference for the vectors.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 

@@ -1,4 +1,4 @@
-//! Every instruction set gives the bits of plain Rust, and of the formula cell by cell.
+//! Every instruction set gives the same bits as plain Rust, and as the formula cell by cell.
 
 use super::*;
 use crate::Instructions;

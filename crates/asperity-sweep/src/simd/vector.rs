@@ -1,4 +1,4 @@
-//! Eight `f64` as one value, whatever the vectors of the processor, and what is written over them.
+//! Eight `f64` as one value, for any vectors of the processor, and traits that are generic over it.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
@@ -51,7 +51,7 @@ pub trait F64x8:
         }
     }
 
-    /// Into cells `at`..`at + 8` of a field, as far as there are any.
+    /// Stores into cells `at`..`at + 8` of a field, as far as they exist.
     #[inline(always)]
     fn store<T: Cell>(self, field: &mut [T], at: usize) {
         let cells = T::narrow(self);
@@ -74,7 +74,7 @@ pub trait F64x8:
         self.to_array().into_iter().reduce(|m, x| if x > m { x } else { m }).unwrap_or(f64::NAN)
     }
 
-    /// The least of the eight.
+    /// The smallest of the eight.
     #[inline(always)]
     fn least(self) -> f64 {
         self.to_array().into_iter().reduce(|m, x| if x < m { x } else { m }).unwrap_or(f64::NAN)
@@ -109,7 +109,7 @@ pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output
     fn bits(self) -> u8;
 }
 
-/// What a field holds: `f64` or `f32`.
+/// The number type of a field: `f64` or `f32`.
 pub trait Cell: Copy + Default + Into<f64> + Send + Sync + 'static {
     /// The nearest.
     fn nearest(x: f64) -> Self;
@@ -165,10 +165,10 @@ fn store_partial<T: Cell>(field: &mut [T], at: usize, cells: &[T; 8]) {
     rest.iter_mut().zip(cells).for_each(|(x, cell)| *x = *cell);
 }
 
-/// A sweep over cells that any [`F64x8`] can do. `run`, and all that it calls, is `#[inline(always)]`.
+/// A sweep over cells for any [`F64x8`]. `run`, and everything that it calls, is `#[inline(always)]`.
 pub trait Work {
-    /// What the sweep yields.
+    /// The result of the sweep.
     type Yield;
-    /// Does it.
+    /// Does the work.
     fn run<V: F64x8>(self) -> Self::Yield;
 }

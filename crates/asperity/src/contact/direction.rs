@@ -1,40 +1,34 @@
 //! The conjugate direction on the working set, after Polak and Ribiere, from the preconditioned residual.
 
+use super::ProjectedCg;
 use super::sweeps::direction::{Conjugate, Products};
 use asperity_sweep::{Set, run};
 
-/// Residual, preconditioned residual and direction, now and one iteration ago, on the working sets of both.
-pub(super) struct Fields<'a> {
-    pub r: &'a [f32],
-    pub r_old: &'a [f32],
-    pub z: &'a [f32],
-    /// d, which comes as that of the iteration before.
-    pub d: &'a mut [f32],
-    pub set: &'a [u8],
-    pub set_old: &'a [u8],
-}
-
-/// d <- z + beta d on S, beta = max(0, <z, r - r_old> / <z_old, r_old>), 0 where `product_old` = <z_old, r_old> is not known.
-/// Returns <z, r>, or `None`, with d as it was, where z is no descent direction.
-///
-/// Where the load is given (`mean_free`, on so many `cells`), z and d have their means over S removed; r comes without.
-pub(super) fn make_conjugate(
-    fields: Fields,
-    product_old: Option<f64>,
-    mean_free: bool,
-    cells: f64,
-) -> Option<f64> {
-    let Fields { r, r_old, z, d, set, set_old } = fields;
-    let [sum_z, zr, zr_old, sum_r_old, sum_d_old] = run(Products { z, r, r_old, d_old: &*d, set: Set(set) });
-    let mean_z = if mean_free { sum_z / cells } else { 0.0 };
-    if zr <= 0.0 || zr.is_nan() {
-        return None;
+impl ProjectedCg {
+    /// d <- z + beta d on S, beta = max(0, <z, r - r_old> / <z_old, r_old>), 0 where `product_old` = <z_old, r_old> is not known.
+    /// Returns <z, r>, or `None`, with d as it was, where z is no descent direction.
+    ///
+    /// Where the load is given (`mean_free`, on so many `cells`), z and d have their means over S removed; r comes without.
+    pub(super) fn make_conjugate(
+        &mut self,
+        product_old: Option<f64>,
+        mean_free: bool,
+        cells: f64,
+    ) -> Option<f64> {
+        let ProjectedCg { residual: r, residual_old: r_old, preconditioned: z, direction: d, .. } = self;
+        let (set, set_old) = (&self.working, &self.working_old);
+        let [sum_z, zr, zr_old, sum_r_old, sum_d_old] =
+            run(Products { z, r, r_old, d_old: d, set: Set(set) });
+        let mean_z = if mean_free { sum_z / cells } else { 0.0 };
+        if zr <= 0.0 || zr.is_nan() {
+            return None;
+        }
+        let beta = match product_old {
+            Some(old) => ((zr - (zr_old - mean_z * sum_r_old)) / old).max(0.0),
+            None => 0.0,
+        };
+        let mean = if mean_free { mean_z + beta * sum_d_old / cells } else { 0.0 };
+        run(Conjugate { d, z, set: Set(set), set_old: Set(set_old), beta, mean });
+        Some(zr)
     }
-    let beta = match product_old {
-        Some(old) => ((zr - (zr_old - mean_z * sum_r_old)) / old).max(0.0),
-        None => 0.0,
-    };
-    let mean = if mean_free { mean_z + beta * sum_d_old / cells } else { 0.0 };
-    run(Conjugate { d, z, set: Set(set), set_old: Set(set_old), beta, mean });
-    Some(zr)
 }

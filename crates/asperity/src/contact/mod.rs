@@ -203,7 +203,7 @@ pub(crate) fn make_feasible(problem: &Problem, grid: &Grid, state: &mut ContactS
 }
 
 /// The error of a solve that stopped early.
-fn not_converged(method: &'static str, options: &SolverOptions, outcome: &Outcome) -> Error {
+pub(crate) fn not_converged(method: &'static str, options: &SolverOptions, outcome: &Outcome) -> Error {
     Error::NotConverged(NotConverged {
         method,
         iterations: outcome.iterations,

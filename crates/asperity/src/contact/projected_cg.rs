@@ -8,7 +8,6 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::direction::{Fields, make_conjugate};
 use super::projection::Trial;
 use super::residual::{ResidualReport, find_approach};
 use super::search::Search;
@@ -105,15 +104,7 @@ impl ProjectedCg {
         let mean = if search.sum.is_some() { report.working_mean() } else { 0.0 };
         run(Centre { r: &mut self.residual, set: Set(&self.working), mean, unit: search.unit });
         self.preconditioner.apply_on_set_into(&self.residual, &self.working, &mut self.preconditioned);
-        let fields = Fields {
-            r: &self.residual,
-            r_old: &self.residual_old,
-            z: &self.preconditioned,
-            d: &mut self.direction,
-            set: &self.working,
-            set_old: &self.working_old,
-        };
-        let product = make_conjugate(fields, search.product, search.sum.is_some(), cells)?;
+        let product = self.make_conjugate(search.product, search.sum.is_some(), cells)?;
         search.product = Some(product);
         let length = search.length * self.preconditioner.unit() * search.unit / search.problem.compliance;
         let sum = search.sum.map(|sum| sum - report.pressure[0] + report.working[2]);

@@ -7,7 +7,7 @@
 use asperity_sweep::simd::F64x8;
 
 use super::Hardness;
-use super::bounds::Interval;
+use super::bounds::{Interval, clip};
 use super::sweeps::projection::{Bends, ClippedSum};
 use asperity_sweep::{Max, Min, Set, run};
 
@@ -44,6 +44,12 @@ pub(super) struct Shift {
 }
 
 impl Shift {
+    /// The projection of a cell with this hardness.
+    pub fn project_cell(self, y: f64, hardness: f64) -> f64 {
+        let q = clip(y + self.lambda, hardness);
+        if q > 0.0 && q < hardness { clip(q - self.rest, hardness) } else { q }
+    }
+
     /// The projection of eight cells.
     #[inline(always)]
     pub fn project<V: F64x8>(self, y: V, bounds: Interval<V>) -> V {

@@ -8,29 +8,29 @@ use super::sweeps::residual::{FindResidual, FreeGap};
 use super::{ContactState, Prescribed, Problem};
 use asperity_sweep::{Merge, larger, run, smaller};
 
-/// Sums and extremes over all cells, for the approach w.
+/// Sums and extremes over all cells, for the approach w; one strand for each of eight cells while they are taken.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ResidualReport {
+pub(super) struct ResidualReport<T = f64> {
     /// w \[m\].
     pub w: f64,
     /// Sum of r, and number of cells, over the free cells D.
-    pub free: [f64; 2],
+    pub free: [T; 2],
     /// Sum of r, number of cells, and sum of p, over the working set S.
-    pub working: [f64; 3],
+    pub working: [T; 3],
     /// sum p, sum p U.
-    pub pressure: [f64; 2],
+    pub pressure: [T; 2],
     /// Sum of p r+ + (H - p) r-; without a cut-off sum of p r.
-    pub gamma: f64,
+    pub gamma: T,
     /// Largest r where p = H.
-    pub capped: f64,
+    pub capped: T,
     /// Least r where p = 0.
-    pub empty: f64,
+    pub empty: T,
     /// Least r where p > 0, without a cut-off.
-    pub touching: f64,
+    pub touching: T,
     /// Largest p.
-    pub peak: f64,
+    pub peak: T,
     /// Largest |r| on S \[m\].
-    pub violation: f64,
+    pub violation: T,
 }
 
 impl Merge for ResidualReport {

@@ -2,11 +2,11 @@
 
 use super::projection::Trial;
 use super::search::Search;
-use super::sweeps::feasible::{BelowAndCapped, Clip, Scale, ShiftAll};
+use super::sweeps::feasible::Clip;
 use super::{ContactState, Hardness, Problem, ProjectedCg};
 use crate::error::{Error, Result};
 use crate::operator::Operator;
-use asperity_sweep::{Set, SetMut, each, run};
+use asperity_sweep::{Set, SetMut, each, each_with_sums, run, sums};
 
 /// What is known of the state that a solve starts from.
 #[derive(Clone, Copy, Debug)]
@@ -91,17 +91,22 @@ pub(super) fn make_feasible(
 /// cells open; where those cannot carry it, by a shift of all cells of `set`. `None` where neither does it.
 pub(super) fn set_sum(p: &mut [f64], set: &[u8], hardness: Hardness, target: f64) -> Option<()> {
     for _ in 0..50 {
-        let [below, capped] = run(BelowAndCapped { p: &*p, hardness });
+        let [below, capped] = sums((&*p, hardness), |(p, most)| if p < most { [p, 0.0] } else { [0.0, p] });
         let rest = target - capped;
         if below <= 0.0 || rest <= 0.0 {
             break;
         }
-        if run(Scale { p: &mut *p, hardness, factor: rest / below }) == 0.0 {
+        let [beyond] = each_with_sums(p, hardness, |p, most| {
+            let scaled = if *p < most { *p * (rest / below) } else { *p };
+            *p = scaled.min(most);
+            [f64::from(u8::from(most < scaled))]
+        });
+        if beyond == 0.0 {
             return Some(());
         }
     }
     let trial = Trial { pressure: p, direction: None, set, length: 0.0, hardness };
     let shift = trial.shift_to_sum(target, trial.clipped_sum(0.0))?;
-    run(ShiftAll { p, set: Set(set), hardness, shift });
+    each(p, (Set(set), hardness), |p, (on, most)| *p = if on { shift.project_cell(*p, most) } else { 0.0 });
     Some(())
 }

@@ -38,12 +38,6 @@ impl ProjectedCg {
         }
     }
 
-    /// z, roughly the inverse of K restricted to a set of cells (bits, eight in a byte) times r, which is zero elsewhere; in
-    /// units of the preconditioner's largest value. What z holds outside of the set means nothing. An iteration does it once.
-    pub fn precondition(&mut self, r: &[f32], set: &[u8], z: &mut [f32]) {
-        self.preconditioner.apply_on_set_into(r, set, z);
-    }
-
     /// Bytes that the method takes at most, without the operator.
     pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
         ApproximateInverse::bytes(grid, boundary) + 32 * grid.len() + grid.len() / 4

@@ -33,40 +33,33 @@ impl Axis {
         }
     }
 
+    /// Name, the same of several rows, unit, symbol.
+    fn words(self) -> [&'static str; 4] {
+        match self {
+            Axis::Time => ["time", "times", "s", "t"],
+            Axis::Velocity => ["velocity", "velocities", "m/s", "v"],
+            Axis::None => ["", "", "1", ""],
+        }
+    }
+
     /// Name of the coordinate in results; empty without one.
     pub fn name(self) -> &'static str {
-        match self {
-            Axis::Time => "time",
-            Axis::Velocity => "velocity",
-            Axis::None => "",
-        }
+        self.words()[0]
     }
 
     /// Its name for several rows.
     pub fn plural(self) -> &'static str {
-        match self {
-            Axis::Time => "times",
-            Axis::Velocity => "velocities",
-            Axis::None => "",
-        }
+        self.words()[1]
     }
 
     /// Its unit.
     pub fn unit(self) -> &'static str {
-        match self {
-            Axis::Time => "s",
-            Axis::Velocity => "m/s",
-            Axis::None => "1",
-        }
+        self.words()[2]
     }
 
     /// Its symbol.
     pub fn symbol(self) -> &'static str {
-        match self {
-            Axis::Time => "t",
-            Axis::Velocity => "v",
-            Axis::None => "",
-        }
+        self.words()[3]
     }
 }
 

@@ -1,7 +1,7 @@
 //! The drives: loops that make rows.
 //!
 //! A row is one solved contact. In time ([`March`]) one step follows another; over velocities
-//! ([`Steady`]) each row is a steady state of motion. Both lend their rows through [`Drive`], so that whoever stores, judges
+//! ([`Steady`]) each row is a steady state of motion; elastic contacts ([`Elastic`]) have neither. All lend their rows through [`Drive`], so that whoever stores, judges
 //! or shows rows needs one loop:
 //!
 //! ```text
@@ -10,9 +10,11 @@
 //! ```
 
 mod coordinate;
+mod elastic;
 mod in_time;
 
 pub use coordinate::{Axis, Coordinate};
+pub use elastic::Elastic;
 pub use in_time::March;
 
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! Contacts and contact spots of a few cells.
 //!
-//! The width of the spots is 4 A/P, four times the contact area over its perimeter, counted in cells and edges: d for a
-//! spot of d by d cells. A row tells both, as its corrected area is A less a share of the perimeter. Of a line contact it is
+//! The width of the spots is 4 A/P, four times the contact area over its perimeter, counted in cells and edges: d for a spot of d
+//! by d cells. A row contains both, because its corrected area is A minus a fraction of the perimeter. For a line contact it is
 //! twice the length in contact over the number of ends.
 
 use ndarray::ArrayView2;
@@ -12,9 +12,10 @@ use crate::grid::{Boundary, Grid};
 use crate::quantities::contact_edges;
 use crate::step::{PERIMETER_SHARE, Row};
 
-/// Cells across a spot, at least: below, the pressure inside it is a guess.
+/// Smallest number of cells across a spot: below this, the pressure inside the spot is not resolved.
 const ACROSS: f64 = 4.0;
-/// Cells of a contact, at least: the area of 50 cells is known to a tenth or so, as the length of 16 cells on a line.
+/// Smallest number of cells of a contact: the area of 50 cells is accurate to about a tenth, like the length of 16 cells on a
+/// line.
 const FEWEST: f64 = 50.0;
 const FEWEST_ON_LINE: f64 = 16.0;
 
@@ -23,14 +24,14 @@ const FEWEST_ON_LINE: f64 = 16.0;
 pub(super) struct Counted {
     /// Cells in contact.
     pub cells: f64,
-    /// Edges between a cell in contact and one that is not; of a line contact the ends of the spots.
+    /// Edges between a cell in contact and one that is not; for a line contact, the ends of the spots.
     pub edges: f64,
     /// Whether it is a line contact.
     pub line: bool,
 }
 
 impl Counted {
-    /// What a row tells. That of a line contact does not know the ends of its spots.
+    /// The contact of a row. A row of a line contact does not contain the number of ends of its spots.
     pub(super) fn of(grid: &Grid, row: &Row) -> Self {
         let cell = grid.cell_area();
         let edges = (row.contact_area - row.contact_area_corrected) / (PERIMETER_SHARE * cell);
@@ -42,12 +43,12 @@ impl Counted {
         Counted { cells, edges: contact_edges(pressure, Boundary::Free).along_x as f64, line: true }
     }
 
-    /// Mean width of the spots in cells; infinite where the contact has no edge.
+    /// Mean width of the spots in cells; infinite if the contact has no edge.
     pub(super) fn width(self) -> f64 {
         if self.line { 2.0 * self.cells / self.edges } else { 4.0 * self.cells / self.edges }
     }
 
-    /// Whether it is one spot without holes, more or less: a circle of cells has edges² = 64/pi cells.
+    /// Whether it is approximately one spot without holes: a circle of cells has edges² = 64/pi cells.
     pub(super) fn is_compact(self) -> bool {
         let round = self.edges * self.edges < 30.0 * self.cells;
         self.cells > 0.0 && if self.line { self.edges <= 2.0 } else { round }
@@ -85,7 +86,7 @@ impl Resolution {
         }
     }
 
-    /// Every contact begins with a cell: the largest one is judged.
+    /// Every contact begins with one cell, so the largest contact is checked.
     pub(super) fn findings(&self) -> Vec<Finding> {
         let Counted { cells, .. } = self.largest;
         let (width, fewest) = (self.largest.width(), self.largest.fewest());
@@ -100,7 +101,7 @@ impl Resolution {
     }
 }
 
-/// A contact of so many cells.
+/// A contact of this number of cells.
 fn few(cells: f64, fewest: f64, has: &str) -> Finding {
     let text = format!(
         "The largest contact {has} {} cells, less than {fewest}: area, pressure and approach are coarse. Refine the grid \
@@ -110,7 +111,7 @@ fn few(cells: f64, fewest: f64, has: &str) -> Finding {
     Finding::warning(FEW_CONTACT_CELLS, cells, fewest, text)
 }
 
-/// Spots of so many cells across; `spots` begins the sentence.
+/// Spots of this width in cells; `spots` begins the sentence.
 pub(super) fn narrow(width: f64, spots: &str) -> Finding {
     let text = format!(
         "{spots} are {} cells across in the mean where the contact is largest, less than {ACROSS}: largest pressure and \
@@ -120,7 +121,7 @@ pub(super) fn narrow(width: f64, spots: &str) -> Finding {
     Finding::warning(SPOTS_UNRESOLVED, width, ACROSS, text)
 }
 
-/// What a round contact of this diameter in cells, or a line contact of this length, would be found to be.
+/// The findings for a round contact of this diameter in cells, or a line contact of this length.
 pub(super) fn expected(across: f64, line: bool) -> Vec<Finding> {
     let cells = if line { across } else { std::f64::consts::FRAC_PI_4 * across * across };
     let fewest = Counted { line, ..Counted::default() }.fewest();

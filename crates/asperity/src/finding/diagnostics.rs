@@ -1,4 +1,4 @@
-//! The diagnostics of a run: what is known before it, what each row adds, and what is found in the end.
+//! The diagnostics of a run: findings before the run, from each row, and at the end.
 
 use ndarray::ArrayView2;
 
@@ -20,14 +20,14 @@ use crate::sliding::Streaming;
 use crate::step::{Row, Step};
 use crate::surface::{Part, Shape};
 
-/// What is known of a simulation besides its numbers.
+/// Information on a simulation in addition to its numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Known<'a> {
-    /// The parts of the gap; none where only the gap is known.
+    /// The parts of the gap; empty if only the gap is known.
     pub parts: &'a [Part],
-    /// The bodies; none where only the pair is known.
+    /// The bodies; empty if only the pair is known.
     pub bodies: &'a [Body],
-    /// Thickness of the thinnest body that is taken as a half-space \[m\], where it is known.
+    /// Thickness of the thinnest body that is treated as a half-space \[m\], if known.
     pub thickness: Option<f64>,
 }
 
@@ -58,34 +58,34 @@ pub struct Diagnostics {
     grid: Grid,
     /// Found before the first row.
     known: Vec<Finding>,
-    /// Whether contact at the border is looked for, and whether it would be confined by a larger domain.
+    /// Whether contact at the border is checked, and whether a larger domain would confine it.
     free: bool,
     confined: bool,
-    /// Radius of the paraboloid that the gap is at the border \[m\].
+    /// Radius of the paraboloid that approximates the gap at the border \[m\].
     radius: Option<f64>,
     border: Option<[usize; 2]>,
-    /// Side of the domain that the contact would take \[m\].
+    /// Side of the domain that the contact would need \[m\].
     needed: f64,
     deepest: f64,
     resolution: Resolution,
     strain: Strain,
     slides: Slides,
     balance: Balance,
-    /// What is to be said of a held approach once cells are at the hardness there, and whether they were.
+    /// The finding for a held approach with cells at the hardness, and whether there were such cells.
     held: Option<Finding>,
     capped: bool,
     /// Whether the error of steps of given length is estimated, the largest one, and the rows in which it is too large.
     estimated: bool,
     coarse: Option<(f64, [usize; 2])>,
-    /// Thickness of a body on a free domain, and the contacts that it sees.
+    /// Thickness of a body on a free domain, and its contacts.
     thickness: Option<f64>,
     widest: Widest,
-    /// What the balance was in an earlier session of the run.
+    /// The energy balance in an earlier session of the run.
     earlier_balance: Option<Finding>,
 }
 
 impl Diagnostics {
-    /// Judges what is known before the run.
+    /// Checks everything that is known before the run.
     pub fn new(simulation: &Simulation, known: Known<'_>) -> Self {
         let Simulation { grid, gap, boundary, kernel, .. } = simulation;
         let free = *boundary == Boundary::Free;
@@ -93,7 +93,7 @@ impl Diagnostics {
             known: before(simulation, known),
             free,
             confined: domain::confined(grid, gap),
-            // The domain that a contact takes is estimated by Hertz.
+            // Hertz's theory estimates the domain that a contact needs.
             radius: if free && kernel.is_half_space() { domain::radius(grid, gap) } else { None },
             border: None,
             needed: 0.0,
@@ -122,11 +122,11 @@ impl Diagnostics {
         self
     }
 
-    /// Takes in the rows that an earlier session of the run stored, with what it found.
+    /// Adds the rows that an earlier session of the run stored, with its findings.
     pub fn resume(&mut self, rows: &[Row], found: &[Finding]) {
         let grid = self.grid;
         rows.iter().enumerate().for_each(|(index, row)| self.take(index, row, Counted::of(&grid, row)));
-        // What rows alone do not tell; later rows are judged again.
+        // Findings that do not follow from rows alone; later rows are checked again.
         for finding in found {
             let Some([first, last]) = finding.rows.filter(|at| at[0] < rows.len()) else { continue };
             match finding.code.as_ref() {
@@ -140,7 +140,7 @@ impl Diagnostics {
         }
     }
 
-    /// Looks at a row.
+    /// Checks a row.
     pub fn see(&mut self, step: &Step<'_>, row: &Row) {
         let index = step.index();
         let (control, compliance) = (step.control(), step.simulation().compliance(row.coordinate.value()));
@@ -154,7 +154,7 @@ impl Diagnostics {
         }
     }
 
-    /// Looks at a contact that has this row and pressure \[Pa\], under what `control` says, with a compliance \[1/Pa\].
+    /// Checks a contact with this row and pressure \[Pa\], under this control, with a compliance \[1/Pa\].
     pub fn see_contact(
         &mut self,
         index: usize,
@@ -199,13 +199,13 @@ impl Diagnostics {
         }
     }
 
-    /// What is known before the run.
+    /// The findings before the run.
     pub fn known(&self) -> &[Finding] {
         &self.known
     }
 
-    /// What was found so far, in the order of the table of docs/findings.md: the domain, the surface, the contact, the
-    /// material, the steps.
+    /// The findings so far, in the order of the table of docs/findings.md: the domain, the surface, the contact, the material,
+    /// the steps.
     pub fn findings(&self, simulation: &Simulation) -> Vec<Finding> {
         let mut found = self.known.clone();
         if let Some([first, last]) = self.border {
@@ -235,7 +235,7 @@ impl Diagnostics {
     }
 }
 
-/// Whether a part alone keeps the contact from the border.
+/// Whether a single part confines the contact within the border.
 fn is_round(part: &Part) -> bool {
     match part {
         Part::Shape { shape: Shape::Sphere { radius }, .. } => radius.is_finite(),
@@ -250,7 +250,7 @@ fn is_round(part: &Part) -> bool {
 fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     let Simulation { grid, gap, boundary, .. } = simulation;
     let mut found = match boundary {
-        // A round body is confined by its shape, also on a long track.
+        // The shape of a round body confines the contact, also on a long track.
         Boundary::Free if known.parts.iter().any(is_round) => None,
         Boundary::Free => domain::unconfined(grid, gap),
         Boundary::Periodic => domain::not_periodic(grid, gap),

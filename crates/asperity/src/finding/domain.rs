@@ -1,6 +1,6 @@
 //! The border of the domain.
 //!
-//! A free domain ends: nothing beyond it touches. A periodic one goes on as it began: its gap must do so too.
+//! Nothing touches outside a free domain. A periodic domain repeats, so its gap must be continuous across the border.
 
 use ndarray::Array2;
 
@@ -8,18 +8,18 @@ use super::words::{digits, si};
 use super::{CONTACT_AT_BORDER, Finding, GAP_NOT_PERIODIC, ROUGH_ON_FREE_DOMAIN, UNLIKELY_UNIT};
 use crate::grid::Grid;
 
-/// A gap whose second difference across the border is so many times the largest inside does not repeat.
+/// A gap is not periodic if its second difference across the border is larger than the largest one inside by this factor.
 const JUMP: f64 = 2.0;
-/// Gaps that vary by less than this share of their range are flat: rounding of the sum of parts.
+/// Gaps that vary by less than this fraction of their range are flat: the variation is rounding of the sum of parts.
 const ROUNDING: f64 = 1e-9;
-/// How much wider the gap must be at the border than in the mean, over its standard deviation. A sphere has 1.6, a
-/// cone 1.3, a cylinder 1.1; a rough plane, a wave or a tilted plane 0.
+/// Smallest difference between the gap at the border and the mean gap, over the standard deviation of the gap. A sphere has 1.6,
+/// a cone 1.3, a cylinder 1.1; a rough plane, a wave or a tilted plane has 0.
 const CONFINED: f64 = 0.5;
 
-/// Sides of domains: from atoms to beyond any machine \[m\].
+/// Plausible sides of domains: from atoms to larger than any machine \[m\].
 const SIDES: [f64; 2] = [1e-9, 10.0];
 
-/// A domain of a size that no measurement has.
+/// A domain of an implausible size.
 pub(super) fn unlikely_size(grid: &Grid) -> Option<Finding> {
     let [least, most] = SIDES;
     let side = grid.extents().iter().copied().find(|side| !(least..most).contains(side))?;
@@ -38,8 +38,8 @@ pub(super) fn touches_border(grid: &Grid, pressure: ndarray::ArrayView2<'_, f64>
     border(grid).any(|at| pressure[at] > 0.0)
 }
 
-/// Contact at the border of a free domain, in these rows. `needed` is the side of the domain that the contact would
-/// take \[m\], where the gap tells; `contact` begins the sentence.
+/// Contact at the border of a free domain, in these rows. `needed` is the side of the domain that the contact would need \[m\],
+/// if the gap determines it; `contact` begins the sentence.
 pub(super) fn at_border(grid: &Grid, confined: bool, needed: Option<f64>, contact: &str) -> Finding {
     let side = grid.shortest_side();
     let times = |lengths: &[f64]| lengths.iter().map(|l| si(*l, "m")).collect::<Vec<_>>().join(" x ");
@@ -64,8 +64,8 @@ pub(super) fn at_border(grid: &Grid, confined: bool, needed: Option<f64>, contac
     )
 }
 
-/// Radius of the paraboloid of the gap at the border of the domain about its lowest cell \[m\]: the mean of r²/(2 h).
-/// `None` where the gap is closed or endless there.
+/// Radius of the paraboloid of the gap at the border of the domain about its lowest cell \[m\]: the mean of r²/(2 h). `None` if
+/// the gap is closed or infinite there.
 pub(super) fn radius(grid: &Grid, gap: &Array2<f64>) -> Option<f64> {
     let (mut lowest, mut place) = (f64::INFINITY, (0, 0));
     for (at, h) in gap.indexed_iter() {
@@ -86,7 +86,7 @@ pub(super) fn radius(grid: &Grid, gap: &Array2<f64>) -> Option<f64> {
     (count > 0.0 && sum > 0.0).then(|| count / sum)
 }
 
-/// Cells of the border; of a line its ends.
+/// Cells of the border; for a line, its ends.
 fn border(grid: &Grid) -> impl Iterator<Item = (usize, usize)> {
     let [nx, ny] = grid.cells();
     let sides = if grid.is_line() { 0 } else { nx };
@@ -94,8 +94,8 @@ fn border(grid: &Grid) -> impl Iterator<Item = (usize, usize)> {
     ends.chain((0..sides).flat_map(move |i| [(i, 0), (i, ny - 1)]))
 }
 
-/// How much wider the gap is at the border than in the mean, over its standard deviation; `None` where cells cannot
-/// touch, or where nothing varies (flat on flat, a punch as large as the domain).
+/// Difference between the gap at the border and the mean gap, over the standard deviation of the gap; `None` if cells cannot
+/// touch, or if nothing varies (flat on flat, a punch as large as the domain).
 pub(super) fn widening(grid: &Grid, gap: &Array2<f64>) -> Option<f64> {
     let cells = gap.len() as f64;
     let mean = gap.sum() / cells;
@@ -104,12 +104,12 @@ pub(super) fn widening(grid: &Grid, gap: &Array2<f64>) -> Option<f64> {
     (mean.is_finite() && spread > ROUNDING * mean.abs()).then(|| (sum / count - mean) / spread)
 }
 
-/// Whether something besides the end of the domain confines the contact.
+/// Whether the contact is confined by something other than the end of the domain.
 pub(super) fn confined(grid: &Grid, gap: &Array2<f64>) -> bool {
     widening(grid, gap).is_none_or(|widening| widening > CONFINED)
 }
 
-/// A surface on a free domain that nothing but the end of the domain confines.
+/// A surface on a free domain that only the end of the domain confines.
 pub(super) fn unconfined(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
     let widening = widening(grid, gap).filter(|widening| *widening <= CONFINED)?;
     Some(Finding::warning(
@@ -122,8 +122,8 @@ pub(super) fn unconfined(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
     ))
 }
 
-/// A periodic gap that does not go on across the border: the second differences there against the largest of the lines
-/// inside, cell by cell (rms) and of the line as a whole (mean).
+/// A periodic gap that is not continuous across the border. The second differences there are compared with the largest of the
+/// lines inside, cell by cell (rms) and for the line as a whole (mean).
 pub(super) fn not_periodic(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
     let range = gap.iter().filter(|h| h.is_finite()).fold(0.0, |most: f64, h| most.max(*h));
     let found = [0, 1].into_iter().filter_map(|axis| kink(gap, axis, range).map(|kink| (axis, kink)));
@@ -153,7 +153,7 @@ struct Kink {
     slope: f64,
 }
 
-/// The kink at the border along an axis, where there is one.
+/// The kink at the border along an axis, if there is one.
 fn kink(gap: &Array2<f64>, axis: usize, range: f64) -> Option<Kink> {
     let lines = [gap.dim().0, gap.dim().1][axis];
     if lines < 5 {

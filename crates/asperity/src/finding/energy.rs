@@ -1,10 +1,10 @@
-//! The energy balance: what the load does is stored in the springs, lost in the dashpots or spent on flattening.
-//! The difference is an error of the time steps.
+//! The energy balance: the work of the load is stored in the springs, dissipated in the dashpots or used for flattening. The
+//! difference is an error of the time steps.
 
 use super::words::digits;
 use super::{ENERGY_BALANCE, Finding};
 
-/// Share of the largest work by which the sum may be off.
+/// Largest error of the sum, as a fraction of the largest work.
 const MISSING: f64 = 0.02;
 
 /// The balance over the rows.

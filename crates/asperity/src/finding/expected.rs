@@ -1,4 +1,4 @@
-//! The contact that is to be expected, before the run.
+//! The expected contact, estimated before the run.
 //!
 //! ```text
 //! paraboloid   a³ = 3 R W C / 4,  w = a²/R,  p_max C = 2a/(πR)          (Hertz)
@@ -9,8 +9,8 @@
 //!                                                                      computed contacts have under light loads; h' the rms slope)
 //! ```
 //!
-//! with the compliance C at once and at the end of the run; for half-spaces only. An estimate: it leaves out what the other parts of the gap
-//! add, and everything but the largest load or approach.
+//! with the compliance C at the start and at the end of the run; only for half-spaces. This is an estimate: it ignores the other
+//! parts of the gap, and uses only the largest load or approach.
 
 use std::f64::consts::PI;
 
@@ -22,26 +22,26 @@ use crate::load::{Control, Course, Event, Stage};
 use crate::simulation::Simulation;
 use crate::surface::{Part, Punch, Shape};
 
-/// The domain of a contact should be so many times as wide as its radius.
+/// Recommended width of the domain over the radius of the contact.
 pub(super) const ROOM: f64 = 2.5;
-/// Contacts this near to the border are expected to reach it.
+/// Contacts closer to the border than this are expected to reach it.
 const NEAR: f64 = 0.97;
 
 /// The expected contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contact {
-    /// One round spot of these radii \[m\], right after the load and at the end; of a line contact half its lengths.
+    /// One round spot with these radii \[m\], right after the load and at the end; for a line contact, the half-widths.
     Round([f64; 2]),
-    /// These shares of the domain.
+    /// These fractions of the domain.
     Share([f64; 2]),
 }
 
-/// What is to be expected of a run.
+/// The estimate for a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// The largest load \[N\], or the largest approach \[m\], that the case prescribes.
     pub largest: Prescribed,
-    /// The contact, where the surface is simple enough.
+    /// The contact, if the surface is simple enough.
     pub contact: Option<Contact>,
     /// Pressure over contact modulus at the end: the largest in a round contact, the mean in that of a rough plane.
     pub strain: Option<f64>,
@@ -51,7 +51,7 @@ pub struct Expected {
     room: f64,
 }
 
-/// The shape that decides a contact.
+/// The shape that determines a contact.
 #[derive(Clone, Copy)]
 enum Form {
     Paraboloid { radius: f64 },
@@ -63,7 +63,7 @@ enum Form {
 }
 
 impl Expected {
-    /// From the parts of the gap; `None` where nothing is pressed.
+    /// From the parts of the gap; `None` if there is no contact.
     pub fn of(simulation: &Simulation, parts: &[Part]) -> Option<Expected> {
         let grid = &simulation.grid;
         let stages = &simulation.loading.stages;
@@ -121,7 +121,7 @@ impl Expected {
         Some(expected)
     }
 
-    /// What will be found if the run goes as expected.
+    /// The findings if the contact is as expected.
     pub fn findings(&self, simulation: &Simulation) -> Vec<Finding> {
         let Some(Contact::Round([_, radius])) = self.contact else { return vec![] };
         let grid = &simulation.grid;
@@ -147,7 +147,7 @@ fn order((largest, radii): &(Prescribed, Option<[f64; 2]>)) -> f64 {
 }
 
 impl Form {
-    /// Radius of the contact under a load or an approach with the compliance c; at least what the hardness takes.
+    /// Radius of the contact under a load or an approach with the compliance c; at least the radius required by the hardness.
     fn radius(self, given: Prescribed, c: f64, hardness: f64) -> Option<f64> {
         let least = |load: f64| (load / (PI * hardness)).sqrt();
         Some(match (self, given) {
@@ -169,7 +169,7 @@ impl Form {
     }
 }
 
-/// The largest value of a stage, and the event that may end it before.
+/// The largest value of a stage, and the event that may end it earlier.
 fn largest(simulation: &Simulation, stage: &Stage) -> Option<(Prescribed, Option<Event>)> {
     let end = simulation.times.end();
     let most = match &stage.course {
@@ -185,7 +185,7 @@ fn largest(simulation: &Simulation, stage: &Stage) -> Option<(Prescribed, Option
     (most > 0.0).then_some((largest, stage.until))
 }
 
-/// Radii \[m\] of the paraboloids together along x and y; `None` without. A cylinder is one of them.
+/// Radii \[m\] of the sum of the paraboloids along x and y; `None` if there are none. Cylinders are included.
 fn radii(parts: &[Part]) -> Option<[f64; 2]> {
     let curvature = parts.iter().fold([0.0; 2], |[x, y], part| match part {
         Part::Shape { shape: Shape::Sphere { radius }, .. } => [x + 1.0 / radius, y + 1.0 / radius],
@@ -198,7 +198,7 @@ fn radii(parts: &[Part]) -> Option<[f64; 2]> {
     (curvature[0] > 0.0 && curvature[1] > 0.0).then(|| curvature.map(f64::recip))
 }
 
-/// Radius of the paraboloids together \[m\]; on a line of their sections.
+/// Radius of the sum of the paraboloids \[m\]; for a line contact, of their sections.
 pub(super) fn radius(grid: &Grid, parts: &[Part]) -> Option<f64> {
     if grid.is_line() { line_radius(parts) } else { mean_radius(parts) }
 }
@@ -207,7 +207,7 @@ fn mean_radius(parts: &[Part]) -> Option<f64> {
     radii(parts).map(|[x, y]| (x * y).sqrt())
 }
 
-/// The shape that decides; without one, the slope of the gap.
+/// The shape that determines the contact; if there is none, the slope of the gap.
 fn form(parts: &[Part], slope: impl FnOnce() -> f64) -> Option<Form> {
     let punch = parts.iter().find_map(|part| match part {
         Part::Shape { shape: Shape::FlatPunch(Punch::Circle { radius }), .. } => Some(*radius),
@@ -229,7 +229,7 @@ fn form(parts: &[Part], slope: impl FnOnce() -> f64) -> Option<Form> {
     }
 }
 
-/// The same for a line contact: what counts of a shape is its section.
+/// The same for a line contact: only the section of a shape matters.
 fn line_form(parts: &[Part], slope: impl FnOnce() -> f64) -> Option<Form> {
     let wedge = parts.iter().find_map(|part| match part {
         Part::Shape { shape: Shape::Cone { slope } | Shape::Wedge { slope }, .. } => Some(*slope),
@@ -249,7 +249,7 @@ fn line_form(parts: &[Part], slope: impl FnOnce() -> f64) -> Option<Form> {
     }
 }
 
-/// Radius of the shapes together along x \[m\].
+/// Radius of the sum of the shapes along x \[m\].
 fn line_radius(parts: &[Part]) -> Option<f64> {
     let curvature = parts.iter().fold(0.0, |sum, part| match part {
         Part::Shape { shape: Shape::Sphere { radius } | Shape::Cylinder { radius }, .. } => {

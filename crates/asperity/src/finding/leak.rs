@@ -1,32 +1,33 @@
-//! Leaks that the numbers do not carry: gaps below the error of the solver, constrictions of a few cells, fluid pressures that
-//! would move the bodies.
+//! Unreliable leaks: gaps below the error of the solver, constrictions of a few cells, fluid pressures that would move the
+//! bodies.
 
 use super::words::{digits, rows, si};
 use super::{CONSTRICTION_UNRESOLVED, FLUID_PRESSURE_LARGE, Finding, LEAK_BELOW_GAP_ERROR};
 
-/// The critical gap over the error of the gap, at least: the leak goes with its third power, so 1/30 of it is 10 %.
+/// Smallest ratio of the critical gap to its error: the leak is proportional to the third power of the gap, so an error of 1/30
+/// means 10 %.
 const ABOVE_ERROR: f64 = 30.0;
-/// Cells across the critical constriction, at least.
+/// Smallest number of cells across the critical constriction.
 const ACROSS: f64 = 4.0;
-/// Drop of the fluid pressure over the mean pressure in the contact, at most.
+/// Largest ratio of the drop of the fluid pressure to the mean pressure in the contact.
 const PRESSURE_SHARE: f64 = 0.1;
 
-/// What a leak is judged by.
+/// The data for the check of a leak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeakState {
     /// Row that the gap belongs to; `None` for a gap of no run.
     pub row: Option<usize>,
-    /// Gap at the critical constriction \[m\], and open cells across it where it is bounded; `None` where the seal is tight.
+    /// Gap at the critical constriction \[m\], and open cells across it if it is bounded; `None` if the seal is tight.
     pub constriction: Option<(f64, Option<usize>)>,
-    /// Error of the gap that the tolerance of the solver leaves \[m\]: the tolerance times the mean displacement.
+    /// Error of the gap due to the tolerance of the solver \[m\]: the tolerance times the mean displacement.
     pub gap_error: f64,
-    /// Drop of the fluid pressure \[Pa\], where the fluid is known.
+    /// Drop of the fluid pressure \[Pa\], if the fluid is known.
     pub pressure_drop: Option<f64>,
-    /// Load over contact area \[Pa\]; 0 where nothing is pressed, and then not judged.
+    /// Load over contact area \[Pa\]; 0 if there is no contact, and then not checked.
     pub contact_pressure: f64,
 }
 
-/// The worst number of some rows.
+/// The worst value of some rows.
 #[derive(Clone, Copy, Debug)]
 struct Worst {
     value: f64,
@@ -35,12 +36,12 @@ struct Worst {
 }
 
 impl Worst {
-    /// The rows in brackets, where there are any.
+    /// The rows in brackets, if there are any.
     fn place(&self) -> String {
         self.rows.map_or(String::new(), |at| format!(" ({})", rows(at)))
     }
 
-    /// A warning about it.
+    /// A warning about this value.
     fn warning(&self, code: &'static str, text: String) -> Finding {
         let finding = Finding::warning(code, self.value, self.limit, text);
         match self.rows {
@@ -59,10 +60,10 @@ pub struct LeakDiagnostics {
 }
 
 impl LeakDiagnostics {
-    /// Judges a leak; whether nothing is found against it. A tight seal has no constriction to diagnostics.
+    /// Checks a leak; true if there is no finding against it. A tight seal has no constriction to check.
     pub fn see(&mut self, state: &LeakState) -> bool {
         let mut resolved = true;
-        // Takes in a number over its limit, where it is too small or too large by the most.
+        // Adds a value relative to its limit; the worst one is kept.
         let mut note = |worst: &mut Option<Worst>, value: f64, limit: f64, worse: bool| {
             resolved = false;
             let first = worst.and_then(|worst| worst.rows).map(|rows| rows[0]).or(state.row);
@@ -93,7 +94,7 @@ impl LeakDiagnostics {
         resolved
     }
 
-    /// What was found.
+    /// The findings.
     pub fn findings(&self) -> Vec<Finding> {
         let below = self.below_error.map(|worst| {
             let text = format!(

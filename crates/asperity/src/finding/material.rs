@@ -1,18 +1,18 @@
-//! Materials: moduli that look like a slip of the unit, and how well measured data are fitted and covered.
+//! Materials: moduli that suggest a wrong unit, and the quality and coverage of fits of measured data.
 
 use super::words::{digits, si};
 use super::{BEYOND_MATERIAL_DATA, Finding, MATERIAL_MISFIT, POINTS_LEFT_OUT, UNLIKELY_UNIT};
 use crate::simulation::Simulation;
 
-/// Moduli of solids: from the softest gels to beyond diamond \[Pa\].
+/// Plausible moduli of solids: from the softest gels to above diamond \[Pa\].
 const MODULI: [f64; 2] = [150.0, 3e12];
 /// Below this temperature polymers neither creep nor are measured \[K\].
 const COLD: f64 = 100.0;
-/// Rms misfit of a fit, and how many times the scatter of the data it may be.
+/// Largest rms misfit of a fit, and its largest ratio to the scatter of the data.
 const MISFIT: f64 = 0.05;
 const SCATTER: f64 = 2.0;
 
-/// A modulus \[Pa\] that no body has; `name` is what it is called.
+/// A modulus \[Pa\] that no body has; `name` is the name of the modulus.
 pub fn unlikely_modulus(name: &str, modulus: f64) -> Option<Finding> {
     let [least, most] = MODULI;
     let limit = if modulus < least { least } else { most };
@@ -28,7 +28,7 @@ pub fn unlikely_modulus(name: &str, modulus: f64) -> Option<Finding> {
     })
 }
 
-/// A temperature \[K\] at which curves of no polymer are shifted; `name` is the body that has it.
+/// A temperature \[K\] at which no curves of polymers are shifted; `name` is the body.
 pub fn unlikely_temperature(name: &str, kelvin: f64) -> Option<Finding> {
     (kelvin < COLD).then(|| {
         let text = format!(
@@ -51,7 +51,7 @@ pub(super) fn of_pair(simulation: &Simulation) -> Option<Finding> {
     unlikely_modulus("contact modulus E*", 1.0 / compliance)
 }
 
-/// A fit with this rms and largest relative misfit to data of this relative scatter; `name` is what it is a fit of.
+/// A fit with this rms and largest relative misfit to data of this relative scatter; `name` states what was fitted.
 pub fn misfit(name: &str, rms: f64, largest: f64, scatter: f64) -> Option<Finding> {
     let limit = MISFIT.max(SCATTER * scatter);
     (rms.is_nan() || rms > limit).then(|| {
@@ -65,7 +65,7 @@ pub fn misfit(name: &str, rms: f64, largest: f64, scatter: f64) -> Option<Findin
     })
 }
 
-/// A fit of one modulus of a DMA, which misses the other one, `column`, by this rms share.
+/// A fit of one modulus of a DMA whose relative rms deviation from the other modulus, `column`, is this value.
 pub fn contradiction(name: &str, column: &str, rms: f64) -> Option<Finding> {
     (rms.is_nan() || rms > MISFIT).then(|| {
         let text = format!(
@@ -77,7 +77,7 @@ pub fn contradiction(name: &str, column: &str, rms: f64) -> Option<Finding> {
     })
 }
 
-/// Points of a measurement, of so many, that lack a number and were left out of a fit.
+/// Points of a measurement that lack a number and were left out of a fit, and the number of all points.
 pub fn points_left_out(name: &str, left_out: usize, of: usize) -> Option<Finding> {
     (left_out > 0).then(|| {
         let points =
@@ -87,11 +87,11 @@ pub fn points_left_out(name: &str, left_out: usize, of: usize) -> Option<Finding
     })
 }
 
-/// A run that needs the material of `name` from the first to the last time \[s\], where data cover `window` \[s\] only;
-/// `words` say so.
+/// A run that needs the material of `name` from the first to the last time \[s\], but the data cover only `window` \[s\]; `words`
+/// describe the data.
 pub fn beyond_data(name: &str, [first, last]: [f64; 2], window: [f64; 2], words: &str) -> Finding {
     let text = format!("{name}: {words}. Measure these times too, or take the run as an estimate there.");
-    // The end that is passed by more decades.
+    // The end that is exceeded by more decades.
     let (short, long) = (window[0] / first, last / window[1]);
     let (value, limit) = if short > long { (first, window[0]) } else { (last, window[1]) };
     Finding::warning(BEYOND_MATERIAL_DATA, value, limit, text)

@@ -1,21 +1,21 @@
-//! Findings: what a run says about itself where its numbers may be off.
+//! Findings: reports of a run where its numbers may be off.
 //!
-//! A solver converges on any input, also on one that its theory does not cover, that its grid does not resolve, or
-//! that has a slip of the unit. The judges of this module look for that: before a run at the gap, the bodies, the
-//! steps ([`Diagnostics::new`]), during it at each row ([`Diagnostics::see`]), and they say what they found with the number, its
-//! limit and what to do. They change no number and need no convolution.
+//! A solver converges on any input, even if its theory does not cover it, its grid does not resolve it, or a unit is wrong. The
+//! checks of this module look for such cases: before a run in the gap, the bodies and the steps ([`Diagnostics::new`]), and
+//! during it in each row ([`Diagnostics::see`]). A finding states the number, its limit and what to do. The checks change no
+//! number and need no convolution.
 //!
-//! | file | judges |
+//! | file | checks |
 //! |---|---|
-//! | `domain` | the border of the domain: contact there, gaps that do not repeat, surfaces that do not end before it |
-//! | `surface` | waves that the grid does not resolve, slopes, outliers, sizes that look like a slip of the unit |
+//! | `domain` | the border of the domain: contact there, gaps that are not periodic, surfaces that do not end before it |
+//! | `surface` | waves that the grid does not resolve, slopes, outliers, sizes that suggest a wrong unit |
 //! | `contact` | contacts and contact spots of a few cells |
 //! | `strain` | deformations and slopes beyond linear theory |
-//! | `material` | moduli, and how well measured data are fitted and covered |
+//! | `material` | moduli, and the quality and coverage of fits of measured data |
 //! | `stress` | the stress below the surface: its resolution, and yielding |
 //! | `time` | steps that are too long for the history and the material |
 //! | `energy` | the energy balance |
-//! | `leak` | leaks that gap, grid or fluid pressure do not carry |
+//! | `leak` | leaks that are unreliable because of gap, grid or fluid pressure |
 //! | `motion` | friction that the grid does not resolve, bodies on their own track |
 //! | `thin` | half-spaces of finite thickness |
 //! | `expected` | an estimate of the contact before the run |
@@ -50,10 +50,10 @@ pub use stress::{stress_at_deepest, stress_times_miss_peak, stress_unresolved, y
 pub use surface::{hurst, of_heights};
 pub use thin::thin_body;
 
-/// How much a finding matters.
+/// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Severity {
-    /// Worth knowing; the numbers stand.
+    /// Useful information; the numbers are valid.
     Note,
     /// The numbers may be off.
     Warning,
@@ -75,20 +75,20 @@ impl std::fmt::Display for Severity {
     }
 }
 
-/// Something about a run that its user should know before believing its numbers.
+/// A report about a run that the user should know before relying on its numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// One of [`CODES`].
     pub code: Cow<'static, str>,
-    /// How much it matters.
+    /// Its severity.
     pub severity: Severity,
-    /// One or two sentences: what was found, what it may do to the result, what to do about it.
+    /// One or two sentences: what was found, how it may affect the result, what to do about it.
     pub text: String,
-    /// The number that was judged, in SI units; the table of docs/findings.md says which.
+    /// The number that was checked, in SI units; the table of docs/findings.md states which.
     pub value: Option<f64>,
-    /// The limit that it passes, in the same unit.
+    /// The limit that it exceeds, in the same unit.
     pub limit: Option<f64>,
-    /// First and last row that it is about; `None` where it is about the case.
+    /// First and last row concerned; `None` if the finding concerns the case.
     pub rows: Option<[usize; 2]>,
 }
 
@@ -112,7 +112,7 @@ impl Finding {
         Finding { severity: Severity::Note, ..self }
     }
 
-    /// The same, about these rows.
+    /// The same finding, for these rows.
     #[must_use]
     pub fn at(self, rows: [usize; 2]) -> Self {
         Finding { rows: Some(rows), ..self }
@@ -130,7 +130,7 @@ impl std::fmt::Display for Finding {
     }
 }
 
-/// Every code. A code keeps its meaning.
+/// All codes. The meaning of a code does not change.
 pub const CODES: [&str; 29] = [
     CONTACT_AT_BORDER,
     GAP_NOT_PERIODIC,
@@ -165,27 +165,27 @@ pub const CODES: [&str; 29] = [
 
 /// Contact, or the expected contact, reaches the border of a free domain.
 pub const CONTACT_AT_BORDER: &str = "contact-at-border";
-/// The gap of a periodic domain does not go on across its border.
+/// The gap of a periodic domain is not continuous across its border.
 pub const GAP_NOT_PERIODIC: &str = "gap-not-periodic";
-/// Nothing but the end of the free domain confines the contact.
+/// Only the end of the free domain confines the contact.
 pub const ROUGH_ON_FREE_DOMAIN: &str = "rough-on-free-domain";
 /// Waves shorter than four cells.
 pub const SHORTEST_WAVE_UNRESOLVED: &str = "shortest-wave-unresolved";
 /// Contact spots narrower than four cells.
 pub const SPOTS_UNRESOLVED: &str = "spots-unresolved";
-/// A contact of a few cells in all.
+/// A contact of only a few cells.
 pub const FEW_CONTACT_CELLS: &str = "few-contact-cells";
 /// Slopes beyond linear theory.
 pub const LARGE_SLOPE: &str = "large-slope";
 /// Deformations beyond linear theory.
 pub const LARGE_STRAIN: &str = "large-strain";
-/// The work of the load is not the energy stored and lost.
+/// The work of the load differs from the energy stored and dissipated.
 pub const ENERGY_BALANCE: &str = "energy-balance";
-/// Too few steps where history and material change.
+/// Too few steps while history and material change.
 pub const STEPS_TOO_LONG: &str = "steps-too-long";
-/// Too few steps to a period.
+/// Too few steps per period.
 pub const ALIASED_HISTORY: &str = "aliased-history";
-/// The material does not follow the measured data.
+/// The material does not fit the measured data.
 pub const MATERIAL_MISFIT: &str = "material-misfit";
 /// The run needs the material at times that were not measured.
 pub const BEYOND_MATERIAL_DATA: &str = "beyond-material-data";
@@ -193,35 +193,35 @@ pub const BEYOND_MATERIAL_DATA: &str = "beyond-material-data";
 pub const POINTS_LEFT_OUT: &str = "points-left-out";
 /// A Hurst exponent outside of (0, 1].
 pub const HURST_OUT_OF_RANGE: &str = "hurst-out-of-range";
-/// A Hurst exponent that window, levelling or band decide.
+/// A Hurst exponent that is determined by window, levelling or band.
 pub const HURST_UNCERTAIN: &str = "hurst-uncertain";
-/// Heights far from the others.
+/// Heights far from all others.
 pub const OUTLIERS: &str = "outliers";
-/// A number that a slip of the unit explains best.
+/// A number that suggests a wrong unit.
 pub const UNLIKELY_UNIT: &str = "unlikely-unit";
 /// The largest stress below the surface lies less than two cells deep.
 pub const STRESS_UNRESOLVED: &str = "stress-unresolved";
-/// The largest stress lies at the deepest of the depths.
+/// The largest stress lies at the deepest of the given depths.
 pub const STRESS_AT_DEEPEST: &str = "stress-at-deepest";
 /// The largest pressure of a run is not among the times at which the stress is computed.
 pub const STRESS_TIMES_MISS_PEAK: &str = "stress-times-miss-peak";
 /// The von Mises stress below the surface exceeds the yield stress.
 pub const YIELD_EXCEEDED: &str = "yield-exceeded";
-/// A half-space that is thinner than the contact or the waves need.
+/// A half-space that is too thin for the contact or the waves.
 pub const THIN_BODY: &str = "thin-body";
 
 /// Two estimates of the friction force differ.
 pub const FRICTION_UNCERTAIN: &str = "friction-uncertain";
-/// Nothing that remembers moves.
+/// No viscoelastic body moves.
 pub const FRICTION_ZERO: &str = "friction-zero";
-/// A single body on a periodic domain meets its own track.
+/// A single body on a periodic domain runs over its own track.
 pub const OWN_TRACK: &str = "own-track";
 
 /// The gap at the critical constriction of a leak is less than 30 times the error of the gap.
 pub const LEAK_BELOW_GAP_ERROR: &str = "leak-below-gap-error";
 /// The critical constriction of a leak is less than four cells wide.
 pub const CONSTRICTION_UNRESOLVED: &str = "constriction-unresolved";
-/// The drop of the fluid pressure is more than a tenth of the mean pressure in the contact.
+/// The pressure drop of the fluid is more than a tenth of the mean pressure in the contact.
 pub const FLUID_PRESSURE_LARGE: &str = "fluid-pressure-large";
 
 #[cfg(test)]

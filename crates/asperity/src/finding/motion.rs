@@ -1,23 +1,23 @@
 //! Contacts in motion.
 //!
-//! Friction is the small difference of large forces before and behind each bump. Two estimates of it agree as far as the grid
-//! resolves the edges of the contact, so their difference tells what the number is worth. On a periodic domain the material comes
-//! round with what it remembers of the contact before it: right for a rough surface, not for a single body.
+//! Friction is the small difference of large forces in front of and behind each asperity. Two estimates of it agree to the extent
+//! that the grid resolves the edges of the contact, so their difference measures the accuracy. On a periodic domain the material
+//! returns to the contact before it has recovered. This is correct for a rough surface, but not for a single body.
 
 use super::words::{digits, rows, si};
 use super::{FRICTION_UNCERTAIN, FRICTION_ZERO, Finding, OWN_TRACK};
 use crate::grid::Grid;
 use crate::sliding::Friction;
 
-/// The two estimates of friction differ by this share at most.
+/// Largest relative difference of the two estimates of friction.
 const UNCERTAIN: f64 = 0.1;
-/// A friction coefficient that is none: the error of the solve.
+/// Below this, a friction coefficient is only the error of the solve.
 const NONE: f64 = 1e-7;
-/// Rows with less than this share of the largest force do not count: there friction changes its sign.
+/// Rows with less than this fraction of the largest force are ignored, because friction changes its sign there.
 const SMALL: f64 = 0.1;
-/// A memory that reaches so many domains still knows the contact before.
+/// Range of memory length over domain in which the previous contact still has an effect at the next one.
 const REACH: std::ops::Range<f64> = 0.1..10.0;
-/// Share of the compliance that a branch must have to count.
+/// Smallest fraction of the compliance of a relevant branch.
 const SHARE: f64 = 0.05;
 
 /// The friction of the rows.
@@ -79,7 +79,7 @@ pub fn own_track(
     })
 }
 
-/// A motion of bodies that remember nothing.
+/// A motion in which no viscoelastic body moves through the contact.
 pub fn friction_zero() -> Finding {
     let text = "Nothing that remembers moves through the contact, so the friction of the bulk is zero at any velocity: the bodies \
                 are elastic, or the viscoelastic one stands still in the frame of the contact (motion.over, motion.kind).";

@@ -1,12 +1,12 @@
 //! Deformations beyond linear theory.
 //!
-//! The half-space is linear: it takes the contact as small against the radius, a/R, and strains as small. Two numbers
-//! tell: the approach over the contact radius, w/a, which is a/R of a paraboloid and a measure of the strain of any
-//! compact contact (K. L. Johnson, Contact Mechanics, 1985, section 3.5), and the contact pressure over the modulus that
-//! is left of it, ε(t) = ∫ C(t - s) dp(s). Hertz's contact has ε = 2a/(πR), so the two limits agree. The pressure is the
-//! largest one, or that in the middle of a Hertzian contact of the same load and area, 3W/(2A), where that is less: at the
-//! edge of a punch the largest pressure is endless, and tells the size of the cells. On layers a contact of radius a yields
-//! q K(q)/2 times as much as on the half-space of the top layer, q = 1/a, and so does its strain.
+//! The half-space is linear: it assumes that the contact is small compared with the radius, a/R, and that strains are small. Two
+//! numbers measure this: the approach over the contact radius, w/a, which is a/R of a paraboloid and a measure of the strain of
+//! any compact contact (K. L. Johnson, Contact Mechanics, 1985, section 3.5), and the contact pressure over the relaxed modulus,
+//! ε(t) = ∫ C(t - s) dp(s). A Hertzian contact has ε = 2a/(πR), so the two limits agree. The pressure is the largest one, or that
+//! in the middle of a Hertzian contact of the same load and area, 3W/(2A), if that is smaller: at the edge of a punch the largest
+//! pressure is infinite, and depends on the size of the cells. On layers the compliance of a contact of radius a is q K(q)/2
+//! times that of the half-space of the top layer, q = 1/a, and its strain has the same factor.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ const HARDEST: f64 = 0.2;
 /// Approach over thickness of layers on a rigid base.
 const SQUEEZED: f64 = 0.2;
 
-/// The largest of a number over the rows, and the rows beyond its limit.
+/// The largest value over the rows, and the rows beyond its limit.
 #[derive(Clone, Copy, Debug)]
 struct Peak {
     limit: f64,
@@ -52,16 +52,16 @@ impl Peak {
     }
 }
 
-/// What the rows tell of the strains.
+/// The strains of the rows.
 pub(super) struct Strain {
     bodies: Vec<Branches>,
-    /// In steady states of motion: the compliance at the frequency at which spots pass; and the side of a cell \[m\].
+    /// In steady states of motion: the compliance at the frequency of passing spots, and the side of a cell \[m\].
     sweep: Option<(Streaming, f64)>,
     kernel: Arc<dyn Kernel>,
     /// Layers whose waves creep differently.
     waves: Option<Arc<NonseparableLayers>>,
     time: f64,
-    /// Radius of the shapes \[m\], where they are known.
+    /// Radius of the shapes \[m\], if known.
     radius: Option<f64>,
     width: Peak,
     pressure: Peak,
@@ -82,7 +82,7 @@ impl Strain {
         }
     }
 
-    /// From now on rows are steady states of motion, at their velocities.
+    /// The following rows are steady states of motion at their velocities.
     pub(super) fn sweep(&mut self, streaming: Streaming, cell: f64) {
         self.sweep = Some((streaming, cell));
     }
@@ -102,7 +102,7 @@ impl Strain {
             }
             Some(_) => 0.0,
             None if creep.is_some() => {
-                // As if the pressure had been there from t = 0 on.
+                // As if the pressure had acted from t = 0 on.
                 let creep = creep.map_or(0.0, |creep| creep.value(row.coordinate.value()));
                 row.max_pressure.min(of_hertz) * 0.5 * wave_of(row, contact) * creep
             }
@@ -127,7 +127,7 @@ impl Strain {
         }
     }
 
-    /// What a compact contact on layers yields over what it would on the half-space of the top layer.
+    /// Compliance of a compact contact on layers over that on the half-space of the top layer.
     fn share(&self, row: &Row, contact: Counted) -> f64 {
         if self.kernel.is_half_space() || !contact.is_compact() {
             return 1.0;
@@ -184,7 +184,7 @@ fn too_deep(value: f64) -> Finding {
     Finding::warning(UNLIKELY_UNIT, value, 1.0, text)
 }
 
-/// What contact radius over radius and pressure over modulus would be found to be.
+/// The findings for contact radius over radius and pressure over modulus.
 pub(super) fn expected(width: f64, pressure: f64) -> Vec<Finding> {
     let mut found = vec![];
     if width > 1.0 {

@@ -1,10 +1,9 @@
-//! Where the stress below the surface is not what it seems: a grid too coarse for its maximum, depths that end before it, and
-//! a body that yields.
+//! Unreliable stress below the surface: a grid too coarse for the maximum, depths that end above it, and a body that yields.
 
 use super::words::{digits, si};
 use super::{Finding, STRESS_AT_DEEPEST, STRESS_TIMES_MISS_PEAK, STRESS_UNRESOLVED, YIELD_EXCEEDED};
 
-/// Cells from the surface to a maximum that the grid resolves.
+/// Smallest depth in cells of a maximum that the grid resolves.
 const CELLS: f64 = 2.0;
 
 /// The largest von Mises stress lies `depth` below the surface, less than two cells of side `cell` \[m\].

@@ -1,4 +1,4 @@
-//! Surfaces: waves that the grid does not resolve, steep slopes, outliers, sizes that look like a slip of the unit.
+//! Surfaces: waves that the grid does not resolve, steep slopes, outliers, sizes that suggest a wrong unit.
 
 use ndarray::Array2;
 
@@ -11,21 +11,21 @@ use crate::grid::Grid;
 use crate::surface::statistics::{HeightStatistics, SelfAffineFit, SlopeStatistics};
 use crate::surface::{Part, Roughness, SelfAffine, Shape, Surface};
 
-/// Cells to the shortest wave, at least: with four the curvature of its crests is 10 % off.
+/// Smallest number of cells per shortest wave: with four, the error of the curvature of its crests is 10 %.
 pub(super) const CELLS_PER_WAVE: f64 = 4.0;
-/// Rms slope beyond which a half-space is no longer a good picture of the surface.
+/// Rms slope beyond which a half-space is no longer a good approximation of the body.
 pub(super) const STEEPEST: f64 = 0.5;
 /// Kurtosis of the heights: 3 for a Gaussian surface, tens for spikes.
 const OUTLYING: f64 = 20.0;
-/// No machined or measured surface is as steep.
+/// No machined or measured surface is this steep.
 const UNLIKELY_SLOPE: f64 = 5.0;
-/// Radii that are this large, or so many times the domain, are rather a slip of the unit [m].
+/// Radii this large [m], or this many times the domain, suggest a wrong unit.
 const LARGEST_RADIUS: f64 = 10.0;
 const FLATTEST: f64 = 1000.0;
-/// Gaps that are so many times as deep as the domain is wide.
+/// Largest plausible ratio of the depth of a gap to the width of the domain.
 const DEEPEST: f64 = 100.0;
 
-/// What the parts of a gap tell by themselves.
+/// The findings from the parts of a gap.
 pub(super) fn of_part(grid: &Grid, part: &Part) -> Vec<Finding> {
     match part {
         Part::Shape { shape, .. } => of_shape(grid, shape),
@@ -91,8 +91,7 @@ fn of_spectrum(grid: &Grid, surface: &SelfAffine) -> Vec<Finding> {
     short.into_iter().chain(slope).collect()
 }
 
-/// What given heights tell: outliers, slopes, and heights that look like a slip of the unit. `name` is what the surface
-/// is called.
+/// The findings from given heights: outliers, slopes, and heights that suggest a wrong unit. `name` is the name of the surface.
 pub fn of_heights(name: &str, surface: &Surface) -> Vec<Finding> {
     let Ok(heights) = HeightStatistics::of(surface) else { return vec![] };
     let slope = SlopeStatistics::of(surface).map_or(0.0, |slopes| slopes.sdq);
@@ -119,7 +118,7 @@ pub fn of_heights(name: &str, surface: &Surface) -> Vec<Finding> {
     found
 }
 
-/// What the gap as a whole tells, where its parts did not: `unknown` where they are not known.
+/// The findings from the gap as a whole that do not follow from its parts: `unknown` if the parts are not known.
 pub(super) fn of_gap(grid: &Grid, gap: &Array2<f64>, unknown: bool) -> Vec<Finding> {
     let deepest = gap.iter().filter(|h| h.is_finite()).fold(0.0, |most: f64, h| most.max(*h));
     let size = grid.longest_side();
@@ -138,7 +137,7 @@ pub(super) fn of_gap(grid: &Grid, gap: &Array2<f64>, unknown: bool) -> Vec<Findi
     found
 }
 
-/// Self-affine parts of a given rms height: their slope is known from the gap.
+/// Self-affine parts of a given rms height: their slope follows from the gap.
 pub(super) fn of_given_height(grid: &Grid, gap: &Array2<f64>, parts: &[Part]) -> Option<Finding> {
     let by_height =
         |part: &Part| matches!(part, Part::SelfAffine(SelfAffine { roughness: Roughness::RmsHeight(_), .. }));
@@ -153,12 +152,12 @@ pub(super) fn of_given_height(grid: &Grid, gap: &Array2<f64>, parts: &[Part]) ->
     Some(Finding::warning(UNLIKELY_UNIT, slope, UNLIKELY_SLOPE, text))
 }
 
-/// Cells to the wave whose curvature behaves as that of the gap: along an axis, a wave of m cells has second differences
-/// over two cells that are 4 cos²(pi/m) times those over one; the wave numbers of both axes add up by their squares. Of an
-/// isotropic self-affine surface it is 1.1 to 1.4 times the shortest wave. `None` where the curvature sits in few
-/// places: edges are not waves.
+/// Number of cells of the wave whose curvature behaves like that of the gap: along an axis, a wave of m cells has second
+/// differences over two cells that are 4 cos²(pi/m) times those over one; the wave numbers of both axes add up by their squares.
+/// For an isotropic self-affine surface it is 1.1 to 1.4 times the shortest wave. `None` if the curvature is concentrated in a
+/// few places: edges are not waves.
 fn shortest_wave(gap: &Array2<f64>) -> Option<f64> {
-    /// Least share of the cells that bears the curvature: a Gaussian surface has a third.
+    /// Smallest fraction of the cells that has the curvature: for a Gaussian surface it is a third.
     const SPREAD: f64 = 0.1;
     let waves = [0, 1].into_iter().filter_map(|axis| {
         let [mut near, mut far, mut fourth, mut count] = [0.0_f64; 4];
@@ -203,7 +202,7 @@ pub(super) fn steep(name: &str, slope: f64) -> Option<Finding> {
     })
 }
 
-/// Root mean square slope of the cells whose gap is `deepest` \[m\] at most: those that come near each other.
+/// Root mean square slope of the cells whose gap is at most `deepest` \[m\], where the surfaces come close.
 pub(super) fn slope(grid: &Grid, gap: &Array2<f64>, deepest: f64) -> f64 {
     let [dx, dy] = grid.spacing();
     let (mut squares, mut counts) = ([0.0; 2], [0.0_f64; 2]);
@@ -224,14 +223,14 @@ pub(super) fn slope(grid: &Grid, gap: &Array2<f64>, deepest: f64) -> f64 {
     (squares[0] / counts[0].max(1.0) + squares[1] / counts[1].max(1.0)).sqrt()
 }
 
-/// The slope of the surfaces where they come near each other, for the largest approach of a run \[m\].
+/// The slope of the surfaces where they come close, for the largest approach of a run \[m\].
 pub(super) fn near(grid: &Grid, gap: &Array2<f64>, deepest: f64) -> Option<Finding> {
     steep("gap, where the bodies come near each other,", slope(grid, gap, deepest))
 }
 
-/// What a Hurst exponent fitted to a spectrum is worth.
+/// The reliability of a Hurst exponent fitted to a spectrum.
 pub fn hurst(fit: &SelfAffineFit) -> Option<Finding> {
-    /// A window and a levelled plane leave a power that falls as q^-4 at least: H of 1 is the end of what they show.
+    /// After windowing and levelling, the power falls at least as q^-4, so H = 1 is the largest exponent that they can show.
     const END: f64 = 0.95;
     /// A misfit of ln C of this size is a factor of two about the spectrum.
     const MISFIT: f64 = 0.7;

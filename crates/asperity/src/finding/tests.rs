@@ -1,4 +1,4 @@
-//! Each finding fires on a case made for it, and is silent beside it.
+//! Each finding is reported for a case made for it, and not reported for a similar case.
 
 use crate::drive::Drive;
 use ndarray::Array2;
@@ -33,7 +33,7 @@ fn rough(shortest: f64, gradient: f64) -> Part {
     })
 }
 
-/// A millimetre in 64 cells, 1 MPa, 10 mN at once, held for a second.
+/// A millimetre in 64 cells, 1 MPa, 10 mN applied suddenly and held for a second.
 fn simulation(parts: &[Part]) -> Simulation {
     let grid = grid(64, 1e-3);
     Simulation {
@@ -119,7 +119,7 @@ fn contact_at_the_border_of_a_free_domain_is_found_with_the_size_needed() {
     let parts = [sphere(5e-3)];
     let enough = Simulation { grid: wide, gap: undeformed_gap(&wide, &parts).unwrap(), ..heavy.clone() };
     assert!(!codes(&after(enough, &parts)).contains(&CONTACT_AT_BORDER));
-    // Known beforehand where the shape is known.
+    // Known before the run if the shape is known.
     let expected = Expected::of(&heavy, &parts).unwrap();
     assert!(codes(&expected.findings(&heavy)).contains(&CONTACT_AT_BORDER));
     let light = simulation(&parts);
@@ -141,7 +141,7 @@ fn a_gap_that_does_not_repeat_is_found() {
     };
     assert_eq!(periodic(&[sphere(5e-3)]), [GAP_NOT_PERIODIC]);
     assert_eq!(periodic(&[wave(0.7e-3)]), [GAP_NOT_PERIODIC]);
-    // A rough surface askew by 30 um.
+    // A rough surface tilted by 30 um.
     let grid = grid(64, 1e-3);
     let Part::SelfAffine(surface) = rough(1e-4, 0.1) else { unreachable!() };
     let mut heights = surface.heights(&grid).unwrap();
@@ -151,13 +151,13 @@ fn a_gap_that_does_not_repeat_is_found() {
         |part: &Part| Simulation { boundary: Boundary::Periodic, ..simulation(std::slice::from_ref(part)) };
     let found = before(&simulation_of(&tilted), &[]);
     assert_eq!(codes(&found), [GAP_NOT_PERIODIC]);
-    // The jump is that of the tilt, 30 um less one cell, but for the roughness on both sides.
+    // The jump is that of the tilt, 30 um minus one cell, except for the roughness on both sides.
     assert!((found[0].value.unwrap() / 3e-5 - 1.0).abs() < 0.3, "{found:?}");
 
     assert_eq!(periodic(&[wave(0.5e-3)]), QUIET);
     assert_eq!(periodic(&[rough(1e-4, 0.1)]), QUIET);
     assert_eq!(periodic(&[]), QUIET);
-    // A groove whose edge stands on the border is as sharp inside.
+    // A groove with an edge on the border is equally sharp inside.
     let groove = Array2::from_shape_fn((64, 64), |(i, _)| if i < 20 { 1e-6 } else { 0.0 });
     assert_eq!(periodic(&[Part::Heights { name: "groove".into(), heights: groove }]), QUIET);
 }
@@ -217,7 +217,7 @@ fn contacts_and_spots_of_a_few_cells_are_found() {
     let found = after(light, &parts);
     assert_eq!(codes(&found), [FEW_CONTACT_CELLS, SPOTS_UNRESOLVED]);
     assert_eq!(found[0].rows, Some([0, 1]));
-    // Every contact begins with a cell: a ramp that leads to a resolved contact is silent.
+    // Every contact begins with one cell: a ramp that leads to a resolved contact has no finding.
     let ramp = loaded(Control::Load, History::Ramp { value: 0.01, duration: 1.0 });
     let times = TimeGrid::Logarithmic { end: 1.0, steps: 8, first: 1e-5 };
     let found = after(Simulation { loading: ramp, times, ..simulation(&parts) }, &parts);
@@ -262,7 +262,7 @@ fn a_temperature_that_changes_within_a_step_is_told_where_it_matters() {
     };
     let held = || loaded(Control::Approach, History::Step { value: 1e-6 });
     let ramp = || loaded(Control::Load, History::Ramp { value: 0.01, duration: 10.0 });
-    // One clock and a held approach: exact. Two clocks, or a load that moves: not.
+    // One reduced time and a held approach: exact. Two reduced times, or a load that changes: not exact.
     assert_eq!(codes(&before(&of(5, Creep::elastic(1e-6), held()), &parts)), QUIET);
     for few in [of(5, zener(), held()), of(5, Creep::elastic(1e-6), ramp())] {
         let found = before(&few, &parts);
@@ -302,7 +302,7 @@ fn steps_too_long_for_a_falling_load_are_found() {
     assert_eq!((found[0].value, found[0].rows), (Some(2.0), Some([5, 6])));
     assert_eq!(codes(&before(&of(Control::Load, 0.01, 1.0, 30), &parts)), QUIET);
     assert_eq!(codes(&before(&of(Control::Approach, 1e-6, 1.0, 6), &parts)), [STEPS_TOO_LONG]);
-    // Area and approach of a rising load are exact in any step, its pressures are not, and its heat even less.
+    // Under a rising load area and approach are exact in any step, the pressures are not, and the heat even less.
     let rising = |steps, list| {
         let ramp = loaded(Control::Load, History::Ramp { value: 0.01, duration: 1.0 });
         let quantities = Quantities { list, ..Quantities::default() };
@@ -322,7 +322,7 @@ fn steps_too_long_for_a_falling_load_are_found() {
     let terms: Vec<(f64, f64)> = (0..24).map(|n| (1e6, 10f64.powf(f64::from(n) / 4.0 - 3.0))).collect();
     let broad = crate::material::Relaxation::absolute(1e6, &terms).unwrap().to_creep().unwrap();
     assert_eq!(codes(&before(&Simulation { creep: broad, ..few }, &parts)), [STEPS_TOO_LONG]);
-    // An elastic body follows any step, and so does one that is relaxed all the time, or never.
+    // An elastic body is exact in any step, and so is one that is relaxed all the time or never.
     let elastic = Simulation { creep: Creep::elastic(1e-6), ..of(Control::Load, 0.01, 1.0, 6) };
     assert_eq!(codes(&before(&elastic, &parts)), QUIET);
     for time in [1e-3, 1e3] {
@@ -336,7 +336,7 @@ fn steps_too_long_for_a_falling_load_are_found() {
     assert_eq!(codes(&before(&of_load(History::Step { value: 0.01 }), &parts)), QUIET);
     let found = before(&of_load(History::Ramp { value: 0.01, duration: 1.0 }), &parts);
     assert!(found.iter().all(|finding| finding.severity == Severity::Note), "{found:?}");
-    // The scatter of a measured history is no course.
+    // The scatter of a measured history is not a change of the load.
     let points =
         (0..60).map(|k| (0.1 * f64::from(k), 1e-6 * (f64::from(k) + 1.5 * f64::from(k % 2)))).collect();
     let measured = loaded(Control::Approach, History::Table { points });
@@ -368,7 +368,7 @@ fn a_broken_energy_balance_is_found() {
     balance.see(2, [6.64e-9, 2.28e-9]);
     let found = balance.finding().unwrap();
     assert_eq!((found.code.as_ref(), found.rows), (ENERGY_BALANCE, Some([2, 2])));
-    // A march with energies is judged, and its own balance holds.
+    // A run with energies is checked, and its balance holds.
     let parts = [sphere(5e-3)];
     let quantities = Quantities::of([Quantity::ExternalWork]);
     let times = TimeGrid::Uniform { end: 1.0, steps: 40 };
@@ -500,7 +500,7 @@ fn a_half_space_that_is_thinner_than_its_contact_needs_is_told() {
     let thin = found.iter().find(|finding| finding.code == THIN_BODY).expect("a fifth of the thickness");
     assert!(thin.is_warning() && thin.value == Some(radius) && thin.rows.is_some(), "{thin:?}");
     assert!(thin.text.contains("about 20 %"), "{}", thin.text);
-    // A periodic domain of 1.6 times the thickness has waves that see what lies below.
+    // A periodic domain of 1.6 times the thickness has waves that are affected by the base.
     let periodic = Simulation { boundary: Boundary::Periodic, ..simulation(&parts) };
     let side = periodic.grid.size()[0];
     for (thickness, told) in [(side / 1.6, true), (side / 1.4, false)] {

@@ -14,7 +14,7 @@ const WIDEST: f64 = 0.1;
 const LONGEST: f64 = 1.5;
 const ADVICE: &str = "Describe it by [[body.layer]] (base = \"rigid\", or the material below).";
 
-/// A contact of that radius on a body of that thickness \[m\], called "The expected contact" or as `words` say.
+/// A contact of this radius on a body of this thickness \[m\]; `words` name it, for example "The expected contact".
 pub fn thin_body(words: &str, radius: f64, thickness: f64) -> Option<Finding> {
     (radius > WIDEST * thickness).then(|| {
         let stiffer = match radius / thickness {
@@ -31,7 +31,7 @@ pub fn thin_body(words: &str, radius: f64, thickness: f64) -> Option<Finding> {
     })
 }
 
-/// A periodic domain whose longest wave sees what lies below the body.
+/// A periodic domain whose longest wave is affected by the base below the body.
 pub(super) fn long_waves(grid: &Grid, thickness: f64) -> Option<Finding> {
     let longest = grid.longest_side();
     (longest > LONGEST * thickness).then(|| {

@@ -1,11 +1,11 @@
 //! Steps that are too long for the history and the material.
 //!
-//! A step is exact where load or approach is held below the hardness, however long it is. Where the load falls, or the approach
-//! moves, the contact goes its own way inside of a step, and the material relaxes on the way: such a course must be followed in
-//! steps. Under a load that rises approach and area are exact, but pressures and energies are not. Under a held approach the
-//! displacement of cells at the hardness goes on. A temperature that changes the rate of a material within a step is followed
-//! by the material, but not by a load or approach that moves, nor by the other body. A periodic load must be followed in any case: a few steps to a period show
-//! another load. Adaptive steps look after themselves.
+//! A step of any length is exact while load or approach is held below the hardness. If the load falls or the approach changes,
+//! the contact changes within a step while the material relaxes: this needs several steps. Under a rising load approach and area
+//! are exact, but pressures and energies are not. Under a held approach the displacement of cells at the hardness still changes.
+//! A temperature that changes the rate of a material within a step is exact for this material, but not for a changing load or
+//! approach, nor for the other body. A periodic load always needs several steps per period, because a few steps represent a
+//! different load. Adaptive steps need no check.
 
 use super::words::{digits, rows, si};
 use super::{ALIASED_HISTORY, Finding, STEPS_TOO_LONG};
@@ -13,24 +13,25 @@ use crate::load::{Control, Course, History, Stage};
 use crate::simulation::Simulation;
 use crate::time::{Instant, Plan};
 
-/// Steps to a period.
+/// Steps per period.
 const PER_PERIOD: f64 = 20.0;
-/// Steps to a course that goes one way.
+/// Steps per monotone part of the history.
 const PER_COURSE: usize = 10;
-/// Steps to a load that rises, where no energies are asked for.
+/// Steps per rising part of the load, if no energies are requested.
 const PER_RISE: usize = 4;
-/// ln of the rate of a material may change by so much in a step: the error is about 0.15 times its square.
+/// Largest change of ln of the rate of a material in a step: the error is about 0.15 times its square.
 const DRIFT: f64 = 0.5;
-/// Courses that move by less than this share of the largest value are scatter of a measured history.
+/// Changes by less than this fraction of the largest value are scatter of a measured history.
 const SMALL: f64 = 0.05;
-/// Estimated error of a step of given length, where it is estimated.
+/// Largest estimated error of a step of given length, if it is estimated.
 pub(super) const COARSE: f64 = 0.02;
-/// Relaxation times that carry less than this share of the modulus do not matter.
+/// Relaxation times with less than this fraction of the modulus are ignored.
 const SHARE: f64 = 0.05;
-/// A material relaxes during a course if one of its times is within this factor of the steps and of the course.
+/// A material relaxes during a change of the load if one of its times is within this factor of the steps and of the change's
+/// duration.
 const NEAR: f64 = 10.0;
 
-/// What the steps of a run, as far as they are known, do to its history.
+/// The findings from the steps of a run, as far as they are known.
 pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     let plan = simulation.plan();
     let mut found = vec![];
@@ -47,7 +48,7 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
         found.extend(aliased(simulation, n, stage, instants));
         for course in courses(stage, instants, energies) {
             let course = Piece { first: first + course.first, last: first + course.last, ..course };
-            // The one that lacks most.
+            // The part that lacks the most steps.
             let fewer =
                 long.as_ref().is_none_or(|other| course.steps * other.least < other.steps * course.least);
             if course.steps < course.least && fewer && relaxes(simulation, &plan, &course) {
@@ -60,7 +61,7 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     found
 }
 
-/// What steps are whose estimated error is too large in these rows: of layers that creep differently.
+/// The finding for steps whose estimated error is too large in these rows, for layers that creep differently.
 pub(super) fn coarse(error: f64, at: [usize; 2]) -> Finding {
     let text = format!(
         "The layers creep differently, and the steps are long for that ({}): pressures are off by {} % or so, load or approach by \
@@ -71,7 +72,7 @@ pub(super) fn coarse(error: f64, at: [usize; 2]) -> Finding {
     Finding::warning(STEPS_TOO_LONG, error, COARSE, text).at(at)
 }
 
-/// What too few steps do to an approach that is held while cells are at the hardness.
+/// The finding for too few steps while an approach is held with cells at the hardness.
 pub(super) fn held_at_hardness(simulation: &Simulation) -> Option<Finding> {
     let plan = simulation.plan();
     let stages = &simulation.loading.stages;
@@ -97,7 +98,8 @@ pub(super) fn held_at_hardness(simulation: &Simulation) -> Option<Finding> {
     long.min_by_key(|piece| piece.steps).map(|piece| too_long(&plan, piece))
 }
 
-/// A step in which the temperature changes the rate of a material that a moving course, or another clock, depends on.
+/// A step in which the temperature changes the rate of a material while the load or approach changes or the other body has
+/// another reduced time.
 fn drifting(simulation: &Simulation, plan: &Plan, instants: &[Instant], first: usize) -> Option<Finding> {
     let clocks = simulation.parts().filter(|creep| !creep.terms.is_empty() || creep.fluidity > 0.0).count();
     let mut worst = (DRIFT, 0);
@@ -127,7 +129,7 @@ fn drifting(simulation: &Simulation, plan: &Plan, instants: &[Instant], first: u
     })
 }
 
-/// A part of a stage in which the value goes one way.
+/// A part of a stage in which the value is monotone.
 struct Piece {
     /// Rows of the plan: the step that begins it, and the last.
     first: usize,
@@ -136,9 +138,9 @@ struct Piece {
     /// Sum of its steps and the shortest of them \[s\].
     length: f64,
     shortest: f64,
-    /// Steps that it takes.
+    /// Its number of steps.
     least: usize,
-    /// What happens there.
+    /// The change of the value.
     what: &'static str,
 }
 
@@ -155,7 +157,7 @@ impl Piece {
     }
 }
 
-/// The courses of a stage that a step does not follow by itself.
+/// The parts of a stage for which a single step is not exact.
 fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
     if matches!(stage.course, Course::Hold | Course::Given(History::Step { .. } | History::Sine { .. })) {
         return vec![];
@@ -170,7 +172,7 @@ fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
             going = 0.0;
             continue;
         }
-        // What a ramp from the value reached begins at is not known yet.
+        // The start value of a ramp from the value reached is not known yet.
         let way = if change.is_nan() {
             1.0
         } else if change == 0.0 {
@@ -200,7 +202,7 @@ fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
     found.into_iter().filter(matters).map(|(course, _)| course).collect()
 }
 
-/// Whether the material relaxes on the times of a course, on the clock of each body.
+/// Whether the material relaxes within the times of a part, in the reduced time of each body.
 fn relaxes(simulation: &Simulation, plan: &Plan, course: &Piece) -> bool {
     let end = plan.instants[course.last].time;
     let clocks = simulation.thermal.iter().map(|body| (&body.creep, Some(&body.clock)));
@@ -210,7 +212,7 @@ fn relaxes(simulation: &Simulation, plan: &Plan, course: &Piece) -> bool {
         let Ok(relaxation) = creep.to_relaxation() else { return false };
         let stiff = relaxation.instantaneous();
         if !stiff.is_finite() {
-            // A dashpot: what counts is how long the springs beside it take.
+            // A dashpot: the relevant times are those of the springs beside it.
             return creep.terms.iter().any(|term| times.contains(&term.retardation_time));
         }
         let relaxing = relaxation.terms.iter().filter(|term| times.contains(&term.relaxation_time));

@@ -1,6 +1,6 @@
-//! Intervals that carry the choice of the model: an average over the numbers of terms, for solids and fluids.
+//! Intervals that include the choice of the model: an average over the numbers of terms, for solids and fluids.
 //!
-//! A record seldom says how many terms a material has. Each number of terms, with and without E∞, is a model with a
+//! A record seldom determines the number of terms of a material. Each number of terms, with and without E∞, is a model with a
 //! probability (see [`super::nested`]); an interval is that of draws from all of them, each model with its probability (J. A.
 //! Hoeting et al., Stat. Sci. 14 (1999) 382). Before the record is seen
 //!
@@ -12,9 +12,9 @@
 //! E∞                     uniform up to 2 E*(0)
 //! ```
 //!
-//! The intervals of E*(0) and E∞ are those of all models, those of E_i and τ_i of the models with as many terms as the best fit
-//! and of those with more terms that are more probable.
-//! Solids and fluids differ in kind: where a record allows both, an interval spans that of the solids and that of the fluids.
+//! The intervals of E*(0) and E∞ are those of all models. Those of E_i and τ_i are from the models with the number of terms of
+//! the best fit and from those with more terms that are more probable. Solids and fluids are different kinds: if a record allows
+//! both, an interval spans that of the solids and that of the fluids.
 
 use rayon::prelude::*;
 
@@ -32,14 +32,14 @@ use crate::material::LongTime;
 const BEYOND: f64 = 3.0;
 /// Largest modulus of a term, and in equilibrium, over E*(0) of the best fit.
 const STIFFEST: [f64; 2] = [4.0, 2.0];
-/// Terms beyond the number of the best fit that are tried.
+/// Number of additional terms, beyond those of the best fit, that are tried.
 const MORE: usize = 2;
-/// Depth of first touch: as far from its best value, over the largest depth, as this many standard deviations.
+/// Prior range of the depth of first touch: this many standard deviations from its best value, over the largest depth.
 const TOUCH: f64 = 6.0;
-/// Shares of the draws below and above an interval: less than 2.5 %, as the noise is itself known to a part only.
+/// Fractions of the draws below and above an interval: less than 2.5 %, because the noise itself is only known approximately.
 const TAIL: f64 = 0.015;
 
-/// A material that the record may be of.
+/// A possible material of the record.
 struct Draw {
     /// ln of its weight.
     weight: f64,
@@ -49,7 +49,7 @@ struct Draw {
     touch: f64,
 }
 
-/// All that the record may be of.
+/// All possible materials of the record.
 pub(super) struct Average {
     draws: Vec<Draw>,
     /// Terms of the best fit.
@@ -118,7 +118,7 @@ impl Average {
         self.interval(value, |draw| Some(draw.touch))
     }
 
-    /// The modulus (part 0) or time (part 1) of a term of the best fit. Of a draw with more terms the largest ones count.
+    /// The modulus (part 0) or time (part 1) of a term of the best fit. If a draw has more terms, its largest ones are used.
     pub(super) fn term(&self, value: f64, k: usize, part: usize) -> Interval {
         let numbers = self.numbers();
         self.interval(value, |draw| {
@@ -127,7 +127,7 @@ impl Average {
         })
     }
 
-    /// The interval of what a draw has, about the value of the best fit.
+    /// The interval of a property of the draws, around the value of the best fit.
     fn interval(&self, value: f64, of: impl Fn(&Draw) -> Option<f64>) -> Interval {
         let values = |fluid: bool| -> Vec<(f64, f64)> {
             let alike = self.draws.iter().filter(|draw| (draw.equilibrium == 0.0) == fluid);
@@ -143,7 +143,7 @@ impl Average {
     }
 }
 
-/// So many terms of the largest moduli, times increasing.
+/// This number of terms with the largest moduli, in order of increasing times.
 fn largest(terms: &[[f64; 2]], count: usize) -> Vec<[f64; 2]> {
     let mut terms = terms.to_vec();
     terms.sort_by(|a, b| b[0].total_cmp(&a[0]));
@@ -152,7 +152,7 @@ fn largest(terms: &[[f64; 2]], count: usize) -> Vec<[f64; 2]> {
     terms
 }
 
-/// Between which all but the tails of values with weights lie.
+/// Bounds of weighted values without the tails.
 fn quantiles(mut values: Vec<(f64, f64)>) -> [f64; 2] {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let whole: f64 = values.iter().map(|(_, weight)| weight).sum();
@@ -174,7 +174,7 @@ struct Kind {
     touch: bool,
 }
 
-/// What is known before the record is seen.
+/// The prior.
 struct Prior {
     window: [f64; 2],
     stiffest: [f64; 2],
@@ -187,7 +187,7 @@ impl Kind {
         2 * self.terms + usize::from(self.solid) + usize::from(self.touch)
     }
 
-    /// (ln τ), E∞ and touch of a point of the unit cube.
+    /// Terms (ln τ), E∞ and touch of a point of the unit cube.
     fn material(self, prior: &Prior, point: &[f64], terms: &mut Vec<[f64; 2]>) -> (f64, f64) {
         let modulus = |u: f64| prior.stiffest[0] * u * u;
         let [first, last] = prior.window.map(f64::ln);

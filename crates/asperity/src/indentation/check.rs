@@ -1,17 +1,17 @@
-//! What no record of an indentation is, and options out of their range.
+//! Checks of the record and of the options.
 
 use super::{IndentationOptions, IndentationRecord};
 use crate::error::{Error, Result};
 use crate::material::LongTime;
 
-/// Fewer rows tell nothing.
+/// Smallest number of rows.
 const FEWEST: usize = 10;
 const MOST: usize = 10_000_000;
-/// Larger numbers, and a load or depth less than one over it, nobody measures.
+/// Larger numbers, and loads or depths below its inverse, are not plausible measurements.
 pub(super) const LARGEST: f64 = 1e30;
-/// More terms no single record determines.
+/// A single record does not determine more terms.
 pub(super) const MOST_TERMS: usize = 6;
-/// Loads below minus this share of the largest are no noise.
+/// Loads below minus this fraction of the largest are not noise.
 const PULL: f64 = 0.05;
 
 pub(super) fn options(options: &IndentationOptions) -> Result<()> {

@@ -1,18 +1,19 @@
-//! Which channel the test controlled.
+//! Detection of the channel that the test controlled.
 //!
-//! A controller runs ramps and holds: its channel is straight piece by piece, while the answer of the body bends (it relaxes or
-//! creeps, and goes with a power of the depth). So the channel that fewer straight pieces describe to within its noise is the one
-//! that was controlled. Where neither needs fewer (a sine, an elastic cone), the one with less noise is taken.
+//! A controller applies ramps and holds: its channel is piecewise straight, while the response of the body is curved (it relaxes
+//! or creeps, and is proportional to a power of the depth). The channel that needs fewer straight pieces to be described within
+//! its noise is therefore the controlled one. If both need the same number (a sine, an elastic cone), it is the one with less
+//! noise.
 
 use std::cmp::Ordering;
 
 use super::{Given, noise};
 
-/// Straight pieces that a history may have.
+/// Largest number of straight pieces of a history.
 const PIECES: usize = 8;
-/// Rows that are looked at.
+/// Number of rows used.
 const ROWS: usize = 200;
-/// Misfit over the largest value that is none.
+/// Misfit over the largest value that counts as zero.
 const STRAIGHT: f64 = 1e-4;
 
 /// The channel that the test controlled.
@@ -30,25 +31,25 @@ pub(super) fn controlled(times: &[f64], loads: &[f64], depths: &[f64]) -> Given 
     }
 }
 
-/// The least number of straight pieces whose misfit is no more than noise, or one more than [`PIECES`].
+/// The smallest number of straight pieces whose misfit is within the noise, or one more than [`PIECES`].
 fn pieces_needed(times: &[f64], values: &[f64], variances: &[f64]) -> usize {
     let every = times.len().div_ceil(ROWS);
     let pick = |column: &[f64]| column.iter().copied().step_by(every).collect::<Vec<f64>>();
     let [t, y, noise] = [times, values, variances].map(pick);
     let n = t.len() as f64;
     let largest = y.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-    // The noise is itself known to a part only; a sum of n squares scatters by sqrt(2/n).
+    // The noise itself is only known approximately; a sum of n squares scatters by sqrt(2/n).
     let noise = noise.iter().sum::<f64>() / n * (1.1 + 3.0 * (2.0 / n).sqrt());
     let enough = n * (noise + (STRAIGHT * largest).powi(2));
     let found = straight_pieces(&t, &y).iter().position(|left| *left <= enough);
     found.map_or(PIECES + 1, |place| place + 1)
 }
 
-/// Least sum of squares about 1, 2, ..., [`PIECES`] straight lines, each through rows of its own, by dynamic programming.
+/// Smallest sum of squares about 1, 2, ..., [`PIECES`] straight lines, each through separate rows, by dynamic programming.
 fn straight_pieces(t: &[f64], y: &[f64]) -> Vec<f64> {
     let n = t.len();
     let sums = Sums::of(t, y);
-    // Least squares of the first `end` rows in so many pieces.
+    // Least squares of the first `end` rows in this number of pieces.
     let mut best: Vec<f64> = (0..=n).map(|end| sums.about_line(0, end)).collect();
     let mut left = vec![best[n]];
     for _ in 1..PIECES {

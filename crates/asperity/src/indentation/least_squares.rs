@@ -1,4 +1,4 @@
-//! Levenberg-Marquardt on the parameters of a record (D. W. Marquardt, J. SIAM 11 (1963) 431), and how well it knows them to
+//! Levenberg-Marquardt on the parameters of a record (D. W. Marquardt, J. SIAM 11 (1963) 431), and their standard deviations to
 //! first order.
 
 use rayon::prelude::*;
@@ -9,12 +9,12 @@ use crate::error::{Error, Result};
 
 /// Steps of the central differences, in logarithms: the model's own steps are 1e-5 of its values.
 const STEP: f64 = 1e-2;
-/// Steps of the one-sided differences on the way.
+/// Steps of the one-sided differences during the search.
 const SIDESTEP: f64 = 3e-3;
-/// Gains of the sum of squares that are slow, and how many of them in a row end the search.
+/// A decrease of the sum of squares below this is slow; this number of consecutive slow decreases ends the search.
 const SLOW: f64 = 1e-4;
 const PATIENCE: usize = 3;
-/// Longest move of a parameter: a factor of e.
+/// Largest change of a parameter: a factor of e.
 const LONGEST: f64 = 1.0;
 const MOST_ITERATIONS: usize = 60;
 
@@ -23,7 +23,7 @@ pub(super) struct Solution {
     pub(super) at: Vec<f64>,
     /// Weighted, over the largest measured value.
     pub(super) residuals: Vec<f64>,
-    /// Standard deviations of the parameters to first order; infinite where the record shows nothing of one.
+    /// Standard deviations of the parameters to first order; infinite if the record does not determine a parameter.
     pub(super) deviations: Vec<f64>,
 }
 
@@ -58,7 +58,7 @@ pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> 
         let longest = step.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
         let share = if longest > LONGEST { LONGEST / longest } else { 1.0 };
         let trial: Vec<f64> = at.iter().zip(&step).map(|(x, s)| x + share * s).collect();
-        // Parameters that the model cannot follow (a contact that opens from within) are no improvement.
+        // Parameters for which the model fails (a contact that opens from within) are no improvement.
         let moved = model.residuals(parameters, &trial).ok();
         let better = moved.filter(|moved| squares(moved) < squares(&residuals));
         match better {
@@ -88,7 +88,7 @@ pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> 
     Ok(Solution { at, residuals, deviations })
 }
 
-/// Columns of dr/dx by one-sided differences, to go on with.
+/// Columns of dr/dx by one-sided differences, for the search.
 fn slopes(model: &Model, parameters: &Parameters, at: &[f64], residuals: &[f64]) -> Result<Vec<Vec<f64>>> {
     let column = |k: usize| {
         let moved = |by: f64| {
@@ -102,7 +102,7 @@ fn slopes(model: &Model, parameters: &Parameters, at: &[f64], residuals: &[f64])
     (0..at.len()).into_par_iter().map(column).collect()
 }
 
-/// Columns of dr/dx by central differences; one-sided where the model cannot go one way.
+/// Columns of dr/dx by central differences; one-sided if the model fails on one side.
 fn jacobian(model: &Model, parameters: &Parameters, at: &[f64]) -> Result<Vec<Vec<f64>>> {
     let moved = |k: usize, by: f64| {
         let mut there = at.to_vec();
@@ -141,14 +141,14 @@ fn damped_step(normal: &[Vec<f64>], gradient: &[f64], damping: f64) -> Option<Ve
     step.iter().all(|s| s.is_finite()).then_some(step)
 }
 
-/// (J'J)⁻¹ Σ r²/(n - k) over the n rows and k parameters; `None` where J'J is singular.
+/// (J'J)⁻¹ Σ r²/(n - k) over the n rows and k parameters; `None` if J'J is singular.
 fn covariance(columns: &[Vec<f64>], residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
     let inverse = invert(system(columns, residuals).0)?;
     let variance = squares(residuals) / (residuals.len() - columns.len()) as f64;
     Some(inverse.into_iter().map(|line| line.into_iter().map(|x| variance * x).collect()).collect())
 }
 
-/// The inverse of a symmetric, positive definite matrix by Gauss-Jordan on its scaled form; `None` where it is singular.
+/// The inverse of a symmetric, positive definite matrix by Gauss-Jordan elimination on its scaled form; `None` if it is singular.
 pub(super) fn invert(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     let n = matrix.len();
     let scale: Vec<f64> = (0..n).map(|k| matrix[k][k].sqrt()).collect();

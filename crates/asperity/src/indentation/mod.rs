@@ -1,8 +1,8 @@
 //! Indentation in reverse: the relaxation function of a half-space from a record of load and depth over time.
 //!
-//! A rigid sphere (or cone) is pressed into the body, held, retracted, in any order. Between depth and load stands the
-//! exact one-dimensional equivalent of [`crate::reference::Mdr`], unloading and loading again included. One channel is
-//! taken as given, the one that the test controlled; the model has to meet the other by least squares:
+//! A rigid sphere (or cone) is pressed into the body, held, retracted, in any order. The relation between depth and load is the
+//! exact one-dimensional equivalent of [`crate::reference::Mdr`], including unloading and reloading. One channel is taken as
+//! given, the one that the test controlled; the model is fitted to the other by least squares:
 //!
 //! ```text
 //! E*(t) = E∞ + Σ E_i exp(-t/τ_i)        unknown: ln E∞, ln E_i, ln τ_i (and the depth of first touch)
@@ -16,12 +16,12 @@
 //! W = ∫ E*(t - s) dφ(s)        φ = ∫ C(t - s) dW(s)
 //! ```
 //!
-//! so that the best times of a logarithmic grid are found without a march.
+//! so the best times of a logarithmic grid are found without time stepping.
 //!
-//! **Intervals.** 95 %, from an average over all numbers of terms, for solids and fluids, each with its probability
-//! (nested sampling on a record that is linear in the moduli near the best fit). So they do not ask whether the number of terms
-//! is right, nor whether the record knows each parameter to a few percent. The seed is fixed: the same record gives the same
-//! intervals. An interval that spans more than a factor of 10 is told as "not determined by this record".
+//! **Intervals.** 95 %, from an average over all numbers of terms, for solids and fluids, each with its probability (nested
+//! sampling on a record that is linear in the moduli near the best fit). They therefore do not assume that the number of terms is
+//! correct, nor that the record determines each parameter to a few percent. The seed is fixed: the same record gives the same
+//! intervals. An interval that spans more than a factor of 10 is reported as "not determined by this record".
 
 mod average;
 mod check;
@@ -53,7 +53,7 @@ use parameters::Parameters;
 pub struct IndentationRecord<'a> {
     /// Times \[s\], increasing.
     pub times: &'a [f64],
-    /// Loads \[N\]; noise may make some negative.
+    /// Loads \[N\]; some may be negative because of noise.
     pub loads: &'a [f64],
     /// Depths \[m\] from first touch; below 0 before it.
     pub depths: &'a [f64],
@@ -64,28 +64,28 @@ pub struct IndentationRecord<'a> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Given {
-    /// The depth; the model meets the load.
+    /// The depth; the model is fitted to the load.
     Depth,
-    /// The load; the model meets the depth.
+    /// The load; the model is fitted to the depth.
     Load,
 }
 
-/// How to fit.
+/// Options of the fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IndentationOptions {
-    /// The channel that the test controlled; by default the one whose history a few straight pieces describe better, and
-    /// where neither is straighter the one with less noise.
+    /// The channel that the test controlled; by default the one whose history needs fewer straight pieces, or the one with less
+    /// noise if both need the same number.
     pub given: Option<Given>,
-    /// Number of terms, at most 6; by default as many as the record calls for (least Bayesian information criterion).
+    /// Number of terms, at most 6; by default the number with the smallest Bayesian information criterion.
     pub terms: Option<usize>,
-    /// What happens at times longer than the record; default: whatever fits better.
+    /// Behaviour at times longer than the record; default: the one that fits better.
     pub long_time: LongTime,
     /// Whether the depth of first touch is fitted too; default no: it is 0.
     pub fit_touch: bool,
-    /// Springs of the one-dimensional model out to the largest contact; default 150, at least 20. The load is then known
-    /// to some 1/springs².
+    /// Springs of the one-dimensional model out to the largest contact; default 150, at least 20. The relative error of the load
+    /// is then about 1/springs².
     pub springs: usize,
-    /// The thin sample, where it is none as deep as a half-space.
+    /// The thin sample, if it is not as deep as a half-space.
     pub layer: Option<SampleLayer>,
     /// Largest misfit (rms, over the largest value) before a record is refused, default 0.1.
     pub limit: f64,
@@ -107,16 +107,16 @@ impl Default for IndentationOptions {
 
 /// A thin sample: a layer of one material on a rigid base, such as a gel or a cell on glass.
 ///
-/// The record is then described by the load of the indenter on the elastic layer ([`crate::reference::LayerContact`]) and the same
-/// hereditary relation: layer and half-space differ in the weight and the profile of the springs of the one-dimensional model.
-/// So unloading and loading again are exact here too, as long as Poisson's ratio does not change with time.
+/// The record is then described by the load of the indenter on the elastic layer ([`crate::reference::LayerContact`]) and the
+/// same hereditary relation: layer and half-space differ in the weight and the profile of the springs of the one-dimensional
+/// model. Unloading and reloading are therefore exact here too, provided that Poisson's ratio does not change with time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleLayer {
     /// Thickness \[m\].
     pub thickness: f64,
     /// Poisson's ratio, at most 0.5.
     pub poisson: f64,
-    /// To the rigid base.
+    /// The interface to the rigid base.
     pub interface: Interface,
 }
 
@@ -125,18 +125,18 @@ pub struct SampleLayer {
 pub struct Interval {
     /// The value of the best fit.
     pub value: f64,
-    /// Lower end; 0 where there is none.
+    /// Lower end; 0 if there is none.
     pub low: f64,
-    /// Upper end; infinite where there is none.
+    /// Upper end; infinite if there is none.
     pub high: f64,
-    /// Whether the record determines it: the ends are no more than a factor of 10 apart (or an equilibrium modulus is less
-    /// than a twentieth of E*(0) at most). Otherwise `value` is one of many that fit as well.
+    /// Whether the record determines it: the ends differ by at most a factor of 10 (or the upper end of an equilibrium modulus is
+    /// below a twentieth of E*(0)). Otherwise `value` is one of many that fit equally well.
     pub determined: bool,
 }
 
-/// Largest ratio of the ends of an interval of what is determined.
+/// Largest ratio of the ends of an interval of a determined parameter.
 const DETERMINED: f64 = 10.0;
-/// An equilibrium modulus below this share of E*(0) is as good as 0.
+/// An equilibrium modulus below this fraction of E*(0) counts as 0.
 const NEGLIGIBLE: f64 = 0.05;
 
 impl Interval {
@@ -150,42 +150,43 @@ impl Interval {
     }
 }
 
-/// What a record tells of its material.
+/// The result of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IndentationFit {
     /// Contact relaxation modulus E*(t) \[Pa\]: E(t)/(1 - ν²), 2 G(t)/(1 - ν).
     pub relaxation: Relaxation,
-    /// E∞ \[Pa\]; 0 for a fluid, with what it may be at most.
+    /// E∞ \[Pa\]; 0 for a fluid, with its upper bound.
     pub equilibrium: Interval,
     /// E*(0) \[Pa\].
     pub instantaneous: Interval,
     /// E_i \[Pa\] and τ_i \[s\] of each term, in the order of `relaxation`.
     pub terms: Vec<[Interval; 2]>,
-    /// Depth of first touch \[m\]; 0 where it was not fitted.
+    /// Depth of first touch \[m\]; 0 if it was not fitted.
     pub touch: Interval,
-    /// The channel that was taken as it is.
+    /// The channel that was taken as given.
     pub given: Given,
-    /// Model of the other channel at each row that was used \[N or m\]. Where the load is given and less than 2 % of the
-    /// largest, the depth of the surface: it is not compared with that of the indenter.
+    /// Model of the other channel at each row that was used \[N or m\]. If the load is given and less than 2 % of the largest, it
+    /// is the depth of the surface, which is not compared with that of the indenter.
     pub predicted: Vec<f64>,
     /// Numbers of the rows that were used: every k-th of a long record.
     pub rows: Vec<usize>,
-    /// Root of the mean square of model less measurement \[N or m\].
+    /// Root mean square of model minus measurement \[N or m\].
     pub rms: f64,
     /// The same over the largest measured value.
     pub relative_rms: f64,
-    /// Σ (r_k - r_(k-1))²/Σ r_k² of the residuals r: near 2 for independent errors; well below where the model bends away
-    /// from the record or the noise is not white. The intervals are wider by the correlation of neighbours then.
+    /// Σ (r_k - r_(k-1))²/Σ r_k² of the residuals r: near 2 for independent errors; well below 2 if the model deviates
+    /// systematically from the record or the noise is not white. The intervals are then wider according to the correlation of
+    /// neighbours.
     pub durbin_watson: f64,
     /// Probability of each number of terms, from 0 on.
     pub numbers: Vec<f64>,
-    /// Step and length of the record \[s\]; one step in ten may be shorter. Terms beyond are extrapolation.
+    /// Step and length of the record \[s\]; one step in ten may be shorter. Terms outside this range are extrapolation.
     pub window: [f64; 2],
-    /// What should be known before the numbers are believed, in sentences.
+    /// Notes for the user, in sentences.
     pub notes: Vec<String>,
 }
 
-/// More rows are thinned to about this number.
+/// Longer records are thinned to about this number of rows.
 const MANY: usize = 2000;
 
 /// Fits the contact relaxation modulus of a half-space to a record of its indentation by a rigid body of revolution.
@@ -213,9 +214,9 @@ const MANY: usize = 2000;
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where the columns differ in length or have fewer than 10 rows, a number is not finite, times do not
-/// increase, nothing is pressed, loads pull, more terms are asked for than the record determines, or every material of
-/// this kind stays further from the record than `options.limit`.
+/// [`Error::Invalid`] if the columns differ in length or have fewer than 10 rows, a number is not finite, times do not increase,
+/// there is no indentation, loads are tensile, more terms are requested than the record determines, or the misfit of every
+/// material of this kind exceeds `options.limit`.
 pub fn fit_indentation(
     profile: MdrProfile,
     record: &IndentationRecord,
@@ -291,7 +292,7 @@ fn require_fit(relative_rms: f64, limit: f64) -> Result<()> {
     ))
 }
 
-/// Refuses more terms than the record knows anything of.
+/// Refuses more terms than the record determines.
 fn require_known(parameters: &Parameters, best: &Solution) -> Result<()> {
     let worst = parameters.worst(&best.deviations).filter(|(_, deviation)| *deviation > select::UNKNOWN);
     let Some((name, deviation)) = worst else { return Ok(()) };
@@ -306,7 +307,7 @@ fn require_known(parameters: &Parameters, best: &Solution) -> Result<()> {
     ))
 }
 
-/// Rows of a record that are used: all, or every k-th and the last.
+/// Rows of a record that the fit uses: all, or every k-th and the last.
 fn thinned(rows: usize) -> Vec<usize> {
     let every = rows.div_ceil(MANY).max(1);
     let mut kept: Vec<usize> = (0..rows).step_by(every).collect();

@@ -1,14 +1,14 @@
 //! The record as a function of the parameters.
 //!
-//! Both channels are noisy. Noise δ of the given channel moves the model by its slope S = d model/d given, so that the
+//! Both channels are noisy. Noise δ of the given channel changes the model in proportion to its slope S = d model/d given, so the
 //! residual of a row has the variance ("effective variance"; J. Orear, Am. J. Phys. 50 (1982) 912)
 //!
 //! ```text
 //! v_k = σ_fitted² + S_k² σ_given²
 //! ```
 //!
-//! S_k = 2 a_k ∫ E* over the step under a given depth, one over it under a given load; a_k is the radius of the contact. It moves
-//! with the parameters: with a fixed one, the noise of the given channel would make the body seem softer than it is.
+//! S_k = 2 a_k ∫ E* over the step under a given depth, one over it under a given load; a_k is the radius of the contact. It
+//! changes with the parameters: with a fixed radius, the noise of the given channel would make the body appear too soft.
 
 use super::check::LARGEST;
 use super::noise;
@@ -18,24 +18,24 @@ use crate::error::{Error, Result, positive};
 use crate::material::Relaxation;
 use crate::reference::{LayerContact, Mdr, MdrProfile, MdrTarget, SpringProfile};
 
-/// Steps between two rows where the load is given: its response is of second order in them (under a given depth one
-/// step is exact).
+/// Steps between two rows if the load is given: the response is of second order in the step (under a given depth one step is
+/// exact).
 const SUBSTEPS: usize = 2;
 
-/// Loads below this share of the largest are none, where the load is given.
+/// If the load is given, loads below this fraction of the largest count as no load.
 const LOADED: f64 = 0.02;
 
-/// Least noise of the fitted channel that is believed, over its largest value: the error of the model and of the digits.
+/// Smallest assumed noise of the fitted channel, over its largest value: the error of the model and of the digits.
 const LEAST_NOISE: f64 = 1e-4;
-/// Least noise (squared) of a row, over the largest of all rows: noise never quite vanishes with the value.
+/// Smallest noise (squared) of a row, over the largest of all rows: noise never vanishes completely with the value.
 const LEAST_SHARE: f64 = 0.01;
 
 /// A record, and the rule that predicts one of its channels from the other.
 pub(super) struct Model {
     profile: MdrProfile,
-    /// The body, where it is a layer.
+    /// The body, if it is a layer.
     layer: Option<(LayerContact, SpringProfile)>,
-    /// From the first row on \[s\].
+    /// Times from the first row on \[s\].
     pub(super) times: Vec<f64>,
     pub(super) loads: Vec<f64>,
     pub(super) depths: Vec<f64>,
@@ -52,10 +52,10 @@ pub(super) struct Model {
     given_noise: Vec<f64>,
 }
 
-/// The fitted channel as the model has it.
+/// The fitted channel according to the model.
 pub(super) struct Prediction {
     pub(super) values: Vec<f64>,
-    /// How far a value moves with the given channel of its row.
+    /// Change of a value per change of the given channel of its row.
     slopes: Vec<f64>,
 }
 
@@ -87,7 +87,7 @@ impl Model {
         let layer = match options.layer {
             None => None,
             Some(SampleLayer { thickness, poisson, interface }) => {
-                // The fit may move the depth of first touch.
+                // The fit may change the depth of first touch.
                 let deepest = 1.2 * largest(&depths);
                 let layer = LayerContact::new(profile, thickness, poisson, interface, deepest)?;
                 let springs = layer.springs();
@@ -110,7 +110,7 @@ impl Model {
             Given::Depth => largest(&loads),
             Given::Load => largest(&depths),
         };
-        // Without load a depth tells nothing: the indenter may be anywhere above the surface.
+        // Without load the depth contains no information: the indenter may be anywhere above the surface.
         let least = LOADED * largest(&loads);
         let compared = loads.iter().map(|load| given == Given::Depth || *load > least).collect();
         let (fitted, taken) = match given {
@@ -195,8 +195,8 @@ impl Model {
         }
     }
 
-    /// Model less measurement at each row where they are compared, over the largest measured value, and weighted: rows of
-    /// more noise than the mean of the fitted channel's count less.
+    /// Model minus measurement at each row where they are compared, over the largest measured value, and weighted: rows with more
+    /// noise than the mean of the fitted channel have less weight.
     pub(super) fn residuals(&self, parameters: &Parameters, at: &[f64]) -> Result<Vec<f64>> {
         let predicted = self.predict(parameters, at)?;
         let apart = predicted.values.iter().zip(self.measured()).map(|(model, measured)| model - measured);
@@ -230,7 +230,7 @@ impl Model {
         self.respond(&parameters.relaxation(at), touch, self.taken(), self.springs)
     }
 
-    /// The answer of a body to a history of the given channel, the surface being at the depth `touch`.
+    /// The response of a body to a history of the given channel, with the surface at the depth `touch`.
     pub(super) fn respond(
         &self,
         relaxation: &Relaxation,
@@ -245,7 +245,7 @@ impl Model {
         let mut prediction = Prediction { values: vec![], slopes: vec![] };
         for n in 0..self.times.len() {
             let dt = if n == 0 { 0.0 } else { self.times[n] - self.times[n - 1] };
-            // Load over depth, both moved within the step.
+            // Load over depth, both changed within the step.
             let stiffness = |radius: f64| 2.0 * radius * step_modulus(relaxation, dt);
             let (value, slope) = match self.given {
                 Given::Depth => {
@@ -278,7 +278,7 @@ impl Model {
     }
 }
 
-/// Mean of E*(t) over a step: what a ramp within it is met with.
+/// Mean of E*(t) over a step: the effective modulus for a ramp within it.
 fn step_modulus(relaxation: &Relaxation, dt: f64) -> f64 {
     let share = |x: f64| if x > 1e-9 { -(-x).exp_m1() / x } else { 1.0 };
     let terms = relaxation.terms.iter().map(|term| term.modulus * share(dt / term.relaxation_time));

@@ -1,8 +1,8 @@
-//! Nested sampling: how probable a model is, and which of its parameters are (J. Skilling, Bayesian Analysis 1 (2006) 833).
+//! Nested sampling: the probability of a model and of its parameters (J. Skilling, Bayesian Analysis 1 (2006) 833).
 //!
-//! Parameters live in a unit cube of uniform prior probability. Of `LIVE` points the one of least likelihood L_i is taken out
-//! and replaced by another with a larger one, over and over; the part of the cube that is left shrinks by exp(-1/LIVE) each
-//! time. So
+//! Parameters are points of a unit cube of uniform prior probability. Of `LIVE` points, the one with the smallest likelihood L_i
+//! is removed and replaced by another with a larger likelihood. This is repeated; the remaining part of the cube shrinks by
+//! exp(-1/LIVE) each time. Therefore
 //!
 //! ```text
 //! Z = ∫ L dX ≈ Σ L_i (X_(i-1) - X_i),   X_i = exp(-i/LIVE)
@@ -10,22 +10,22 @@
 //!
 //! is the probability of the record under the model, and the points taken out, with the weights of this sum, are draws from the
 //! probability of the parameters. New points come from a random walk along differences of living points (C. J. F. ter Braak,
-//! Stat. Comput. 16 (2006) 239), which knows the directions in which the parameters are correlated.
+//! Stat. Comput. 16 (2006) 239), which follows the directions in which the parameters are correlated.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// Points that live at a time.
+/// Number of live points.
 const LIVE: usize = 200;
 /// Steps of a random walk per parameter.
 const STEPS: usize = 5;
-/// Share of the sum that may be left out.
+/// Fraction of the sum that may be left out.
 const LEFT: f64 = 1e-2;
-/// Longest run, in units of [`LIVE`]: no record shrinks the cube by exp(-150).
+/// Largest number of iterations, in units of [`LIVE`]: no record shrinks the cube by exp(-150).
 const LONGEST: usize = 150;
 
-/// Points of the unit cube with the logarithms of their weights L_i (X_(i-1) - X_i), which add up to Z. `ordered`: how many of the
-/// first coordinates must increase.
+/// Points of the unit cube with the logarithms of their weights L_i (X_(i-1) - X_i), which add up to Z. `ordered`: the number of
+/// first coordinates that must increase.
 pub(super) fn sample(
     dimensions: usize,
     ordered: usize,
@@ -42,12 +42,12 @@ pub(super) fn sample(
         .collect();
     let mut draws: Vec<(f64, Vec<f64>)> = vec![];
     let shrinkage = (-1.0 / LIVE as f64).exp();
-    // ln of the sum so far, and of the part that is left.
+    // ln of the sum so far, and of the remaining part.
     let (mut evidence, mut volume) = (f64::NEG_INFINITY, 0.0_f64);
     for _ in 0..LONGEST * LIVE {
         let order = |a: &usize, b: &usize| living[*a].0.total_cmp(&living[*b].0);
         let (Some(worst), Some(best)) = ((0..LIVE).min_by(order), (0..LIVE).max_by(order)) else { break };
-        // What the living could still add.
+        // The largest possible contribution of the live points.
         if living[best].0 + volume < evidence + LEFT.ln() {
             break;
         }
@@ -65,7 +65,7 @@ pub(super) fn sample(
     draws
 }
 
-/// A point of a likelihood above `level`, by a walk from one of the other living points.
+/// A point with a likelihood above `level`, by a walk from one of the other live points.
 fn walk(
     living: &[(f64, Vec<f64>)],
     worst: usize,
@@ -81,7 +81,7 @@ fn walk(
     let usual = 1.68 / (dimensions as f64).sqrt();
     for step in 0..STEPS * dimensions.max(4) {
         let (a, b) = (other(random), other(random));
-        // Now and then a whole difference, to pass from one mode to another.
+        // Occasionally a full difference, to pass from one mode to another.
         let length = if step % 10 == 9 { 1.0 } else { usual * 2.0 * random.uniform() };
         let differences = living[a].1.iter().zip(&living[b].1);
         let trial: Vec<f64> = at.iter().zip(differences).map(|(x, (a, b))| x + length * (a - b)).collect();
@@ -130,12 +130,12 @@ mod tests {
         let found = sample(2, 0, 1, likelihood);
         let evidence = found.iter().fold(f64::NEG_INFINITY, |sum, draw| add_logarithms(sum, draw.0));
         let exact = (std::f64::consts::TAU * s[0] * s[1] * (1.0 - c * c).sqrt()).ln();
-        // The shrinkage is known to sqrt(H / LIVE), H = 10 the information: 0.2; four of them.
+        // The shrinkage is known to sqrt(H / LIVE) with the information H = 10, which is 0.2; the tolerance is four times that.
         assert!((evidence - exact).abs() < 0.9, "{evidence} {exact}");
         let mean = |f: &dyn Fn(&[f64]) -> f64| -> f64 {
             found.iter().map(|(w, x)| (w - evidence).exp() * f(x)).sum()
         };
-        // Some 600 independent draws: means to s/25, variances to 6 %; four times that.
+        // There are about 600 independent draws: means to s/25, variances to 6 %; the tolerance is four times that.
         let (m0, m1) = (mean(&|x| x[0]), mean(&|x| x[1]));
         assert!((m0 - 0.4).abs() < 0.16 * s[0] && (m1 - 0.7).abs() < 0.16 * s[1], "{m0} {m1}");
         let spread = mean(&|x| (x[0] - 0.4).powi(2)).sqrt();

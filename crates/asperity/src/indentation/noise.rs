@@ -1,19 +1,19 @@
-//! The noise of a channel, from its own rows.
+//! The noise of a channel, estimated from its rows.
 //!
-//! A smooth signal is nearly a parabola through four neighbouring rows, white noise is not. With the coefficients c_i of the
+//! A smooth signal is nearly a parabola through four neighbouring rows; white noise is not. With the coefficients c_i of the
 //! third divided difference,
 //!
 //! ```text
 //! e_k = Σ c_i y_(k+i) / (Σ c_i²)^(1/2),   i = 0..3        <e²> = σ²  for white noise
 //! ```
 //!
-//! The median of e², over that of the chi-squared distribution, is the variance: the few rows about a kink of the history do
-//! not count. Rows of small and of large values are taken apart, so that noise relative to the value is found as well:
-//! σ² = a + b y².
+//! The variance is the median of e² over that of the chi-squared distribution, so the few rows around a kink of the history have
+//! no influence. Rows with small and with large values are evaluated separately, so that noise relative to the value is found as
+//! well: σ² = a + b y².
 
 /// Median of the chi-squared distribution of one degree of freedom.
 const MEDIAN: f64 = 0.454_936;
-/// Rows that a median needs.
+/// Smallest number of rows for a median.
 const FEWEST: usize = 12;
 
 /// Variance of the noise of each row.
@@ -36,7 +36,7 @@ pub(super) fn variances(times: &[f64], values: &[f64]) -> Vec<f64> {
         let (low, high) = (constant(&small), constant(&large));
         let (at_low, at_high) = (mean(&small), mean(&large));
         let b = ((high - low) / (at_high - at_low)).max(0.0);
-        // Where noise does not grow with the value, all rows tell the constant.
+        // If the noise does not grow with the value, all rows are used for the constant.
         match b > 0.0 {
             true => ((low - b * at_low).max(0.0), b),
             false => (constant(&[small, large].concat()), 0.0),
@@ -54,7 +54,7 @@ fn third_difference(t: &[f64], y: &[f64]) -> f64 {
         sum += y[i] / others;
         norm += 1.0 / (others * others);
     }
-    // Rows so close that the products underflow tell nothing.
+    // Rows so close that the products underflow are ignored.
     let difference = sum / norm.sqrt();
     if difference.is_finite() { difference } else { 0.0 }
 }
@@ -79,7 +79,7 @@ pub(super) fn smoothed(times: &[f64], values: &[f64]) -> Vec<f64> {
     let n = values.len();
     (0..n)
         .map(|k| {
-            // As many rows to either side, so that the ends keep their values.
+            // The same number of rows on either side, so that the ends keep their values.
             let reach = HALF.min(k).min(n - 1 - k);
             let rows = k - reach..=k + reach;
             let count = (2 * reach + 1) as f64;

@@ -1,16 +1,16 @@
-//! What should be known before the numbers of a fit are believed.
+//! Notes that the user should know before relying on a fit.
 
 use super::{IndentationFit, IndentationOptions, Interval};
 use crate::reference::MdrProfile;
 
-/// Durbin-Watson number below which residuals follow each other.
+/// Durbin-Watson number below which residuals are correlated.
 const ALIKE: f64 = 1.5;
-/// Probability of the number of terms of the best fit below which others are told.
+/// Probability of the number of terms of the best fit below which others are reported.
 const SURE: f64 = 0.5;
-/// Least probability of another number that is told.
+/// Smallest probability of another number that is reported.
 const LIKELY: f64 = 0.1;
 
-/// Radii that nobody indents with [m]: a unit is missing.
+/// Implausible radii [m]: a unit is missing.
 const RADII: std::ops::Range<f64> = 1e-9..1.0;
 
 /// A radius that looks like one in another unit.

@@ -1,9 +1,9 @@
-//! The numbers that are sought, as a vector for the least squares: moduli and times enter by their logarithms, so that they stay
-//! positive and their errors are factors.
+//! The fitted numbers as a vector for the least squares. Moduli and times are represented by their logarithms, so that they
+//! remain positive and their errors are factors.
 
 use crate::material::{Relaxation, RelaxationTerm};
 
-/// Which numbers are sought: \[ln E∞\], ln E_i, ln τ_i, \[depth of first touch over the largest depth\].
+/// The numbers that are fitted: \[ln E∞\], ln E_i, ln τ_i, \[depth of first touch over the largest depth\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Parameters {
     pub(super) solid: bool,
@@ -27,7 +27,7 @@ impl Parameters {
         Relaxation { equilibrium: if self.solid { at[0].exp() } else { 0.0 }, terms, viscosity: 0.0 }
     }
 
-    /// The parameters of a relaxation function; `None` where it has another form.
+    /// The parameters of a relaxation function; `None` if it has another form.
     pub(super) fn of(&self, relaxation: &Relaxation) -> Option<Vec<f64>> {
         let positive = |x: f64| (x > 0.0 && x.is_finite()).then(|| x.ln());
         let mut at = vec![];
@@ -49,7 +49,7 @@ impl Parameters {
         Some(at)
     }
 
-    /// The modulus or time that is known least, with its standard deviation.
+    /// The modulus or time with the largest standard deviation, and that deviation.
     pub(super) fn worst(&self, deviations: &[f64]) -> Option<(String, f64)> {
         let first = usize::from(self.solid);
         let name = |k: usize| match k {

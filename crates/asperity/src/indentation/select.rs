@@ -1,4 +1,4 @@
-//! How many terms the best description of a record has.
+//! Selection of the number of terms of a fit.
 
 use super::check::MOST_TERMS;
 use super::least_squares::{Solution, solve};
@@ -8,12 +8,12 @@ use super::start;
 use crate::error::{Error, Result};
 use crate::material::LongTime;
 
-/// A parameter whose standard deviation (of a logarithm) is larger is not determined: it is known to a factor of 7 either way.
+/// A parameter with a larger standard deviation (of the logarithm) is not determined: it is uncertain by a factor of 7 or more.
 pub(super) const UNKNOWN: f64 = 1.0;
-/// Misfit that the model itself has, over the largest value.
+/// Error of the model itself, over the largest value.
 pub(super) const MODEL_ERROR: f64 = 2e-5;
 
-/// The best fit, with `terms` terms or as many as needed.
+/// The best fit, with `terms` terms or the number needed.
 pub(super) fn select(
     model: &Model,
     terms: Option<usize>,
@@ -35,7 +35,7 @@ fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<(Solution
     let mut best: Option<(Solution, Parameters)> = None;
     let mut refused = None;
     for solid in solids {
-        // An equilibrium modulus that is known to 30 % and bears a share of the load is not 0.
+        // An equilibrium modulus that is known to 30 % and carries a part of the load is not 0.
         let known = |(solution, of): &(Solution, Parameters)| {
             let share = solution.at[0].exp() / of.relaxation(&solution.at).instantaneous();
             of.solid && solution.deviations[0] < 0.3 && share > 1e-3
@@ -64,7 +64,7 @@ fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<(Solution
     }
 }
 
-/// Adds terms while that lowers the information criterion and each is determined.
+/// Adds terms while this lowers the information criterion and each term is determined.
 fn as_many_as_needed(model: &Model, long_time: LongTime) -> Result<(Solution, Parameters)> {
     let mut best = best_of(model, usize::from(long_time == LongTime::Fluid), long_time)?;
     let first = best.1.terms;

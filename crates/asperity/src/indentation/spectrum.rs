@@ -1,16 +1,16 @@
 //! A record as a linear function of the relaxation spectrum.
 //!
-//! Near the best fit the fitted channel y is linear in the moduli (exactly so under a given depth while the contact grows; else
-//! to second order in the change of y, which is within the noise for every material that is worth a thought):
+//! Near the best fit the fitted channel y is linear in the moduli (exactly under a given depth while the contact grows; otherwise
+//! to second order in the change of y, which is within the noise for every relevant material):
 //!
 //! ```text
 //! y(E∞, E_i, τ_i) - y_best = E∞ a(∞) + Σ E_i a(τ_i) - (the same of the best fit)
 //! ```
 //!
-//! a(τ), the answer to a small term of that time, is computed at ten times per decade and is smooth in between. All that a
-//! sum of squares needs is the scalar products of these columns and of the residuals; a pivoted Cholesky factorisation of their
-//! Gram matrix replaces hundreds of rows by a dozen coordinates with the same scalar products. So a sum of squares costs a
-//! hundred nanoseconds instead of milliseconds.
+//! a(τ), the response to a small term of this time, is computed at ten times per decade and is smooth in between. A sum of
+//! squares only needs the scalar products of these columns and of the residuals. A pivoted Cholesky factorisation of their Gram
+//! matrix replaces hundreds of rows by a dozen coordinates with the same scalar products. A sum of squares then takes a hundred
+//! nanoseconds instead of milliseconds.
 
 use rayon::prelude::*;
 
@@ -23,13 +23,13 @@ use crate::material::{Relaxation, RelaxationTerm};
 
 /// Times of the grid per decade.
 const PER_DECADE: f64 = 10.0;
-/// Springs of the model that the columns are made with.
+/// Springs of the model for the columns.
 const SPRINGS: usize = 60;
 /// Size of the small term over E*(0).
 const SMALL: f64 = 1e-3;
 /// Squared length of a coordinate, in units of the noise, that is left out.
 const NOTHING: f64 = 1e-4;
-/// Largest share of a neighbour in the noise that is believed.
+/// Largest accepted correlation of neighbours in the noise.
 const MOST_ALIKE: f64 = 0.95;
 
 /// The log-likelihood of any relaxation function.
@@ -42,12 +42,12 @@ pub(super) struct Spectrum {
     columns: Vec<Vec<f64>>,
     equilibrium: Vec<f64>,
     touch: Option<Vec<f64>>,
-    /// What the columns have to add up to.
+    /// The right-hand side for the columns.
     target: Vec<f64>,
 }
 
 impl Spectrum {
-    /// About the best fit, for times within `window` \[s\].
+    /// Linearises around the best fit, for times within `window` \[s\].
     pub(super) fn new(
         model: &Model,
         parameters: &Parameters,
@@ -145,8 +145,8 @@ fn add(to: &mut [f64], factor: f64, column: &[f64]) {
     to.iter_mut().zip(column).for_each(|(t, c)| *t += factor * c);
 }
 
-/// Standard deviation of a weighted residual. Neighbours that are alike tell less than independent ones: with the
-/// correlation ρ of one row with the next, n rows tell as much as n (1 - ρ)/(1 + ρ).
+/// Standard deviation of a weighted residual. Correlated neighbours contain less information than independent ones: with the
+/// correlation ρ of one row with the next, n rows are equivalent to n (1 - ρ)/(1 + ρ) independent ones.
 fn deviation(best: &Solution, parameters: &Parameters) -> f64 {
     let (n, k) = (best.residuals.len() as f64, parameters.len() as f64);
     let alike = (1.0 - 0.5 * durbin_watson(&best.residuals)).clamp(0.0, MOST_ALIKE);
@@ -174,7 +174,7 @@ fn compressed(columns: &[Vec<f64>], scale: f64) -> Vec<Vec<f64>> {
     for rank in 0..n {
         let longest = |k: &usize| left[*k] * size(*k) * size(*k);
         let Some(pivot) = (0..n).max_by(|a, b| longest(a).total_cmp(&longest(b))) else { break };
-        // What is left of a column that the others make up is rounding.
+        // If a column depends linearly on the others, the remainder is rounding.
         if longest(&pivot).is_nan() || longest(&pivot) < NOTHING || left[pivot] < 1e-13 * gram[pivot][pivot] {
             break;
         }

@@ -1,5 +1,5 @@
-//! Where the iteration starts: the best times of a grid on the part of the record while the contact grows, where load
-//! and depth are linear in the weights (theory of Lee and Radok, see [`super`]).
+//! The start of the iteration: the best times of a grid for the part of the record in which the contact grows, where load and
+//! depth are linear in the weights (theory of Lee and Radok, see [`super`]).
 
 use super::Given;
 use super::least_squares::{dot, invert};
@@ -10,7 +10,7 @@ use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 
 /// Times of the grid per decade.
 const PER_DECADE: f64 = 4.0;
-/// Depth below this share of the largest so far ends the growing part.
+/// A depth below this fraction of the largest so far ends the growing part.
 const SHRINKS: f64 = 0.95;
 
 /// Parameters to start from.
@@ -32,7 +32,7 @@ pub(super) fn start(model: &Model, parameters: &Parameters) -> Result<Vec<f64>> 
     )
 }
 
-/// The part of a record while the contact grows: φ(d), the loads, and the weight of each row.
+/// The part of a record in which the contact grows: φ(d), the loads, and the weight of each row.
 struct Growing {
     times: Vec<f64>,
     loads: Vec<f64>,
@@ -57,7 +57,7 @@ impl Growing {
         let widest = pairs.iter().fold(0.0, |m: f64, (_, slope)| m.max(*slope));
         let weight = |slope: f64| match model.given() {
             Given::Depth => 1.0,
-            // An error of the depth is one of φ times its slope.
+            // An error of the depth is an error of φ times its slope.
             Given::Load => 1.0 / slope.max(0.05 * widest),
         };
         Growing {
@@ -78,7 +78,7 @@ impl Growing {
         (0..=count).map(|k| (first + (last - first) * k as f64 / count as f64).exp()).collect()
     }
 
-    /// ∫ exp(-(t - s)/time) df(s) at every row, f straight between the rows.
+    /// ∫ exp(-(t - s)/time) df(s) at every row, with f linear between the rows.
     fn faded(&self, f: &[f64], time: f64) -> Vec<f64> {
         let mut z = 0.0;
         (0..f.len())
@@ -153,7 +153,7 @@ impl Growing {
         creep.to_relaxation().ok()
     }
 
-    /// Without a better guess: the stiffness of the whole, with the terms spread over the record.
+    /// Fallback: the overall stiffness, with the terms spread over the record.
     fn spread(&self, parameters: &Parameters) -> Option<Vec<f64>> {
         let mean = dot(&self.unit, &self.loads) / dot(&self.unit, &self.unit);
         if !(mean > 0.0 && mean.is_finite()) {
@@ -168,7 +168,7 @@ impl Growing {
     }
 }
 
-/// Columns that are always in, and columns to choose from.
+/// Columns that are always included, and columns to choose from.
 struct System {
     target: Vec<f64>,
     fixed: Vec<Vec<f64>>,
@@ -176,8 +176,8 @@ struct System {
 }
 
 impl System {
-    /// The `count` columns that, with non-negative weights, leave least: the best single one or pair, then the best one to
-    /// add each time. The weights are those of the fixed columns, then of the chosen.
+    /// The `count` columns with the smallest remainder for non-negative weights: the best single one or pair, then the best one
+    /// to add each time. The weights are those of the fixed columns, then those of the chosen ones.
     fn best(&self, count: usize) -> Option<(Vec<usize>, Vec<f64>)> {
         let mut chosen: Vec<usize> = vec![];
         let mut weights = if count == 0 { self.fit(&[])?.1 } else { vec![] };
@@ -198,7 +198,7 @@ impl System {
         Some((chosen, weights))
     }
 
-    /// What is left, and the weights; `None` where one is not positive.
+    /// The remainder and the weights; `None` if one is not positive.
     fn fit(&self, chosen: &[usize]) -> Option<(f64, Vec<f64>)> {
         let columns: Vec<&Vec<f64>> =
             self.fixed.iter().chain(chosen.iter().map(|k| &self.columns[*k])).collect();

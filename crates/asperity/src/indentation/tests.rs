@@ -17,12 +17,13 @@ impl Noise {
 
 const SPHERE: MdrProfile = MdrProfile::Sphere { radius: 5e-3 };
 
-/// Pressed within 1 s, held until 15 s, retracted until 17 s, and let be until 20 s.
+/// Pressed within 1 s, held until 15 s, retracted until 17 s, then free until 20 s.
 fn trapezoid(t: f64) -> f64 {
     if t < 1.0 { t } else { (1.0 - (t - 15.0) / 2.0).clamp(0.0, 1.0) }
 }
 
-/// What a body would show: the given channel as `peak` times the trapezoid, the other from ten steps between the rows.
+/// The exact record of a body: the given channel is `peak` times the trapezoid, the other follows from ten steps between the
+/// rows.
 fn record(
     profile: MdrProfile,
     truth: &Relaxation,
@@ -103,14 +104,14 @@ fn noisy_records_hold_the_truth_in_their_intervals() {
     let options = IndentationOptions { terms: Some(2), ..IndentationOptions::default() };
     let fit = fit_of(SPHERE, (&times, &noisy_loads, &depths), options).unwrap();
     assert_eq!(fit.given, Given::Depth);
-    // 1 % of noise, found as such, and white.
+    // 1 % of white noise, detected as such.
     assert!((fit.relative_rms - 0.01).abs() < 0.001 && (fit.durbin_watson - 2.0).abs() < 0.2, "{fit:?}");
     assert!(fit.equilibrium.holds(2e6) && fit.instantaneous.holds(6.5e6), "{fit:?}");
     for ([modulus, time], term) in fit.terms.iter().zip(&two_terms().terms) {
         assert!(modulus.holds(term.modulus) && time.holds(term.relaxation_time), "{fit:?}");
         assert!(modulus.high < 1.5 * modulus.low, "{fit:?}");
     }
-    // The load given, the depth noisy: one term, as many as are needed.
+    // The load is given, the depth is noisy: one term is sufficient.
     let (times, loads, depths) = record(SPHERE, &one_term(), Given::Load, 0.5, 1000);
     let noisy_depths = noisy(&depths, 0.01, &mut noise);
     let fit = fit_of(SPHERE, (&times, &loads, &noisy_depths), IndentationOptions::default()).unwrap();
@@ -164,7 +165,7 @@ fn the_controlled_channel_is_found_from_its_ramps_and_holds() {
 
 #[test]
 fn what_a_record_does_not_determine_is_told() {
-    // Pressed for 1 s only, with terms of 0.4 and 6 s: the record cannot know what is left in the end.
+    // Pressed for only 1 s, with terms of 0.4 and 6 s: the record does not determine the equilibrium modulus.
     let (times, loads, depths) = record(SPHERE, &two_terms(), Given::Depth, 1e-4, 1000);
     let loads = noisy(&loads, 0.01, &mut Noise(13));
     let rows = 75; // 1.5 s

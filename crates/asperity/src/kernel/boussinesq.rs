@@ -1,13 +1,13 @@
-//! Love's influence coefficient: the displacement that a uniformly loaded rectangle causes on an
-//! elastic half-space (Love 1929; Johnson, Contact Mechanics, 1985, eq. 3.25).
+//! Love's influence coefficient: the displacement due to a uniformly loaded rectangle on an elastic half-space (Love 1929;
+//! Johnson, Contact Mechanics, 1985, eq. 3.25).
 //!
 //! u(x, y) = (1/pi) integral over the rectangle of p / sqrt((x-x')^2 + (y-y')^2) for E* = 1.
 //!
-//! The closed form is a second difference of f(x, y) = x asinh(y/|x|) + y asinh(x/|y|). Far away the
-//! difference loses digits as eps (distance/side)^2, so from [`FAR`] sides on the integral is taken
-//! by a Gauss rule instead, whose error falls as (side/distance)^(2 points).
+//! The closed form is a second difference of f(x, y) = x asinh(y/|x|) + y asinh(x/|y|). Far away the difference loses digits as
+//! eps (distance/side)^2. From [`FAR`] sides on, the integral is therefore computed by a Gauss rule, whose error falls as
+//! (side/distance)^(2 points).
 
-/// Distance, in longest sides of the cell, from which the Gauss rule is the more accurate form.
+/// Distance, in units of the longest side of the cell, from which the Gauss rule is more accurate.
 const FAR: f64 = 6.0;
 
 /// Influence coefficient K(x, y) \[m\]: the displacement at (x, y) from the centre of a cell of sides
@@ -27,7 +27,7 @@ pub fn love(x: f64, y: f64, side: [f64; 2]) -> f64 {
     if libm::hypot(x, y) >= FAR * dx.max(dy) {
         return nearly_square(x, y, 0.5 * dx, 0.5 * dy);
     }
-    // Near by, a long cell is cut into nearly square ones: both forms then hold their digits.
+    // At short distances a long cell is divided into nearly square ones, so that both forms keep their digits.
     let parts = [(dx / dy).round().max(1.0), (dy / dx).round().max(1.0)];
     let [a, b] = [0.5 * dx / parts[0], 0.5 * dy / parts[1]];
     let mut k = 0.0;

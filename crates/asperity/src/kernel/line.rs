@@ -1,12 +1,12 @@
-//! The half-space in plane strain: the displacement that a strip of pressure causes.
+//! The half-space in plane strain: the displacement due to a strip of pressure.
 //!
-//! u(x) = -(2/π) ∫ p(s) ln|x - s| ds + a constant, for E* = 1 (Johnson, Contact Mechanics, 1985, eq. 2.24a). A load on a
-//! line displaces a half-space endlessly, so displacements are known up to a constant: here they are measured from
-//! the point that is as far from the load as the last coefficient.
+//! u(x) = -(2/π) ∫ p(s) ln|x - s| ds + a constant, for E* = 1 (Johnson, Contact Mechanics, 1985, eq. 2.24a). The displacement of
+//! a half-space under a line load is infinite, so displacements are only known up to a constant. Here they are measured from the
+//! point at the distance of the last coefficient.
 
 use std::f64::consts::FRAC_2_PI;
 
-/// Cells from which the series in (half a cell / distance)² holds all digits.
+/// Distance in cells from which the series in (half a cell / distance)² is accurate to all digits.
 const FAR: f64 = 4.0;
 /// Terms of the series: (1/8)^(2 TERMS) is a rounding error.
 const TERMS: usize = 9;
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn coefficients_fall_and_are_convex() {
-        // So their cosine series is positive on any torus (Polya), and the operator positive definite.
+        // Therefore their cosine series is positive on any torus (Polya), and the operator is positive definite.
         let k = strip(1e-6, 500);
         assert!(k.windows(2).all(|k| k[0] > k[1]));
         assert!(k.windows(3).all(|k| k[0] + k[2] > 2.0 * k[1]));

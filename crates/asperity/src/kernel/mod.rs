@@ -1,6 +1,6 @@
-//! Influence functions for unit contact modulus E* = 1: what a pressure on the surface displaces.
+//! Influence functions for unit contact modulus E* = 1: the displacement due to a pressure on the surface.
 //!
-//! Pure functions of geometry: no grid, no material, no time.
+//! They are pure functions of the geometry, without grid, material or time.
 
 mod boussinesq;
 mod line;
@@ -16,23 +16,24 @@ use ndarray::parallel::prelude::*;
 
 use crate::error::{Error, Result};
 
-/// The elastic response of a body's surface, from which an [`Operator`](crate::operator::Operator) is planned.
+/// The elastic response of the surface of a body, from which an [`Operator`](crate::operator::Operator) is planned.
 ///
-/// A free domain takes it by its influence coefficients, a periodic one by its symbol; the two describe the same body:
-/// the symbol is the Fourier transform of the response to a point load.
+/// A free domain uses its influence coefficients, a periodic one its symbol. Both describe the same body: the symbol is the
+/// Fourier transform of the response to a point load.
 pub trait Kernel: std::fmt::Debug + Send + Sync {
     /// Displacements K(i dx, j dy) \[m\] at distances of i < `count[0]` and j < `count[1]` cells from the centre of a
     /// cell of sides `cell` = \[dx, dy\] \[m\] under unit pressure.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where they cannot be computed.
+    /// [`Error::Invalid`] if they cannot be computed.
     fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>>;
 
     /// Displacements \[m\] at the centres of the cells 0, 1, ... `count` - 1 away from a strip of width `dx` \[m\] under unit
-    /// pressure, in plane strain. Without [`depth`](Self::depth) a constant is free: the smallest one is 0.
+    /// pressure, in plane strain. Without [`depth`](Self::depth) a constant is undetermined: it is chosen such that the smallest
+    /// displacement is 0.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where they cannot be computed.
+    /// [`Error::Invalid`] if they cannot be computed.
     fn strip(&self, _dx: f64, _count: usize) -> Result<Vec<f64>> {
         Err(Error::invalid(
             "kernel of a line contact on a free domain",
@@ -45,18 +46,18 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
     /// zero. Positive.
     fn symbol(&self, qx: f64, qy: f64) -> f64;
 
-    /// Displacement \[m\] under a uniform unit pressure on a periodic domain, not negative; `None` where it is not
-    /// determined, as on a half-space: displacements are then measured from their mean.
+    /// Displacement \[m\] under a uniform unit pressure on a periodic domain, not negative; `None` if it is not determined, as on
+    /// a half-space. Displacements are then measured from their mean.
     fn uniform(&self) -> Option<f64> {
         None
     }
 
-    /// Thickness \[m\] of what lies on a rigid base, of both bodies together; `None` where a body has no rigid base.
+    /// Total thickness \[m\] of the layers of both bodies on rigid bases; `None` if a body has no rigid base.
     fn depth(&self) -> Option<f64> {
         None
     }
 
-    /// Whether this is the elastic half-space, for estimates that hold for it alone.
+    /// Whether this is the elastic half-space, for estimates that only hold for it.
     fn is_half_space(&self) -> bool {
         false
     }
@@ -64,7 +65,7 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
     /// Whether cells of a free domain whose longest side is `longest` \[m\] resolve the body.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where they do not.
+    /// [`Error::Invalid`] if they do not.
     fn check(&self, _longest: f64) -> Result<()> {
         Ok(())
     }

@@ -1,15 +1,15 @@
-//! Bodies of viscoelastic layers whose response separates in space and time.
+//! Bodies of viscoelastic layers whose response is separable in space and time.
 //!
-//! Where the shear creep functions of all layers (and of the base) are multiples of one function, J_i(t) = s_i J(t), and
-//! Poisson's ratios are constant, every time step multiplies C(q) by the same number (correspondence principle: all moduli
-//! scale together, and C is inversely proportional to them):
+//! If the shear creep functions of all layers (and of the base) are multiples of one function, J_i(t) = s_i J(t), and Poisson's
+//! ratios are constant, time multiplies C(q) by one number (correspondence principle: all moduli scale together, and C is
+//! inversely proportional to them):
 //!
 //! ```text
 //! C(q, t) = K(q) C(t),   C(t) = sum over the bodies of (1 - nu) J(t)/2 of the material at the surface.
 //! ```
 //!
-//! K is the [`Layered`] kernel of the elastic stacks with moduli 1/s_i. So a march on K with the contact creep function C(t)
-//! is exact. Elastic stacks are the case of a constant J. In other stacks waves of different lengths creep differently:
+//! K is the [`Layered`] kernel of the elastic stacks with moduli 1/s_i. Time stepping with K and the contact creep function C(t)
+//! is therefore exact. Elastic stacks are the case of a constant J. In other stacks waves of different lengths creep differently:
 //! see [`NonseparableLayers`].
 
 use std::sync::Arc;
@@ -26,9 +26,9 @@ const SAME: f64 = 1e-9;
 pub struct BodyLayer {
     /// Thickness \[m\].
     pub thickness: f64,
-    /// What its lower face does.
+    /// The interface at its lower face.
     pub interface: Interface,
-    /// What it consists of; its name is that of the layer.
+    /// Its material; the name is that of the layer.
     pub material: Body,
 }
 
@@ -48,20 +48,25 @@ impl From<Body> for LayeredBody {
 }
 
 impl LayeredBody {
-    /// What it consists of, from the surface down.
+    /// Its layers and base, from the surface downwards.
     pub fn materials(&self) -> impl Iterator<Item = &Body> {
         self.layers.iter().map(|layer| &layer.material).chain(&self.base)
     }
+
+    /// Path of the `k`th material of the `n`th body in errors.
+    pub(super) fn place(&self, n: usize, k: usize) -> String {
+        if k < self.layers.len() { format!("body[{n}].layer[{k}]") } else { format!("body[{n}]") }
+    }
 }
 
-/// How bodies yield in space and time.
+/// The compliance of bodies in space and time.
 #[derive(Clone, Debug)]
 pub struct Response {
-    /// K(q), of unit contact modulus for short waves: of all times where `waves` is `None`, else of the instant t = 0.
+    /// K(q), with unit contact modulus for short waves: at all times if `waves` is `None`, otherwise at t = 0.
     pub kernel: Layered,
-    /// Contact creep compliance C(t) that multiplies it \[1/Pa\]: that of the materials at the surface.
+    /// Contact creep compliance C(t) that multiplies K \[1/Pa\]: that of the materials at the surface.
     pub creep: Creep,
-    /// Where waves of different lengths creep differently: how each of them does.
+    /// The creep of each wave, if waves of different lengths creep differently.
     pub waves: Option<Arc<NonseparableLayers>>,
 }
 
@@ -93,24 +98,24 @@ pub struct Response {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where layers creep differently in a way that is not solved, naming the layer; as [`Stack::new`] and
+/// [`Error::Invalid`] if layers creep differently in an unsupported way, naming the layer; as [`Stack::new`] and
 /// [`Body::contact_creep`].
 pub fn response(bodies: &[LayeredBody]) -> Result<Response> {
     let mut common: Option<Creep> = None;
     let mut separable = true;
     let mut creep = Creep::default();
     let mut stacks = Vec::new();
-    for body in bodies {
+    for (n, body) in bodies.iter().enumerate() {
         let mut moduli = Vec::new();
-        for material in body.materials() {
-            material.contact_creep()?;
+        for (k, material) in body.materials().enumerate() {
+            material.contact_creep().map_err(|error| error.of(&body.place(n, k)))?;
             let shear = material.shear()?;
             let of_first = common.get_or_insert_with(|| shear.clone());
             match (ratio(&shear, of_first), material.poisson()) {
                 (Some(ratio), Some(poisson)) => moduli.push((1.0 / (ratio * size(of_first)), poisson)),
                 _ => {
                     separable = false;
-                    // Checked like any other; its numbers do not count.
+                    // Checked like any other layer; its numbers have no effect.
                     moduli.push((1.0 / size(&shear), 0.0));
                 }
             }
@@ -153,14 +158,14 @@ pub(super) fn stack(body: &LayeredBody, moduli: &[(f64, f64)]) -> Result<Stack> 
 fn size(creep: &Creep) -> f64 {
     creep.terms.iter().map(|term| term.compliance).fold(creep.instantaneous.max(0.0), f64::max).max(
         match creep {
-            // A dashpot alone.
+            // Only a dashpot.
             Creep { instantaneous: 0.0, terms, fluidity } if terms.is_empty() => *fluidity,
             _ => 0.0,
         },
     )
 }
 
-/// s in a(t) = s b(t); `None` where there is none.
+/// s in a(t) = s b(t); `None` if there is no such s.
 fn ratio(a: &Creep, b: &Creep) -> Option<f64> {
     let s = size(a) / size(b);
     let close = |x: f64, y: f64, scale: f64| (x - y).abs() <= SAME * scale;

@@ -1,4 +1,4 @@
-//! C(q) of a stack: from the base up, layer by layer.
+//! C(q) of a stack, computed layer by layer from the base upwards.
 //!
 //! In plane strain, along a wave cos(q x) and with z down, the displacements u sin(q x), w cos(q x) and the stresses
 //! s_xz = tau sin(q x), s_zz = sigma cos(q x) obey, with y = (q u, q w, tau, sigma) and ' = d/d(q z),
@@ -16,20 +16,20 @@
 //! y(top) = exp(-A x) y(bottom),   exp(-A x) = cosh x - A sinh x + N (x/2) sinh x - A N g,   g = (x cosh x - sinh x)/2.
 //! ```
 //!
-//! The layers below a face are known by F, (q u, q w) = F (tau, sigma) on it: a 2 x 2 compliance. Two columns span the states
-//! that the lower face of a layer may have,
+//! The layers below a face are represented by F, (q u, q w) = F (tau, sigma) on it, which is a 2 x 2 compliance. Two columns span
+//! the possible states of the lower face of a layer,
 //!
 //! ```text
 //! bonded: (F, 1)      slip: (1, 0, 0, 0) and (0, F_22, 0, 1)      F = 0 on a rigid base
 //! ```
 //!
-//! exp(-A x) takes them to the upper face, (U, S), and there F = U S^-1. At the surface q C(q) = -F_22. With the entries of
-//! exp(-A x) divided by e^x nothing overflows; each of them keeps its digits for thin layers, and with them C(q), however small
-//! it is (an incompressible layer has C ~ q^2). Layered half-spaces: O'Sullivan & King, J. Tribol. 110 (1988) 235.
+//! exp(-A x) transfers them to the upper face, (U, S), and there F = U S^-1. At the surface q C(q) = -F_22. If the entries of
+//! exp(-A x) are divided by e^x, nothing overflows. Each entry keeps its digits for thin layers, and therefore so does C(q),
+//! however small it is (an incompressible layer has C ~ q^2). Layered half-spaces: O'Sullivan & King, J. Tribol. 110 (1988) 235.
 
 use super::{Base, Interface, Layer, Stack};
 
-/// Thickness over 1/q from which on what lies below does not matter: it reflects 4 x^2 e^(-2x) < 2e-16.
+/// Thickness times q from which on the material below a layer has no effect: it reflects 4 x^2 e^(-2x) < 2e-16.
 const DEEP: f64 = 22.0;
 
 /// (q u, q w) = F (tau, sigma).
@@ -48,7 +48,7 @@ impl Stack {
     /// # Ok::<(), asperity::Error>(())
     /// ```
     pub fn compliance(&self, q: f64) -> f64 {
-        // What lies below a deep layer does not matter.
+        // The material below a deep layer has no effect.
         let deep = self.layers.iter().position(|layer| q * layer.thickness > DEEP);
         let (above, below) = match deep {
             Some(n) => (&self.layers[..n], Some(half_space(self.layers[n].shear, self.layers[n].poisson))),
@@ -59,7 +59,7 @@ impl Stack {
     }
 }
 
-/// F of the base; `None` where it is rigid.
+/// F of the base; `None` if it is rigid.
 fn base(base: Base) -> Option<Compliance> {
     match base {
         Base::Rigid => None,
@@ -67,7 +67,7 @@ fn base(base: Base) -> Option<Compliance> {
     }
 }
 
-/// F of a half-space, from its two states that decay downwards.
+/// F of a half-space, from the two states that decay downwards.
 fn half_space(shear: f64, poisson: f64) -> Compliance {
     let (own, cross) = ((1.0 - poisson) / shear, (0.5 - poisson) / shear);
     [[-own, cross], [cross, -own]]
@@ -104,7 +104,7 @@ fn across(layer: &Layer, x: f64) -> [[f64; 4]; 4] {
     ]
 }
 
-/// (x cosh x - sinh x)/2 by its series, sum of k x^(2k+1)/(2k+1)!.
+/// (x cosh x - sinh x)/2 by its series, the sum of k x^(2k+1)/(2k+1)!.
 fn short(x: f64) -> f64 {
     let (mut power, mut sum) = (x, 0.0);
     for k in 1..=9 {
@@ -114,7 +114,7 @@ fn short(x: f64) -> f64 {
     sum
 }
 
-/// Whether what lies below a layer with x = q d does not matter.
+/// Whether the material below a layer with x = q d has no effect.
 pub(super) fn is_short(x: f64) -> bool {
     x > DEEP
 }
@@ -236,7 +236,7 @@ mod tests {
                 let (mu, d): (f64, f64) = (3.0, 0.7);
                 let (x, k) = (q * d, 3.0 - 4.0 * nu);
                 let half = (1.0 - nu) / (mu * q);
-                // k sinh 2x - 2x by its series where it cancels.
+                // k sinh 2x - 2x, by its series if it cancels.
                 let excess = if x < 0.3 {
                     let y = 4.0 * x * x;
                     2.0 * x * y / 6.0

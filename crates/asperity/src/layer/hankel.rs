@@ -1,4 +1,4 @@
-//! The displacement around a load at a point or along a line on a stack, less that of a half-space of the top layer.
+//! The displacement around a point load or line load on a stack, minus that of a half-space of the top layer's material.
 //!
 //! With a = lim q C(q) for short waves, b for long ones (0 on a rigid base), and d the thickness of the top layer,
 //!
@@ -8,10 +8,11 @@
 //! line    k(x) = (1/pi) int C(q) cos(q x) dq = -(a/pi) ln|x| - (b - a)/(2 pi) ln(x^2 + d^2) + k_rest(x) + b times a constant
 //! ```
 //!
-//! (plane strain along the line). The constant is endless, so that on a half-space as base the displacements of a line are known up
-//! to a constant; on a rigid base there is none. The first term is that of the half-space, whose integral over a cell is known. The
-//! rest of C is finite at q = 0 and decays as e^(-q d), so the other two are smooth: they vary over distances of d and more. k_rest
-//! follows from a series ([`super::series`]), near the load from a polynomial in the moments of rest.
+//! (plane strain for the line). The constant is infinite, so if the base is a half-space, the displacements due to a line load
+//! are only known up to a constant; on a rigid base there is no such constant. The first term is that of the half-space, whose
+//! integral over a cell is known. The rest of C is finite at q = 0 and decays as e^(-q d), so the other two terms are smooth:
+//! they vary over distances of at least d. k_rest follows from a series ([`super::series`]), and near the load from a polynomial
+//! in the moments of rest.
 
 use std::f64::consts::{PI, TAU};
 
@@ -21,16 +22,16 @@ use super::Stack;
 use super::series::Series;
 use crate::error::{Error, Result};
 
-/// Spacing of ln q at first, and the finest.
+/// Initial and finest spacing of ln q.
 const SPACING: f64 = 0.06;
 const FINEST: f64 = 0.01;
-/// Distance over d up to which the polynomial holds, and its terms.
+/// Distance over d up to which the polynomial is used, and its number of terms.
 const NEAR: f64 = 0.125;
 const TERMS: usize = 9;
 /// Spacing of ln r in the table: interpolation by six points is exact to 1e-12.
 const STEP: f64 = 0.01;
 
-/// Where a unit of load is.
+/// Position of a unit load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Load {
     /// At a point.
@@ -39,7 +40,7 @@ pub(super) enum Load {
     Line,
 }
 
-/// k(r) of one stack, times `scale`, less that of the half-space of its top layer.
+/// k(r) of one stack, times `scale`, minus that of the half-space of its top layer.
 pub(super) struct Smooth {
     load: Load,
     /// Thickness of the top layer \[m\].
@@ -53,10 +54,10 @@ pub(super) struct Smooth {
 }
 
 impl Smooth {
-    /// For distances up to `reach` \[m\]; `None` for a stack without layers, which has nothing else.
+    /// For distances up to `reach` \[m\]; `None` for a stack without layers, whose k(r) is that of the half-space.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the stack's layers differ too much for the series.
+    /// [`Error::Invalid`] if the layers of the stack differ too much for the series.
     pub(super) fn new(stack: &Stack, load: Load, scale: f64, reach: f64) -> Result<Option<Self>> {
         let Some(top) = stack.layers().first() else { return Ok(None) };
         let d = top.thickness;
@@ -71,7 +72,7 @@ impl Smooth {
             }
             Load::Line => {
                 let terms = series.of_line();
-                // The series gives k_rest up to a constant, which the polynomial has.
+                // The series gives k_rest up to a constant, which follows from the polynomial.
                 let constant = polynomial(&near, NEAR) - terms.at(ln_r(2)) / PI;
                 (0..nodes).into_par_iter().map(|n| terms.at(ln_r(n)) / PI + constant).collect()
             }
@@ -80,7 +81,7 @@ impl Smooth {
         Ok(Some(Smooth { load, thickness: d, image, near, far }))
     }
 
-    /// Its value at the distance r, up to the reach. That of a line has ln(r/d) in place of ln r.
+    /// Its value at the distance r, up to the reach. For a line, it has ln(r/d) in place of ln r.
     pub(super) fn value(&self, r: f64) -> f64 {
         let ratio = r / self.thickness;
         let image = match self.load {
@@ -100,7 +101,7 @@ impl Smooth {
     }
 }
 
-/// The series of a stack, as fine as it has to be.
+/// The series of a stack, as fine as necessary.
 fn resolved(stack: &Stack, scale: f64) -> Result<Series> {
     let mut spacing = SPACING;
     loop {

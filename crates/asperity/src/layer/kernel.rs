@@ -12,11 +12,11 @@ use crate::kernel::{Kernel, love, strip_at};
 
 /// Longest side of a cell over the thickness of a top layer.
 const COARSEST: f64 = 4.0;
-/// Parts of a cell along a side are at most this long, over the thickness ...
+/// Largest length of the parts of a cell along a side, over the thickness ...
 const PART: f64 = 0.5;
-/// ... up to this distance over the thickness; further away the response varies over the distance itself.
+/// ... up to this distance over the thickness; farther away the response varies on the scale of the distance.
 const NEAR: f64 = 30.0;
-/// The same of a line.
+/// The same for a line.
 const PART_OF_LINE: f64 = 0.25;
 
 /// Gauss-Legendre rule on \[-1, 1\] (Abramowitz & Stegun, table 25.4).
@@ -33,14 +33,14 @@ const GAUSS_3: [(f64, f64); 3] = [
     (0.0, 0.888_888_888_888_889),
     (0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
 ];
-/// The rules for parts up to these lengths over what k varies over there, with errors below 1e-8.
+/// The rules for parts up to these lengths, over the length on which k varies there, with errors below 1e-8.
 const RULES: [(f64, &[(f64, f64)]); 2] = [(0.03, &GAUSS_2), (0.15, &GAUSS_3)];
 
 /// The bodies of a contact, each a [`Stack`], with all moduli times a common factor: K(q) = sum of C(q) / sum of q C(q)/2 for
 /// short waves.
 ///
-/// So short waves see a half-space of unit contact modulus, K(q) = 2/q, and the compliance that multiplies K is that of the
-/// materials at the surface.
+/// For short waves the bodies are therefore equivalent to a half-space of unit contact modulus, K(q) = 2/q, and the compliance
+/// that multiplies K is that of the materials at the surface.
 ///
 /// ```
 /// use asperity::kernel::Kernel;
@@ -54,7 +54,7 @@ const RULES: [(f64, &[(f64, f64)]); 2] = [(0.03, &GAUSS_2), (0.15, &GAUSS_3)];
 #[derive(Clone, Debug)]
 pub struct Layered {
     stacks: Vec<Stack>,
-    /// What makes K(q) = 2/q for short waves \[Pa\].
+    /// The factor such that K(q) = 2/q for short waves \[Pa\].
     scale: f64,
 }
 
@@ -62,7 +62,7 @@ impl Layered {
     /// The kernel of these bodies against each other, or of one against a rigid one.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where there are no bodies or more than two.
+    /// [`Error::Invalid`] if there are no bodies or more than two.
     pub fn new(stacks: Vec<Stack>) -> Result<Self> {
         if stacks.is_empty() || stacks.len() > 2 {
             return Err(Error::invalid("number of bodies", stacks.len(), "1 (against a rigid one) or 2"));
@@ -82,11 +82,11 @@ impl Layered {
         &self.stacks
     }
 
-    /// Displacements \[m\] at the distances (`xs`\[i\], `ys`\[j\]) \[m\] from the centre of a cell of sides `cell` \[m\] under unit
-    /// pressure; distances ascend.
+    /// Displacements \[m\] at the distances (`xs`\[i\], `ys`\[j\]) \[m\] from the centre of a cell of sides `cell` \[m\] under
+    /// unit pressure; distances must be ascending.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the layers differ too much.
+    /// [`Error::Invalid`] if the layers differ too much.
     pub(crate) fn response(&self, cell: [f64; 2], [xs, ys]: [&[f64]; 2]) -> Result<Array2<f64>> {
         let [dx, dy] = cell;
         let farthest = |side: &[f64], d: f64| side.last().copied().unwrap_or(0.0) + d;
@@ -113,16 +113,17 @@ impl Layered {
         Ok(response)
     }
 
-    /// Displacements \[m\] at the distances `xs` \[m\] from the middle of a strip of width `dx` \[m\] under unit pressure, in plane strain.
-    /// Where a body has no rigid base, a constant is free: the smallest one is 0. Distances ascend.
+    /// Displacements \[m\] at the distances `xs` \[m\] from the middle of a strip of width `dx` \[m\] under unit pressure, in
+    /// plane strain. If a body has no rigid base, a constant is undetermined: it is chosen such that the smallest displacement
+    /// is 0. Distances must be ascending.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the layers differ too much.
+    /// [`Error::Invalid`] if the layers differ too much.
     pub(crate) fn response_of_line(&self, dx: f64, xs: &[f64]) -> Result<Vec<f64>> {
         let reach = xs.last().copied().unwrap_or(0.0) + dx;
         let smooth = self.stacks.iter().map(|stack| Smooth::new(stack, Load::Line, self.scale, reach));
         let smooth: Vec<Smooth> = smooth.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
-        // The logarithm of the half-space is that of x/dx, the other one of r/d: on a rigid base the difference counts.
+        // The logarithm of the half-space is that of x/dx, the other one is that of r/d: on a rigid base the difference matters.
         let units = self.stacks.iter().filter_map(|stack| {
             let d = stack.layers().first()?.thickness;
             Some(self.scale * stack.short_waves() / PI * libm::log(d / dx))
@@ -185,7 +186,7 @@ impl Kernel for Layered {
     }
 }
 
-/// Integral over the cell around (x, y): by parts no longer than half the thickness, as long as that is what k varies over.
+/// Integral over the cell around (x, y), in parts no longer than half the thickness if k varies on that scale.
 fn over_cell(smooth: &Smooth, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> f64 {
     let (r, d) = (libm::hypot(x, y), smooth.thickness);
     let near = r < NEAR * d + dx.max(dy);

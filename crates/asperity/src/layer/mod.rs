@@ -1,7 +1,7 @@
 //! Bodies of layers: a tread on its belt, a gasket on its flange, a gel on glass, a coating on steel.
 //!
-//! A body of plane layers answers a wave of pressure cos(q x) on its surface with a displacement C(q) cos(q x). On a
-//! half-space C is (1 - nu)/(mu q); layers change it wherever the wave is longer than they are thick:
+//! A wave of pressure cos(q x) on the surface of a body of plane layers causes a displacement C(q) cos(q x). On a half-space C is
+//! (1 - nu)/(mu q); layers change it for waves that are longer than their thickness:
 //!
 //! ```text
 //! short waves   C -> (1 - nu1)/(mu1 q)      of the top layer
@@ -12,10 +12,10 @@
 //! | file | content |
 //! |---|---|
 //! | `compliance` | C(q) of any stack of layers |
-//! | `body` | bodies of viscoelastic layers, and whether space and time separate |
-//! | `nonseparable` | how each wave creeps where they do not |
+//! | `body` | bodies of viscoelastic layers, and whether space and time are separable |
+//! | `nonseparable` | the creep of each wave if they are not |
 //! | `kernel` | the [`Kernel`](crate::kernel::Kernel) of one or two such bodies |
-//! | `hankel` | from C(q) to the displacement around a load at a point or along a line |
+//! | `hankel` | from C(q) to the displacement around a point load or line load |
 //! | `series` | C(q) as a series whose terms have known transforms |
 //!
 //! Theory: docs/layers.md.
@@ -36,15 +36,15 @@ pub(crate) use nonseparable::TOLERANCE;
 
 use crate::error::{Error, Result, length, positive};
 
-/// What the lower face of a layer does on what lies below.
+/// The interface between the lower face of a layer and the material below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Interface {
-    /// It sticks: both displacements go on.
+    /// Bonded: both displacements are continuous.
     #[default]
     Bonded,
-    /// It slides without friction, and stays in touch: the normal displacement goes on, the shear stress is zero.
+    /// It slides without friction and remains in contact: the normal displacement is continuous, the shear stress is zero.
     Slip,
 }
 
@@ -57,14 +57,14 @@ pub struct Layer {
     pub shear: f64,
     /// Poisson's ratio, -1 < nu <= 0.5 (0.5: incompressible).
     pub poisson: f64,
-    /// To what lies below.
+    /// The interface to the material below.
     pub interface: Interface,
 }
 
 /// What the layers lie on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Base {
-    /// It does not yield.
+    /// A rigid base.
     Rigid,
     /// An elastic half-space.
     HalfSpace {
@@ -83,7 +83,7 @@ pub struct Stack {
 }
 
 impl Stack {
-    /// The layers from the surface down, and what they lie on.
+    /// A stack of layers, from the surface downwards, and their base.
     ///
     /// ```
     /// use asperity::layer::{Base, Interface, Layer, Stack};
@@ -98,8 +98,8 @@ impl Stack {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a thickness or a modulus is not positive and finite, Poisson's ratio is outside (-1, 0.5], or
-    /// a rigid base carries no layer.
+    /// [`Error::Invalid`] if a thickness or a modulus is not positive and finite, Poisson's ratio is outside (-1, 0.5], or a
+    /// rigid base has no layer.
     pub fn new(layers: Vec<Layer>, base: Base) -> Result<Self> {
         for (n, layer) in layers.iter().enumerate() {
             let of = |what: &str| format!("{what} of layer {}", n + 1);
@@ -145,12 +145,12 @@ impl Stack {
         }
     }
 
-    /// The modulus E* = 2/(q C(q)) of the half-space that yields as much under a wave of wave number q \[Pa\].
+    /// The modulus E* = 2/(q C(q)) of the half-space of the same compliance under a wave of wave number q \[Pa\].
     pub fn equivalent_modulus(&self, q: f64) -> f64 {
         2.0 / (q * self.compliance(q))
     }
 
-    /// Stiffest over softest shear modulus of the layers and the base.
+    /// Ratio of the largest to the smallest shear modulus of the layers and the base.
     fn contrast(&self) -> f64 {
         let base = match self.base {
             Base::HalfSpace { shear, .. } => Some(shear),
@@ -162,8 +162,8 @@ impl Stack {
         most / least
     }
 
-    /// Displacement under a uniform unit pressure that squeezes the layers without lateral strain \[m/Pa\], the sum of
-    /// d (1 - 2 nu)/(2 mu (1 - nu)); `None` on a half-space, which does not determine it.
+    /// Displacement under a uniform unit pressure that compresses the layers without lateral strain \[m/Pa\], the sum of d (1 - 2
+    /// nu)/(2 mu (1 - nu)); `None` on a half-space, where it is undetermined.
     pub fn uniform(&self) -> Option<f64> {
         match self.base {
             Base::Rigid => Some(self.layers.iter().map(Layer::squeezed).sum()),
@@ -173,7 +173,7 @@ impl Stack {
 }
 
 impl Layer {
-    /// d/M, M the modulus without lateral strain.
+    /// d/M, where M is the modulus without lateral strain.
     fn squeezed(&self) -> f64 {
         self.thickness * (1.0 - 2.0 * self.poisson) / (2.0 * self.shear * (1.0 - self.poisson))
     }

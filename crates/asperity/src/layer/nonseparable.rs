@@ -1,18 +1,18 @@
 //! Layers that creep differently: C(q, t) is not a function of q times one of t.
 //!
 //! By the correspondence principle the transform of the creep compliance at s > 0 is that of the elastic stack with the moduli
-//! μ~_i(s). It is a Stieltjes function of s: with K_i the positive stiffness of part i and f the load, C~ = f' (Σ μ~_i(s) K_i)^-1 f
-//! is real and finite wherever all μ~_i(s) are positive, and Im C~ has one sign in the half plane. So
+//! μ~_i(s). It is a Stieltjes function of s: with K_i the positive stiffness of part i and f the load, C~ = f' (Σ μ~_i(s) K_i)^-1
+//! f is real and finite wherever all μ~_i(s) are positive, and Im C~ has one sign in the half plane. Therefore
 //!
 //! ```text
 //! C(q, t) = S_0(q) + Σ S_j(q) (1 - exp(-t/λ_j)),   S_j >= 0
 //! ```
 //!
-//! and all times λ_j lie between a relaxation time of a material and the retardation time that follows it, because outside
-//! of these intervals all μ~_i are positive on the negative axis. (A constant bulk modulus is one more positive K_i.) Here the
-//! intervals are covered by nodes λ_j, equally spaced in ln λ, and the weights of each wave follow from C~(q, s) by least squares
-//! with S_j >= 0: at s = 1/λ_j, and in the middle between intervals that lie apart, where C~ tells the sum of the weights before.
-//! The values at t = 0 and for long times are exact.
+//! and all times λ_j lie between a relaxation time of a material and the next retardation time, because outside these intervals
+//! all μ~_i are positive on the negative axis. (A constant bulk modulus is one more positive K_i.) Here nodes λ_j, equally spaced
+//! in ln λ, cover the intervals. The weights of each wave follow from C~(q, s) by least squares with S_j >= 0: at s = 1/λ_j, and
+//! in the middle between separate intervals, where C~ determines the sum of the preceding weights. The values at t = 0 and for
+//! long times are exact.
 
 use std::sync::Arc;
 
@@ -23,22 +23,22 @@ use crate::material::{Body, Creep, CreepTerm, Lateral, least_squares};
 
 /// Largest relative error of C~(q, s) that is accepted.
 pub(crate) const TOLERANCE: f64 = 1e-3;
-/// Error at which the spacing of the nodes is not refined any more: of the first three spacings, and of the narrow ones, which take
-/// longer to plan.
+/// Error at which the spacing of the nodes is not refined further: for the first three spacings, and for the narrow ones, which
+/// take longer to plan.
 const WANTED: [f64; 2] = [3e-5, 3e-4];
 /// Spacings of ln λ that are tried.
 const SPACINGS: [f64; 5] = [0.4, 0.3, 0.2, 0.1, 0.06];
-/// Most nodes: more of them take a wider spacing.
+/// Largest number of nodes: if more are needed, the spacing is wider.
 const MOST: usize = 96;
 /// Weight of the row that sets the relaxed compliance, over the other rows.
 const EXACT: f64 = 1e3;
-/// A wave whose compliance rises by less than this share does not creep.
+/// A wave whose compliance rises by less than this fraction does not creep.
 const STILL: f64 = 1e-6;
-/// Weights below this share of the relaxed compliance are left out.
+/// Weights below this fraction of the relaxed compliance are left out.
 const NONE: f64 = 1e-10;
-/// Waves on which the fit is judged.
+/// Number of waves on which the fit is checked.
 const JUDGED: usize = 64;
-/// Nodes with a larger ratio are apart: C~ is fitted between them as well.
+/// Nodes with a larger ratio are separate: C~ is fitted between them as well.
 const APART: f64 = 5.0;
 
 /// Creep compliance of bodies whose waves creep differently.
@@ -89,7 +89,8 @@ impl NonseparableLayers {
         &self.stages[0].0
     }
 
-    /// The elastic bodies at the s at which C~ is fitted: s = ∞, 0, and those between; with the compliance \[1/Pa\] of each.
+    /// The elastic bodies at the values of s at which C~ is fitted: s = ∞, 0, and those between; with the compliance \[1/Pa\] of
+    /// each.
     pub(crate) fn stages(&self) -> impl Iterator<Item = (Arc<Layered>, f64)> + '_ {
         self.stages.iter().cloned()
     }
@@ -99,7 +100,7 @@ impl NonseparableLayers {
         self.frequencies.iter().copied()
     }
 
-    /// The length over which the stiff layers bend on the soft ones after all creep \[m\]: total thickness times the cube root of the
+    /// The bending length of the stiff layers on the soft ones after all creep \[m\]: total thickness times the cube root of the
     /// largest ratio of the moduli.
     pub(crate) fn bending_length(&self) -> f64 {
         let length = |stack: &Stack| {
@@ -139,7 +140,7 @@ impl NonseparableLayers {
     /// C(q, t) \[m/Pa\] of waves of wave number q > 0 \[rad/m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where q is so extreme that the compliance leaves the range of numbers.
+    /// [`Error::Invalid`] if q is so extreme that the compliance is out of range.
     pub fn creep(&self, q: f64) -> Result<Creep> {
         let values: Vec<f64> = self.stages.iter().map(|(kernel, c)| c * kernel.wave(q)).collect();
         self.fit(&values).map(|(creep, _)| creep).ok_or_else(|| {
@@ -148,7 +149,7 @@ impl NonseparableLayers {
     }
 
     /// The creep function with these values of C~ at the [`stages`](Self::stages), and its largest relative error there; `None`
-    /// where it is not one of a body.
+    /// if it is not that of a passive body.
     pub(crate) fn fit(&self, values: &[f64]) -> Option<(Creep, f64)> {
         let [glassy, relaxed, between @ ..] = values else { return None };
         let rise = relaxed - glassy;
@@ -180,7 +181,7 @@ impl NonseparableLayers {
     /// Largest relative error of C~ over the waves, at frequencies beside those of the fit.
     fn misfit_of(&self, bodies: &[LayeredBody]) -> Result<f64> {
         let [shortest, longest] = self.times();
-        // In the middle between two nodes, or on both sides of the s that is fitted there.
+        // In the middle between two nodes, or on both sides of the value of s that is fitted there.
         let between = self.nodes.windows(2).flat_map(|pair| {
             let ratio = pair[1] / pair[0];
             let parts: &[f64] = if ratio > APART { &[0.25, 0.75] } else { &[0.5] };
@@ -238,10 +239,13 @@ fn moduli(material: &Body, s: f64) -> Result<(f64, f64)> {
     })
 }
 
-/// Where the retardation times of all waves lie \[s\]: disjoint intervals, ascending.
+/// The intervals of the retardation times of all waves \[s\]: disjoint and ascending.
 fn intervals(bodies: &[LayeredBody]) -> Result<Vec<[f64; 2]>> {
     let mut all = vec![];
-    for material in bodies.iter().flat_map(LayeredBody::materials) {
+    let materials = bodies.iter().enumerate().flat_map(|(n, body)| {
+        body.materials().enumerate().map(move |(k, material)| (body.place(n, k), material))
+    });
+    for (place, material) in materials {
         let creep = material.shear()?.tidy();
         let flows = creep.fluidity > 0.0;
         if flows || creep.instantaneous <= 0.0 {
@@ -252,13 +256,14 @@ fn intervals(bodies: &[LayeredBody]) -> Result<Vec<[f64; 2]>> {
                 what,
                 "one with an instantaneous compliance and a limit for long times, where layers creep differently: add an equilibrium \
                  modulus, or a spring in series",
-            ));
+            )
+            .of(&place));
         }
         let relaxation = creep.to_relaxation()?;
         let (e, c) = (&relaxation.terms, &creep.terms);
         match e.len() == c.len() {
             true => all.extend(e.iter().zip(c).map(|(e, c)| [e.relaxation_time, c.retardation_time])),
-            // A term that is rounding has no partner.
+            // A term from rounding has no partner.
             false => {
                 all.extend(e.first().zip(c.last()).map(|(e, c)| [e.relaxation_time, c.retardation_time]))
             }
@@ -283,7 +288,7 @@ fn nodes(intervals: &[[f64; 2]], spacing: f64) -> Vec<f64> {
     let spacing = spacing.max(total / spare as f64);
     let of_one = |interval: &[f64; 2]| {
         let ([start, _], whole) = (*interval, length(interval));
-        // The ends of a narrow interval are as good as its middle.
+        // For a narrow interval, the ends are as accurate as the middle.
         let parts = if whole < 1e-6 { 0 } else { (whole / spacing).ceil().max(1.0) as usize };
         let node = move |n: usize| start * libm::exp(whole * n as f64 / parts.max(1) as f64);
         (0..=parts).map(node).collect::<Vec<f64>>()

@@ -1,4 +1,4 @@
-//! Stacks that tests are made of.
+//! Stacks for tests.
 
 use super::{Base, Interface, Layer, Stack};
 

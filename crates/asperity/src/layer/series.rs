@@ -1,7 +1,7 @@
 //! The response of a stack over the wave number as a Fourier series in ln q, whose terms have known transforms.
 //!
-//! q rest(q) vanishes for short and for long waves, and in ln q it is analytic on a strip around the real axis. So it is a short Fourier
-//! series in ln q (A. J. S. Hamilton, Mon. Not. R. Astron. Soc. 312 (2000) 257):
+//! q rest(q) vanishes for short and for long waves, and in ln q it is analytic on a strip around the real axis. It is therefore a
+//! short Fourier series in ln q (A. J. S. Hamilton, Mon. Not. R. Astron. Soc. 312 (2000) 257):
 //!
 //! ```text
 //! q rest(q) = sum of c_m q^(i w_m)
@@ -12,8 +12,8 @@
 //! int t^(iw - 1) cos t dt = G(iw) cosh(pi w/2), of modulus sqrt(pi/(2 w tanh(pi w/2)))
 //! ```
 //!
-//! The maps keep errors as they are: q C(q) to rounding gives r k(r) of a point and k(x) of a line to rounding, at every distance. (The
-//! modulus for a line is at most 1/w_1, some 10.)
+//! These maps do not amplify errors: if q C(q) is accurate to rounding, so are r k(r) of a point and k(x) of a line, at every
+//! distance. (The modulus for a line is at most 1/w_1, about 10.)
 
 use std::f64::consts::{FRAC_PI_2, LN_2, TAU};
 
@@ -22,9 +22,9 @@ use rayon::prelude::*;
 use super::Stack;
 use super::compliance::is_short;
 
-/// Share of a + b that the last coefficients of the series may have.
+/// Largest ratio of the last coefficients of the series to a + b.
 pub(super) const CUT: f64 = 1e-11;
-/// q d up to which rest(q) counts, and the share of the long waves below which it does not.
+/// Largest q d at which rest(q) matters, and the fraction of the long waves below which it does not.
 const SHORTEST: f64 = 100.0;
 const LONGEST: f64 = 1e-17;
 
@@ -59,7 +59,7 @@ impl Series {
                 }
         };
         let values: Vec<f64> = nodes.par_iter().map(rest).collect();
-        // Angles are whole parts of a turn, so that one table serves all.
+        // Angles are integer fractions of a turn, so one table is enough.
         let turn: Vec<[f64; 2]> = (0..count)
             .map(|n| TAU * n as f64 / count as f64)
             .map(|angle| [libm::cos(angle), libm::sin(angle)])
@@ -102,7 +102,7 @@ impl Series {
         Terms { logarithm: self.coefficients[0][0], ..self.transformed(integral) }
     }
 
-    /// The terms times integrals that are given by modulus and argument for each w.
+    /// The terms times integrals, which are given by modulus and argument for each w.
     fn transformed(&self, integral: impl Fn(f64) -> (f64, f64)) -> Terms {
         let count = self.values.len();
         let term = |(m, [re, im]): (usize, &[f64; 2])| {
@@ -120,7 +120,7 @@ impl Series {
 /// A Fourier series in ln r, and a multiple of ln r.
 pub(super) struct Terms {
     first: f64,
-    /// w_m, and the factor of r^(-i w_m) q_1^(-i w_m), whose real part counts.
+    /// w_m, and the factor of r^(-i w_m) q_1^(-i w_m), of which the real part is used.
     terms: Vec<(f64, [f64; 2])>,
     /// The factor of -ln r.
     logarithm: f64,
@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn layers_that_differ_by_many_decades_are_resolved() {
-        // The series must not depend on its spacing: half of it gives the same numbers.
+        // The series must not depend on its spacing: half the spacing gives the same numbers.
         for stack in [
             stack(&[layer(1e-3, 1e8, 0.2)], half_space(1.0)),
             stack(&[layer(1e-3, 1.0, 0.5)], half_space(1e8)),
@@ -196,7 +196,7 @@ mod tests {
                 let [a, b] = [&coarse, &fine].map(|series| series.of_point().at(libm::log(r)) / TAU);
                 let unit = stack.short_waves().max(stack.long_waves());
                 assert!((a - b).abs() < CUT * unit, "{stack:?} at {r}: {a} {b}");
-                // That of a line is known up to a constant.
+                // That of a line is only known up to a constant.
                 let line = |series: &Series| {
                     let terms = series.of_line();
                     terms.at(libm::log(r)) - terms.at(libm::log(d))

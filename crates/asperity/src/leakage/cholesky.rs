@@ -1,8 +1,8 @@
-//! Sparse Cholesky factorisation of a network, by faer (supernodal, minimum-degree ordering).
+//! Sparse Cholesky factorisation of a network by faer (supernodal, minimum-degree ordering).
 //!
-//! The matrix is scaled to a diagonal of 1. A pivot that rounding makes too small is replaced (a region of large gaps behind a
-//! narrow passage is floating to rounding error), so that the factorisation never fails; the conjugate gradients around it
-//! (`solve`) remove what that leaves.
+//! The matrix is scaled to a diagonal of 1. If rounding makes a pivot too small, it is replaced (a region of large gaps behind a
+//! narrow passage is disconnected to within rounding), so the factorisation never fails. The conjugate gradients around it
+//! (`solve`) remove the resulting error.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
@@ -14,7 +14,7 @@ use faer::{Conj, MatMut, Par, Side};
 
 use super::network::Network;
 
-/// Pivots of the scaled matrix below it are replaced by it.
+/// Pivots of the scaled matrix below this value are replaced by it.
 const SMALLEST_PIVOT: f64 = 1e-14;
 
 /// The factor of a network.
@@ -23,7 +23,7 @@ pub(super) struct Cholesky {
     values: Vec<f64>,
     /// Number in the network of each unknown.
     cells: Vec<u32>,
-    /// One over the root of the diagonal, of each unknown.
+    /// One over the square root of the diagonal, for each unknown.
     scale: Vec<f64>,
     right: Vec<f64>,
     work: MemBuffer,
@@ -35,13 +35,13 @@ impl std::fmt::Debug for Cholesky {
     }
 }
 
-/// Memory that a factorisation takes for so many open cells, about \[bytes\]: 630 per cell at 2^20, 750 at 2^22, measured.
+/// Approximate memory of a factorisation for this number of open cells \[bytes\]; measured: 630 per cell at 2^20, 750 at 2^22.
 pub fn factor_bytes(unknowns: usize) -> f64 {
     34.0 * unknowns as f64 * (unknowns.max(2) as f64).log2()
 }
 
 impl Cholesky {
-    /// Factorises; `None` where the memory does not suffice.
+    /// Factorises the matrix; `None` if the memory is not sufficient.
     pub fn new(network: &Network) -> Option<Cholesky> {
         let m = network.cells[1];
         let diagonal = network.diagonal();
@@ -51,7 +51,7 @@ impl Cholesky {
         let mut number = vec![u32::MAX; diagonal.len()];
         (0u32..).zip(&cells).for_each(|(k, cell)| number[*cell as usize] = k);
         drop(diagonal);
-        // The lower triangle by columns: of each unknown, itself and its neighbours with a larger number.
+        // The lower triangle by columns: for each unknown, itself and its neighbours with a larger number.
         let mut starts = Vec::with_capacity(cells.len() + 1);
         let mut rows: Vec<u32> = Vec::with_capacity(3 * cells.len());
         let mut values = Vec::with_capacity(3 * cells.len());
@@ -65,7 +65,7 @@ impl Cholesky {
             let first = rows.len();
             for (other, t) in faces.into_iter().filter(|(other, t)| *t > 0.0 && *other > k) {
                 let value = -t * scale[k as usize] * scale[other as usize];
-                // Two cells share two faces where a periodic axis has two cells.
+                // Two cells share two faces if a periodic axis has two cells.
                 if rows.len() > first && rows.last() == Some(&other) {
                     *values.last_mut()? += value;
                 } else {
@@ -101,7 +101,7 @@ impl Cholesky {
         Some(Cholesky { symbolic, values: factor, right: vec![0.0; n], cells, scale, work })
     }
 
-    /// out = A^-1 b, 0 where a cell is no unknown.
+    /// out = A^-1 b, and 0 for cells that are not unknowns.
     pub fn solve(&mut self, b: &[f64], out: &mut [f64]) {
         for ((right, cell), scale) in self.right.iter_mut().zip(&self.cells).zip(&self.scale) {
             *right = b[*cell as usize] * scale;

@@ -1,4 +1,4 @@
-//! Bruggeman's effective medium: an estimate of the leak from the distribution of gaps alone.
+//! Bruggeman's effective medium: an estimate of the leak from only the distribution of gaps.
 //!
 //! The transmissivity T of a medium that surrounds cells of mobility s = h^3 (0 in contact) without changing the flow in the mean,
 //!
@@ -6,8 +6,8 @@
 //! sum over all cells of (s - T)/(s + T) = 0,
 //! ```
 //!
-//! in two dimensions (D. A. G. Bruggeman, Ann. Phys. 416 (1935) 636). It is 0 where half of the cells or less are open; rough
-//! contacts percolate until about 42 % of them are in contact, and on either side of this the estimate says little.
+//! in two dimensions (D. A. G. Bruggeman, Ann. Phys. 416 (1935) 636). It is 0 if at most half of the cells are open. Rough
+//! contacts percolate until about 42 % of the cells are in contact, and near this value the estimate is not reliable.
 
 use super::opening::Opening;
 use asperity_sweep::sums;
@@ -27,7 +27,7 @@ pub fn effective_medium(opening: &Opening) -> f64 {
     };
     let (mut low, mut high) =
         (open.iter().fold(1.0_f64, |least, s| least.min(*s)).max(1e-300).ln() - 1.0, 0.0);
-    // Below the smallest s the sum need not be positive, where cells are closed.
+    // If cells are closed, the sum need not be positive below the smallest s.
     while at(f64::exp(low)).0 < 0.0 && low > -600.0 {
         low -= 10.0;
     }

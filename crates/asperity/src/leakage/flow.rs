@@ -5,9 +5,8 @@
 //! T = L/W sum over faces of t dP^2
 //! ```
 //!
-//! Mobilities are relative to that of the critical gap. Where they exceed it by 3e13 they are cut off: such a cell has no
-//! resistance that a sum in double precision would show. Cells with less than a millionth of the critical gap are left out
-//! (their mobility is below 1e-18).
+//! Mobilities are relative to that of the critical gap. They are limited to 3e13: the resistance of such a cell is below rounding
+//! in double precision. Cells with less than a millionth of the critical gap are left out (their mobility is below 1e-18).
 
 use ndarray::{Array2, ArrayView2};
 
@@ -19,23 +18,23 @@ use crate::error::{Result, positive};
 
 /// Largest mobility, relative to that of the critical gap.
 const LARGEST_MOBILITY: f64 = 3e13;
-/// Smallest gap that counts, relative to the critical one.
+/// Smallest gap with flow, relative to the critical one.
 const SMALLEST_GAP: f64 = 1e-6;
 
 /// The flow of a liquid through a gap.
 #[derive(Clone, Debug)]
 pub struct Flow {
-    /// T \[m^3\]; exactly 0 where the seal is tight.
+    /// T \[m^3\]; exactly 0 if the seal is tight.
     pub transmissivity: f64,
     /// Pressure over the pressure drop, 1 at the inlet to 0 at the outlet, shape (nx, ny); NaN in contact and in pockets, and
-    /// where narrower passages than a millionth of the critical gap are the only connection.
+    /// where the only connection is through passages narrower than a millionth of the critical gap.
     pub pressure: Array2<f64>,
     /// Iterations of the linear system.
     pub iterations: usize,
 }
 
 impl Flow {
-    /// The gap of the parallel plates that leak as much, T^(1/3) \[m\].
+    /// The gap of parallel plates with the same leak, T^(1/3) \[m\].
     pub fn hydraulic_gap(&self) -> f64 {
         libm::cbrt(self.transmissivity)
     }
@@ -43,7 +42,7 @@ impl Flow {
     /// Q = T dP W/(12 mu L) \[m^3/s\] of a pressure drop \[Pa\] and a viscosity \[Pa s\].
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where either is not positive.
+    /// [`Error::Invalid`](crate::Error::Invalid) if either is not positive.
     pub fn leak_rate(&self, opening: &Opening, pressure_drop: f64, viscosity: f64) -> Result<f64> {
         leak_rate(self.transmissivity, opening, pressure_drop, viscosity)
     }
@@ -52,7 +51,7 @@ impl Flow {
 /// Q = T dP W/(12 mu L) \[m^3/s\] of a transmissivity T \[m^3\], a pressure drop \[Pa\] and a viscosity \[Pa s\].
 ///
 /// # Errors
-/// [`Error::Invalid`](crate::Error::Invalid) where drop or viscosity is not positive.
+/// [`Error::Invalid`](crate::Error::Invalid) if drop or viscosity is not positive.
 pub fn leak_rate(transmissivity: f64, opening: &Opening, pressure_drop: f64, viscosity: f64) -> Result<f64> {
     let drop = positive("pressure drop", pressure_drop, "Pa")?;
     let mu = positive("viscosity", viscosity, "Pa s")?;
@@ -63,7 +62,8 @@ pub fn leak_rate(transmissivity: f64, opening: &Opening, pressure_drop: f64, vis
 /// Solves the flow of a liquid.
 ///
 /// # Errors
-/// [`Error::NotConverged`](crate::Error::NotConverged) where the iteration (beyond the memory of a factorisation) does not end.
+/// [`Error::NotConverged`](crate::Error::NotConverged) if the iteration (used if the memory does not suffice for a factorisation)
+/// does not converge.
 pub fn liquid(opening: &Opening, passages: &Passages, options: &FlowOptions) -> Result<Flow> {
     let Some(constriction) = passages.constriction else {
         return Ok(Flow { transmissivity: 0.0, pressure: still(opening, passages, None), iterations: 0 });
@@ -96,7 +96,7 @@ pub(super) fn mobility(opening: &Opening, passages: &Passages, critical: f64) ->
     {
         return all;
     }
-    // Without the narrowest cells some parts may have lost inlet or outlet.
+    // Without the narrowest cells some parts may no longer be connected to inlet or outlet.
     let left = Opening { gap: all, ..opening.clone() };
     let kinds = super::passages::kinds(&left);
     left.gap.iter().zip(kinds).map(|(k, kind)| if kind == CellKind::Through { *k } else { 0.0 }).collect()
@@ -129,7 +129,7 @@ impl Channel {
         Channel { network, inlet, outlet, b }
     }
 
-    /// Solves for the pressure from the x given; returns the conductance, which is the power of a unit drop.
+    /// Solves for the pressure, starting from the given x; returns the conductance, which is the power for a unit drop.
     pub fn solve(
         &mut self,
         inverse: &mut Inverse,
@@ -165,8 +165,8 @@ pub(super) fn still(
     opening.turned_back(&pressure)
 }
 
-/// |h^3 grad P| of each cell, for pictures: the mean over its faces, with `size` the lengths of the domain \[m\], the gap \[m\] and
-/// the pressure (NaN where there is none), shape (nx, ny).
+/// |h^3 grad P| of each cell, for figures: the mean over its faces, with `size` the lengths of the domain \[m\], the gap \[m\] and
+/// the pressure (NaN if there is none), shape (nx, ny).
 pub fn flux(size: [f64; 2], gap: ArrayView2<'_, f64>, pressure: ArrayView2<'_, f64>) -> Array2<f64> {
     let (nx, ny) = gap.dim();
     let [dx, dy] = [size[0] / nx as f64, size[1] / ny as f64];
@@ -174,7 +174,7 @@ pub fn flux(size: [f64; 2], gap: ArrayView2<'_, f64>, pressure: ArrayView2<'_, f
         let drop = pressure[a] - pressure[b];
         if drop.is_nan() { 0.0 } else { harmonic(gap[a].powi(3), gap[b].powi(3)) * drop / distance }
     };
-    // A face at the border has no neighbour: the other one stands for both.
+    // A face at the border has no neighbour: the opposite face is used for both.
     let mean = |before: Option<f64>, after: Option<f64>| match (before, after) {
         (Some(a), Some(b)) => 0.5 * (a + b),
         (one, other) => one.or(other).unwrap_or(0.0),

@@ -20,7 +20,7 @@
 //!      Qp(0.01) - ln(D/0.01)/sqrt(pi)                             D < 0.01, free molecular flow
 //! ```
 //!
-//! whose pieces meet within 0.3 %.
+//! whose pieces agree within 0.3 % where they meet.
 
 use std::f64::consts::PI;
 
@@ -97,7 +97,7 @@ impl Species {
     }
 }
 
-/// What a gas flow needs to know of the gas.
+/// The properties of a gas for the flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gas {
     /// Viscosity \[Pa s\].
@@ -108,14 +108,14 @@ pub struct Gas {
     pub temperature: f64,
 }
 
-/// How the rarefaction of the gas is taken into account.
+/// The model of the rarefaction of the gas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Rarefaction {
-    /// Not at all: gaps far wider than the mean free path.
+    /// No rarefaction: for gaps much wider than the mean free path.
     Continuum,
-    /// Slip at the walls, to first order: right to 10 % where the gap is above a few mean free paths.
+    /// Slip at the walls, to first order: accurate to 10 % if the gap is larger than a few mean free paths.
     Slip,
     /// The linearised Boltzmann equation, for any gap.
     #[default]
@@ -126,7 +126,7 @@ impl Gas {
     /// A gas with these properties.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where one is not positive; a molar mass above 1 kg/mol (then it is in g/mol).
+    /// [`Error::Invalid`] if one is not positive, or for a molar mass above 1 kg/mol (it is probably in g/mol).
     pub fn new(viscosity: f64, molar_mass: f64, temperature: f64) -> Result<Gas> {
         positive("viscosity of the gas", viscosity, "Pa s")?;
         positive("molar mass of the gas", molar_mass, "kg/mol")?;
@@ -141,7 +141,7 @@ impl Gas {
     /// A gas with known properties, at a temperature \[K\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the temperature is not between 200 K and 500 K.
+    /// [`Error::Invalid`] if the temperature is not between 200 K and 500 K.
     pub fn of(species: Species, temperature: f64) -> Result<Gas> {
         if !(KNOWN[0]..=KNOWN[1]).contains(&temperature) {
             return Err(Error::invalid(
@@ -242,12 +242,12 @@ impl Rarefaction {
         }
     }
 
-    /// The D of a W; `near` is about where it is.
+    /// The D of a given W; `near` is an estimate of it.
     pub(super) fn inverse_potential(self, w: f64, near: f64) -> f64 {
         if w <= 0.0 {
             return 0.0;
         }
-        // W rises at least as fast as in the continuum.
+        // W increases at least as fast as in the continuum.
         let (mut low, mut high) = (0.0, (2.0 * w).sqrt() * (1.0 + 1e-12));
         let mut d = if near > low && near < high { near } else { 0.5 * high };
         for _ in 0..200 {

@@ -7,9 +7,9 @@
 //! leak = W (G_in - G_out)/(12 mu R_s T L) T      T: transmissivity of the mobility k
 //! ```
 //!
-//! The ratio of the two factors depends on the pressure little: it is 1 at the constriction, 1 everywhere in the continuum, and
-//! h_c/h (up to a logarithm) in free molecular flow. So a few passes suffice, each a linear problem with the k of the pressure
-//! before, and parallel plates are exact. The factorisation of the first pass serves all of them.
+//! The ratio of the two factors depends only weakly on the pressure: it is 1 at the constriction, 1 everywhere in the continuum,
+//! and h_c/h (up to a logarithm) in free molecular flow. A few passes are therefore sufficient. Each is a linear problem with the
+//! k of the previous pressure; for parallel plates the result is exact. All passes use the factorisation of the first one.
 
 use ndarray::Array2;
 use rayon::prelude::*;
@@ -21,29 +21,30 @@ use super::passages::Passages;
 use super::solve::{FlowOptions, Inverse};
 use crate::error::{Error, NotConverged, Result, non_negative, positive};
 
-/// Passes at most; five are usual.
+/// Largest number of passes; usually five are enough.
 const PASSES: usize = 50;
-/// The leak has settled where a pass changes it by less than this share.
+/// The leak has converged if a pass changes it by less than this fraction.
 const SETTLED: f64 = 1e-9;
-/// The factor of the rarefaction is taken at this share of the inlet's pressure at least: the resistance beyond is nothing.
+/// The factor of the rarefaction is evaluated at no less than this fraction of the inlet pressure: the resistance below it is
+/// negligible.
 const LEAST_PRESSURE: f64 = 1e-5;
-/// Iterations of a pass above which the factorisation is done anew.
+/// Number of iterations of a pass above which the factorisation is repeated.
 const WORN: usize = 12;
 
 /// The flow of a gas through a gap.
 #[derive(Clone, Debug)]
 pub struct GasFlow {
-    /// Leak \[kg/s\]; exactly 0 where the seal is tight.
+    /// Leak \[kg/s\]; exactly 0 if the seal is tight.
     pub leak_rate: f64,
     /// Pressure \[Pa\], shape (nx, ny); NaN as in [`Flow::pressure`](super::Flow::pressure).
     pub pressure: Array2<f64>,
-    /// Knudsen number at the critical constriction, at the mean of inlet and outlet pressure; NaN where the seal is tight.
+    /// Knudsen number at the critical constriction, at the mean of inlet and outlet pressure; NaN if the seal is tight.
     pub knudsen: f64,
-    /// Passes done.
+    /// Number of passes.
     pub passes: usize,
 }
 
-/// A leak \[kg/s\] as users quote it \[Pa m^3/s at 0 degC\]: m R_s 273.15 K. 1 mbar l/s is 0.1 Pa m^3/s.
+/// A leak \[kg/s\] in the customary unit \[Pa m^3/s at 0 degC\]: m R_s 273.15 K. 1 mbar l/s is 0.1 Pa m^3/s.
 pub fn standard(leak_rate: f64, gas: &Gas) -> f64 {
     leak_rate * gas.specific_energy() / gas.temperature * STANDARD_TEMPERATURE
 }
@@ -63,7 +64,7 @@ fn pressures(inlet: f64, outlet: f64) -> Result<()> {
 /// Leak \[kg/s\] between parallel plates at a distance `gap` \[m\], of length and width `size` \[m\].
 ///
 /// # Errors
-/// [`Error::Invalid`] where the pressures \[Pa\] are not positive and falling (the outlet may be 0).
+/// [`Error::Invalid`] if the pressures \[Pa\] are not positive and falling (the outlet may be 0).
 pub fn plate(
     gas: &Gas,
     rarefaction: Rarefaction,
@@ -84,7 +85,7 @@ pub fn plate(
 /// Solves the flow of a gas between the pressures `inlet` and `outlet` \[Pa, absolute\].
 ///
 /// # Errors
-/// [`Error::Invalid`] where the pressures are not positive and falling (the outlet may be 0); [`Error::NotConverged`] as for a
+/// [`Error::Invalid`] if the pressures are not positive and falling (the outlet may be 0); [`Error::NotConverged`] as for a
 /// [`liquid`](super::liquid).
 pub fn gas_flow(
     opening: &Opening,

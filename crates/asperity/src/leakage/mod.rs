@@ -3,23 +3,24 @@
 //! The gap h is narrow, so the flow obeys Reynolds' equation for a thin film,
 //!
 //! ```text
-//! div(h^3/(12 mu) grad P) = 0 where the bodies do not touch; no flow into the contact
+//! div(h^3/(12 mu) grad P) = 0 if the bodies do not touch; no flow into the contact
 //! P = P_in at one border of the domain, P_out at the opposite one
 //! ```
 //!
 //! for a Newtonian liquid of viscosity mu, and for an isothermal gas with P^2/2 in place of P and a factor for the rarefaction
-//! ([`gas`]). The pressure of the fluid does not load the bodies: this is valid while it is small against the contact pressure.
-//! So the flow at a time follows from gap and contact of that time alone, and any stored gap will do.
+//! ([`gas`]). The pressure of the fluid does not load the bodies: this is valid while it is small compared with the contact
+//! pressure. The flow at a time therefore follows only from gap and contact at that time, and can be computed from any stored
+//! gap.
 //!
-//! For a liquid everything is in one length, the hydraulic gap T^(1/3), with
+//! For a liquid one length determines everything, the hydraulic gap T^(1/3), with
 //!
 //! ```text
 //! T = 12 mu Q L/(dP W) [m^3]      Q: leak rate, L: length of the domain along the flow, W: its width
 //! ```
 //!
-//! that is, the gap of the parallel plates that leak as much.
+//! that is, the gap of parallel plates with the same leak.
 //!
-//! | file | what it holds |
+//! | file | content |
 //! |---|---|
 //! | `opening` | the open cells, turned so that the flow runs along axis 0 |
 //! | `passages` | which cells are connected to inlet and outlet; the critical constriction; pockets |

@@ -1,22 +1,22 @@
 //! A multigrid cycle for networks too large to factorise.
 //!
-//! Two by two cells become one. The coarse face has half the conductance of its fine faces together, which is the exact one for
-//! a constant gap; ground adds up. A level does one red-black Gauss-Seidel sweep before and the reverse one after the coarser
-//! level, which takes two steps of flexible conjugate gradients (K-cycle; Y. Notay & P. S. Vassilevski, Numer. Linear Algebra
-//! Appl. 15 (2008) 473) and is factorised where it is small enough.
+//! Blocks of two by two cells become one cell. The coarse face has half of the total conductance of its fine faces, which is
+//! exact for a constant gap; conductances to ground are added. A level does one red-black Gauss-Seidel sweep before and the
+//! reverse one after the coarser level, which takes two steps of flexible conjugate gradients (K-cycle; Y. Notay & P. S.
+//! Vassilevski, Numer. Linear Algebra Appl. 15 (2008) 473) and is factorised if it is small enough.
 
 use super::cholesky::Cholesky;
 use super::network::Network;
 use super::solve::add;
 use asperity_sweep::dot;
 
-/// Cells that are factorised: 150 MB. Few in tests, so that they have several levels.
+/// Largest number of cells that are factorised: 150 MB. Tests use a small number to have several levels.
 const FACTORISED: usize = if cfg!(test) { 1 << 7 } else { 1 << 18 };
 
 /// A level and those below it.
 pub(super) struct Multigrid {
     network: Network,
-    /// One over the diagonal, 0 where a cell is no unknown.
+    /// One over the diagonal, and 0 for cells that are not unknowns.
     inverse: Vec<f64>,
     below: Below,
 }
@@ -24,7 +24,7 @@ pub(super) struct Multigrid {
 enum Below {
     Factor(Box<Cholesky>),
     Level(Box<Multigrid>),
-    /// Not enough memory for either: the sweeps of this level alone.
+    /// If there is not enough memory for either: only the sweeps of this level.
     Nothing,
 }
 
@@ -41,7 +41,7 @@ impl Multigrid {
         Multigrid { network: network.clone(), inverse, below }
     }
 
-    /// x = about A^-1 b.
+    /// x = approximately A^-1 b.
     pub fn cycle(&mut self, b: &[f64], x: &mut [f64]) {
         x.fill(0.0);
         self.relax(b, x, [0, 1]);
@@ -127,7 +127,7 @@ fn coarser(network: &Network) -> Network {
     for i in 0..n {
         for j in 0..m {
             let (here, block) = (i * m + j, (i / 2) * columns + j / 2);
-            // Faces inside a block drop out; a block has no face with itself.
+            // Faces inside a block are omitted; a block has no face with itself.
             if (i % 2 == 1 || i + 1 == n) && rows > 1 {
                 coarse.along[block] += 0.5 * network.along[here];
             }

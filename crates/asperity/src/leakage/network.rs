@@ -1,19 +1,19 @@
 //! Finite volumes: a network of conductances between the centres of neighbouring cells.
 //!
-//! The flux between two cells is t (P_1 - P_2). For cells of mobility k = h^3 the conductance t is their harmonic mean,
-//! 2 k_1 k_2/(k_1 + k_2), times width over length of the cells, and 0 where either is closed. The harmonic mean is the exact one
-//! in series; where elastic surfaces part, h^3 falls as the 4.5th power of the distance from the contact, so that edges of the
+//! The flux between two cells is t (P_1 - P_2). For cells of mobility k = h^3 the conductance t is their harmonic mean, 2 k_1
+//! k_2/(k_1 + k_2), times width over length of the cells, and 0 if either is closed. The harmonic mean is exact for cells in
+//! series. Where elastic surfaces separate, h^3 varies as the 4.5th power of the distance from the contact, so edges of the
 //! contact need no special treatment.
 //!
 //! A x = b is the balance of each cell: sum over its faces of t (x - x') plus g x equals b, with a conductance g to ground.
 
 use rayon::prelude::*;
 
-/// Cells that one task works on, at least.
+/// Smallest number of cells per task.
 const TASK: usize = 8192;
 
-/// Conductances of a rectangle of cells, C-order. Faces towards the next cell wrap around at the last one; where the domain does
-/// not, they are 0 there.
+/// Conductances of a rectangle of cells, C-order. Faces towards the next cell wrap around at the last cell; if the domain is not
+/// periodic, they are 0 there.
 #[derive(Clone, Debug)]
 pub(super) struct Network {
     /// Cells along axis 0 and axis 1.
@@ -32,7 +32,7 @@ pub(super) fn harmonic(a: f64, b: f64) -> f64 {
 }
 
 impl Network {
-    /// From the mobility of the cells, without ground; `wraps` tells which axes are periodic.
+    /// From the mobility of the cells, without ground; `wraps` states which axes are periodic.
     pub fn of(cells: [usize; 2], spacing: [f64; 2], wraps: [bool; 2], mobility: &[f64]) -> Network {
         let [n, m] = cells;
         let aspect = spacing[1] / spacing[0];
@@ -56,7 +56,8 @@ impl Network {
         Network { cells, along, across, ground: vec![0.0; n * m] }
     }
 
-    /// Sum of all conductances of each cell, the diagonal of A; not those of a cell with itself, where a periodic axis has one.
+    /// Sum of all conductances of each cell, the diagonal of A; without those of a cell with itself, if a periodic axis has only
+    /// one cell.
     pub fn diagonal(&self) -> Vec<f64> {
         let [n, m] = self.cells;
         let mut diagonal = vec![0.0; n * m];
@@ -87,12 +88,12 @@ impl Network {
         ]
     }
 
-    /// What the faces and the ground take from a cell: (A x) there.
+    /// The flow from a cell to the faces and the ground: (A x) of that cell.
     #[inline(always)]
     pub fn outflow(&self, x: &[f64], i: usize, j: usize) -> f64 {
         let here = i * self.cells[1] + j;
-        // Differences first: the same flux with the opposite sign on both sides of a face, so that nothing is lost in the sum
-        // over a region of large conductance.
+        // The differences are computed first: the flux has the same value with opposite sign on both sides of a face, so nothing
+        // is lost in the sum over a region of large conductance.
         let flux = self.faces(i, j).map(|(t, other)| t * (x[here] - x[other]));
         (flux[0] + flux[3]) + (flux[1] + flux[2]) + self.ground[here] * x[here]
     }

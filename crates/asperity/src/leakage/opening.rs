@@ -1,15 +1,15 @@
-//! The open part of a gap: what the fluid can flow through.
+//! The open part of a gap, through which the fluid can flow.
 //!
-//! A cell is closed where the bodies touch there, and where the gap is not above the smallest gap that lets molecules pass (0
-//! unless it is given). Contact is told by the contact itself, not by a gap of 0, which the solver meets to its tolerance only;
-//! where no contact is known, the gap decides alone.
+//! A cell is closed if the bodies touch there, or if the gap is not above the smallest gap that lets molecules pass (0 by
+//! default). Contact is taken from the contact field, not from a gap of 0, because the gap has an error of the tolerance of the
+//! solver; if the contact is not known, only the gap is used.
 
 use ndarray::{Array2, ArrayView2};
 
 use crate::error::{Error, Result, non_negative};
 use crate::grid::Grid;
 
-/// Where the fluid flows.
+/// The direction of the flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
@@ -21,12 +21,12 @@ pub enum Direction {
     Y,
 }
 
-/// What bounds the flow at the sides.
+/// The boundary condition at the sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Sides {
-    /// The gap repeats across the flow.
+    /// The gap is periodic across the flow.
     #[default]
     Periodic,
     /// No flow through the sides.
@@ -40,7 +40,7 @@ pub struct Opening {
     pub(super) cells: [usize; 2],
     /// Their lengths \[m\].
     pub(super) spacing: [f64; 2],
-    /// Gap \[m\], 0 where closed; C-order, the flow along axis 0.
+    /// Gap \[m\], 0 if closed; C-order, the flow along axis 0.
     pub(super) gap: Vec<f64>,
     pub(super) sides: Sides,
     pub(super) direction: Direction,
@@ -108,22 +108,22 @@ impl Opening {
         [self.cells[0] as f64 * self.spacing[0], self.cells[1] as f64 * self.spacing[1]]
     }
 
-    /// The largest gap \[m\]; 0 where every cell is closed.
+    /// The largest gap \[m\]; 0 if every cell is closed.
     pub fn largest(&self) -> f64 {
         self.gap.iter().fold(0.0, |most: f64, h| most.max(*h))
     }
 
-    /// Share of the cells that are open.
+    /// Fraction of the cells that are open.
     pub fn open_fraction(&self) -> f64 {
         self.gap.iter().filter(|h| **h > 0.0).count() as f64 / self.gap.len() as f64
     }
 
-    /// Where the flow runs.
+    /// Direction of the flow.
     pub fn direction(&self) -> Direction {
         self.direction
     }
 
-    /// Cell (i, j) of the grid, of a cell's number.
+    /// Cell (i, j) of the grid for the number of a cell.
     pub(super) fn cell(&self, number: usize) -> [usize; 2] {
         let (along, across) = (number / self.cells[1], number % self.cells[1]);
         if self.direction == Direction::X { [along, across] } else { [across, along] }

@@ -1,6 +1,6 @@
-//! Which open cells are connected, and the constriction that decides the leak.
+//! The connected open cells, and the constriction that determines the leak.
 //!
-//! Cells that share an edge are connected; where the sides are periodic, so are the cells at opposite sides. Open cells belong to
+//! Cells that share an edge are connected; if the sides are periodic, so are the cells at opposite sides. Open cells belong to
 //! passages from inlet to outlet, to dead ends at one of them, or to pockets. The critical constriction is found by opening the
 //! cells in order of decreasing gap until inlet and outlet are connected: the cell that connects them has the largest gap that
 //! every path must pass (bottleneck path; B. N. J. Persson & C. Yang, J. Phys.: Condens. Matter 20 (2008) 315011).
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::opening::{Opening, Sides};
 use crate::spots::Forest;
 
-/// What an open cell is connected to.
+/// The connections of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum CellKind {
@@ -19,9 +19,9 @@ pub enum CellKind {
     Closed = 0,
     /// Connected to inlet and outlet: fluid flows, or could.
     Through = 1,
-    /// Connected to the inlet alone, at its pressure.
+    /// Connected only to the inlet, at its pressure.
     AtInlet = 2,
-    /// Connected to the outlet alone, at its pressure.
+    /// Connected only to the outlet, at its pressure.
     AtOutlet = 3,
     /// Connected to neither.
     Pocket = 4,
@@ -34,21 +34,21 @@ pub struct Constriction {
     pub gap: f64,
     /// Its cell (i, j) on the grid.
     pub cell: [usize; 2],
-    /// Its width in cells: the shortest row of open cells through it, along both axes and both diagonals; `None` where none of
-    /// them ends at contact on both sides.
+    /// Its width in cells: the shortest row of open cells through it, along both axes and both diagonals; `None` if none of these
+    /// rows ends at contact on both sides.
     pub width: Option<usize>,
 }
 
 /// The connected parts of an opening.
 #[derive(Clone, Debug)]
 pub struct Passages {
-    /// The critical constriction; `None` where the seal is tight.
+    /// The critical constriction; `None` if the seal is tight.
     pub constriction: Option<Constriction>,
     /// Area of the pockets \[m^2\].
     pub trapped_area: f64,
     /// Their volume \[m^3\].
     pub trapped_volume: f64,
-    /// Kind of each cell, turned as the opening.
+    /// Kind of each cell, in the orientation of the opening.
     pub(super) kinds: Vec<CellKind>,
 }
 
@@ -98,7 +98,7 @@ fn later(opening: &Opening, cell: usize) -> impl Iterator<Item = usize> {
     [below, after, around].into_iter().flatten()
 }
 
-/// Kind of each cell, by the connected parts and the borders that they reach.
+/// Kind of each cell, from the connected parts and the borders that they reach.
 pub(super) fn kinds(opening: &Opening) -> Vec<CellKind> {
     let [n, m] = opening.cells;
     let open = |cell: usize| opening.gap[cell] > 0.0;
@@ -130,7 +130,7 @@ pub(super) fn kinds(opening: &Opening) -> Vec<CellKind> {
 fn constriction(opening: &Opening, kinds: &[CellKind]) -> Option<Constriction> {
     let [n, m] = opening.cells;
     let (inlet, outlet) = (n * m, n * m + 1);
-    // The bits of positive numbers rise with the numbers.
+    // The bits of positive numbers increase with the numbers.
     let mut order: Vec<(u64, usize)> = (0..n * m)
         .into_par_iter()
         .filter(|cell| kinds[*cell] == CellKind::Through)
@@ -163,7 +163,8 @@ fn width(opening: &Opening, cell: usize) -> Option<usize> {
     let [n, m] = opening.cells.map(|cells| cells as isize);
     let (i, j) = (cell as isize / m, cell as isize % m);
     let wraps = opening.sides == Sides::Periodic;
-    // Open cells from the next one on, until the first that is closed; none where the row leaves the domain or comes round.
+    // Number of open cells from the next one to the first closed one; `None` if the row leaves the domain or returns to its
+    // start.
     let count = |di: isize, dj: isize| {
         (1..n.max(m) + 1).find_map(|step| {
             let (i, j) = (i + step * di, j + step * dj);

@@ -1,9 +1,9 @@
-//! The linear system of a network: conjugate gradients around a factorisation, or around a multigrid cycle where the factor
-//! would not fit its memory.
+//! The linear system of a network: conjugate gradients around a factorisation, or around a multigrid cycle if the factor would
+//! not fit into memory.
 //!
-//! The residual says nothing about the leak: at a residual of 1e-6 the flux may be wrong by more than the flux itself. The
-//! power that the flow dissipates, sum of t dP^2 over all faces, is an upper bound of the leak with an error that is quadratic
-//! in that of the pressure (Dirichlet's principle), so the iteration ends where this power has settled.
+//! The residual is not a measure of the error of the leak: at a residual of 1e-6 the error of the flux may exceed 100 %. The
+//! power that the flow dissipates, the sum of t dP^2 over all faces, is an upper bound of the leak with an error that is
+//! quadratic in that of the pressure (Dirichlet's principle), so the iteration ends when this power has converged.
 
 use super::cholesky::{Cholesky, factor_bytes};
 use super::multigrid::Multigrid;
@@ -11,13 +11,13 @@ use super::network::Network;
 use crate::error::{Error, NotConverged, Result};
 use asperity_sweep::{dot, each};
 
-/// How flows are solved.
+/// Options of the flow solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowOptions {
     /// Memory that a factorisation may take \[bytes\]; above it the solution is iterative. Default 4 GB, for about 5 million open
     /// cells.
     pub memory: f64,
-    /// Most iterations of a linear system. Default 2000.
+    /// Largest number of iterations of a linear system. Default 2000.
     pub max_iterations: usize,
 }
 
@@ -52,7 +52,7 @@ impl Inverse {
         }
     }
 
-    /// The power has settled where it changes by less than this share over so many iterations.
+    /// The power has converged if it changes by less than this fraction over this number of iterations.
     fn settled(&self) -> (f64, usize) {
         match self {
             Inverse::Factor(_) => (1e-12, 1),
@@ -66,10 +66,11 @@ pub(super) fn add(x: &mut [f64], s: f64, y: &[f64]) {
     each(x, y, |x, y| *x += s * y);
 }
 
-/// Solves A x = b from the x given. `power` is what the flow of an x dissipates, in any unit. Returns it, and the iterations.
+/// Solves A x = b, starting from the given x. `power` computes the dissipation of the flow of an x, in any unit. Returns the
+/// power and the number of iterations.
 ///
-/// Flexible conjugate gradients (Polak-Ribiere), as a multigrid cycle is not quite linear; the residual is computed anew each
-/// time, as updated ones drift where conductances span many decades.
+/// Flexible conjugate gradients (Polak-Ribiere) are used because a multigrid cycle is not exactly linear. The residual is
+/// computed again each time, because updated residuals drift if conductances span many decades.
 pub(super) fn solve(
     network: &Network,
     inverse: &mut Inverse,
@@ -102,7 +103,7 @@ pub(super) fn solve(
         network.residual(b, x, &mut r);
         let now = power(x);
         let last = powers[powers.len() - 1];
-        // The power falls in every exact step: where it rises, rounding is all that is left.
+        // The power decreases in every exact step: if it rises, only rounding is left.
         if now > last && iteration > 1 {
             x.copy_from_slice(&before);
             return Ok((last, iteration));

@@ -1,11 +1,11 @@
-//! The effective conductance of a gap that repeats in both directions.
+//! The effective conductance of a gap that is periodic in both directions.
 //!
 //! ```text
 //! div(h^3 (e_k + grad chi_k)) = 0, chi_k periodic;   K_jk = mean of h^3 (e_j . (e_k + grad chi_k)) \[m^3\]
 //! ```
 //!
 //! for k = x, y, so that the flow per width under a gradient is -K grad P/(12 mu). Only parts of the gap that wind around the
-//! torus carry flow: the others are left out, so that K is exactly 0 where none does.
+//! torus carry flow. The others are left out, so K is exactly 0 if no part winds around.
 
 use super::network::Network;
 use super::opening::Opening;
@@ -14,7 +14,7 @@ use crate::error::Result;
 
 /// K \[m^3\], rows and columns x, y.
 ///
-/// The sides of the opening are ignored: the gap repeats in both directions.
+/// The sides of the opening are ignored: the gap is periodic in both directions.
 ///
 /// # Errors
 /// [`Error::NotConverged`](crate::Error::NotConverged) as for a [`liquid`](super::liquid).
@@ -41,11 +41,10 @@ pub fn flow_factors(conductance: [[f64; 2]; 2], opening: &Opening) -> [[f64; 2];
     conductance.map(|row| row.map(|k| if mean > 0.0 { k / mean.powi(3) } else { 0.0 }))
 }
 
-/// A conductance below this share of that in the other direction is none.
+/// A conductance below this fraction of that in the other direction counts as 0.
 const NOTHING: f64 = 1e-28;
 
-/// Conductance of a network on a torus per cell: flux per face in direction j, in the mean, under a drop of 1 per cell in
-/// direction k.
+/// Conductance of a network on a torus per cell: mean flux per face in direction j under a drop of 1 per cell in direction k.
 pub(super) fn network_conductance(mut network: Network, options: &FlowOptions) -> Result<[[f64; 2]; 2]> {
     let [n, m] = network.cells;
     if !keep_winding(&mut network) {
@@ -53,7 +52,7 @@ pub(super) fn network_conductance(mut network: Network, options: &FlowOptions) -
     }
     let mut inverse = Inverse::new(&network, options);
     let mut corrector = |drop: [f64; 2]| -> Result<(Vec<f64>, f64)> {
-        // What the prescribed drop brings into each cell.
+        // The inflow of each cell due to the prescribed drop.
         let mut b = vec![0.0; n * m];
         network.each(&mut b, |i, j, here| {
             let above = (if i > 0 { i - 1 } else { n - 1 }) * m + j;
@@ -77,8 +76,8 @@ pub(super) fn network_conductance(mut network: Network, options: &FlowOptions) -
     Ok([[xx, xy], [xy, yy]].map(|row| row.map(number)))
 }
 
-/// Leaves only the parts of a torus that wind around it, each grounded at its first cell (which carries no current: the sources
-/// of a part add up to 0). Whether there are any.
+/// Keeps only the parts of a torus that wind around it. Each is grounded at its first cell (which carries no current, because the
+/// sources of a part add up to 0). Returns whether there are any.
 fn keep_winding(network: &mut Network) -> bool {
     let [n, m] = network.cells;
     let mut parts = Winding::new(n * m);

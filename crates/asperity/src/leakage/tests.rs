@@ -1,4 +1,4 @@
-//! Exact channels, duality, monotonicity, awkward maps.
+//! Exact channels, duality, monotonicity, unusual maps.
 
 use ndarray::Array2;
 
@@ -9,7 +9,7 @@ use crate::Grid;
 
 const CELL: f64 = 1.0;
 
-/// Numbers between 0 and 1 that look random, the same everywhere.
+/// Pseudo-random numbers between 0 and 1, the same on every machine.
 fn noise(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
     move || {
@@ -129,7 +129,7 @@ fn connected_exactly_where_fluid_flows() {
                 continue;
             }
             open += 1;
-            // What flows does not depend on which way it is looked at, and closing a cell lowers it.
+            // The flow does not depend on the orientation, and closing a cell reduces it.
             let turned = gap.t().to_owned();
             near(
                 transmissivity_with(&turned, Direction::Y, sides, &FlowOptions::default()),
@@ -239,7 +239,7 @@ fn bad_maps_are_refused_and_thin_ones_solved() {
     gap[(1, 2)] = -1.0;
     assert!(said(&gap, -1.0).contains("smallest gap"));
     assert!(said(&Array2::zeros((3, 2)), 0.0).contains("3 x 2"));
-    // A negative gap is closed, one below the smallest too.
+    // A negative gap is closed, and so is one below the smallest gap.
     let opening = Opening::new(&grid, gap.view(), None, Direction::X, Sides::Closed, 1.0).unwrap();
     assert_eq!(opening.open_fraction(), 0.0);
     assert!(!Passages::of(&opening).percolates());

@@ -1,13 +1,12 @@
-//! Stages: what is prescribed changes at a time or at an event.
+//! Stages: the prescribed quantity changes at a time or at an event.
 //!
-//! Press under load, hold the approach reached, retract until contact is lost, wait, touch again: each of
-//! these is a stage with a control, a course of its value on a clock of its own, and an end.
+//! Press under load, hold the approach reached, retract until contact is lost, wait, touch again: each of these is a stage with a
+//! control, a history of its value with a separate time, and an end.
 
 use super::{Control, History, Loading, TimeGrid};
 use crate::error::{Error, Result, positive};
 
-/// The stages of a run, one after the other. The run ends with the last of them or at the end of its time
-/// grid, whichever comes first.
+/// The consecutive stages of a run. The run ends with the last stage or at the end of its time grid, whichever comes first.
 ///
 /// ```
 /// use asperity::load::{Control, Course, Event, History, Programme, Stage};
@@ -23,33 +22,33 @@ use crate::error::{Error, Result, positive};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Programme {
-    /// In their order; one at least.
+    /// In order; at least one.
     pub stages: Vec<Stage>,
 }
 
 /// A part of the run under one control.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
-    /// What is prescribed.
+    /// The prescribed quantity of the stage.
     pub control: Control,
-    /// Its value; the clock of the course starts with the stage.
+    /// Its value; the time of this history starts with the stage.
     pub course: Course,
-    /// The stage lasts no longer than this \[s\].
+    /// Longest duration of the stage \[s\].
     pub duration: Option<f64>,
-    /// The stage ends where this happens. Without `duration` it must happen before the run ends; with it the
-    /// stage ends quietly at the latest then.
+    /// The stage ends at this event. Without `duration` the event must occur before the run ends. With `duration` the stage ends
+    /// after it at the latest, which is not an error.
     pub until: Option<Event>,
-    /// The event counts only after the jump with which the stage begins: not what the jump itself reaches, but what comes after
-    /// it, as a load that relaxes.
+    /// The event only counts after the jump at the beginning of the stage: not a value that the jump itself reaches, but one that
+    /// is reached later, for example by a load that relaxes.
     pub after_jump: bool,
-    /// Instants of the stage, on its own clock, in place of those of the run.
+    /// Times of the stage, counted from its start, in place of those of the run.
     pub times: Option<TimeGrid>,
 }
 
 /// The prescribed value over a stage.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Course {
-    /// As given, from the start of the stage on.
+    /// A given history, from the start of the stage on.
     Given(History),
     /// The value that the quantity has when the stage starts.
     Hold,
@@ -63,8 +62,8 @@ pub enum Course {
     },
 }
 
-/// What ends a stage. A value is reached where the quantity crosses it, from either side; a stage that starts
-/// at the value must leave it first.
+/// The event that ends a stage. A value is reached when the quantity crosses it, from either side; if a stage starts at the
+/// value, the quantity must leave it first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// The approach reaches a value \[m\].
@@ -73,7 +72,7 @@ pub enum Event {
     Load(f64),
     /// The mean pressure reaches a value \[Pa\].
     Pressure(f64),
-    /// Bodies that touched touch no more.
+    /// Bodies in contact lose contact.
     ContactLost,
 }
 
@@ -101,7 +100,7 @@ impl From<Loading> for Programme {
 }
 
 impl Stage {
-    /// A stage that lasts to the end of the run, with the instants of the run.
+    /// A stage that lasts to the end of the run, with the times of the run.
     pub fn new(control: Control, course: impl Into<Course>) -> Self {
         Stage { control, course: course.into(), duration: None, until: None, after_jump: false, times: None }
     }
@@ -119,7 +118,8 @@ impl Course {
         }
     }
 
-    /// When the course bends or jumps for the first time, on the clock of the stage \[s\]; `None` where it never does.
+    /// The first time at which the history has a kink or a jump, counted from the start of the stage \[s\]; `None` if there is
+    /// none.
     pub fn first_break(&self) -> Option<f64> {
         match self {
             Course::Given(history) => history.breaks(f64::INFINITY).first().copied(),
@@ -160,7 +160,7 @@ impl Programme {
         Ok(())
     }
 
-    /// Whether a stage ends at an event, so that times are known only as the run goes.
+    /// Whether a stage ends at an event, so that times are only known during the run.
     pub fn has_events(&self) -> bool {
         self.stages.iter().any(|stage| stage.until.is_some())
     }
@@ -197,8 +197,8 @@ impl Stage {
 /// The same error, of the `n`th stage from 0.
 pub(crate) fn of_stage(error: Error, n: usize) -> Error {
     match error {
-        Error::Invalid { what, value, expected } => {
-            Error::Invalid { what: format!("{what} of stage {}", n + 1), value, expected }
+        Error::Invalid { parameter, what, value, expected } => {
+            Error::Invalid { parameter, what: format!("{what} of stage {}", n + 1), value, expected }
         }
         other => other,
     }

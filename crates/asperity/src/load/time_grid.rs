@@ -1,54 +1,54 @@
-//! The instants that a run or one of its stages steps to.
+//! The times of the steps of a run or of one of its stages.
 
 use crate::error::{Error, Result, positive};
 
-/// The instants after t = 0 that a march steps to.
+/// The times after t = 0 to which a run steps.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TimeGrid {
     /// `steps` equal steps to `end`.
     Uniform {
-        /// Last instant \[s\].
+        /// Last time \[s\].
         end: f64,
         /// Number of steps.
         steps: usize,
     },
-    /// `steps` instants in geometric progression from `first` to `end`.
+    /// `steps` times in geometric progression from `first` to `end`.
     Logarithmic {
-        /// Last instant \[s\].
+        /// Last time \[s\].
         end: f64,
         /// Number of steps.
         steps: usize,
-        /// First instant \[s\].
+        /// First time \[s\].
         first: f64,
     },
-    /// The instants themselves, increasing.
+    /// The times themselves, increasing.
     List(Vec<f64>),
-    /// Steps as long as their local error allows (see docs/theory.md, section 5), to `end`.
+    /// Steps as long as the tolerance of their local error allows (see docs/theory.md, section 5), to `end`.
     Adaptive {
-        /// Last instant \[s\].
+        /// Last time \[s\].
         end: f64,
         /// Largest error of the stress, relative (see [`crate::step::Row::time_error`]).
         tolerance: f64,
-        /// The first step after t = 0 and after each break or jump is no longer \[s\]; it is shorter where the material or the
-        /// course ask for it.
+        /// Largest first step after t = 0 and after each kink or jump \[s\]; the step is shorter if the material or the history
+        /// requires it.
         first: f64,
     },
 }
 
-/// The shortest step of an adaptive grid is this share of its end.
+/// The shortest step of an adaptive grid is this fraction of its end.
 pub(crate) const SHORTEST: f64 = 1e-15;
 
 impl TimeGrid {
     /// Checks counts and order.
     ///
     /// # Errors
-    /// [`Error::Invalid`] naming what is wrong.
+    /// [`Error::Invalid`] naming the wrong quantity.
     pub fn validate(&self) -> Result<()> {
         let steps_in_range = |steps: usize| {
             if (1..=10_000_000).contains(&steps) {
                 Ok(())
             } else {
-                Err(Error::invalid("number of steps", steps, "between 1 and 10 000 000"))
+                Err(Error::invalid("number of steps", steps, "between 1 and 10000000").of("steps"))
             }
         };
         let first_in_range = |first: f64, end: f64| {
@@ -73,10 +73,11 @@ impl TimeGrid {
                 first_in_range(*first, *end)?;
                 if *first < SHORTEST * end {
                     let least = format!("at least {:e} s, {SHORTEST:e} of the end", SHORTEST * end);
-                    return Err(Error::invalid("first step", format!("{first:e} s"), least));
+                    return Err(Error::invalid("first step", format!("{first:e} s"), least).of("first"));
                 }
                 if !(1e-9..=0.1).contains(tolerance) {
-                    return Err(Error::invalid("tolerance of the steps", tolerance, "between 1e-9 and 0.1"));
+                    return Err(Error::invalid("tolerance of the steps", tolerance, "between 1e-9 and 0.1")
+                        .of("tolerance"));
                 }
                 Ok(())
             }
@@ -98,7 +99,7 @@ impl TimeGrid {
         }
     }
 
-    /// Last instant \[s\].
+    /// Last time \[s\].
     pub fn end(&self) -> f64 {
         match self {
             TimeGrid::Uniform { end, .. }
@@ -108,12 +109,12 @@ impl TimeGrid {
         }
     }
 
-    /// Whether the steps are chosen as the march goes.
+    /// Whether the steps are chosen during the run.
     pub fn is_adaptive(&self) -> bool {
         matches!(self, TimeGrid::Adaptive { .. })
     }
 
-    /// The grid's own instants, in order; of an adaptive grid the end.
+    /// The times of the grid, in order; for an adaptive grid, the end.
     pub fn times(&self) -> Vec<f64> {
         match self {
             TimeGrid::Uniform { end, steps } => {

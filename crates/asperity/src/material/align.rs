@@ -1,7 +1,7 @@
-//! How far two curves at neighbouring temperatures lie apart along the logarithm of time, and how well that is known.
+//! The distance between two curves at neighbouring temperatures along the logarithm of time, and its uncertainty.
 //!
-//! Both curves, as ln value over ln x, are described by one polynomial; the second curve is moved by d, and on wish raised
-//! by v along the ordinate. Several quantities (storage and loss modulus) have polynomials of their own and share d and v:
+//! One polynomial describes both curves, as ln value over ln x. The second curve is moved by d, and optionally raised by v along
+//! the ordinate. Several quantities (storage and loss modulus) have separate polynomials with the same d and v:
 //!
 //! ```text
 //! S(d) = min over v and the coefficients of  sum over both curves of (y - P(x))^2,   d = argmin S
@@ -9,14 +9,14 @@
 //!                 + (|ln(T2/T1)| / slope)^2  +  gap^2
 //! ```
 //!
-//! The first part of the variance is that of the scatter s: from the curvature of S (the Gauss-Newton value of one unknown)
-//! or, where other distances describe the curves about as well, from the likelihood of all of them (Student's distribution of n
-//! degrees of freedom). The scatter is what the polynomial leaves, or what parabolas through each curve alone leave: a
-//! distance that is chosen among many describes the scatter of a few points by chance. The second one is what a
-//! change of the moduli with temperature does: the modulus of a rubber grows as T, and a curve that is higher for this reason
-//! looks shifted by the change over its slope; where v is free, it is what one per cent of the loss factor does. The third
-//! one is the distance between curves that do not overlap, in which the polynomial is an extrapolation. The degree of the
-//! polynomial is that of the least Bayesian information criterion.
+//! The first part of the variance is that of the scatter s. It follows from the curvature of S (the Gauss-Newton value of one
+//! unknown) or, if other distances describe the curves about as well, from the likelihood of all of them (Student's distribution
+//! of n degrees of freedom). The scatter is the residual of the polynomial, or that of parabolas through each curve separately,
+//! because a distance that is chosen among many may fit the scatter of a few points by chance. The second part is the effect of a
+//! change of the moduli with temperature: the modulus of a rubber grows as T, and a curve that is higher for this reason appears
+//! shifted by the change over its slope. If v is free, it is the effect of one per cent of the loss factor. The third part is the
+//! distance between curves that do not overlap, in which the polynomial extrapolates. The degree of the polynomial is that with
+//! the smallest Bayesian information criterion.
 
 mod polynomial;
 
@@ -30,9 +30,9 @@ pub(super) type Logs = Vec<(f64, f64)>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Distance {
     pub value: f64,
-    /// Infinite where the curves do not tell it.
+    /// Infinite if the curves do not determine it.
     pub deviation: f64,
-    /// The distances at which the curves touch with one end or the other; they overlap in between.
+    /// The distances at which the curves touch at one end or the other; between them they overlap.
     pub touching: [f64; 2],
 }
 
@@ -43,29 +43,29 @@ impl Distance {
     }
 }
 
-/// What the second curve does along the ordinate.
+/// The shift of the second curve along the ordinate.
 #[derive(Clone, Copy)]
 pub(super) enum Ordinate {
-    /// It stays; the logarithm of its values may be off by this.
+    /// None; the logarithm of its values has this uncertainty.
     Held(f64),
-    /// It is raised by whatever brings it closest to the first.
+    /// It is raised by the value that brings it closest to the first.
     Free,
 }
 
 /// Highest degree of the polynomial.
 const MOST_DEGREE: usize = 14;
-/// Relative scatter below which values do not differ: the digits of a file.
+/// Relative scatter below which values count as equal: the digits of a file.
 const DIGITS: f64 = 1e-5;
-/// Farthest gap between the curves that is tried \[ln x\]: two decades.
+/// Largest gap between the curves that is tried \[ln x\]: two decades.
 const FARTHEST_GAP: f64 = 4.6;
-/// Relative error of the ratio of two quantities at two temperatures: instruments tell a loss factor no better.
+/// Relative error of the ratio of two quantities at two temperatures: instruments do not measure a loss factor more accurately.
 const INSTRUMENT: f64 = 0.01;
-/// Places at which S(d) is evaluated first, per unit of ln x.
+/// Number of distances at which S(d) is evaluated first, per unit of ln x.
 const PLACES: f64 = 10.0;
-/// Likelihood of the ends of the range of distances, over that of the best, above which the curves do not tell it.
+/// Likelihood of the ends of the range of distances, over that of the best, above which the curves do not determine the distance.
 const LIKELY_END: f64 = 0.02;
 
-/// How far the second curve of each pair moves along ln x to continue the first one. All pairs have the same abscissae.
+/// The distance along ln x by which the second curve of each pair continues the first one. All pairs have the same abscissae.
 pub(super) fn distance(pairs: &[[Logs; 2]], ordinate: Ordinate) -> Distance {
     let Some(range) = Range::of(pairs) else {
         return Distance { value: 0.0, deviation: f64::INFINITY, touching: [0.0; 2] };
@@ -123,24 +123,24 @@ pub(super) fn distance(pairs: &[[Logs; 2]], ordinate: Ordinate) -> Distance {
     Distance { deviation: if deviation.is_finite() { deviation } else { f64::INFINITY }, ..found }
 }
 
-/// How far curves are from one polynomial at a distance that others tell, as the root of the mean square of the logarithm.
+/// Root mean square deviation (in the logarithm) of curves from one polynomial, at a distance that other curves determine.
 pub(super) fn apart(pairs: &[[Logs; 2]], d: f64) -> f64 {
     let Some(range) = Range::of(pairs) else { return 0.0 };
     let degree = most_degree(range.overlap(d)).min(range.highest_degree(false)).max(1);
     (Joint::fit(pairs, d, degree, false).squares / range.count(pairs)).sqrt()
 }
 
-/// How far the second curve of each pair is raised to continue the first one.
+/// The value by which the second curve of each pair is raised to continue the first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Raised {
     pub value: f64,
-    /// Standard deviation at this distance; infinite where the curves do not tell it.
+    /// Standard deviation at this distance; infinite if the curves do not determine it.
     pub deviation: f64,
     /// Change of the value with the distance.
     pub slope: f64,
 }
 
-/// How far the second curve of each pair, moved along ln x by a known distance, is raised to continue the first one.
+/// The value by which the second curve of each pair, moved along ln x by a known distance, is raised to continue the first one.
 pub(super) fn raised(pairs: &[[Logs; 2]], d: f64) -> Raised {
     let unknown = Raised { value: 0.0, deviation: f64::INFINITY, slope: 0.0 };
     let Some(range) = Range::of(pairs) else { return unknown };
@@ -166,7 +166,7 @@ pub(super) fn raised(pairs: &[[Logs; 2]], d: f64) -> Raised {
     }
 }
 
-/// Bayesian information criterion of so many values with this sum of squares.
+/// Bayesian information criterion of this number of values with this sum of squares.
 fn information(squares: f64, count: f64, unknowns: f64) -> f64 {
     count * (squares + count * DIGITS * DIGITS).ln() + unknowns * count.ln()
 }
@@ -176,7 +176,7 @@ fn unknowns(pairs: &[[Logs; 2]], degree: usize, free: bool) -> f64 {
     (pairs.len() * (degree + 1) + usize::from(free)) as f64
 }
 
-/// Mean variance of the values about a parabola through each curve alone; 0 for curves of fewer points.
+/// Mean variance of the values about a parabola through each curve separately; 0 for curves with too few points.
 fn own_variance(pairs: &[[Logs; 2]]) -> f64 {
     let (mut squares, mut degrees) = (0.0, 0);
     for curve in pairs.iter().flatten().filter(|curve| curve.len() > 3) {
@@ -188,17 +188,17 @@ fn own_variance(pairs: &[[Logs; 2]]) -> f64 {
     if degrees > 0 { squares / degrees as f64 } else { 0.0 }
 }
 
-/// Variance of a value from a sum of squares, not below the digits of a file.
+/// Variance of a value from a sum of squares, at least that of the digits of a file.
 fn variance(squares: f64, degrees_of_freedom: f64) -> f64 {
     (squares / degrees_of_freedom.max(1.0)).max(DIGITS * DIGITS)
 }
 
-/// Where two curves lie.
+/// The positions of two curves.
 struct Range {
     touching: [f64; 2],
     /// Ends of the first and of the second curve.
     ends: [[f64; 2]; 2],
-    /// Points of both together.
+    /// Total number of points.
     points: usize,
 }
 
@@ -210,7 +210,7 @@ impl Range {
         Some(Range { touching: [a0 - b1, a1 - b0], ends, points: first.len() + second.len() })
     }
 
-    /// Length of ln x on which both lie, negative without.
+    /// Length of ln x on which both overlap; negative if they do not.
     fn overlap(&self, d: f64) -> f64 {
         let [[a0, a1], [b0, b1]] = self.ends;
         a1.min(b1 + d) - a0.max(b0 + d)
@@ -220,14 +220,14 @@ impl Range {
         (self.points * pairs.len()) as f64
     }
 
-    /// Highest degree for so many points: a polynomial through all of them describes everything.
+    /// Highest degree for this number of points: a polynomial through all of them would fit any data.
     fn highest_degree(&self, free: bool) -> usize {
         self.points.saturating_sub(4 + usize::from(free)).min(MOST_DEGREE)
     }
 }
 
-/// Highest degree of a polynomial through two curves that overlap by this much of ln x: a parabola where they do not, one more
-/// for each third of a decade. A polynomial that bends more often would describe two separate curves by itself.
+/// Highest degree of a polynomial through two curves that overlap by this much of ln x: a parabola if they do not, one degree
+/// more for each third of a decade. A polynomial of higher degree could describe two separate curves.
 fn most_degree(overlap: f64) -> usize {
     2 + (overlap.max(0.0) / 0.77) as usize
 }

@@ -1,8 +1,8 @@
-//! From a material to the contact: the contact creep compliance C(t) of a half-space.
+//! The contact creep compliance C(t) of a half-space, from its material.
 //!
-//! The surface of an elastic half-space yields as 1/E* = (1 - nu^2)/E = (1 - nu)/(2 G) (K. L. Johnson,
-//! Contact Mechanics, 1985, section 3.2). By the correspondence principle (E. H. Lee & J. R. M. Radok
-//! 1960) the same holds for Laplace transforms, which gives
+//! The compliance of the surface of an elastic half-space is 1/E* = (1 - nu^2)/E = (1 - nu)/(2 G) (K. L. Johnson, Contact
+//! Mechanics, 1985, section 3.2). By the correspondence principle (E. H. Lee & J. R. M. Radok 1960) the same holds for Laplace
+//! transforms, which gives
 //!
 //! - Poisson's ratio constant in time: C(t) = (1 - nu^2) D(t) = (1 - nu) J(t) / 2;
 //! - bulk modulus B constant in time: C(t) = (1/4) \[J_G(t) + 3 J_(3B+G)(t)\], where J_X is the creep
@@ -12,7 +12,7 @@
 use crate::error::{Error, Result, positive};
 use crate::material::{Creep, Material, Modulus};
 
-/// What closes the elasticity of an isotropic body, constant in time.
+/// The second elastic constant of an isotropic body, constant in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lateral {
     /// Poisson's ratio, -1 < nu <= 0.5 (0.5: incompressible).
@@ -48,19 +48,19 @@ pub struct PoissonCreep {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// How messages call it.
+    /// Its name in messages.
     pub name: String,
     /// Its creep function.
     pub material: Material,
     /// Poisson's ratio or bulk modulus.
     pub lateral: Lateral,
-    /// Largest pressure that the surface bears \[Pa\]; `None`: no limit.
+    /// Largest pressure on the surface \[Pa\]; `None`: no limit.
     pub hardness: Option<f64>,
 }
 
 impl Body {
-    /// Poisson's ratio where it is constant in time: the one given, or that of an elastic body of this bulk modulus B:
-    /// (3 B - 2 G)/(2 (3 B + G)) = 1/2 - E/(6 B).
+    /// Poisson's ratio if it is constant in time: the given one, or that of an elastic body with this bulk modulus B: (3 B - 2
+    /// G)/(2 (3 B + G)) = 1/2 - E/(6 B).
     ///
     /// ```
     /// use asperity::material::{Body, Lateral, Material, Modulus};
@@ -84,7 +84,7 @@ impl Body {
         }
     }
 
-    /// Poisson's ratio as a function of time: what a step of uniaxial tension shows.
+    /// Poisson's ratio as a function of time, as measured after a step of uniaxial tension.
     ///
     /// A bulk modulus B constant in time has, by the correspondence principle, nu(t) = -1 + (9 B/2) J_(3B+G)(t), since
     /// nu = (3 B - 2 G)/(2 (3 B + G)) = -1 + (9 B/2)/(3 B + G); and without lateral strain
@@ -135,7 +135,7 @@ impl Body {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where Poisson's ratio is outside (-1, 0.5], the bulk modulus or the hardness
+    /// [`Error::Invalid`] if Poisson's ratio is outside (-1, 0.5], the bulk modulus or the hardness
     /// is not positive, or the bulk modulus is too small for the Young's moduli (9 B > E(0) is needed).
     pub fn contact_creep(&self) -> Result<Creep> {
         if let Some(hardness) = self.hardness
@@ -218,7 +218,7 @@ impl Body {
 /// ```
 ///
 /// # Errors
-/// As [`Body::contact_creep`]; [`Error::Invalid`] where there are no bodies or more than two.
+/// As [`Body::contact_creep`]; [`Error::Invalid`] if there are no bodies or more than two.
 pub fn pair_creep(bodies: &[Body]) -> Result<Creep> {
     match bodies {
         [body] => body.contact_creep(),
@@ -227,7 +227,7 @@ pub fn pair_creep(bodies: &[Body]) -> Result<Creep> {
     }
 }
 
-/// The pressure at which the softer of the bodies yields \[Pa\]; `f64::INFINITY` where none does.
+/// The hardness of the softer body \[Pa\]; `f64::INFINITY` if neither has one.
 pub fn pair_hardness(bodies: &[Body]) -> f64 {
     bodies.iter().filter_map(|b| b.hardness).fold(f64::INFINITY, f64::min)
 }
@@ -294,7 +294,7 @@ mod tests {
         let kelvin_voigt = Material::kelvin_voigt(Modulus::Shear, 3e6, 2.0).unwrap();
         let creep = body(kelvin_voigt, Lateral::BulkModulus(5e6)).contact_creep().unwrap();
         assert_eq!(creep.instantaneous, 0.0);
-        // At rest it is elastic: (1/4) [1/G + 3/(3 B + G)].
+        // At long times it is elastic: (1/4) [1/G + 3/(3 B + G)].
         assert!((creep.long_time() / (0.25 * (1.0 / 3e6 + 3.0 / 18e6)) - 1.0).abs() < 1e-15);
         let fluid = Relaxation::absolute(0.0, &[(3e6, 2.0)]).unwrap();
         let creep = body(Material::prony(Modulus::Shear, fluid).unwrap(), Lateral::BulkModulus(5e6));

@@ -13,10 +13,10 @@
 //! - creep: -s C^(s) / tau = F(tau) with c = 1/eta, (p, w) = (0, C0), (lambda_j, C_j);
 //!   E_i = 1 / (tau_i^2 F'(tau_i)).
 //!
-//! F increases between its poles, so that exactly one root lies between each neighbouring pair, and one
-//! beyond the last pole where c > 0 (the roots interlace the poles). It is bracketed and found as its
-//! distance from the nearer pole, bisected over the floating-point numbers themselves: full relative
-//! accuracy of the distance, which the weights need, over any number of decades.
+//! F increases between its poles, so exactly one root lies between each neighbouring pair, and one beyond the last pole if c > 0
+//! (the roots interlace the poles). Each root is bracketed. It is computed as the distance from the nearer pole, by bisection
+//! over the floating-point numbers. This gives full relative accuracy of the distance, which the weights need, over any number of
+//! decades.
 
 use crate::error::{Error, Result};
 use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
@@ -24,8 +24,7 @@ use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 impl Relaxation {
     /// The creep function of the same material, exactly (a Prony series of the same kind).
     ///
-    /// Without an equilibrium modulus it flows (`fluidity` > 0); with a viscosity its instantaneous
-    /// compliance is 0.
+    /// Without an equilibrium modulus the material flows (`fluidity` > 0); with a viscosity its instantaneous compliance is 0.
     ///
     /// ```
     /// use asperity::material::Relaxation;
@@ -69,8 +68,8 @@ impl Relaxation {
 impl Creep {
     /// The relaxation function of the same material, exactly (a Prony series of the same kind).
     ///
-    /// A flow term leaves no equilibrium modulus; without an instantaneous compliance there is a
-    /// `viscosity`, the modulus at t = 0 is infinite.
+    /// With a flow term there is no equilibrium modulus. Without an instantaneous compliance there is a `viscosity`, and the
+    /// modulus at t = 0 is infinite.
     ///
     /// ```
     /// use asperity::material::{Creep, CreepTerm};
@@ -102,8 +101,8 @@ impl Creep {
     }
 }
 
-/// The relaxation function of a creep function whose terms are in order of time, no two of them the same,
-/// with one term for every root, and the roots.
+/// The relaxation function of a creep function whose terms are in order of time without duplicates, with one term for every root,
+/// and the roots.
 pub(super) fn relaxation_of(creep: &Creep) -> Result<(Relaxation, Vec<Root>)> {
     let mut poles = vec![];
     if creep.instantaneous > 0.0 {
@@ -136,7 +135,7 @@ fn out_of_range(which: &str, error: &Error) -> Error {
 pub(super) struct Root {
     x: f64,
     slope: f64,
-    /// The pole that it is nearest to, and x less that pole to full relative accuracy.
+    /// The nearest pole, and x minus that pole to full relative accuracy.
     pub(super) pole: f64,
     pub(super) distance: f64,
 }
@@ -154,7 +153,7 @@ fn interlacing_roots(c: f64, poles: &[(f64, f64)]) -> Result<Vec<Root>> {
         let distance = if k < last {
             let gap = poles[k + 1].0 - pole;
             if function.value(0.5 * gap) < 0.0 {
-                // Nearer to the next pole: count the distance from there, downwards.
+                // Nearer to the next pole: measure the distance from there, downwards.
                 let function = Offset::new(c, poles, k + 1);
                 let below = bisect(0.5 * gap, |d| function.value(-d) > 0.0);
                 let (next, slope) = (poles[k + 1].0, function.slope(-below));
@@ -179,12 +178,11 @@ fn interlacing_roots(c: f64, poles: &[(f64, f64)]) -> Result<Vec<Root>> {
 
 /// F as a function of the distance from one of its poles.
 ///
-/// Evaluated with about twice the digits of a double (T. J. Dekker, Numer. Math. 18, 1971): where two
-/// poles lie a relative distance g apart, the term that holds the root between them is only g of the
-/// others that cancel around it.
+/// Evaluated with about twice the digits of a double (T. J. Dekker, Numer. Math. 18, 1971): if two poles have a relative distance
+/// g, the term that determines the root between them is only g times the other terms, which cancel around it.
 struct Offset {
     c: f64,
-    /// (p_k - origin as high and low part, w_k)
+    /// (p_k - origin as high and low part, w_k).
     poles: Vec<(f64, f64, f64)>,
 }
 
@@ -230,8 +228,8 @@ fn exact_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - part)) + (b - part))
 }
 
-/// The distance in (0, `upper`] where `is_before_root` turns from true to false. The integers that
-/// represent positive doubles are ordered as the doubles are, so 63 halvings reach the last digit.
+/// The distance in (0, `upper`] at which `is_before_root` changes from true to false. The integers that represent positive
+/// doubles are ordered as the doubles are, so 63 halvings reach the last digit.
 fn bisect(upper: f64, is_before_root: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (f64::MIN_POSITIVE.to_bits(), upper.max(f64::MIN_POSITIVE).to_bits());
     while high - low > 1 {
@@ -279,7 +277,7 @@ mod tests {
             (creep.value(1000.0), 5.068_077_586_017_327e-4),
         ];
         for (value, exact) in expected {
-            // A few roundings; the weights lose the digits by which root and pole agree (one here).
+            // A few roundings; the weights lose the digits in which root and pole agree (one here).
             assert!(relative(value, exact) < 1e-14, "{value} {exact}");
         }
         assert_eq!(creep.fluidity, 0.0);
@@ -300,7 +298,7 @@ mod tests {
             let fluid = Relaxation::absolute(0.0, &terms).unwrap();
             let viscous = Relaxation { viscosity: 1e-6, ..solid.clone() };
             for relaxation in [solid, fluid, viscous] {
-                // The promise; a rounding of each time is amplified by time over distance, up to 1e2.
+                // The documented accuracy; a rounding of each time is amplified by time over distance, up to 1e2.
                 let error = round_trip(&relaxation);
                 assert!(error < 1e-12, "seed {seed}: {error:e}");
             }
@@ -309,7 +307,7 @@ mod tests {
 
     #[test]
     fn weights_of_very_different_size_return_from_creep() {
-        // Tiny terms put roots on top of poles: only the distance from the pole tells the weight.
+        // With tiny terms roots nearly coincide with poles: only the distance from the pole determines the weight.
         let terms = [(1e-9, 1e-4), (1e9, 1e-2), (1e-3, 1.0), (1e3, 1e3), (1e-12, 1e9)];
         let relaxation = Relaxation::absolute(1e6, &terms).unwrap();
         let error = round_trip(&relaxation);
@@ -336,7 +334,7 @@ mod tests {
                 let compliance = creep.instantaneous
                     + creep.fluidity / s
                     + creep.terms.iter().map(|c| c.compliance / (1.0 + s * c.retardation_time)).sum::<f64>();
-                // Sums of positive terms: roundings only, whatever the terms.
+                // Sums of positive terms have only rounding errors, for any terms.
                 assert!((modulus * compliance - 1.0).abs() < 1e-13, "{s}: {}", modulus * compliance - 1.0);
             }
         }

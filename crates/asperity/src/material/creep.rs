@@ -46,7 +46,7 @@ pub struct CreepTerm {
 }
 
 impl Creep {
-    /// A constant compliance \[1/Pa\]: an elastic body; 0 is a rigid one.
+    /// A constant compliance \[1/Pa\]: an elastic body, or a rigid one if it is 0.
     pub fn elastic(compliance: f64) -> Self {
         Creep { instantaneous: compliance, ..Creep::default() }
     }
@@ -171,8 +171,8 @@ impl Creep {
         }
     }
 
-    /// The same function with its terms in order, without zero terms, equal times merged (times
-    /// closer than 1e-9 of themselves are equal: the change is below rounding).
+    /// The same function with its terms in order, without zero terms, and with equal times merged (times that differ by less than
+    /// a relative 1e-9 are equal: the change is below rounding).
     #[must_use]
     pub fn tidy(&self) -> Creep {
         let pairs = self.terms.iter().map(|c| (c.retardation_time, c.compliance));
@@ -185,8 +185,8 @@ impl Creep {
         }
     }
 
-    /// Checks that every compliance is finite and not negative and every time finite and positive,
-    /// as every passive material has them. All zero is allowed: a rigid body.
+    /// Checks that every compliance is finite and not negative and every time is finite and positive, as for every passive
+    /// material. All zero is allowed and means a rigid body.
     ///
     /// # Errors
     /// [`Error::Invalid`] naming the term (counted from 1) and its value.
@@ -207,7 +207,7 @@ impl Creep {
         Ok(())
     }
 
-    /// Also refuses a fluid, which sinks in without end, and a rigid body.
+    /// Also refuses a fluid, whose indentation grows without limit, and a rigid body.
     pub(crate) fn validate_solid(&self) -> Result<()> {
         self.validate()?;
         if self.fluidity > 0.0 {
@@ -235,7 +235,7 @@ mod tests {
     fn burgers_creeps_as_its_closed_form() {
         let t = 0.7_f64;
         let decay = (-t / 0.5).exp();
-        // Closed forms in a handful of roundings each.
+        // Closed forms, with a few roundings each.
         assert!((burgers().value(t) - (2.0 + 3.0 * (1.0 - decay) + 0.25 * t)).abs() < 4e-15);
         assert!((burgers().rate(t) - (6.0 * decay + 0.25)).abs() < 4e-15);
         let integral = 2.0 * t + 3.0 * (t - 0.5 * (1.0 - decay)) + 0.125 * t * t;

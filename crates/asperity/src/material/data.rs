@@ -1,15 +1,15 @@
-//! Measured curves before the fit: order, sign, noise, and what no passive material can do.
+//! Checks of measured curves before the fit: order, sign, noise, and passivity.
 
 use crate::error::{Error, Result};
 
-/// More points than a curve needs.
+/// Number of points above which a curve is averaged.
 const MOST_POINTS: usize = 10_000_000;
-/// Fewer points than this do not tell their scatter.
+/// Smallest number of points that determines the scatter.
 const FEW_POINTS: usize = 20;
 /// Widest range of times or frequencies.
 const MOST_DECADES: f64 = 60.0;
 
-/// The words of one kind of curve.
+/// The names of the quantities of one kind of curve.
 #[derive(Clone, Copy)]
 pub(super) struct Words {
     /// "time" or "angular frequency"
@@ -31,7 +31,7 @@ impl Words {
     }
 }
 
-/// Which way a passive material goes along the abscissa.
+/// The direction in which the curve of a passive material changes along the abscissa.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Trend {
     Falls,
@@ -100,8 +100,8 @@ pub(super) fn check_values(words: Words, xs: &[f64], values: &[f64], zero: bool)
 }
 
 /// Relative scatter of a curve (standard deviation), from the distances between each point and the cubic through its four
-/// neighbours, in logarithms where all are positive: curves over decades are smooth in these. The median makes it blind to single
-/// outliers. 0 for fewer than 5 points.
+/// neighbours, in logarithms where all are positive: curves over decades are smooth in these. Because of the median, single
+/// outliers have no effect. 0 for fewer than 5 points.
 pub(super) fn noise(xs: &[f64], values: &[f64]) -> f64 {
     if xs.len() < 5 {
         return 0.0;
@@ -133,10 +133,9 @@ fn from_cubic(x: &[f64], v: &[f64]) -> f64 {
     (v[2] - cubic).abs() / (1.0 + weights.iter().map(|w| w * w).sum::<f64>()).sqrt()
 }
 
-/// Means over a hundredth of a decade, as (abscissa, value, count), where there are more than 1000 points
-/// (instruments sample evenly in time): the fit then costs the same for any number of points. Curves over
-/// more than six decades have some 600 means, but 20 per decade at least: the bend of any Prony series over such a
-/// bin is below 1e-3.
+/// Means over a hundredth of a decade, as (abscissa, value, count), if there are more than 1000 points (instruments sample evenly
+/// in time): the cost of the fit is then independent of the number of points. Curves over more than six decades have about 600
+/// means, but at least 20 per decade: the curvature of any Prony series over such a bin is below 1e-3.
 pub(super) fn thin(xs: &[f64], values: &[f64]) -> Vec<(f64, f64, f64)> {
     let points = xs.iter().zip(values);
     if xs.len() <= 1000 {
@@ -162,13 +161,13 @@ pub(super) fn thin(xs: &[f64], values: &[f64]) -> Vec<(f64, f64, f64)> {
     bins
 }
 
-/// Refuses a curve that goes the wrong way by more than its scatter explains: the distance of the two
-/// extremes of N normal deviates, and at least `limit`, the misfit that a fit may have: sweeps of a master curve often lie
-/// above one another by some per cent. The scatter of a few points cannot be told from the bends of their curve.
+/// Refuses a curve that changes in the wrong direction by more than its scatter explains: the distance of the two extremes of N
+/// normal deviates, and at least `limit`, the misfit that a fit may have: sweeps of a master curve often differ by a few per
+/// cent. The scatter of a few points cannot be distinguished from the curvature of their curve.
 pub(super) fn check_trend(words: Words, trend: Trend, xs: &[f64], values: &[f64], limit: f64) -> Result<()> {
     let extremes = 2.0 * (1.0 + (2.0 * (xs.len() as f64).ln()).sqrt());
     let scatter = if xs.len() < FEW_POINTS { 0.0 } else { extremes * noise(xs, values) };
-    // A fall by all of a value is no scatter.
+    // A fall by the whole value is not scatter.
     let allowed = scatter.max(limit.min(0.5));
     let mut extreme = 0;
     for (n, value) in values.iter().enumerate() {
@@ -202,8 +201,8 @@ pub(super) fn check_trend(words: Words, trend: Trend, xs: &[f64], values: &[f64]
     Ok(())
 }
 
-/// Refuses a curve that the best passive material misses systematically: where the mean of up to five
-/// neighbouring relative residuals exceeds `limit` (or 5 standard deviations of such a mean).
+/// Refuses a curve from which the best passive material deviates systematically: the mean of up to five neighbouring relative
+/// residuals exceeds `limit` (or 5 standard deviations of such a mean).
 pub(super) fn check_misfit(
     words: Words,
     xs: &[f64],
@@ -248,7 +247,7 @@ mod tests {
         let xs: Vec<f64> = (1..200).map(f64::from).collect();
         let mut values: Vec<f64> = xs.iter().map(|x| 5.0 * x.powf(-0.3)).collect();
         values[50] *= 2.0;
-        // A power law has none but rounding.
+        // A power law only has rounding errors.
         assert!(noise(&xs, &values) < 1e-14);
         // Six points per decade of a curve that falls by a decade, without and with 1 % of scatter.
         let xs: Vec<f64> = (0..60).map(|k| 10f64.powf(f64::from(k) / 6.0)).collect();

@@ -1,31 +1,31 @@
-//! Both forms of one material, and how the internal states of the two belong together.
+//! Both forms of one material, and the relation of their internal states.
 //!
-//! Under a displacement u and the pressure measure U = Kp that belongs to it, the retarded strains e_j and the
-//! flow v of the creep form, and the relaxing displacements q_i of the relaxation form, obey
+//! Under a displacement u and the corresponding pressure measure U = Kp, the retarded strains e_j and the flow v of the creep
+//! form, and the relaxing displacements q_i of the relaxation form, obey
 //!
 //! ```text
 //! λ_j de_j/dt + e_j = C_j U,   dv/dt = U/η,       u = C0 U + Σ e_j + v
 //! τ_i dq_i/dt + q_i = u,                          U = E_inf u + Σ E_i (u - q_i) + ζ du/dt
 //! ```
 //!
-//! They are two bases of one space of states. Partial fractions of their transfer functions give
+//! They are two bases of the same state space. Partial fractions of their transfer functions give
 //!
 //! ```text
 //! q_i = Σ_j λ_j/(λ_j - τ_i) e_j + v
 //! e_j = C_j [ Σ_i E_i τ_i/(λ_j - τ_i) q_i + (ζ/λ_j) u ],    v = (1/η) [ Σ E_i τ_i q_i + ζ u ]
 //! ```
 //!
-//! and sqrt(E_i τ_i) λ_j/(λ_j - τ_i) sqrt(C_j/λ_j) is an orthogonal matrix: no digits are lost between the two as long
-//! as λ_j - τ_i is taken from the root finder's distance to the pole, never by subtraction.
+//! and sqrt(E_i τ_i) λ_j/(λ_j - τ_i) sqrt(C_j/λ_j) is an orthogonal matrix: the conversion loses no digits if λ_j - τ_i is taken
+//! from the root finder's distance to the pole, never by subtraction.
 
 use crate::error::{Error, Result};
 use crate::material::convert::relaxation_of;
 use crate::material::{Creep, Relaxation};
 
-/// Retardation times are moved apart to this relative distance.
+/// Smallest relative distance of retardation times; closer ones are moved apart.
 const APART: f64 = 1e-9;
 
-/// A creep function, its relaxation function, and the change between their states.
+/// A creep function, its relaxation function, and the conversion between their states.
 #[derive(Clone, Debug)]
 pub(crate) struct Dual {
     /// The terms in the order that was given.
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn both_forms_give_one_displacement_with_and_without_a_spring_at_once() {
-        // At U = 0 the displacement is that of the strains; with C0 = 0 at any U.
+        // At U = 0 the displacement is that of the strains; if C0 = 0 this holds at any U.
         for (instantaneous, fluidity) in [(1e-6, 0.0), (0.0, 0.0), (0.0, 1e-7), (1e-6, 1e-7)] {
             let dual = Dual::of(Creep { instantaneous, terms: spectrum(3, 5, 6.0), fluidity }).unwrap();
             let mut random = random(11);
@@ -194,7 +194,7 @@ mod tests {
         dual.to_states(&[0.3, 0.2, 0.9], &mut q);
         let mut back = [0.0; 3];
         dual.to_strains(&q, 0.0, &mut back);
-        // Times a billionth apart: states of 1e9 hold nine digits fewer.
+        // Times a billionth apart: states of 1e9 have nine digits fewer.
         assert!((back[0] - 0.3).abs() < 1e-6 && (back[2] - 0.9).abs() < 1e-6, "{back:?}");
     }
 }

@@ -1,16 +1,16 @@
 //! Shift factors from measured isotherms.
 //!
-//! 1. Each pair of neighbours in temperature gives the distance along ln x at which one curve continues the other, and
-//!    its standard deviation ([`super::align`]). The first curve (relaxation modulus, compliance, storage modulus) decides;
-//!    the others join in where it is flat. Where the moduli change with temperature by factors that are not known
-//!    ([`ModulusChange::Free`]), all curves decide together, each pair with one factor for all of its curves.
-//! 2. The WLF or the Arrhenius law through all distances, weighted by their variances, says what a pair has that says
-//!    little itself: each distance becomes the mean of the measured one and that of the law, weighted by one over their
-//!    variances, where a law is taken to be right to 0.6 decades and 60 % of the distance. Warmer is faster: no distance is
-//!    negative. A law does not make a gap between two curves known: the standard deviation is the gap at least.
+//! 1. Each pair of neighbours in temperature gives the distance along ln x at which one curve continues the other, and its
+//!    standard deviation ([`super::align`]). The first curve (relaxation modulus, compliance, storage modulus) determines it; the
+//!    others are used too where the first is flat. If the moduli change with temperature by unknown factors
+//!    ([`ModulusChange::Free`]), all curves are used together, and each pair has one factor for all of its curves.
+//! 2. The WLF or the Arrhenius law through all distances, weighted by their variances, supports pairs that contain little
+//!    information: each distance becomes the mean of the measured one and that of the law, weighted by one over their variances,
+//!    where the accuracy of a law is taken as 0.6 decades and 60 % of the distance. Relaxation is faster at higher temperatures,
+//!    so no distance is negative. A law cannot bridge a gap between two curves: the standard deviation is at least the gap.
 //! 3. Distances add up from the reference to each temperature, and so do their variances. A factor that is uncertain by
 //!    more than a decade is refused.
-//! 4. The factors by which moduli change follow at the distances of the final shift ([`estimate_vertical`]).
+//! 4. The factors by which moduli change are computed at the distances of the final shift ([`estimate_vertical`]).
 
 use super::align::{self, Distance, Logs, Ordinate};
 use super::master::{Abscissa, Isotherm, validate};
@@ -31,13 +31,13 @@ pub struct ShiftEstimate {
     pub uncertainty: Vec<f64>,
 }
 
-/// How the moduli of isotherms change with temperature, besides their times.
+/// The change of the moduli of isotherms with temperature, in addition to the times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ModulusChange {
-    /// As little as those of a rubber, T/T_r, or a glass: it is not corrected, but counts as an uncertainty.
+    /// A small change as for a rubber, T/T_r, or a glass: it is not corrected, but counts as an uncertainty.
     #[default]
     Neglected,
-    /// The curves are multiplied by their vertical shift factors already.
+    /// The curves have already been multiplied by their vertical shift factors.
     Corrected,
     /// By one unknown factor per isotherm, the same for all of its curves.
     Free,
@@ -49,20 +49,21 @@ const MOST_UNCERTAIN: f64 = 1.0;
 const LAW: [f64; 2] = [0.6, 0.6];
 /// Rubbers have lower moduli \[Pa\].
 const RUBBER: f64 = 1e8;
-/// Distance of the other curves from each other, as a root of the mean square of the logarithm, that contradicts the first: they differ
-/// by half of their value.
+/// Root mean square distance (in the logarithm) of the other curves that contradicts the first: they differ by half of their
+/// value.
 const CONTRADICTION: f64 = 0.2;
-/// Curves of more points are averaged over tenths of ln x.
+/// Curves with more points are averaged over tenths of ln x.
 const MOST_POINTS: usize = 100;
-/// Share of the change of its modulus with temperature that a rubber shows, and a glass; by what it is off once that of a
-/// rubber is corrected.
+/// Assumed change of the modulus with temperature, relative to that of an ideal rubber: for a rubber, for a glass, and the
+/// uncertainty after the correction for a rubber.
 const RUBBERY: f64 = 1.0;
 const GLASSY: f64 = 0.15;
-/// A pair is flat, and all curves are used, where the first one leaves its distance uncertain by more \[decades\].
+/// A pair is flat, and all curves are used, if the uncertainty of the distance from the first curve is larger than this
+/// \[decades\].
 const FLAT: f64 = 1.0;
 
-/// The shift factors that let isotherms at neighbouring temperatures continue each other, as a table with a_T = 1 at the
-/// `reference` temperature \[K\], which must be that of an isotherm, and how well each is known.
+/// The shift factors with which isotherms at neighbouring temperatures continue each other, as a table with a_T = 1 at the
+/// `reference` temperature \[K\], which must be that of an isotherm, and the uncertainty of each factor.
 ///
 /// [`fit_wlf`](crate::material::fit_wlf) and [`fit_arrhenius`](crate::material::fit_arrhenius) turn the table into a law.
 ///
@@ -81,8 +82,8 @@ const FLAT: f64 = 1.0;
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`master_curve`](crate::material::master_curve); for fewer than two isotherms; where a factor is
-/// uncertain by more than a decade, naming the pair of isotherms that says least.
+/// [`Error::Invalid`] as [`master_curve`](crate::material::master_curve); for fewer than two isotherms; if a factor is uncertain
+/// by more than a decade, naming the pair of isotherms with the least information.
 pub fn estimate_shift(
     isotherms: &[Isotherm],
     abscissa: Abscissa,
@@ -107,7 +108,7 @@ pub fn estimate_shift(
             }))
             .collect()
     };
-    // Warmer is faster: ln a_T falls by the distance from pair to pair.
+    // Relaxation is faster at higher temperatures: ln a_T falls by the distance from pair to pair.
     let (moved, variance) = (sums(&|d| d.value), sums(&|d| d.deviation * d.deviation));
     let points = (0..sorted.len()).map(|k| (temperatures[k], moved[anchor] - moved[k])).collect();
     let uncertainty: Vec<f64> =
@@ -118,7 +119,7 @@ pub fn estimate_shift(
     Ok(ShiftEstimate { shift: Shift::Table { points }, uncertainty })
 }
 
-/// Two isotherms at least, in order of temperature, none twice.
+/// At least two isotherms, in order of temperature, without duplicates.
 fn sorted(isotherms: &[Isotherm]) -> Result<Vec<&Isotherm>> {
     validate(isotherms)?;
     let mut sorted: Vec<&Isotherm> = isotherms.iter().collect();
@@ -133,7 +134,7 @@ fn sorted(isotherms: &[Isotherm]) -> Result<Vec<&Isotherm>> {
     Ok(sorted)
 }
 
-/// The distance in ln t by which the colder isotherm is behind the warmer one.
+/// The distance in ln t by which the colder isotherm lags behind the warmer one.
 fn between(cold: &Isotherm, warm: &Isotherm, abscissa: Abscissa, moduli: ModulusChange) -> Distance {
     let pairs = pairs(cold, warm, abscissa);
     let share = |pair: &[Logs; 2]| match (moduli, is_rubber(pair)) {
@@ -148,7 +149,7 @@ fn between(cold: &Isotherm, warm: &Isotherm, abscissa: Abscissa, moduli: Modulus
         (_, Some((first, others))) => {
             let first = of(first);
             if first.deviation <= FLAT * LN_10 {
-                // The scatter of a flat curve looks like a distance, which the other ones then contradict.
+                // The scatter of a flat curve can appear as a distance, which the other curves then contradict.
                 let contradicted = !others.is_empty() && align::apart(others, first.value) > CONTRADICTION;
                 let deviation = if contradicted { f64::INFINITY } else { first.deviation };
                 return Distance { deviation, ..first };
@@ -166,15 +167,15 @@ fn pairs(cold: &Isotherm, warm: &Isotherm, abscissa: Abscissa) -> Vec<[Logs; 2]>
 }
 
 /// Whether moduli are those of a rubber, which grow with the absolute temperature (elasticity of entropy); those of a glass
-/// change some seven times less.
+/// change about seven times less.
 fn is_rubber([first, second]: &[Logs; 2]) -> bool {
     let count = (first.len() + second.len()) as f64;
     let mean = first.iter().chain(second).map(|point| point.1).sum::<f64>() / count;
-    // The logarithm of a compliance is negative; its absolute value is that of a modulus.
+    // The logarithm of a compliance is negative; its absolute value is that of the inverse, a modulus.
     mean.abs() < RUBBER.ln()
 }
 
-/// ln t or -ln omega, rising, and the logarithm of the values.
+/// ln t or -ln omega, increasing, and the logarithm of the values.
 fn logs(isotherm: &Isotherm, abscissa: Abscissa, curve: usize) -> Logs {
     let points = isotherm.x.iter().zip(&isotherm.curves[curve]).map(|(x, value)| (x.ln(), value.ln()));
     let points: Logs = match abscissa {
@@ -209,7 +210,7 @@ fn mean(a: Distance, b: Distance) -> Distance {
     Distance { value, deviation: (wa + wb).sqrt().recip(), ..a }
 }
 
-/// The measured distances, each averaged with that of a law through all of them, and not negative.
+/// The measured distances, each averaged with that of a law through all of them, and never negative.
 fn with_law(temperatures: &[f64], measured: &[Distance]) -> Vec<Distance> {
     let law = law(temperatures, measured);
     let averaged = measured.iter().enumerate().map(|(k, distance)| match &law {
@@ -229,8 +230,8 @@ fn doubt(distance: f64) -> f64 {
     LAW[0] * LN_10 + LAW[1] * distance
 }
 
-/// The distances of the pairs by the law through the measured ones; `None` where fewer than two of them are known or warmer
-/// is not faster.
+/// The distances of the pairs by the law through the measured ones; `None` if fewer than two of them are known or relaxation is
+/// not faster at higher temperatures.
 fn law(temperatures: &[f64], measured: &[Distance]) -> Option<Vec<f64>> {
     let known = measured.iter().filter(|distance| distance.deviation < FLAT * LN_10).count();
     if known < 2 {
@@ -244,7 +245,7 @@ fn law(temperatures: &[f64], measured: &[Distance]) -> Option<Vec<f64>> {
     let best = minimise(0.0, 1e4f64.ln(), 300, squares_of_wlf);
     let [wlf, arrhenius] =
         [scaled(temperatures, measured, &wlf(best)), scaled(temperatures, measured, &arrhenius)];
-    // Two distances do not tell three constants.
+    // Two distances do not determine three constants.
     let (law, _) = if known > 2 && wlf.1 < arrhenius.1 { wlf } else { arrhenius };
     law.iter().all(|distance| *distance >= 0.0 && distance.is_finite()).then_some(law)
 }
@@ -265,7 +266,7 @@ fn scaled(temperatures: &[f64], measured: &[Distance], form: &dyn Fn(f64) -> f64
     (steps.iter().map(|step| factor * step).collect(), squares)
 }
 
-/// Names the pair that says least.
+/// Names the pair with the least information.
 fn uncertain(sorted: &[&Isotherm], measured: &[Distance], uncertainty: &[f64]) -> Error {
     let worst = (0..measured.len()).max_by(|a, b| measured[*a].deviation.total_cmp(&measured[*b].deviation));
     let worst = worst.unwrap_or(0);

@@ -1,11 +1,9 @@
 //! Prony series from measured curves: relaxation E(t), creep C(t), and E'(omega), E''(omega) of a DMA.
 //!
-//! A passive material has non-negative weights only (S. Bernstein's theorem: E(t) is completely
-//! monotone), so the fit is a non-negative least squares on a logarithmic grid of times (3 per decade,
-//! one decade beyond the data), each row weighted by one over its value. Terms that the data do not
-//! call for are then merged and left out, and the times that remain are refined. What a fit cannot
-//! reach, no material of this kind can: data too far from every passive material are refused, with the
-//! place.
+//! A passive material has only non-negative weights (S. Bernstein's theorem: E(t) is completely monotone), so the fit is a
+//! non-negative least squares on a logarithmic grid of times (3 per decade, one decade beyond the data), each row weighted by one
+//! over its value. Terms that the data do not require are then merged or left out, and the remaining times are refined. If the
+//! fit cannot describe the data, no passive material can: such data are refused, with the position.
 
 use crate::error::{Error, Result, non_negative, positive};
 use crate::material::data::{self, Trend, Words};
@@ -18,7 +16,7 @@ use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum LongTime {
-    /// Whatever fits best.
+    /// The choice that fits best.
     #[default]
     Free,
     /// A solid: no flow term in a creep function.
@@ -27,8 +25,8 @@ pub enum LongTime {
     Fluid,
 }
 
-/// Which moduli of a DMA are fitted. One spectrum gives both; measured ones often contradict each other
-/// (Kramers-Kronig), and then the usual practice is to fit the storage modulus and to look at the loss modulus.
+/// The moduli of a DMA that are fitted. One spectrum gives both. Measured moduli often contradict each other (Kramers-Kronig);
+/// then the usual practice is to fit the storage modulus and to check the loss modulus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
@@ -42,26 +40,26 @@ pub enum Moduli {
     Loss,
 }
 
-/// How to fit.
+/// Options of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitOptions {
     /// Times of the grid per decade, default 3, from 0.5 to 20.
     pub per_decade: f64,
     /// Decades of the grid beyond the data on either side, default 1, at most 5.
     pub margin: f64,
-    /// Default: whatever fits best.
+    /// Default: the choice that fits best.
     pub long_time: LongTime,
-    /// Largest relative misfit before the data are refused, default 0.1: of the rms over all points, and of the mean of
-    /// neighbouring points where their scatter does not explain it.
+    /// Largest relative misfit before the data are refused, default 0.1. It applies to the rms over all points, and to the mean
+    /// of neighbouring points if their scatter does not explain it.
     pub limit: f64,
-    /// Most terms, at least 1; by default as many as the data call for.
+    /// Largest number of terms, at least 1; by default the number that the data require.
     pub max_terms: usize,
-    /// The rms misfit to be held by as few terms as possible, greater than 0; by default the data justify the number of
-    /// terms (the Bayesian information criterion).
+    /// The fit uses as few terms as possible with an rms misfit below this value, greater than 0; by default the data determine
+    /// the number of terms (Bayesian information criterion).
     pub misfit: Option<f64>,
     /// Which moduli of a DMA are fitted, default both.
     pub moduli: Moduli,
-    /// Weight of a residual of the loss modulus over one of the storage modulus, default 1; used where both are fitted.
+    /// Weight of a residual of the loss modulus over one of the storage modulus, default 1; used if both are fitted.
     pub loss_weight: f64,
 }
 
@@ -80,15 +78,15 @@ impl Default for FitOptions {
     }
 }
 
-/// Longest grid of times: its cost grows with the cube.
+/// Largest number of times in the grid: its cost grows with the cube.
 const MOST_TIMES: f64 = 300.0;
 
-/// A function fitted to data, and how well.
+/// A function fitted to data, and the quality of the fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit<F> {
     /// The Prony series; `function.terms.len()` is the number of terms.
     pub function: F,
-    /// Distance between the data that were fitted and the function.
+    /// Misfit between the fitted data and the function.
     pub misfit: Misfit,
     /// The same for each column: one of relaxation and creep, storage and loss modulus of a DMA, fitted or not.
     pub columns: Vec<Misfit>,
@@ -96,9 +94,9 @@ pub struct Fit<F> {
     pub window: [f64; 2],
     /// Relative scatter of the data, from the distances of neighbours (standard deviation).
     pub noise: f64,
-    /// Relative standard deviations of modulus (or compliance) and time of each term, in the order of the terms,
-    /// as the misfit leaves them uncertain: large where neighbouring terms can stand in for each other, although
-    /// the curve is known well. Infinite where the data show nothing of a term.
+    /// Relative standard deviations of modulus (or compliance) and time of each term, in the order of the terms, estimated from
+    /// the misfit. They are large if neighbouring terms can replace each other, even if the curve is known well. Infinite if the
+    /// data do not determine a term.
     pub uncertainty: Vec<[f64; 2]>,
 }
 
@@ -110,12 +108,12 @@ pub struct Misfit {
     pub max: f64,
     /// Root of the mean square of fit/data - 1.
     pub rms: f64,
-    /// Where the largest is: time \[s\] or angular frequency \[rad/s\].
+    /// Position of the largest misfit: time \[s\] or angular frequency \[rad/s\].
     pub worst: f64,
 }
 
 impl<F> Fit<F> {
-    /// A sentence with the numbers where a run from `first` to `last` \[s\] leaves the fitted window.
+    /// A sentence with the numbers if a run from `first` to `last` \[s\] leaves the fitted window.
     ///
     /// ```
     /// use asperity::material::{FitOptions, fit_relaxation};
@@ -126,7 +124,7 @@ impl<F> Fit<F> {
     /// ```
     pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
         let [start, end] = self.window;
-        // Rounding of 1/omega is no extrapolation.
+        // Rounding of 1/omega is not extrapolation.
         (first < start * (1.0 - 1e-9) || last > end * (1.0 + 1e-9)).then(|| {
             let covered = 100.0 * covered([first, last], [start, end]);
             let [first, last, start, end] = [first, last, start, end].map(short);
@@ -138,7 +136,7 @@ impl<F> Fit<F> {
     }
 }
 
-/// The share of the decades from `run[0]` to `run[1]` that lie inside `data`.
+/// The fraction of the decades from `run[0]` to `run[1]` that is inside `data`.
 fn covered(run: [f64; 2], data: [f64; 2]) -> f64 {
     let inside = (run[1].min(data[1]) / run[0].max(data[0])).ln().max(0.0);
     match (run[1] / run[0]).ln() {
@@ -168,9 +166,8 @@ fn short(value: f64) -> String {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] naming the point: fewer than two, times out of order or twice, values that are
-/// not positive, that grow with time by more than their scatter, or from which every passive material
-/// stays further away than `options.limit`.
+/// [`Error::Invalid`] naming the point: fewer than two points, times out of order or repeated, values that are not positive or
+/// grow with time by more than their scatter, or a misfit of every passive material above `options.limit`.
 pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Result<Fit<Relaxation>> {
     let words =
         Words { abscissa: "time", abscissa_unit: "s", ordinate: "relaxation modulus", ordinate_unit: "Pa" };
@@ -179,8 +176,8 @@ pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Re
     data::check_values(words, times, moduli, false)?;
     data::check_trend(words, Trend::Falls, times, moduli, options.limit)?;
     let window = window(times);
-    // A term much faster than the first time is invisible, exp(-10) of itself there, and would follow
-    // the noise of one point to any size; half the first time still shows (unless t = 0 is measured).
+    // A term much faster than the first time is invisible there, with a factor exp(-10), and would fit the noise of one point
+    // with any size; half the first time is still visible (unless t = 0 is measured).
     let margin = 10f64.powf(options.margin);
     let fastest = if times[0] == 0.0 { margin } else { margin.min(2.0) };
     let curve =
@@ -196,8 +193,8 @@ pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Re
     Ok(Fit { function: relaxation(spectrum)?, misfit, columns, window, noise, uncertainty })
 }
 
-/// Fits C(t) \[1/Pa\] at increasing times \[s\] of a creep test, whatever compliance it is (uniaxial or
-/// shear). The first point may be (0, 0): then there is no instantaneous compliance.
+/// Fits C(t) \[1/Pa\] at increasing times \[s\] of a creep test, for any compliance (uniaxial or shear). The first point may be
+/// (0, 0): then there is no instantaneous compliance.
 ///
 /// ```
 /// use asperity::material::{FitOptions, Material, Modulus, fit_creep};
@@ -260,7 +257,7 @@ impl FitOptions {
         positive("largest misfit of the fit", self.limit, "").map(|_| ())
     }
 
-    /// Fits, and measures the misfit at every point of every curve.
+    /// Fits the curves and computes the misfit at every point of every curve.
     fn solve(&self, problem: &Problem, curves: &[Curve]) -> Result<Solved> {
         let count = (problem.range[1] / problem.range[0]).log10() * self.per_decade;
         if count > MOST_TIMES {
@@ -321,7 +318,7 @@ fn together(curves: &[Curve], columns: &[Misfit]) -> Misfit {
     all
 }
 
-/// A spectrum, and how well it is known.
+/// A spectrum and its uncertainty.
 struct Solved {
     spectrum: Spectrum,
     misfit: Misfit,
@@ -343,7 +340,7 @@ struct Curve<'a> {
 
 impl Curve<'_> {
     fn rows(&self) -> Vec<Row> {
-        // The mean of n points weighs as much as they do.
+        // The mean of n points has the weight of n points.
         let row = |(x, value, count): (f64, f64, f64)| Row {
             kernel: self.kernel,
             x,

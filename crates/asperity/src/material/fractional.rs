@@ -1,9 +1,8 @@
-//! Fractional models: power laws and their transitions, and the Prony sums that stand for them.
+//! Fractional models: power laws and their transitions, and the Prony sums that approximate them.
 //!
-//! A springpot (G. W. Scott Blair 1947; R. C. Koeller, J. Appl. Mech. 51 (1984) 299) lies between spring
-//! and dashpot: its complex modulus is G (i omega tau)^alpha, its creep function
-//! J(t) = (t/tau)^alpha / (G Gamma(1 + alpha)). In series or parallel with springs it gives, with the
-//! Mittag-Leffler function M(x) = E_alpha(-x^alpha),
+//! A springpot (G. W. Scott Blair 1947; R. C. Koeller, J. Appl. Mech. 51 (1984) 299) is intermediate between spring and dashpot:
+//! its complex modulus is G (i omega tau)^alpha, its creep function J(t) = (t/tau)^alpha / (G Gamma(1 + alpha)). In series or
+//! parallel with springs it gives, with the Mittag-Leffler function M(x) = E_alpha(-x^alpha),
 //!
 //! | model | complex modulus, z = (i omega tau)^alpha | creep J(t) | relaxation G(t) |
 //! |---|---|---|---|
@@ -11,15 +10,15 @@
 //! | Maxwell | G z/(1 + z) | (1 + x^alpha / Gamma(1 + alpha)) / G | G M(x) |
 //! | Zener | G_inf + (G_0 - G_inf) z/(1 + z) | 1/G_0 + (1/G_inf - 1/G_0) (1 - M(x_c)) | G_inf + (G_0 - G_inf) M(x) |
 //!
-//! where x = t/tau and x_c = x (G_inf/G_0)^(1/alpha): a fractional Zener solid retards as it relaxes.
-//! All are completely monotone, so Prony series with positive weights come as close as one likes.
+//! where x = t/tau and x_c = x (G_inf/G_0)^(1/alpha): a fractional Zener solid retards as it relaxes. All are completely
+//! monotone, so Prony series with positive weights approximate them to any accuracy.
 
 use crate::error::{Error, Result, positive};
 use crate::material::mittag_leffler::{LEAST_ORDER, mittag_leffler};
 use crate::material::prony_sum::{self, ColeCole, Exact, PowerLaw};
 use crate::material::{Creep, CreepTerm};
 
-/// A fractional model; moduli in the measure (Young's or shear) of the material it is used for.
+/// A fractional model; its moduli are of the kind (Young's or shear) of the material for which it is used.
 ///
 /// ```
 /// use asperity::material::Fractional;
@@ -159,8 +158,8 @@ impl Fractional {
     /// A Prony sum with a relative error below `tolerance` (1e-3 is a good value) in creep and in
     /// relaxation at all times of `window` = \[first, last\] in seconds, with few terms.
     ///
-    /// Outside the window it becomes a spring at short times and, for springpot and Maxwell, a dashpot
-    /// at long times: J(0) > 0, so that a jump of the load has a solution.
+    /// Outside the window it becomes a spring at short times and, for springpot and Maxwell, a dashpot at long times: J(0) > 0,
+    /// so a jump of the load has a solution.
     ///
     /// ```
     /// use asperity::material::Fractional;
@@ -175,7 +174,7 @@ impl Fractional {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where an argument is out of its range, or where the tolerance is too tight.
+    /// [`Error::Invalid`] if an argument is out of its range, or if the tolerance is too small.
     pub fn to_prony(&self, window: [f64; 2], tolerance: f64) -> Result<Approximation> {
         self.validate()?;
         let (time, order) = self.time_and_order();
@@ -305,8 +304,8 @@ mod tests {
                 for omega in [0.1, 1.0, 7.0] {
                     let ((e1, e2), (p1, p2)) = (model.complex(omega), relaxation.complex(omega));
                     let error = (e1 - p1).hypot(e2 - p2) / e1.hypot(e2);
-                    // A modulus at omega is made of times around 1/omega, each within 1e-3; the
-                    // distance in the complex plane gathers a few of them.
+                    // A modulus at omega depends on times around 1/omega, each within 1e-3; the distance in the complex plane
+                    // adds up a few of them.
                     assert!(error < 3e-3, "{model:?} {omega} {error}");
                 }
             }
@@ -359,7 +358,7 @@ mod tests {
 
     #[test]
     fn any_order_above_zero_is_answered() {
-        // From orders whose fit once summed 1/order terms to those whose scales are beyond all doubles.
+        // Orders from those with 1/order terms in the sum to those whose scales are out of the range of doubles.
         for order in [f64::MIN_POSITIVE, 1e-100, 1e-9, 1e-3, 1.0 - 1e-9, 1.0 - f64::EPSILON] {
             for model in models(order) {
                 for tolerance in [1e-3, 1e-6] {
@@ -368,7 +367,7 @@ mod tests {
                 }
             }
         }
-        // Almost a spring: half of the relaxing part is gone at any time.
+        // Almost a spring: half of the relaxing part has relaxed at any time.
         let [_, _, zener] = models(1e-100);
         assert!((zener.relaxation(1e-3) / (0.5 * (1e6 + 1e9)) - 1.0).abs() < 1e-12);
         assert!((zener.creep(1e3) * zener.relaxation(1e3) - 1.0).abs() < 1e-12);
@@ -385,7 +384,7 @@ mod tests {
             let exact = Exact::new(&|t| model.creep(t), &relaxation, [1e-3, 1e3], 1e-6).unwrap();
             let sum = prony_sum::by_quadrature(&exact, &law).unwrap();
             assert!(sum.error <= 1e-6, "{order} {}", sum.error);
-            // The instantaneous modulus is all weights: the rule for the whole line, exact to 1e-9.
+            // The instantaneous modulus is the sum of all weights, that is the rule for the whole line, exact to 1e-9.
             let modulus = 1.0 / sum.creep.instantaneous;
             assert!((modulus / instantaneous - 1.0).abs() < 1e-6, "{order} {modulus:e}");
         }

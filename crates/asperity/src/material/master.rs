@@ -1,14 +1,14 @@
 //! Master curves: isotherms at several temperatures shifted along the logarithm of time or frequency
 //! until they are one curve.
 //!
-//! J. D. Ferry, Viscoelastic Properties of Polymers (3rd ed., 1980), chapter 11. Warmer is faster: at
-//! the temperature T the time t counts as t/a_T, the frequency omega as omega a_T. The shift factors come
-//! from a law ([`Shift`]) or from neighbouring isotherms ([`estimate_shift`](super::estimate_shift)).
+//! J. D. Ferry, Viscoelastic Properties of Polymers (3rd ed., 1980), chapter 11. Relaxation is faster at higher temperatures: at
+//! the temperature T the reduced time of t is t/a_T, and the reduced frequency of omega is omega a_T. The shift factors come from
+//! a law ([`Shift`]) or from neighbouring isotherms ([`estimate_shift`](super::estimate_shift)).
 
 use crate::error::{Error, Result, kelvin, positive};
 use crate::material::shift::Shift;
 
-/// What the abscissa of a curve is.
+/// The abscissa of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Abscissa {
     /// Time \[s\]: creep or relaxation.
@@ -32,7 +32,7 @@ pub struct Isotherm {
 /// Isotherms shifted to one temperature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MasterCurve {
-    /// Reduced times \[s\] or angular frequencies \[rad/s\], in order, none twice.
+    /// Reduced times \[s\] or angular frequencies \[rad/s\], in order, without duplicates.
     pub x: Vec<f64>,
     /// The curves at these, in the order of the isotherms.
     pub curves: Vec<Vec<f64>>,
@@ -51,8 +51,8 @@ pub struct MasterCurve {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where an isotherm is out of order, has values that are not positive or another
-/// number of curves than the first, or where the shift is not defined at its temperature.
+/// [`Error::Invalid`] if an isotherm is out of order, has values that are not positive or another number of curves than the
+/// first, or if the shift is not defined at its temperature.
 pub fn master_curve(isotherms: &[Isotherm], abscissa: Abscissa, shift: &Shift) -> Result<MasterCurve> {
     validate(isotherms)?;
     let mut points: Vec<(f64, Vec<f64>)> = vec![];
@@ -117,7 +117,7 @@ pub(super) fn validate(isotherms: &[Isotherm]) -> Result<()> {
     Ok(())
 }
 
-/// Points that fall on the same abscissa become their mean.
+/// Points with the same abscissa are averaged.
 fn merge(points: Vec<(f64, Vec<f64>)>) -> MasterCurve {
     let count = points.first().map_or(0, |p| p.1.len());
     let mut master = MasterCurve { x: vec![], curves: vec![vec![]; count] };

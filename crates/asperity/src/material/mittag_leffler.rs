@@ -1,23 +1,24 @@
 //! The Mittag-Leffler function of fractional relaxation, E_a(-x^a) for 0 < a <= 1 and x >= 0.
 //!
-//! It is the mean of exp(-x s) over rates s whose logarithm y = ln s is spread as Cole and Cole found
-//! (R. Gorenflo & F. Mainardi, Fractional calculus, 1997, eq. 3.24), with the density and distribution
+//! It is the mean of exp(-x s) over rates s whose logarithm y = ln s has the Cole-Cole distribution (R. Gorenflo & F. Mainardi,
+//! Fractional calculus, 1997, eq. 3.24), with the density and distribution
 //!
 //! H(y) = (sin(pi a) / 2 pi) / (cosh(a y) + cos(pi a)),
 //! P(y) = atan2(sin(pi a), exp(-a y) + cos(pi a)) / (pi a).
 //!
-//! Integrated by parts, E = int P(y) k(y + ln x) dy with k(z) = exp(z - exp(z)), a bell: smooth but for
-//! P near y = 0, where it steps over a width of about (1 - a)/a. Gauss-Legendre panels shrink towards it.
+//! Integrated by parts, E = int P(y) k(y + ln x) dy with k(z) = exp(z - exp(z)), a bell-shaped function. The integrand is smooth
+//! except for P near y = 0, which has a step over a width of about (1 - a)/a. The Gauss-Legendre panels become smaller towards
+//! this step.
 
 use crate::material::quadrature::integrate;
 use std::f64::consts::PI;
 
-/// Smaller orders are taken for this one: the limit of order 0 is met to the last digit, and products with
-/// an order keep theirs.
+/// Smaller orders are replaced by this one: the limit of order 0 is reached to the last digit, and products with an order keep
+/// their digits.
 pub(super) const LEAST_ORDER: f64 = 1e-100;
 
-/// (E, 1 - E) with E = E_a(-x^a), each to nearly full relative accuracy, given ln(x^a): x itself, where
-/// it is t/tau (G_inf/G_0)^(1/a), is beyond all doubles for small a.
+/// (E, 1 - E) with E = E_a(-x^a), each to nearly full relative accuracy, given ln(x^a): x itself, for example t/tau
+/// (G_inf/G_0)^(1/a), may be out of the range of doubles for small a.
 pub(super) fn mittag_leffler(a: f64, ln_power: f64) -> (f64, f64) {
     let ln_x = ln_power / a;
     if ln_power == f64::NEG_INFINITY {
@@ -27,8 +28,8 @@ pub(super) fn mittag_leffler(a: f64, ln_power: f64) -> (f64, f64) {
         let x = ln_x.exp();
         return ((-x).exp(), -(-x).exp_m1());
     }
-    // z = y + ln x: the bell k(z) is below 1e-18 of its top outside. Where ln x < 0 it is also weighed with
-    // 1 - P, which falls as exp(-a y) from y = 0 on: k(z) times that rises as exp((1 - a) z).
+    // z = y + ln x: the bell k(z) is below 1e-18 of its maximum outside. If ln x < 0 it is also weighted with 1 - P, which falls
+    // as exp(-a y) from y = 0 on: the product with k(z) rises as exp((1 - a) z).
     let low = (-42.0_f64).min(ln_x - 42.0).max(-42.0 / (1.0 - a));
     let spread = Spread::new(a);
     let bell = |z: f64| (z - z.exp()).exp();
@@ -76,7 +77,7 @@ impl Spread {
     }
 }
 
-/// Ends of panels of length 1 at most that shrink to `width` towards the step of P at `step`.
+/// Ends of panels of length at most 1 that become as small as `width` towards the step of P at `step`.
 fn panels(low: f64, high: f64, step: f64, width: f64) -> Vec<f64> {
     let mut ends = vec![low];
     let mut z = low;

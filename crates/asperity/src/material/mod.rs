@@ -1,12 +1,11 @@
-//! Linear viscoelastic materials: creep, relaxation, models. Knows time, no space.
+//! Linear viscoelastic materials: creep, relaxation, models. This module depends on time, not on space.
 //!
-//! A material is its creep function, a [`Creep`] (Prony series of retarded terms), or equally its
-//! relaxation function, a [`Relaxation`]; each converts into the other exactly. A [`Material`] is
-//! such a function together with the measure in which its moduli are meant (Young's or shear
-//! modulus); a [`Body`] closes it with Poisson's ratio or the bulk modulus and yields the contact
-//! creep compliance C(t), all that the contact needs to know.
+//! A material is its creep function, a [`Creep`] (Prony series of retarded terms), or equally its relaxation function, a
+//! [`Relaxation`]; each converts into the other exactly. A [`Material`] is such a function together with the kind of its moduli
+//! (Young's or shear modulus). A [`Body`] adds Poisson's ratio or the bulk modulus and gives the contact creep compliance C(t),
+//! which is all that the contact needs.
 //!
-//! Where such a function comes from:
+//! Such a function comes from
 //! - named models: the constructors of [`Material`];
 //! - a Prony table, in moduli or relative to the instantaneous or the relaxed modulus: those of
 //!   [`Relaxation`];
@@ -15,8 +14,8 @@
 //! - curves at several temperatures: [`master_curve`], with a [`Shift`] that is given or
 //!   [estimated](estimate_shift), and a [`VerticalShift`] of the moduli.
 //!
-//! A temperature that changes during the run makes a [`ReducedTime`], the clock of a [`ThermalCreep`];
-//! one that does not stretches the times: [`Material::stretched`].
+//! A temperature that changes during the run gives a [`ReducedTime`] for a [`ThermalCreep`]; a constant one scales the times:
+//! [`Material::stretched`].
 
 mod align;
 mod body;

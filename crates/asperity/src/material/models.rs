@@ -57,7 +57,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where the modulus is not finite and positive.
+    /// `Invalid` if the modulus is not finite and positive.
     pub fn elastic(measure: Modulus, modulus: f64) -> Result<Self> {
         positive(measure.name(), modulus, "Pa")?;
         Self::generalised_kelvin(measure, Creep::elastic(1.0 / modulus))
@@ -74,7 +74,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where an argument is not finite and positive.
+    /// `Invalid` if an argument is not finite and positive.
     pub fn maxwell(measure: Modulus, modulus: f64, relaxation_time: f64) -> Result<Self> {
         positive(measure.name(), modulus, "Pa")?;
         positive("relaxation time", relaxation_time, "s")?;
@@ -82,8 +82,8 @@ impl Material {
         Self::generalised_kelvin(measure, Creep { fluidity, ..Creep::elastic(1.0 / modulus) })
     }
 
-    /// Spring and dashpot in parallel: J = (1 - exp(-t/`retardation_time`))/G. It does not yield at
-    /// t = 0+, so a jump of the load has no solution there.
+    /// Spring and dashpot in parallel: J = (1 - exp(-t/`retardation_time`))/G. Its compliance is zero at t = 0+, so a jump of the
+    /// load has no solution.
     ///
     /// ```
     /// use asperity::material::{Material, Modulus};
@@ -95,7 +95,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where an argument is not finite and positive.
+    /// `Invalid` if an argument is not finite and positive.
     pub fn kelvin_voigt(measure: Modulus, modulus: f64, retardation_time: f64) -> Result<Self> {
         positive(measure.name(), modulus, "Pa")?;
         let terms = vec![CreepTerm { compliance: 1.0 / modulus, retardation_time }];
@@ -115,7 +115,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where an argument is not finite and positive.
+    /// `Invalid` if an argument is not finite and positive.
     pub fn zener(measure: Modulus, modulus: f64, modulus_kelvin: f64, retardation_time: f64) -> Result<Self> {
         let spring = Self::elastic(measure, modulus)?;
         let kelvin = Self::kelvin_voigt(measure, modulus_kelvin, retardation_time)?;
@@ -135,7 +135,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where an argument is not finite and positive.
+    /// `Invalid` if an argument is not finite and positive.
     pub fn burgers(
         measure: Modulus,
         modulus: f64,
@@ -177,7 +177,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// As [`Creep::validate`], or where the creep function is 0 at all times.
+    /// As [`Creep::validate`], or if the creep function is 0 at all times.
     pub fn generalised_kelvin(measure: Modulus, creep: Creep) -> Result<Self> {
         creep.validate()?;
         let creep = creep.tidy();
@@ -185,17 +185,16 @@ impl Material {
         Ok(Material { measure, creep })
     }
 
-    /// The material at a temperature whose shift factor a_T is `factor`: all its times are as many times
-    /// as long.
+    /// The material at a temperature whose shift factor a_T is `factor`: all its times are multiplied by this factor.
     ///
     /// # Errors
-    /// `Invalid` where a time leaves the range of floating-point numbers.
+    /// `Invalid` if a time leaves the range of floating-point numbers.
     pub fn stretched(&self, factor: f64) -> Result<Self> {
         positive("shift factor", factor, "")?;
         Self::generalised_kelvin(self.measure, self.creep.stretched(factor))
     }
 
-    /// The material whose moduli are `factor` times as large: 1/b_T at a temperature with a
+    /// The material with all moduli multiplied by `factor`: 1/b_T at a temperature with a
     /// [`VerticalShift`](super::VerticalShift).
     ///
     /// ```
@@ -206,7 +205,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where the factor is not finite and positive, or a compliance leaves the range of floating-point numbers.
+    /// `Invalid` if the factor is not finite and positive, or a compliance leaves the range of floating-point numbers.
     pub fn scaled(&self, factor: f64) -> Result<Self> {
         positive("factor of the moduli", factor, "")?;
         Self::generalised_kelvin(self.measure, self.creep.scaled(1.0 / factor))

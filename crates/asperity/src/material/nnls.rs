@@ -17,8 +17,8 @@ pub(crate) fn solve(columns: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     x.iter().zip(&norms).map(|(x, n)| if *n > 0.0 { x / n } else { 0.0 }).collect()
 }
 
-/// The same problem in at most n + 1 rows: Householder reflections turn A into a triangle, and what of
-/// b lies outside its range into one number.
+/// The same problem in at most n + 1 rows: Householder reflections turn A into a triangle, and the part of b outside its range
+/// into one number.
 pub(super) fn reduce(columns: &[Vec<f64>], b: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
     let (n, rows) = (columns.len(), b.len());
     if rows <= n + 1 {
@@ -51,7 +51,7 @@ fn active_set(columns: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     let mut refused = vec![false; n];
     // A gradient below the rounding of the scalar products is zero.
     let tolerance = 1e-14 * dot(b, b).sqrt();
-    // The method ends by itself; rounding could make it cycle, and x is feasible at any time.
+    // The method terminates; only rounding could make it cycle, and x is feasible at any time.
     for _ in 0..20 * n {
         let residual = residual(columns, b, &x);
         let steepest = (0..n)
@@ -63,7 +63,7 @@ fn active_set(columns: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
         passive.push(entering);
         match least_squares(columns, &passive, b) {
             Some(z) if z[z.len() - 1] > 0.0 => move_towards(columns, b, &mut x, &mut passive, z),
-            // Dependent on the others, or pushed the wrong way by rounding.
+            // Dependent on the others, or changed in the wrong direction by rounding.
             _ => {
                 passive.pop();
                 refused[entering] = true;
@@ -75,7 +75,7 @@ fn active_set(columns: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     x
 }
 
-/// Moves x to the unconstrained solution z of the passive set, dropping unknowns as they reach zero.
+/// Moves x to the unconstrained solution z of the passive set, and removes unknowns that reach zero.
 fn move_towards(columns: &[Vec<f64>], b: &[f64], x: &mut [f64], passive: &mut Vec<usize>, mut z: Vec<f64>) {
     loop {
         let blocking = passive
@@ -103,7 +103,7 @@ fn move_towards(columns: &[Vec<f64>], b: &[f64], x: &mut [f64], passive: &mut Ve
     }
 }
 
-/// Least squares over some of the columns by Householder QR; `None` where they are dependent.
+/// Least squares over some of the columns by Householder QR; `None` if they are dependent.
 fn least_squares(columns: &[Vec<f64>], chosen: &[usize], b: &[f64]) -> Option<Vec<f64>> {
     if chosen.len() > b.len() {
         return None;

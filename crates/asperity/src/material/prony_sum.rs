@@ -1,13 +1,12 @@
 //! Prony sums for exact creep functions, to a stated error in creep and in relaxation.
 //!
-//! Two ways, both with positive weights:
-//! - by quadrature over y = ln(rate), such as
-//!   t^a / Gamma(1 + a) = (sin(pi a)/pi) int exp(-a y) (1 - exp(-t exp(y))) dy: the trapezoidal rule
-//!   converges exponentially there (L. N. Trefethen & J. A. C. Weideman, SIAM Review 56 (2014) 385).
-//!   Terms too fast or too slow for the window act through sums only, so the two tails cost nothing;
-//! - by a fit of samples of the relaxation function ([`super::spectrum`]), which needs fewer terms where
-//!   the spectrum is narrow (a fractional Zener solid of order near 1). A relative error of the
-//!   relaxation function bounds that of the creep function, but not the other way round.
+//! There are two methods, both with positive weights:
+//! - by quadrature over y = ln(rate), such as t^a / Gamma(1 + a) = (sin(pi a)/pi) int exp(-a y) (1 - exp(-t exp(y))) dy: the
+//!   trapezoidal rule converges exponentially there (L. N. Trefethen & J. A. C. Weideman, SIAM Review 56 (2014) 385). Terms that
+//!   are too fast or too slow for the window only contribute through sums, so the two tails have no cost;
+//! - by a fit of samples of the relaxation function ([`super::spectrum`]), which needs fewer terms if the spectrum is narrow (a
+//!   fractional Zener solid of order near 1). A relative error of the relaxation function bounds that of the creep function, but
+//!   not the other way round.
 
 use crate::error::{Error, Result};
 use crate::material::fit;
@@ -26,7 +25,7 @@ pub(super) struct Exact<'a> {
     tolerance: f64,
 }
 
-/// An integral of exp(-t exp(y)) over y as a trapezoidal sum: some terms, and what lies beyond them.
+/// An integral of exp(-t exp(y)) over y as a trapezoidal sum: some terms, and the tails beyond them.
 pub(super) trait Trapezoid {
     /// The creep function with terms of rates exp(y) at the `nodes` (slowest first, `step` apart).
     fn sum(&self, nodes: &[f64], step: f64) -> Result<Creep>;
@@ -49,8 +48,8 @@ pub(super) struct ColeCole {
     pub relaxing: f64,
 }
 
-/// Range of ln(rate) beyond the terms over which weights are summed one by one: what is left of them is
-/// below 1e-17, or so even (order below 0.25) that an integral stands for them to 1e-9.
+/// Range of ln(rate) beyond the terms over which weights are summed one by one: the remaining weights are below 1e-17, or so
+/// uniform (order below 0.25) that an integral replaces them to 1e-9.
 const SUMMED: f64 = 160.0;
 
 /// Widest window.
@@ -74,8 +73,8 @@ pub(super) fn by_fit(exact: &Exact, solid: bool) -> Result<Approximation> {
     };
     let mut best = f64::INFINITY;
     for quarters in [2, 3, 4, 5, 6, 8, 10, 12, 14, 16, 20, 24, 32, 40] {
-        // The creep function remembers the relaxation function from before the window on; how much of
-        // that is needed is tried from little to much, once the grid is known to be fine enough.
+        // The creep function depends on the relaxation function before the window. Once the grid is known to be fine enough,
+        // increasing amounts of it are tried.
         let widest = fit(quarters, WIDEST)?;
         if widest.error > exact.tolerance {
             best = best.min(widest.error);
@@ -105,7 +104,7 @@ pub(super) fn by_quadrature(exact: &Exact, law: &dyn Trapezoid) -> Result<Approx
             best = best.min(error);
             continue;
         }
-        // Leave to the tails what they can do.
+        // Terms that the tails can represent are left to them.
         for from_slow in [true, false] {
             while nodes.len() > 2 {
                 let shorter = if from_slow { &nodes[1..] } else { &nodes[..nodes.len() - 1] };
@@ -127,8 +126,8 @@ impl Trapezoid for PowerLaw {
         let density = self.factor * sine(a) / PI;
         let weight = |y: f64| density * step * (-a * (y + self.time.ln())).exp();
         let [slowest, .., fastest] = nodes else { return Err(too_few(nodes)) };
-        // All nodes beyond, to infinity, are geometric series: fast ones have retarded at once, slow ones
-        // flow with the sum of their weights times rates.
+        // All nodes beyond, to infinity, are geometric series: fast terms are retarded immediately, slow terms flow with the sum
+        // of their weights times rates.
         let fast = weight(fastest + step) / -(-a * step).exp_m1();
         let slow = weight(slowest - step) * (slowest - step).exp() / -((a - 1.0) * step).exp_m1();
         let term = |y: &f64| CreepTerm { compliance: weight(*y), retardation_time: (-y).exp() };
@@ -187,7 +186,7 @@ fn nodes([first, last]: [f64; 2], step: f64) -> Vec<f64> {
 }
 
 impl<'a> Exact<'a> {
-    /// Samples both functions over `window`, in which `tolerance` is to be met.
+    /// Samples both functions over `window`, in which `tolerance` must be reached.
     pub(super) fn new(
         creep: &dyn Fn(f64) -> f64,
         relaxation: &'a dyn Fn(f64) -> f64,

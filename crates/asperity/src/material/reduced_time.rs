@@ -1,8 +1,8 @@
-//! Reduced time: a temperature that changes during the run stretches the material's clock.
+//! Reduced time of a material whose temperature changes during the run.
 //!
-//! With the shift factor a_T the material ages by d xi = dt / a_T(T(t)) (L. W. Morland & E. H. Lee,
-//! Trans. Soc. Rheology 4 (1960) 233): the creep function acts over xi(t) - xi(s) instead of t - s, so
-//! that a march in steps of xi instead of t is exact.
+//! With the shift factor a_T the reduced time advances by d xi = dt / a_T(T(t)) (L. W. Morland & E. H. Lee, Trans. Soc. Rheology
+//! 4 (1960) 233). The argument of the creep function is xi(t) - xi(s) instead of t - s, so time stepping in xi instead of t is
+//! exact.
 
 use crate::error::{Error, Result, kelvin};
 use crate::material::Shift;
@@ -27,7 +27,7 @@ pub struct ReducedTime {
     pieces: Vec<Piece>,
 }
 
-/// From (start, from) the temperature goes linearly to `to` at `end`.
+/// From (start, from) the temperature changes linearly to `to` at `end`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Piece {
     start: f64,
@@ -36,13 +36,13 @@ struct Piece {
     to: f64,
     /// xi at its start.
     reduced: f64,
-    /// How far xi goes during all of it.
+    /// Change of xi over the whole piece.
     length: f64,
 }
 
 impl ReducedTime {
-    /// The clock of a material with `shift` under the temperatures (time \[s\], temperature \[K\]), linear
-    /// in between and held after the last; the first is at t = 0; equal times are a jump.
+    /// The reduced time of a material with `shift` under the temperatures (time \[s\], temperature \[K\]), linear in between and
+    /// constant after the last. The first is at t = 0; equal times define a jump.
     ///
     /// # Errors
     /// [`Error::Invalid`] naming the point: no points, times not in order or more than twice the same, a
@@ -51,8 +51,9 @@ impl ReducedTime {
         validate(temperatures)?;
         for (n, (_, temperature)) in temperatures.iter().enumerate() {
             shift.ln_factor(*temperature).map_err(|error| match error {
-                Error::Invalid { value, expected, .. } => {
-                    Error::Invalid { what: format!("temperature of point {}", n + 1), value, expected }
+                Error::Invalid { parameter, value, expected, .. } => {
+                    let what = format!("temperature of point {}", n + 1);
+                    Error::Invalid { parameter, what, value, expected }
                 }
                 other => other,
             })?;
@@ -124,7 +125,7 @@ impl ReducedTime {
         self.pieces[self.index(t)].temperature(t)
     }
 
-    /// Times in (0, end) where the temperature bends or jumps: steps of a march should end there.
+    /// Times in (0, end) at which the temperature has a kink or a jump: steps should end there.
     pub fn breaks(&self, end: f64) -> Vec<f64> {
         let mut times: Vec<f64> =
             self.pieces.iter().map(|p| p.start).filter(|t| *t > 0.0 && *t < end).collect();
@@ -144,12 +145,12 @@ impl ReducedTime {
         self.within(piece, t0, t1).unwrap_or(piece.length)
     }
 
-    /// The last piece that starts at t or before.
+    /// The last piece that starts at or before t.
     fn index(&self, t: f64) -> usize {
         self.pieces.partition_point(|p| p.start <= t).max(1) - 1
     }
 
-    /// Integral of 1/a_T over part of a piece; `None` where its temperatures are too steep for numbers.
+    /// Integral of 1/a_T over part of a piece; `None` if its temperatures are too steep for numbers.
     fn within(&self, piece: &Piece, t0: f64, t1: f64) -> Option<f64> {
         if t1 <= t0 {
             return Some(0.0);
@@ -159,14 +160,14 @@ impl ReducedTime {
         if piece.temperature(t0) == piece.temperature(t1) {
             return Some((t1 - t0) * fastest.exp());
         }
-        // What goes exp(60) times slower than the fastest adds nothing to the last digit.
+        // Parts that are exp(60) times slower than the fastest do not change the last digit.
         let mut budget = 10_000;
         self.halve(piece, [t0, t1], fastest - 60.0, 100, &mut budget)
     }
 
-    /// Halves until the integrand is tame enough for one Gauss rule to be exact to rounding: 1/a_T within
-    /// a factor e, and far from the law's singularity. Parts all below `negligible` are left out. Some
-    /// hundred parts do for any material; `depth` and `budget` bound what absurd constants can ask for.
+    /// Bisects until the integrand is smooth enough for one Gauss rule to be exact to rounding: 1/a_T within a factor e, and far
+    /// from the singularity of the law. Parts entirely below `negligible` are left out. About a hundred parts are enough for any
+    /// material; `depth` and `budget` limit the work for absurd constants.
     fn halve(
         &self,
         piece: &Piece,
@@ -195,7 +196,7 @@ impl ReducedTime {
         Some(first + self.halve(piece, [middle, t1], negligible, depth, budget)?)
     }
 
-    /// A table of shift factors bends at its temperatures: pieces between them.
+    /// A table of shift factors has kinks at its temperatures: pieces between them.
     fn split_at_knots(&self, piece: Piece) -> Vec<Piece> {
         let Shift::Table { points } = &self.shift else { return vec![piece] };
         let inside = |t: &f64| *t > piece.start && *t < piece.end;
@@ -224,7 +225,7 @@ impl Piece {
             return self.from;
         }
         let share = ((t - self.start) / (self.end - self.start)).clamp(0.0, 1.0);
-        // Between the two ends, whatever the rounding: the shift is defined there.
+        // Between the two ends for any rounding: the shift is defined there.
         (self.from + share * (self.to - self.from)).clamp(self.from.min(self.to), self.from.max(self.to))
     }
 }

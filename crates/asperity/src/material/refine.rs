@@ -1,4 +1,4 @@
-//! Free times: Levenberg-Marquardt on the logarithms of weights and times.
+//! Refinement with free times: Levenberg-Marquardt on the logarithms of weights and times.
 //!
 //! Logarithms keep weights and times positive without constraints, and make their steps relative
 //! (D. W. Marquardt, J. SIAM 11 (1963) 431, with his scaling by the diagonal).
@@ -60,7 +60,7 @@ impl System {
         system
     }
 
-    /// Solves (J'J + damping diag(J'J)) step = -J'r by Cholesky; parameters without effect stay.
+    /// Solves (J'J + damping diag(J'J)) step = -J'r by Cholesky; parameters without effect do not change.
     fn step(&self, damping: f64) -> Option<Vec<f64>> {
         let negative: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
         let step = substitute(&self.factor(damping)?, negative);
@@ -112,8 +112,8 @@ fn substitute(l: &[Vec<f64>], mut x: Vec<f64>) -> Vec<f64> {
     x
 }
 
-/// Relative standard deviations of weight and time of each term: the diagonal of s^2 (J'J)^-1 for the logarithms,
-/// with the variance s^2 of the residuals (of as many rows as are left by the parameters).
+/// Relative standard deviations of weight and time of each term: the diagonal of s^2 (J'J)^-1 for the logarithms, with the
+/// variance s^2 of the residuals (over the number of rows minus that of the parameters).
 pub(super) fn uncertainty(problem: &Problem, spectrum: &Spectrum) -> Vec<[f64; 2]> {
     let system = System::of(problem, spectrum);
     let used = (0..system.gradient.len()).filter(|i| system.normal[*i][*i] > 0.0).count();
@@ -133,7 +133,7 @@ pub(super) fn uncertainty(problem: &Problem, spectrum: &Spectrum) -> Vec<[f64; 2
     (0..spectrum.terms.len()).map(|k| [deviation(2 + 2 * k), deviation(3 + 2 * k)]).collect()
 }
 
-/// One step on; no number changes by more than a factor e, and times stay in their range.
+/// Applies one step; no number changes by more than a factor e, and times stay in their range.
 fn moved(problem: &Problem, spectrum: &Spectrum, step: &[f64]) -> Spectrum {
     let factor = |k: usize| step[k].clamp(-1.0, 1.0).exp();
     let [shortest, longest] = problem.range;

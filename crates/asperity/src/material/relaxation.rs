@@ -1,13 +1,11 @@
 //! Relaxation functions as a Prony series.
 //!
-//! E(t) = E_inf + sum_i E_i exp(-t/tau_i): a spring and Maxwell elements in parallel (the generalised
-//! Maxwell or Wiechert model). See J. D. Ferry, Viscoelastic Properties of Polymers (3rd ed., 1980),
-//! chapter 3. "E" stands for whichever modulus is meant, Young's or shear.
+//! E(t) = E_inf + sum_i E_i exp(-t/tau_i): a spring and Maxwell elements in parallel (the generalised Maxwell or Wiechert model).
+//! See J. D. Ferry, Viscoelastic Properties of Polymers (3rd ed., 1980), chapter 3. "E" is either modulus, Young's or shear.
 //!
-//! Prony tables come in three forms; each has its own constructor, so that none is taken for another:
-//! moduli ([`Relaxation::absolute`]), fractions of the instantaneous modulus
-//! ([`Relaxation::from_instantaneous`]; g_i of Abaqus, alpha_i of Ansys) and ratios to the relaxed
-//! modulus ([`Relaxation::from_equilibrium`]).
+//! Prony tables have three forms. Each has its own constructor, so that they are not confused: moduli ([`Relaxation::absolute`]),
+//! fractions of the instantaneous modulus ([`Relaxation::from_instantaneous`]; g_i of Abaqus, alpha_i of Ansys) and ratios to the
+//! relaxed modulus ([`Relaxation::from_equilibrium`]).
 
 use crate::error::{Error, Result, non_negative, positive};
 use crate::material::series;
@@ -28,7 +26,7 @@ pub struct Relaxation {
     pub equilibrium: f64,
     /// The relaxing terms, in order of relaxation time.
     pub terms: Vec<RelaxationTerm>,
-    /// Newtonian dashpot in parallel \[Pa s\] (Kelvin-Voigt); 0 where the modulus at t = 0 is finite.
+    /// Newtonian dashpot in parallel \[Pa s\] (Kelvin-Voigt); 0 if the modulus at t = 0 is finite.
     pub viscosity: f64,
 }
 
@@ -45,7 +43,7 @@ impl Relaxation {
     /// From the equilibrium modulus \[Pa\] and (modulus \[Pa\], relaxation time \[s\]) terms.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a modulus is negative, a time not positive, or all moduli are zero.
+    /// [`Error::Invalid`] if a modulus is negative, a time not positive, or all moduli are zero.
     pub fn absolute(equilibrium: f64, terms: &[(f64, f64)]) -> Result<Self> {
         let terms =
             terms.iter().map(|&(modulus, relaxation_time)| RelaxationTerm { modulus, relaxation_time });
@@ -65,7 +63,7 @@ impl Relaxation {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a fraction is negative, their sum exceeds 1 (by more than 1e-12, which
+    /// [`Error::Invalid`] if a fraction is negative, their sum exceeds 1 (by more than 1e-12, which
     /// is rounding and taken as 1), a time is not positive, or the modulus is not positive.
     pub fn from_instantaneous(instantaneous: f64, fractions: &[(f64, f64)]) -> Result<Self> {
         positive("instantaneous modulus", instantaneous, "Pa")?;
@@ -85,7 +83,7 @@ impl Relaxation {
                  relaxed modulus or are moduli, say so)",
             ));
         }
-        // A remainder of rounding size is a fluid whose decimal fractions add up to 1.
+        // A remainder of rounding size means a fluid whose decimal fractions add up to 1.
         let remainder = if 1.0 - sum > 1e-12 { 1.0 - sum } else { 0.0 };
         let terms: Vec<_> = fractions.iter().map(|f| (f.0 * instantaneous, f.1)).collect();
         Relaxation::absolute(remainder * instantaneous, &terms)
@@ -102,7 +100,7 @@ impl Relaxation {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a ratio is negative, a time not positive, or the modulus not positive.
+    /// [`Error::Invalid`] if a ratio is negative, a time not positive, or the modulus not positive.
     pub fn from_equilibrium(equilibrium: f64, ratios: &[(f64, f64)]) -> Result<Self> {
         positive("equilibrium modulus", equilibrium, "Pa")?;
         for (n, (ratio, _)) in ratios.iter().enumerate() {
@@ -153,8 +151,8 @@ impl Relaxation {
         })
     }
 
-    /// The same function with its terms in order, without zero terms, equal times merged (times
-    /// closer than 1e-9 of themselves are equal: the change is below rounding).
+    /// The same function with its terms in order, without zero terms, and with equal times merged (times that differ by less than
+    /// a relative 1e-9 are equal: the change is below rounding).
     #[must_use]
     pub fn tidy(&self) -> Relaxation {
         let pairs = self.terms.iter().map(|e| (e.relaxation_time, e.modulus));
@@ -177,8 +175,8 @@ impl Relaxation {
         }
     }
 
-    /// Checks that every modulus is finite and not negative, every time finite and positive, and that
-    /// the body resists at all.
+    /// Checks that every modulus is finite and not negative, that every time is finite and positive, and that not all moduli are
+    /// zero.
     ///
     /// # Errors
     /// [`Error::Invalid`] naming the term (counted from 1) and its value.

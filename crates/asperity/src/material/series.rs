@@ -1,8 +1,7 @@
-//! What creep and relaxation share: a sum of weights at times, checked, sorted and merged.
+//! The common part of creep and relaxation: a sum of weights at times, checked, sorted and merged.
 //!
-//! Two terms w1, w2 at nearly the same time are one term w1 + w2 at their weighted mean time: the
-//! first-order difference cancels, so for times within a relative distance g the sum changes by
-//! less than g^2 of its value.
+//! Two terms w1, w2 at nearly the same time are replaced by one term w1 + w2 at their weighted mean time. The first-order
+//! difference cancels, so for times within a relative distance g the relative change of the sum is less than g^2.
 
 use crate::error::{Error, Result, non_negative, positive};
 

@@ -1,9 +1,8 @@
-//! Time-temperature superposition: how much faster a warmer material is.
+//! Time-temperature superposition: the dependence of the times of a material on temperature.
 //!
-//! In a thermorheologically simple material all times scale by one shift factor a_T:
-//! E(t, T) = E(t/a_T, T_r) and E*(omega, T) = E*(omega a_T, T_r). Above the glass transition a_T follows
-//! M. L. Williams, R. F. Landel & J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701,
-//! log10 a_T = -c1 (T - T_r) / (c2 + T - T_r), else often S. Arrhenius, ln a_T = (E_a/R) (1/T - 1/T_r).
+//! In a thermorheologically simple material all times scale by one shift factor a_T: E(t, T) = E(t/a_T, T_r) and E*(omega, T) =
+//! E*(omega a_T, T_r). Above the glass transition a_T follows M. L. Williams, R. F. Landel & J. D. Ferry, J. Am. Chem. Soc. 77
+//! (1955) 3701, log10 a_T = -c1 (T - T_r) / (c2 + T - T_r), and otherwise often S. Arrhenius, ln a_T = (E_a/R) (1/T - 1/T_r).
 
 use crate::error::{Error, Result, kelvin, positive};
 use std::f64::consts::LN_10;
@@ -46,8 +45,8 @@ pub enum Shift {
 }
 
 impl Shift {
-    /// The WLF equation with the constants that many polymers share, c1 = 17.44 and c2 = 51.6 K, about
-    /// the glass transition temperature \[K\].
+    /// The WLF equation with the constants common to many polymers, c1 = 17.44 and c2 = 51.6 K, relative to the glass transition
+    /// temperature \[K\].
     pub fn universal(glass_transition: f64) -> Self {
         Shift::Wlf { c1: 17.44, c2: 51.6, reference: glass_transition }
     }
@@ -55,7 +54,7 @@ impl Shift {
     /// Checks the constants.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a constant is not finite and positive, or a table has fewer than two
+    /// [`Error::Invalid`] if a constant is not finite and positive, or a table has fewer than two
     /// points or points out of order.
     pub fn validate(&self) -> Result<()> {
         match self {
@@ -137,7 +136,8 @@ impl Shift {
         })
     }
 
-    /// The temperature at which a_T is 1 \[K\]: the reference of a law; of a table where its factors pass 1, if they do.
+    /// The temperature at which a_T is 1 \[K\]: the reference of a law, or the temperature at which the factors of a table pass
+    /// 1, if any.
     pub fn reference(&self) -> Option<f64> {
         match self {
             Shift::Wlf { reference, .. } | Shift::Arrhenius { reference, .. } => Some(*reference),
@@ -207,7 +207,7 @@ fn validate_table(points: &[(f64, f64)]) -> Result<()> {
 pub struct ShiftFit {
     /// The law.
     pub shift: Shift,
-    /// Root of the mean square of its distance from the factors, in decades (log10 a_T).
+    /// Root mean square of its deviation from the factors, in decades (log10 a_T).
     pub rms: f64,
 }
 
@@ -225,13 +225,13 @@ pub struct ShiftFit {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where there are fewer than three points besides the reference, or where warmer is
-/// not faster.
+/// [`Error::Invalid`] if there are fewer than three points besides the reference, or if relaxation is not faster at higher
+/// temperatures.
 pub fn fit_wlf(points: &[(f64, f64)], reference: f64) -> Result<ShiftFit> {
     let points = usable(points, reference, 3)?;
     let coldest = points.iter().map(|p| reference - p.0).fold(0.0, f64::max);
-    // For a given c2 the best c1 is a linear regression; what is left is one unknown, searched on a
-    // logarithmic scale above the smallest c2 that the coldest point allows.
+    // For a given c2 the best c1 is a linear regression. The remaining unknown is c2, which is searched on a logarithmic scale
+    // above the smallest value that the coldest point allows.
     let at = |c2: f64| {
         let slope = |t: f64| -LN_10 * (t - reference) / (c2 + t - reference);
         let c1 = regression(&points, slope);
@@ -260,7 +260,7 @@ pub fn fit_wlf(points: &[(f64, f64)], reference: f64) -> Result<ShiftFit> {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where there is no point besides the reference, or where warmer is not faster.
+/// [`Error::Invalid`] if there is no point besides the reference, or if relaxation is not faster at higher temperatures.
 pub fn fit_arrhenius(points: &[(f64, f64)], reference: f64) -> Result<ShiftFit> {
     let points = usable(points, reference, 1)?;
     let slope = |t: f64| (reference - t) / (t * reference) / GAS_CONSTANT;
@@ -290,7 +290,7 @@ fn usable(points: &[(f64, f64)], reference: f64, least: usize) -> Result<Vec<(f6
     Ok(points)
 }
 
-/// The factor of `slope` that meets the points best.
+/// The factor of `slope` that fits the points best.
 fn regression(points: &[(f64, f64)], slope: impl Fn(f64) -> f64) -> f64 {
     let (mut above, mut below) = (0.0, 0.0);
     for (t, ln) in points {
@@ -316,7 +316,7 @@ fn slower_when_colder(constant: f64) -> Result<()> {
     ))
 }
 
-/// The minimum of f on \[low, high\]: the best of `steps` places, then golden sections around it.
+/// The minimum of f on \[low, high\]: the best of `steps` points, then golden sections around it.
 pub(super) fn minimise(low: f64, high: f64, steps: usize, f: impl Fn(f64) -> f64) -> f64 {
     let place = |k: usize| low + (high - low) * k as f64 / steps as f64;
     let best = (0..=steps).min_by(|a, b| f(place(*a)).total_cmp(&f(place(*b)))).unwrap_or(0);

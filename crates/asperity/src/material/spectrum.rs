@@ -1,4 +1,4 @@
-//! Discrete spectra from data: which times and weights make a Prony series pass through the rows.
+//! Discrete spectra from data: the times and weights of a Prony series that fits the rows.
 //!
 //! 1. Weights on a fixed logarithmic grid of times by non-negative least squares ([`super::nnls`]):
 //!    convex, so no start values and no local minima.
@@ -11,7 +11,7 @@
 
 use crate::material::{nnls, refine, series};
 
-/// How a term of time tau and weight 1 shows in one kind of data.
+/// The contribution of a term of time tau and weight 1 to one kind of data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kernel {
     /// exp(-t/tau)
@@ -48,18 +48,18 @@ impl Kernel {
         (value, slope)
     }
 
-    /// What a constant shows: equilibrium modulus or instantaneous compliance.
+    /// Contribution of a constant: equilibrium modulus or instantaneous compliance.
     fn constant(self) -> f64 {
         if self == Kernel::Loss { 0.0 } else { 1.0 }
     }
 
-    /// What flow t/eta shows.
+    /// Contribution of the flow t/eta.
     fn flow(self, x: f64) -> f64 {
         if self == Kernel::Creep { x } else { 0.0 }
     }
 }
 
-/// One number to be met.
+/// One value to be fitted.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub kernel: Kernel,
@@ -68,7 +68,7 @@ pub(super) struct Row {
     pub value: f64,
     /// One over the scale of the value: residuals are relative.
     pub weight: f64,
-    /// How many points it stands for.
+    /// Number of points that it represents.
     pub count: f64,
 }
 
@@ -82,17 +82,17 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
-    /// What the data of one kind show at x.
+    /// The value of one kind of data at x.
     pub(super) fn value(&self, kernel: Kernel, x: f64) -> f64 {
         let terms: f64 = self.terms.iter().map(|(time, weight)| weight * kernel.value(x, *time)).sum();
         terms + self.constant * kernel.constant() + self.flow * kernel.flow(x)
     }
 }
 
-/// Data carry no more digits than this; smaller residuals do not count as better.
+/// Relative accuracy of data; smaller residuals do not count as better.
 const DIGITS: f64 = 1e-7;
 
-/// Rows and what may be used to meet them.
+/// Rows and the terms allowed to fit them.
 #[derive(Clone, Debug)]
 pub(super) struct Problem {
     pub rows: Vec<Row>,
@@ -103,8 +103,7 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    /// The simplest spectrum that the rows call for, from a grid of `per_decade` times; no more than
-    /// `most` terms, whatever the rows call for.
+    /// The simplest spectrum that the rows require, from a grid of `per_decade` times, with at most `most` terms.
     pub(super) fn fit(&self, per_decade: f64, most: usize) -> Spectrum {
         let mut best = refine::refine(self, self.weigh(&self.grid(per_decade)), 10);
         while let Some(simpler) = self.simpler(&best) {
@@ -115,7 +114,7 @@ impl Problem {
             best = refine::refine(self, fewer, 100);
         }
         let mut best = refine::refine(self, best, 60);
-        // A constant or a flow of which the data show nothing would still rule all longer times.
+        // A constant or a flow that the data do not determine would still dominate at all longer times.
         let leaner = [
             Problem { flow: false, ..self.clone() },
             Problem { constant: false, ..self.clone() },
@@ -131,8 +130,8 @@ impl Problem {
         best
     }
 
-    /// The fewest terms whose rms residual is at most `misfit`, from a grid of `per_decade` times, left out or merged one
-    /// at a time, the cheapest first; all of the grid where it stays above.
+    /// The fewest terms whose rms residual is at most `misfit`, from a grid of `per_decade` times, left out or merged one at a
+    /// time, the least important first; the whole grid if its misfit is larger.
     pub(super) fn fit_within(&self, per_decade: f64, misfit: f64) -> Spectrum {
         let mut best = self.fit_grid(per_decade);
         while let Some(fewer) = self.fewer_within(&best, misfit) {
@@ -141,7 +140,7 @@ impl Problem {
         best
     }
 
-    /// A spectrum with one term less whose rms residual is at most `misfit`.
+    /// A spectrum with one term fewer whose rms residual is at most `misfit`.
     fn fewer_within(&self, spectrum: &Spectrum, misfit: f64) -> Option<Spectrum> {
         if self.rms(spectrum) > misfit || spectrum.terms.len() < 2 {
             return None;
@@ -153,7 +152,7 @@ impl Problem {
         })
     }
 
-    /// Root of the mean square of the relative residuals; means of several points count as often.
+    /// Root mean square of the relative residuals; means of several points count with their number.
     fn rms(&self, spectrum: &Spectrum) -> f64 {
         let (mut squares, mut count) = (0.0, 0.0);
         for (residual, row) in self.residuals(spectrum).iter().zip(&self.rows) {
@@ -163,18 +162,18 @@ impl Problem {
         f64::sqrt(squares / count)
     }
 
-    /// A spectrum with one term less that the information criterion prefers.
+    /// A spectrum with one term fewer that the information criterion prefers.
     fn simpler(&self, spectrum: &Spectrum) -> Option<Spectrum> {
         let limit = self.information(spectrum);
         let trials = self.reductions(spectrum);
-        // Most often the cheapest will do after a few iterations; the last word has a long one.
+        // Usually the least important term can be removed after a few iterations; a long iteration decides at the end.
         [(0, 15), (1, 15), (2, 15), (0, 100)].into_iter().find_map(|(k, iterations)| {
             let trial = refine::refine(self, trials.get(k)?.clone(), iterations);
             (self.information(&trial) <= limit).then_some(trial)
         })
     }
 
-    /// The best spectrum from a grid of `per_decade` times, however many terms it has.
+    /// The best spectrum from a grid of `per_decade` times, with any number of terms.
     pub(super) fn fit_grid(&self, per_decade: f64) -> Spectrum {
         refine::refine(self, self.weigh(&self.grid(per_decade)), 60)
     }
@@ -195,8 +194,8 @@ impl Problem {
         count * (squares + count * DIGITS * DIGITS).ln() + parameters as f64 * count.ln()
     }
 
-    /// The spectra with one term less (left out, or merged with its neighbour), weights but not times
-    /// refitted, best first.
+    /// The spectra with one term fewer (left out, or merged with its neighbour), with refitted weights but unchanged times, best
+    /// first.
     fn reductions(&self, spectrum: &Spectrum) -> Vec<Spectrum> {
         let n = spectrum.terms.len();
         let times: Vec<f64> = spectrum.terms.iter().map(|t| t.0).collect();
@@ -205,7 +204,7 @@ impl Problem {
             t1 * (t2 / t1).powf(w2 / (w1 + w2))
         });
         let all: Vec<f64> = times.iter().copied().chain(merged).collect();
-        // One orthogonal reduction serves all trials: they use subsets of these columns.
+        // One orthogonal reduction is enough for all trials: they use subsets of these columns.
         let (columns, b) = nnls::reduce(&self.columns(&all), &self.targets());
         let fixed = all.len()..columns.len();
         let trials = (0..n).map(|k| (0..n).filter(|j| *j != k).collect::<Vec<_>>());

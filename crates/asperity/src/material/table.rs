@@ -1,10 +1,9 @@
-//! A creep function as it was measured, without any model: for the full hereditary sum, which needs only
-//! C(t), and as a check of a fit.
+//! A measured creep function without any model. It is used in the full hereditary sum, which needs only C(t), and to check a fit.
 
 use crate::error::{Error, Result};
 use crate::material::data::{self, Words};
 
-/// C(t), linear between measured points; before the first point its value, after the last one the last.
+/// C(t), linear between measured points, and constant before the first and after the last point.
 ///
 /// ```
 /// use asperity::material::CreepTable;
@@ -22,11 +21,11 @@ pub struct CreepTable {
 }
 
 impl CreepTable {
-    /// From increasing times \[s\] (0 may be the first) and compliances \[1/Pa\] that nowhere fall.
+    /// From increasing times \[s\] (0 may be the first) and compliances \[1/Pa\] that never decrease.
     ///
     /// # Errors
-    /// [`Error::Invalid`] naming the point: fewer than two, times not in order or twice, a compliance that
-    /// is negative, not finite, or smaller than the one before (noise must be smoothed or fitted first).
+    /// [`Error::Invalid`] naming the point: fewer than two points, times not in order or repeated, or a compliance that is
+    /// negative, not finite, or smaller than the previous one (noise must be smoothed or fitted first).
     pub fn new(times: &[f64], compliances: &[f64]) -> Result<Self> {
         let words = Words {
             abscissa: "time",
@@ -79,7 +78,7 @@ impl CreepTable {
         }
     }
 
-    /// Integral of C from 0 to t \[s/Pa\], exact for the straight pieces; 0 for t < 0.
+    /// Integral of C from 0 to t \[s/Pa\], exact for the linear pieces; 0 for t < 0.
     pub fn integral(&self, t: f64) -> f64 {
         if t <= 0.0 {
             return 0.0;

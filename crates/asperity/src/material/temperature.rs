@@ -3,7 +3,7 @@
 use super::{Material, Shift, VerticalShift};
 use crate::error::{Error, Result};
 
-/// What a constant temperature makes of a material: its times are multiplied by a_T, its moduli are divided by b_T.
+/// The effect of a constant temperature on a material: its times are multiplied by a_T, its moduli are divided by b_T.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TemperatureFactors {
     /// a_T.
@@ -28,7 +28,7 @@ impl TemperatureFactors {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a shift is not defined at this temperature, or a_T is not a number.
+    /// [`Error::Invalid`] if a shift is not defined at this temperature, or a_T is not a number.
     pub fn at(shift: &Shift, vertical: Option<&VerticalShift>, kelvin: f64) -> Result<Self> {
         let times = shift.factor(kelvin)?;
         let moduli = vertical.map_or(Ok(1.0), |vertical| vertical.factor(kelvin))?;
@@ -45,14 +45,14 @@ impl TemperatureFactors {
     /// The material that is `reference` at the reference temperature.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where its times or moduli are no numbers.
+    /// [`Error::Invalid`] if its times or moduli are out of range.
     pub fn of(self, reference: &Material) -> Result<Material> {
         let stretched =
             if self.times == 1.0 { reference.clone() } else { reference.stretched(self.times)? };
         if self.moduli == 1.0 { Ok(stretched) } else { stretched.scaled(1.0 / self.moduli) }
     }
 
-    /// The error of a material with a vertical shift whose temperature changes.
+    /// The error for a material with a vertical shift whose temperature changes.
     pub fn not_constant() -> Error {
         Error::invalid(
             "temperature of a material with a vertical shift",

@@ -1,12 +1,12 @@
-//! Creep under a changing temperature: the material's own clock.
+//! Creep under a changing temperature, in the reduced time of the material.
 //!
-//! A thermorheologically simple material answers in reduced time (L. W. Morland & E. H. Lee, Trans. Soc.
-//! Rheology 4 (1960) 233): u(t) = int C(xi(t) - xi(s)) dU(s) with d xi = dt / a_T(T(t)). Temperature changes
-//! how fast the material creeps, not how far: moduli keep their values, and bodies do not expand.
+//! A thermorheologically simple material responds in reduced time (L. W. Morland & E. H. Lee, Trans. Soc. Rheology 4 (1960) 233):
+//! u(t) = int C(xi(t) - xi(s)) dU(s) with d xi = dt / a_T(T(t)). Temperature changes the rate of creep, not its amount: moduli
+//! keep their values, and there is no thermal expansion.
 
 use crate::material::{Creep, ReducedTime};
 
-/// A contact creep compliance that runs on the clock of its body: C(xi(t) - xi(s)).
+/// A contact creep compliance in the reduced time of its body: C(xi(t) - xi(s)).
 ///
 /// ```
 /// use asperity::material::{Creep, CreepTerm, ReducedTime, Shift, ThermalCreep};
@@ -29,7 +29,7 @@ pub struct ThermalCreep {
 }
 
 impl ThermalCreep {
-    /// C(xi(t) - xi(s)) \[1/Pa\]: the compliance at t of a load since s.
+    /// C(xi(t) - xi(s)) \[1/Pa\]: the compliance at t for a load applied at s.
     pub fn value(&self, s: f64, t: f64) -> f64 {
         if t < s {
             return 0.0;

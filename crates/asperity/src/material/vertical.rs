@@ -1,4 +1,4 @@
-//! Vertical shifts: how the moduli of a material depend on temperature, besides its times.
+//! Vertical shifts: the dependence of the moduli of a material on temperature, in addition to its times.
 //!
 //! ```text
 //! E(t, T) = E(t/a_T, T_r) / b_T
@@ -12,11 +12,11 @@
 //! b_T = T_r rho(T_r) / (T rho(T)) = (T_r/T) (1 + expansion (T - T_r))
 //! ```
 //!
-//! with the expansion of the volume per kelvin. Moduli of a glass do not follow this law.
+//! with the expansion of the volume per kelvin. The moduli of a glass do not follow this law.
 
 use crate::error::{Error, Result, kelvin, positive};
 
-/// A vertical shift factor b_T over temperature: moduli at T are those at the reference temperature over b_T.
+/// A vertical shift factor b_T as a function of temperature: moduli at T are those at the reference temperature divided by b_T.
 #[derive(Clone, Debug, PartialEq)]
 pub enum VerticalShift {
     /// Entropic elasticity: b_T = (T_r/T) (1 + expansion (T - T_r)).
@@ -37,8 +37,8 @@ impl VerticalShift {
     /// Checks the constants.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a reference that is not positive, an expansion outside of 0 to 0.01 per kelvin, a table of no
-    /// points, out of order, or with factors beyond a thousand.
+    /// [`Error::Invalid`] for a reference that is not positive, an expansion outside the range 0 to 0.01 per kelvin, and a table
+    /// without points, out of order, or with factors beyond a thousand.
     pub fn validate(&self) -> Result<()> {
         match self {
             VerticalShift::Density { reference, expansion } => {
@@ -67,8 +67,8 @@ impl VerticalShift {
     /// ```
     ///
     /// # Errors
-    /// As [`validate`](Self::validate), and for a temperature that is not positive, outside of a table, or at which the
-    /// density would not be positive.
+    /// As [`validate`](Self::validate), and for a temperature that is not positive, outside a table, or at which the density
+    /// would not be positive.
     pub fn factor(&self, temperature: f64) -> Result<f64> {
         self.validate()?;
         positive("temperature", temperature, "K (absolute)")?;
@@ -97,7 +97,7 @@ impl VerticalShift {
     }
 }
 
-/// ln b_T between two points of a table; its ends are held.
+/// ln b_T between two points of a table, constant beyond its ends.
 pub(super) fn interpolated(points: &[(f64, f64)], temperature: f64) -> f64 {
     let [first, .., last] = points else { return points.first().map_or(0.0, |point| point.1) };
     let temperature = temperature.clamp(first.0, last.0);

@@ -122,14 +122,12 @@ impl Process for Moving {
     fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
         let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
         let contact = ContactForces {
-            grid: &row.simulation.grid,
-            boundary: row.simulation.boundary,
+            simulation: row.simulation,
             direction: self.motion.direction,
             slopes: &self.slopes,
-            pressure: &row.now.pressure,
+            state: row.now,
             gap: row.gap,
             compliance: row.compliance,
-            unit_displacement: &row.now.unit_displacement,
             remembers: row.simulation.parts().any(remembers),
             velocity: self.motion.path.velocity(row.step.instant.time),
             distance: self.distance,

@@ -37,7 +37,7 @@ mod stiffness;
 
 use ndarray::Array2;
 
-use crate::error::{Error, Result, positive, require};
+use crate::error::{Result, positive, require};
 use crate::grid::Grid;
 
 pub(crate) use eccentricity::eccentricity;
@@ -373,18 +373,37 @@ impl Quantities {
         self.list.iter().any(|quantity| quantity.is_energy())
     }
 
-    /// The quantities with their bins, for an undeformed gap \[m\] and a largest hardness \[Pa\] (infinite for none).
+    /// Checks the list and the bins, as far as they do not depend on a gap; `capped` where there is a hardness.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a quantity is named twice, the bins are none or too many, an end is not positive, or the
+    /// [`Error::Invalid`](crate::Error::Invalid) where a quantity is named twice, the bins are none or too many, an end is not positive, or the
     /// histogram of the pressure has no upper end.
-    pub fn columns(&self, grid: &Grid, gap: &Array2<f64>, hardness: f64) -> Result<Vec<Column>> {
+    pub fn validate(&self, capped: bool) -> Result<()> {
         for (n, quantity) in self.list.iter().enumerate() {
             let once = !self.list[..n].contains(quantity);
             require(once, "list of quantities", format!("{quantity} twice"), "each named once")?;
         }
         let possible = (1..=MOST_BINS).contains(&self.bins);
-        require(possible, "bins of the histograms", self.bins, format!("between 1 and {MOST_BINS}"))?;
+        require(possible, "bins of the histograms", self.bins, format!("between 1 and {MOST_BINS}"))
+            .map_err(|error| error.of("histogram.bins"))?;
+        if let (true, Some(top)) = (self.has(Quantity::PressureHistogram), self.largest_pressure) {
+            positive(PRESSURE_END, top, "Pa")?;
+        }
+        if let (true, Some(top)) = (self.has(Quantity::GapHistogram), self.largest_gap) {
+            positive(GAP_END, top, "m")?;
+        }
+        let is_bounded = !self.has(Quantity::PressureHistogram) || self.largest_pressure.is_some() || capped;
+        let expected =
+            "a pressure, as the bodies have no hardness that bounds it: histogram = { pressure = \"...\" }";
+        require(is_bounded, PRESSURE_END, "not given", expected).map_err(|error| error.of("quantities"))
+    }
+
+    /// The quantities with their bins, for an undeformed gap \[m\] and a largest hardness \[Pa\] (infinite for none).
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate); where the histogram of the gap has no upper end.
+    pub fn columns(&self, grid: &Grid, gap: &Array2<f64>, hardness: f64) -> Result<Vec<Column>> {
+        self.validate(hardness.is_finite())?;
         let evenly = |top: f64| (0..=self.bins).map(|k| top * k as f64 / self.bins as f64).collect();
         let edges = |quantity: &Quantity| -> Result<Vec<f64>> {
             Ok(match quantity {
@@ -392,16 +411,9 @@ impl Quantities {
                     let classes = grid.len().ilog2() as i32 + 1;
                     (0..=classes).map(|k| grid.cell_area() * libm::ldexp(1.0, k)).collect()
                 }
-                Quantity::PressureHistogram => match self.largest_pressure {
-                    Some(top) => evenly(positive(PRESSURE_END, top, "Pa")?),
-                    None if hardness.is_finite() => evenly(hardness),
-                    None => {
-                        let expected = "a pressure, as the bodies have no hardness that bounds it";
-                        return Err(Error::invalid(PRESSURE_END, "not given", expected));
-                    }
-                },
+                Quantity::PressureHistogram => evenly(self.largest_pressure.unwrap_or(hardness)),
                 Quantity::GapHistogram => match self.largest_gap {
-                    Some(top) => evenly(positive(GAP_END, top, "m")?),
+                    Some(top) => evenly(top),
                     None => {
                         let top = gap.iter().filter(|h| h.is_finite()).fold(0.0, |m: f64, h| m.max(*h));
                         let expected = "a length, as the undeformed surfaces are flat";

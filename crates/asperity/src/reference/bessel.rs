@@ -1,6 +1,7 @@
-//! Quotients of modified Bessel functions, which are of order one where the functions themselves overflow.
+//! Quotients of modified Bessel functions. They are of order one even if the functions themselves overflow.
 //!
-//! From their integrals (M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions (1964), 9.6.18 and 9.6.24):
+//! They are computed from integrals (M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions (1964), 9.6.18 and
+//! 9.6.24):
 //!
 //! ```text
 //! I_n(x) = (x/2)^n / (sqrt(pi) Gamma(n + 1/2)) int_0^pi e^(x cos t) sin^(2n) t dt
@@ -16,7 +17,7 @@ use super::quadrature::integrate;
 /// Beyond this exponent the integrand is below the rounding of its integral.
 const REACH: f64 = 45.0;
 
-/// Arguments outside have quotients that equal their limits to rounding.
+/// Outside these arguments, the quotients equal their limits to rounding.
 const RANGE: [f64; 2] = [1e-150, 1e17];
 
 /// (I0/I1, I2/I1) at x > 0.

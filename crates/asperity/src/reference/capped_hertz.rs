@@ -14,10 +14,10 @@
 //! u(r) = (4 / (pi E*)) int p(s) s / (r + s) K(k') ds,   k' = |r - s| / (r + s)
 //! ```
 //!
-//! With r^2 = c^2 cos^2 phi + a^2 sin^2 phi the pressure is smooth in phi on \[0, pi/2\], square roots at
-//! both rims included. Chebyshev polynomials in phi, gap = 0 at their collocation points, p = H at c and
-//! p = 0 at a make a linear system for p, H and the approach, given c/a; its error falls exponentially
-//! with the degree. The cap is reversible and knows no history.
+//! With r^2 = c^2 cos^2 phi + a^2 sin^2 phi the pressure is smooth in phi on \[0, pi/2\], square roots at both rims included.
+//! Chebyshev polynomials in phi with gap = 0 at their collocation points, p = H at c and p = 0 at a give a linear system for p, H
+//! and the approach, for given c/a. Its error falls exponentially with the degree. The cap is reversible and does not depend on
+//! the history.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -59,18 +59,18 @@ enum Form {
     Elastic(HertzSphere),
     /// A disc at the hardness inside an annulus below it.
     Annulus(Annulus),
-    /// The annulus is too thin to tell: all of the contact is at the hardness.
+    /// The annulus is too thin to be resolved: the whole contact is at the hardness.
     Plastic,
 }
 
 impl CappedHertz {
     /// From the hardness \[Pa\] (infinite: Hertz) and the load W >= 0 \[N\].
     ///
-    /// Below H / p0 = 0.2 or so the annulus is thinner than 1e-12 of the contact and the fully plastic
-    /// limit is taken: a = sqrt(W / (pi H)), approach = a^2 / (2 R) + 4 H a / (pi E*).
+    /// Below about H / p0 = 0.2 the annulus is thinner than 1e-12 of the contact, and the fully plastic limit is used: a = sqrt(W
+    /// / (pi H)), approach = a^2 / (2 R) + 4 H a / (pi E*).
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where the radius, the modulus or the hardness is not
+    /// [`Error::Invalid`](crate::Error::Invalid) if the radius, the modulus or the hardness is not
     /// positive or the load is negative.
     pub fn under_load(radius: f64, contact_modulus: f64, hardness: f64, load: f64) -> Result<Self> {
         let hertz = HertzSphere::under_load(radius, contact_modulus, load)?;
@@ -144,7 +144,7 @@ impl CappedHertz {
         }
     }
 
-    /// Overlap that is flattened at the distance r, approach - r^2/(2R) - displacement, 0 or more \[m\].
+    /// Flattened overlap at the distance r, approach - r^2/(2R) - displacement, at least 0 \[m\].
     pub fn overlap(&self, r: f64) -> f64 {
         if r >= self.capped_radius {
             return 0.0;
@@ -245,7 +245,7 @@ impl Annulus {
                 let sum = r + self.r(at);
                 let complementary = self.width2 * distance.sin() * (phi + at).sin() / (sum * sum);
                 let kernel = 4.0 / PI * weight * self.area(at) / sum * elliptic(complementary.abs()).k;
-                // Points that round onto phi have weights far below rounding.
+                // Points that are rounded to phi have weights far below rounding.
                 if kernel.is_finite() {
                     row.iter_mut().zip(chebyshev(at)).for_each(|(m, t)| *m += kernel * t);
                 }
@@ -316,8 +316,8 @@ mod tests {
 
     #[test]
     fn it_agrees_with_an_independent_collocation() {
-        // Rows of (H/pH, a/aH, c/aH, delta/deltaH, overlap(0)/deltaH, [p/pH at r/aH]), whose own two
-        // resolutions differ by less than 1e-11.
+        // Rows of (H/pH, a/aH, c/aH, delta/deltaH, overlap(0)/deltaH, [p/pH at r/aH]), computed with two resolutions that differ
+        // by less than 1e-11.
         #[rustfmt::skip]
         let rows = [
             (0.95, 1.0003208392528373, 0.3822437365165019, 1.0003138162503002, 0.010435786770926846, [(0.2, 0.95), (0.4, 0.9283043311236363), (0.6, 0.8018038489345699), (0.8, 0.6009427109757717), (1.0, 0.025342297472344826), (1.1, 0.0)]),
@@ -370,7 +370,7 @@ mod tests {
         let nearly = at(1.0 - 1e-5);
         assert!((nearly.approach / hertz.approach - 1.0).abs() < 1e-8);
         assert!((nearly.pressure(0.5) / hertz.pressure(0.5) - 1.0).abs() < 1e-8);
-        // The annulus is nearly gone at H/pH = 0.25, so that the limit is met to its width.
+        // The annulus has nearly vanished at H/pH = 0.25, so the limit is reached to within its width.
         let (thin, h) = (at(0.25), 0.25 * hertz.peak_pressure);
         let a = (1.0 / (PI * h)).sqrt();
         assert!((thin.contact_radius / a - 1.0).abs() < 1e-6);

@@ -1,4 +1,4 @@
-//! The slow truth: the influence matrix written out, O(N^2) memory and time, for checks.
+//! The slow reference for checks: the full influence matrix, with O(N^2) memory and time.
 //!
 //! It shares no code with the operators that it checks. On a free half-space the displacement of a uniformly loaded
 //! rectangle is a sum over its edges,
@@ -47,8 +47,8 @@ impl Dense {
     }
 }
 
-/// K(x, y) \[m\] of a rectangle of sides `side` around the origin. The edges cancel far away, where what is left is good to
-/// eps (distance/side).
+/// K(x, y) \[m\] of a rectangle of sides `side` around the origin. Far away the edges cancel, and the relative error of the
+/// result is eps (distance/side).
 fn rectangle(x: f64, y: f64, [dx, dy]: [f64; 2]) -> f64 {
     let (a, b) = (0.5 * dx, 0.5 * dy);
     let along_x = edge(-a - x, a - x, b - y) + edge(-a - x, a - x, b + y);
@@ -61,16 +61,16 @@ fn edge(l1: f64, l2: f64, d: f64) -> f64 {
     if d == 0.0 {
         return 0.0;
     }
-    // An edge seen the other way round has the same logarithm: take the one with l1 + l2 >= 0.
+    // An edge in the opposite direction has the same logarithm: take the one with l1 + l2 >= 0.
     let (l1, l2) = if l1 + l2 < 0.0 { (-l2, -l1) } else { (l1, l2) };
     let [r1, r2] = [l1, l2].map(|l: f64| l.hypot(d));
-    // 1/(R1 + l1), where this does not cancel.
+    // 1/(R1 + l1), if this does not cancel.
     let inverse = if l1 < 0.0 { (r1 - l1) / (d * d) } else { 1.0 / (r1 + l1) };
     let less_one = (l2 - l1) * (1.0 + (l1 + l2) / (r1 + r2)) * inverse;
     d * less_one.ln_1p()
 }
 
-/// (1/N) sum over the waves of 2/|q| cos(q.x); the mean displaces nothing.
+/// (1/N) sum over the waves of 2/|q| cos(q.x); the mean pressure causes no displacement.
 fn wave_sum(grid: &Grid, i: usize, j: usize) -> f64 {
     let [nx, ny] = grid.cells();
     let [lx, ly] = grid.size();

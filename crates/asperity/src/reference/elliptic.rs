@@ -4,10 +4,9 @@
 //! K(k) = int_0^(pi/2) dphi / sqrt(1 - k^2 sin^2 phi),   E(k) = int_0^(pi/2) sqrt(1 - k^2 sin^2 phi) dphi
 //! ```
 //!
-//! With a_0 = 1, b_0 = k', c_0 = k and a_(n+1) = (a_n + b_n)/2, b_(n+1) = sqrt(a_n b_n),
-//! c_(n+1) = (a_n - b_n)/2: K = pi / (2 a), E = K (1 - sum_n 2^(n-1) c_n^2) (M. Abramowitz and I. A.
-//! Stegun, Handbook of Mathematical Functions (1964), section 17.6). The complementary modulus
-//! k' = sqrt(1 - k^2) is the argument, so that K keeps its digits where it is large.
+//! With a_0 = 1, b_0 = k', c_0 = k and a_(n+1) = (a_n + b_n)/2, b_(n+1) = sqrt(a_n b_n), c_(n+1) = (a_n - b_n)/2: K = pi / (2 a),
+//! E = K (1 - sum_n 2^(n-1) c_n^2) (M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions (1964), section 17.6). The
+//! complementary modulus k' = sqrt(1 - k^2) is the argument, so K keeps its digits if it is large.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -81,7 +80,7 @@ mod tests {
                 (got.b, of(&|p| p.cos().powi(2) / root(p))),
             ];
             for (a, b) in pairs {
-                // The quadrature loses digits where the root nearly vanishes.
+                // The quadrature loses digits if the root nearly vanishes.
                 assert!((a / b - 1.0).abs() < 1e-13, "k' = {complementary}: {a} {b}");
             }
         }

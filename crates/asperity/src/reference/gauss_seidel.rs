@@ -1,10 +1,10 @@
-//! The slow truth: projected Gauss-Seidel on the influence matrix, for small grids.
+//! The slow reference: projected Gauss-Seidel on the influence matrix, for small grids.
 
 use super::Dense;
 use crate::contact::{ContactState, Prescribed, Problem};
 use crate::operator::Operator;
 
-/// Solves a contact cell by cell: p_i <- clip(p_i - r_i/(c K_ii), 0, H), swept until nothing moves.
+/// Solves a contact cell by cell: p_i <- clip(p_i - r_i/(c K_ii), 0, H), repeated until no cell changes.
 ///
 /// Under load control the approach is found by bisection around it. O(N^2) memory: grids of a few hundred cells. It shares
 /// neither method nor influence coefficients with the solvers that it checks (Bortz; Vollebregt, Comput. Mech. 54, 2014,
@@ -18,7 +18,7 @@ pub fn gauss_seidel(operator: &mut Dense, problem: &Problem) -> ContactState {
             let target = load / operator.grid().cell_area();
             let mut low = problem.gap.iter().copied().fold(f64::INFINITY, f64::min);
             let mut high = if !operator.determines_mean() && problem.hardness.is_infinite() {
-                // Beyond the mean gap a periodic pressure has no bound.
+                // Beyond the mean gap a periodic pressure is unbounded.
                 problem.gap.iter().sum::<f64>() / n as f64
             } else {
                 carrying(operator, problem, target, low, &mut state)
@@ -37,7 +37,7 @@ pub fn gauss_seidel(operator: &mut Dense, problem: &Problem) -> ContactState {
     state
 }
 
-/// An approach above `low` at which the bodies carry `target` at least.
+/// An approach above `low` at which the bodies carry at least `target`.
 fn carrying(operator: &Dense, problem: &Problem, target: f64, low: f64, state: &mut ContactState) -> f64 {
     let mut overlap = problem.compliance * target * operator.self_influence();
     loop {

@@ -1,5 +1,5 @@
-//! The hereditary integral of a history: L(t) = int_(0-)^(t+) C(t - s) dW(s), the load history seen
-//! through the creep function. Closed forms for every [`History`].
+//! The hereditary integral of a history: L(t) = int_(0-)^(t+) C(t - s) dW(s), the load history convolved with the creep function.
+//! There is a closed form for every [`History`].
 //!
 //! A linear piece of slope k over \[t0, t1\] gives k (I(t - t0) - I(t - t1)) with I(t) = int_0^t C, a jump
 //! by dW at t0 gives dW C(t - t0), and the sine (A sin(w t) + mean) gives

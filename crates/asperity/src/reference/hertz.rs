@@ -1,5 +1,5 @@
-//! Smooth elastic bodies of second order: H. Hertz, J. reine angew. Math. 92 (1881) 156; K. L. Johnson,
-//! Contact Mechanics (Cambridge, 1985), sections 4.1-4.2.
+//! Elastic bodies with smooth surfaces of second order: H. Hertz, J. reine angew. Math. 92 (1881) 156; K. L. Johnson, Contact
+//! Mechanics (Cambridge, 1985), sections 4.1-4.2.
 //!
 //! E* is the contact modulus of the pair, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2. "Sphere" means the
 //! paraboloid r^2/(2R).
@@ -45,7 +45,7 @@ impl HertzSphere {
     /// From the load W >= 0 \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`] if the radius or the modulus is not positive or the load is negative.
     pub fn under_load(radius: f64, contact_modulus: f64, load: f64) -> Result<Self> {
         check(radius, contact_modulus)?;
         non_negative("load", load, "N")?;
@@ -54,10 +54,10 @@ impl HertzSphere {
         Ok(HertzSphere { load, ..contact })
     }
 
-    /// From the approach \[m\]; a negative one is no contact.
+    /// From the approach \[m\]; a negative approach means no contact.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius or the modulus is not positive or the approach not finite.
+    /// [`Error::Invalid`] if the radius or the modulus is not positive or the approach not finite.
     pub fn under_approach(radius: f64, contact_modulus: f64, approach: f64) -> Result<Self> {
         check(radius, contact_modulus)?;
         if !approach.is_finite() {
@@ -131,7 +131,7 @@ impl HertzEllipse {
     /// From the load W >= 0 \[N\] and the radii along x and y \[m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a radius or the modulus is not positive and finite, the load is
+    /// [`Error::Invalid`] if a radius or the modulus is not positive and finite, the load is
     /// negative, or one radius exceeds the other by more than 1e12 (a line contact, which has no
     /// approach).
     pub fn under_load(radii: [f64; 2], contact_modulus: f64, load: f64) -> Result<Self> {
@@ -187,7 +187,7 @@ mod tests {
     use super::super::quadrature::integrate;
     use super::*;
 
-    // The formulas have a handful of operations each.
+    // The formulas have a few operations each.
     const ROUNDING: f64 = 4e-15;
 
     fn close(a: f64, b: f64) -> bool {
@@ -243,7 +243,7 @@ mod tests {
         let round = HertzEllipse::under_load([0.3, 0.3], 2.0, 5.0).unwrap();
         assert!(close(round.semi_axes[0], sphere.contact_radius));
         assert!((round.approach / sphere.approach - 1.0).abs() < 1e-14);
-        // The middle of a long ellipse carries W' = p0 pi b / 2 as a cylinder of its own.
+        // The middle of a long ellipse carries W' = p0 pi b / 2, like a separate cylinder.
         let long = HertzEllipse::under_load([1e8, 1.0], 1.0, 1e3).unwrap();
         let [_, b] = long.semi_axes;
         let line = HertzLine::under_load(1.0, 1.0, 0.5 * PI * b * long.peak_pressure).unwrap();

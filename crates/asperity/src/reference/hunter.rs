@@ -17,8 +17,8 @@
 //! W = pi a/(4 R (C0 + C1)) [a + 2 (l - l')/S],   F = pi a^2 (l - l')/(4 R^2 (C0 + C1) S) [j + k + 2 x0/a]
 //! ```
 //!
-//! in which nothing cancels at any speed. l -> 0 is Hertz's contact with the relaxed modulus, l -> infinity with the
-//! instantaneous one.
+//! without cancellation at any speed. The limit l -> 0 is the Hertzian contact with the relaxed modulus, l -> infinity that with
+//! the instantaneous one.
 
 use std::f64::consts::PI;
 
@@ -30,8 +30,8 @@ use crate::material::Creep;
 /// A cylinder in steady motion over a viscoelastic half-space. Lengths are measured from its lowest point, x in the
 /// direction of the motion.
 ///
-/// The hysteresis of both bodies counts where both are rolled over (add their creep functions and curvatures), and only that
-/// of the body over which the contact moves where a cylinder slides.
+/// If two bodies roll on each other, both have hysteresis (add their creep functions and curvatures). If a cylinder slides, only
+/// the body over which the contact moves has hysteresis.
 ///
 /// ```
 /// use asperity::material::{Creep, CreepTerm};
@@ -69,7 +69,7 @@ impl HunterCylinder {
     /// compliance of at most one retarded term.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius is not positive, the speed or the load negative, or the creep function has no
+    /// [`Error::Invalid`] if the radius is not positive, the speed or the load negative, or the creep function has no
     /// instantaneous compliance, flows, or has several terms.
     pub fn under_load(radius: f64, creep: &Creep, velocity: f64, load_per_length: f64) -> Result<Self> {
         positive("radius", radius, "m")?;
@@ -143,11 +143,11 @@ impl HunterCylinder {
         }
         let short = self.memory * (self.instantaneous / self.relaxed);
         if short <= 1e-13 * a {
-            // P changes over lengths of a: the integral is P l' to rounding.
+            // P varies over lengths of a: the integral is P l' to rounding.
             let root = ((a - z).max(short) * (a + z)).sqrt();
             return (self.numerator(z) / (root * self.relaxed)).max(0.0);
         }
-        // Beyond 45 l' the memory has faded to rounding.
+        // Beyond 45 l' the memory is below rounding.
         let end = a.min(z + 45.0 * short);
         let faded = |s: Point| {
             let root = ((a - end + s.below) * (a + z + s.above)).sqrt();
@@ -156,8 +156,8 @@ impl HunterCylinder {
         integrate_to(1e-14, z, end, faded) / (self.memory * self.instantaneous)
     }
 
-    /// Where the pressure is largest \[m\], and how large it is \[Pa\]. Besides its maximum near the middle the pressure may have a
-    /// second and higher one within a length l' of the front, where the material is glassy.
+    /// Position \[m\] and value \[Pa\] of the largest pressure. In addition to its maximum near the middle, the pressure may have
+    /// a second, higher one within a length l' of the front, where the material is glassy.
     pub fn peak(&self) -> (f64, f64) {
         let a = self.half_width;
         if a == 0.0 || self.is_elastic() {
@@ -167,7 +167,7 @@ impl HunterCylinder {
         let falling = |z: f64| {
             self.numerator(z) / ((a - z) * (a + z)).sqrt() - self.relaxed * self.pressure(self.centre + z)
         };
-        // From the rear to the front, ever closer to it, down to a part of l'.
+        // From the rear to the front, with decreasing distance from the front, down to a fraction of l'.
         let closest = 0.02 * a.min(self.memory * (self.instantaneous / self.relaxed)).max(1e-12 * a);
         let steps = ((2.0 * a / closest).ln() / 0.07).ceil() as i32;
         let places: Vec<f64> =
@@ -192,7 +192,7 @@ impl HunterCylinder {
         (a - z) * (a + z) / (2.0 * self.radius) + self.shift + slope * z
     }
 
-    /// Where l is below rounding against the contact the body is as good as relaxed.
+    /// If l is below rounding compared with the contact, the body is practically relaxed.
     fn is_elastic(&self) -> bool {
         self.instantaneous == self.relaxed || self.memory <= 1e-13 * self.half_width
     }
@@ -266,8 +266,8 @@ mod tests {
                 contact.friction_coefficient()
             );
             let (x, p) = contact.peak();
-            // Some places of these rows were found by comparing values, which are equal over 1e-8. The fourth, the seventh and
-            // the eighth row have a second, lower maximum near the middle.
+            // Some positions in these rows were found by comparing values, which are equal within 1e-8. The fourth, the seventh
+            // and the eighth row have a second, lower maximum near the middle.
             assert!(near(p, peak) && (x - place).abs() < 3e-8, "{ratio} {v}: {x} {p}");
         }
     }
@@ -290,7 +290,7 @@ mod tests {
             let (front, rear) = (contact.centre + contact.half_width, contact.centre - contact.half_width);
             let load = integrate(rear, front, |x| contact.pressure(x));
             let friction = integrate(rear, front, |x| contact.pressure(x) * x / 2.0);
-            // Two nested quadratures; the moment cancels where the contact is nearly symmetric.
+            // Two nested quadratures; the moment cancels if the contact is nearly symmetric.
             assert!((load / 0.5 - 1.0).abs() < 1e-11, "{v}: {load}");
             let room = 1e-12 * 0.5 * contact.half_width;
             assert!((friction - contact.friction_per_length).abs() < room, "{v}: {friction}");
@@ -333,7 +333,7 @@ mod tests {
         assert!(fall > 1.9 && fall < 2.0, "{fall}");
         let halved = HunterCylinder::under_load(1.0, &zener(0.25, 0.75, 1.0), 2.0, 1.0).unwrap();
         assert!(near(at(1.0).friction_per_length, halved.friction_per_length, 1e-14)); // v lambda alone
-        // So little glassy compliance that l' is below the rounding of a place; first order in l.
+        // The glassy compliance is so small that l' is below the rounding of a position; first order in l.
         let soft_front = HunterCylinder::under_load(1.0, &zener(1e-9, 1.0 - 1e-9, 1e-7), 1.0, 1.0).unwrap();
         assert!(near(soft_front.pressure(0.3), soft.pressure(0.3), 1e-6), "{}", soft_front.pressure(0.3));
         let elastic = HunterCylinder::under_load(1.0, &Creep::elastic(1.0), 3.0, 1.0).unwrap();

@@ -1,17 +1,17 @@
 //! A rigid body of revolution on an elastic layer: depth, load and stiffness over the radius of the contact.
 //!
-//! With φ(t), 0 <= t <= a, the pressure that is regular at its edge is p^(q) = ∫ φ(t) cos(q t) dt. It meets no stress outside of the
-//! contact, and inside the shape of the indenter where (I. N. Sneddon, Fourier Transforms, 1951, section 52; the layer enters as
-//! in N. N. Lebedev & Ia. S. Ufliand, J. Appl. Math. Mech. 22 (1958) 442)
+//! With φ(t), 0 <= t <= a, the pressure that is regular at its edge is p^(q) = ∫ φ(t) cos(q t) dt. It is zero outside the
+//! contact, and inside it gives the shape of the indenter if (I. N. Sneddon, Fourier Transforms, 1951, section 52; the layer is
+//! included as in N. N. Lebedev & Ia. S. Ufliand, J. Appl. Math. Mech. 22 (1958) 442)
 //!
 //! ```text
 //! φ(t) + (2/π) ∫_0^a φ(s) ∫_0^∞ G(q) cos(q t) cos(q s) dq ds = (2/(π c)) (δ - g(t)),   G = q C(q)/c - 1,  c = lim q C(q)
 //! ```
 //!
-//! g is the equivalent plane profile of the shape (sphere t²/R, cone (π/2) slope t) and δ the depth, which φ(a) = 0 sets. G decays as
-//! exp(-2 q d). With φ_1 the solution for the right side 1, the stiffness of the contact is
-//! dW/dδ = 2 E* ∫ φ_1 dt = 2 E* ρ. So the layer responds as a half-space of the same E* = 2/c would to contacts of the radius ρ.
-//! (The stiffness of a contact that grows is that of the flat punch of its radius.)
+//! g is the equivalent plane profile of the shape (sphere t²/R, cone (π/2) slope t) and δ is the depth, which follows from
+//! φ(a) = 0. G decays as exp(-2 q d). With φ_1 the solution for the right-hand side 1, the stiffness of the contact is dW/dδ = 2 E* ∫
+//! φ_1 dt = 2 E* ρ. The layer therefore responds like a half-space of the same E* = 2/c with a contact of radius ρ. (The
+//! stiffness of a growing contact is that of the flat punch of its radius.)
 
 use std::f64::consts::{FRAC_2_PI, PI};
 use std::sync::Arc;
@@ -28,7 +28,7 @@ const WIDEST: f64 = 30.0;
 const LAST: f64 = 20.0;
 /// Points of a panel of the integral over q.
 const PANEL: usize = 12;
-/// Heights of the profile of springs.
+/// Number of heights of the profile of springs.
 const FINE: usize = 2000;
 
 /// A rigid sphere or cone on an elastic layer that lies on a rigid base, in units of E* = 1: E* = 2 G/(1 - ν) of the layer.
@@ -51,7 +51,7 @@ pub struct LayerContact {
     table: Arc<Table>,
 }
 
-/// The profile of a row of springs that stands for a layer.
+/// The profile of a row of springs that is equivalent to a layer.
 #[derive(Clone, Debug)]
 pub(crate) struct SpringProfile {
     profile: MdrProfile,
@@ -100,11 +100,11 @@ struct Table {
 }
 
 impl LayerContact {
-    /// Of a layer of that thickness \[m\] and Poisson's ratio on a rigid base, for depths up to `deepest` \[m\].
+    /// A layer of this thickness \[m\] and Poisson's ratio on a rigid base, for depths up to `deepest` \[m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a number is not positive, Poisson's ratio is outside (-1, 0.5], or the contact becomes more
-    /// than 30 times as wide as the layer is thick.
+    /// [`Error::Invalid`] if a number is not positive, Poisson's ratio is outside (-1, 0.5], or the width of the contact exceeds
+    /// 30 times the thickness of the layer.
     pub fn new(
         profile: MdrProfile,
         thickness: f64,
@@ -116,8 +116,8 @@ impl LayerContact {
         positive("thickness", thickness, "m")?;
         let layer = Layer { thickness: 1.0, shear: 1.0, poisson, interface };
         let stack = Stack::new(vec![layer], Base::Rigid)?;
-        // On a layer the contact of a sphere is at most twice as wide as on a half-space at the same depth: its depth is
-        // a²/(4 R) at least, and that of a cone slope a/2.
+        // On a layer the contact of a sphere is at most twice as wide as on a half-space at the same depth: its depth is at least
+        // a²/(4 R), and that of a cone at least slope a/2.
         let widest = match profile {
             MdrProfile::Sphere { radius } => 2.0 * (radius * deepest).sqrt(),
             MdrProfile::Cone { slope } => 2.0 * deepest / slope,
@@ -132,7 +132,7 @@ impl LayerContact {
         let spacing = widest / RADII as f64;
         let rows: Vec<[f64; 3]> =
             (1..=RADII + 3).map(|n| solve(&stack, profile, spacing * n as f64 / thickness)).collect();
-        // Even functions, but for a half-space 1.
+        // Even functions; for a half-space they are 1.
         let column = |k: usize| std::iter::once(1.0).chain(rows.iter().map(|row| row[k])).collect();
         let table = Table { spacing, depth: column(0), stiffness: column(1), load: column(2) };
         Ok(LayerContact { profile, table: Arc::new(table) })
@@ -166,11 +166,11 @@ impl LayerContact {
         self.inverse(depth, |a| self.depth(a))
     }
 
-    /// The profile with which a half-space responds to every history of depth or load as the layer does.
+    /// The profile with which a half-space responds like the layer to every history of depth or load.
     ///
-    /// Each spring of [`super::Mdr`] at x is the rise of the stiffness when the contact reaches a radius whose ρ is x, and it
-    /// touches at the depth of that radius. As the layer has one creep function and a constant Poisson's ratio, flat punches
-    /// of all radii relax alike, and what is inside a contact does not depend on what is outside: the springs are
+    /// Each spring of [`super::Mdr`] at x represents the increase of the stiffness when the contact reaches a radius whose ρ is
+    /// x, and it touches at the depth of that radius. Because the layer has one creep function and a constant Poisson's ratio,
+    /// flat punches of all radii relax alike, and the state inside a contact does not depend on the outside: the springs are
     /// independent, as on a half-space.
     pub(crate) fn springs(&self) -> SpringProfile {
         let last = self.stiffness(self.table.spacing * RADII as f64);
@@ -188,7 +188,7 @@ impl LayerContact {
         }
     }
 
-    /// The a with f(a) = value of a rising function.
+    /// The a with f(a) = value for an increasing function.
     fn inverse(&self, value: f64, f: impl Fn(f64) -> f64) -> f64 {
         let (mut low, mut high) = (0.0, self.table.spacing * (RADII + 3) as f64);
         for _ in 0..60 {
@@ -213,7 +213,8 @@ impl LayerContact {
     }
 }
 
-/// δ/g(a), ρ/a and the load over that of the half-space at the depth δ, of a contact `x` times as wide as the layer is thick.
+/// δ/g(a), ρ/a and the load over that of the half-space at the depth δ, for a contact radius of `x` times the thickness of the
+/// layer.
 fn solve(stack: &Stack, profile: MdrProfile, x: f64) -> [f64; 3] {
     let count = 16 + (6.0 * x) as usize;
     let rule = gauss(count);
@@ -393,7 +394,7 @@ mod tests {
         let profile = MdrProfile::Cone { slope: 0.2 };
         let layer = LayerContact::new(profile, 1e3, 0.3, Interface::Bonded, 1e-3).unwrap();
         let half_space = 1e-3 * profile.reach(1e-3);
-        // The layer adds a share of a/d.
+        // The contribution of the layer is of order a/d.
         assert!((layer.load(1e-3) / half_space - 1.0).abs() < 1e-4);
         assert!((profile.reach(1e-3) - 1e-3 / (FRAC_PI_2 * 0.2)).abs() < 1e-15);
         assert!(LayerContact::new(profile, 1e-5, 0.3, Interface::Bonded, 1e-3).is_err());

@@ -12,8 +12,8 @@ use crate::error::{Result, non_negative};
 /// a^2 = 4 R W' / (pi E*),   p = p0 sqrt(1 - x^2/a^2),   p0 = 2 W' / (pi a)
 /// ```
 ///
-/// (Johnson 1985, eqs 4.43-4.45.) In plane strain a displacement is known up to a constant, and so is the approach: only
-/// differences of displacements are determined.
+/// (Johnson 1985, eqs 4.43-4.45.) In plane strain displacements and approach are only known up to a constant: only differences of
+/// displacements are determined.
 ///
 /// ```
 /// use asperity::reference::HertzLine;
@@ -39,7 +39,7 @@ impl HertzLine {
     /// From the load per length W' >= 0 \[N/m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where the radius or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the radius or the modulus is not positive or the load is negative.
     pub fn under_load(radius: f64, contact_modulus: f64, load_per_length: f64) -> Result<Self> {
         check(radius, contact_modulus)?;
         non_negative("load per length", load_per_length, "N/m")?;
@@ -54,7 +54,7 @@ impl HertzLine {
         if x.abs() < a { self.peak_pressure * ((a - x) * (a + x)).sqrt() / a } else { 0.0 }
     }
 
-    /// Displacement at the distance x from the middle less that in the middle, u(x) - u(0) \[m\]; not positive:
+    /// Displacement at the distance x from the middle minus that in the middle, u(x) - u(0) \[m\]; not positive:
     ///
     /// ```text
     /// |x| <= a:  -x^2 / (2 R),   |x| > a:  -(x^2 - |x| sqrt(x^2 - a^2) + a^2 acosh(|x|/a)) / (2 R)
@@ -158,7 +158,7 @@ mod tests {
         for (x, z) in [(0.0, 0.3), (0.2, 0.786), (-0.7, 0.4), (1.3, 0.5), (-2.0, 0.6), (1.0, 0.7), (0.5, 3.0)]
         {
             let (x, z) = (x * a, z * a);
-            // s = a sin(angle) takes the root at the ends away.
+            // s = a sin(angle) removes the square root at the ends.
             let sum = |f: &dyn Fn(f64) -> f64| {
                 integrate(-0.5 * PI, 0.5 * PI, |angle: f64| {
                     let d = x - a * angle.sin();

@@ -1,7 +1,7 @@
-//! Closed forms and one-dimensional solutions to check against.
+//! Closed forms and one-dimensional solutions for checks.
 //!
-//! Independent of the solver: nothing here uses a convolution, and only the matrix ([`Dense`]), [`gauss_seidel`], [`Persson`] and
-//! [`full_contact_friction`] a grid.
+//! They are independent of the solver: nothing here uses a convolution, and only the matrix ([`Dense`]), [`gauss_seidel`], [`Persson`]
+//! and [`full_contact_friction`] use a grid.
 //!
 //! | case | type | source |
 //! |---|---|---|

@@ -1,8 +1,7 @@
 //! Integrals and roots for the reference solutions.
 //!
-//! The integrands here are smooth inside their interval and may have square-root, cube-root or
-//! logarithmic ends. The double exponential rule (H. Takahasi and M. Mori, Publ. RIMS Kyoto Univ. 9
-//! (1974) 721) integrates those to rounding:
+//! The integrands here are smooth inside their interval and may have square-root, cube-root or logarithmic singularities at the
+//! ends. The double exponential rule (H. Takahasi and M. Mori, Publ. RIMS Kyoto Univ. 9 (1974) 721) integrates them to rounding:
 //!
 //! ```text
 //! int_a^b f dx = h sum_k f(x_k) x'(t_k),   x = (a+b)/2 + (b-a)/2 tanh(pi/2 sinh t),   t_k = k h
@@ -13,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// A point of an interval with its distances from both ends, which keep their digits close to them.
 #[derive(Clone, Copy)]
 pub(super) struct Point {
-    /// Where it lies.
+    /// Its position.
     pub(super) x: f64,
     /// Distance from the lower end.
     pub(super) above: f64,
@@ -21,7 +20,7 @@ pub(super) struct Point {
     pub(super) below: f64,
 }
 
-/// Integral of f from a to b, to rounding; 0 where b <= a.
+/// Integral of f from a to b, to rounding; 0 if b <= a.
 pub(super) fn integrate(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     integrate_to(1e-14, a, b, |p| f(p.x))
 }
@@ -56,8 +55,8 @@ pub(super) fn integrate_to(tolerance: f64, a: f64, b: f64, f: impl Fn(Point) -> 
     sum.0 * h
 }
 
-/// Points and weights for one integral from a to b of functions with at most logarithmic ends:
-/// full precision where they are analytic on a few interval lengths around.
+/// Points and weights for one integral from a to b of functions with at most logarithmic ends: full precision if they are
+/// analytic on a few interval lengths around.
 pub(super) fn fixed_rule(a: f64, b: f64) -> impl Iterator<Item = (Point, f64)> {
     // Beyond |t| = 3.6 the weights are below 1e-21.
     const STEPS: i32 = 16;
@@ -68,7 +67,7 @@ pub(super) fn fixed_rule(a: f64, b: f64) -> impl Iterator<Item = (Point, f64)> {
     })
 }
 
-/// Beyond this |t| the weights underflow against the widest integrable end that occurs here.
+/// Beyond this |t| the weights underflow for the strongest end singularity that occurs here.
 const REACH: f64 = 6.1;
 
 /// x(t) and x'(t).
@@ -81,11 +80,11 @@ fn node(a: f64, b: f64, t: f64) -> (Point, f64) {
     (Point { x, above, below }, PI * t.cosh() * above * (below / (b - a)))
 }
 
-/// The root of an increasing function between `low` and `high`, to rounding: inverse quadratic
-/// interpolation where it can be trusted, bisection elsewhere (T. R. Chandrupatla, Adv. Engng Softw. 28
-/// (1997) 145). An end is returned where f does not change sign.
+/// The root of an increasing function between `low` and `high`, to rounding: inverse quadratic interpolation if it is reliable,
+/// otherwise bisection (T. R. Chandrupatla, Adv. Engng Softw. 28 (1997) 145). If f does not change sign, the result is one of the
+/// ends.
 pub(super) fn root(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
-    // b is the newest point, a brackets the root with it, c is the one before.
+    // b is the newest point, a brackets the root together with b, and c is the previous point.
     let (mut a, mut fa, mut b, mut fb) = (low, f(low), high, f(high));
     if fa >= 0.0 {
         return low;

@@ -1,5 +1,4 @@
-//! Sliding over a viscoelastic half-space, where it has closed forms: a sphere that slides slowly or fast, and waves in
-//! full contact.
+//! Closed forms for sliding over a viscoelastic half-space: a sphere that slides slowly or fast, and waves in full contact.
 //!
 //! With the complex compliance C~ = C' - i C'' and the modulus E* = E' + i E'' = 1/C~ the friction force of a steady
 //! pressure p that moves in +x is
@@ -8,7 +7,7 @@
 //! F = int d2q/(2 pi)^2 q_x (2/|q|) C''(q_x v) |p^(q)|^2,   in full contact p^ = (|q|/2) E* h^
 //! ```
 //!
-//! (B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840, with all of the surface in contact).
+//! (B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840, with the whole surface in contact).
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,9 +18,9 @@ use crate::sliding::Direction;
 use crate::surface::Surface;
 use crate::surface::statistics::PowerSpectrum;
 
-/// The paraboloid r^2/(2R) that slides under a constant load, far from the speeds at which the material loses most.
+/// The paraboloid r^2/(2R) that slides under a constant load, far from the speeds of the largest loss.
 ///
-/// Hertz's pressure, of the relaxed body where it slides slowly and of the glassy one where it slides fast, has the transform
+/// The Hertzian pressure, that of the relaxed body in slow sliding and that of the glassy body in fast sliding, has the transform
 /// p^ = 2 pi p0 (sin qa - qa cos qa)/(a q^3), and C'' = q_x v sum C_j lambda_j or sum C_j/lambda_j / (q_x v):
 ///
 /// ```text
@@ -50,7 +49,7 @@ impl SlidingSphere {
     /// From the load >= 0 \[N\] and the contact creep compliance of a solid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius is not positive, the load negative, the creep function of a fluid or without an
+    /// [`Error::Invalid`] if the radius is not positive, the load negative, the creep function of a fluid or without an
     /// instantaneous compliance.
     pub fn under_load(radius: f64, creep: &Creep, load: f64) -> Result<Self> {
         creep.validate_solid()?;
@@ -81,8 +80,8 @@ impl SlidingSphere {
 /// p - mean = (q h / 2) [E'(q v) cos(q x) + E''(q v) sin(q x)],   friction stress = (q^2 h^2 / 4) E''(q v)
 /// ```
 ///
-/// with x in the frame of the wave: the pressure is ahead of the crests. The contact is full where the mean pressure is
-/// not below the [amplitude](Self::pressure_amplitude).
+/// with x in the frame of the wave: the pressure is ahead of the crests. The contact is full if the mean pressure is not below
+/// the [amplitude](Self::pressure_amplitude).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FullContactWave {
     /// Amplitude h \[m\].
@@ -96,7 +95,7 @@ impl FullContactWave {
     /// From the contact creep compliance of a solid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a length is not positive or the creep function is that of a fluid.
+    /// [`Error::Invalid`] if a length is not positive or the creep function is that of a fluid.
     pub fn new(amplitude: f64, wavelength: f64, creep: &Creep) -> Result<Self> {
         positive("amplitude of the wave", amplitude, "m")?;
         positive("wavelength", wavelength, "m")?;
@@ -119,22 +118,21 @@ impl FullContactWave {
         0.5 * self.wave_number() * self.amplitude * storage.hypot(loss)
     }
 
-    /// Pressure less its mean, at the distance x ahead of a crest, in steady sliding \[Pa\].
+    /// Pressure minus its mean, at the distance x ahead of a crest, in steady sliding \[Pa\].
     pub fn pressure(&self, x: f64, v: f64) -> f64 {
         let ((storage, loss), (sin, cos)) = (self.modulus(v), (self.wave_number() * x).sin_cos());
         let ahead = if v < 0.0 { -sin } else { sin };
         0.5 * self.wave_number() * self.amplitude * (storage * cos + loss * ahead)
     }
 
-    /// Friction force per area at the time t after a start at the speed v, the body having relaxed below the wave at rest
-    /// \[Pa\]:
+    /// Friction force per area at the time t after a start at the speed v, if the body has relaxed below the wave at rest \[Pa\]:
     ///
     /// ```text
     /// (q^2 h^2 / 4) sum_i E_i Re{i s_i},   s_i = -i w tau_i / (1 - i w tau_i) (1 - exp(-t/tau_i + i w t)),   w = q v
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the time is negative.
+    /// [`Error::Invalid`] if the time is negative.
     pub fn friction_stress_after_start(&self, v: f64, t: f64) -> Result<f64> {
         non_negative("time", t, "s")?;
         let w = self.wave_number() * v.abs();
@@ -166,11 +164,11 @@ impl FullContactWave {
 /// sum over the waves of (1/2) |q| q_e |A_q|^2 E''(q_e v),   q_e = q.e, e the direction
 /// ```
 ///
-/// exact on every periodic grid. Waves on the Nyquist frequency of an axis have no slope along it. The contact is full only
-/// where the mean pressure is large enough, which the caller knows.
+/// This is exact on every periodic grid. Waves at the Nyquist frequency of an axis have no slope along it. The contact is full
+/// only if the mean pressure is large enough, which the caller must ensure.
 ///
 /// # Errors
-/// [`Error::Invalid`] where a point of the surface is undefined, the velocity or its direction not finite, or the creep function
+/// [`Error::Invalid`] if a point of the surface is undefined, the velocity or its direction not finite, or the creep function
 /// that of a fluid.
 pub fn full_contact_friction(
     surface: &Surface,

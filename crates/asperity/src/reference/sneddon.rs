@@ -34,7 +34,7 @@ impl SneddonCone {
     /// From the load W >= 0 \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the slope or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`] if the slope or the modulus is not positive or the load is negative.
     pub fn under_load(slope: f64, contact_modulus: f64, load: f64) -> Result<Self> {
         positive("slope of the cone", slope, "")?;
         positive("contact modulus", contact_modulus, "Pa")?;
@@ -43,10 +43,10 @@ impl SneddonCone {
         Ok(SneddonCone { slope, contact_modulus, load, contact_radius: a, approach: FRAC_PI_2 * slope * a })
     }
 
-    /// From the approach \[m\]; a negative one is no contact.
+    /// From the approach \[m\]; a negative approach means no contact.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the slope or the modulus is not positive or the approach not finite.
+    /// [`Error::Invalid`] if the slope or the modulus is not positive or the approach not finite.
     pub fn under_approach(slope: f64, contact_modulus: f64, approach: f64) -> Result<Self> {
         positive("slope of the cone", slope, "")?;
         if !approach.is_finite() {
@@ -102,7 +102,7 @@ impl CircularPunch {
     /// From the load W >= 0 \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`] if the radius or the modulus is not positive or the load is negative.
     pub fn under_load(radius: f64, contact_modulus: f64, load: f64) -> Result<Self> {
         positive("radius of the flat punch", radius, "m")?;
         positive("contact modulus", contact_modulus, "Pa")?;
@@ -110,12 +110,11 @@ impl CircularPunch {
         Ok(CircularPunch { radius, load, approach: load / (2.0 * contact_modulus * radius) })
     }
 
-    /// Under the load that `history` has just after t \[s\], on a body of contact creep compliance C(t):
-    /// approach = (1 / 2a) int C(t - s) dW(s), for any history that keeps the contact full, W > 0 (E. H.
-    /// Lee and J. R. M. Radok, J. Appl. Mech. 27 (1960) 438).
+    /// Under the load of `history` just after t \[s\], on a body of contact creep compliance C(t): approach = (1 / 2a) int C(t -
+    /// s) dW(s), for any history that keeps the contact full, W > 0 (E. H. Lee and J. R. M. Radok, J. Appl. Mech. 27 (1960) 438).
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius is not positive, the history or the creep is invalid, or t is
+    /// [`Error::Invalid`] if the radius is not positive, the history or the creep is invalid, or t is
     /// negative.
     pub fn viscoelastic(radius: f64, creep: &Creep, history: &History, t: f64) -> Result<Self> {
         positive("radius of the flat punch", radius, "m")?;
@@ -145,7 +144,7 @@ mod tests {
     use super::*;
     use crate::material::CreepTerm;
 
-    // The formulas have a handful of operations each.
+    // The formulas have a few operations each.
     const ROUNDING: f64 = 2e-15;
 
     fn close(a: f64, b: f64) -> bool {

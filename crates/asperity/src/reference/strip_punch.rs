@@ -1,5 +1,5 @@
-//! Flat strips, one to each period, on an elastic half-space in plane strain: K. L. Johnson, Contact Mechanics (Cambridge,
-//! 1985), sections 2.8 and 13.2 (the pressure of a single flat strip, made periodic as Westergaard's).
+//! Periodic flat strips on an elastic half-space in plane strain: K. L. Johnson, Contact Mechanics (Cambridge, 1985), sections
+//! 2.8 and 13.2 (the pressure of a single flat strip, made periodic like that of Westergaard).
 
 use std::f64::consts::PI;
 
@@ -39,7 +39,7 @@ impl StripPunch {
     /// From the mean pressure >= 0 \[Pa\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a length or the modulus is not positive, a strip is as wide as the period or the pressure is
+    /// [`Error::Invalid`] if a length or the modulus is not positive, a strip is as wide as the period or the pressure is
     /// negative.
     pub fn under_pressure(
         half_width: f64,

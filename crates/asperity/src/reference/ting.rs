@@ -1,8 +1,8 @@
-//! A rigid sphere on a linear viscoelastic half-space, contact growing and then shrinking:
-//! T. C. T. Ting, J. Appl. Mech. 33 (1966) 845; E. H. Lee and J. R. M. Radok, J. Appl. Mech. 27 (1960) 438.
+//! A rigid sphere on a linear viscoelastic half-space, with a contact that grows and then shrinks: T. C. T. Ting, J. Appl. Mech.
+//! 33 (1966) 845; E. H. Lee and J. R. M. Radok, J. Appl. Mech. 27 (1960) 438.
 //!
-//! With C(t) the contact creep compliance, E*(t) the relaxation function that belongs to it and
-//! L(t) = int C(t - s) dW(s) the load seen through the creep function:
+//! With C(t) the contact creep compliance, E*(t) the corresponding relaxation function, and L(t) = int C(t - s) dW(s) the load
+//! convolved with the creep function:
 //!
 //! ```text
 //! growing (up to t_m, where L is largest):
@@ -14,8 +14,8 @@
 //!   p(r, t) = (2 / (pi R)) int_0^t1 E*(t - s) d[sqrt(a(s)^2 - r^2)]
 //! ```
 //!
-//! The integrals are evaluated by parts, so that only smooth functions are integrated, to about twelve
-//! digits. Histories that load again while the contact has not opened need [`Mdr`](super::Mdr).
+//! The integrals are evaluated by parts, so that only smooth functions are integrated, to about twelve digits. Histories that
+//! reload before the contact has opened need [`Mdr`](super::Mdr).
 
 use std::f64::consts::PI;
 
@@ -25,8 +25,8 @@ use crate::error::{Error, Result, non_negative, positive};
 use crate::load::History;
 use crate::material::{Creep, Relaxation};
 
-/// A rigid sphere of radius R on a viscoelastic half-space under a load history with one growth and
-/// one shrinkage of the contact.
+/// A rigid sphere of radius R on a viscoelastic half-space under a load history in which the contact grows once and then shrinks
+/// once.
 ///
 /// ```
 /// use asperity::History;
@@ -54,7 +54,7 @@ pub struct Ting {
     largest: f64,
 }
 
-/// The contact at one instant (just after it, where the history jumps).
+/// The contact at one time (just after it if the history has a jump there).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TingState {
     /// Load W \[N\].
@@ -65,18 +65,18 @@ pub struct TingState {
     pub approach: f64,
     /// Pressure in the middle \[Pa\].
     pub peak_pressure: f64,
-    /// t1, when the growing contact had this radius \[s\]; t itself while it grows.
+    /// Time t1 at which the growing contact had this radius \[s\]; t itself while it grows.
     pub reached: f64,
 }
 
-/// Instants at which a history is checked for one growth and one shrinkage.
+/// Number of times at which a history is checked for one growth and one shrinkage.
 const CHECKS: u32 = 200;
 
 impl Ting {
     /// A contact from t = 0 to `end` \[s\] under the load `history` \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius, the creep function or the history is invalid, the creep
+    /// [`Error::Invalid`] if the radius, the creep function or the history is invalid, the creep
     /// function has no instantaneous compliance, the load is negative at times, or the contact grows
     /// again after it shrank.
     pub fn new(radius: f64, creep: &Creep, history: &History, end: f64) -> Result<Self> {
@@ -97,7 +97,7 @@ impl Ting {
         Ok(contact)
     }
 
-    /// t_m, when the contact is largest \[s\].
+    /// Time t_m at which the contact is largest \[s\].
     pub fn turn(&self) -> f64 {
         self.turn
     }
@@ -105,7 +105,7 @@ impl Ting {
     /// Load, contact radius, approach and peak pressure at t \[s\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where t is outside \[0, end\].
+    /// [`Error::Invalid`] if t is outside \[0, end\].
     pub fn at(&self, t: f64) -> Result<TingState> {
         self.check_time(t)?;
         let (reached, seen) = self.reached(t);
@@ -118,7 +118,7 @@ impl Ting {
     /// Pressure at the distance r from the axis and the time t \[Pa\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where t is outside \[0, end\] or r is negative.
+    /// [`Error::Invalid`] if t is outside \[0, end\] or r is negative.
     pub fn pressure(&self, r: f64, t: f64) -> Result<f64> {
         self.check_time(t)?;
         non_negative("distance from the axis", r, "m")?;
@@ -130,7 +130,7 @@ impl Ting {
     /// contact grows \[m\]: int C(t - s) d(K p)(s) is the elastic displacement of the contact radius a(t).
     ///
     /// # Errors
-    /// [`Error::Invalid`] where t is outside \[0, turn\] or r is negative.
+    /// [`Error::Invalid`] if t is outside \[0, turn\] or r is negative.
     pub fn growing_displacement(&self, r: f64, t: f64) -> Result<f64> {
         self.check_time(t)?;
         non_negative("distance from the axis", r, "m")?;
@@ -138,7 +138,7 @@ impl Ting {
         if reached != t {
             return Err(Error::invalid("time", format!("{t} s"), format!("at most {} s", self.turn)));
         }
-        // The displacement depends on a and R alone; any modulus gives the same.
+        // The displacement depends only on a and R; any modulus gives the same result.
         let depth = self.depth_of(seen);
         Ok(super::HertzSphere::under_approach(self.radius, 1.0, depth)?.displacement(r))
     }
@@ -163,10 +163,10 @@ impl Ting {
         self.radius_of(seen).powi(2) / self.radius
     }
 
-    /// t1 and L(t1), the part of L(t1) that carries load at t where L jumps at t1.
+    /// t1 and L(t1), or the part of L(t1) that carries load at t if L jumps at t1.
     fn reached(&self, t: f64) -> (f64, f64) {
         let seen = self.seen(t);
-        // Where L is flat at its largest (a held load on an elastic body) it is not yet shrinking.
+        // If L is constant at its largest value (a held load on an elastic body), the contact is not yet shrinking.
         if t < self.turn || seen >= self.largest * (1.0 - 1e-14) {
             return (t, seen);
         }
@@ -183,7 +183,7 @@ impl Ting {
         (t1, seen.clamp(0.0, self.largest))
     }
 
-    /// int_from^to (d/ds E*(t - s)) f(s) ds, between the breaks of the history.
+    /// int_from^to (d/ds E*(t - s)) f(s) ds, between the kinks and jumps of the history.
     fn faded(&self, t: f64, from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
         let rate = |s: f64| {
             let terms = self.relaxation.terms.iter();
@@ -201,7 +201,7 @@ impl Ting {
     }
 
     fn shrinking_approach(&self, t: f64) -> f64 {
-        // Load that the growth from t1 to t_m would still carry, had it not been taken away.
+        // Load that the growth from t1 to t_m would still carry if it had not been removed.
         let lost = |t: f64| {
             let (t1, seen) = self.reached(t);
             let (outer, inner) = (self.depth_of(self.largest), self.depth_of(seen));
@@ -220,14 +220,14 @@ impl Ting {
             return 0.0;
         }
         let q = |a: f64| ((a - r) * (a + r)).max(0.0).sqrt();
-        // When the contact reached r: there q starts as a square root.
+        // The time at which the contact reached r: there q starts as a square root.
         let start = root(0.0, reached, |s| self.radius_of(self.seen(s)) - r);
         let ends = self.relaxation.value(t - reached) * q(contact_radius);
         let fading = self.faded(t, start, reached, |s| q(self.radius_of(self.seen(s))));
         2.0 / (PI * self.radius) * (ends - fading)
     }
 
-    /// The largest L: at a break (before or after a jump) or, smooth, between two.
+    /// The largest L: at a kink or jump (before or after it), or at a smooth maximum between two.
     fn find_turn(&mut self) -> Result<()> {
         let mut times: Vec<f64> = (0..=CHECKS).map(|n| self.end * f64::from(n) / f64::from(CHECKS)).collect();
         times.extend(self.history.breaks(self.end));
@@ -241,7 +241,7 @@ impl Ting {
             .zip(&values)
             .flat_map(|(t, [before, after])| [(*t, *before), (*t, *after)])
             .collect();
-        // The last of equals: a flat maximum is still "growing".
+        // The last of equal values: a flat maximum still counts as growing.
         let top = (0..flat.len())
             .rev()
             .fold(flat.len() - 1, |best, n| if flat[n].1 > flat[best].1 { n } else { best });
@@ -424,12 +424,12 @@ mod tests {
 
     #[test]
     fn a_load_that_drops_at_once_is_carried_by_the_instantaneous_modulus() {
-        // At a jump from W to W - dW: L falls by C(0) dW from int E* dL = W, so E*(t - s) weighs the rim.
+        // At a jump from W to W - dW: L falls by C(0) dW from int E* dL = W, so E*(t - s) weights the rim.
         let points = vec![(0.0, 1.0), (1.0, 1.0), (1.0, 0.4), (1.2, 0.0)];
         let contact = Ting::new(1.0, &zener(), &History::Table { points }, 1.2).unwrap();
         let (before, after) = (contact.at(1.0 - 1e-12).unwrap(), contact.at(1.0).unwrap());
         assert!((before.load, after.load) == (1.0, 0.4) && contact.turn() == 1.0);
-        // The first jump alone carries E*(1) L1 = 0.4, less than all of it.
+        // The first jump alone carries E*(1) L1 = 0.4, which is less than the load.
         let relaxation = zener().to_relaxation().unwrap();
         assert!(near(after.contact_radius, (0.75 * 0.4 / relaxation.value(1.0)).cbrt(), 1e-12));
         assert!(after.approach < before.approach && after.reached == 0.0);

@@ -4,8 +4,8 @@
 //! Contact Mechanics (Cambridge, 1985), section 13.2. Two crossed waves, gap D (1 - cos cos): K. L.
 //! Johnson, J. A. Greenwood and J. G. Higginson, Int. J. Mech. Sci. 27 (1985) 383.
 //!
-//! The approach of a periodic contact counts the displacement from its mean (the mean displacement of
-//! a periodic half-space is not determined): approach = D - mean gap.
+//! The approach of a periodic contact uses the displacement relative to its mean (the mean displacement of a periodic half-space
+//! is not determined): approach = D - mean gap.
 
 use std::f64::consts::{PI, SQRT_2, TAU};
 
@@ -13,15 +13,15 @@ use super::quadrature::integrate;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::material::{Creep, Relaxation};
 
-/// The wave D (1 - cos(2 pi x / l)) on an elastic half-space. With m = mean pressure / p*,
-/// p* = pi E* D / l, m < 1 (beyond, the contact is full):
+/// The wave D (1 - cos(2 pi x / l)) on an elastic half-space. With m = mean pressure / p*, p* = pi E* D / l, m < 1 (otherwise the
+/// contact is full):
 ///
 /// ```text
 /// sin^2(pi a / l) = m,   p = 2 p* cos(psi) sqrt(m - sin^2 psi),   psi = pi x / l,
 /// mean gap = D (1 - m + m ln m)
 /// ```
 ///
-/// with a half the width of each strip of contact (Johnson 1985, eqs 13.7-13.9).
+/// where a is half the width of each contact strip (Johnson 1985, eqs 13.7-13.9).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Westergaard {
     /// Amplitude D \[m\].
@@ -38,7 +38,7 @@ impl Westergaard {
     /// From the mean pressure >= 0 \[Pa\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a length or the modulus is not positive or the pressure is negative.
+    /// [`Error::Invalid`] if a length or the modulus is not positive or the pressure is negative.
     pub fn under_pressure(
         amplitude: f64,
         wavelength: f64,
@@ -63,7 +63,7 @@ impl Westergaard {
         self.wavelength / PI * self.closure().sqrt().asin()
     }
 
-    /// Share of the area in contact, 2 a / l.
+    /// Fraction of the area in contact, 2 a / l.
     pub fn contact_fraction(&self) -> f64 {
         2.0 / PI * self.closure().sqrt().asin()
     }
@@ -98,14 +98,14 @@ fn mean_gap(amplitude: f64, m: f64) -> f64 {
 
 /// The same wave on a viscoelastic half-space under a mean pressure that is applied at t = 0 and held.
 ///
-/// The contact grows, so that the elastic solution holds with C(t) for 1/E* (correspondence for growing
-/// contact: E. H. Lee and J. R. M. Radok, J. Appl. Mech. 27 (1960) 438):
+/// The contact grows, so the elastic solution holds with C(t) in place of 1/E* (correspondence for growing contact: E. H. Lee and
+/// J. R. M. Radok, J. Appl. Mech. 27 (1960) 438):
 ///
 /// ```text
 /// m(t) = mean pressure C(t) l / (pi D),   p(x, t) = (2 pi D / l) int E*(t - s) d[cos psi sqrt(m(s) - sin^2 psi)]
 /// ```
 ///
-/// as long as m < 1, the contact not full.
+/// as long as m < 1, that is the contact is not full.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WestergaardStep {
     amplitude: f64,
@@ -119,7 +119,7 @@ impl WestergaardStep {
     /// From the mean pressure >= 0 \[Pa\] and the contact creep compliance C(t).
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a length is not positive, the pressure is negative, the creep function is
+    /// [`Error::Invalid`] if a length is not positive, the pressure is negative, the creep function is
     /// invalid or has no instantaneous compliance.
     pub fn under_pressure(
         amplitude: f64,
@@ -141,11 +141,11 @@ impl WestergaardStep {
         self.mean_pressure * self.creep.value(t) * self.wavelength / (PI * self.amplitude)
     }
 
-    /// The elastic contact with C(t) for 1/E*: its width, contact fraction, gap and approach are the
-    /// viscoelastic ones at t (its pressure is not).
+    /// The elastic contact with C(t) in place of 1/E*: its width, contact fraction, gap and approach are those of the
+    /// viscoelastic contact at t (its pressure is not).
     ///
     /// # Errors
-    /// [`Error::Invalid`] where t is negative or the contact is full by then.
+    /// [`Error::Invalid`] if t is negative or the contact is full by then.
     pub fn shape(&self, t: f64) -> Result<Westergaard> {
         non_negative("time", t, "s")?;
         if self.closure(t) > 1.0 {
@@ -158,12 +158,12 @@ impl WestergaardStep {
     /// Pressure at the distance x from a crest and the time t \[Pa\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where t is negative or the contact is full by then.
+    /// [`Error::Invalid`] if t is negative or the contact is full by then.
     pub fn pressure(&self, x: f64, t: f64) -> Result<f64> {
         self.shape(t)?;
         let psi = PI * x / self.wavelength;
         let q = |s: f64| strip(self.closure(s), psi);
-        // When x comes into contact: there the integrand starts as a square root.
+        // The time at which x comes into contact: there the integrand starts as a square root.
         let touched = super::quadrature::root(0.0, t, |s| self.closure(s) - psi.sin().powi(2));
         let fading: f64 = self
             .relaxation
@@ -179,8 +179,8 @@ impl WestergaardStep {
     }
 }
 
-/// Two crossed waves, gap D (1 - cos(2 pi x / l) cos(2 pi y / l)), on an elastic half-space: full
-/// contact exactly, and the two limits of partial contact. Each l x l holds two crests.
+/// Two crossed waves, gap D (1 - cos(2 pi x / l) cos(2 pi y / l)), on an elastic half-space: the exact solution for full contact,
+/// and the two limits of partial contact. Each square l x l has two crests.
 ///
 /// ```text
 /// p* = sqrt(2) pi E* D / l
@@ -204,7 +204,7 @@ impl JohnsonWave {
     /// A double wave.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a length or the modulus is not positive.
+    /// [`Error::Invalid`] if a length or the modulus is not positive.
     pub fn new(amplitude: f64, wavelength: f64, contact_modulus: f64) -> Result<Self> {
         positive("amplitude of the wave", amplitude, "m")?;
         positive("wavelength", wavelength, "m")?;
@@ -224,7 +224,7 @@ impl JohnsonWave {
         (mean_pressure >= p_star).then_some(mean_pressure + p_star * wave)
     }
 
-    /// Share of the area in contact in the limit of small mean pressure \[Pa\].
+    /// Fraction of the area in contact in the limit of small mean pressure \[Pa\].
     pub fn light_contact_fraction(&self, mean_pressure: f64) -> f64 {
         let l2 = self.wavelength * self.wavelength;
         let (radius, load) = (l2 / (TAU * TAU * self.amplitude), 0.5 * mean_pressure * l2);
@@ -232,7 +232,7 @@ impl JohnsonWave {
         2.0 * PI * a * a / l2
     }
 
-    /// Share of the area in contact in the limit of nearly full contact.
+    /// Fraction of the area in contact in the limit of nearly full contact.
     pub fn nearly_full_contact_fraction(&self, mean_pressure: f64) -> f64 {
         1.0 - 1.5 / PI * (1.0 - mean_pressure / self.full_contact_pressure())
     }
@@ -308,7 +308,7 @@ mod tests {
             let got = step.pressure(0.0, t).unwrap();
             assert!((got / p0 - 1.0).abs() < 1e-12, "{t}: {got} {p0}");
         }
-        // The mean pressure stays what it was; p has a kink where the first contact ended.
+        // The mean pressure does not change; p has a kink at the edge of the first contact.
         let [first, last] = [0.0, 1.0].map(|t| step.shape(t).unwrap().half_width());
         let strip = |from, to| integrate_to(1e-6, from, to, |p| step.pressure(p.x, 1.0).unwrap_or(f64::NAN));
         let mean = 2.0 * (strip(0.0, first) + strip(first, last));

@@ -3,6 +3,7 @@
 use asperity_sweep::sums;
 
 use super::Slopes;
+use crate::contact::ContactState;
 use crate::error::{Error, Result, require, rounded};
 use crate::grid::{Boundary, Grid};
 use crate::quantities::Quantity;
@@ -82,52 +83,49 @@ pub struct Friction {
     pub total: f64,
 }
 
-impl Friction {
-    /// The quantity of a row that is one of these.
-    pub(crate) fn quantity(&self, quantity: Quantity) -> Option<f64> {
-        Some(match quantity {
-            Quantity::Velocity => self.velocity,
-            Quantity::SlidingDistance => self.distance,
-            Quantity::FrictionForce => self.force,
-            Quantity::SideForce => self.side,
-            Quantity::FrictionCoefficient => self.coefficient,
-            Quantity::FrictionCoefficientTotal => self.total,
-            Quantity::FrictionUncertainty => self.uncertainty,
-            Quantity::RollingMoment => self.moment,
-            Quantity::DissipatedPower => self.power,
-            _ => return None,
-        })
-    }
+/// The forces by their quantities.
+macro_rules! forces {
+    ($($quantity:ident: $field:ident),* $(,)?) => {
+        impl Friction {
+            /// The quantity of a row that is one of these.
+            pub(crate) fn quantity(&self, quantity: Quantity) -> Option<f64> {
+                match quantity {
+                    $(Quantity::$quantity => Some(self.$field),)*
+                    _ => None,
+                }
+            }
 
-    /// From the quantities of a row; `None` where nothing moves.
-    pub(crate) fn from_quantities(of: impl Fn(Quantity) -> Option<f64>) -> Option<Friction> {
-        let known = |quantity| of(quantity).unwrap_or(f64::NAN);
-        Some(Friction {
-            velocity: of(Quantity::Velocity)?,
-            distance: known(Quantity::SlidingDistance),
-            force: known(Quantity::FrictionForce),
-            side: known(Quantity::SideForce),
-            coefficient: known(Quantity::FrictionCoefficient),
-            total: known(Quantity::FrictionCoefficientTotal),
-            uncertainty: known(Quantity::FrictionUncertainty),
-            moment: known(Quantity::RollingMoment),
-            power: known(Quantity::DissipatedPower),
-        })
-    }
+            /// From the quantities of a row; `None` where nothing moves.
+            pub(crate) fn from_quantities(of: impl Fn(Quantity) -> Option<f64>) -> Option<Friction> {
+                let known = |quantity| of(quantity).unwrap_or(f64::NAN);
+                of(Quantity::Velocity).map(|_| Friction { $($field: known(Quantity::$quantity)),* })
+            }
+        }
+    };
+}
+
+forces! {
+    Velocity: velocity,
+    SlidingDistance: distance,
+    FrictionForce: force,
+    SideForce: side,
+    FrictionCoefficient: coefficient,
+    FrictionCoefficientTotal: total,
+    FrictionUncertainty: uncertainty,
+    RollingMoment: moment,
+    DissipatedPower: power,
 }
 
 /// What the forces of a contact in motion are found from.
 pub(crate) struct ContactForces<'a> {
-    pub(crate) grid: &'a Grid,
-    pub(crate) boundary: Boundary,
+    pub(crate) simulation: &'a Simulation,
     pub(crate) direction: Direction,
     /// Of the undeformed gap of what moves.
     pub(crate) slopes: &'a Slopes,
-    pub(crate) pressure: &'a [f64],
+    pub(crate) state: &'a ContactState,
     /// Undeformed gap and displacement c U; a constant does not count.
     pub(crate) gap: &'a [f64],
     pub(crate) compliance: f64,
-    pub(crate) unit_displacement: &'a [f64],
     /// Whether the bodies remember anything. Those that do not lose nothing: what the sums are then is the error of the grid.
     pub(crate) remembers: bool,
     pub(crate) velocity: f64,
@@ -185,15 +183,15 @@ impl ContactForces<'_> {
     ///
     /// g is 0 in contact, so that Σ p dg/ds comes from the edges alone: it is the difference of the two estimates of the force.
     fn sums(&self) -> [f64; 6] {
-        let (grid, [cx, cy]) = (self.grid, self.direction.unit());
+        let (Simulation { grid, boundary, .. }, [cx, cy]) = (self.simulation, self.direction.unit());
         let ny = grid.cells()[1];
         // On a periodic domain from the nearest image of the centre.
         let from = |x: f64, axis: usize| {
             let (x, length) = (x - self.slopes.centre[axis], grid.size()[axis]);
-            if self.boundary == Boundary::Periodic { x - length * (x / length).round() } else { x }
+            if *boundary == Boundary::Periodic { x - length * (x / length).round() } else { x }
         };
         let of_cell = |cell: usize| {
-            let p = self.pressure[cell];
+            let p = self.state.pressure[cell];
             if p <= 0.0 {
                 return [0.0; 6];
             }
@@ -208,8 +206,9 @@ impl ContactForces<'_> {
 
     /// dg/ds by central differences; 0 beside cells that cannot touch.
     fn slope_of_gap(&self, i: usize, j: usize) -> f64 {
-        let ([nx, ny], [dx, dy], [cx, cy]) = (self.grid.cells(), self.grid.spacing(), self.direction.unit());
-        let step = |n: usize, count: usize, forward: bool| match (self.boundary, forward) {
+        let Simulation { grid, boundary, .. } = self.simulation;
+        let ([nx, ny], [dx, dy], [cx, cy]) = (grid.cells(), grid.spacing(), self.direction.unit());
+        let step = |n: usize, count: usize, forward: bool| match (boundary, forward) {
             (Boundary::Periodic, true) => (n + 1) % count,
             (Boundary::Periodic, false) => (n + count - 1) % count,
             (Boundary::Free, true) => (n + 1).min(count - 1),
@@ -217,7 +216,7 @@ impl ContactForces<'_> {
         };
         let gap = |i: usize, j: usize| {
             let cell = i * ny + j;
-            self.gap[cell] + self.compliance * self.unit_displacement[cell]
+            self.gap[cell] + self.compliance * self.state.unit_displacement[cell]
         };
         let along_x = (gap(step(i, nx, true), j) - gap(step(i, nx, false), j)) / (2.0 * dx);
         let along_y = match ny {

@@ -42,7 +42,7 @@ impl MovingGap {
     pub fn new(grid: &Grid, boundary: Boundary, parts: &[(Part, bool)]) -> Result<Self> {
         let all: Vec<Part> = parts.iter().map(|(part, _)| part.clone()).collect();
         let gap = undeformed_gap(grid, &all)?;
-        let centre = Slopes::of(grid, boundary, &all, &gap)?.centre;
+        let centre = centre_of(grid, &all, &gap)?;
         let mut still = Array2::zeros(grid.shape());
         let mut shapes = vec![];
         let mut heights: Option<Array2<f64>> = None;
@@ -204,6 +204,30 @@ impl MovingGap {
         }
         field
     }
+}
+
+/// The middle of the first shape that has one, else the cell of the smallest gap \[m\].
+fn centre_of(grid: &Grid, parts: &[Part], gap: &Array2<f64>) -> Result<[f64; 2]> {
+    let has_edge = |part: &Part| match part {
+        Part::Shape { shape, .. } => matches!(shape, Shape::FlatPunch(_)),
+        Part::Heights { heights, .. } => heights.iter().any(|z| z.is_infinite()),
+        Part::SelfAffine(_) | Part::Synthesis(_) => false,
+    };
+    let has_slopes = !parts.iter().any(has_edge);
+    let expected = "a shape with slopes: the force on the edge of a punch cannot be computed from its slope";
+    require(has_slopes, "surface of a contact in motion", "a flat punch", expected)?;
+    let ([x0, y0], none) = (grid.centre(), ((0, 0), f64::INFINITY));
+    let middle = parts.iter().find_map(|part| match part {
+        Part::Shape { shape: Shape::Wave { .. }, .. } => None,
+        Part::Shape { center, .. } => Some([x0 + center[0], y0 + center[1]]),
+        _ => None,
+    });
+    let lower = |low: ((usize, usize), f64), (cell, h): ((usize, usize), &f64)| match *h < low.1 {
+        true => (cell, *h),
+        false => low,
+    };
+    let ((i, j), _) = gap.indexed_iter().fold(none, lower);
+    Ok(middle.unwrap_or([grid.x(i), grid.y(j)]))
 }
 
 /// The cubic through four neighbours at t between the second and the third; a straight line beside an end.

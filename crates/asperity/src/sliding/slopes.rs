@@ -4,9 +4,10 @@ use ndarray::Array2;
 use rustfft::num_complex::Complex64;
 
 use super::torus::Torus;
-use crate::error::{Error, Result};
+use super::{Direction, MovingGap};
+use crate::error::Result;
 use crate::grid::{Boundary, Grid};
-use crate::surface::{Part, Shape};
+use crate::surface::Part;
 
 /// dh/dx and dh/dy of the undeformed gap at the cell centres, and the place that moments are taken about.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,57 +25,11 @@ impl Slopes {
     /// domain, else by central differences.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a flat punch, whose edge has no slope, and for heights of another shape than the grid's.
-    pub fn of(grid: &Grid, boundary: Boundary, parts: &[Part], gap: &Array2<f64>) -> Result<Slopes> {
-        let [x0, y0] = grid.centre();
-        let mut slopes =
-            Slopes { x: Array2::zeros(grid.shape()), y: Array2::zeros(grid.shape()), centre: [x0, y0] };
-        let mut middle = None;
-        for part in parts {
-            match part {
-                Part::Shape { shape: Shape::FlatPunch(_), .. } => return Err(edge()),
-                Part::Heights { heights, .. } if heights.iter().any(|z| z.is_infinite()) => {
-                    return Err(edge());
-                }
-                Part::Shape { shape, center } => {
-                    let at = [x0 + center[0], y0 + center[1]];
-                    let slope = |(i, j): (usize, usize)| {
-                        shape.slope_over(grid.x(i) - at[0], grid.y(j) - at[1], grid.spacing())
-                    };
-                    slopes.x.indexed_iter_mut().for_each(|(cell, s)| *s += slope(cell)[0]);
-                    slopes.y.indexed_iter_mut().for_each(|(cell, s)| *s += slope(cell)[1]);
-                    if !matches!(shape, Shape::Wave { .. }) {
-                        middle = middle.or(Some(at));
-                    }
-                }
-                Part::SelfAffine(surface) => slopes.subtract(grid, boundary, &surface.heights(grid)?),
-                Part::Synthesis(surface) => slopes.subtract(grid, boundary, &surface.heights(grid)?),
-                Part::Heights { heights, .. } => slopes.subtract(grid, boundary, heights),
-            }
-        }
-        slopes.centre = middle.unwrap_or_else(|| {
-            let lowest = gap
-                .indexed_iter()
-                .fold(((0, 0), f64::INFINITY), |low, (cell, h)| if *h < low.1 { (cell, *h) } else { low });
-            [grid.x(lowest.0.0), grid.y(lowest.0.1)]
-        });
-        Ok(slopes)
+    /// [`Error::Invalid`](crate::Error::Invalid) for a flat punch, whose edge has no slope, and for heights of another shape than the grid's.
+    pub fn of(grid: &Grid, boundary: Boundary, parts: &[Part]) -> Result<Slopes> {
+        let moving: Vec<(Part, bool)> = parts.iter().map(|part| (part.clone(), true)).collect();
+        Ok(MovingGap::new(grid, boundary, &moving)?.at(0.0, Direction::X)?.1)
     }
-
-    /// Takes the slopes of heights off.
-    fn subtract(&mut self, grid: &Grid, boundary: Boundary, heights: &Array2<f64>) {
-        let [x, y] = derivatives(grid, boundary, heights);
-        self.x -= &x;
-        self.y -= &y;
-    }
-}
-
-fn edge() -> Error {
-    Error::invalid(
-        "surface of a contact in motion",
-        "a flat punch",
-        "a shape with slopes: the force on the edge of a punch cannot be computed from its slope",
-    )
 }
 
 /// dz/dx and dz/dy of a field.
@@ -121,7 +76,7 @@ fn central(grid: &Grid, z: &Array2<f64>, axis: usize) -> Array2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::undeformed_gap;
+    use crate::surface::Shape;
 
     #[test]
     fn the_slopes_of_shapes_are_the_difference_quotients_of_their_gaps() {
@@ -145,8 +100,7 @@ mod tests {
             }
         }
         let parts = [Part::Shape { shape: Shape::Sphere { radius: 3.0 }, center: [0.5, -0.25] }];
-        let gap = undeformed_gap(&grid, &parts).unwrap();
-        let slopes = Slopes::of(&grid, Boundary::Free, &parts, &gap).unwrap();
+        let slopes = Slopes::of(&grid, Boundary::Free, &parts).unwrap();
         assert_eq!(slopes.centre, [2.5, 1.25]);
         assert!((slopes.x[(0, 0)] - (0.05 - 2.5) / 3.0).abs() < 1e-15);
     }

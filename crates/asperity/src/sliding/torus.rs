@@ -117,7 +117,7 @@ impl Torus {
     }
 
     /// u = F⁻¹ of the numbers `wave(ky mx + kx)`.
-    fn back(&mut self, wave: impl Fn(usize) -> Complex64 + Sync, u: &mut [f64]) {
+    pub(crate) fn back(&mut self, wave: impl Fn(usize) -> Complex64 + Sync, u: &mut [f64]) {
         let (mx, scale) = (self.lengths()[0], self.scale());
         self.plane.each_column(&mut self.columns, |transforms, ky, column| {
             transforms.waves.iter_mut().zip(ky * mx..).for_each(|(x, n)| *x = wave(n) * scale);

@@ -9,36 +9,45 @@ use crate::operator::Operator;
 use crate::simulation::Simulation;
 use crate::traction::TractionSolver;
 
-pub(super) struct StepContact {
-    pub(super) operator: Box<dyn Operator>,
+pub(crate) struct StepContact {
+    pub(crate) operator: Box<dyn Operator>,
     /// Whether the operator is that of one step alone.
     changes: bool,
     solver: Solver,
     options: SolverOptions,
-    hardness: f64,
-    /// Cut-off of each cell, where it is not the same everywhere.
-    of_cells: Option<Vec<f64>>,
+    hardness: CutOff,
     traction: Option<TractionSolver>,
-    pub(super) interrupt: Option<Arc<AtomicBool>>,
+    pub(crate) interrupt: Option<Arc<AtomicBool>>,
+}
+
+/// The cut-off of the pressure: of all cells, or of each, where it is not the same everywhere.
+struct CutOff {
+    all: f64,
+    of_cells: Option<Vec<f64>>,
+}
+
+impl CutOff {
+    fn lent(&self) -> Hardness<'_> {
+        self.of_cells.as_deref().map_or(Hardness::Uniform(self.all), Hardness::Cells)
+    }
 }
 
 impl StepContact {
-    pub(super) fn new(simulation: &Simulation, operator: Box<dyn Operator>) -> Self {
+    pub(crate) fn new(simulation: &Simulation, operator: Box<dyn Operator>) -> Self {
         let law = simulation.traction.as_ref();
         StepContact {
             solver: Solver::new(simulation.solver.method, &*operator),
             operator,
             changes: false,
             options: simulation.solver,
-            hardness: simulation.hardness,
-            of_cells: simulation.hardness_of_cells(),
+            hardness: CutOff { all: simulation.hardness, of_cells: simulation.hardness_of_cells() },
             traction: law.map(|law| TractionSolver::new(law.start(&simulation.grid), simulation.grid.len())),
             interrupt: None,
         }
     }
 
-    pub(super) fn hardness(&self) -> Hardness<'_> {
-        self.of_cells.as_deref().map_or(Hardness::Uniform(self.hardness), Hardness::Cells)
+    pub(crate) fn hardness(&self) -> Hardness<'_> {
+        self.hardness.lent()
     }
 
     pub(super) fn tolerance(&self) -> f64 {
@@ -67,7 +76,7 @@ impl StepContact {
         1
     }
 
-    pub(super) fn solve(
+    pub(crate) fn solve(
         &mut self,
         start: Start,
         gap: &[f64],
@@ -75,8 +84,7 @@ impl StepContact {
         prescribed: Prescribed,
         state: &mut ContactState,
     ) -> Result<Outcome> {
-        let hardness = self.of_cells.as_deref().map_or(Hardness::Uniform(self.hardness), Hardness::Cells);
-        let problem = Problem { gap, compliance, hardness, prescribed };
+        let problem = Problem { gap, compliance, hardness: self.hardness.lent(), prescribed };
         let (operator, options, interrupt) = (&mut *self.operator, &self.options, self.interrupt.as_deref());
         match &mut self.traction {
             None => self.solver.solve_from(start, operator, &problem, options, state, interrupt),
@@ -91,7 +99,6 @@ impl StepContact {
 
     /// What processes may use after a row.
     pub(super) fn parts(&mut self) -> (&mut dyn Operator, Hardness<'_>, Option<&AtomicBool>) {
-        let hardness = self.of_cells.as_deref().map_or(Hardness::Uniform(self.hardness), Hardness::Cells);
-        (&mut *self.operator, hardness, self.interrupt.as_deref())
+        (&mut *self.operator, self.hardness.lent(), self.interrupt.as_deref())
     }
 }

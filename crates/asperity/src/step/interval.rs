@@ -93,12 +93,17 @@ impl Interval {
     pub(crate) fn prescribed(&self, area: f64) -> Prescribed {
         let value = self.instant.value;
         let is_rounding = value.abs() <= 16.0 * f64::EPSILON * self.course.scale;
-        match self.instant.control {
-            Control::Approach => Prescribed::Approach(value),
-            _ if is_rounding => Prescribed::Load(0.0),
-            Control::Load => Prescribed::Load(value),
-            Control::Pressure => Prescribed::Load(value * area),
-        }
+        let is_none = is_rounding && self.instant.control != Control::Approach;
+        prescribed(self.instant.control, if is_none { 0.0 } else { value }, area)
+    }
+}
+
+/// What a contact is to meet on a domain of this area \[m²\].
+pub(crate) fn prescribed(control: Control, value: f64, area: f64) -> Prescribed {
+    match control {
+        Control::Approach => Prescribed::Approach(value),
+        Control::Load => Prescribed::Load(value),
+        Control::Pressure => Prescribed::Load(value * area),
     }
 }
 

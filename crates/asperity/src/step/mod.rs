@@ -31,7 +31,8 @@ pub use dense::Between;
 pub use row::{Row, Step};
 pub use snapshot::Checkpoint;
 
-pub(crate) use interval::{Interval, Load, Piece};
+pub(crate) use contact::StepContact;
+pub(crate) use interval::{Interval, Load, Piece, prescribed};
 pub(crate) use quantities::Recorder;
 pub(crate) use row::{PERIMETER_SHARE, Recalled};
 pub(crate) use schedule::{Proposal, Response, Schedule, Summary, Verdict};
@@ -47,7 +48,6 @@ use crate::history::{self, History, Law};
 use crate::operator::plan;
 use crate::process::{self, Process, Solved};
 use crate::simulation::Simulation;
-use contact::StepContact;
 use state::StepState;
 
 pub(crate) struct Stepper {

@@ -2,16 +2,16 @@
 
 use ndarray::{Array2, ArrayView2};
 
+use super::state::StepState;
+use super::{Recorder, Stepper, UndeformedGap};
 use crate::contact::{ContactState, Hardness, Outcome};
 use crate::drive::Coordinate;
-use crate::grid::{Boundary, Grid};
 use crate::history::History;
 use crate::load::Control;
 use crate::process::{Process, cells};
 use crate::quantities::{Column, Quantity, contact_edges};
 use crate::simulation::Simulation;
 use crate::sliding::Friction;
-use crate::step::{Recorder, Stepper, UndeformedGap};
 use crate::time::Instant;
 use asperity_sweep::{Max, kernel, run};
 
@@ -96,6 +96,33 @@ pub(crate) enum Recalled<'a> {
 }
 
 impl<'a> Step<'a> {
+    /// The state of a contact, of no time and velocity yet.
+    pub(crate) fn of(
+        simulation: &'a Simulation,
+        hardness: Hardness<'a>,
+        (state, outcome): (&'a ContactState, Outcome),
+        (gap, compliance): (&'a [f64], f64),
+    ) -> Self {
+        Step {
+            index: 0,
+            coordinate: Coordinate::None,
+            instant: None,
+            control: Control::Load,
+            simulation,
+            hardness,
+            state,
+            gap,
+            compliance,
+            outcome,
+            recalled: Recalled::Nothing,
+            time_error: None,
+            undeformed: None,
+            processes: &[],
+            recorder: None,
+            friction: None,
+        }
+    }
+
     /// Number of the row; 0 is t = 0+.
     pub fn index(&self) -> usize {
         self.index
@@ -188,15 +215,37 @@ impl<'a> Step<'a> {
 
     /// The numbers of the row.
     pub fn row(&self) -> Row {
+        let Step { state, outcome, hardness, .. } = self;
         let Simulation { grid, boundary, .. } = self.simulation;
-        let bodies = (self.gap, self.hardness, self.compliance);
-        let contact = Row::of_contact(grid, *boundary, bodies, self.state, &self.outcome);
+        let survey = Survey {
+            p: &state.pressure,
+            u: &state.unit_displacement,
+            h: self.gap,
+            hardness: *hardness,
+            c: self.compliance,
+            w: state.approach,
+        };
+        let ([pressure, touching, capped, gap, touchable], Max(max_pressure)) = run(survey);
+        // The border of a free domain is no edge of the contact, and the ends of a line contact are points.
+        let edges = if grid.is_line() { 0 } else { contact_edges(self.pressure(), *boundary).number() };
+        let cell = grid.cell_area();
         Row {
             coordinate: self.coordinate,
-            approach: self.state.approach - self.datum(),
+            load: pressure * cell,
+            approach: state.approach - self.datum(),
+            contact_area: touching * cell,
+            contact_area_corrected: touching * cell - PERIMETER_SHARE * edges as f64 * cell,
+            contact_fraction: touching / grid.len() as f64,
+            capped_area: capped * cell,
+            mean_pressure: pressure / grid.len() as f64,
+            max_pressure,
+            mean_gap: gap / touchable,
+            iterations: outcome.iterations,
+            convolutions: outcome.convolutions,
+            residual: outcome.residual,
+            certificate: outcome.certificate,
             time_error: self.time_error,
             stage: self.instant.map_or(0, |instant| instant.stage),
-            ..contact
         }
     }
 
@@ -244,23 +293,12 @@ impl<'a> Step<'a> {
 impl Stepper {
     /// The state as a row of no time yet.
     pub(crate) fn row(&self) -> Step<'_> {
+        let StepState { now, gap, compliance, undeformed, .. } = &self.state;
         Step {
-            index: 0,
-            coordinate: Coordinate::None,
-            instant: None,
-            control: Control::Load,
-            simulation: &self.simulation,
-            hardness: self.contact.hardness(),
-            state: &self.state.now,
-            gap: &self.state.gap,
-            compliance: self.state.compliance,
-            outcome: self.outcome,
             recalled: Recalled::History(&*self.history),
-            time_error: None,
-            undeformed: Some(&self.state.undeformed),
+            undeformed: Some(undeformed),
             processes: &self.processes,
-            recorder: None,
-            friction: None,
+            ..Step::of(&self.simulation, self.contact.hardness(), (now, self.outcome), (gap, *compliance))
         }
     }
 }
@@ -281,46 +319,6 @@ impl Row {
         match self.coordinate {
             Coordinate::Time(t) => t,
             _ => f64::NAN,
-        }
-    }
-
-    /// The numbers of one elastic contact, at the time 0: of a state that solves the problem of this gap \[m\], hardness and
-    /// compliance \[1/Pa\], each cell of the grid.
-    pub fn of_contact(
-        grid: &Grid,
-        boundary: Boundary,
-        (gap, hardness, compliance): (&[f64], Hardness<'_>, f64),
-        state: &ContactState,
-        outcome: &Outcome,
-    ) -> Row {
-        let (c, w) = (compliance, state.approach);
-        let (p, u, h) = (&state.pressure[..], &state.unit_displacement[..], gap);
-        let ([pressure, touching, capped, gap, touchable], Max(peak)) =
-            run(Survey { p, u, h, hardness, c, w });
-        // The border of a free domain is no edge of the contact, and the ends of a line contact are points.
-        let edges = match grid.is_line() {
-            true => 0,
-            false => contact_edges(to_view(grid.shape(), &state.pressure), boundary).number(),
-        };
-        let cell = grid.cell_area();
-        let contact_area = touching * cell;
-        Row {
-            coordinate: Coordinate::None,
-            load: pressure * cell,
-            approach: w,
-            contact_area,
-            contact_area_corrected: contact_area - PERIMETER_SHARE * edges as f64 * cell,
-            contact_fraction: touching / grid.len() as f64,
-            capped_area: capped * cell,
-            mean_pressure: pressure / grid.len() as f64,
-            max_pressure: peak,
-            mean_gap: gap / touchable,
-            iterations: outcome.iterations,
-            convolutions: outcome.convolutions,
-            residual: outcome.residual,
-            certificate: outcome.certificate,
-            time_error: None,
-            stage: 0,
         }
     }
 }

@@ -20,11 +20,11 @@ pub fn rectangle(component: Component, [x, y]: [f64; 2], depth: f64, half: [f64;
     (g(x + a, y + b) - g(x - a, y + b) - g(x + a, y - b) + g(x - a, y - b)) / std::f64::consts::TAU
 }
 
-/// G of a corner at (x, y) from the point at depth z; neither x nor y is 0 where z is.
+/// G of a corner at (x, y) from the point at depth z; neither x nor y is 0 if z is.
 ///
-/// At depths beyond the corners (`is_far`) G tends to functions of one coordinate, which the mixed difference takes out:
-/// -(1 - 2 nu) ln 2z - 1 for xy, y/z for xz and x/z for yz. They are left out there, so that their rounding errors do not
-/// remain in the place of a stress that falls off as 1/z^3 and faster. All corners of a rectangle take the same form.
+/// At depths beyond the corners (`is_far`) G tends to functions of one coordinate, which the mixed difference removes: -(1 - 2
+/// nu) ln 2z - 1 for xy, y/z for xz and x/z for yz. They are omitted there, so that their rounding errors do not dominate a
+/// stress that decays as 1/z^3 or faster. All corners of a rectangle use the same form.
 pub(super) fn corner(component: Component, x: f64, y: f64, z: f64, poisson: f64, is_far: bool) -> f64 {
     let (x2, y2, z2) = (x * x, y * y, z * z);
     let r = (x2 + y2 + z2).sqrt();
@@ -33,7 +33,7 @@ pub(super) fn corner(component: Component, x: f64, y: f64, z: f64, poisson: f64,
     let solid_angle =
         || libm::atan2(x * y, z * r).clamp(-std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2);
     let along = |u2: f64, v2: f64| libm::atan2(x * y * below, u2 * r + z * v2);
-    // y z^2/(R (x^2 + z^2)), or that less y/z.
+    // y z^2/(R (x^2 + z^2)), or that minus y/z.
     let shear = |x2: f64, y: f64| match is_far {
         false => y * z2 / (r * (x2 + z2)),
         true => -y * (r * x2 + z2 * below) / (z * r * (x2 + z2)),
@@ -55,16 +55,16 @@ pub(super) fn corner(component: Component, x: f64, y: f64, z: f64, poisson: f64,
     }
 }
 
-/// Stress at the distance x from the middle of a strip |x'| <= a, endless along y, at `depth` z under unit pressure: plane strain,
-/// s_yy = nu (s_xx + s_zz), no stress xy or yz. (x, z) must not be an edge of the strip.
+/// Stress at the distance x from the middle of a strip |x'| <= a, infinite along y, at `depth` z under unit pressure: plane
+/// strain, s_yy = nu (s_xx + s_zz), no stress xy or yz. (x, z) must not be an edge of the strip.
 ///
 /// ```text
 /// pi s_zz = -theta - c,   pi s_xx = -theta + c,   pi s_xz = -4 a x z^2 / (r1^2 r2^2)
 /// c = 2 a z (z^2 - x^2 + a^2) / (r1^2 r2^2),   r^2 = (x +- a)^2 + z^2
 /// ```
 ///
-/// theta is the angle under which the strip is seen (Johnson, Contact Mechanics, 1985, section 2.5, eqs 2.31). All terms
-/// are free of cancellation, so that also far from the strip the error is a rounding error of the largest component.
+/// theta is the angle under which the strip is seen (Johnson, Contact Mechanics, 1985, section 2.5, eqs 2.31). All terms are free
+/// of cancellation, so even far from the strip the error is a rounding error of the largest component.
 ///
 /// ```
 /// use asperity::stress::{Component, strip};

@@ -1,8 +1,8 @@
 //! The convolution of the pressure with the stress of a cell or of a wave.
 //!
 //! The rows of the pressure are transformed once. For each component and depth the columns are transformed, multiplied by the
-//! spectrum of the component, and transformed back. Each component is even or odd in either direction, so that a quarter of its
-//! spectrum, as real numbers, is enough; it is made column by column. Work memory is five fields on a free domain.
+//! spectrum of the component, and transformed back. Each component is even or odd in either direction, so a quarter of its
+//! spectrum, as real numbers, is sufficient; it is computed column by column. The work memory is five fields on a free domain.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -47,7 +47,7 @@ pub struct SubsurfaceStress {
     coefficients: [Arc<dyn RealToComplex<f64>>; 2],
     /// The stress is the sum of those under these pressures.
     sources: Vec<Source>,
-    /// Uniform stress xx and yy besides \[Pa\].
+    /// Additional uniform stress xx and yy \[Pa\].
     lateral: f64,
     /// Transformed rows of a component.
     work: Vec<Complex64>,
@@ -61,10 +61,10 @@ struct Source {
 }
 
 impl SubsurfaceStress {
-    /// Plans the transforms. `poisson` is that of the body whose stress is wanted.
+    /// Plans the transforms. `poisson` is that of the body whose stress is computed.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a Poisson's ratio that is not within 0 and 0.5.
+    /// [`Error::Invalid`] for a Poisson's ratio that is not between 0 and 0.5.
     pub fn new(grid: Grid, boundary: Boundary, poisson: f64) -> Result<Self> {
         if !(0.0..=0.5).contains(&poisson) {
             return Err(Error::invalid("Poisson's ratio", poisson, "between 0 and 0.5"));
@@ -91,10 +91,10 @@ impl SubsurfaceStress {
         &self.grid
     }
 
-    /// Takes the pressure p \[Pa\] of the surface, nx ny cells in C-order.
+    /// Sets the pressure p \[Pa\] on the surface, nx ny cells in C-order.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where their number differs or one is not finite.
+    /// [`Error::Invalid`] if the number of cells differs or a value is not finite.
     pub fn set_pressure(&mut self, p: &[f64]) -> Result<()> {
         self.check(p)?;
         self.sources.clear();
@@ -114,7 +114,7 @@ impl SubsurfaceStress {
         }
     }
 
-    /// Takes a history of the pressure in place of a pressure: the Poisson's ratio of the body changes with time.
+    /// Sets a history of the pressure in place of a pressure, for a body whose Poisson's ratio changes with time.
     ///
     /// # Errors
     /// As [`set_transverse`](Self::set_transverse).
@@ -122,12 +122,12 @@ impl SubsurfaceStress {
         self.set_transverse(history.pressure(), &history.transverse(), history.confined())
     }
 
-    /// Takes the pressure p, P = int nu(t - s) dp(s) in each cell, and the lateral pressure \[Pa\] that the mean pressure of a
-    /// periodic domain causes ([`PressureHistory`]). The stress is linear in the ratio, so that it is the sum of that of p - 2 P
+    /// Sets the pressure p, P = int nu(t - s) dp(s) in each cell, and the lateral pressure \[Pa\] due to the mean pressure of a
+    /// periodic domain ([`PressureHistory`]). The stress is linear in the ratio. It is therefore the sum of the stress of p - 2 P
     /// on a body of ratio 0 and that of 2 P on one of ratio 1/2.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where their number differs from that of the cells, or one is not finite.
+    /// [`Error::Invalid`] if their number differs from that of the cells, or one is not finite.
     pub fn set_transverse(&mut self, p: &[f64], transverse: &[f64], confined: f64) -> Result<()> {
         for field in [p, transverse] {
             self.check(field)?;
@@ -135,7 +135,7 @@ impl SubsurfaceStress {
         let rest: Vec<f64> = p.iter().zip(transverse).map(|(p, t)| p - 2.0 * t).collect();
         let twice: Vec<f64> = transverse.iter().map(|t| 2.0 * t).collect();
         self.sources.clear();
-        // The mean of a periodic pressure acts without lateral strain, and not through the ratio itself.
+        // The mean of a periodic pressure acts without lateral strain, so it does not depend on the ratio itself.
         self.lateral = match self.boundary {
             Boundary::Free => 0.0,
             Boundary::Periodic => mean(&twice) - confined,
@@ -152,7 +152,7 @@ impl SubsurfaceStress {
         self.sources.push(Source { poisson, rows });
     }
 
-    /// Bytes that the transforms take, and with them six fields of [`at`](Self::at).
+    /// Bytes of the transforms, and of the six fields of [`at`](Self::at).
     pub fn bytes(grid: &Grid, boundary: Boundary) -> usize {
         let [nx, ny] = grid.cells();
         let (length, coefficients) = match boundary {
@@ -269,7 +269,7 @@ impl SubsurfaceStress {
     }
 }
 
-/// Where the spectrum of a component comes from.
+/// The source of the spectrum of a component.
 enum Spectrum {
     /// The coefficients of a cell, transformed along y: (i, ky).
     Cell(Array2<f64>),

@@ -1,22 +1,22 @@
-//! The depths at which the stress is looked at.
+//! The depths at which the stress is computed.
 
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 
-/// Depths between 0 and this share of a cell are refused: they show the steps of the pressure from cell to cell.
+/// Depths between 0 and this fraction of a cell are refused: they would show the jumps of the pressure from cell to cell.
 const SHALLOWEST: f64 = 0.25;
-/// Depths beyond this many times the domain are a slip.
+/// Depths beyond this many times the domain are an input error.
 const DEEPEST: f64 = 1e9;
 /// Depths of [`automatic_depths`] below the surface.
 const AUTOMATIC: usize = 24;
-/// They reach this many cells at least.
+/// They reach at least this number of cells.
 const CELLS: f64 = 4.0;
-/// Most depths of a survey: more are a slip.
+/// Largest number of depths of a survey: more are an input error.
 const MOST: usize = 10_000;
 
-/// 0, and 24 depths in geometric progression from half a cell: on a free domain to 2 sqrt(A/pi), A the area of the rectangle
-/// around the contact ([`contact_box`]; 0 where there is no contact: the domain's), of a line to the width of the contact; on a
-/// periodic domain to half its shorter side; to four cells at least.
+/// 0, and 24 depths in geometric progression from half a cell: on a free domain to 2 sqrt(A/pi), where A is the area of the
+/// rectangle around the contact ([`contact_box`]; if that is 0 because there is no contact, the area of the domain); for a line,
+/// to the width of the contact; on a periodic domain, to half its shorter side. They reach at least four cells.
 ///
 /// ```
 /// use asperity::{Boundary, Grid, stress::automatic_depths};
@@ -56,12 +56,13 @@ pub fn spaced_depths([first, last]: [f64; 2], count: usize, geometric: bool, sur
     surface.then_some(0.0).into_iter().chain((0..count).map(depth)).collect()
 }
 
-/// Longer side of a cell \[m\]; of a line its length along x.
+/// Longer side of a cell \[m\]; for a line, its length along x.
 pub(super) fn longest_cell(grid: &Grid) -> f64 {
     grid.cell_sides().fold(0.0, f64::max)
 }
 
-/// Area of the rectangle around the cells under pressure \[m^2\], of a line the width of the contact \[m\]; 0 where there are none.
+/// Area of the rectangle around the cells under pressure \[m^2\]; for a line, the width of the contact \[m\]; 0 if there are
+/// none.
 pub fn contact_box(grid: &Grid, pressure: &[f64]) -> f64 {
     let ny = grid.cells()[1];
     let touching = || pressure.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(n, _)| [n / ny, n % ny]);
@@ -72,7 +73,7 @@ pub fn contact_box(grid: &Grid, pressure: &[f64]) -> f64 {
     if x0 > x1 { 0.0 } else { ((x1 - x0 + 1) * (y1 - y0 + 1)) as f64 * grid.cell_area() }
 }
 
-/// A depth may be 0, or a quarter of a cell and deeper, up to 1e9 times the domain.
+/// A depth must be 0, or from a quarter of a cell up to 1e9 times the domain.
 ///
 /// # Errors
 /// [`Error::Invalid`] for any other.
@@ -92,10 +93,10 @@ pub fn check_depth(grid: &Grid, depth: f64) -> Result<()> {
     Err(Error::invalid("depth", format!("{depth:e} m"), expected))
 }
 
-/// Depths of a survey: 1 to 10000, each allowed, each deeper than the one before.
+/// Depths of a survey: 1 to 10000 valid depths, each deeper than the previous one.
 ///
 /// # Errors
-/// [`Error::Invalid`] with the first that is not.
+/// [`Error::Invalid`] with the first invalid depth.
 pub fn check_depths(grid: &Grid, depths: &[f64]) -> Result<()> {
     if !(1..=MOST).contains(&depths.len()) {
         return Err(Error::invalid("number of depths", depths.len(), format!("from 1 to {MOST}")));

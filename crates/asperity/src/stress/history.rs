@@ -1,4 +1,4 @@
-//! The pressure of a body whose Poisson's ratio changes with time, as the stress needs it.
+//! The pressure history of a body whose Poisson's ratio changes with time, in the form that the stress needs.
 //!
 //! The stress of an elastic body is S0 p + nu S1 p. By the correspondence principle a viscoelastic one has
 //!
@@ -6,15 +6,15 @@
 //! sigma(t) = S0 p(t) + S1 P(t),   P(t) = int nu(t - s) dp(s) = nu(0) p + sum_j nu_j r_j,   r_j = int (1 - exp(-(t - s)/lambda_j)) dp(s)
 //! ```
 //!
-//! (E. H. Lee & J. R. M. Radok 1960). The pressure goes linearly from one known state to the next, which gives
-//! r_j' = E r_j + (phi - E) p + (1 - phi) p' with E = exp(-x), phi = (1 - E)/x, x = dt/lambda_j; of second order in the time step.
-//! The uniform part of a periodic pressure acts without lateral strain, so that it takes nu/(1 - nu) in place of nu
-//! ([`PoissonCreep`]).
+//! (E. H. Lee & J. R. M. Radok 1960). The pressure is linear between two known states, which gives r_j' = E r_j + (phi - E) p +
+//! (1 - phi) p' with E = exp(-x), phi = (1 - E)/x, x = dt/lambda_j; of second order in the time step. The uniform part of a
+//! periodic pressure acts without lateral strain, so it has nu/(1 - nu) in place of nu ([`PoissonCreep`]).
 
 use crate::error::{Error, Result};
 use crate::material::{Creep, CreepTerm, PoissonCreep};
 
-/// Remembers the pressures of a body from the beginning on, for [`SubsurfaceStress::set_history`](super::SubsurfaceStress::set_history).
+/// Stores the pressure history of a body from the beginning on, for
+/// [`SubsurfaceStress::set_history`](super::SubsurfaceStress::set_history).
 ///
 /// ```
 /// use asperity::material::{Body, Lateral, Material, Modulus};
@@ -35,7 +35,7 @@ pub struct PressureHistory {
     pressure: Vec<f64>,
     /// r_j of each term of nu(t).
     retarded: Vec<Vec<f64>>,
-    /// The same of the mean pressure, for each term of k(t).
+    /// The same for the mean pressure, for each term of k(t).
     retarded_mean: Vec<f64>,
 }
 
@@ -51,16 +51,16 @@ impl PressureHistory {
         }
     }
 
-    /// Bytes that it takes.
+    /// Its size in bytes.
     pub fn bytes(creep: &PoissonCreep, cells: usize) -> usize {
         8 * cells * (1 + creep.ratio.terms.len())
     }
 
-    /// Takes the pressure p \[Pa\] at the time t \[s\], not before the last one: a second one at the same time is a jump. The first
-    /// one acts at once.
+    /// Adds the pressure p \[Pa\] at the time t \[s\], which must not be before the last one. A second pressure at the same time
+    /// is a jump. The first pressure is applied suddenly.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a time before the last, another number of pressures, or one that is not finite.
+    /// [`Error::Invalid`] for a time before the last, another number of pressures, or a pressure that is not finite.
     pub fn advance(&mut self, time: f64, p: &[f64]) -> Result<()> {
         let last = self.time.unwrap_or(time);
         if time.is_nan() || time < last {
@@ -93,7 +93,7 @@ impl PressureHistory {
         Ok(())
     }
 
-    /// The pressure p of the moment \[Pa\].
+    /// The present pressure p \[Pa\].
     pub fn pressure(&self) -> &[f64] {
         &self.pressure
     }
@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn a_uniform_periodic_pressure_is_confined() {
-        // s_xx = s_yy = -(3 B - 2 G)/(3 B + 4 G) p at the moduli of once and of long times.
+        // s_xx = s_yy = -(3 B - 2 G)/(3 B + 4 G) p with the instantaneous and the long-time moduli.
         let grid = Grid::new([4, 4], [1.0, 1.0]).unwrap();
         let mut history = PressureHistory::new(body().poisson_creep().unwrap(), 16);
         let mut stress = SubsurfaceStress::new(grid, Boundary::Periodic, 0.0).unwrap();
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn a_ramp_is_exact_and_any_path_of_second_order() {
         let creep = body().poisson_creep().unwrap();
-        // p = t: P = the integral of nu. The scheme is exact for it, whatever the steps.
+        // p = t: P = the integral of nu. The scheme is exact for it in any steps.
         let mut history = PressureHistory::new(creep.clone(), 1);
         for time in [0.0, 0.1, 0.4, 2.0] {
             history.advance(time, &[time]).unwrap();

@@ -1,4 +1,4 @@
-//! What the stress tensor amounts to: von Mises, Tresca, the largest principal stress.
+//! Invariants of the stress tensor: von Mises, Tresca, the largest principal stress.
 
 /// Numbers of a stress tensor that do not depend on the axes \[Pa\].
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

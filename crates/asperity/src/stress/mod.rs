@@ -9,15 +9,16 @@
 //! 2 pi s_xy = -(1 - 2 nu) chi_xy - z V_xy
 //! ```
 //!
-//! The modulus does not enter, and Poisson's ratio nu only in xx, yy, xy. So with a Poisson's ratio that is constant in time the
-//! stress of a viscoelastic body at time t follows from the pressure at time t alone (correspondence principle), and any stored
-//! pressure will do. With a constant bulk modulus nu changes in time, and the stress needs the pressures from the beginning on
-//! ([`PressureHistory`]). The second body has the same stress with its own nu, z into itself.
+//! The stress does not depend on the modulus, and depends on Poisson's ratio nu only in xx, yy, xy. If Poisson's ratio is
+//! constant in time, the stress of a viscoelastic body at time t therefore follows only from the pressure at time t
+//! (correspondence principle), and can be computed from any stored pressure. With a constant bulk modulus nu changes in time, and
+//! the stress needs the pressures from the beginning on ([`PressureHistory`]). The second body has the same stress with its own
+//! nu, with z into this body.
 //!
-//! Every component is a convolution of the pressure. A free domain takes the exact stress of a uniformly loaded cell
-//! ([`rectangle`]; of a line contact, in plane strain, that of a [`strip`]), a periodic one the closed form of a wave ([`wave`]); they
-//! are symmetric or antisymmetric in each direction,
-//! so that a quarter of their spectrum is stored, as real numbers.
+//! Every component is a convolution of the pressure. A free domain uses the exact stress of a uniformly loaded cell
+//! ([`rectangle`]; for a line contact, in plane strain, that of a [`strip`]), a periodic one the closed form of a wave
+//! ([`wave`]). They are symmetric or antisymmetric in each direction, so only a quarter of their spectrum is stored, as real
+//! numbers.
 
 mod coefficients;
 mod convolve;

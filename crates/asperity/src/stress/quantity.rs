@@ -1,4 +1,4 @@
-//! What may be asked of the stress at a depth, as a field: a component, or a number of the whole tensor.
+//! The fields of the stress at a depth: a component, or an invariant of the tensor.
 
 #![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
 
@@ -58,7 +58,7 @@ impl StressQuantity {
         }
     }
 
-    /// What it is, for axes and legends.
+    /// Its description for axes and legends.
     pub fn long_name(self) -> &'static str {
         match self {
             StressQuantity::Mises => "von Mises stress",
@@ -79,7 +79,7 @@ impl StressQuantity {
         StressQuantity::ALL.into_iter().find(|quantity| quantity.name() == name)
     }
 
-    /// The component that it is, if it is one.
+    /// The component, if it is one.
     pub fn component(self) -> Option<Component> {
         Some(match self {
             StressQuantity::Xx => Component::Xx,
@@ -95,7 +95,7 @@ impl StressQuantity {
     /// Its field, from the six components in the order of [`Component::ALL`]; all of one length.
     ///
     /// # Panics
-    /// Where the lengths differ.
+    /// If the lengths differ.
     pub fn field_into(self, six: &[Vec<f64>; 6], out: &mut [f64]) {
         if let Some(component) = self.component() {
             out.copy_from_slice(&six[component as usize]);

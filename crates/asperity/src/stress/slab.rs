@@ -31,7 +31,7 @@ pub(super) struct Slab {
     pub(super) shear: First,
     /// Number of cells above the threshold.
     pub(super) above: f64,
-    /// Cells seen: those of what is merged next begin there.
+    /// Number of cells processed: the cells of the next part begin there.
     cells: usize,
 }
 
@@ -84,7 +84,7 @@ impl Slab {
     }
 }
 
-/// Largest minus least value of each line along y; the first largest, with the cell at which the line begins.
+/// Largest minus smallest value of each line along y; returns the first largest, with the cell at which the line begins.
 fn range_along_y(field: &[f64], ny: usize) -> First {
     let ranges: Vec<f64> = field
         .par_chunks(ny)
@@ -97,7 +97,7 @@ fn range_along_y(field: &[f64], ny: usize) -> First {
     first(&ranges, |line| line * ny)
 }
 
-/// The same of the lines along x.
+/// The same for the lines along x.
 fn range_along_x(field: &[f64], ny: usize) -> First {
     let mut ends = vec![[f64::INFINITY, f64::NEG_INFINITY]; ny];
     for row in field.chunks(ny) {

@@ -1,4 +1,4 @@
-//! Where the stress is largest: maxima over depths, refined between them, and the profile over depth.
+//! The largest stresses: maxima over depths, refined between them, and the profile over depth.
 
 use super::depths::longest_cell;
 use super::slab::{First, Slab};
@@ -6,13 +6,13 @@ use super::{Component, SubsurfaceStress, check_depths};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 
-/// Further depths at which a maximum is looked for.
+/// Number of additional depths for the search of a maximum.
 const REFINED: usize = 3;
-/// A depth nearer than this to one that is known, in the logarithm, would tell nothing more: the error of a maximum is of
-/// second order.
+/// A depth closer than this to a known one, in the logarithm, gives no more information: the error of a maximum is of second
+/// order.
 const NEAR: f64 = 2e-3;
 
-/// A largest value and its place.
+/// A largest value and its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extreme {
     /// The stress \[Pa\].
@@ -44,19 +44,19 @@ impl Rolling {
     }
 }
 
-/// What a survey finds besides the maxima. Default: nothing.
+/// Additional results of a survey besides the maxima. Default: none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurveyOptions {
-    /// The volume with a von Mises stress above this is measured \[Pa\].
+    /// Threshold of the von Mises stress for the stressed volume \[Pa\].
     pub threshold: Option<f64>,
-    /// The range of the orthogonal shear stress of a contact that rolls this way is found.
+    /// Rolling direction for the range of the orthogonal shear stress.
     pub rolling: Option<Rolling>,
 }
 
-/// What a survey over depths finds.
+/// The result of a survey over depths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
-    /// Depths \[m\], rising.
+    /// Depths \[m\], increasing.
     pub depths: Vec<f64>,
     /// Largest von Mises stress at each of them \[Pa\].
     pub mises_by_depth: Vec<f64>,
@@ -68,21 +68,22 @@ pub struct Survey {
     pub mises: Extreme,
     /// Largest Tresca stress (s1 - s3)/2, refined likewise.
     pub tresca: Extreme,
-    /// Largest principal stress, at one of the depths looked at.
+    /// Largest principal stress, at one of the computed depths.
     pub tension: Extreme,
-    /// True where the largest von Mises stress lies at the deepest depth: the survey should go deeper.
+    /// True if the largest von Mises stress lies at the deepest depth: the survey should go deeper.
     pub at_the_deepest: bool,
-    /// True where its depth is below two cells but not 0: the grid is too coarse for it.
+    /// True if its depth is less than two cells but not 0: the grid is too coarse for it.
     pub unresolved: bool,
-    /// Volume with a von Mises stress above the threshold \[m^3\], of a line per length \[m^2\], by the trapezoidal rule over the depths.
+    /// Volume with a von Mises stress above the threshold \[m^3\], for a line per length \[m^2\], by the trapezoidal rule over
+    /// the depths.
     pub stressed_volume: Option<f64>,
     /// The orthogonal shear stress of rolling.
     pub orthogonal_shear: Option<OrthogonalShear>,
 }
 
-/// The range of the orthogonal shear stress that a point of the body sees while the contact rolls over it: the largest less the
-/// least value on a line along the direction of rolling (G. Lundberg & A. Palmgren, Dynamic capacity of rolling bearings,
-/// 1947). The pressure is that of the moment: it must travel without changing.
+/// The range of the orthogonal shear stress at a point of the body while the contact rolls over it: the largest minus the
+/// smallest value on a line along the direction of rolling (G. Lundberg & A. Palmgren, Dynamic capacity of rolling bearings,
+/// 1947). The pressure is the present one, and must move without change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrthogonalShear {
     /// Largest range at each of the depths \[Pa\].
@@ -91,16 +92,16 @@ pub struct OrthogonalShear {
     pub largest: Extreme,
 }
 
-/// Surveys the stress below the pressure that `stress` holds, at `depths` (rising, at least one).
+/// Surveys the stress below the pressure set in `stress`, at `depths` (increasing, at least one).
 ///
 /// # Errors
-/// [`Error::Invalid`] for depths that do not rise, and as [`SubsurfaceStress::component_into`].
+/// [`Error::Invalid`] for depths that do not increase, and as [`SubsurfaceStress::component_into`].
 pub fn survey(stress: &mut SubsurfaceStress, depths: &[f64], options: &SurveyOptions) -> Result<Survey> {
     survey_with(stress, depths, options, |_, _| Ok(()))
 }
 
-/// The same, and shows the six components at each of the depths, numbered from 0, to `visit` (the depths in between at which
-/// a maximum is looked for are not shown). An error of `visit` ends the survey.
+/// The same, and calls `visit` with the six components at each of the depths, numbered from 0 (not at the additional depths for
+/// the search of a maximum). An error of `visit` ends the survey.
 ///
 /// # Errors
 /// As [`survey`], and those of `visit`.
@@ -153,7 +154,7 @@ pub fn survey_with<E: From<Error>>(
     })
 }
 
-/// Whether a maximum at this depth lies nearer to the surface than two cells, but not at the surface.
+/// Whether a maximum at this depth is less than two cells below the surface, but not at the surface.
 fn is_unresolved(grid: &Grid, depth: f64) -> bool {
     depth > 0.0 && depth < 2.0 * longest_cell(grid)
 }
@@ -164,7 +165,7 @@ fn volume(grid: &Grid, depths: &[f64], slabs: &[Slab]) -> f64 {
     (1..depths.len()).map(|n| 0.5 * (area(n) + area(n - 1)) * (depths[n] - depths[n - 1])).sum()
 }
 
-/// What is known at the depths looked at, in order of depth.
+/// The results at the computed depths, in order of depth.
 struct Known(Vec<(f64, Slab)>);
 
 impl Known {
@@ -180,8 +181,8 @@ impl Known {
         Extreme { value, depth: *depth, cell }
     }
 
-    /// The depth at which the parabola through the largest value and its neighbours, in the logarithm of the depth, is
-    /// highest; `None` where the three are not all below the surface, or nothing new is to be found there.
+    /// The depth at which the parabola through the largest value and its neighbours, in the logarithm of the depth, is highest;
+    /// `None` if the three are not all below the surface, or if the new depth gives no more information.
     fn vertex(&self, of: fn(&Slab) -> First) -> Option<f64> {
         let best = self.best(of);
         let three = self.0.get(best.checked_sub(1)?..best + 2)?;

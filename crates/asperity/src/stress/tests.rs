@@ -98,7 +98,7 @@ fn a_wave_is_that_of_the_closed_form() {
     }
 }
 
-/// Some pressure on any grid.
+/// A pressure for any grid.
 fn pressure(grid: &Grid) -> Vec<f64> {
     (0..grid.len()).map(|n| ((n * 37 % 11) as f64 - 3.0).max(0.0) / 7.0).collect()
 }
@@ -138,7 +138,7 @@ fn identities_at_the_surface_and_in_the_mean() {
         let mut stress = SubsurfaceStress::new(grid, boundary, poisson).unwrap();
         let [xx, yy, zz, _, xz, yz] = all(&mut stress, &p, 0.0);
         let mean = p.iter().sum::<f64>() / p.len() as f64;
-        // The uniform part of a periodic pressure has no lateral strain: xx + yy = -2 nu/(1 - nu) of it instead.
+        // The uniform part of a periodic pressure has no lateral strain: instead, its xx + yy is -2 nu/(1 - nu) times it.
         let lateral = if boundary == Boundary::Periodic {
             2.0 * poisson / (1.0 - poisson)
         } else {
@@ -251,7 +251,7 @@ fn the_largest_shear_under_a_sphere_is_where_hertz_has_it() {
             middle.contains(&(found.tresca.cell / (4 * n)))
                 && middle.contains(&(found.tresca.cell % (4 * n)))
         );
-        // On the axis alone mises > 0.5 from 0.2 to 0.95 a; the volume is a body about as wide as that.
+        // On the axis mises > 0.5 from 0.2 to 0.95 a; the volume has about this width.
         let volume = found.stressed_volume.unwrap();
         assert!(volume > 0.2 && volume < 1.5, "{volume}");
     }
@@ -305,11 +305,11 @@ fn the_orthogonal_shear_of_a_rolling_ball_is_that_of_huber() {
         assert_eq!(x.by_depth.len(), depths.len());
         let middle = [2 * n - 1, 2 * n];
         assert!(middle.contains(&(x.largest.cell % (4 * n))) && middle.contains(&(y.largest.cell / (4 * n))));
-        // Second order: cells lie up to half their side from the place of the maximum in each direction, and the stress
-        // falls by about twice the square of the distance.
+        // Second order: cells lie up to half their side from the position of the maximum in each direction, and the stress falls
+        // by about twice the square of the distance.
         let error = (x.largest.value - 0.427_781_8).abs();
         assert!(error < 1.0 / (n * n) as f64, "{n}: {error}");
-        // Where the stress is flat the place is known to the root of that.
+        // If the stress is flat, the position is known to the square root of that.
         assert!((x.largest.depth - 0.350_864_1).abs() < 0.03, "{x:?}");
     }
 }
@@ -322,7 +322,7 @@ fn a_maximum_between_coarse_depths_is_found() {
     let mut at = |depths: &[f64]| survey(&mut stress, depths, &SurveyOptions::default()).unwrap();
     let (coarse, fine) = (at(&[0.2, 0.4, 0.8, 1.6]), at(&spaced_depths([0.3, 0.7], 41, false, false)));
     assert!(fine.tresca.value > coarse.tresca_by_depth[1] * 1.005, "the depths alone miss it");
-    // A hundredth of the depth costs a ten-thousandth of the maximum.
+    // A change of a hundredth of the depth changes the maximum by a ten-thousandth.
     assert!((coarse.tresca.value / fine.tresca.value - 1.0).abs() < 1e-3, "{coarse:?} {fine:?}");
     assert_eq!(coarse.mises_by_depth.len(), 4);
 }
@@ -433,6 +433,6 @@ fn far_below_the_domain_a_cell_is_a_point_load() {
         let expected = -3.0 * unit * across / z;
         assert!((field[at] / expected - 1.0).abs() < 1e-9, "{} {expected}", field[at]);
     }
-    // Of the order (x/z)^2: nothing is left of it but no more either.
+    // Of the order (x/z)^2.
     assert!(found[3][at].abs() < 1e-12 * unit, "{}", found[3][at]);
 }

@@ -13,7 +13,7 @@ use super::spectrum::check_shape;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 
-/// What is done about undefined points.
+/// The treatment of undefined points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
@@ -39,9 +39,8 @@ pub enum Fill {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where more than `largest_share` (0 to 1) of the points are undefined, all of
-/// them are, `method` is [`Fill::Error`] and one is, or the shape is not the grid's;
-/// [`Error::NotConverged`] where the membrane is not found.
+/// [`Error::Invalid`] if more than `largest_share` (0 to 1) of the points are undefined, all of them are, `method` is
+/// [`Fill::Error`] and one is, or the shape is not the grid's; [`Error::NotConverged`] if the membrane does not converge.
 pub fn fill(grid: &Grid, heights: ArrayView2<f64>, method: Fill, largest_share: f64) -> Result<Array2<f64>> {
     check_shape(grid, heights)?;
     if !(0.0..=1.0).contains(&largest_share) {
@@ -131,7 +130,7 @@ fn nearest(grid: &Grid, heights: ArrayView2<f64>) -> Array2<f64> {
 }
 
 fn harmonic(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<f64>> {
-    // Heights about their mean in units of their range: the tolerance is then a share of it.
+    // Heights relative to their mean in units of their range: the tolerance is then a fraction of it.
     let (low, high) = heights
         .iter()
         .filter(|z| z.is_finite())
@@ -147,7 +146,7 @@ fn harmonic(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<f64>> {
     let mut z: Vec<f64> = membrane.cells().iter().map(|at| (start[*at] - low) / range).collect();
     membrane.solve(&mut z)?;
     for (at, z) in membrane.cells().iter().zip(&z) {
-        // The maximum principle: a membrane stays between its supports.
+        // By the maximum principle, a membrane stays between its supports.
         filled[*at] = (low + range * z).clamp(low, high);
     }
     Ok(filled)

@@ -8,9 +8,9 @@
 //! X_j = sum_k x_k exp(+2 pi i j k / n)      not normalised
 //! ```
 //!
-//! Mixed radix, self-sorting (Stockham; Van Loan, Computational Frameworks for the Fast Fourier
-//! Transform, SIAM 1992, section 1.7), with Bluestein's chirp (Van Loan, section 4.2) where a prime
-//! factor is large, so that any length costs O(n log n).
+//! The transform has mixed radix and is self-sorting (Stockham; Van Loan, Computational Frameworks for the Fast Fourier
+//! Transform, SIAM 1992, section 1.7), with Bluestein's chirp (Van Loan, section 4.2) if a prime factor is large, so the cost is
+//! O(n log n) for any length.
 
 use std::f64::consts::{PI, TAU};
 
@@ -203,7 +203,7 @@ mod tests {
         data
     }
 
-    /// Numbers without structure: a Weyl sequence.
+    /// Unstructured numbers: a Weyl sequence.
     fn samples(n: usize) -> Vec<Complex64> {
         let weyl = |k: usize, step: f64| (k as f64 * step).fract() - 0.5;
         (0..n).map(|k| Complex64::new(weyl(k, 0.618_033_988_7), weyl(k, 0.414_213_562_4))).collect()

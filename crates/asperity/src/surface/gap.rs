@@ -1,4 +1,4 @@
-//! The undeformed gap: the sum of the shapes' gaps less the heights, its smallest value at zero.
+//! The undeformed gap: the sum of the gaps of the shapes minus the heights, with smallest value zero.
 
 use ndarray::{Array2, Zip};
 
@@ -22,7 +22,7 @@ pub enum Part {
     Synthesis(Synthesis),
     /// Given heights \[m\], one per cell of the grid, pointing out of their body.
     Heights {
-        /// What the heights are called in messages (a file's name).
+        /// Name of the heights in messages (a file name).
         name: String,
         /// Heights of shape (nx, ny) \[m\]; every one finite, or minus infinity where nothing can touch.
         heights: Array2<f64>,
@@ -44,8 +44,8 @@ pub enum Part {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where a part is outside its domain, heights do not have the shape of the grid
-/// or are not finite, the sum overflows, or no cell can touch. No part at all is flat on flat: 0.
+/// [`Error::Invalid`] if a part is outside its domain, heights do not have the shape of the grid or are not finite, the sum
+/// overflows, or no cell can touch. Without any part the gap is 0 (flat on flat).
 pub fn undeformed_gap(grid: &Grid, parts: &[Part]) -> Result<Array2<f64>> {
     let mut gap = Array2::zeros(grid.shape());
     for part in parts {
@@ -85,7 +85,7 @@ fn add(gap: &mut Array2<f64>, grid: &Grid, part: &Part) -> Result<()> {
     }
 }
 
-/// Heights and gaps beyond this are a unit gone wrong \[m\]; below it no sum of parts overflows.
+/// Heights and gaps beyond this mean a wrong unit \[m\]; below it no sum of parts overflows.
 const LARGEST_HEIGHT: f64 = 1e100;
 
 fn subtract(gap: &mut Array2<f64>, name: &str, heights: &Array2<f64>) -> Result<()> {
@@ -115,7 +115,7 @@ fn add_shape(gap: &mut Array2<f64>, grid: &Grid, shape: &Shape, center: [f64; 2]
     }
     let [x0, y0] = [grid.centre()[0] + center[0], grid.centre()[1] + center[1]];
     let under = |i, j| shape.gap(grid.x(i) - x0, grid.y(j) - y0);
-    // Every shape but the punch, which alone may say "never", is widest open at a corner.
+    // Every shape except the punch, the only one with cells that never touch, has its largest gap at a corner.
     if !matches!(shape, Shape::FlatPunch(_)) {
         let [i, j] = grid.cells().map(|n| n - 1);
         let widest = [(0, 0), (0, j), (i, 0), (i, j)].map(|(i, j)| under(i, j));

@@ -1,7 +1,7 @@
 //! Removing the form of a measured surface by least squares.
 //!
-//! A measured surface stands askew under the instrument. [`level`] subtracts the mean, plane or
-//! quadratic that fits its defined points best; undefined points stay undefined and do not count.
+//! A measured surface is usually tilted. [`level`] subtracts the mean, plane or quadratic that fits its defined points best;
+//! undefined points stay undefined and are ignored.
 
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2};
@@ -24,7 +24,7 @@ pub enum Level {
     Quadratic,
 }
 
-/// Heights less their least-squares form \[m\]; undefined points (not finite) become NaN.
+/// Heights minus their least-squares form \[m\]; undefined points (not finite) become NaN.
 ///
 /// A coefficient that the defined points do not determine (a single row has no slope across it)
 /// is zero.
@@ -38,7 +38,7 @@ pub enum Level {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where a form is to be removed and no height is defined.
+/// [`Error::Invalid`] if a form must be removed and no height is defined.
 pub fn level(heights: ArrayView2<f64>, form: Level) -> Result<Array2<f64>> {
     let mut flat = heights.to_owned();
     flat.par_mapv_inplace(|z| if z.is_finite() { z } else { f64::NAN });
@@ -51,7 +51,7 @@ pub fn level(heights: ArrayView2<f64>, form: Level) -> Result<Array2<f64>> {
     if flat.iter().all(|z| z.is_nan()) {
         return Err(Error::invalid("number of defined heights", 0, "1 at least, to level the surface"));
     }
-    // Twice: the second pass removes what rounding left of a form much larger than the roughness.
+    // Twice: the second pass removes the rounding error of a form much larger than the roughness.
     remove(&mut flat);
     remove(&mut flat);
     Ok(flat)
@@ -68,8 +68,7 @@ fn remove<const T: usize>(flat: &mut Array2<f64>) {
     });
 }
 
-/// 1, x, y, x^2 - 1/3, x y, y^2 - 1/3 on \[-1, 1\] x \[-1, 1\]: nearly orthogonal, so that the normal
-/// equations stay well conditioned.
+/// 1, x, y, x^2 - 1/3, x y, y^2 - 1/3 on \[-1, 1\] x \[-1, 1\]: nearly orthogonal, so the normal equations are well conditioned.
 #[inline(always)]
 fn basis((i, j): (usize, usize), (nx, ny): (usize, usize)) -> [f64; 6] {
     let centred = |i: usize, n: usize| (2 * i + 1) as f64 / n as f64 - 1.0;
@@ -79,7 +78,7 @@ fn basis((i, j): (usize, usize), (nx, ny): (usize, usize)) -> [f64; 6] {
 
 /// Coefficients of the first T basis functions by the normal equations.
 fn fit<const T: usize>(heights: ArrayView2<f64>) -> [f64; 6] {
-    // Rows apart, then added in their order: the same bits for any number of threads.
+    // Rows are summed separately, then added in order: the same bits for any number of threads.
     let rows: Vec<([[f64; 6]; 6], [f64; 6])> = heights
         .outer_iter()
         .into_par_iter()
@@ -110,7 +109,7 @@ fn fit<const T: usize>(heights: ArrayView2<f64>) -> [f64; 6] {
     solve(matrix, right, T)
 }
 
-/// Cholesky's L L' x = r; a column that depends on the ones before it gets x = 0.
+/// Cholesky's L L' x = r; a column that depends on the previous ones gets x = 0.
 fn solve(mut m: [[f64; 6]; 6], mut x: [f64; 6], terms: usize) -> [f64; 6] {
     let mut depends = [true; 6];
     for k in 0..terms {
@@ -145,7 +144,7 @@ fn solve(mut m: [[f64; 6]; 6], mut x: [f64; 6], terms: usize) -> [f64; 6] {
 mod tests {
     use super::*;
 
-    /// A quadratic of size one with a hole and a pinch of roughness.
+    /// A quadratic of size one with a hole and a small roughness.
     fn surface(roughness: f64) -> Array2<f64> {
         let mut z = Array2::from_shape_fn((17, 12), |(i, j)| {
             let (x, y) = (i as f64, j as f64);

@@ -6,7 +6,7 @@ use super::spectrum::check_shape;
 use crate::error::Result;
 use crate::grid::Grid;
 
-/// Heights \[m\] at the cell centres of a grid, pointing out of their body; NaN where undefined.
+/// Heights \[m\] at the cell centres of a grid, pointing out of their body; NaN if undefined.
 ///
 /// ```
 /// use asperity::{Grid, surface::Surface};
@@ -25,11 +25,11 @@ impl Surface {
     /// Heights of shape (nx, ny) on their grid; heights that are not finite become NaN, undefined.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where the heights do not have the shape of the grid.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the heights do not have the shape of the grid.
     pub fn new(grid: Grid, mut heights: Array2<f64>) -> Result<Self> {
         check_shape(&grid, heights.view())?;
         heights.par_mapv_inplace(|z| if z.is_finite() { z } else { f64::NAN });
-        // C order, whatever came in.
+        // C order for any input.
         if !heights.is_standard_layout() {
             heights = heights.as_standard_layout().into_owned();
         }

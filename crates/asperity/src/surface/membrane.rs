@@ -4,9 +4,9 @@
 //! sum over the neighbours n of w_n (z - z_n) = 0,   w = dy/dx along x, dx/dy along y,
 //! ```
 //!
-//! by conjugate gradients (M. R. Hestenes and E. Stiefel, J. Res. NBS 49 (1952) 409), preconditioned with a
-//! V-cycle over blocks of 2 x 2, 4 x 4, ... points that move as one (D. Braess, Computing 55 (1995) 379): the
-//! number of iterations hardly grows with the size of a hole.
+//! by conjugate gradients (M. R. Hestenes and E. Stiefel, J. Res. NBS 49 (1952) 409), preconditioned with a V-cycle over blocks
+//! of 2 x 2, 4 x 4, ... points with a common value (D. Braess, Computing 55 (1995) 379): the number of iterations hardly grows
+//! with the size of a hole.
 
 use ndarray::{Array2, ArrayView2};
 
@@ -33,11 +33,11 @@ struct Level {
 const NONE: usize = usize::MAX;
 /// No coarser level below this many unknowns.
 const COARSEST: usize = 16;
-/// Share of the range of heights by which a point may miss the mean of its neighbours.
+/// Largest deviation of a point from the mean of its neighbours, as a fraction of the range of heights.
 const TOLERANCE: f64 = 1e-12;
 
 impl Membrane {
-    /// Of the points of `heights` that are not finite, one at least being finite.
+    /// For the points of `heights` that are not finite; at least one point must be finite.
     pub(super) fn new(grid: &Grid, heights: ArrayView2<f64>) -> Self {
         let (nx, ny) = heights.dim();
         let [dx, dy] = grid.spacing();
@@ -88,7 +88,7 @@ impl Membrane {
         &self.levels[0].cells
     }
 
-    /// Solves for heights of range one, from `z`; returns the iterations done.
+    /// Solves for heights of range one, starting from `z`; returns the number of iterations.
     pub(super) fn solve(&self, z: &mut [f64]) -> Result<usize> {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (finest, n) = (&self.levels[0], z.len());
@@ -180,7 +180,7 @@ impl Level {
             {
                 let other = self.parent[*n];
                 if other == *parent {
-                    // Points that move as one do not pull at each other.
+                    // Points with a common value have no effect on each other.
                     coarse.diagonal[*parent] -= weight;
                 } else {
                     let neighbour = &mut coarse.neighbours[*parent][slot];
@@ -201,7 +201,7 @@ impl Level {
         }
     }
 
-    /// Gauss and Seidel's sweep in the given order.
+    /// A Gauss-Seidel sweep in the given order.
     fn sweep(&self, right: &[f64], z: &mut [f64], order: impl Iterator<Item = usize>) {
         for k in order {
             z[k] = (right[k] + self.pulled(k, z)) / self.diagonal[k];
@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn iterations_hardly_grow_with_the_hole() {
-        // A hole as wide as the map but for its rim, which carries x: the membrane is x.
+        // A hole as wide as the map except for its rim, whose height is x: the membrane is x.
         for n in [10, 40, 160] {
             let grid = Grid::new([n, n], [1.0, 1.0]).unwrap();
             let edge = |i: usize| i == 0 || i == n - 1;

@@ -1,21 +1,21 @@
 //! From shapes and heights to the undeformed gap.
 //!
-//! Two bodies that face each other across the plane z = 0 leave the gap
+//! Two bodies that face each other across the plane z = 0 have the gap
 //!
 //! ```text
 //! h0(x, y) = sum of the shapes' gaps - sum of the heights + constant
 //! ```
 //!
-//! because a height points out of its body, towards the other one: where a surface is high, the gap
-//! is small. The constant puts the smallest sampled value of h0 at zero, so that the approach is
-//! zero at first touch. [`undeformed_gap`] is the only place where this is written down.
+//! because a height points out of its body, towards the other one: where a surface is high, the gap is small. The constant sets
+//! the smallest sampled value of h0 to zero, so that the approach is zero at first touch. Only [`undeformed_gap`] implements
+//! this.
 //!
 //! - [`Shape`]: smooth shapes.
 //! - [`SelfAffine`], [`Synthesis`]: random roughness with a prescribed spectrum, lay and height
 //!   distribution.
 //! - [`Surface`]: heights on a grid; [`Operation`] prepares measured ones (levelling, filling,
 //!   filtering, resampling, ...).
-//! - [`statistics`]: what describes a surface; [`profile`]: what describes a profile.
+//! - [`statistics`]: statistics of a surface; [`profile`]: parameters of a profile.
 
 pub mod fill;
 mod fourier;

@@ -6,17 +6,16 @@
 //! z(x, y) = sum over k of A_k exp(i q.x),   q = 2 pi (kx / Lx, ky / Ly),   <|A_k|^2> ~ C(|q|),
 //! ```
 //!
-//! with the power spectrum of a self-affine surface: flat from the longest wavelength to the
-//! roll-off, then C ~ q^(-2 (1 + H)) down to the shortest, and zero beyond either end (B. N. J.
-//! Persson et al., J. Phys.: Condens. Matter 17 (2005) R1, section 4; T. D. B. Jacobs et al., Surf.
-//! Topogr.: Metrol. Prop. 5 (2017) 013001, section 3). The sum is scaled so that this surface, not the
-//! ensemble, has the rms gradient or rms height asked for.
+//! with the power spectrum of a self-affine surface: flat from the longest wavelength to the roll-off, then C ~ q^(-2 (1 + H))
+//! down to the shortest, and zero beyond either end (B. N. J. Persson et al., J. Phys.: Condens. Matter 17 (2005) R1, section 4;
+//! T. D. B. Jacobs et al., Surf. Topogr.: Metrol. Prop. 5 (2017) 013001, section 3). The sum is scaled so that this surface, not
+//! the ensemble, has the requested rms gradient or rms height.
 //!
 //! On a line of cells the surface is a profile, and its spectrum that of a profile: C ~ q^-(1 + 2 H).
 //!
-//! The random number of a wave depends on the seed and on (kx, ky) alone. So the same seed on a finer
-//! grid samples the same surface, a smaller `shortest` adds waves and keeps the long ones in
-//! proportion, and every machine and thread count gives the same bits.
+//! The random number of a wave depends only on the seed and on (kx, ky). Therefore the same seed on a finer grid samples the same
+//! surface, a smaller `shortest` adds waves and keeps the long ones in proportion, and every machine and number of threads gives
+//! the same bits.
 
 use std::f64::consts::TAU;
 
@@ -26,7 +25,7 @@ use super::waves::{SAME, Waves};
 use crate::error::{Error, Result, positive};
 use crate::grid::Grid;
 
-/// How rough a synthetic surface is.
+/// The roughness of a synthetic surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Roughness {
     /// Root mean square of |grad z| (spectral derivative, whole domain).
@@ -57,10 +56,10 @@ impl SelfAffine {
     /// Side of the square domain of the Contact Mechanics Challenge \[m\].
     pub const CHALLENGE_SIZE: f64 = 1e-4;
 
-    /// The roughness of the Contact Mechanics Challenge (M. H. Mueser et al., Tribol. Lett. 65 (2017) 118):
-    /// 0.1 mm x 0.1 mm, Hurst exponent 0.8, roll-off at 20 um, cut-off at 0.1 um, rms gradient 1; the
-    /// same statistics, not the same random numbers. It needs 2000 cells a side; for a coarser grid raise
-    /// `shortest`, which then holds the gradient of 1 at longer waves.
+    /// The roughness of the Contact Mechanics Challenge (M. H. Mueser et al., Tribol. Lett. 65 (2017) 118): 0.1 mm x 0.1 mm,
+    /// Hurst exponent 0.8, roll-off at 20 um, cut-off at 0.1 um, rms gradient 1; the same statistics, not the same random
+    /// numbers. It needs 2000 cells per side. For a coarser grid raise `shortest`; the gradient of 1 then comes from longer
+    /// waves.
     ///
     /// ```
     /// use asperity::surface::{Roughness, SelfAffine};
@@ -81,8 +80,7 @@ impl SelfAffine {
 
     /// Heights at the cell centres \[m\], shape (nx, ny), mean zero.
     ///
-    /// Waves that stand exactly on the grid's Nyquist frequency along an axis are left out: a grid
-    /// cannot tell their phase.
+    /// Waves exactly at the Nyquist frequency of the grid along an axis are left out: a grid does not determine their phase.
     ///
     /// ```
     /// use asperity::{Grid, surface::{Roughness, SelfAffine, statistics}};
@@ -103,9 +101,8 @@ impl SelfAffine {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the exponent, the roughness or a wavelength is outside its domain,
-    /// the wavelengths are out of order or do not fit the grid, or no wave of the domain falls between
-    /// them.
+    /// [`Error::Invalid`] if the exponent, the roughness or a wavelength is outside its domain, the wavelengths are out of order
+    /// or do not fit the grid, or the domain has no wave between them.
     pub fn heights(&self, grid: &Grid) -> Result<Array2<f64>> {
         self.heights_where(grid, |qx, qy| (qx * qx + qy * qy).sqrt())
     }
@@ -175,14 +172,16 @@ impl SelfAffine {
                 "shortest wavelength",
                 meters(self.shortest),
                 format!("at least two cells, {}; refine the grid or cut longer waves off", meters(two_cells)),
-            ));
+            )
+            .of("shortest"));
         }
         if self.longest > domain * (1.0 + SAME) {
             return Err(Error::invalid(
                 "longest wavelength",
                 meters(self.longest),
                 format!("at most the size of the domain, {}", meters(domain)),
-            ));
+            )
+            .of("longest"));
         }
         if !(self.shortest <= self.roll_off && self.roll_off <= self.longest) {
             return Err(Error::invalid(
@@ -193,7 +192,8 @@ impl SelfAffine {
                     meters(self.shortest),
                     meters(self.longest)
                 ),
-            ));
+            )
+            .of("roll_off"));
         }
         Ok(())
     }
@@ -219,7 +219,7 @@ mod tests {
         Grid::new(cells, [1e-3, 1e-3]).unwrap()
     }
 
-    /// Transforms that add a few hundred waves round to this share of the largest height.
+    /// Rounding error of transforms that add a few hundred waves, relative to the largest height.
     const ROUNDING: f64 = 1e-13;
 
     #[test]

@@ -1,4 +1,4 @@
-//! Smooth shapes: the gap h(x, y) that a body leaves over a flat one it touches at its centre.
+//! Smooth shapes: the gap h(x, y) between a body and a flat that it touches at its centre.
 //!
 //! ```text
 //! sphere       r^2 / (2 R)                       the paraboloid of Hertz's theory
@@ -19,14 +19,14 @@ use crate::error::{Error, Result, positive};
 /// A smooth shape, placed with its centre on the centre of the domain or at an offset from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// h = r^2 / (2 radius): the paraboloid that stands for a sphere where the contact is small
-    /// against the radius. An infinite radius is a flat.
+    /// h = r^2 / (2 radius): the paraboloid that approximates a sphere if the contact is small compared with the radius. An
+    /// infinite radius is a flat.
     Sphere {
         /// Radius R \[m\].
         radius: f64,
     },
-    /// h = x^2 / (2 radius_x) + y^2 / (2 radius_y). An infinite radius is straight along that
-    /// axis: two of them a flat, one a cylinder.
+    /// h = x^2 / (2 radius_x) + y^2 / (2 radius_y). With an infinite radius the shape is straight along that axis: one infinite
+    /// radius gives a cylinder, two give a flat.
     Ellipsoid {
         /// Principal radius along x \[m\].
         radius_x: f64,
@@ -48,14 +48,13 @@ pub enum Shape {
         /// Rise per length, the cotangent of the cone's half angle.
         slope: f64,
     },
-    /// h = 0 where a cell's centre lies inside (its edge included), [`f64::INFINITY`] outside.
+    /// h = 0 if a cell's centre lies inside (its edge included), [`f64::INFINITY`] outside.
     FlatPunch(Punch),
     /// h = amplitude (1 - cos(2 pi x / lx) cos(2 pi y / ly)), a crest at the centre.
     ///
-    /// An infinite wavelength is straight along that axis: `[l, INFINITY]` is the wave
-    /// amplitude (1 - cos(2 pi x / l)) of Westergaard, two finite ones the double wave of Johnson,
-    /// Greenwood and Higginson (two crests on each lx x ly). The height from trough to crest is
-    /// twice the amplitude. On a periodic domain the domain should hold whole waves.
+    /// An infinite wavelength is straight along that axis: `[l, INFINITY]` is the wave amplitude (1 - cos(2 pi x / l)) of
+    /// Westergaard, two finite ones the double wave of Johnson, Greenwood and Higginson (two crests on each lx x ly). The height
+    /// from trough to crest is twice the amplitude. A periodic domain should contain a whole number of waves.
     Wave {
         /// Amplitude A \[m\].
         amplitude: f64,
@@ -163,7 +162,7 @@ impl Shape {
     /// Checks the shape's numbers.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a radius or wavelength is not positive (infinity is accepted), the
+    /// [`Error::Invalid`] if a radius or wavelength is not positive (infinity is accepted), the
     /// slope or a punch's size is not positive, or the amplitude is not finite.
     pub fn validate(&self) -> Result<()> {
         match self {
@@ -200,8 +199,8 @@ impl Shape {
 }
 
 impl Punch {
-    /// Whether the offset (x, y) \[m\] from the punch's centre lies under it; the edge does, to
-    /// 1 part in 1e12, so that rounding does not decide about cells whose centre is on it.
+    /// Whether the offset (x, y) \[m\] from the centre of the punch lies under it. The edge does, to 1 part in 1e12, so that the
+    /// result for cells whose centre is on the edge does not depend on rounding.
     pub fn covers(&self, x: f64, y: f64) -> bool {
         const EDGE: f64 = 1.0 + 1e-12;
         match self {
@@ -224,7 +223,7 @@ fn radius_or_flat(what: &str, value: f64) -> Result<()> {
 mod tests {
     use super::*;
 
-    // Rounding of a handful of operations on numbers of order one.
+    // Rounding of a few operations on numbers of order one.
     const ROUNDING: f64 = 1e-15;
 
     #[test]

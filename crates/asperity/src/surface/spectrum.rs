@@ -59,7 +59,7 @@ pub(super) fn wave_vector(grid: &Grid, (i, j): (usize, usize)) -> [f64; 2] {
     [TAU * kx / lx, TAU * j as f64 / ly]
 }
 
-/// How many waves the amplitude at (., j) stands for: itself, or itself and its conjugate.
+/// Number of waves that the amplitude at (., j) represents: itself, or itself and its conjugate.
 pub(super) fn count(grid: &Grid, j: usize) -> f64 {
     if j == 0 || 2 * j == grid.cells()[1] { 1.0 } else { 2.0 }
 }

@@ -4,9 +4,9 @@
 //! z(x, y) = sum over k of A_k exp(i q.x),   q = 2 pi (kx / Lx, ky / Ly),   A_(-k) = conj A_k
 //! ```
 //!
-//! with A_k a complex normal number times a given amplitude. The random number of a wave depends on the
-//! seed and on (kx, ky) alone: ky numbers the stream of the generator, kx the place in it, so that
-//! neither the grid nor the spectrum shifts it. Bits do not depend on machine or threads.
+//! with A_k a complex normal number times a given amplitude. The random number of a wave depends only on the seed and on (kx,
+//! ky): ky is the number of the stream of the generator, kx the position in it, so that it does not depend on the grid or the
+//! spectrum. Bits do not depend on machine or threads.
 
 use std::f64::consts::TAU;
 
@@ -19,7 +19,7 @@ use rustfft::num_complex::Complex64;
 use super::fourier::Transform;
 use crate::grid::Grid;
 
-/// Wavelengths that agree to this share are the same: 0.1 mm / 1024 is no exact binary number.
+/// Wavelengths that agree to this fraction are equal: 0.1 mm / 1024 is not an exact binary number.
 pub(super) const SAME: f64 = 1e-9;
 
 /// The plane waves of a domain with |q| up to a largest, one half plane of them: ky > 0, and ky = 0
@@ -82,7 +82,7 @@ impl Waves {
         let qy = self.fundamental[1] * ky as f64;
         let room = (self.largest * self.largest - qy * qy).max(0.0).sqrt();
         let reach = self.reach(0, room) as i64;
-        // 0, 1, -1, 2, -2, ...: a wave's place in the stream does not depend on how many follow.
+        // 0, 1, -1, 2, -2, ...: the position of a wave in the stream does not depend on the number of following waves.
         for kx in (0..=reach).flat_map(|k| [k, -k]).skip(1) {
             let normal = complex_normal(&mut random);
             if ky == 0 && kx <= 0 {

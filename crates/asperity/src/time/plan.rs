@@ -1,22 +1,22 @@
-//! Where the steps of a stage must end, and the rows of a run as far as they are known beforehand.
+//! The times at which the steps of a stage must end, and the rows of a run as far as they are known before it.
 
 use super::{Instant, SAME, TimeGrid};
 use crate::load::{Control, Course, History, Programme};
 
-/// Values that agree to this share are one where the control switches: the solver knows what it reached no
-/// better.
+/// When the control switches, values that agree to this fraction are equal: the solver does not know the value reached more
+/// accurately.
 const AGREE: f64 = 1e-5;
 
-/// An instant at which a step must end.
+/// A time at which a step must end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stop {
-    /// On the clock of the run \[s\].
+    /// In the time of the run \[s\].
     pub time: f64,
     /// The prescribed value, before a jump.
     pub before: f64,
     /// The value after a jump.
     pub after: Option<f64>,
-    /// The prescribed value or the temperature bends here.
+    /// The prescribed value or the temperature has a kink here.
     pub bend: bool,
 }
 
@@ -26,15 +26,15 @@ pub(crate) struct Span<'a> {
     pub start: f64,
     pub end: f64,
     pub run_end: f64,
-    /// Instants of the run and instants besides, on the clock of the run.
+    /// Times of the run and additional times, in the time of the run.
     pub include: &'a [f64],
-    /// Where the temperature bends.
+    /// Times at which the temperature has a kink.
     pub kinks: &'a [f64],
-    /// Whether the turns of the history are stops too: an event that comes and goes between two steps is met there.
+    /// Whether the extrema of the history are stops too: otherwise an event between two steps could be missed.
     pub turns: bool,
 }
 
-/// An instant on the clock of the run, that of the stage, and what it is.
+/// A time in the run, the time in the stage, and its kind.
 #[derive(Clone, Copy)]
 struct Mark {
     time: f64,
@@ -43,7 +43,7 @@ struct Mark {
     bend: bool,
 }
 
-/// Where the steps of a stage must end, in order. `own` is the stage's grid, on its clock.
+/// The times at which the steps of a stage must end, in order. `own` is the grid of the stage, in the time of the stage.
 pub(crate) fn stops(span: &Span<'_>, own: Option<&TimeGrid>, grid: &TimeGrid) -> Vec<Stop> {
     let Span { history, start, end, run_end, .. } = *span;
     let same = SAME * run_end;
@@ -63,7 +63,7 @@ pub(crate) fn stops(span: &Span<'_>, own: Option<&TimeGrid>, grid: &TimeGrid) ->
     let first = if start > 0.0 { start + same } else { 0.0 };
     marks.retain(|m| m.time > first && (m.is_break || m.time <= end));
     marks.push(outer(end, false));
-    // Stable: where a grid time falls on a break, the break comes first and is kept.
+    // Stable: if a grid time coincides with a kink or jump, the latter comes first and is kept.
     marks.sort_by(|a, b| a.time.total_cmp(&b.time));
     let mut merged: Vec<Mark> = Vec::with_capacity(marks.len());
     for mark in marks {
@@ -81,14 +81,14 @@ pub(crate) fn stops(span: &Span<'_>, own: Option<&TimeGrid>, grid: &TimeGrid) ->
     let stop = |mark: Mark| {
         let (before, after) = (history.before(mark.inside), history.after(mark.inside));
         let jumps = (after - before).abs() > 1e-12 * after.abs().max(before.abs());
-        // At its end a stage jumps no more: what comes after it is said by the next.
+        // A stage has no jump at its end: the next stage determines the value after it.
         let after = (jumps && mark.time < end - same.min(0.5 * (end - start))).then_some(after);
         Stop { time: mark.time, before, after, bend: mark.bend }
     };
     merged.into_iter().map(stop).collect()
 }
 
-/// Whether a quantity that has the value `reached` follows a course that begins at `value` without a jump.
+/// Whether a quantity with the value `reached` can follow a history that begins at `value` without a jump.
 pub(crate) fn agree(value: f64, reached: f64) -> bool {
     (value - reached).abs() <= AGREE * value.abs().max(reached.abs())
 }
@@ -96,15 +96,16 @@ pub(crate) fn agree(value: f64, reached: f64) -> bool {
 /// The rows of a run before it is solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// The rows. Where they are not [`exact`](Self::exact): with every stage at full length, the stages after an
-    /// event as if it came at once, and of adaptive steps the first after each break; their times may run back.
+    /// The rows. If they are not [`exact`](Self::exact), they assume that every stage has its full length and that an event
+    /// occurs immediately for the stages after it, and contain only the first adaptive step after each kink or jump; their times
+    /// may decrease.
     pub instants: Vec<Instant>,
-    /// Whether the run has these rows and no others. (A value is NaN where it is only known as the run goes.)
+    /// Whether the run has exactly these rows. (A value is NaN if it only becomes known during the run.)
     pub exact: bool,
 }
 
 impl Plan {
-    /// Length of the shortest step, and the last instant \[s\].
+    /// Length of the shortest step, and the last time \[s\].
     pub fn window(&self) -> [f64; 2] {
         let steps = self.instants.iter().map(|i| i.dt).filter(|dt| *dt > 0.0);
         let ends = self.instants.iter().map(|i| i.time);
@@ -113,9 +114,8 @@ impl Plan {
 }
 
 impl Programme {
-    /// The rows of a run with this grid: t = 0+, then every instant of the grid, every break of a history and
-    /// every time of `include`, and the ends of the stages; a jump adds a row of zero length after the row that
-    /// leads to it.
+    /// The rows of a run with this grid: t = 0+, then every time of the grid, every kink or jump of a history, every time of
+    /// `include`, and the ends of the stages. A jump adds a row of zero length after the row just before it.
     pub fn plan(&self, grid: &TimeGrid, include: &[f64]) -> Plan {
         let run_end = grid.end();
         let mut plan = Plan { instants: vec![], exact: true };
@@ -148,7 +148,7 @@ impl Programme {
                     && (k == 0 || stop.bend)
                     && last + first < stop.time
                 {
-                    // Steps may well be shorter than the longest first one.
+                    // Steps may be shorter than the largest first step.
                     let soon = 0.1 * first;
                     plan.instants.push(instant(last + soon, soon, f64::NAN, false));
                 }
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn stages_follow_each_other() {
-        // Pressed to 1 in 1 s, held for 1.5 s with instants of its own, then a jump to 3, to the end of the run.
+        // Pressed to 1 in 1 s, held for 1.5 s with its own times, then a jump to 3 until the end of the run.
         let ramp = Stage {
             duration: Some(1.0),
             ..Stage::new(Control::Load, History::Ramp { value: 1.0, duration: 1.0 })
@@ -237,12 +237,12 @@ mod tests {
             (4.0, 3.0, 2),
         ];
         assert_eq!(shown, wanted);
-        // Where the control switches, the value is known only as the run goes; its rows are known.
+        // When the control switches, the value only becomes known during the run; its rows are known.
         let approach = Stage { control: Control::Approach, ..hold.clone() };
         let plan = Programme::new(vec![ramp.clone(), approach]).plan(&grid, &[]);
         assert!(plan.exact && plan.instants[4].value.is_nan());
         assert_eq!(plan.instants.last().map(|i| i.time), Some(2.5));
-        // Not so with an event, or where a course may begin with a jump.
+        // This does not hold with an event, or if a history may begin with a jump.
         let event = Stage { until: Some(Event::ContactLost), ..ramp.clone() };
         assert!(!Programme::new(vec![event, hold.clone()]).plan(&grid, &[]).exact);
         let other = Stage::new(Control::Approach, History::Step { value: 1.0 });

@@ -21,8 +21,10 @@ mod tests;
 
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{ContactState, Outcome, Prescribed, Problem, Solver, SolverOptions, Start};
-use crate::error::{Error, NotConverged, Result};
+use crate::contact::{
+    ContactState, Outcome, Prescribed, Problem, Solver, SolverOptions, Start, not_converged,
+};
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::operator::Operator;
 use asperity_sweep::{each, sum, sums};
@@ -158,12 +160,9 @@ impl Run<'_> {
         let mut energy = f64::INFINITY;
         for _ in 0..MOST_PASSES {
             let pass = self.pass(problem)?;
-            self.total = Outcome {
-                iterations: self.total.iterations + pass.outcome.iterations,
-                convolutions: self.total.convolutions + pass.outcome.convolutions + 1,
-                residual: pass.residual.max(pass.outcome.residual),
-                ..pass.outcome
-            };
+            self.total = self.total.then(pass.outcome);
+            self.total.convolutions += 1;
+            self.total.residual = pass.residual.max(pass.outcome.residual);
             if pass.residual <= self.options.tolerance {
                 return Ok(());
             }
@@ -174,15 +173,7 @@ impl Run<'_> {
             best = best.min(pass.residual);
             energy = pass.energy.map_or(energy, |now| now.min(energy));
         }
-        Err(Error::NotConverged(NotConverged {
-            method: "surface traction",
-            iterations: self.total.iterations,
-            residual: self.total.residual,
-            tolerance: self.options.tolerance,
-            certificate: self.total.certificate,
-            time: None,
-            velocity: None,
-        }))
+        Err(not_converged("surface traction", self.options, &self.total))
     }
 
     fn pass(&mut self, problem: &Problem) -> Result<Pass> {

@@ -1,4 +1,4 @@
-//! Elastic contacts against closed forms, unit contact modulus.
+//! Elastic contacts compared with closed forms, for unit contact modulus.
 
 use super::{Check, Checks, elastic_contact, shape_on};
 use crate::contact::SolverOptions;
@@ -11,12 +11,12 @@ use crate::reference::{CappedHertz, CircularPunch, HertzEllipse, HertzSphere, Sn
 use crate::simulation::Simulation;
 use crate::surface::{Part, Punch, Shape, undeformed_gap};
 
-/// (dx/a)^2 times `factor`: what the discretisation leaves of approach and peak pressure.
+/// (dx/a)^2 times `factor`: the discretisation error of approach and peak pressure.
 fn second_order(dx: f64, a: f64, factor: f64) -> f64 {
     factor * (dx / a).powi(2)
 }
 
-/// A fifth of the last ring of cells: what the perimeter correction leaves of a counted area.
+/// A fifth of the last ring of cells: the error of a counted area after the perimeter correction.
 fn ring(dx: f64, a: f64) -> f64 {
     0.2 * 2.0 * dx / a
 }
@@ -67,8 +67,8 @@ pub(super) fn cone() -> Result<Vec<Check>> {
     let exact = SneddonCone::under_load(0.1, 1.0, 1.0)?;
     let (row, middle) = elastic_contact(shape_on(n, size, Shape::Cone { slope: 0.1 })?, 1.0)?;
     let (dx, a) = (size / n as f64, exact.contact_radius);
-    // The apex is a corner: no cell centre lies on it, the first touch lies dx/sqrt 2 off, and the
-    // approach is first order in dx. Counted from the apex it is second order again.
+    // The apex is a corner: no cell centre lies on it, first touch is at a distance of dx/sqrt 2, and the approach is of first
+    // order in dx. Measured from the apex it is of second order again.
     let apex = 0.1 * dx / 2f64.sqrt();
     checks.relative("approach from the apex", row.approach + apex, exact.approach, 2.0 * (dx / a).powi(2));
     // Row n/2 lies half a cell off the axis.
@@ -91,7 +91,7 @@ pub(super) fn flat_punch() -> Result<Vec<Check>> {
     let shape = Shape::FlatPunch(Punch::Circle { radius: 1.0 });
     let simulation = shape_on(n, size, shape)?;
     let dx = size / n as f64;
-    // The punch on the grid is its cells: compare with the circle of their area.
+    // The punch on the grid consists of its cells: compare with the circle of the same area.
     let cells = simulation.gap.iter().filter(|h| h.is_finite()).count() as f64;
     let radius = (cells * dx * dx / std::f64::consts::PI).sqrt();
     let exact = CircularPunch::under_load(radius, 1.0, 1.0)?;

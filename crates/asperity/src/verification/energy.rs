@@ -1,4 +1,4 @@
-//! Energy, stiffness and dents against closed forms and what follows from the contact conditions.
+//! Energy, stiffness and permanent flattening, compared with closed forms and consequences of the contact conditions.
 
 use super::{Check, Checks, shape_on, step_load, zener};
 use crate::contact::SolverOptions;
@@ -42,7 +42,7 @@ pub(super) fn hertz() -> Result<Vec<Check>> {
         checks.relative("elastic energy", elastic, 0.4 * load * a * a, (dx / a).powi(2));
         checks.relative("work of the jump", work, elastic, 1e-12);
         checks.absolute("heat over work", heat / work, 0.0);
-        // A stiffness is a radius, which is known to a fifth of a cell at the least.
+        // A stiffness corresponds to a radius, which is known to at least a fifth of a cell.
         checks.relative("contact stiffness", stiffness, 8.0 * a, 0.2 * dx / a);
         checks.relative("load", row.load, load, 1e-12);
     }
@@ -68,7 +68,7 @@ pub(super) fn balance() -> Result<Vec<Check>> {
         checks.relative("punch: heat", *heat, unit * 0.25 * (1.0 - fade * fade), 1e-6);
         checks.relative("punch: work", *work, elastic + heat, 1e-6);
     }
-    // A sphere pressed at once and on: second order.
+    // A sphere pressed suddenly and then further: second order.
     let imbalance = |steps: usize| -> Result<f64> {
         let history = History::Table { points: vec![(0.0, 0.005), (2.0, 0.02)] };
         let sphere = Simulation {
@@ -95,7 +95,7 @@ pub(super) fn dents() -> Result<Vec<Check>> {
         Ok(Simulation {
             creep: Creep::elastic(0.25),
             hardness: 0.15,
-            // Tight, so that equal sets are found equal.
+            // A small tolerance, so that equal sets are found to be equal.
             solver: SolverOptions { tolerance: 1e-9, ..SolverOptions::default() },
             plasticity,
             loading: Loading { control: Control::Load, history }.into(),

@@ -102,7 +102,7 @@ pub(super) fn long_time_limit() -> Result<Vec<Check>> {
             let cap = if hardness.is_finite() { "capped" } else { "uncapped" };
             let at_cap = last.iter().filter(|p| **p >= hardness).count();
             debug_assert!(hardness.is_infinite() || at_cap > 0, "the cap is not reached");
-            // What the steps left of the past decays with the last, longest one: exp(-dt/tau), squared in the norm.
+            // The remaining history decays within the last, longest step: exp(-dt/tau), squared in the norm.
             checks.absolute(format!("|dp|/|p|, {}, {cap}", name(boundary)), error, 1e-5);
         }
     }

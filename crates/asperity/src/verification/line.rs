@@ -1,4 +1,4 @@
-//! Line contacts against closed forms, unit contact modulus.
+//! Line contacts compared with closed forms, for unit contact modulus.
 
 use crate::drive::Drive;
 use std::f64::consts::{FRAC_2_PI, PI};
@@ -49,11 +49,11 @@ pub(super) fn hertz() -> Result<Vec<Check>> {
         (row.contact_area - 2.0 * a).abs() / grid.spacing()[0],
         2.0, // a cell at each end
     );
-    // u(x) - u(0) outside of the contact: (2 W / pi E*) (z sqrt(z^2 - 1) - ln(z + sqrt(z^2 - 1)) - z^2), z = x/a.
+    // u(x) - u(0) outside the contact: (2 W / pi E*) (z sqrt(z^2 - 1) - ln(z + sqrt(z^2 - 1)) - z^2), z = x/a.
     let deep = |x: f64| {
         let z = (x / a).abs();
         let root = (z * z - 1.0).max(0.0).sqrt();
-        // Inside of the contact the displacement follows the cylinder.
+        // Inside the contact the displacement follows the cylinder.
         let outside = if z > 1.0 { z * root - (z + root).ln() } else { 0.0 };
         FRAC_2_PI * load * (outside - z * z)
     };
@@ -113,7 +113,7 @@ pub(super) fn westergaard() -> Result<Vec<Check>> {
         let (row, ..) = contact(simulation)?;
         let dx = 1.0 / n as f64;
         let name = |what: &str| format!("{what} at {share} p*");
-        // As of the wave on a plane: each end of the contact is known to a cell.
+        // As for the wave on a plane: each end of the contact is known to a cell.
         let off = (row.contact_fraction - exact.contact_fraction()).abs();
         checks.absolute(name("contact fraction"), off, 2.0 * dx);
         checks.relative(name("peak pressure"), row.max_pressure, exact.pressure(0.0), 2.0 * dx);

@@ -17,8 +17,8 @@ fn sphere() -> Result<Simulation> {
 }
 
 pub(super) fn press_and_hold() -> Result<Vec<Check>> {
-    // While the contact does not shrink W(t) = int E*(t - s) dL(s), where L(s) = W0 C(s) under the load W0 and stands
-    // still while the approach does: W/W0 = 1 - exp(-t1)/2 + exp(t1 - 2 t)/2 after the switch at t1 = 1.
+    // While the contact does not shrink W(t) = int E*(t - s) dL(s), where L(s) = W0 C(s) under the load W0 and is constant while
+    // the approach is constant: W/W0 = 1 - exp(-t1)/2 + exp(t1 - 2 t)/2 after the switch at t1 = 1.
     let mut checks = Checks::new("press-hold", "W(t) = int E*(t - s) dL(s), Lee & Radok 1960, closed form");
     let press = Stage { duration: Some(1.0), ..Stage::new(Control::Load, History::Step { value: 0.2 }) };
     let hold = Stage::new(Control::Approach, Course::Hold);
@@ -28,14 +28,14 @@ pub(super) fn press_and_hold() -> Result<Vec<Check>> {
     let exact = |t: f64| 0.2 * (1.0 - 0.5 * libm::exp(-1.0) + 0.5 * libm::exp(1.0 - 2.0 * t));
     let held = rows.iter().filter(|row| row.stage == 1);
     let error = held.map(|row| (row.load / exact(row.time()) - 1.0).abs()).fold(0.0, f64::max);
-    // Exact in any steps but for the solver.
+    // Exact in any steps except for the solver tolerance.
     checks.absolute("load while the approach is held, largest relative difference", error, 1e-5);
     Ok(checks.list)
 }
 
 pub(super) fn event() -> Result<Vec<Check>> {
-    // Under the load W0 the approach is w(0) (C(t)/C(0))^(2/3) for a sphere; it reaches 1.2 w(0) where C(t) = 1.2^1.5 C(0).
-    // On a grid the contact grows by whole cells: compared with the grid's own elastic contact, whatever its exponent.
+    // Under the load W0 the approach is w(0) (C(t)/C(0))^(2/3) for a sphere; it reaches 1.2 w(0) where C(t) = 1.2^1.5 C(0). On a
+    // grid the contact grows by whole cells, so it is compared with the elastic contact on the same grid, for any exponent.
     let mut checks =
         Checks::new("event", "approach of one elastic contact with C(t), at the time of the event");
     let first = rows(Simulation {
@@ -52,7 +52,7 @@ pub(super) fn event() -> Result<Vec<Check>> {
     let loading = Programme::new(vec![press]);
     let found = rows(Simulation { loading, times, ..sphere()? })?;
     let time = found.last().map_or(0.0, |row| row.time());
-    // The load that an elastic contact of compliance C(0) needs for the target tells C(t) at the event.
+    // The load that an elastic contact of compliance C(0) needs for the target gives C(t) at the event.
     let history = History::Step { value: target };
     let elastic = rows(Simulation {
         loading: Loading { control: Control::Approach, history }.into(),
@@ -76,7 +76,7 @@ pub(super) fn pull_off() -> Result<Vec<Check>> {
     let open: Vec<&Row> = rows.iter().filter(|row| row.time() >= 1.0).collect();
     let left = open.iter().map(|row| row.contact_area + row.load + row.max_pressure).fold(0.0, f64::max);
     checks.absolute("area, load and pressure left", left, 0.0);
-    // The deepest point of the dent of a sphere stays below its apex: it touches there first.
+    // The deepest point of the indentation of a sphere stays below its apex: it touches there first.
     let start = open.first().map_or(0.0, |row| row.mean_gap + row.approach);
     let rest = rows.first().map_or(0.0, |row| row.mean_gap + row.approach);
     let error = open.iter().map(|row| {
@@ -144,7 +144,7 @@ pub(super) fn dense_output() -> Result<Vec<Check>> {
         }
         Ok(worst)
     };
-    // The rim of the contact moves by a share of dt: second order of a step of a tenth of the retardation time.
+    // The rim of the contact moves in proportion to dt: second order for a step of a tenth of the retardation time.
     checks.absolute("approach, steps of 0.1", run(30)?, 1e-2);
     checks.absolute("approach, steps of 0.05", run(60)?, 2.5e-3);
     Ok(checks.list)

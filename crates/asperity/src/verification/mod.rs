@@ -1,9 +1,9 @@
-//! The solver against facts that it does not know: closed forms, one-dimensional solutions, and
-//! invariants that hold on every grid.
+//! Comparison of the solver with independent facts: closed forms, one-dimensional solutions, and invariants that hold on every
+//! grid.
 //!
-//! `asperity verify` prints these checks and the tests assert them. Each tolerance follows from the
-//! discretisation, never from the error found: approach and peak pressure converge as (dx/a)^2, an
-//! area is known to a part of its last ring of cells, invariants hold to the solver's tolerance.
+//! `asperity verify` prints these checks and the tests assert them. Each tolerance follows from the discretisation, never from
+//! the observed error: approach and peak pressure converge as (dx/a)^2, an area is known to a fraction of its last ring of cells,
+//! and invariants hold to the tolerance of the solver.
 
 mod elastic;
 mod energy;
@@ -29,18 +29,18 @@ use crate::surface::{Part, Shape, undeformed_gap};
 pub struct Check {
     /// The case.
     pub case: &'static str,
-    /// What is compared, with its instant where there is one.
+    /// The compared quantity, with its time if there is one.
     pub quantity: String,
     /// The independent fact and its source.
     pub fact: &'static str,
     /// |found/expected - 1|, or the difference in the unit that the quantity names.
     pub error: f64,
-    /// What the discretisation allows.
+    /// The tolerance, from the discretisation.
     pub tolerance: f64,
 }
 
 impl Check {
-    /// True where the error is within the tolerance (a NaN is not).
+    /// True if the error is within the tolerance (a NaN is not).
     pub fn ok(&self) -> bool {
         self.error <= self.tolerance
     }
@@ -85,7 +85,7 @@ pub const CASES: [Case; 32] = [
     ("lasting-dents", energy::dents),
 ];
 
-/// The checks of one case, as it gathers them.
+/// The checks of one case.
 struct Checks {
     case: &'static str,
     fact: &'static str,
@@ -97,12 +97,12 @@ impl Checks {
         Checks { case, fact, list: vec![] }
     }
 
-    /// |found/expected - 1| against a tolerance.
+    /// Compares |found/expected - 1| with a tolerance.
     fn relative(&mut self, quantity: impl Into<String>, found: f64, expected: f64, tolerance: f64) {
         self.absolute(quantity, (found / expected - 1.0).abs(), tolerance);
     }
 
-    /// An error against a tolerance.
+    /// Compares an error with a tolerance.
     fn absolute(&mut self, quantity: impl Into<String>, error: f64, tolerance: f64) {
         let (case, fact) = (self.case, self.fact);
         self.list.push(Check { case, quantity: quantity.into(), fact, error, tolerance });

@@ -1,5 +1,5 @@
-//! Arbitrary histories against the row of springs of the method of dimensionality reduction: unloading, opening and
-//! loading again, which no closed form covers.
+//! Arbitrary histories compared with the row of springs of the method of dimensionality reduction: unloading, opening and
+//! reloading, for which there is no closed form.
 
 use super::{Check, Checks, rows, shape_on, zener, zener_relaxation};
 use crate::error::Result;
@@ -10,11 +10,11 @@ use crate::step::Row;
 use crate::surface::Shape;
 use crate::time::TimeGrid;
 
-/// Cells along a side, and steps.
+/// Cells per side, and steps.
 const CELLS: usize = 97;
 const STEPS: usize = 180;
 
-/// The rows of the march and the states of the springs at the same instants.
+/// The rows of the run and the states of the springs at the same times.
 fn both(
     shape: Shape,
     profile: MdrProfile,
@@ -63,7 +63,7 @@ pub(super) fn cone_under_approach() -> Result<Vec<Check>> {
     let pairs = both(Shape::Cone { slope: 0.1 }, MdrProfile::Cone { slope: 0.1 }, size, loading, 3.4)?;
     let scale = largest(&pairs, |row, _| row.load);
     let error = largest(&pairs, |row, state| (row.load - state.load).abs()) / scale;
-    // The tip lies on a cell centre, the grid's cone is blunt by a share of dx slope: first order in dx/a.
+    // The tip lies on a cell centre, and the cone on the grid is blunt by a fraction of dx slope: first order in dx/a.
     let dx = size / CELLS as f64;
     checks.absolute("load, largest difference over its peak", error, dx / 0.64);
     Ok(checks.list)

@@ -1,4 +1,4 @@
-//! Bodies whose temperature changes: reduced time against closed forms and the row of springs.
+//! Bodies whose temperature changes: reduced time compared with closed forms and the row of springs.
 
 use super::{Check, Checks, rows, shape_on, step_load, zener, zener_relaxation};
 use crate::error::Result;
@@ -18,7 +18,7 @@ fn shift() -> Shift {
 /// Cold, a jump up at 0.5, a ramp from 1 to 2, held.
 const TEMPERATURES: [(f64, f64); 5] = [(0.0, 290.0), (0.5, 290.0), (0.5, 300.0), (1.0, 300.0), (2.0, 310.0)];
 
-/// Its reduced time by hand: 1/8 per second, then 1, then int exp(ln 8 s) ds, then 8.
+/// Its reduced time computed by hand: 1/8 per second, then 1, then int exp(ln 8 s) ds, then 8.
 fn reduced(t: f64) -> f64 {
     let eight = 8f64.ln();
     let [cold, warm, rising, hot] = [t.min(0.5), t.clamp(0.5, 1.0) - 0.5, t.clamp(1.0, 2.0) - 1.0, t - 2.0];

@@ -1,4 +1,4 @@
-//! Viscoelastic contacts against solutions in time.
+//! Viscoelastic contacts compared with solutions in time.
 
 use super::{Check, Checks, rows, shape_on, zener, zener_relaxation};
 use crate::contact::SolverOptions;
@@ -40,7 +40,7 @@ pub(super) fn ting_triangle() -> Result<Vec<Check>> {
     Ok(checks.list)
 }
 
-/// A unit sphere under a load history, compared with Ting's solution at some of its instants.
+/// A unit sphere under a load history, compared with Ting's solution at some times.
 fn sphere_follows(
     checks: &mut Checks,
     history: &History,
@@ -66,7 +66,7 @@ fn sphere_follows(
         }
         let state = exact.at(row.time())?;
         let at = |what: &str| format!("{what} at t = {}", row.time());
-        // Second order in space; the 80 steps per history add 1e-4 (their order is checked apart).
+        // Second order in space; the 80 steps per history add 1e-4 (their order is checked separately).
         let tolerance = (dx / state.contact_radius).powi(2) + 1e-4;
         checks.relative(at("approach"), row.approach, state.approach, tolerance);
         let centre = step.pressure()[(n / 2, n / 2)];
@@ -116,7 +116,7 @@ pub(super) fn westergaard_creep() -> Result<Vec<Check>> {
     Ok(checks.list)
 }
 
-/// What the solver's tolerance of 1e-8 leaves of a ratio of two loads.
+/// Error of a ratio of two loads from the solver tolerance of 1e-8.
 const HELD: f64 = 1e-6;
 
 pub(super) fn stiff_held_approach() -> Result<Vec<Check>> {
@@ -175,7 +175,7 @@ pub(super) fn held_approach() -> Result<Vec<Check>> {
     let (dx, a) = (size / n as f64, depth.sqrt());
     checks.relative("load at t = 0", rows[0].load, exact, 2.0 * (dx / a).powi(2));
     let last = &rows[rows.len() - 1];
-    // Exact in any steps but for the solver.
+    // Exact in any steps except for the solver tolerance.
     checks.relative(
         "load at t = 2 over load at t = 0",
         last.load / rows[0].load,
@@ -206,7 +206,7 @@ pub(super) fn flat_punch_history() -> Result<Vec<Check>> {
     };
     let rows = rows(simulation)?;
     let depth = |t: f64| CircularPunch::viscoelastic(1.0, &zener(), &history, t).map(|p| p.approach);
-    // The grid's punch differs from a circle by one factor, the same at all times.
+    // The punch on the grid differs from a circle by one factor, which is the same at all times.
     let factor = rows[0].approach / depth(0.0)?;
     for row in rows.iter().filter(|r| r.time() != 3.0) {
         checks.relative(
@@ -221,7 +221,7 @@ pub(super) fn flat_punch_history() -> Result<Vec<Check>> {
 
 pub(super) fn order_in_time() -> Result<Vec<Check>> {
     let mut checks = Checks::new("order-in-time", "twice the steps, a quarter of the error (second order)");
-    // A punch whose approach goes as a sine: the contact stands, and W = S int E*(t - s) d(delta)(s).
+    // A punch with a sinusoidal approach: the contact does not change, and W = S int E*(t - s) d(delta)(s).
     let (mean, amplitude, frequency) = (0.02, 0.01, 0.4);
     let solve = |steps: usize| -> Result<[f64; 2]> {
         let history = History::Sine { mean, amplitude, frequency };

@@ -11,24 +11,32 @@ use self::cost::Cost;
 use crate::args::Check;
 use crate::failure::Failure;
 use crate::format::{bytes, counted, duration, quantity};
+use crate::verb::{Threads, Verb};
 
-/// Validates the case, builds its gap, and says what will be solved.
-pub fn run(args: &Check) -> Result<(), Failure> {
-    let case = Case::read(&args.case, &args.common.set)?;
-    // The files are read and the gap is built: what `run` would refuse is refused here.
-    let examined = case.examine()?;
-    let cost = cost::cost(&case, &examined.description);
-    if args.json {
-        let mut object = serde_json::to_value(&examined).unwrap_or_default();
-        object["estimated_s"] =
-            json!(cost.as_ref().map(|cost| cost.seconds + cost::seconds_after(&case, &examined.description)));
-        object["estimated_rows"] = json!(cost.as_ref().map(|cost| cost.estimate.rows));
-        object["estimated_convolutions"] = json!(cost.as_ref().map(|cost| cost.estimate.convolutions));
-        crate::print(&format!("{object}\n"))?;
-    } else {
-        crate::print(&summary(&case, &examined, cost.as_ref()))?;
+impl Verb for Check {
+    fn threads(&self) -> Threads {
+        Threads::of(self.common.threads)
     }
-    super::findings::strict(args.strict, &examined.findings)
+
+    /// Validates the case, builds its gap, and says what will be solved.
+    fn run(&self) -> Result<(), Failure> {
+        let case = Case::read(&self.case, &self.common.set)?;
+        // The files are read and the gap is built: what `run` would refuse is refused here.
+        let examined = case.examine()?;
+        let cost = cost::cost(&case, &examined.description);
+        if self.json {
+            let mut object = serde_json::to_value(&examined).unwrap_or_default();
+            object["estimated_s"] = json!(
+                cost.as_ref().map(|cost| cost.seconds + cost::seconds_after(&case, &examined.description))
+            );
+            object["estimated_rows"] = json!(cost.as_ref().map(|cost| cost.estimate.rows));
+            object["estimated_convolutions"] = json!(cost.as_ref().map(|cost| cost.estimate.convolutions));
+            crate::print(&format!("{object}\n"))?;
+        } else {
+            crate::print(&summary(&case, &examined, cost.as_ref()))?;
+        }
+        super::findings::strict(self.strict, &examined.findings)
+    }
 }
 
 /// The retardation times, or how many and from where to where.

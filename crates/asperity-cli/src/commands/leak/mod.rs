@@ -17,16 +17,31 @@ use crate::args;
 use crate::failure::Failure;
 use crate::format::quantity;
 use crate::messages::message;
+use crate::verb::{Paths, Threads, Verb};
 
-/// Computes the leakage, or shows the one that is stored.
-pub fn run(args: &args::Leak) -> Result<(), Failure> {
-    match (&args.result, &args.gap) {
-        (Some(_), _) if args.plot.is_some() => Err(Failure::input(
-            "--plot draws a map of the gap (--gap FILE); the figure of a result is drawn by: asperity plot RESULT leak",
-        )),
-        (Some(result), _) => result_leak(args, result),
-        (None, Some(path)) => gap::run(args, path),
-        (None, None) => Err(Failure::input("name a result, or a map of the gap with --gap FILE")),
+impl Verb for args::Leak {
+    fn reads(&self) -> Paths<'_> {
+        vec![self.result.as_ref(), self.gap.as_ref(), self.contact.as_ref()]
+    }
+
+    fn writes(&self) -> Paths<'_> {
+        vec![self.plot.as_ref()]
+    }
+
+    fn threads(&self) -> Threads {
+        Threads::of(self.threads)
+    }
+
+    /// Computes the leakage, or shows the one that is stored.
+    fn run(&self) -> Result<(), Failure> {
+        match (&self.result, &self.gap) {
+            (Some(_), _) if self.plot.is_some() => Err(Failure::input(
+                "--plot draws a map of the gap (--gap FILE); the figure of a result is drawn by: asperity plot RESULT leak",
+            )),
+            (Some(result), _) => result_leak(self, result),
+            (None, Some(path)) => gap::run(self, path),
+            (None, None) => Err(Failure::input("name a result, or a map of the gap with --gap FILE")),
+        }
     }
 }
 

@@ -8,34 +8,45 @@ use asperity_io::material_export::{Exported, Program, text};
 use super::{failed, parsed, write};
 use crate::args::{MaterialExport, To};
 use crate::failure::Failure;
+use crate::verb::{Paths, Verb};
 
-/// Writes or prints it.
-pub fn export(args: &MaterialExport) -> Result<(), Failure> {
-    if let Some(path) = &args.output {
-        crate::commands::free(path, args.force)?;
+impl Verb for MaterialExport {
+    fn reads(&self) -> Paths<'_> {
+        vec![Some(&self.file)]
     }
-    let specimens = specimens(&args.file, &args.set, None)?;
-    let specimen = chosen(&specimens, args)?;
-    let poisson = match &args.poisson {
-        Some(text) => Some(Lateral::Poisson(parsed::<Number<range::Poisson>>("--poisson", text)?.get())),
-        None => None,
-    };
-    let (material, shift) = specimen.at_reference().map_err(failed)?;
-    let lateral = poisson.or(specimen.lateral);
-    let vertical = specimen.report.vertical_law.as_ref();
-    let exported = Exported { name: &specimen.name, material: &material, lateral, shift, vertical };
-    let program = match args.to {
-        To::Abaqus => Program::Abaqus,
-        To::Ansys => Program::Ansys,
-        To::Comsol => Program::Comsol,
-        To::Csv => Program::Csv,
-    };
-    let help = if lateral.is_none() { " (--poisson NU)" } else { "" };
-    let text = text(&exported, program)
-        .map_err(|error| Failure::input(format!("{}: {error}{help}", args.file.display())))?;
-    match &args.output {
-        Some(path) => write(path, &text, args.force),
-        None => crate::print(&text),
+
+    fn writes(&self) -> Paths<'_> {
+        vec![self.output.as_ref()]
+    }
+
+    /// Writes or prints it.
+    fn run(&self) -> Result<(), Failure> {
+        if let Some(path) = &self.output {
+            crate::commands::free(path, self.force)?;
+        }
+        let specimens = specimens(&self.file, &self.set, None)?;
+        let specimen = chosen(&specimens, self)?;
+        let poisson = match &self.poisson {
+            Some(text) => Some(Lateral::Poisson(parsed::<Number<range::Poisson>>("--poisson", text)?.get())),
+            None => None,
+        };
+        let (material, shift) = specimen.at_reference().map_err(failed)?;
+        let lateral = poisson.or(specimen.lateral);
+        let vertical = specimen.report.vertical_law.as_ref();
+        let exported = Exported { name: &specimen.name, material: &material, lateral, shift, vertical };
+        let program = match self.to {
+            To::Abaqus => Program::Abaqus,
+            To::Ansys => Program::Ansys,
+            To::Comsol => Program::Comsol,
+            To::Csv => Program::Csv,
+        };
+        let help = if lateral.is_none() { " (--poisson NU)" } else { "" };
+        let text = text(&exported, program)
+            .map_err(|error| Failure::input(format!("{}: {error}{help}", self.file.display())))?;
+        match &self.output {
+            Some(path) => write(path, &text, self.force),
+            None => crate::print(&text),
+        }
     }
 }
 

@@ -13,53 +13,65 @@ use super::{celsius, failed, symbols, write};
 use crate::args::Fit;
 use crate::failure::Failure;
 use crate::format::quantity;
+use crate::verb::{Paths, Verb};
 
 /// Room temperature \[K\]: shifts are estimated about the sweep nearest to it where no reference is given.
 const ROOM: f64 = 293.15;
 
-/// Fits, reports, writes and draws.
-pub fn fit(args: &Fit) -> Result<(), Failure> {
-    // What cannot be written is said before the work.
-    for path in args.output.iter().chain(&args.plot) {
-        crate::commands::free(path, args.force)?;
+impl Verb for Fit {
+    fn reads(&self) -> Paths<'_> {
+        vec![Some(&self.data), self.shift_table.as_ref()]
     }
-    let (shift, vertical, options) =
-        (options::shift(args)?, options::vertical(args)?, options::options(args)?);
-    let mut curves = options::curves(&args.data, &args.table)?;
-    let window = args.window.as_deref().map(|text| options::ends(curves.kind, text)).transpose()?;
-    let measure = args.modulus.or(curves.measure).unwrap_or_else(|| {
+
+    fn writes(&self) -> Paths<'_> {
+        vec![self.output.as_ref(), self.plot.as_ref()]
+    }
+
+    /// Fits, reports, writes and draws.
+    fn run(&self) -> Result<(), Failure> {
+        // What cannot be written is said before the work.
+        for path in self.output.iter().chain(&self.plot) {
+            crate::commands::free(path, self.force)?;
+        }
+        let (shift, vertical, options) =
+            (options::shift(self)?, options::vertical(self)?, options::options(self)?);
+        let mut curves = options::curves(&self.data, &self.table)?;
+        let window = self.window.as_deref().map(|text| options::ends(curves.kind, text)).transpose()?;
+        let measure = self.modulus.or(curves.measure).unwrap_or_else(|| {
         let note = "the header does not say which: taken as Young's moduli; --modulus shear takes them as shear moduli";
         curves.notes.push(note.to_owned());
         Modulus::Young
     });
-    let shift = estimated_unless_known(shift, &mut curves);
-    let fitted = Request { measure, shift, vertical, window, options }.fit(&curves).map_err(refused)?;
-    let findings = findings(&args.data.display().to_string(), &fitted);
-    let block = fitted.to_toml(&curves);
-    if let Some(path) = &args.output {
-        write(path, &block, args.force)?;
-    }
-    if let Some(path) = &args.plot {
-        let title = args.data.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
-        let figure = pictures::fit(&title, &curves, &fitted).map_err(failed)?;
-        crate::commands::picture::write(&figure, path, args.force)?;
-    }
-    if args.json {
-        let mut object = json_of(&curves, &fitted);
-        object["output"] = json!(args.output);
-        object["material"] = json!(block);
-        object["findings"] = asperity_io::finding::list(&findings);
-        return crate::print(&format!("{object}\n"));
-    }
-    crate::commands::findings::print(&findings);
-    let mut text = report(args, &curves, &fitted);
-    match &args.output {
-        Some(path) => {
-            let _ = writeln!(text, "written     {}", path.display());
+        let shift = estimated_unless_known(shift, &mut curves);
+        let fitted = Request { measure, shift, vertical, window, options }.fit(&curves).map_err(refused)?;
+        let findings = findings(&self.data.display().to_string(), &fitted);
+        let block = fitted.to_toml(&curves);
+        if let Some(path) = &self.output {
+            write(path, &block, self.force)?;
         }
-        None => text = format!("{text}\n{block}"),
+        if let Some(path) = &self.plot {
+            let title =
+                self.data.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+            let figure = pictures::fit(&title, &curves, &fitted).map_err(failed)?;
+            crate::commands::picture::write(&figure, path, self.force)?;
+        }
+        if self.json {
+            let mut object = json_of(&curves, &fitted);
+            object["output"] = json!(self.output);
+            object["material"] = json!(block);
+            object["findings"] = asperity_io::finding::list(&findings);
+            return crate::print(&format!("{object}\n"));
+        }
+        crate::commands::findings::print(&findings);
+        let mut text = report(self, &curves, &fitted);
+        match &self.output {
+            Some(path) => {
+                let _ = writeln!(text, "written     {}", path.display());
+            }
+            None => text = format!("{text}\n{block}"),
+        }
+        crate::print(&text)
     }
-    crate::print(&text)
 }
 
 /// Several temperatures without a shift: it is estimated, about the temperature nearest to that of a room.

@@ -17,19 +17,28 @@ use asperity_io::case::{MaterialReport, Specimen, specimens};
 use asperity_report::material as pictures;
 use serde_json::{Value, json};
 
-use crate::args::{Material, Show};
+use crate::args::Show;
 use crate::failure::Failure;
 use crate::format::{counted, quantity};
+use crate::verb::{Paths, Verb};
 pub(super) use options::{columns, parsed};
 
-/// Shows a material or fits one.
-pub fn run(command: &Material) -> Result<(), Failure> {
-    match command {
-        Material::Show(show) if show.layers => layers::show(show),
-        Material::Show(show) if measured::is_data(&show.file) => measured::show(show),
-        Material::Show(show) => self::show(show),
-        Material::Fit(fit) => fit::fit(fit),
-        Material::Export(export) => export::export(export),
+impl Verb for Show {
+    fn reads(&self) -> Paths<'_> {
+        vec![Some(&self.file)]
+    }
+
+    fn writes(&self) -> Paths<'_> {
+        vec![self.plot.as_ref()]
+    }
+
+    /// Prints what a material does, or what a file of measured data holds.
+    fn run(&self) -> Result<(), Failure> {
+        match self {
+            show if show.layers => layers::show(show),
+            show if measured::is_data(&show.file) => measured::show(show),
+            show => self::show(show),
+        }
     }
 }
 

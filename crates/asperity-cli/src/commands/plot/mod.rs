@@ -17,6 +17,7 @@ use crate::args;
 use crate::failure::Failure;
 use crate::format::counted;
 use crate::input::{meant, read};
+use crate::verb::{Paths, Verb};
 
 /// Whether a command line names a result but not what to draw of it: the one word of two that `asperity plot` needs is a path.
 pub fn lacks_figure(words: &[OsString], error: &clap::Error) -> bool {
@@ -35,38 +36,43 @@ pub fn lacks_figure(words: &[OsString], error: &clap::Error) -> bool {
 pub fn no_figure() -> Failure {
     Failure::input(format!(
         "what to draw is missing: asperity plot RESULT WHAT, with WHAT one of {}",
-        figures()
+        Plot::names()
     ))
 }
 
-/// The names of all figures.
-fn figures() -> String {
-    Plot::ALL.map(Plot::name).join(", ")
-}
-
-/// Draws the figure and prints where it is.
-pub fn run(args: &args::Plot) -> Result<(), Failure> {
-    let Some(plot) = Plot::from_name(&args.what) else {
-        return Err(match Path::new(&args.what).exists() {
-            true => no_figure(),
-            false => {
-                let near = meant(&args.what, &Plot::ALL.map(Plot::name));
-                Failure::input(format!(
-                    "there is no figure \"{}\"{near}; choose one of {}",
-                    args.what,
-                    figures()
-                ))
-            }
-        });
-    };
-    options::check(args, plot)?;
-    let mut all = vec![];
-    for (path, name) in args.results.iter().zip(names(&args.results)) {
-        all.push((name, Reader::open(path).map_err(failed)?));
+impl Verb for args::Plot {
+    fn reads(&self) -> Paths<'_> {
+        self.results.iter().map(Some).collect()
     }
-    match &args.animate {
-        Some(path) => animate(args, plot, &all, path),
-        None => draw(args, plot, all),
+
+    fn writes(&self) -> Paths<'_> {
+        vec![self.output.as_ref(), self.animate.as_ref()]
+    }
+
+    /// Draws the figure and prints where it is.
+    fn run(&self) -> Result<(), Failure> {
+        let Some(plot) = Plot::from_name(&self.what) else {
+            return Err(match Path::new(&self.what).exists() {
+                true => no_figure(),
+                false => {
+                    let near = meant(&self.what, &Plot::ALL.map(Plot::name));
+                    Failure::input(format!(
+                        "there is no figure \"{}\"{near}; choose one of {}",
+                        self.what,
+                        Plot::names()
+                    ))
+                }
+            });
+        };
+        options::check(self, plot)?;
+        let mut all = vec![];
+        for (path, name) in self.results.iter().zip(names(&self.results)) {
+            all.push((name, Reader::open(path).map_err(failed)?));
+        }
+        match &self.animate {
+            Some(path) => animate(self, plot, &all, path),
+            None => draw(self, plot, all),
+        }
     }
 }
 

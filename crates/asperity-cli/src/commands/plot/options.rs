@@ -31,8 +31,7 @@ pub(super) fn check(args: &args::Plot, plot: Plot) -> Result<(), Failure> {
             return refused(option, format!("it is for the maps {}", with_maps()));
         }
     }
-    let has_colours = plot.unit().is_some() || plot == Plot::Leak;
-    if args.colours.is_some() && !has_colours {
+    if args.colours.is_some() && !plot.has_colours() {
         return refused("--colours", format!("it is for the maps {} and leak", with_maps()));
     }
     let place = if args.at.is_some() { "--at" } else { "--along y" };

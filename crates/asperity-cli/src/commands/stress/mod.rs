@@ -20,62 +20,78 @@ use crate::args::Stress;
 use crate::failure::Failure;
 use crate::input::read;
 use crate::messages::message;
+use crate::verb::{Paths, Threads, Verb};
 
 /// Fields of a volume where none are named.
 const USUAL: [StressQuantity; 3] = [StressQuantity::Mises, StressQuantity::Tresca, StressQuantity::Tension];
 
-/// Computes and stores the stress, or shows the one that is stored; then draws and writes what is asked for.
-pub fn run(args: &Stress) -> Result<(), Failure> {
-    if let Some(path) = &args.plot {
-        Form::of(path).map_err(failed)?;
+impl Verb for Stress {
+    fn reads(&self) -> Paths<'_> {
+        vec![Some(&self.result)]
     }
-    for path in args.plot.iter().chain(&args.output) {
-        super::free(path, args.force)?;
+
+    fn writes(&self) -> Paths<'_> {
+        vec![self.plot.as_ref(), self.output.as_ref()]
     }
-    let reader = Reader::open(&args.result).map_err(failed)?;
-    let plan = plan(args, &reader)?;
-    let stored = Below::of(&reader).map_err(failed)?;
-    let below = match stored {
-        Some(below) if StressPlan::of(&below.set, &reader) == plan => below,
-        _ if args.no_store => of_result(&reader, &plan, &crate::interrupt::flag()).map_err(ended)?,
-        stored => {
-            if let Some(stored) = stored {
-                let words = StressPlan::of(&stored.set, &reader).words();
-                message!("replaces the stored stress {words} (--no-store computes without storing)");
-            }
-            store(args, &plan)?
+
+    fn threads(&self) -> Threads {
+        Threads::of(self.threads)
+    }
+
+    /// Computes and stores the stress, or shows the one that is stored; then draws and writes what is asked for.
+    fn run(&self) -> Result<(), Failure> {
+        if let Some(path) = &self.plot {
+            Form::of(path).map_err(failed)?;
         }
-    };
-    let at = match &args.time {
-        Some(text) => At::Time(read::<Time>("--time", text, "500 s")?.get()),
-        None => below.worst().map_or(At::Last, |worst| At::Index(worst.index)),
-    };
-    let index = reader.index(at).map_err(failed)?;
-    let mut written = vec![];
-    if let Some(path) = &args.plot {
-        let one = Reader::open(&args.result).map_err(failed)?;
-        let shown = match below.instants.iter().any(|instant| instant.index == index) {
-            true => below.clone(),
-            false => below_at(&one, &plan, at).map_err(ended)?,
+        for path in self.plot.iter().chain(&self.output) {
+            super::free(path, self.force)?;
+        }
+        let reader = Reader::open(&self.result).map_err(failed)?;
+        let plan = plan(self, &reader)?;
+        let stored = Below::of(&reader).map_err(failed)?;
+        let below = match stored {
+            Some(below) if StressPlan::of(&below.set, &reader) == plan => below,
+            _ if self.no_store => of_result(&reader, &plan, &crate::interrupt::flag()).map_err(ended)?,
+            stored => {
+                if let Some(stored) = stored {
+                    let words = StressPlan::of(&stored.set, &reader).words();
+                    message!("replaces the stored stress {words} (--no-store computes without storing)");
+                }
+                store(self, &plan)?
+            }
         };
-        let figure = stress_figure(&one, &shown, index).map_err(failed)?;
-        crate::commands::picture::write(&figure, path, args.force)?;
-        written.push(path.display().to_string());
+        let at = match &self.time {
+            Some(text) => At::Time(read::<Time>("--time", text, "500 s")?.get()),
+            None => below.worst().map_or(At::Last, |worst| At::Index(worst.index)),
+        };
+        let index = reader.index(at).map_err(failed)?;
+        let mut written = vec![];
+        if let Some(path) = &self.plot {
+            let one = Reader::open(&self.result).map_err(failed)?;
+            let shown = match below.instants.iter().any(|instant| instant.index == index) {
+                true => below.clone(),
+                false => below_at(&one, &plan, at).map_err(ended)?,
+            };
+            let figure = stress_figure(&one, &shown, index).map_err(failed)?;
+            crate::commands::picture::write(&figure, path, self.force)?;
+            written.push(path.display().to_string());
+        }
+        if let Some(path) = &self.output {
+            let quantities =
+                if plan.quantities.is_empty() { USUAL.to_vec() } else { plan.quantities.clone() };
+            let files = volume(&reader, &plan, at, &quantities, path, self.force).map_err(failed)?;
+            written.extend(files.iter().map(|path| path.display().to_string()));
+        }
+        let shown = below.instants.iter().find(|instant| instant.index == index).or(below.worst());
+        if self.json {
+            return crate::print(&format!("{}\n", summary::object(&reader, &below, &written)));
+        }
+        super::findings::print(&below.findings(&reader.header().grid));
+        let drawn = self.plot.is_some() || self.output.is_some();
+        let mut text = summary::text(&below, shown, drawn);
+        written.iter().for_each(|path| text += &format!("{path}\n"));
+        crate::print(&text)
     }
-    if let Some(path) = &args.output {
-        let quantities = if plan.quantities.is_empty() { USUAL.to_vec() } else { plan.quantities.clone() };
-        let files = volume(&reader, &plan, at, &quantities, path, args.force).map_err(failed)?;
-        written.extend(files.iter().map(|path| path.display().to_string()));
-    }
-    let shown = below.instants.iter().find(|instant| instant.index == index).or(below.worst());
-    if args.json {
-        return crate::print(&format!("{}\n", summary::object(&reader, &below, &written)));
-    }
-    super::findings::print(&below.findings(&reader.header().grid));
-    let drawn = args.plot.is_some() || args.output.is_some();
-    let mut text = summary::text(&below, shown, drawn);
-    written.iter().for_each(|path| text += &format!("{path}\n"));
-    crate::print(&text)
 }
 
 fn failed(error: impl std::error::Error + 'static) -> Failure {

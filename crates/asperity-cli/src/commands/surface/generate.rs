@@ -8,70 +8,76 @@ use asperity_io::topography::Topography;
 use super::table::SurfaceSummary;
 use crate::args::SurfaceGenerate;
 use crate::failure::Failure;
+use crate::verb::Verb;
 
-/// Makes the surface, writes it, and prints its statistics.
-pub fn run(args: &SurfaceGenerate) -> Result<(), Failure> {
-    let format = super::targets(&args.to)?;
-    let seed = args.seed.to_string();
-    // The patch of the challenge has a size of its own.
-    let challenge_size = args.preset.is_some().then(|| SelfAffine::CHALLENGE_SIZE.to_string());
-    let given: [(&str, Option<&str>); 15] = [
-        ("cells", Some(&args.cells)),
-        ("size", args.size.as_deref().or(challenge_size.as_deref())),
-        ("preset", args.preset.as_deref()),
-        ("hurst", args.hurst.as_deref()),
-        ("rms_gradient", args.rms_gradient.as_deref()),
-        ("rms_height", args.rms_height.as_deref()),
-        ("longest", args.longest.as_deref()),
-        ("shortest", args.shortest.as_deref()),
-        ("roll_off", args.roll_off.as_deref()),
-        ("lay.angle", args.lay_angle.as_deref()),
-        ("lay.ratio", args.lay_ratio.as_deref()),
-        ("distribution.skewness", args.skewness.as_deref()),
-        ("distribution.kurtosis", args.kurtosis.as_deref()),
-        ("distribution.path", args.distribution.as_deref()),
-        ("seed", Some(&seed)),
-    ];
-    let keys: Vec<(&str, &str)> = given.into_iter().filter_map(|(key, text)| Some((key, text?))).collect();
-    let (grid, part) = fragment::roughness(&keys).map_err(|faults| {
-        let failed = |fault: &fragment::Fault| {
-            // A path of the command line is relative to where the command runs.
-            let help = fault.help.as_ref().filter(|_| fault.key != "distribution.path");
-            let help = help.map_or(String::new(), |help| format!("; {}", with_options(help)));
-            let message = with_options(&fault.message);
-            match fault.key.as_str() {
-                "" => format!("the surface {message}{help}"),
-                key => format!("{} {message}{help}", flag(key)),
+impl Verb for SurfaceGenerate {
+    /// Makes the surface, writes it, and prints its statistics.
+    fn run(&self) -> Result<(), Failure> {
+        let format = super::targets(&self.to)?;
+        let seed = self.seed.to_string();
+        // The patch of the challenge has a size of its own.
+        let challenge_size = self.preset.is_some().then(|| SelfAffine::CHALLENGE_SIZE.to_string());
+        let given: [(&str, Option<&str>); 15] = [
+            ("cells", Some(&self.cells)),
+            ("size", self.size.as_deref().or(challenge_size.as_deref())),
+            ("preset", self.preset.as_deref()),
+            ("hurst", self.hurst.as_deref()),
+            ("rms_gradient", self.rms_gradient.as_deref()),
+            ("rms_height", self.rms_height.as_deref()),
+            ("longest", self.longest.as_deref()),
+            ("shortest", self.shortest.as_deref()),
+            ("roll_off", self.roll_off.as_deref()),
+            ("lay.angle", self.lay_angle.as_deref()),
+            ("lay.ratio", self.lay_ratio.as_deref()),
+            ("distribution.skewness", self.skewness.as_deref()),
+            ("distribution.kurtosis", self.kurtosis.as_deref()),
+            ("distribution.path", self.distribution.as_deref()),
+            ("seed", Some(&seed)),
+        ];
+        let keys: Vec<(&str, &str)> =
+            given.into_iter().filter_map(|(key, text)| Some((key, text?))).collect();
+        let (grid, part) = fragment::roughness(&keys).map_err(|faults| {
+            let failed = |fault: &fragment::Fault| {
+                // A path of the command line is relative to where the command runs.
+                let help = fault.help.as_ref().filter(|_| fault.key != "distribution.path");
+                let help = help.map_or(String::new(), |help| format!("; {}", with_options(help)));
+                let message = with_options(&fault.message);
+                match fault.key.as_str() {
+                    "" => format!("the surface {message}{help}"),
+                    key => format!("{} {message}{help}", flag(key)),
+                }
+            };
+            Failure::input(faults.iter().map(failed).collect::<Vec<_>>().join("\n"))
+        })?;
+        let (heights, spectrum) = match part {
+            Part::SelfAffine(roughness) => (roughness.heights(&grid), roughness),
+            Part::Synthesis(roughness) => (roughness.heights(&grid), roughness.spectrum),
+            Part::Shape { .. } | Part::Heights { .. } => {
+                return Err(Failure::input("no roughness".to_owned()));
             }
         };
-        Failure::input(faults.iter().map(failed).collect::<Vec<_>>().join("\n"))
-    })?;
-    let (heights, spectrum) = match part {
-        Part::SelfAffine(roughness) => (roughness.heights(&grid), roughness),
-        Part::Synthesis(roughness) => (roughness.heights(&grid), roughness.spectrum),
-        Part::Shape { .. } | Part::Heights { .. } => return Err(Failure::input("no roughness".to_owned())),
-    };
-    let heights = heights.map_err(|error| Failure::input(error.to_string()))?;
-    let recipe: Vec<String> = keys.iter().map(|(key, text)| format!("{key} = {text}")).collect();
-    let mut topography = Topography {
-        format,
-        heights,
-        size: grid.size(),
-        channel: Some("roughness".to_owned()),
-        channels: Vec::new(),
-        metadata: Vec::new(),
-    };
-    let version = env!("CARGO_PKG_VERSION");
-    topography.record([format!("made by asperity {version}: self-affine, {}", recipe.join(", "))]);
-    super::save(&args.to, &topography, format)?;
-    let written = args.to.output.display().to_string();
-    let summary = SurfaceSummary::of(&written, &topography, Extent::Periodic)?;
-    // The ring of the shortest waves is full only up to the cut-off.
-    summary.fitted(spectrum.longest, 1.1 * spectrum.shortest).print(
-        args.to.json,
-        args.to.plot.as_deref(),
-        args.to.force,
-    )
+        let heights = heights.map_err(|error| Failure::input(error.to_string()))?;
+        let recipe: Vec<String> = keys.iter().map(|(key, text)| format!("{key} = {text}")).collect();
+        let mut topography = Topography {
+            format,
+            heights,
+            size: grid.size(),
+            channel: Some("roughness".to_owned()),
+            channels: Vec::new(),
+            metadata: Vec::new(),
+        };
+        let version = env!("CARGO_PKG_VERSION");
+        topography.record([format!("made by asperity {version}: self-affine, {}", recipe.join(", "))]);
+        super::save(&self.to, &topography, format)?;
+        let written = self.to.output.display().to_string();
+        let summary = SurfaceSummary::of(&written, &topography, Extent::Periodic)?;
+        // The ring of the shortest waves is full only up to the cut-off.
+        summary.fitted(spectrum.longest, 1.1 * spectrum.shortest).print(
+            self.to.json,
+            self.to.plot.as_deref(),
+            self.to.force,
+        )
+    }
 }
 
 /// The words of a case file's message with its keys replaced by the options that give them.

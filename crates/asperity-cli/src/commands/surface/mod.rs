@@ -15,19 +15,8 @@ use asperity_io::case::quantity::Length;
 use asperity_io::topography::{Format, ReadOptions, Topography, read, write};
 
 use super::free;
-use crate::args::{Surface, SurfaceFile, SurfaceOutput};
+use crate::args::{SurfaceFile, SurfaceOutput};
 use crate::failure::Failure;
-
-/// Looks at a surface, makes one, prepares one or converts it.
-pub fn run(command: &Surface) -> Result<(), Failure> {
-    match command {
-        Surface::Info(args) => info::run(args),
-        Surface::Generate(args) => generate::run(args),
-        Surface::FromProfile(args) => profile::synthesize(args),
-        Surface::Process(args) => process::run(args),
-        Surface::Convert(args) => convert::run(args),
-    }
-}
 
 /// Reads the file with what the command line says about it.
 pub(super) fn open(file: &SurfaceFile) -> Result<Topography, Failure> {

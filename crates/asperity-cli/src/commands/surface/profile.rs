@@ -15,6 +15,7 @@ use super::table::SurfaceSummary;
 use crate::args::{SurfaceFile, SurfaceFromProfile, SurfaceInfo};
 use crate::failure::Failure;
 use crate::format::quantity;
+use crate::verb::{Paths, Verb};
 
 /// Rings of the spectrum per decade.
 const PER_DECADE: u32 = 16;
@@ -135,56 +136,66 @@ fn figure(name: &str, heights: &[f64], spacing: f64, spectrum: &ProfileSpectrum)
     figure
 }
 
-/// Makes an isotropic surface with the spectrum of a profile, writes it, and prints its statistics.
-pub(super) fn synthesize(args: &SurfaceFromProfile) -> Result<(), Failure> {
-    let format = super::targets(&args.to)?;
-    let name = args.file.file.display().to_string();
-    let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
-    let Some(profile) = open(&args.file)? else {
-        return Err(Failure::input(format!(
-            "{name} is no profile: it needs two columns of text, position and height"
-        )));
-    };
-    let spacing = profile.surface.grid().spacing()[0];
-    let mut history = profile.history;
-    let heights: Vec<f64> = profile.surface.heights().iter().copied().collect();
-    let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(failed)?;
-    let size = match args.to_size.as_deref() {
-        Some(text) if text.contains(',') => super::size(text)?,
-        Some(text) => [super::length(text)?; 2],
-        None => [profile.surface.grid().size()[0]; 2],
-    };
-    let cells = cells(args.cells.as_deref(), size, spacing)?;
-    let grid = Grid::new(cells, size).map_err(failed)?;
-    let made = spectrum.surface(&grid, args.seed).map_err(failed)?;
-    let mut topography = Topography {
-        format,
-        heights: made,
-        size,
-        channel: Some("roughness".to_owned()),
-        channels: Vec::new(),
-        metadata: Vec::new(),
-    };
-    history.push(format!(
+impl Verb for SurfaceFromProfile {
+    fn reads(&self) -> Paths<'_> {
+        vec![Some(&self.file.file)]
+    }
+
+    fn writes(&self) -> Paths<'_> {
+        vec![Some(&self.to.output), self.to.plot.as_ref()]
+    }
+
+    /// Makes an isotropic surface with the spectrum of a profile, writes it, and prints its statistics.
+    fn run(&self) -> Result<(), Failure> {
+        let format = super::targets(&self.to)?;
+        let name = self.file.file.display().to_string();
+        let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+        let Some(profile) = open(&self.file)? else {
+            return Err(Failure::input(format!(
+                "{name} is no profile: it needs two columns of text, position and height"
+            )));
+        };
+        let spacing = profile.surface.grid().spacing()[0];
+        let mut history = profile.history;
+        let heights: Vec<f64> = profile.surface.heights().iter().copied().collect();
+        let spectrum = ProfileSpectrum::of(&heights, spacing, self.periodic, PER_DECADE).map_err(failed)?;
+        let size = match self.to_size.as_deref() {
+            Some(text) if text.contains(',') => super::size(text)?,
+            Some(text) => [super::length(text)?; 2],
+            None => [profile.surface.grid().size()[0]; 2],
+        };
+        let cells = cells(self.cells.as_deref(), size, spacing)?;
+        let grid = Grid::new(cells, size).map_err(failed)?;
+        let made = spectrum.surface(&grid, self.seed).map_err(failed)?;
+        let mut topography = Topography {
+            format,
+            heights: made,
+            size,
+            channel: Some("roughness".to_owned()),
+            channels: Vec::new(),
+            metadata: Vec::new(),
+        };
+        history.push(format!(
         "isotropic surface with the power spectrum of the profile {name}, random phases, seed {}, waves from {} to {}",
-        args.seed,
+        self.seed,
         quantity(TAU / spectrum.edges[spectrum.edges.len() - 1], "m"),
         quantity(TAU / spectrum.edges[0], "m"),
     ));
-    topography.record(history);
-    super::save(&args.to, &topography, format)?;
-    let written = args.to.output.display().to_string();
-    SurfaceSummary::of(&written, &topography, Extent::Periodic)?.print(
-        args.to.json,
-        args.to.plot.as_deref(),
-        args.to.force,
-    )?;
-    if !args.to.json {
-        crate::messages::message!(
-            "assumed: the surface is the same in all directions and its heights are Gaussian; a profile cannot tell a lay"
-        );
+        topography.record(history);
+        super::save(&self.to, &topography, format)?;
+        let written = self.to.output.display().to_string();
+        SurfaceSummary::of(&written, &topography, Extent::Periodic)?.print(
+            self.to.json,
+            self.to.plot.as_deref(),
+            self.to.force,
+        )?;
+        if !self.to.json {
+            crate::messages::message!(
+                "assumed: the surface is the same in all directions and its heights are Gaussian; a profile cannot tell a lay"
+            );
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// Cells of the surface: those asked for, or of the spacing of the profile.

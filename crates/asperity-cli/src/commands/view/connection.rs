@@ -29,38 +29,15 @@ pub struct Request {
 
 /// What is answered.
 pub struct Response {
-    pub status: Status,
+    /// Code and name of its status.
+    pub status: &'static str,
     pub content_type: &'static str,
     pub content: Vec<u8>,
 }
 
-/// How a request has ended.
-#[derive(Clone, Copy)]
-pub enum Status {
-    Ok,
-    BadRequest,
-    Forbidden,
-    NotFound,
-    MethodNotAllowed,
-    Unavailable,
-}
-
-impl Status {
-    fn line(self) -> &'static str {
-        match self {
-            Status::Ok => "200 OK",
-            Status::BadRequest => "400 Bad Request",
-            Status::Forbidden => "403 Forbidden",
-            Status::NotFound => "404 Not Found",
-            Status::MethodNotAllowed => "405 Method Not Allowed",
-            Status::Unavailable => "503 Service Unavailable",
-        }
-    }
-}
-
 impl Response {
     /// A few words.
-    pub fn text(status: Status, words: &str) -> Response {
+    pub fn text(status: &'static str, words: &str) -> Response {
         Response { status, content_type: "text/plain; charset=utf-8", content: words.into() }
     }
 
@@ -75,7 +52,7 @@ impl Response {
              x-content-type-options: nosniff\r\n\
              referrer-policy: no-referrer\r\n\
              content-security-policy: default-src 'self' 'unsafe-inline'; frame-ancestors 'none'\r\n\r\n",
-            self.status.line(),
+            self.status,
             self.content_type,
             self.content.len(),
         )

@@ -14,10 +14,11 @@ use std::time::Duration;
 use asperity_io::store::Reader;
 use asperity_report::page::Live;
 
-use self::connection::{Request, Response, Status};
+use self::connection::{Request, Response};
 use self::places::{Open, Places};
 use crate::args::View;
 use crate::failure::Failure;
+use crate::verb::Verb;
 
 /// Connections at a time: more than browsers open.
 const CONNECTIONS: usize = 128;
@@ -28,19 +29,22 @@ const LONGEST_WAIT: Duration = Duration::from_secs(10);
 /// Pause before the next connection is taken where none can be.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Serves until it is interrupted.
-pub fn run(args: &View) -> Result<(), Failure> {
-    // What cannot be shown is told before anything listens.
-    Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
-    let failed = |error: std::io::Error| Failure::input(format!("cannot listen at {}: {error}", args.host));
-    let token = token()?;
-    let listener = TcpListener::bind(SocketAddr::new(args.host, args.port)).map_err(failed)?;
-    let address = listener.local_addr().map_err(failed)?;
-    crate::print(&format!("http://{address}/{token}/\n"))?;
-    crate::messages::message!(
-        "open this address in a browser; who knows it can read the result; press Ctrl-C to stop"
-    );
-    serve(&listener, &Arc::new(Server::new(&args.result, args.host, token)))
+impl Verb for View {
+    /// Serves until it is interrupted.
+    fn run(&self) -> Result<(), Failure> {
+        // What cannot be shown is told before anything listens.
+        Reader::open(&self.result).map_err(|error| Failure::input(error.to_string()))?;
+        let failed =
+            |error: std::io::Error| Failure::input(format!("cannot listen at {}: {error}", self.host));
+        let token = token()?;
+        let listener = TcpListener::bind(SocketAddr::new(self.host, self.port)).map_err(failed)?;
+        let address = listener.local_addr().map_err(failed)?;
+        crate::print(&format!("http://{address}/{token}/\n"))?;
+        crate::messages::message!(
+            "open this address in a browser; who knows it can read the result; press Ctrl-C to stop"
+        );
+        serve(&listener, &Arc::new(Server::new(&self.result, self.host, token)))
+    }
 }
 
 /// 128 random bits.
@@ -78,7 +82,7 @@ impl Server {
         let Some(request) = connection::read(stream)? else {
             return connection::write(
                 stream,
-                &Response::text(Status::BadRequest, "this is no request of HTTP/1"),
+                &Response::text("400 Bad Request", "this is no request of HTTP/1"),
             );
         };
         has_asked();
@@ -88,22 +92,22 @@ impl Server {
         };
         // The place is held until the answer is sent.
         let Some(_place) = self.large.take(LONGEST_WAIT) else {
-            let busy = Response::text(Status::Unavailable, "too many requests at a time; try again");
+            let busy = Response::text("503 Service Unavailable", "too many requests at a time; try again");
             return connection::write(stream, &busy);
         };
         let response = match self.live.answer(path) {
             Ok(Some(answer)) => {
-                Response { status: Status::Ok, content_type: answer.content_type, content: answer.content }
+                Response { status: "200 OK", content_type: answer.content_type, content: answer.content }
             }
-            Ok(None) => Response::text(Status::NotFound, "there is nothing here"),
-            Err(error) => Response::text(Status::NotFound, &error.to_string()),
+            Ok(None) => Response::text("404 Not Found", "there is nothing here"),
+            Err(error) => Response::text("404 Not Found", &error.to_string()),
         };
         connection::write(stream, &response)
     }
 
     /// What is asked for, below the token, where the request may ask for it.
     fn permitted<'a>(&self, request: &'a Request) -> Result<&'a str, Response> {
-        let refuse = |words| Err(Response::text(Status::Forbidden, words));
+        let refuse = |words| Err(Response::text("403 Forbidden", words));
         if !is_this_machine(request.host.as_deref(), self.host, self.name.as_deref()) {
             return refuse("only requests to this machine by its name are answered");
         }
@@ -111,7 +115,7 @@ impl Server {
             return refuse("requests of other sites are not answered");
         }
         if request.method != "GET" {
-            return Err(Response::text(Status::MethodNotAllowed, "only GET"));
+            return Err(Response::text("405 Method Not Allowed", "only GET"));
         }
         let path = request.path.strip_prefix('/').unwrap_or_default();
         let (token, path) = path.split_at_checked(self.token.len()).unwrap_or_default();

@@ -43,6 +43,12 @@ const MOST_SHEETS: usize = 100;
 /// Characters of a text that are kept: longer ones are no names or numbers, and many cells may share one.
 const MOST_CHARACTERS: usize = 1000;
 
+impl From<crate::xml::Malformed> for Fault {
+    fn from(_: crate::xml::Malformed) -> Fault {
+        damaged()
+    }
+}
+
 fn damaged() -> Fault {
     fault("the spreadsheet is damaged; save it again or as text (csv)")
 }

@@ -4,14 +4,14 @@
 use std::collections::HashMap;
 use std::io::{Cursor, Read};
 
-use quick_xml::escape::resolve_predefined_entity;
-use quick_xml::events::{BytesStart, Event};
-use quick_xml::{Reader, XmlVersion};
+use quick_xml::XmlVersion;
+use quick_xml::events::BytesStart;
 use zip::ZipArchive;
 
 use super::cells::Cells;
 use super::{Book, MOST_CHARACTERS, Named, damaged};
 use crate::curve::error::{Fault, fault};
+use crate::xml::{self, Piece};
 
 /// Most bytes that are unpacked: far above what a table of measurements needs.
 const MOST_UNPACKED: u64 = 128 << 20;
@@ -215,43 +215,9 @@ impl Parts<'_> {
     }
 }
 
-/// A piece of XML; names are without their namespace.
-enum Piece<'a> {
-    Open(&'a str, &'a BytesStart<'a>),
-    Text(&'a str),
-    Close(&'a str),
-}
-
-/// Gives the pieces of a document to `on`, one after the other.
-fn walk(xml: &str, mut on: impl FnMut(Piece<'_>) -> Result<(), Fault>) -> Result<(), Fault> {
-    let mut reader = Reader::from_str(xml.trim_start_matches('\u{feff}'));
-    let mut open = 0;
-    loop {
-        match reader.read_event().map_err(|_| damaged())? {
-            Event::Start(element) => {
-                open += 1;
-                on(Piece::Open(element.local_name().as_ref(), &element))?;
-            }
-            Event::Empty(element) => {
-                on(Piece::Open(element.local_name().as_ref(), &element))?;
-                on(Piece::Close(element.local_name().as_ref()))?;
-            }
-            Event::End(element) => {
-                open -= 1;
-                on(Piece::Close(element.local_name().as_ref()))?;
-            }
-            Event::Text(text) => on(Piece::Text(&text.xml10_content()))?,
-            Event::CData(text) => on(Piece::Text(&text))?,
-            Event::GeneralRef(reference) => match reference.resolve_char_ref() {
-                Ok(Some(character)) => on(Piece::Text(character.encode_utf8(&mut [0; 4])))?,
-                _ => on(Piece::Text(resolve_predefined_entity(&reference).ok_or_else(damaged)?))?,
-            },
-            // What is cut off between two cells reads well up to there.
-            Event::Eof if open > 0 => return Err(damaged()),
-            Event::Eof => return Ok(()),
-            _ => {}
-        }
-    }
+/// Gives the pieces of a part to `on`, one after the other.
+fn walk(part: &str, on: impl FnMut(Piece<'_>) -> Result<(), Fault>) -> Result<(), Fault> {
+    xml::walk(part, on)
 }
 
 /// The attributes of these names, without their namespace.

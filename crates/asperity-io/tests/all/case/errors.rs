@@ -231,7 +231,7 @@ fn sizes() {
         &["9223372036854775807 x 9223372036854775807", "this machine has"],
     );
     says("[32, 16]", "[10000000, 1]", "domain.cells", 3, &["no longer than 1000 times its width"]);
-    says("steps = 20", "steps = 1000000000000", "time.steps", 40, &["is 1000000000000", "10000000 at most"]);
+    says("steps = 20", "steps = 1000000000000", "time.steps", 40, &["is 1000000000000", "10000000"]);
     // 2400 x 1600 cells, 1e6 pressure fields: 61 TB
     let direct = GOOD
         .replace("steps = 20", "steps = 1000000\nscheme = \"direct\"")
@@ -423,14 +423,14 @@ fn what_a_quantity_or_a_dent_needs_is_said() {
         &["did you mean \"contact_stiffness\"?"],
     );
     let bins = format!("{}\nhistogram = {{ bins = 20000 }}", of("\"gap_histogram\""));
-    says(fields, &bins, "output.histogram.bins", 47, &["20000", "up to 10000"]);
+    says(fields, &bins, "output.histogram.bins", 47, &["20000", "10000"]);
     let flat = format!("{}\nhistogram = {{ pressure = \"0 Pa\" }}", of("\"pressure_histogram\""));
     says(fields, &flat, "output.histogram.pressure", 47, &["0 Pa"]);
     says(fields, "fields = [\"flattening\"]", "output.fields[0]", 45, &["accumulate"]);
     let soft = GOOD.replace("hardness = \"10 MPa\"\n", "");
     let asked = soft.replace(fields, &of("\"all\", \"pressure_histogram\""));
     let found = errors(&asked)[0].to_string();
-    assert!(found.contains("no upper end") && found.contains("histogram = { pressure"), "{found}");
+    assert!(found.contains("output.quantities") && found.contains("histogram = { pressure"), "{found}");
     let found = errors(&soft.replace("1e-6", "1e-6\nplasticity = \"accumulate\""))[0].to_string();
     assert!(found.contains("no body has one"), "{found}");
     let direct = GOOD.replace("steps = 20", "steps = 20\nscheme = \"direct\"");

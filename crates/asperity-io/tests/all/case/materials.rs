@@ -63,6 +63,27 @@ fn wlf() -> Shift {
 
 const WLF: &str = r#"{ model = "wlf", c1 = 8.86, c2 = "101.6 K", reference = "20 °C" }"#;
 
+/// G0, G∞ and the relaxation time τ are a Zener solid of G = G0, G_K = G0 G∞/(G0 - G∞), λ = τ G0/G∞.
+#[test]
+fn a_standard_linear_solid_is_a_zener_solid() {
+    let solid = |more: &str| {
+        format!(
+            r#"{{ model = "standard-linear-solid", shear_equilibrium = "1 MPa", relaxation_time = "2 s"{more} }}"#
+        )
+    };
+    let zener = r#"{ model = "zener", shear = "4 MPa", shear_kelvin = 1.3333333333333333e6, retardation_time = "8 s" }"#;
+    let (found, known) =
+        (case(&body(&solid(", shear_instantaneous = \"4 MPa\"")), "").creep, case(&body(zener), "").creep);
+    for t in [0.0, 0.5, 8.0, 1e3] {
+        // Rounding of the conversion.
+        assert!((found.value(t) / known.value(t) - 1.0).abs() < 1e-13, "{t}");
+    }
+    let dir = Path::new(".");
+    let at = "body[0].material";
+    says(dir, &solid(""), at, &["`shear_instantaneous`"]);
+    says(dir, &solid(", shear_instantaneous = 1e5"), at, &["below"]);
+}
+
 /// 60 points from 10 ms to 1000 s of a function of time.
 fn curve(header: &str, value: impl Fn(f64) -> f64) -> String {
     let mut text = format!("{header}\n");

@@ -24,13 +24,16 @@ impl Array {
         }
         let shape = sides(&document["shape"]);
         let chunk = sides(&document["chunk_grid"]["configuration"]["chunk_shape"]);
-        let mut values = vec![f64::NAN; shape.iter().product()];
+        let fill = document["fill_value"].as_f64().unwrap_or(f64::NAN);
+        let mut values = vec![fill; shape.iter().product()];
         let counts: Vec<usize> =
             shape.iter().zip(&chunk).map(|(cells, side)| cells.div_ceil(*side)).collect();
         for n in 0..counts.iter().product() {
             let place = index(n, &counts);
             let path = place.iter().fold(directory.join("c"), |path, k| path.join(k.to_string()));
-            for (m, number) in decoded(&document, fs::read(&path).unwrap()).into_iter().enumerate() {
+            // A chunk that is not there holds the fill value.
+            let Ok(bytes) = fs::read(&path) else { continue };
+            for (m, number) in decoded(&document, bytes).into_iter().enumerate() {
                 let cell =
                     index(m, &chunk).into_iter().zip(&place).zip(&chunk).map(|((k, n), side)| n * side + k);
                 let cell: Vec<usize> = cell.collect();

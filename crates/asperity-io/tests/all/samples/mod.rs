@@ -420,6 +420,7 @@ pub fn files() -> Vec<(Format, Vec<u8>)> {
         (Format::Sur, Sur { packed: true, bits: 16, ..sur.clone() }.bytes()),
         (Format::Sur, [series.bytes(), series.bytes()].concat()),
         (Format::Gwy, gwy()),
+        (Format::Gsf, gsf()),
         (Format::Al3d, al3d()),
         (Format::Opd, opd(2)),
         (Format::Opd, opd(4)),
@@ -436,6 +437,16 @@ pub fn files() -> Vec<(Format, Vec<u8>)> {
         written(Format::Npz),
         written(Format::NetCdf),
     ]
+}
+
+/// Lengths 6 um and 4 um, heights in nm, the last undefined.
+pub fn gsf() -> Vec<u8> {
+    let mut b = b"Gwyddion Simple Field 1.0\nXRes = 3\nYRes = 2\nXReal = 6e-06\nYReal = 4e-06\n".to_vec();
+    b.extend(b"XYUnits = m\nZUnits = nm\nTitle = Topography\n");
+    b.resize(b.len() / 4 * 4 + 4, 0);
+    let numbers = NUMBERS.map(|n| if n == 60 { f32::NAN } else { n as f32 });
+    b.extend(numbers.iter().flat_map(|n| n.to_le_bytes()));
+    b
 }
 
 /// Packed by gzip.

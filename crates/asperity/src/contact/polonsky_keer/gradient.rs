@@ -6,11 +6,10 @@
 //! it lasts twice as long and takes twice as many, so that one series is long enough in the end: the whole method converges.
 
 use super::super::projection::{Shift, Trial};
-use super::super::sweeps::gradient::{GradientStep, GradientTrial};
 use super::super::{ContactState, Problem};
 use super::{PolonskyKeer, add};
 use crate::operator::Operator;
-use asperity_sweep::{Set, each, run};
+use asperity_sweep::{Set, each, each_with_sums};
 
 /// Iterations without a halving of the residual that are the first stall.
 const PATIENCE: usize = 20;
@@ -94,8 +93,10 @@ impl PolonskyKeer {
         let Problem { gap, compliance, hardness, .. } = *problem;
         let PolonskyKeer { residual, direction, touchable, .. } = self;
         let (p, u, w) = (&state.pressure[..], &state.unit_displacement[..], state.approach);
-        let set = Set(touchable);
-        run(GradientTrial { y: direction, r: residual, p, u, gap, set, compliance, w, length: b });
+        each(residual, (u, gap, Set(touchable)), |r, (u, h, on)| {
+            *r = if on { compliance * u + h - w } else { 0.0 };
+        });
+        each(direction, (p, &residual[..]), |y, (p, r)| *y = p - b * r);
         let shift = match problem.sum(cell_area) {
             None => Shift::default(),
             Some(target) => {
@@ -104,6 +105,10 @@ impl PolonskyKeer {
                 trial.shift_to_sum(target, trial.clipped_sum(0.0))?
             }
         };
-        Some(run(GradientStep { y: direction, r: residual, p, set: Set(touchable), hardness, shift }))
+        let cells = (p, &residual[..], Set(touchable), hardness);
+        Some(each_with_sums(direction, cells, |s, (p, r, on, hardness)| {
+            *s = if on { shift.project_cell(*s, hardness) - p } else { 0.0 };
+            [r * *s, *s * *s]
+        }))
     }
 }

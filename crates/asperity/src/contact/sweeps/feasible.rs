@@ -3,8 +3,7 @@
 use asperity_sweep::simd::Mask;
 
 use crate::contact::Hardness;
-use crate::contact::projection::Shift;
-use asperity_sweep::{Max, Min, Set, SetMut, kernel};
+use asperity_sweep::{Max, Min, SetMut, kernel};
 
 kernel! {
     /// Number of cells that can touch, the sum of H over them, and the least gap.
@@ -60,55 +59,5 @@ kernel! {
             cells = cells + V::count(can_touch);
         }
         [sum.sum(), cells.sum()]
-    }
-}
-
-kernel! {
-    /// The sums of p below H and at it.
-    pub(in crate::contact) struct BelowAndCapped<'a> {
-        cells { p: &'a [f64], hardness: Hardness<'a> }
-    }
-    fn run<V>(self) -> [f64; 2] {
-        let (mut sum, mut capped) = (V::splat(0.0), V::splat(0.0));
-        for n in (0..self.p.len()).step_by(8) {
-            let p = V::load(self.p, n, 0.0);
-            let below = p.less(self.hardness.load(n));
-            sum = sum + p.only(below);
-            capped = capped + p.only(!below);
-        }
-        [sum.sum(), capped.sum()]
-    }
-}
-
-kernel! {
-    /// Cells below H times a factor, up to H; yields how many reach H by it.
-    pub(in crate::contact) struct Scale<'a> {
-        cells { p: &'a mut [f64], hardness: Hardness<'a> }
-        numbers { factor: f64 }
-    }
-    fn run<V>(self) -> f64 {
-        let mut over = V::splat(0.0);
-        for n in (0..self.p.len()).step_by(8) {
-            let p = V::load(self.p, n, 0.0);
-            let hardness = self.hardness.load(n);
-            let scaled = V::select(p.less(hardness), p * V::splat(self.factor), p);
-            scaled.smaller(hardness).store(self.p, n);
-            over = over + V::count(hardness.less(scaled));
-        }
-        over.sum()
-    }
-}
-
-kernel! {
-    /// p shifted and projected on a set, zero elsewhere.
-    pub(in crate::contact) struct ShiftAll<'a> {
-        cells { p: &'a mut [f64], set: Set<'a>, hardness: Hardness<'a> }
-        numbers { shift: Shift }
-    }
-    fn run<V>(self) {
-        for (n, set) in (0..).step_by(8).zip(self.set.0) {
-            let p = self.shift.project(V::load(self.p, n, 0.0), self.hardness.interval(n));
-            p.only(V::Mask::from_bits(*set)).store(self.p, n);
-        }
     }
 }

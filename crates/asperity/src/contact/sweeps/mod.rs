@@ -6,7 +6,6 @@
 
 pub(super) mod direction;
 pub(super) mod feasible;
-pub(super) mod gradient;
 pub(super) mod projection;
 pub(super) mod residual;
 pub(super) mod step;

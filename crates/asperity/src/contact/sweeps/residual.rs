@@ -73,41 +73,36 @@ kernel! {
     }
 }
 
-/// The sums and extremes of a report, one strand for each of eight cells.
+/// A report under way.
 struct Residuals<V> {
     compliance: V,
     w: V,
-    approach: f64,
     has_top: bool,
-    free: [V; 2],
-    working: [V; 3],
-    pressure: [V; 2],
-    gamma: V,
-    capped: V,
-    empty: V,
-    touching: V,
-    peak: V,
-    violation: V,
+    report: ResidualReport<V>,
 }
 
 impl<V: F64x8> Residuals<V> {
     #[inline(always)]
     fn new(compliance: f64, hardness: Hardness, w: f64) -> Self {
-        let [zero, up, down] = [0.0, f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
+        let [gamma, up, down] = [0.0, f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
+        let (free, working, pressure) = ([gamma; 2], [gamma; 3], [gamma; 2]);
+        let (capped, empty, touching, peak, violation) = (down, up, up, down, gamma);
         Residuals {
             compliance: V::splat(compliance),
             w: V::splat(w),
-            approach: w,
             has_top: !hardness.is_infinite(),
-            free: [zero; 2],
-            working: [zero; 3],
-            pressure: [zero; 2],
-            gamma: zero,
-            capped: down,
-            empty: up,
-            touching: up,
-            peak: down,
-            violation: zero,
+            report: ResidualReport {
+                w,
+                free,
+                working,
+                pressure,
+                gamma,
+                capped,
+                empty,
+                touching,
+                peak,
+                violation,
+            },
         }
     }
 
@@ -118,7 +113,7 @@ impl<V: F64x8> Residuals<V> {
         let r = self.compliance * u + h - self.w;
         let apart = (zero.less(p.abs()) | r.less(zero)).bits() == 0;
         if apart {
-            self.empty = r.smaller(self.empty);
+            self.report.empty = r.smaller(self.report.empty);
         }
         apart
     }
@@ -132,38 +127,39 @@ impl<V: F64x8> Residuals<V> {
         let free = bounds.is_free(p);
         let works = bounds.is_working(p, r);
         let violation = r.abs().only(works);
-        self.free = [self.free[0] + r.only(free), self.free[1] + V::count(free)];
-        let [sum_r, cells, sum_p] = self.working;
-        self.working = [sum_r + r.only(works), cells + V::count(works), sum_p + p.only(works)];
+        self.report.free = [self.report.free[0] + r.only(free), self.report.free[1] + V::count(free)];
+        let [sum_r, cells, sum_p] = self.report.working;
+        self.report.working = [sum_r + r.only(works), cells + V::count(works), sum_p + p.only(works)];
         let [up, down] = [f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
-        self.capped = V::select(bounds.top.at_most(p), r, down).larger(self.capped);
-        self.empty = V::select(touches, up, r).smaller(self.empty);
-        self.violation = violation.larger(self.violation);
-        self.pressure = [self.pressure[0] + p, self.pressure[1] + (p * u).only(touches)];
-        self.gamma = if self.has_top {
+        self.report.capped = V::select(bounds.top.at_most(p), r, down).larger(self.report.capped);
+        self.report.empty = V::select(touches, up, r).smaller(self.report.empty);
+        self.report.violation = violation.larger(self.report.violation);
+        self.report.pressure = [self.report.pressure[0] + p, self.report.pressure[1] + (p * u).only(touches)];
+        self.report.gamma = if self.has_top {
             let distance = V::select(zero.less(r), p, bounds.top - p);
-            self.gamma + (distance * violation).only(works)
+            self.report.gamma + (distance * violation).only(works)
         } else {
-            self.touching = V::select(touches, r, up).smaller(self.touching);
-            self.gamma + (p * r).only(touches)
+            self.report.touching = V::select(touches, r, up).smaller(self.report.touching);
+            self.report.gamma + (p * r).only(touches)
         };
-        self.peak = p.larger(self.peak);
+        self.report.peak = p.larger(self.report.peak);
         (r, works)
     }
 
     #[inline(always)]
     fn report(self) -> ResidualReport {
+        let report = self.report;
         ResidualReport {
-            w: self.approach,
-            free: self.free.map(V::sum),
-            working: self.working.map(V::sum),
-            pressure: self.pressure.map(V::sum),
-            gamma: self.gamma.sum(),
-            capped: self.capped.largest(),
-            empty: self.empty.least(),
-            touching: self.touching.least(),
-            peak: self.peak.largest(),
-            violation: self.violation.largest(),
+            w: report.w,
+            free: report.free.map(V::sum),
+            working: report.working.map(V::sum),
+            pressure: report.pressure.map(V::sum),
+            gamma: report.gamma.sum(),
+            capped: report.capped.largest(),
+            empty: report.empty.least(),
+            touching: report.touching.least(),
+            peak: report.peak.largest(),
+            violation: report.violation.largest(),
         }
     }
 }

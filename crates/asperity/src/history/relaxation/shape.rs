@@ -89,40 +89,40 @@ impl Shape {
         x: f64,
         change: f64,
     ) -> Share {
-        let y = x / tau;
-        let moments: [f64; 7] = std::array::from_fn(|k| moment(k as u32, y));
-        let (linear, square) = (self.linear * x, self.square * x * x);
-        let mut taken = linear * moments[1] + square * moments[2];
-        let mut left = linear * (moments[0] / y) + square * (1.0 - moments[2]);
-        for (j, (a, term)) in self.fading.iter().zip(&dual.creep.terms).enumerate() {
-            let z = x / term.retardation_time;
-            let part = retarded(z, y, gap(j), &moments);
-            taken += a * part;
-            left += a * (moment(0, z) - part);
-        }
-        // Rounding leads out of the range that a course in one direction has.
-        let taken = (taken / change).clamp(0.0, moments[0]);
-        Share { taken, left: (left / change).clamp(1.0 - moments[0], 1.0) }
+        let times = self.fading.iter().zip(&dual.creep.terms).map(|(a, term)| (*a, term.retardation_time));
+        share_of([self.linear * x, self.square * x * x], times, gap, [x, tau], change)
     }
 }
 
 /// γ and 1 - γ of a state with the relaxation time `tau` over a step of length x > 0 in which u runs as Σ A (1 - exp(-s/t)), all A
 /// of one sign; `terms` are the (A, t).
 pub(crate) fn fading_share(terms: &[(f64, f64)], tau: f64, x: f64) -> Share {
+    let change = terms.iter().map(|(a, time)| a * moment(0, x / time)).sum();
+    let gap = |j: usize| terms[j].1 / tau - 1.0;
+    share_of([0.0; 2], terms.iter().copied(), gap, [x, tau], change)
+}
+
+/// The share of a course linear s/x + square (s/x)² + Σ A (1 - exp(-s/t)) that changes by `change`.
+fn share_of(
+    [linear, square]: [f64; 2],
+    terms: impl Iterator<Item = (f64, f64)>,
+    gap: impl Fn(usize) -> f64,
+    [x, tau]: [f64; 2],
+    change: f64,
+) -> Share {
     let y = x / tau;
     let moments: [f64; 7] = std::array::from_fn(|k| moment(k as u32, y));
-    let (mut taken, mut left, mut change) = (0.0, 0.0, 0.0);
-    for (a, time) in terms {
+    let mut taken = linear * moments[1] + square * moments[2];
+    let mut left = linear * (moments[0] / y) + square * (1.0 - moments[2]);
+    for (j, (a, time)) in terms.enumerate() {
         let z = x / time;
-        let part = retarded(z, y, time / tau - 1.0, &moments);
+        let part = retarded(z, y, gap(j), &moments);
         taken += a * part;
         left += a * (moment(0, z) - part);
-        change += a * moment(0, z);
     }
-    Share {
-        taken: (taken / change).clamp(0.0, moments[0]),
-        left: (left / change).clamp(1.0 - moments[0], 1.0),
-    }
+    // Rounding leads out of the range that a course in one direction has.
+    let taken = (taken / change).clamp(0.0, moments[0]);
+    Share { taken, left: (left / change).clamp(1.0 - moments[0], 1.0) }
 }
 
 /// y ∫_0^1 exp(-y (1 - s)) s^k ds.

@@ -16,7 +16,7 @@ use super::Spectral;
 use crate::history::Ends;
 use crate::history::relaxation::rules::{Driver, Share};
 use crate::history::relaxation::{FLOOR, LATE, Reference, UnderWay, remembered_defect};
-use crate::sliding::torus::Spectrum;
+use crate::sliding::torus::{Spectrum, Torus};
 
 impl Spectral {
     /// Keeps the state just solved as the third one, for another step from the same start.
@@ -64,28 +64,22 @@ impl Spectral {
             square += size;
         }
         let weight = if square > 0.0 { weighted / square } else { 0.0 };
-        let curved = self.field(&curved);
+        let curved = field_of(&mut self.torus, rigid.len(), |n| curved[n]);
         let touched = (0..rigid.len()).filter(|k| before_p[*k] > 0.0 || now_p[*k] > 0.0);
         let [now, before] = [now_p, before_p].map(|p| p.iter().sum::<f64>());
         // E_inf u' counts where the pressure has fallen far below it.
         let relaxed: f64 = match now < before {
             true => {
-                let waves = u.iter().enumerate();
-                let relaxed =
-                    |(n, u): (usize, &Complex64)| u * self.waves.relaxed_modulus(self.waves.quarter_of(n));
-                let waves: Vec<Complex64> = waves.map(relaxed).collect();
-                let field = self.field(&waves);
+                let relaxed = |n: usize| u[n] * self.waves.relaxed_modulus(self.waves.quarter_of(n));
+                let field = field_of(&mut self.torus, rigid.len(), relaxed);
                 touched.map(|k| field[k].abs()).sum()
             }
             false => 0.0,
         };
         // u' - u counts where the approach moves in time.
         let advance = if self.driver == Driver::Time { ends.advance().abs() } else { 0.0 };
-        let change = (advance > 0.0).then(|| {
-            let waves: Vec<Complex64> =
-                u.iter().zip(&self.displacement).map(|(now, start)| now - start).collect();
-            self.field(&waves)
-        });
+        let change = |n: usize| u[n] - self.displacement[n];
+        let change = (advance > 0.0).then(|| field_of(&mut self.torus, rigid.len(), change));
         // What the errors of the solves make of it.
         let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
         let rounding = weight * self.noise * ends.now.approach.abs() * spread * step * step;
@@ -105,11 +99,11 @@ impl Spectral {
         let scale = f64::max(now, FLOOR * before).max(FLOOR * relaxed);
         if scale > 0.0 { error / scale } else { 0.0 }
     }
+}
 
-    /// The field of a transform on the domain.
-    pub(super) fn field(&mut self, waves: &[Complex64]) -> Vec<f64> {
-        let mut field = vec![0.0; self.cells()];
-        self.torus.back_of(waves, &mut field);
-        field
-    }
+/// The field of `cells` cells with these waves.
+fn field_of(torus: &mut Torus, cells: usize, wave: impl Fn(usize) -> Complex64 + Sync) -> Vec<f64> {
+    let mut field = vec![0.0; cells];
+    torus.back(wave, &mut field);
+    field
 }

@@ -153,10 +153,6 @@ impl Spectral {
         of_eigenvalues(operator::default_backend(), self.grid, self.boundary, self.kernel.clone(), &unit)
     }
 
-    fn cells(&self) -> usize {
-        self.grid.len()
-    }
-
     /// The law of the step that is set, with `gap` = `rigid` + g.
     fn law(&mut self, rigid: &[f64], gap: &mut [f64]) -> Law {
         self.prepare();

@@ -56,7 +56,7 @@ pub(super) struct Waves {
     /// ln τ of the first node of the tables, and their nodes.
     first: f64,
     nodes: usize,
-    /// Terms of each wave; those that a wave does not have are 0.
+    /// Terms of each wave, one at least; those that a wave does not have are 0.
     pub(super) terms: usize,
     /// E_inf \[Pa/m\] of a quarter of the waves, \[kx\]\[ky\]; infinite for a wave that yields to nothing.
     equilibrium: Vec<f64>,
@@ -167,11 +167,11 @@ impl Waves {
         };
         let all = (0..rows).into_par_iter().map(of_row).collect::<Option<Vec<_>>>();
         let Some(all) = all else { return Ok(None) };
-        let terms = all.iter().flatten().map(|(_, terms)| terms.len()).max().unwrap_or(0);
+        let terms = all.iter().flatten().map(|(_, terms)| terms.len()).max().unwrap_or(0).max(1);
         let times = || all.iter().flatten().flat_map(|(_, terms)| terms.iter().map(|term| libm::log(term.1)));
         let shortest = times().fold(f64::INFINITY, f64::min);
         let longest = times().fold(f64::NEG_INFINITY, f64::max).max(shortest);
-        let (shortest, longest) = if terms > 0 { (shortest, longest) } else { (0.0, 0.0) };
+        let (shortest, longest) = if shortest.is_finite() { (shortest, longest) } else { (0.0, 0.0) };
         let mut relaxing = Vec::with_capacity(rows * columns * terms);
         let mut equilibrium = Vec::with_capacity(rows * columns);
         let place = |time: f64| (libm::log(time) - shortest) / SPACING + BEFORE;
@@ -225,8 +225,8 @@ impl Waves {
     pub(super) fn compliance(&self, step: &Table) -> Array2<f64> {
         let (rows, columns) = self.quarter();
         let of = |n: usize| {
-            let relaxing = self.relaxing[n * self.terms..(n + 1) * self.terms].iter();
-            1.0 / (self.equilibrium[n] + relaxing.map(|e| e.modulus * step.at(e.place).left).sum::<f64>())
+            let relaxing = self.terms_of(n).iter().map(|e| e.modulus * step.at(e.place).left);
+            1.0 / (self.equilibrium[n] + relaxing.sum::<f64>())
         };
         let values: Vec<f64> = (0..rows * columns).into_par_iter().map(of).collect();
         Array2::from_shape_fn((rows, columns), |(kx, ky)| values[kx * columns + ky])
@@ -234,10 +234,7 @@ impl Waves {
 
     /// Σ E_i times what a table has for the change of u, of each wave of a quarter.
     pub(super) fn sum_of_new(&self, table: &Table) -> Vec<f64> {
-        let of = |n: usize| {
-            let relaxing = self.relaxing[n * self.terms..(n + 1) * self.terms].iter();
-            relaxing.map(|e| e.modulus * table.at(e.place).new).sum()
-        };
+        let of = |n: usize| self.terms_of(n).iter().map(|e| e.modulus * table.at(e.place).new).sum();
         (0..self.equilibrium.len()).into_par_iter().map(of).collect()
     }
 
@@ -262,10 +259,9 @@ impl Waves {
         std::iter::once(kx).chain(mirrored)
     }
 
-    /// What a step does to the states of a wave of the quarter.
-    fn rules(&self, wave: usize, step: &Table, rules: &mut [Rule]) {
-        let terms = &self.relaxing[wave * self.terms..(wave + 1) * self.terms];
-        terms.iter().zip(rules).for_each(|(term, rule)| *rule = step.at(term.place));
+    /// The terms of a wave of the quarter.
+    fn terms_of(&self, wave: usize) -> &[Term] {
+        &self.relaxing[wave * self.terms..(wave + 1) * self.terms]
     }
 
     /// One step of a wave: its displacement under the pressure `p` at the end, which its states take in.
@@ -281,7 +277,7 @@ impl Waves {
         if modulus.is_infinite() {
             return Complex64::ZERO;
         }
-        let terms = &self.relaxing[wave * self.terms..(wave + 1) * self.terms];
+        let terms = self.terms_of(wave);
         let mut held = p;
         for ((e, rule), q) in terms.iter().zip(rules).zip(&mut *q) {
             modulus += e.modulus * rule.left;
@@ -304,32 +300,8 @@ impl Waves {
         states: &mut [Complex64],
     ) {
         let mx = self.lengths[0];
-        // Without terms there are no states.
-        if self.terms == 0 {
-            return self.end_of_springs(p, u);
-        }
         let columns = u.par_chunks_mut(mx).zip(states.par_chunks_mut(mx * self.terms));
-        columns.enumerate().for_each(|(ky, (u, states))| {
-            let mut rules = vec![Rule::default(); self.terms];
-            for (first, step) in (0..=mx / 2).flat_map(|kx| steps.iter().map(move |step| (kx, step))) {
-                let wave = self.place(first, ky);
-                self.rules(wave, step, &mut rules);
-                for kx in self.pair(first) {
-                    let p = p.map_or(Complex64::ZERO, |p| p[ky * mx + kx]);
-                    let q = &mut states[kx * self.terms..(kx + 1) * self.terms];
-                    u[kx] = self.step(wave, &rules, p, u[kx], q);
-                }
-            }
-        });
-    }
-
-    fn end_of_springs(&self, p: Option<&[Complex64]>, u: &mut [Complex64]) {
-        let mx = self.lengths[0];
-        u.par_chunks_mut(mx).enumerate().for_each(|(ky, u)| {
-            for (kx, u) in u.iter_mut().enumerate() {
-                *u = p.map_or(Complex64::ZERO, |p| p[ky * mx + kx]) / self.equilibrium[self.place(kx, ky)];
-            }
-        });
+        columns.enumerate().for_each(|(ky, (u, states))| self.end_column(ky, steps, p, u, states));
     }
 
     /// What the displacement after these steps is without pressure.
@@ -340,25 +312,33 @@ impl Waves {
         states: &[Complex64],
         recalled: &mut [Complex64],
     ) {
-        if self.terms == 0 {
-            return recalled.fill(Complex64::ZERO);
-        }
+        recalled.copy_from_slice(u);
         let mx = self.lengths[0];
-        let columns =
-            recalled.par_chunks_mut(mx).zip(u.par_chunks(mx)).zip(states.par_chunks(mx * self.terms));
-        columns.enumerate().for_each(|(ky, ((recalled, u), states))| {
-            let mut rules = vec![Rule::default(); self.terms];
-            let mut q = states.to_vec();
-            recalled.copy_from_slice(u);
-            for (first, step) in (0..=mx / 2).flat_map(|kx| steps.iter().map(move |step| (kx, step))) {
-                let wave = self.place(first, ky);
-                self.rules(wave, step, &mut rules);
-                for kx in self.pair(first) {
-                    let q = &mut q[kx * self.terms..(kx + 1) * self.terms];
-                    recalled[kx] = self.step(wave, &rules, Complex64::ZERO, recalled[kx], q);
-                }
-            }
+        let columns = recalled.par_chunks_mut(mx).zip(states.par_chunks(mx * self.terms));
+        columns.enumerate().for_each(|(ky, (u, states))| {
+            self.end_column(ky, steps, None, u, &mut states.to_vec());
         });
+    }
+
+    fn end_column(
+        &self,
+        ky: usize,
+        steps: &[Table],
+        p: Option<&[Complex64]>,
+        u: &mut [Complex64],
+        states: &mut [Complex64],
+    ) {
+        let mut rules = vec![Rule::default(); self.terms];
+        for (first, step) in (0..=u.len() / 2).flat_map(|kx| steps.iter().map(move |step| (kx, step))) {
+            let wave = self.place(first, ky);
+            let terms = self.terms_of(wave);
+            terms.iter().zip(&mut rules).for_each(|(term, rule)| *rule = step.at(term.place));
+            for kx in self.pair(first) {
+                let p = p.map_or(Complex64::ZERO, |p| p[ky * u.len() + kx]);
+                let q = &mut states[kx * self.terms..(kx + 1) * self.terms];
+                u[kx] = self.step(wave, &rules, p, u[kx], q);
+            }
+        }
     }
 
     /// Mean of 1/E~(s) over the waves, each with the weight |p|²; at s = ∞, 0 and `frequencies`.
@@ -370,12 +350,11 @@ impl Waves {
                 let twice = if ky == 0 || 2 * ky == my { 1.0 } else { 2.0 };
                 let wave = |kx: usize| {
                     let n = self.place(kx, ky);
-                    let terms = self.relaxing[n * self.terms..(n + 1) * self.terms].iter();
                     let share = |e: &Term| {
                         let y = s * time(e.place);
                         if y.is_infinite() { e.modulus } else { e.modulus * y / (1.0 + y) }
                     };
-                    let modulus = self.equilibrium[n] + terms.map(share).sum::<f64>();
+                    let modulus = self.equilibrium[n] + self.terms_of(n).iter().map(share).sum::<f64>();
                     twice * p[ky * mx + kx].norm_sqr() / modulus
                 };
                 (0..mx).map(wave).sum::<f64>()

@@ -1,15 +1,15 @@
-//! Polynomials of least squares through two curves, the second one moved and raised.
+//! Least-squares polynomials through two curves, of which the second is moved and raised.
 
 use super::Logs;
 
-/// The polynomials of all quantities, the second curves moved by d and, where that is free, raised by the best v.
+/// The polynomials of all quantities, with the second curves moved by d and, if v is free, raised by the best v.
 pub(super) struct Joint {
     pub squares: f64,
     /// Largest root of the mean square of the slope of a polynomial.
     pub slope: f64,
     /// The best v.
     pub raised: f64,
-    /// Half of the second derivative of the squares with v; 0 where they do not depend on it.
+    /// Half of the second derivative of the squares with respect to v; 0 if they do not depend on it.
     pub told: f64,
 }
 
@@ -33,14 +33,14 @@ impl Joint {
     }
 }
 
-/// The polynomial of least squares through both curves, the second one moved.
+/// The least-squares polynomial through both curves, with the second one moved.
 struct Polynomial {
-    /// Sum of the squares of its distances.
+    /// Sum of the squares of its residuals.
     squares: f64,
-    /// Root of the mean square of its slope where both curves lie, or over all where they do not overlap.
+    /// Root mean square of its slope where both curves overlap, or over all points if they do not.
     slope: f64,
-    /// What a step between the two curves leaves of itself beside the polynomial, squared, and its product with the distances of
-    /// the values.
+    /// The part of a step between the two curves that is orthogonal to the polynomials, squared, and its product with the
+    /// residuals of the values.
     told: f64,
     along: f64,
 }
@@ -55,7 +55,7 @@ impl Polynomial {
             true => (0..points.len()).map(|n| if n < first.len() { 0.0 } else { 1.0 }).collect(),
             false => Vec::new(),
         };
-        // What is left of the values is their distance from the polynomial.
+        // The remainder of the values is their distance from the polynomial.
         for column in orthonormal(&points, degree) {
             remove(&mut rest, &column);
             remove(&mut step, &column);
@@ -70,7 +70,7 @@ impl Polynomial {
     }
 }
 
-/// Polynomials up to a degree at the places of points: Chebyshev polynomials, made orthogonal one after the other (modified
+/// Polynomials up to a degree at the given points: Chebyshev polynomials, orthogonalised one after the other (modified
 /// Gram-Schmidt).
 pub(super) fn orthonormal(points: &[(f64, f64)], degree: usize) -> Vec<Vec<f64>> {
     let ends = points
@@ -93,7 +93,7 @@ pub(super) fn orthonormal(points: &[(f64, f64)], degree: usize) -> Vec<Vec<f64>>
     basis
 }
 
-/// Root of the mean square of the slope of the fitted values between neighbours of either curve, where the curves overlap.
+/// Root mean square of the slope of the fitted values between neighbours of either curve, where the curves overlap.
 fn slope(points: &[(f64, f64)], fitted: &[f64], split: usize) -> f64 {
     let (first, second) = points.split_at(split);
     let low = first[0].0.max(second[0].0);
@@ -126,7 +126,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Takes the part along a unit vector away.
+/// Removes the part along a unit vector.
 pub(super) fn remove(vector: &mut [f64], unit: &[f64]) {
     let along = dot(vector, unit);
     vector.iter_mut().zip(unit).for_each(|(value, unit)| *value -= along * unit);

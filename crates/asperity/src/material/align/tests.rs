@@ -1,4 +1,4 @@
-//! Distances of curves that are known.
+//! Curves with known distances.
 
 use super::*;
 
@@ -37,19 +37,19 @@ fn a_curve_that_is_moved_and_raised_is_told_by_its_bend_and_a_power_law_is_not()
     let bend = |x: f64| -0.1 * x - 0.02 * x * x;
     let pair = [curve(0.0, 5.0, bend), curve(0.0, 5.0, |x| bend(x + 2.0) + 0.3)];
     let found = distance(std::slice::from_ref(&pair), Ordinate::Free);
-    // Exact but for the digits; one per cent over a slope of 0.2.
+    // Exact except for the digits; one per cent over a slope of 0.2.
     assert!((found.value - 2.0).abs() < 2e-3 && found.deviation < 0.1, "{found:?}");
     let up = raised(&[pair], 2.0);
-    // Exact but for the polynomials' rounding; the digits are the deviation.
+    // Exact except for the rounding of the polynomials; the standard deviation is that of the digits.
     assert!((up.value + 0.3).abs() < 1e-9 && up.deviation < 1e-4, "{up:?}");
-    // One unit more of distance along a slope of -0.1 - 0.04 x is made up for by raising.
+    // One more unit of distance along a slope of -0.1 - 0.04 x is compensated by raising.
     assert!((0.1..0.4).contains(&up.slope.abs()), "{up:?}");
-    // A power law moved along ln x is one that is raised.
+    // A power law that is moved along ln x is equal to one that is raised.
     let line = |x: f64| -0.2 * x;
     let lines = [curve(0.0, 5.0, line), curve(0.0, 5.0, |x| line(x + 1.0) + 0.1)];
     let both = distance(std::slice::from_ref(&lines), Ordinate::Free);
     assert!(both.deviation > 2.3, "a decade: {both:?}");
-    // A second quantity with a bend tells the distance of both.
+    // A second quantity with curvature determines the distance of both.
     let tan = [curve(0.0, 5.0, bend), curve(0.0, 5.0, |x| bend(x + 1.0) + 0.1)];
     let both = distance(&[lines, tan], Ordinate::Free);
     assert!((both.value - 1.0).abs() < 1e-2 && both.deviation < 0.1, "{both:?}");

@@ -1,4 +1,4 @@
-//! Factors of synthetic isotherms, and what is refused.
+//! Factors of synthetic isotherms, and data that are refused.
 
 use super::*;
 use crate::material::series::tests::random;
@@ -141,7 +141,7 @@ fn isotherms_far_apart_are_continued_with_their_uncertainty() {
         estimate_shift(&relaxing(&temperatures), Abscissa::Time, 313.0, ModulusChange::Neglected).unwrap();
     for (t, uncertainty) in temperatures.iter().zip(&found.uncertainty) {
         let error = (found.shift.ln_factor(*t).unwrap() - law().ln_factor(*t).unwrap()) / LN_10;
-        // The estimate says how far off it may be, and that is less than a decade.
+        // The estimate states its uncertainty, and that is less than a decade.
         assert!(error.abs() < 1.0 && *uncertainty <= 1.0, "{t} K: {error}, {uncertainty}");
     }
 }
@@ -153,7 +153,7 @@ fn a_flat_pair_follows_the_law_of_the_others() {
     let found =
         estimate_shift(&relaxing(&temperatures), Abscissa::Time, 310.0, ModulusChange::Neglected).unwrap();
     let step = |shift: &Shift| (shift.ln_factor(380.0).unwrap() - shift.ln_factor(390.0).unwrap()) / LN_10;
-    // Half of what the law itself is trusted to.
+    // Half of the assumed accuracy of the law.
     assert!((step(&found.shift) - step(&law())).abs() < 0.3, "{found:?}");
 }
 
@@ -176,12 +176,13 @@ fn both_moduli_tell_times_and_factors_of_moduli() {
         estimate_vertical(&isotherms, Abscissa::Frequency, &found.shift, &found.uncertainty).unwrap();
     for ((t, decades), share) in TEMPERATURES.iter().zip(&found.uncertainty).zip(&vertical.uncertainty) {
         let error = (found.shift.ln_factor(*t).unwrap() - law().ln_factor(*t).unwrap()) / LN_10;
-        // Three standard deviations; a tenth of a decade is what 45 % of change would be taken for otherwise.
+        // Three standard deviations; otherwise 45 % of change would appear as a tenth of a decade.
         assert!(error.abs() <= 3.0 * decades + 1e-9 && *decades < 0.2, "{t} K: {error} of {decades} decades");
         let error = (vertical.vertical.factor(*t).unwrap() * truth(*t)).ln();
         assert!(error.abs() <= 3.0 * share + 1e-9 && *share < 0.2, "{t} K: {error} of {share}");
     }
-    // Without them the times take it up: more than three of its own standard deviations at the warmest.
+    // Without them the shift in time absorbs the change: by more than three of its standard deviations at the highest
+    // temperature.
     let without = estimate_shift(&isotherms, Abscissa::Frequency, 310.0, ModulusChange::Neglected).unwrap();
     let error = (without.shift.ln_factor(340.0).unwrap() - law().ln_factor(340.0).unwrap()) / LN_10;
     assert!(error.abs() > 0.1, "{error}");

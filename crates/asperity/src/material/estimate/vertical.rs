@@ -1,8 +1,8 @@
 //! Vertical shift factors from measured isotherms whose times follow a known shift.
 //!
 //! At the distance of the shift, the curves of each pair of neighbours have one polynomial per quantity and one factor between
-//! them ([`align::raised`]). Factors multiply up from the reference; the variances of their logarithms, with what the
-//! uncertainty of the shift does along the slope of the curves, add up.
+//! them ([`align::raised`]). Factors are multiplied from the reference on. The variances of their logarithms are added; they
+//! include the effect of the uncertainty of the shift along the slope of the curves.
 
 use super::{Abscissa, Isotherm, Result, Shift, align, kelvin, pairs, sorted};
 use crate::error::Error;
@@ -21,9 +21,9 @@ pub struct VerticalEstimate {
 /// Standard deviation of ln b_T beyond which it is refused: a factor of two.
 const MOST_UNCERTAIN_MODULUS: f64 = std::f64::consts::LN_2;
 
-/// Factors by which the moduli of isotherms change with temperature, where their times follow a `shift` whose factors have
-/// these standard deviations \[decades\], in order of temperature (none where it is known). The factor of a compliance is that of
-/// its values: one over that of the modulus.
+/// Factors by which the moduli of isotherms change with temperature if their times follow a `shift` whose factors have these
+/// standard deviations \[decades\], in order of temperature (empty if the shift is known). The factor of a compliance applies to
+/// its values: it is one over that of the modulus.
 ///
 /// ```
 /// use asperity::material::{Abscissa, Isotherm, Shift, estimate_vertical};
@@ -39,8 +39,8 @@ const MOST_UNCERTAIN_MODULUS: f64 = std::f64::consts::LN_2;
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`estimate_shift`](crate::material::estimate_shift); where the shift is not defined at a temperature; where a factor is uncertain by more
-/// than a factor of two, naming the pair of isotherms that says least.
+/// [`Error::Invalid`] as [`estimate_shift`](crate::material::estimate_shift); if the shift is not defined at a temperature; if a
+/// factor is uncertain by more than a factor of two, naming the pair of isotherms with the least information.
 pub fn estimate_vertical(
     isotherms: &[Isotherm],
     abscissa: Abscissa,

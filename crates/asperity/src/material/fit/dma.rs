@@ -1,9 +1,9 @@
 //! Storage and loss modulus of a dynamic mechanical analysis.
 //!
-//! One relaxation spectrum gives both moduli (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980,
-//! chapter 3). Measured ones often contradict each other, because a master curve was shifted by the storage modulus
-//! alone or the instrument's compliance is in one of them. So either modulus may be fitted alone, and data whose moduli
-//! cannot be fitted together are refused with the misfit that each reaches alone.
+//! One relaxation spectrum gives both moduli (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980, chapter 3).
+//! Measured moduli often contradict each other, for example because a master curve was shifted by the storage modulus only, or
+//! because one modulus contains the compliance of the instrument. Either modulus may therefore be fitted separately. Data whose
+//! moduli cannot be fitted together are refused, and the error states the misfit of each modulus fitted separately.
 
 use super::{Curve, Fit, FitOptions, LongTime, Misfit, Moduli, Solved, relaxation, together};
 use crate::error::{Error, Result};
@@ -33,8 +33,8 @@ use crate::material::spectrum::{Kernel, Problem, Spectrum};
 /// ```
 ///
 /// # Errors
-/// As [`fit_relaxation`](crate::material::fit_relaxation): frequencies out of order, negative moduli, a storage modulus
-/// that falls with frequency, and pairs E', E'' that belong to no passive material (Kramers & Kronig).
+/// As [`fit_relaxation`](crate::material::fit_relaxation): frequencies out of order, negative moduli, a storage modulus that
+/// falls with frequency, and pairs E', E'' that no passive material has (Kramers & Kronig).
 pub fn fit_dma(
     omega: &[f64],
     storage: &[f64],
@@ -53,7 +53,7 @@ pub fn fit_dma(
     data::check_values(words, omega, storage, false)?;
     data::check_values(loss_words, omega, loss, true)?;
     data::check_trend(words, Trend::Rises, omega, storage, options.limit)?;
-    // A loss below a thousandth of the stored energy is below what instruments tell.
+    // A loss below a thousandth of the stored energy is below the accuracy of instruments.
     let floor = 1e-3 * storage.iter().copied().fold(f64::INFINITY, f64::min);
     let weight = options.loss_weight;
     let curves = [
@@ -73,13 +73,13 @@ pub fn fit_dma(
     Ok(Fit { function: relaxation(spectrum)?, misfit, columns, window, noise, uncertainty })
 }
 
-/// Fits the moduli that are asked for, and measures the misfit of both.
+/// Fits the requested moduli, and computes the misfit of both.
 fn solve(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Result<Solved> {
     let fitted = of(curves, options.moduli);
     let margin = 10f64.powf(options.margin);
     let problem = Problem {
         rows: fitted.iter().flat_map(Curve::rows).collect(),
-        // The loss modulus does not show the equilibrium modulus.
+        // The loss modulus does not determine the equilibrium modulus.
         constant: options.long_time != LongTime::Fluid && options.moduli != Moduli::Loss,
         flow: false,
         range: [window[0] / margin, window[1] * margin],
@@ -110,12 +110,12 @@ fn equilibrium(storage: &Curve<'_>, spectrum: &Spectrum) -> f64 {
     (above / below).max(0.0)
 }
 
-/// The refusal of both moduli together, with the misfit that each reaches alone; `None` where neither does, or where both are met
-/// together but for a few points.
+/// The error that refuses both moduli together, with the misfit of each fitted separately; `None` if neither can be fitted, or if
+/// both are fitted together except at a few points.
 fn alone(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Option<Error> {
     let any = FitOptions { limit: f64::MAX, ..*options };
     let both = solve(curves, window, &any).ok()?;
-    // Both are met but at a few points: the refusal that names these says more.
+    // Both are fitted except at a few points: the error that names these points is more useful.
     if both.misfit.rms <= options.limit {
         return None;
     }

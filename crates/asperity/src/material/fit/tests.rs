@@ -1,4 +1,4 @@
-//! Fits of synthetic data: the curve comes back, and what is no material is refused.
+//! Fits of synthetic data: the fit recovers the curve, and non-physical data are refused.
 
 use super::*;
 use crate::material::series::tests::random;
@@ -30,7 +30,7 @@ fn thirteen_noisy_terms_are_recovered_to_the_noise() {
     let fit = fit_relaxation(&times, &moduli, &FitOptions::default()).unwrap();
     // The scatter of the scatter of 400 points: 1/sqrt(800), and twice that of a median.
     assert!((fit.noise / 0.02 - 1.0).abs() < 0.2, "{}", fit.noise);
-    // What remains is the noise, less what 26 parameters take up.
+    // The remainder is the noise, minus the part that 26 parameters absorb.
     assert!((fit.misfit.rms / 0.02 - 1.0).abs() < 0.1, "{:?}", fit.misfit);
     // About 14 points per parameter pair: the curve is known to 0.02 sqrt(26/400), 3 sigma of it.
     let error = times.iter().map(|t| (fit.function.value(*t) / truth.value(*t) - 1.0).abs());
@@ -190,7 +190,7 @@ fn a_run_beyond_the_data_is_told_so() {
 
 #[test]
 fn the_uncertainty_of_a_term_is_its_scatter_over_many_experiments() {
-    // PMMA with 0.1 % of noise, 40 times: the terms scatter as the first fit says they do.
+    // PMMA with 0.1 % of noise, 40 times: the terms scatter as the first fit predicts.
     let pmma = Relaxation::absolute(1973e6, &[(254.776e6, 8.93), (263.6628e6, 117.96)]).unwrap();
     let times = logspace(0.3, 3000.0, 80);
     let mut normal = normal(7);
@@ -281,7 +281,7 @@ fn the_fewest_terms_hold_a_misfit() {
     let (coarse, few) = fit(0.05).unwrap();
     let (fine, more) = fit(0.005).unwrap();
     assert!(coarse <= 0.05 && fine <= 0.005 && few < more && more <= 13, "{coarse} {few} {fine} {more}");
-    // What scatters by two per cent is held to a tenth of that by no passive material.
+    // No passive material fits data with two per cent of scatter to a tenth of that.
     let mut normal = normal(5);
     let scattered: Vec<f64> = moduli.iter().map(|value| value * (1.0 + 0.02 * normal())).collect();
     let options = FitOptions { misfit: Some(0.002), ..FitOptions::default() };

@@ -1,17 +1,16 @@
-//! Marching a row of springs through a load or approach history.
+//! Time stepping of a row of springs through a load or approach history.
 
 use super::{Mdr, MdrProfile, MdrState, MdrTarget};
 use crate::error::{Error, Result};
 use crate::load::{Control, Loading};
 use crate::material::Relaxation;
 
-/// How finely the row of springs and the time are divided.
+/// The resolution of the row of springs and of time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MdrOptions {
-    /// Springs between the axis and the largest contact expected. Default 1000.
+    /// Springs between the axis and the largest expected contact radius. Default 1000.
     pub springs: usize,
-    /// Steps between two of the times asked for. Default 20. After a break of the history they grow
-    /// quadratically.
+    /// Steps between two requested times. Default 20. After a kink or jump of the history the steps grow quadratically.
     pub substeps: usize,
 }
 
@@ -21,17 +20,16 @@ impl Default for MdrOptions {
     }
 }
 
-/// Share of the last time, or of the value, below which two instants or values are one.
+/// Fraction of the last time, or of the value, below which two times or values are equal.
 const SAME: f64 = 1e-12;
 
 impl Mdr {
-    /// Rows at t = 0+, at every time asked for and at every break of the history before the last; a jump
-    /// gives two rows, before and after it.
+    /// Rows at t = 0+, at every requested time, and at every kink or jump of the history before the last time. A jump gives two
+    /// rows, before and after it.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the loading is invalid, controls the mean pressure (a single contact has
-    /// no area to average over), asks for a negative load, or the times are not increasing and positive;
-    /// as [`step`](Self::step) otherwise.
+    /// [`Error::Invalid`] if the loading is invalid, controls the mean pressure (a single contact has no area to average over),
+    /// requires a negative load, or the times are not increasing and positive; as [`step`](Self::step) otherwise.
     pub fn march(
         profile: MdrProfile,
         relaxation: &Relaxation,
@@ -49,7 +47,7 @@ impl Mdr {
             Control::Load | Control::Pressure => MdrTarget::Load(value),
         };
         let breaks = history.breaks(end);
-        // Times that are a break but for rounding are the break.
+        // Times that equal a kink or jump except for rounding are set to it.
         let is_break = |t: f64| breaks.iter().any(|b| (t - b).abs() <= SAME * end);
         let mut stops: Vec<f64> = times.iter().copied().filter(|t| !is_break(*t)).collect();
         stops.extend(&breaks);
@@ -57,7 +55,7 @@ impl Mdr {
         let mut states = vec![row.step(0.0, target(history.after(0.0)))?];
         let mut start = 0.0;
         for stop in stops {
-            // Rates are unbounded just after a break: steps that grow.
+            // Rates are unbounded just after a kink or jump, so the steps grow.
             let graded = start == 0.0 || breaks.contains(&start);
             let substeps = options.substeps.max(1);
             for n in 1..=substeps {
@@ -100,7 +98,7 @@ impl Mdr {
                 profile.elastic_radius(highest, relaxation.to_creep()?.value(end))
             }
         };
-        // Nothing ever touches: any length will do.
+        // There is never contact: any length is possible.
         Ok(if reach > 0.0 { 1.01 * reach } else { 1.0 })
     }
 }

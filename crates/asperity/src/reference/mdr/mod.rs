@@ -2,9 +2,9 @@
 //! M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction (Springer, 2015),
 //! chapters 3 and 7; I. I. Argatov and V. L. Popov, Z. Angew. Math. Mech. 96 (2016) 956 (rebound).
 //!
-//! A rigid body of revolution on a viscoelastic half-space is equivalent to a row of independent springs
-//! along x under the profile g(x) (sphere x^2/R, cone (pi/2) slope |x|). Each spring is the material: its
-//! force per length is q(x, t) = int E*(t - s) du(x, s). Then
+//! A rigid body of revolution on a viscoelastic half-space is equivalent to a row of independent springs along x under the
+//! profile g(x) (sphere x^2/R, cone (pi/2) slope |x|). Each spring has the law of the material: its force per length is q(x, t) =
+//! int E*(t - s) du(x, s). Then
 //!
 //! ```text
 //! in contact (q > 0): u = approach - g(x);   out of contact: q = 0, the spring recovers freely, u >= approach - g
@@ -12,14 +12,14 @@
 //! u(r) = (2/pi) int_0^r u(x) / sqrt(r^2 - x^2) dx
 //! ```
 //!
-//! Exact for every history, unloading and loading again included, as long as the contact is one disc;
-//! [`Mdr::step`] refuses a history that would open it from within.
+//! This is exact for every history, including unloading and reloading, as long as the contact is one disc; [`Mdr::step`] refuses
+//! a history that would open it from within.
 //!
-//! In time a spring's displacement is linear over a step, so that with e = exp(-h/tau),
-//! phi = (1 - e) tau / h the force is exactly q = E_inf u + sum E_i z_i, z_i <- e z_i + phi (u_new - u_old):
-//! exact under a piecewise linear approach, second order under a load. In space q is linear in g between
-//! neighbouring springs, which makes the elastic contact exact; where a memory ends within a cell the edge
-//! is known to a share of the cell, load and approach to the square of its share of the radius.
+//! In time a spring's displacement is linear over a step, so that with e = exp(-h/tau), phi = (1 - e) tau / h the force is
+//! exactly q = E_inf u + sum E_i z_i, z_i <- e z_i + phi (u_new - u_old): exact under a piecewise linear approach, second order
+//! under a load. In space q is linear in g between neighbouring springs, which makes the elastic contact exact; if the previous
+//! contact ends within a cell, the error of the edge is a fraction of the cell, and that of load and approach is of second order
+//! in the cell over the radius.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -49,7 +49,7 @@ pub struct MdrState {
     pub contact_radius: f64,
 }
 
-/// What a step prescribes at its end.
+/// The prescribed quantity at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MdrTarget {
     /// The load W >= 0 \[N\].
@@ -58,7 +58,7 @@ pub enum MdrTarget {
     Approach(f64),
 }
 
-/// A row of springs with their memory.
+/// A row of springs with their history.
 ///
 /// ```
 /// use asperity::material::Relaxation;
@@ -75,7 +75,7 @@ pub enum MdrTarget {
 #[derive(Clone, Debug)]
 pub struct Mdr {
     profile: MdrProfile,
-    /// What stands for the profile where the body is a layer.
+    /// The profile of springs, if the body is a layer.
     layer: Option<SpringProfile>,
     relaxation: Relaxation,
     spacing: f64,
@@ -86,19 +86,19 @@ pub struct Mdr {
     force: Vec<f64>,
     /// Per spring, then per branch: z_i.
     branches: Vec<f64>,
-    /// Where q falls to zero.
+    /// Position at which q falls to zero.
     contact_radius: f64,
 }
 
-/// The row may grow to this many times its first length before the estimate of it is called wrong.
+/// Largest growth of the row relative to its initial length; beyond it, the estimate of the length is an error.
 const GROWTH: usize = 32;
 
 impl Mdr {
-    /// An undisturbed row of `springs` springs out to `largest_radius` \[m\]; it lengthens itself (up to
-    /// 32 times) where the contact grows beyond.
+    /// An undisturbed row of `springs` springs up to `largest_radius` \[m\]; it is lengthened automatically (up to 32 times) if
+    /// the contact grows beyond.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a number is not positive, the relaxation function is invalid, or the
+    /// [`Error::Invalid`] if a number is not positive, the relaxation function is invalid, or the
     /// springs are fewer than 2 or more than a million.
     pub fn new(
         profile: MdrProfile,
@@ -128,7 +128,7 @@ impl Mdr {
         Ok(row)
     }
 
-    /// A row that stands for a layer: its radii are ρ, half of the stiffness for E* = 1, and it has no pressure.
+    /// A row that is equivalent to a layer: its radii are ρ, half of the stiffness for E* = 1, and it has no pressure.
     ///
     /// # Errors
     /// As [`Mdr::new`].
@@ -142,12 +142,11 @@ impl Mdr {
         Ok(Mdr { layer: Some(layer), ..row })
     }
 
-    /// Goes on by `dt` >= 0 \[s\] (0: a jump) to the target.
+    /// Advances by `dt` >= 0 \[s\] (0: a jump) to the target.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where `dt` is negative, the load is negative, the target is not finite, a
-    /// relaxation function with a viscosity jumps, the contact would open from within (it is not one
-    /// disc any more), or it outgrows the row.
+    /// [`Error::Invalid`] if `dt` is negative, the load is negative, the target is not finite, a relaxation function with a
+    /// viscosity has a jump, the contact would open from within (it would no longer be one disc), or it grows beyond the row.
     pub fn step(&mut self, dt: f64, target: MdrTarget) -> Result<MdrState> {
         non_negative("time step", dt, "s")?;
         self.step_to(self.time + dt, target)
@@ -223,7 +222,7 @@ impl Mdr {
         Ok(())
     }
 
-    /// Displacements at the end of a step that leave every spring without force.
+    /// Displacements at the end of a step at which every spring has zero force.
     fn free_displacements(&self, factors: &Factors) -> Vec<f64> {
         let per_spring = self.relaxation.terms.len();
         (0..self.displacement.len())
@@ -241,7 +240,7 @@ impl Mdr {
             .collect()
     }
 
-    /// Where the springs' forces end at this approach; `None` beyond the row.
+    /// Position at which the forces of the springs end at this approach; `None` beyond the row.
     fn edge_at(&self, touch: &[f64], approach: f64) -> Option<f64> {
         if approach <= touch[0] {
             return Some(0.0);
@@ -285,7 +284,7 @@ impl Mdr {
         None
     }
 
-    /// Springs beyond the edge must not touch, those within must.
+    /// Springs beyond the edge must not touch; springs within must touch.
     fn require_disc(&self, touch: &[f64], approach: f64, edge: f64) -> Result<()> {
         let slack = 1e-9 * (approach - touch[0]).abs().max(self.height(1));
         let wrong = touch.iter().enumerate().find(|(k, b)| {
@@ -376,7 +375,7 @@ impl Mdr {
     }
 }
 
-/// What a step does to every spring alike.
+/// The coefficients of a step, which are the same for every spring.
 struct Factors {
     branches: Vec<Branch>,
     /// dq/du over the step: E_inf + sum E_i phi_i + viscosity / dt.

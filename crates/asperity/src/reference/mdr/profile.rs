@@ -1,11 +1,11 @@
-//! The plane profile g(x) that stands for a body of revolution, and its integrals.
+//! The plane profile g(x) that is equivalent to a body of revolution, and its integrals.
 //!
 //! ```text
 //! g(x) = |x| int_0^|x| f'(r) / sqrt(x^2 - r^2) dr      f(r): the shape, f = r^2/(2R) or slope r
 //! ```
 //!
-//! (Popov and Hess 2015, eq. 3.4.) The row of springs interpolates linearly in g, so each integral here
-//! is one over a cell x0 < x < x1.
+//! (Popov and Hess 2015, eq. 3.4.) The row of springs interpolates linearly in g, so each integral here is over a cell x0 < x <
+//! x1.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -43,7 +43,7 @@ impl MdrProfile {
         }
     }
 
-    /// The x >= 0 where g(x) = height \[m\].
+    /// The x >= 0 if g(x) = height \[m\].
     pub fn reach(&self, height: f64) -> f64 {
         match self {
             MdrProfile::Sphere { radius } => (height * radius).sqrt(),
@@ -59,8 +59,7 @@ impl MdrProfile {
         }
     }
 
-    /// Mean of (g - g(x0)) / (g(x1) - g(x0)) over x0 < x < x1: where the weight of a cell that is linear
-    /// in g lies.
+    /// Mean of (g - g(x0)) / (g(x1) - g(x0)) over x0 < x < x1: the centre of weight of a cell that is linear in g.
     pub(super) fn lean(&self, x0: f64, x1: f64) -> f64 {
         match self {
             MdrProfile::Sphere { .. } => (x1 + 2.0 * x0) / (3.0 * (x0 + x1)),

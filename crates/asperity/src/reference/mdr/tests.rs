@@ -74,8 +74,8 @@ fn elastic_pressures_and_displacements_are_those_of_hertz_and_sneddon() {
 
 #[test]
 fn a_held_approach_relaxes_as_the_modulus() {
-    // The approach is piecewise linear, so there is no error in time. The memory ends at the edge, within
-    // a cell: the edge is known to a share of a cell, dx/a = 1e-3, and the load to its square.
+    // The approach is piecewise linear, so there is no error in time. The previous contact ends at the edge, within a cell: the
+    // error of the edge is a fraction of a cell, dx/a = 1e-3, and that of the load is its square.
     let times = [0.1, 0.5, 1.0, 2.0, 10.0];
     let history = History::Step { value: 0.04 };
     let states = march(SPHERE, &zener(), Control::Approach, history, &times, 1);
@@ -178,7 +178,7 @@ fn a_rested_body_has_forgotten_and_a_hurried_one_has_not() {
         (at(1.0), at(1.5), at(start + 1.0), at(start + 1.5))
     };
     let (up, down, up_again, down_again) = again(40.0);
-    // exp(-40) is left of the first cycle; both cycles are stepped alike but from a rounded time.
+    // The remainder of the first cycle is exp(-40); both cycles have the same steps except for a rounded start time.
     assert!(near(up_again.approach, up.approach, 1e-9) && near(down_again.approach, down.approach, 1e-9));
     assert!(near(down_again.contact_radius, down.contact_radius, 1e-9));
     let (up, _, up_again, _) = again(1.0);

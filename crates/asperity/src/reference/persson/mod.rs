@@ -10,11 +10,11 @@
 //! mu   = (1/(2 s0)) int d2q |q| q_e C(q) S(q) P(q) E''(q_e v)
 //! ```
 //!
-//! with k_e the component of k along the motion and <h^2> = int C d2q. P(q) is the share of the nominal area that is in
-//! contact where no waves shorter than 2 pi/q are seen. With P = S = 1, at high pressure, mu s0 is exact
-//! ([`full_contact_friction`](crate::reference::full_contact_friction)). In partial contact it is an estimate: the theory has no
-//! shape of contact spots, and it loses its meaning once the motion itself shrinks the contact (S. Sukhomlinov and M. H.
-//! Mueser, Appl. Surf. Sci. Adv. 6 (2021) 100182).
+//! with k_e the component of k along the motion and <h^2> = int C d2q. P(q) is the fraction of the nominal area that is in
+//! contact if waves shorter than 2 pi/q are ignored. With P = S = 1, at high pressure, mu s0 is exact
+//! ([`full_contact_friction`](crate::reference::full_contact_friction)). In partial contact it is an estimate: the theory does
+//! not include the shape of the contact spots, and it is not valid if the motion itself shrinks the contact (S. Sukhomlinov and
+//! M. H. Mueser, Appl. Surf. Sci. Adv. 6 (2021) 100182).
 
 mod shells;
 
@@ -26,7 +26,7 @@ use crate::sliding::Direction;
 use crate::surface::Surface;
 use shells::{Fineness, Isotropic, Shells, Waves};
 
-/// How the strain below partial contact is reduced against that below full contact.
+/// The reduction of the strain below partial contact compared with full contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Correction {
     /// S = 1 (Persson 2001).
@@ -82,28 +82,28 @@ pub struct PerssonFriction {
     pub contact_fraction: f64,
 }
 
-/// Friction and contact as waves of shorter and shorter wavelength are seen, at one velocity.
+/// Friction and contact as a function of the magnification, at one velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Magnification {
-    /// Wave number up to which waves are seen \[1/m\].
+    /// Wave number up to which waves are included \[1/m\].
     pub wave_number: Vec<f64>,
     /// Share of the nominal area in contact.
     pub contact_fraction: Vec<f64>,
-    /// Friction coefficient of these waves; the last is that of all.
+    /// Friction coefficient of these waves; the last value is that of all waves.
     pub friction_coefficient: Vec<f64>,
 }
 
 impl Persson {
-    /// Of the waves of a periodic surface that slides in a direction: each wave with its own direction, so that
-    /// an anisotropic surface has a friction of its own in each. Level and window a measured surface first, as its borders
-    /// count as steps otherwise.
+    /// From the waves of a periodic surface that slides in a direction. Each wave has its own direction, so the friction of an
+    /// anisotropic surface depends on the direction. Level and window a measured surface first, because its borders otherwise act
+    /// as steps.
     ///
     /// `creep` is the contact creep compliance at the temperature of the contact ([`Creep::stretched`]), `pressure` the nominal
     /// one \[Pa\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the surface is flat or a point of it undefined, the angle not finite, the pressure not positive,
-    /// or the creep function that of a fluid or of a rigid body.
+    /// [`Error::Invalid`] if the surface is flat or has an undefined point, the angle is not finite, the pressure is not
+    /// positive, or the creep function is that of a fluid or of a rigid body.
     pub fn of_surface(
         surface: &Surface,
         direction: Direction,
@@ -114,9 +114,9 @@ impl Persson {
         Persson::new(Shells::Waves(Waves::of(surface, direction)?), creep, pressure, correction)
     }
 
-    /// Of an isotropic spectrum C(q) \[m^4\] at rising wave numbers \[1/m\], as
-    /// [`RadialSpectrum`](crate::surface::statistics::RadialSpectrum) has it: <h^2> = int C d2q/(2 pi)^2, so (2 pi)^2 times
-    /// the C of Persson's papers. C is a power law between the points and 0 outside.
+    /// From an isotropic spectrum C(q) \[m^4\] at increasing wave numbers \[1/m\], normalised as in
+    /// [`RadialSpectrum`](crate::surface::statistics::RadialSpectrum): <h^2> = int C d2q/(2 pi)^2, so (2 pi)^2 times the C of
+    /// Persson's papers. C is a power law between the points and 0 outside.
     ///
     /// ```
     /// use asperity::material::Creep;
@@ -131,8 +131,8 @@ impl Persson {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the wave numbers do not rise or C is negative or 0 everywhere, the pressure is not positive, or
-    /// the creep function is that of a fluid or of a rigid body.
+    /// [`Error::Invalid`] if the wave numbers do not increase, C is negative, or C is 0 everywhere, the pressure is not positive,
+    /// or the creep function is that of a fluid or of a rigid body.
     pub fn of_spectrum(
         wave_number: &[f64],
         power: &[f64],
@@ -150,10 +150,10 @@ impl Persson {
         Ok(Persson { shells, creep: creep.tidy(), pressure, correction })
     }
 
-    /// Friction and contact at a velocity \[m/s\], of which only the amount counts; at rest the friction is 0.
+    /// Friction and contact at a velocity \[m/s\]; only its absolute value matters. At rest the friction is 0.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the velocity is not finite, or the pressure so small that G overflows.
+    /// [`Error::Invalid`] if the velocity is not finite, or the pressure is so small that G overflows.
     pub fn at(&self, velocity: f64) -> Result<PerssonFriction> {
         let (contact_fraction, friction_coefficient) = self.accumulate(velocity, |_, _, _| {})?;
         Ok(PerssonFriction { velocity, friction_coefficient, contact_fraction })
@@ -182,14 +182,14 @@ impl Persson {
         Ok(curve)
     }
 
-    /// Contact fraction and friction coefficient; `told` of those at the end of each shell.
+    /// Contact fraction and friction coefficient; calls `told` with those at the end of each shell.
     fn accumulate(&self, velocity: f64, mut told: impl FnMut(f64, f64, f64)) -> Result<(f64, f64)> {
         if !velocity.is_finite() {
             return Err(Error::invalid("velocity", velocity, "finite, in m/s"));
         }
         let (mut root, mut friction) = (0.0, 0.0);
         self.shells.each(&self.creep, velocity.abs(), |shell| {
-            // sqrt(G), which does not overflow where G would.
+            // sqrt(G), which does not overflow if G would.
             let next = libm::hypot(root, shell.square.sqrt() / self.pressure);
             friction += shell.stress / self.pressure * self.mean_share(root, next);
             root = next;
@@ -202,9 +202,9 @@ impl Persson {
         Ok((contact_fraction(root), friction))
     }
 
-    /// Mean of S P over a shell in which G rises evenly between the squares of two roots.
+    /// Mean of S P over a shell in which G increases linearly between the squares of two roots.
     fn mean_share(&self, from: f64, to: f64) -> f64 {
-        /// Below this width the middle stands for the shell, to some 1e-7.
+        /// Below this width the middle represents the shell, to about 1e-7.
         const NARROW: f64 = 1e-3;
         if !to.is_finite() {
             return 0.0;

@@ -1,5 +1,5 @@
-//! A power spectrum cut into shells of the wave number |q|, and what each adds to the stress below full contact and to its
-//! friction.
+//! A power spectrum divided into shells of the wave number |q|, and the contribution of each to the stress below full contact and
+//! to the friction.
 //!
 //! With q_e the component of q along the motion, and |A|^2 the power of the waves,
 //!
@@ -7,9 +7,9 @@
 //! square = (1/8) sum |q|^2 |A|^2 |E*(q_e v)|^2 [Pa^2],   stress = (1/2) sum |q| q_e |A|^2 E''(q_e v) [Pa]
 //! ```
 //!
-//! The sums go over the waves of a grid, or are integrals over an isotropic spectrum C(q) = (2 pi)^2 |A|^2 / d2q, which is
-//! a power law between its points. Around the circle q_e = q sech t, dphi = sech t dt turns the integrals into ones over the
-//! whole line, where the trapezoidal rule converges as exp(-pi^2/step): the nearest poles of E* are at |Im t| = pi/2.
+//! The sums are over the waves of a grid, or are integrals over an isotropic spectrum C(q) = (2 pi)^2 |A|^2 / d2q, which is a
+//! power law between its points. Around the circle q_e = q sech t, dphi = sech t dt turns the integrals into ones over the whole
+//! line, where the trapezoidal rule converges as exp(-pi^2/step): the nearest poles of E* are at |Im t| = pi/2.
 
 use std::f64::consts::TAU;
 
@@ -19,7 +19,7 @@ use crate::sliding::Direction;
 use crate::surface::Surface;
 use crate::surface::statistics::{PowerSpectrum, Wave};
 
-/// What the waves of one |q| add.
+/// The contribution of the waves of one |q|.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shell {
     /// Largest |q| \[1/m\].
@@ -30,7 +30,7 @@ pub(super) struct Shell {
     pub(super) stress: f64,
 }
 
-/// A spectrum cut into shells.
+/// A spectrum divided into shells.
 #[derive(Clone, Debug)]
 pub(super) enum Shells {
     Waves(Waves),
@@ -38,7 +38,7 @@ pub(super) enum Shells {
 }
 
 impl Shells {
-    /// The shells at a speed, from the longest waves on.
+    /// The shells at a speed, starting from the longest waves.
     pub(super) fn each(&self, creep: &Creep, speed: f64, told: impl FnMut(Shell)) {
         match self {
             Shells::Waves(waves) => waves.each(creep, speed, told),
@@ -58,14 +58,14 @@ pub(super) struct Waves {
     shells: Vec<(f64, usize)>,
 }
 
-/// Wave numbers closer than this (relative) are one: they differ by rounding.
+/// Wave numbers closer than this (relative) are equal: they differ by rounding.
 const SAME: f64 = 1e-12;
 
-/// Waves of a smaller share of the mean square height are rounding errors of the transform.
+/// Waves with a smaller fraction of the mean square height are rounding errors of the transform.
 const NOISE: f64 = 1e-26;
 
 impl Waves {
-    /// Of a surface that slides in a direction.
+    /// From a surface that slides in a direction.
     pub(super) fn of(surface: &Surface, direction: Direction) -> Result<Self> {
         let [cos, sin] = direction.unit();
         if !(cos.is_finite() && sin.is_finite()) {
@@ -131,7 +131,7 @@ struct Panel {
     points: [(f64, f64); 2],
 }
 
-/// How finely an isotropic spectrum is cut.
+/// The resolution of an isotropic spectrum.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fineness {
     /// Largest width of a shell in ln q.
@@ -141,7 +141,7 @@ pub(super) struct Fineness {
 }
 
 impl Default for Fineness {
-    /// Errors of some 1e-7 from the shells and 2e-8 from the circle.
+    /// Errors of about 1e-7 from the shells and 2e-8 from the circle.
     fn default() -> Self {
         Fineness { shell: 0.005, circle: 0.4 }
     }
@@ -159,7 +159,7 @@ impl Isotropic {
             }
             let width = libm::log(q1 / q0);
             let exponent = libm::log(c1 / c0) / width;
-            // A power law; where it starts or ends at 0, a straight line.
+            // A power law; if it starts or ends at 0, a straight line.
             let law = |q: f64| {
                 if exponent.is_finite() {
                     c0 * libm::exp(exponent * libm::log(q / q0))
@@ -181,7 +181,7 @@ impl Isotropic {
                 panels.push(Panel { end, points: [point(-offset), point(offset)] });
             }
         }
-        // Beyond t = 24 the circle holds 1e-10 of its length, where |E*| is smallest.
+        // Beyond t = 24 only 1e-10 of the length of the circle remains, where |E*| is smallest.
         let count = (24.0 / fineness.circle) as usize;
         let node = |n: usize| {
             let share = 1.0 / libm::cosh(n as f64 * fineness.circle);

@@ -73,7 +73,7 @@ fn the_friction_of_an_isotropic_spectrum_is_its_closed_form_in_full_contact() {
         let stress = 0.5 * c / TAU.powi(2) * TAU * (glassy - rubbery) / b * (integral(10.0) - integral(1.0));
         let theory = Persson::of_spectrum(&q, &power, &creep, 1e3, Correction::YangPersson).unwrap();
         let got = theory.at(v).unwrap().friction_coefficient * 1e3;
-        // Two points to each shell of 0.005 in ln q, and a step of 0.4 around the circle: some 1e-8.
+        // Two points per shell of 0.005 in ln q, and a step of 0.4 around the circle: about 1e-8.
         assert!((got / stress - 1.0).abs() < 1e-7, "{v}: {got} {stress}");
     }
 }
@@ -139,8 +139,8 @@ fn the_mean_over_a_shell_is_the_integral_over_g() {
     };
     for (from, to) in [(1e-3, 0.2), (0.2, 0.7), (1e-9, 3.0), (1.0, 1e4), (0.4, 0.4009)] {
         let exact = (integral(to) - integral(from)) / (to * to - from * from);
-        // 16 points on pieces of half a unit or an octave, and cancellation in the difference; the middle of a narrow shell is
-        // off by width^2/24 of the curvature, which is below ten times the value.
+        // 16 points on pieces of half a unit or an octave, and cancellation in the difference; the error of the middle of a
+        // narrow shell is width^2/24 of the curvature, which is below ten times the value.
         let room = if to - from < 1e-3 { 4e-7 } else { 1e-9 };
         assert!(
             (plain.mean_share(from, to) / exact - 1.0).abs() < room,

@@ -197,14 +197,11 @@ impl<'a> SteadyContact<'a> {
     }
 
     fn not_converged(&self) -> Error {
-        Error::NotConverged(NotConverged {
-            method: "steady motion",
-            iterations: self.spent.iterations,
-            residual: self.spent.residual,
-            tolerance: self.options.tolerance,
-            certificate: self.spent.certificate,
-            time: None,
-            velocity: Some(self.stream.velocity),
-        })
+        match contact::not_converged("steady motion", &self.options, &self.spent) {
+            Error::NotConverged(report) => {
+                Error::NotConverged(NotConverged { velocity: Some(self.stream.velocity), ..report })
+            }
+            other => other,
+        }
     }
 }

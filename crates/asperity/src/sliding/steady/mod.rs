@@ -34,9 +34,8 @@ use super::{ContactForces, Direction, Friction, SecondEstimate, Slopes, Streamin
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem};
 use crate::drive::{Axis, Coordinate, Drive};
 use crate::error::Result;
-use crate::load::Control;
 use crate::simulation::Simulation;
-use crate::step::{Checkpoint, Loader, Recalled, Recorder, Saver, Step};
+use crate::step::{Checkpoint, Loader, Recorder, Saver, Step};
 
 /// What moves, and how fast.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,7 +62,7 @@ pub struct SteadyMotion {
 /// let creep = Creep {
 ///     instantaneous: 1e-8, fluidity: 0.0, terms: vec![CreepTerm { compliance: 4e-8, retardation_time: 0.01 }],
 /// };
-/// let slopes = Slopes::of(&grid, Boundary::Free, &parts, &gap)?;
+/// let slopes = Slopes::of(&grid, Boundary::Free, &parts)?;
 /// let simulation = Simulation {
 ///     creep,
 ///     loading: Loading { control: Control::Load, history: History::Step { value: 1e3 } }.into(),
@@ -157,10 +156,10 @@ impl Steady {
     }
 
     /// Memory that a sweep takes at most \[bytes\]: operators, solver and fields.
-    pub fn bytes(simulation: &Simulation, motion: &SteadyMotion) -> usize {
+    pub fn bytes(simulation: &Simulation, direction: Direction) -> usize {
         // Gap and slopes; pressure and U of three states, the start and two fields of work; vectors of GMRES, were all in contact.
         let fields = 3 + 6 + 3 + gmres::FIELDS;
-        Operators::bytes(simulation, motion.direction) + 8 * simulation.grid.len() * fields
+        Operators::bytes(simulation, direction) + 8 * simulation.grid.len() * fields
     }
 
     /// Solves for one velocity.
@@ -183,14 +182,12 @@ impl Steady {
         let solved = contact.solve(state);
         *outcome = contact.spent;
         let forces = ContactForces {
-            grid: &self.simulation.grid,
-            boundary: self.simulation.boundary,
+            simulation: &self.simulation,
             direction: self.motion.direction,
             slopes: &self.motion.slopes,
-            pressure: &state.pressure,
+            state,
             gap: problem.gap,
             compliance: problem.compliance,
-            unit_displacement: &state.unit_displacement,
             remembers: self.streaming.branches().next().is_some(),
             velocity,
             distance: 0.0,
@@ -268,23 +265,14 @@ impl SteadyState {
         streaming: &Streaming,
         recorder: Option<&'a Recorder>,
     ) -> Step<'a> {
+        let hardness = Hardness::Uniform(simulation.hardness);
+        let bodies = (gap(simulation), streaming.relaxed());
         Step {
             index: self.index,
             coordinate: Coordinate::Velocity(self.velocity),
-            instant: None,
-            control: Control::Load,
-            simulation,
-            hardness: Hardness::Uniform(simulation.hardness),
-            state: &self.state,
-            gap: gap(simulation),
-            compliance: streaming.relaxed(),
-            outcome: self.outcome,
-            recalled: Recalled::Nothing,
-            time_error: None,
-            undeformed: None,
-            processes: &[],
             recorder,
             friction: Some(self.friction),
+            ..Step::of(simulation, hardness, (&self.state, self.outcome), bodies)
         }
     }
 }

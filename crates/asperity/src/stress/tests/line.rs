@@ -13,7 +13,7 @@ fn a_strip_is_an_endless_rectangle() {
     for [x, z] in [[0.0, 0.2], [0.4, 1.0], [-1.5, 0.3], [30.0, 2.0], [0.1, 50.0], [0.2, 0.0], [-1.0, 0.0]] {
         for component in Component::ALL {
             let expected = rectangle(component, [x, 0.0], z, [half, long], poisson);
-            // What lies beyond the ends adds 2 (1 - 2 nu) half/(pi long) to xx and less to the others.
+            // The parts beyond the ends add 2 (1 - 2 nu) half/(pi long) to xx and less to the others.
             let found = strip(component, x, z, half, poisson);
             assert!((found - expected).abs() < 1e-9, "{component:?} {x} {z}: {found} {expected}");
         }
@@ -145,7 +145,7 @@ fn hertz_on_a_line_on_and_off_the_axis() {
 
 #[test]
 fn the_largest_shear_under_a_cylinder_is_where_hertz_has_it() {
-    // 0.3002831 p0 at 0.7861514 a whatever Poisson's ratio (Johnson 1985, section 4.2(c)): z^2 = (sqrt 5 - 1)/2.
+    // 0.3002831 p0 at 0.7861514 a for any Poisson's ratio (Johnson 1985, section 4.2(c)): z^2 = (sqrt 5 - 1)/2.
     let depth = (0.5 * (5.0_f64.sqrt() - 1.0)).sqrt();
     let shear = depth - depth * depth / (1.0 + depth * depth).sqrt();
     assert!((depth - 0.786_151_4).abs() < 1e-7 && (shear - 0.300_283_1).abs() < 1e-7);

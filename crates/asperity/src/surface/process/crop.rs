@@ -9,7 +9,7 @@ use crate::grid::Grid;
 /// The `cells` = \[nx, ny\] cells from `from` = \[i, j\] on; the cells keep their size.
 ///
 /// # Errors
-/// [`Error::Invalid`] where the rectangle is empty or not inside the surface.
+/// [`Error::Invalid`] if the rectangle is empty or not inside the surface.
 pub fn crop(surface: &Surface, from: [usize; 2], cells: [usize; 2]) -> Result<Surface> {
     let (whole, [dx, dy]) = (surface.grid().cells(), surface.grid().spacing());
     for (axis, name) in ["x", "y"].into_iter().enumerate() {
@@ -29,8 +29,8 @@ pub fn crop(surface: &Surface, from: [usize; 2], cells: [usize; 2]) -> Result<Su
     Surface::new(grid, surface.heights().slice(kept).to_owned())
 }
 
-/// The smallest rectangle that holds every defined point, as `crop` takes it (first cell, cells);
-/// `None` where no point is defined.
+/// The smallest rectangle that contains every defined point, as arguments of `crop` (first cell, cells); `None` if no point is
+/// defined.
 pub fn defined_extent(surface: &Surface) -> Option<([usize; 2], [usize; 2])> {
     let mut range: Option<([usize; 2], [usize; 2])> = None;
     for ((i, j), _) in surface.heights().indexed_iter().filter(|(_, z)| !z.is_nan()) {

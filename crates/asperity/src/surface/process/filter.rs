@@ -1,8 +1,7 @@
 //! High-, low- and band-pass filters by wavelength.
 //!
-//! The surface is taken as periodic; level or window a measured one first. Sharp edges keep or drop a
-//! wave; Gaussian ones weigh its amplitude with the areal Gaussian filter of ISO 16610-61, which
-//! passes half of it at the cut-off wavelength L:
+//! The surface is taken as periodic; level or window a measured one first. Sharp edges keep or drop a wave; Gaussian edges
+//! multiply its amplitude by the areal Gaussian filter of ISO 16610-61, which passes half of it at the cut-off wavelength L:
 //!
 //! ```text
 //! low-pass  2^(-(L/l)^2)          high-pass  1 - 2^(-(L/l)^2)
@@ -15,12 +14,12 @@ use super::super::spectrum;
 use super::Surface;
 use crate::error::{Error, Result, positive};
 
-/// How a filter ends its band.
+/// The ends of the band of a filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Edge {
-    /// Waves inside are kept whole, others dropped.
+    /// Waves inside the band are kept unchanged, others are removed.
     #[default]
     Sharp,
     /// Gaussian, half of the amplitude at the cut-off (ISO 16610-61).
@@ -34,7 +33,7 @@ pub struct Band {
     pub longest: Option<f64>,
     /// Shortest wavelength \[m\]; `None` keeps all short waves.
     pub shortest: Option<f64>,
-    /// How the band ends.
+    /// The ends of the band.
     pub edge: Edge,
 }
 
@@ -56,13 +55,13 @@ impl fmt::Display for Band {
 }
 
 impl Band {
-    /// Share of the amplitude of a wave that is kept.
+    /// Fraction of the amplitude of a wave that is kept.
     fn share(&self, q: f64) -> f64 {
         let low_pass = |cut_off: f64| match self.edge {
             Edge::Sharp => f64::from(u8::from(q * cut_off <= TAU * (1.0 + 1e-9))),
             Edge::Gaussian => (-(q * cut_off / TAU).powi(2)).exp2(),
         };
-        // A sharp band holds both of its ends.
+        // A sharp band includes both of its ends.
         let high_pass = |cut_off: f64| match self.edge {
             Edge::Sharp => f64::from(u8::from(q * cut_off >= TAU * (1.0 - 1e-9))),
             Edge::Gaussian => 1.0 - low_pass(cut_off),
@@ -85,7 +84,7 @@ impl Band {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where a height is undefined, or a wavelength is not positive or the longest is
+/// [`Error::Invalid`] if a height is undefined, or a wavelength is not positive or the longest is
 /// below the shortest.
 pub fn filter(surface: &Surface, band: Band) -> Result<Surface> {
     for (name, cut_off) in [("longest wavelength", band.longest), ("shortest wavelength", band.shortest)] {
@@ -126,7 +125,7 @@ mod tests {
     #[test]
     fn the_bands_add_up_to_the_surface() {
         for edge in [Edge::Sharp, Edge::Gaussian] {
-            // 0.5123 is no wavelength of the grid, so that a sharp band counts none twice.
+            // 0.5123 is not a wavelength of the grid, so a sharp band does not count a wave twice.
             let low = filter(&surface(), Band { longest: None, shortest: Some(0.5123), edge }).unwrap();
             let high = filter(&surface(), Band { longest: Some(0.5123), shortest: None, edge }).unwrap();
             let sum = &low.heights() + &high.heights();

@@ -1,8 +1,8 @@
-//! Preparing measured surfaces: pure functions from a [`Surface`] to another one, and [`Operation`], the
-//! same as a list that can be written down, so that a result says what was done to its surface.
+//! Preparation of measured surfaces: pure functions from a [`Surface`] to another one, and [`Operation`], the same steps as a
+//! list that can be stored, so that a result documents the preparation of its surface.
 //!
-//! Undefined points (NaN) pass through what works point by point; what needs every point (filters,
-//! resampling by waves) says so.
+//! Steps that work point by point keep undefined points (NaN). Steps that need every point (filters, resampling by waves) return
+//! an error.
 
 mod crop;
 mod filter;
@@ -29,7 +29,7 @@ use crate::error::{Error, Result};
 pub enum Operation {
     /// [`level()`]: subtract the least-squares form.
     Level(Level),
-    /// [`fill()`]: fill undefined points, at most this share of them.
+    /// [`fill()`]: fill undefined points, up to a given share of all points.
     Fill {
         /// How.
         method: Fill,
@@ -65,7 +65,7 @@ pub enum Operation {
     Window(Window),
     /// [`remove_circle`]: subtract a circle from a profile.
     RemoveCircle {
-        /// Its radius \[m\]; `None`: the one that fits best.
+        /// Its radius \[m\]; `None`: the radius that fits best.
         radius: Option<f64>,
     },
     /// [`remove_outliers`]: make spikes undefined.
@@ -76,7 +76,7 @@ impl Operation {
     /// The surface after this step.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as the function that does it.
+    /// [`Error::Invalid`] as the function of this step.
     pub fn apply(&self, surface: &Surface) -> Result<Surface> {
         let grid = *surface.grid();
         match *self {

@@ -1,7 +1,7 @@
 //! Turning a surface over.
 //!
-//! Two measured surfaces that face each other were both measured from their outside, so one of them is
-//! seen from behind in the contact: [`flip`] it along one axis.
+//! Two measured surfaces in contact were both measured from outside, but one of them faces the other way in the contact: [`flip`]
+//! it along one axis.
 
 use std::fmt;
 
@@ -46,7 +46,7 @@ pub fn flip(surface: &Surface, axis: Axis) -> Surface {
 /// Turned by quarter turns from x towards y (anticlockwise with y up): once, (x, y) goes to (Ly - y, x).
 ///
 /// # Errors
-/// [`Error::Invalid`](crate::Error::Invalid) never for a surface that exists; the new grid is checked like any other.
+/// [`Error::Invalid`](crate::Error::Invalid) if the new grid is invalid, which is impossible for a valid surface.
 pub fn rotate(surface: &Surface, quarter_turns: i32) -> Result<Surface> {
     let heights = surface.heights();
     let turned = match quarter_turns.rem_euclid(4) {

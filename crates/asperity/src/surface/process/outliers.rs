@@ -1,9 +1,9 @@
 //! Spikes of optical instruments: points far from the median of their neighbourhood.
 //!
-//! With m the median of the defined heights of the (2 radius + 1)^2 cells around a point, d = z - m, and
-//! sigma = 1.4826 median |d| (the standard deviation of a normal d; P. J. Rousseeuw and C. Croux, J. Am.
-//! Stat. Assoc. 88 (1993) 1273), a point with |d| > threshold sigma becomes undefined. At an edge the
-//! neighbourhood is one-sided, so that a tilt counts there: level the surface first.
+//! With m the median of the defined heights of the (2 radius + 1)^2 cells around a point, d = z - m, and sigma = 1.4826 median
+//! |d| (the standard deviation of a normal d; P. J. Rousseeuw and C. Croux, J. Am. Stat. Assoc. 88 (1993) 1273), a point with |d|
+//! > threshold sigma becomes undefined. At an edge the neighbourhood is one-sided, so a tilt has an effect there: level the
+//! surface first.
 
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2, s};
@@ -11,7 +11,7 @@ use ndarray::{Array2, ArrayView2, s};
 use super::Surface;
 use crate::error::{Error, Result, positive};
 
-/// What counts as an outlier.
+/// Criteria for outliers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outliers {
     /// Robust standard deviations from the local median. Default 6.
@@ -29,7 +29,7 @@ impl Default for Outliers {
 /// The surface with its outliers undefined; fill them next.
 ///
 /// # Errors
-/// [`Error::Invalid`] where the threshold is not positive or the radius not between 1 and 10.
+/// [`Error::Invalid`] if the threshold is not positive or the radius not between 1 and 10.
 pub fn remove_outliers(surface: &Surface, outliers: Outliers) -> Result<Surface> {
     positive("threshold of the outliers", outliers.threshold, "(standard deviations)")?;
     if !(1..=10).contains(&outliers.radius) {
@@ -58,7 +58,7 @@ pub fn remove_outliers(surface: &Surface, outliers: Outliers) -> Result<Surface>
     Ok(cleaned)
 }
 
-/// Heights less the median around them.
+/// Heights minus the median around them.
 fn deviations(heights: ArrayView2<f64>, radius: usize) -> Array2<f64> {
     let ny = heights.ncols();
     let mut deviations = Array2::zeros(heights.dim());
@@ -84,7 +84,7 @@ fn deviations(heights: ArrayView2<f64>, radius: usize) -> Array2<f64> {
     deviations
 }
 
-/// The height at a point less the median of the defined heights around it.
+/// The height at a point minus the median of the defined heights around it.
 fn deviation(heights: ArrayView2<f64>, radius: usize, (i, j): (usize, usize), around: &mut Vec<f64>) -> f64 {
     let (nx, ny) = heights.dim();
     let z = heights[[i, j]];
@@ -98,19 +98,20 @@ fn deviation(heights: ArrayView2<f64>, radius: usize, (i, j): (usize, usize), ar
     z - median(around)
 }
 
-/// The median (the upper one of an even number); reorders the values, of which there is one at least.
+/// The median (the upper one of an even number); reorders the values, of which there is at least one.
 fn median(values: &mut [f64]) -> f64 {
     let middle = values.len() / 2;
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Neighbourhoods up to this radius are compared lane by lane; the comparisons grow with the fourth power of it.
+/// Neighbourhoods up to this radius are compared lane by lane; the number of comparisons grows with the fourth power of the
+/// radius.
 const LARGEST_IN_LANES: usize = 3;
 
 /// Medians of several neighbouring points at once, one to a lane of the vector unit.
 ///
-/// Forgetful selection: of any n/2 + 2 of the n values (n odd) the least and the greatest cannot be the median; they
-/// are dropped and the next value is taken in, until three are left.
+/// Forgetful selection: of any n/2 + 2 of the n values (n odd), the smallest and the largest cannot be the median. They are
+/// dropped and the next value is added, until three are left.
 mod lanes {
     use ndarray::ArrayView2;
 
@@ -120,7 +121,7 @@ mod lanes {
 
     type Lanes = [f64; LANES];
 
-    /// The medians around (i, j) ... (i, j + LANES - 1); `None` where a neighbourhood is cut off by the edge or holds
+    /// The medians around (i, j) ... (i, j + LANES - 1); `None` if a neighbourhood is cut off by the edge or holds
     /// an undefined point.
     pub fn medians(heights: ArrayView2<f64>, radius: usize, (i, j): (usize, usize)) -> Option<Lanes> {
         let (nx, ny) = heights.dim();
@@ -145,7 +146,7 @@ mod lanes {
                 count += 1;
                 if count == most {
                     count = drop_ends(&mut held[..count]);
-                    // One fewer is yet to come on either side of the median.
+                    // On either side of the median, one value fewer remains to be added.
                     most -= 1;
                 }
             }
@@ -153,10 +154,10 @@ mod lanes {
         Some(held[0])
     }
 
-    /// Drops the least and the greatest; the number that is left.
+    /// Drops the smallest and the largest; returns the remaining number.
     fn drop_ends(held: &mut [Lanes]) -> usize {
         let n = held.len();
-        // Pairs in order: the least is among the first halves, the greatest among the second.
+        // Pairs in order: the smallest is among the first halves, the largest among the second.
         let half = n / 2;
         for k in 0..half {
             order(held, k, n - 1 - k);
@@ -234,7 +235,7 @@ mod tests {
 
     #[test]
     fn medians_in_lanes_are_the_medians() {
-        // Without structure, with holes and equal heights; every radius that has lanes, and one that has none.
+        // Unstructured, with holes and equal heights; every radius with lanes, and one without.
         let heights = Array2::from_shape_fn((23, 41), |(i, j)| match (i * 31 + j * 17) % 53 {
             0 => f64::NAN,
             n => ((n * n * 7 + i * j) % 29) as f64 - 11.0,

@@ -1,10 +1,10 @@
 //! Other cells over the same rectangle.
 //!
-//! - band-limited: the trigonometric interpolation of the (periodic) surface, sampled at the new cell
-//!   centres; waves that the new grid cannot hold are dropped. Exact for a surface that is smooth on its
-//!   grid; steps and spikes ring, and one that does not repeat rings at its edges.
-//! - bilinear: linear in x and y between the old cell centres, level beyond the outermost; no new
-//!   extremes, works around undefined points, does not filter: low-pass before coarsening.
+//! - band-limited: the trigonometric interpolation of the (periodic) surface, sampled at the new cell centres; waves that the new
+//!   grid cannot hold are dropped. Exact for a surface that is smooth on its grid. Steps and spikes cause oscillations, and so do
+//!   the edges of a surface that is not periodic.
+//! - bilinear: linear in x and y between the old cell centres, constant beyond the outermost. It makes no new extremes and works
+//!   around undefined points, but does not filter: apply a low-pass filter before coarsening.
 
 use std::f64::consts::PI;
 
@@ -19,12 +19,12 @@ use super::super::spectrum::check_defined;
 use super::Surface;
 use crate::error::Result;
 
-/// How heights at new points come from old ones.
+/// The interpolation of heights at new points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Resampling {
-    /// By waves: exact for a surface that is smooth on its grid and repeats; needs every point.
+    /// By waves: exact for a periodic surface that is smooth on its grid; needs every point.
     #[default]
     BandLimited,
     /// Linear between neighbours: no new extremes.
@@ -44,7 +44,7 @@ pub enum Resampling {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`](crate::Error::Invalid) where a count is 0 or absurd, or (band-limited) a height is undefined.
+/// [`Error::Invalid`](crate::Error::Invalid) if a count is 0 or absurd, or (band-limited) a height is undefined.
 pub fn resample(surface: &Surface, cells: [usize; 2], method: Resampling) -> Result<Surface> {
     let cells = if surface.grid().is_line() { [cells[0], 1] } else { cells };
     let grid = surface.grid().with_cells(cells)?;
@@ -134,8 +134,7 @@ impl Row {
             // From centres of old cells to centres of new ones.
             let shift = PI * k as f64 * (1.0 / new as f64 - 1.0 / old as f64);
             let wave = work.waves[k] * Complex64::from_polar(1.0 / old as f64, shift);
-            // The wave at Nyquist is both k and -k: half of it each where the new grid tells them
-            // apart, their sum where the new grid does not.
+            // The wave at Nyquist is both k and -k: half of it each if the new grid distinguishes them, their sum otherwise.
             work.new_waves[k] = if 2 * k == old {
                 0.5 * wave
             } else if 2 * k == new {
@@ -144,7 +143,7 @@ impl Row {
                 wave
             };
         }
-        // The constant is real but for rounding.
+        // The constant is real except for rounding.
         work.new_waves[0].im = 0.0;
         let _ =
             self.inverse.process_with_scratch(&mut work.new_waves, &mut work.output, &mut work.new_scratch);
@@ -204,7 +203,7 @@ mod tests {
         let fine = resample(&plane(&grid), [30, 16], Resampling::Bilinear).unwrap();
         let exact = plane(fine.grid());
         for ((i, j), z) in fine.heights().indexed_iter() {
-            // Beyond the outermost centres it is level.
+            // Beyond the outermost centres it is constant.
             if (2..28).contains(&i) && (1..15).contains(&j) {
                 assert!((z - exact.heights()[[i, j]]).abs() < 1e-14);
             }

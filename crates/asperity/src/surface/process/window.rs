@@ -1,5 +1,5 @@
-//! Windows: a measured surface does not repeat, and its jump from edge to edge would fill the spectrum
-//! with q^-2. A window fades the heights out towards the edges before a spectrum is taken.
+//! Windows: a measured surface is not periodic, and the jump from edge to edge would dominate the spectrum as q^-2. A window
+//! reduces the heights to zero towards the edges before the spectrum is computed.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -14,9 +14,9 @@ use crate::error::{Error, Result};
 pub enum Window {
     /// (1 - cos(2 pi x / L)) / 2.
     Hann,
-    /// Hann's flanks over this share of the length (half of it at each end), flat between; 1 is Hann.
+    /// Hann's flanks over this fraction of the length (half of it at each end), constant between; 1 is Hann.
     Tukey {
-        /// Share of the length, 0 to 1.
+        /// Fraction of the length, 0 to 1.
         share: f64,
     },
 }
@@ -35,7 +35,7 @@ impl fmt::Display for Window {
 /// surface first: a window turns a mean or a tilt into long waves.
 ///
 /// # Errors
-/// [`Error::Invalid`] where the share of Tukey's window is not in \[0, 1\].
+/// [`Error::Invalid`] if the share of Tukey's window is not in \[0, 1\].
 pub fn window(surface: &Surface, shape: Window) -> Result<Surface> {
     if let Window::Tukey { share } = shape
         && !(0.0..=1.0).contains(&share)

@@ -1,19 +1,20 @@
-//! The form of a round: heights less the circle that fits them best.
+//! Removal of a circular form: heights minus the circle that fits them best.
 //!
 //! ```text
 //! z = z0 + s (sqrt(R^2 - (x - x0)^2) - R),    s = 1 where the profile bulges out, -1 where it is hollow
 //! ```
 //!
-//! Least squares by Gauss and Newton in x0, z0 and, unless it is given, R; started from the parabola that fits best. A tilt of the
-//! profile is a shift of x0.
+//! Least squares by Gauss and Newton in x0, z0 and, unless it is given, R; starting from the parabola that fits best. A tilt of
+//! the profile is a shift of x0.
 
 use super::parameters::check;
 use crate::error::{Error, Result, positive};
 
-/// Steps of the fit; it doubles its digits with each.
+/// Number of steps of the fit; each step doubles the number of correct digits.
 const STEPS: usize = 50;
 
-/// Heights \[m\] less a circle of this radius, or of the radius that fits best; and the radius \[m\], negative for a hollow.
+/// Heights \[m\] minus a circle of this radius, or of the radius that fits best; and the radius \[m\], negative for a concave
+/// form.
 ///
 /// # Errors
 /// [`Error::Invalid`] for fewer than four or undefined heights, a straight profile without a given radius, and a circle that is
@@ -78,7 +79,7 @@ pub fn remove_circle(heights: &[f64], spacing: f64, radius: Option<f64>) -> Resu
     Ok((flat.collect(), sign * r * half))
 }
 
-/// Coefficients of three functions that fit z best, by the normal equations; 0 where a function adds nothing.
+/// Coefficients of three functions that fit z best, by the normal equations; 0 if a function adds nothing.
 fn fit(x: &[f64], z: &[f64], basis: impl Fn(f64) -> [f64; 3]) -> [f64; 3] {
     let mut m = [[0.0; 4]; 3];
     for (x, z) in x.iter().zip(z) {
@@ -128,7 +129,7 @@ mod tests {
             assert!(same == radius.abs() * radius.signum() || (same / radius - 1.0).abs() < 1e-12);
             assert!(flat.iter().all(|z| z.abs() < 1e-13));
         }
-        // A small tilt turns the circle about its middle.
+        // A small tilt rotates the circle about its centre.
         let (flat, _) = remove_circle(&round(0.4, 1e-4), 1e-5, Some(0.4)).unwrap();
         assert!(flat.iter().all(|z| z.abs() < 1e-10));
     }

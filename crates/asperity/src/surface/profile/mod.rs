@@ -1,10 +1,9 @@
 //! Profiles: heights along a line, as a stylus measures them.
 //!
 //! - [`ProfileParameters`]: Ra, Rq, Rz, Rt, Rsk, Rku, Rsm and Rdq (ISO 21920-2).
-//! - [`roughness`]: the heights less their Gaussian mean line (ISO 16610-21).
-//! - [`remove_circle`]: the heights less a circle of given or fitted radius.
-//! - [`ProfileSpectrum`]: the power spectrum of a profile, that of the isotropic surface it was measured on, and such a
-//!   surface.
+//! - [`roughness`]: the heights minus their Gaussian mean line (ISO 16610-21).
+//! - [`remove_circle`]: the heights minus a circle of given or fitted radius.
+//! - [`ProfileSpectrum`]: the power spectrum of a profile, that of the corresponding isotropic surface, and such a surface.
 
 mod circle;
 mod parameters;

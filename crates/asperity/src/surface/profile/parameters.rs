@@ -7,8 +7,8 @@
 //! Rdq = <(dz/dx)^2>^1/2, dz/dx = (z_3 - 9 z_2 + 45 z_1 - 45 z_-1 + 9 z_-2 - z_-3)/(60 dx)
 //! ```
 //!
-//! A peak or pit counts for Rsm where it goes farther from the mean line than a tenth of Rz. Without [`roughness`] before, these
-//! are the parameters of the primary profile (Pa, Pq, ...).
+//! A peak or pit counts for Rsm if its distance from the mean line is larger than a tenth of Rz. Without [`roughness`] before,
+//! these are the parameters of the primary profile (Pa, Pq, ...).
 
 use std::f64::consts::{LN_2, PI};
 
@@ -16,7 +16,7 @@ use crate::error::{Error, Result, positive};
 
 /// Sections of a profile, for Rz.
 const SECTIONS: usize = 5;
-/// Share of Rz beyond which a peak or a pit counts.
+/// Fraction of Rz beyond which a peak or a pit counts.
 const COUNTS: f64 = 0.1;
 
 /// Parameters of a profile.
@@ -26,22 +26,22 @@ pub struct ProfileParameters {
     pub ra: f64,
     /// Rq: root mean square of the height \[m\].
     pub rq: f64,
-    /// Rz: highest less lowest height, mean over five sections \[m\].
+    /// Rz: highest minus lowest height, mean over five sections \[m\].
     pub rz: f64,
-    /// Rt: highest less lowest height \[m\].
+    /// Rt: highest minus lowest height \[m\].
     pub rt: f64,
     /// Rsk: skewness; 0 for a flat.
     pub rsk: f64,
     /// Rku: kurtosis; 0 for a flat.
     pub rku: f64,
-    /// Rsm: mean length of a profile element \[m\]; `None` where there is no whole one.
+    /// Rsm: mean length of a profile element \[m\]; `None` if there is no complete one.
     pub rsm: Option<f64>,
     /// Rdq: root mean square of the slope; `None` for fewer than seven points.
     pub rdq: Option<f64>,
 }
 
 impl ProfileParameters {
-    /// Of evenly spaced heights \[m\], about their mean.
+    /// From evenly spaced heights \[m\], relative to their mean.
     ///
     /// ```
     /// use asperity::surface::ProfileParameters;
@@ -83,8 +83,8 @@ impl ProfileParameters {
     }
 }
 
-/// Mean number of points of a profile element: from where the height rises beyond `limit` to where it does so again, having been
-/// below -`limit`.
+/// Mean number of points of a profile element: from the point at which the height rises above `limit` to the next such point
+/// after it has been below -`limit`.
 fn element_length(z: &[f64], limit: f64) -> Option<f64> {
     let (mut below, mut starts) = (false, vec![]);
     for (i, z) in z.iter().enumerate() {
@@ -107,8 +107,8 @@ fn slope(z: &[f64]) -> Option<f64> {
     (count > 0).then(|| (slopes.map(|w| slope(w).powi(2)).sum::<f64>() / count as f64).sqrt())
 }
 
-/// Heights \[m\] less their Gaussian mean line of this cut-off \[m\], of which waves of the cut-off keep half. At the ends the
-/// weights are those inside, scaled to a sum of 1.
+/// Heights \[m\] minus their Gaussian mean line of this cut-off \[m\]; waves of the cut-off wavelength keep half their amplitude.
+/// At the ends the weights are those inside, scaled to a sum of 1.
 ///
 /// # Errors
 /// [`Error::Invalid`] for undefined heights, or where spacing or cut-off are not positive.

@@ -1,14 +1,14 @@
-//! The power spectrum of a profile, and of the isotropic surface that it was measured on.
+//! The power spectrum of a profile, and that of the corresponding isotropic surface.
 //!
 //! ```text
 //! C1(q) = L |A_k|^2,  A_k = (1/n) sum z exp(-i q x),  q = 2 pi k / L       <z^2> = (1/2 pi) integral of C1 over all q
 //! C1(q) = (1/pi) integral from q of C(k) k / sqrt(k^2 - q^2) dk            isotropic surface of spectrum C
 //! ```
 //!
-//! with <z^2> = integral of C d^2q/(2 pi)^2. The second line is an Abel transform (P. R. Nayak, Wear 26 (1973) 165; T. D. B. Jacobs,
-//! T. Junge & L. Pastewka, Surf. Topogr. 5 (2017) 013001). C is taken as constant on the rings of the averaged spectrum and found
-//! ring by ring from the shortest wave on; what scatter makes negative is 0. The waves beyond the shortest of the profile are
-//! missing: what they add to C1 is counted among those of the last ring.
+//! with <z^2> = integral of C d^2q/(2 pi)^2. The second line is an Abel transform (P. R. Nayak, Wear 26 (1973) 165; T. D. B.
+//! Jacobs, T. Junge & L. Pastewka, Surf. Topogr. 5 (2017) 013001). C is taken as constant on the rings of the averaged spectrum
+//! and computed ring by ring, starting from the shortest wave; values that are negative because of scatter are set to 0. Waves
+//! shorter than the shortest of the profile are missing: their contribution to C1 is attributed to the last ring.
 
 use std::f64::consts::{PI, TAU};
 
@@ -34,8 +34,8 @@ pub struct ProfileSpectrum {
 }
 
 impl ProfileSpectrum {
-    /// Of evenly spaced heights \[m\], with about so many rings per decade. A profile that does not repeat is levelled by its
-    /// straight line and faded out by Hann's window.
+    /// From evenly spaced heights \[m\], with about this number of rings per decade. A profile that is not periodic is levelled
+    /// by a straight line and multiplied by Hann's window.
     ///
     /// # Errors
     /// [`Error::Invalid`] for fewer than eight or undefined heights, or a spacing that is not positive.
@@ -74,7 +74,7 @@ impl ProfileSpectrum {
     /// C of the isotropic surface on each ring \[m^4\].
     pub fn isotropic(&self) -> Vec<f64> {
         let mut found = vec![0.0; self.power.len()];
-        // Mean over the waves of a ring of what a ring of C = 1 adds to C1.
+        // Mean over the waves of a ring of the contribution of a ring with C = 1 to C1.
         let adds = |ring: usize, of: usize| {
             let [first, end] = self.waves[ring];
             let one = |k: usize| {
@@ -92,10 +92,10 @@ impl ProfileSpectrum {
     }
 
     /// Heights \[m\] of an isotropic surface of this spectrum with random phases, periodic on the grid; the same bits on every
-    /// machine for one seed. Waves outside of the rings are 0; in between C follows straight lines in logarithms.
+    /// machine for one seed. Waves outside the rings are 0; between ring centres ln C is linear in ln q.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a line of cells, and for a grid that holds none of the waves.
+    /// [`Error::Invalid`] for a line of cells, and for a grid without any of the waves.
     pub fn surface(&self, grid: &Grid, seed: u64) -> Result<Array2<f64>> {
         if grid.is_line() {
             return Err(Error::invalid("grid of the surface", "a line of cells", "a plane"));
@@ -131,7 +131,7 @@ impl ProfileSpectrum {
     }
 }
 
-/// Heights less their straight line, under Hann's window of mean square 1.
+/// Heights minus their straight line, multiplied by Hann's window of mean square 1.
 fn faded(heights: &[f64]) -> Vec<f64> {
     let n = heights.len() as f64;
     let place = |i: usize| (2 * i + 1) as f64 / n - 1.0;
@@ -146,7 +146,7 @@ fn faded(heights: &[f64]) -> Vec<f64> {
     heights.iter().enumerate().map(one).collect()
 }
 
-/// Straight lines in logarithms; the end values beyond the ends, and the nearer value beside a zero.
+/// Linear interpolation in logarithms; the end values beyond the ends, and the nearer value next to a zero.
 fn interpolation<'a>(x: &'a [f64], y: &'a [f64]) -> impl Fn(f64) -> f64 + Sync + 'a {
     move |at| {
         let after = x.partition_point(|x| *x < at);

@@ -5,23 +5,23 @@ use super::super::Surface;
 use super::heights::defined;
 use crate::error::{Error, Result};
 
-/// Share of the defined points above each of a row of heights.
+/// Fraction of the defined points above each height of a list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BearingCurve {
     /// Heights from the lowest to the highest point \[m\], equally spaced.
     pub heights: Vec<f64>,
-    /// Share of points at or above each height, 1 at the first; exact.
+    /// Fraction of points at or above each height, 1 at the first; exact.
     pub share: Vec<f64>,
 }
 
-/// Most levels or bins of a curve.
+/// Largest number of levels or bins of a curve.
 const MOST: usize = 1 << 24;
 
 impl BearingCurve {
-    /// At `levels` heights, 2 at least.
+    /// At `levels` heights, at least 2.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where no point is defined or the levels are fewer than 2 or more than 2^24.
+    /// [`Error::Invalid`] if no point is defined or the levels are fewer than 2 or more than 2^24.
     pub fn of(surface: &Surface, levels: usize) -> Result<Self> {
         if !(2..=MOST).contains(&levels) {
             return Err(Error::invalid(
@@ -65,7 +65,7 @@ impl BearingCurve {
         Ok(BearingCurve { heights, share })
     }
 
-    /// Smr(c): share of the surface at or above the height c \[m\], linear between the levels.
+    /// Smr(c): fraction of the surface at or above the height c \[m\], linear between the levels.
     pub fn share_above(&self, height: f64) -> f64 {
         let n = self.heights.partition_point(|h| *h <= height);
         match n {
@@ -84,15 +84,15 @@ impl BearingCurve {
         }
     }
 
-    /// Smc(mr): height \[m\] that the share mr of the surface reaches, linear between the levels.
+    /// Smc(mr): height \[m\] that the fraction mr of the surface reaches, linear between the levels.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the share is not in \[0, 1\].
+    /// [`Error::Invalid`] if the share is not in \[0, 1\].
     pub fn height_at(&self, share: f64) -> Result<f64> {
         if !(0.0..=1.0).contains(&share) {
             return Err(Error::invalid("material ratio", share, "between 0 and 1"));
         }
-        // Shares fall with the height: the first level that fewer points reach.
+        // Fractions decrease with the height: the first level that fewer points reach.
         let n = self.share.partition_point(|s| *s >= share);
         if n == 0 || n == self.share.len() {
             return Ok(self.heights[n.saturating_sub(1)]);
@@ -105,7 +105,7 @@ impl BearingCurve {
 /// Probability density of the heights: (middles of `bins` equal bins \[m\], density \[1/m\]).
 ///
 /// # Errors
-/// [`Error::Invalid`] where no point is defined, the surface is flat (its density is infinite), or the
+/// [`Error::Invalid`] if no point is defined, the surface is flat (its density is infinite), or the
 /// bins are none or more than 2^24.
 pub fn height_distribution(surface: &Surface, bins: usize) -> Result<(Vec<f64>, Vec<f64>)> {
     if !(1..=MOST).contains(&bins) {

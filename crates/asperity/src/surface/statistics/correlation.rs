@@ -4,10 +4,9 @@
 //! f(tx, ty) = <z(x, y) z(x + tx, y + ty)> / <z^2>      z about its mean
 //! ```
 //!
-//! By the Wiener-Khinchin theorem, the transform of |A_q|^2; for a surface that does not repeat, padded
-//! with zeros and divided by the number of pairs at each lag. Sal is the shortest lag at which f falls to
-//! 0.2 in any direction, Str the ratio of the shortest to the longest such lag: 1 isotropic, near 0 with
-//! a lay.
+//! By the Wiener-Khinchin theorem it is the transform of |A_q|^2. A surface that is not periodic is padded with zeros, and the
+//! result is divided by the number of pairs at each lag. Sal is the shortest lag at which f falls to 0.2 in any direction, Str
+//! the ratio of the shortest to the longest such lag: 1 isotropic, near 0 with a lay.
 
 use std::f64::consts::PI;
 
@@ -19,12 +18,12 @@ use super::heights::mean;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 
-/// Whether the surface repeats beyond its edges.
+/// Whether the surface is periodic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Extent {
-    /// It does: synthetic surfaces.
+    /// Periodic: synthetic surfaces.
     Periodic,
-    /// It does not: measured surfaces.
+    /// Not periodic: measured surfaces.
     Finite,
 }
 
@@ -40,10 +39,10 @@ pub struct Autocorrelation {
 const LEVEL: f64 = 0.2;
 
 impl Autocorrelation {
-    /// Of a surface whose points are all defined.
+    /// From a surface whose points are all defined.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a point is undefined or the surface is flat.
+    /// [`Error::Invalid`] if a point is undefined or the surface is flat.
     pub fn of(surface: &Surface, extent: Extent) -> Result<Self> {
         let (grid, heights) = (*surface.grid(), surface.heights());
         check_defined(heights)?;
@@ -80,7 +79,7 @@ impl Autocorrelation {
         Ok(Autocorrelation { values, spacing: grid.spacing() })
     }
 
-    /// f at any lag (tx, ty) \[m\], bilinear; `None` beyond the lags that are known.
+    /// f at any lag (tx, ty) \[m\], bilinear; `None` beyond the known lags.
     pub fn at(&self, tx: f64, ty: f64) -> Option<f64> {
         let (nx, ny) = self.values.dim();
         let place = |t: f64, n: usize, spacing: f64| {
@@ -112,20 +111,20 @@ impl Autocorrelation {
         sums.into_iter().filter(|s| s.2 > 0).map(|(lag, f, n)| (lag / n as f64, f / n as f64)).unzip()
     }
 
-    /// Sal, the shortest lag at which f falls to 0.2 \[m\]; `None` where it does not within the known lags.
+    /// Sal, the shortest lag at which f falls to 0.2 \[m\]; `None` if it does not within the known lags.
     pub fn length(&self) -> Option<f64> {
         self.fastest_decay().map(|(_, length)| length)
     }
 
     /// The direction in which f falls to 0.2 first, an angle from x to y in 0 to pi \[rad\], and the lag at which it does \[m\]: Sal.
-    /// `None` where f does not fall that far within the known lags.
+    /// `None` if f does not fall that far within the known lags.
     pub fn fastest_decay(&self) -> Option<(f64, f64)> {
         let found = self.lengths().enumerate().filter_map(|(n, lag)| Some((n, lag?)));
         let (degree, lag) = found.min_by(|a, b| a.1.total_cmp(&b.1))?;
         Some((PI * degree as f64 / 180.0, lag))
     }
 
-    /// Str, the shortest over the longest of the lags at which f falls to 0.2; `None` where it does not
+    /// Str, the shortest over the longest of the lags at which f falls to 0.2; `None` if it does not
     /// in some direction.
     pub fn texture_aspect_ratio(&self) -> Option<f64> {
         let lengths: Option<Vec<f64>> = self.lengths().collect();
@@ -180,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_finite_surface_counts_its_pairs() {
-        // Against the defining sum at every lag.
+        // Compared with the defining sum at every lag.
         let grid = Grid::new([7, 6], [1.0, 1.0]).unwrap();
         let heights = Array2::from_shape_fn((7, 6), |(i, j)| ((i * i * 5 + j * 3) % 11) as f64);
         let f = Autocorrelation::of(&Surface::new(grid, heights.clone()).unwrap(), Extent::Finite).unwrap();
@@ -214,7 +213,7 @@ mod tests {
             *z = (-(x * x + y * y) / (2.0 * s * s)).exp();
         });
         let f = Autocorrelation::of(&Surface::new(grid, heights).unwrap(), Extent::Periodic).unwrap();
-        // The mean taken off lowers f by (2 sqrt(pi) s)^2 = 3 %.
+        // Subtracting the mean lowers f by (2 sqrt(pi) s)^2 = 3 %.
         let offset = 4.0 * PI * s * s;
         let exact = 2.0 * s * (1.0 / (LEVEL * (1.0 - offset) + offset)).ln().sqrt();
         assert!((f.length().unwrap() / exact - 1.0).abs() < 0.01, "{:?} {exact}", f.length());

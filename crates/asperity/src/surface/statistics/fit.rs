@@ -21,22 +21,22 @@ use crate::error::{Error, Result};
 pub struct SelfAffineFit {
     /// Hurst exponent H; outside (0, 1] the surface is not self-affine over the range.
     pub hurst: f64,
-    /// Standard error of H: the slopes, for every place of the bend, that fit within one standard deviation of the scatter.
-    /// Of synthetic surfaces the errors are 0.8 to 1.3 times as large on average.
+    /// Standard error of H: it covers all slopes, for every position of the roll-off, that fit within one standard deviation of
+    /// the scatter. For synthetic surfaces the errors are 0.8 to 1.3 times as large on average.
     pub error: f64,
-    /// Wavelength at which the flat part ends \[m\]; the longest of the range where there is none.
+    /// Wavelength at which the flat part ends \[m\]; the longest of the range if there is no flat part.
     pub roll_off: f64,
     /// Power C0 on the flat part \[m^4\].
     pub plateau: f64,
     /// Weighted rms of ln C about the fit.
     pub misfit: f64,
-    /// Rms of ln C about the slope, with all of ln q alike, beyond what the scatter of rings of few waves explains. It is large
-    /// where the many short waves fit and the few long ones do not: the spectrum is no power law.
+    /// Rms of ln C about the slope, with equal weight per ln q, in excess of the scatter of rings of few waves. It is large if
+    /// the many short waves fit and the few long ones do not: the spectrum is then not a power law.
     pub stray: f64,
 }
 
 impl SelfAffineFit {
-    /// Over the rings between the wavelengths `longest` and `shortest` \[m\] (infinite and 0: all).
+    /// Fit over the rings between the wavelengths `longest` and `shortest` \[m\] (infinite and 0: all).
     ///
     /// ```
     /// use asperity::{Grid, surface::{Roughness, SelfAffine, Surface}};
@@ -58,9 +58,9 @@ impl SelfAffineFit {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where fewer than five rings with power lie in the range.
+    /// [`Error::Invalid`] if fewer than five rings with power lie in the range.
     pub fn of(spectrum: &RadialSpectrum, longest: f64, shortest: f64) -> Result<Self> {
-        // Powers of rounding size lie beyond a cut-off of the surface.
+        // Powers of rounding size are beyond a cut-off of the surface.
         let largest = spectrum.power.iter().copied().fold(0.0, f64::max);
         let points: Vec<Point> = (0..spectrum.power.len())
             .filter(|n| {
@@ -80,7 +80,7 @@ impl SelfAffineFit {
                 "5 at least; widen the range",
             ));
         }
-        // Three rings at least determine the slope. Of equal fits the one with the shortest flat part.
+        // At least three rings determine the slope. Of equal fits, the one with the shortest flat part is taken.
         let fits: Vec<Bend> = points[..points.len() - 3].iter().map(|p| bend(&points, p.x)).collect();
         let best = fits.iter().reduce(|best, fit| if fit.squares < best.squares { fit } else { best });
         let Some(best) = best.filter(|fit| fit.squares.is_finite()) else {
@@ -106,11 +106,11 @@ impl SelfAffineFit {
     }
 }
 
-/// Variance of a slope over that from the scatter of independent rings, calibrated on synthetic surfaces: a window spreads
-/// each wave over neighbouring rings, so that they are alike.
+/// Variance of a slope over that from the scatter of independent rings, calibrated on synthetic surfaces: a window spreads each
+/// wave over neighbouring rings, so that they are correlated.
 const ALIKE: f64 = 2.0;
 
-/// Rms distance of the points on the slope from a fit, each with the length of ln q that it stands for, less its own variance.
+/// Rms distance of the points on the slope from a fit, each weighted with its length of ln q, minus its own variance.
 fn stray(points: &[Point], fit: &Bend) -> f64 {
     let slope: Vec<&Point> = points.iter().filter(|p| p.x >= fit.bend).collect();
     let (mut squares, mut length) = (0.0, 0.0);

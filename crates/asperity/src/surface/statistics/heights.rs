@@ -34,9 +34,9 @@ pub struct HeightStatistics {
     pub sa: f64,
     /// Root mean square deviation from the mean \[m\].
     pub sq: f64,
-    /// Skewness; NaN for a flat.
+    /// Skewness; NaN for a flat surface.
     pub ssk: f64,
-    /// Kurtosis, 3 for a Gaussian surface; NaN for a flat.
+    /// Kurtosis, 3 for a Gaussian surface; NaN for a flat surface.
     pub sku: f64,
     /// Highest peak above the mean \[m\].
     pub sp: f64,
@@ -50,7 +50,7 @@ impl HeightStatistics {
     /// Of the defined points.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where no point is defined.
+    /// [`Error::Invalid`] if no point is defined.
     pub fn of(surface: &Surface) -> Result<Self> {
         let heights = surface.heights();
         let mean = mean(heights)?;
@@ -88,9 +88,9 @@ impl HeightStatistics {
 /// Mean of the defined heights \[m\].
 ///
 /// # Errors
-/// [`Error::Invalid`] where no height is defined.
+/// [`Error::Invalid`] if no height is defined.
 pub fn mean(heights: ArrayView2<f64>) -> Result<f64> {
-    // About the first height: a surface far from zero keeps its digits.
+    // Relative to the first height, so that a surface far from zero keeps its digits.
     let Some(first) = defined(heights).next() else {
         return Err(Error::invalid("number of defined heights", 0, "1 at least"));
     };
@@ -101,7 +101,7 @@ pub fn mean(heights: ArrayView2<f64>) -> Result<f64> {
 /// Root mean square of the defined heights about their mean \[m\], Sq.
 ///
 /// # Errors
-/// [`Error::Invalid`] where no height is defined.
+/// [`Error::Invalid`] if no height is defined.
 pub fn rms_height(heights: ArrayView2<f64>) -> Result<f64> {
     let mean = mean(heights)?;
     let (sum, count) = defined(heights).fold((0.0, 0usize), |(sum, n), z| (sum + (z - mean).powi(2), n + 1));
@@ -135,8 +135,8 @@ mod tests {
 
     #[test]
     fn a_wave_has_its_closed_forms() {
-        // sin: Sa = 2/pi, Sq = 1/sqrt 2, Ssk = 0, Sku = 3/2; the sums over whole waves are exact but
-        // for Sa, whose kinks leave (pi/n)^2 / 6.
+        // sin: Sa = 2/pi, Sq = 1/sqrt 2, Ssk = 0, Sku = 3/2; the sums over whole waves are exact except for Sa, whose kinks cause
+        // an error of (pi/n)^2 / 6.
         let s = of(Array2::from_shape_fn((64, 3), |(i, _)| {
             1e-6 * (std::f64::consts::TAU * (i as f64 + 0.5) / 64.0).sin() + 0.25
         }));

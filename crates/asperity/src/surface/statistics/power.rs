@@ -6,9 +6,9 @@
 //! C(q) = Lx Ly |A_q|^2   [m^4],      <z^2> = int C(q) d^2q / (2 pi)^2
 //! ```
 //!
-//! (T. D. B. Jacobs, T. Junge and L. Pastewka, Surf. Topogr.: Metrol. Prop. 5 (2017) 013001, eqs 3 and 6:
-//! "C^2D"), and its radial average the mean over the waves of a ring ("C^iso"). The spectral moments are
-//! those of a profile through an isotropic surface (P. R. Nayak, J. Lubr. Technol. 93 (1971) 398):
+//! (T. D. B. Jacobs, T. Junge and L. Pastewka, Surf. Topogr.: Metrol. Prop. 5 (2017) 013001, eqs 3 and 6: "C^2D"), and its radial
+//! average is the mean over the waves of a ring ("C^iso"). The spectral moments are those of a profile through an isotropic
+//! surface (P. R. Nayak, J. Lubr. Technol. 93 (1971) 398):
 //!
 //! ```text
 //! m0 = <z^2>,   m2 = <|grad z|^2> / 2,   m4 = (3/8) <(laplace z)^2>,   alpha = m0 m4 / m2^2
@@ -31,14 +31,14 @@ use crate::grid::Grid;
 pub enum Rings {
     /// Rings as wide as the larger of 2 pi / Lx and 2 pi / Ly.
     Linear,
-    /// This many to a decade of wave numbers, 1 to 1000.
+    /// This many per decade of wave numbers, 1 to 1000.
     PerDecade(u32),
 }
 
-/// Radially averaged power spectrum; only rings that lie whole inside the grid's Nyquist limit.
+/// Radially averaged power spectrum; only rings entirely inside the Nyquist limit of the grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RadialSpectrum {
-    /// Mean wave number of the waves of each ring that holds one \[1/m\].
+    /// Mean wave number of each non-empty ring \[1/m\].
     pub wave_number: Vec<f64>,
     /// Mean of C over the ring \[m^4\].
     pub power: Vec<f64>,
@@ -61,13 +61,13 @@ impl RadialSpectrum {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a point is undefined or the rings are not between 1 and 1000 to a decade.
+    /// [`Error::Invalid`] if a point is undefined or the rings are not between 1 and 1000 to a decade.
     pub fn of(surface: &Surface, rings: Rings) -> Result<Self> {
         PowerSpectrum::of(surface)?.radial(rings)
     }
 }
 
-/// The power of every wave of a surface: one Fourier transform, of which all else is sums.
+/// The power of every wave of a surface: one Fourier transform. All other quantities are sums of these.
 #[derive(Clone, Debug)]
 pub struct PowerSpectrum {
     grid: Grid,
@@ -79,7 +79,7 @@ impl PowerSpectrum {
     /// Of a surface whose points are all defined.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a point is undefined.
+    /// [`Error::Invalid`] if a point is undefined.
     pub fn of(surface: &Surface) -> Result<Self> {
         PowerSpectrum::of_heights(surface.grid(), surface.heights())
     }
@@ -91,7 +91,7 @@ impl PowerSpectrum {
         Ok(PowerSpectrum { grid: *grid, power })
     }
 
-    /// All waves but the mean.
+    /// All waves except the mean.
     ///
     /// ```
     /// use asperity::{Grid, surface::{Surface, statistics::PowerSpectrum}};
@@ -119,13 +119,13 @@ impl PowerSpectrum {
     /// Radially averaged spectrum.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the rings are not between 1 and 1000 to a decade.
+    /// [`Error::Invalid`] if the rings are not between 1 and 1000 to a decade.
     pub fn radial(&self, rings: Rings) -> Result<RadialSpectrum> {
         self.averaged(rings, [[1.0, 0.0], [0.0, 1.0]])
     }
 
-    /// Spectrum averaged over ellipses of the axes of a lay, over the wave number across it: that of the isotropic surface
-    /// which the lay has stretched.
+    /// Spectrum averaged over ellipses along the axes of a lay, as a function of the wave number across it: that of the isotropic
+    /// surface from which the surface is obtained by stretching along the lay.
     ///
     /// # Errors
     /// As [`radial`](Self::radial).
@@ -152,13 +152,13 @@ impl PowerSpectrum {
         let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
         let reach = [m[1][1], m[0][0]].map(|minor| (minor / determinant).sqrt());
         let nyquist = (TAU * nx as f64 / (2.0 * lx) / reach[0]).min(TAU * ny as f64 / (2.0 * ly) / reach[1]);
-        // Which ring a wave number falls in; rings of a decade start at the domain's longest wave.
+        // The ring of a wave number; rings per decade start at the longest wave of the domain.
         let ring = |q: f64| match rings {
             Rings::Linear => (q / width).round() as usize,
             Rings::PerDecade(n) => ((q / smallest * (1.0 + 1e-9)).log10() * f64::from(n)) as usize,
         };
         let last = ring(nyquist);
-        // Blocks of rows apart, then added in their order: the same bits for any number of threads.
+        // Blocks of rows are summed separately, then added in order: the same bits for any number of threads.
         let blocks: Vec<Vec<Ring>> = (0..nx.div_ceil(ROWS))
             .into_par_iter()
             .map(|block| {
@@ -189,7 +189,7 @@ impl PowerSpectrum {
             }
         }
         let mut spectrum = RadialSpectrum { wave_number: vec![], power: vec![], waves: vec![] };
-        // The linear ring around 0 is no ring.
+        // The linear ring around 0 is not used.
         for Ring { wave_number, power, waves } in sums.into_iter().filter(|s| s.waves > 0) {
             spectrum.wave_number.push(wave_number / waves as f64);
             spectrum.power.push(grid.area() * power / waves as f64);
@@ -204,10 +204,10 @@ impl PowerSpectrum {
         SpectralMoments { m0, m2: 0.5 * gradient, m4: 0.375 * laplace }
     }
 
-    /// The lay, from the mean products of slopes <z_x^2>, <z_x z_y>, <z_y^2>: their principal axes.
-    /// A strip of fewer than eight lines of points has none.
+    /// The lay, from the mean products of slopes <z_x^2>, <z_x z_y>, <z_y^2>: their principal axes. `None` for a strip of fewer
+    /// than eight lines of points.
     pub fn lay(&self) -> SpectralLay {
-        /// Lines of points that tell two directions apart.
+        /// Smallest number of lines of points that distinguishes two directions.
         const FEWEST: usize = 8;
         let [nx, ny] = self.grid.cells();
         if nx.min(ny) < FEWEST {
@@ -269,7 +269,7 @@ pub struct Wave {
     pub power: f64,
 }
 
-/// The direction in which a surface is smoothest.
+/// The lay: the direction in which a surface is smoothest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralLay {
     /// Rms slope across the lay over that along it: 1 for an isotropic surface, the ratio of lengths along and across the lay
@@ -286,7 +286,7 @@ impl SpectralLay {
     }
 }
 
-/// Rows of a block that is summed apart.
+/// Rows of a block that is summed separately.
 const ROWS: usize = 64;
 
 /// Sums over the waves of a ring.
@@ -313,7 +313,7 @@ impl SpectralMoments {
     /// slope along it.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a point is undefined.
+    /// [`Error::Invalid`] if a point is undefined.
     pub fn of(surface: &Surface) -> Result<Self> {
         Ok(PowerSpectrum::of(surface)?.moments())
     }
@@ -328,7 +328,7 @@ impl SpectralMoments {
 /// sum of |q|^2 |A_q|^2. Waves on the Nyquist frequency of an axis have no derivative along it.
 ///
 /// # Errors
-/// [`Error::Invalid`] where a height is undefined or the shape is not the grid's.
+/// [`Error::Invalid`] if a height is undefined or the shape is not the grid's.
 pub fn rms_gradient(grid: &Grid, heights: ArrayView2<f64>) -> Result<f64> {
     Ok(PowerSpectrum::of_heights(grid, heights)?.even_moments()[1].sqrt())
 }
@@ -365,7 +365,7 @@ mod tests {
 
     #[test]
     fn the_rings_hold_the_mean_square_height() {
-        // int C d^2q / (2 pi)^2: each wave stands for (2 pi)^2 / (Lx Ly).
+        // int C d^2q / (2 pi)^2: each wave represents (2 pi)^2 / (Lx Ly).
         let surface = rough();
         for rings in [Rings::Linear, Rings::PerDecade(10)] {
             let spectrum = RadialSpectrum::of(&surface, rings).unwrap();

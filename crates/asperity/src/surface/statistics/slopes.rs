@@ -5,9 +5,9 @@
 //! Sdr = <sqrt(1 + (dz/dx)^2 + (dz/dy)^2) - 1>      developed over projected area, less one
 //! ```
 //!
-//! Each mean of Sdq runs over the pairs of neighbours that are both defined; Sdr over the squares of
-//! four defined points, each the mean of its two ways of being cut into triangles. For a periodic
-//! surface known by its waves see [`rms_gradient`](super::rms_gradient).
+//! Each mean of Sdq is over the pairs of neighbours that are both defined. Sdr is over the squares of four defined points, each
+//! with the mean of its two divisions into triangles. For a periodic surface given by its waves see
+//! [`rms_gradient`](super::rms_gradient).
 
 use ndarray::parallel::prelude::*;
 use ndarray::{ArrayView1, Axis};
@@ -29,7 +29,7 @@ use crate::error::{Error, Result};
 pub struct SlopeStatistics {
     /// Root mean square slope Sdq.
     pub sdq: f64,
-    /// Developed interfacial area ratio Sdr (1 is 100 %); 0 where no square of points is defined.
+    /// Developed interfacial area ratio Sdr (1 is 100 %); 0 if no square of points is defined.
     pub sdr: f64,
 }
 
@@ -45,7 +45,7 @@ impl SlopeStatistics {
     /// Of the defined points.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where no two neighbours are defined.
+    /// [`Error::Invalid`] if no two neighbours are defined.
     pub fn of(surface: &Surface) -> Result<Self> {
         let (heights, [dx, dy]) = (surface.heights(), surface.grid().spacing());
         // Rows in parallel, their sums added in order.

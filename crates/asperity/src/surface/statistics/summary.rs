@@ -1,4 +1,4 @@
-//! All that describes a surface, from one reading of its heights and one Fourier transform.
+//! All statistics of a surface, from one pass over its heights and one Fourier transform.
 
 use std::f64::consts::TAU;
 
@@ -10,9 +10,9 @@ use super::{
 };
 use crate::error::Result;
 
-/// Rings to a decade of wave numbers in the spectrum of a [`Summary`].
+/// Rings per decade of wave numbers in the spectrum of a [`Summary`].
 const RINGS: u32 = 20;
-/// More undefined points than this share are not filled for a spectrum.
+/// Largest fraction of undefined points that are filled for a spectrum.
 const MOST_FILLED: f64 = 0.25;
 
 /// Statistics of a surface.
@@ -20,31 +20,30 @@ const MOST_FILLED: f64 = 0.25;
 pub struct Summary {
     /// Height parameters of the heights as given.
     pub heights: HeightStatistics,
-    /// Slope parameters of the heights as given; `None` where no point has neighbours.
+    /// Slope parameters of the heights as given; `None` if no point has neighbours.
     pub slopes: Option<SlopeStatistics>,
-    /// What the waves tell; `None` where more than a quarter of the points are undefined.
+    /// Statistics from the waves; `None` if more than a quarter of the points are undefined.
     pub waves: Option<Waves>,
 }
 
-/// What the waves of a surface tell.
+/// Statistics from the waves of a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Waves {
     /// Spectral moments.
     pub moments: SpectralMoments,
-    /// The lay; nothing but scatter where it is not [clear](SpectralLay::is_clear).
+    /// The lay; only scatter if it is not [clear](SpectralLay::is_clear).
     pub lay: SpectralLay,
-    /// Radially averaged power spectrum; of a surface with a clear lay averaged over ellipses of its axes, over the wave number
-    /// across it.
+    /// Radially averaged power spectrum. For a surface with a clear lay it is averaged over ellipses along its axes, as a
+    /// function of the wave number across it.
     pub spectrum: RadialSpectrum,
-    /// Self-affine spectrum fitted over the whole range, up to where the spectrum breaks off; `None` where there are
-    /// too few rings.
+    /// Self-affine spectrum fitted over the whole range, up to the cut-off of the spectrum; `None` if there are too few rings.
     pub fit: Option<SelfAffineFit>,
 }
 
 impl Summary {
-    /// Of the defined points. For the waves a finite surface is levelled by its plane, its undefined points are
-    /// filled (harmonic), and Hann's window is laid over it, so that its edges do not count as roughness; a periodic
-    /// one is taken as it is, filled where it must be.
+    /// From the defined points. For the waves, a finite surface is levelled by its plane, its undefined points are filled
+    /// (harmonic), and it is multiplied by Hann's window, so that its edges do not count as roughness. A periodic surface is used
+    /// as it is, and filled if necessary.
     ///
     /// ```
     /// use asperity::{Grid, surface::{Roughness, SelfAffine, Surface}};
@@ -66,10 +65,10 @@ impl Summary {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where no point is defined.
+    /// [`Error::Invalid`](crate::Error::Invalid) if no point is defined.
     pub fn of(surface: &Surface, extent: Extent) -> Result<Self> {
         let heights = HeightStatistics::of(surface)?;
-        // A single line of one point, say, has no slope, and that is all that can be wrong.
+        // The only possible error is a missing slope, for example of a single point.
         let slopes = SlopeStatistics::of(surface).ok();
         let points = surface.grid().len();
         let undefined = points - heights.defined;
@@ -104,10 +103,10 @@ impl Waves {
     }
 }
 
-/// Wavelength at which the spectrum breaks off \[m\], 0 where it does not: there the power falls faster than q^-8,
-/// twice the steepest self-affine spectrum, and never comes back. An instrument or a filter cuts waves off like that.
+/// Wavelength of the cut-off of the spectrum \[m\], 0 if there is none: there the power falls faster than q^-8, twice the
+/// exponent of the steepest self-affine spectrum, and does not rise again. Instruments and filters cause such cut-offs.
 fn cut_off(spectrum: &RadialSpectrum) -> f64 {
-    /// Rings of fewer waves scatter too much to tell: the mean of 100 random powers by a tenth.
+    /// Rings with fewer waves scatter too much: the mean of 100 random powers scatters by a tenth.
     const FEWEST: usize = 100;
     const STEEPEST: f64 = 8.0;
     let (q, power) = (&spectrum.wave_number, &spectrum.power);
@@ -160,7 +159,7 @@ mod tests {
     fn a_tilt_and_holes_do_not_count_as_waves_of_a_finite_surface() {
         let surface = rough();
         let plain = Summary::of(&surface, Extent::Finite).unwrap().waves.unwrap();
-        // The window keeps the power of short waves in the mean; of one realisation to a part of it.
+        // The window preserves the power of short waves on average; for one realisation only approximately.
         let true_m2 = SpectralMoments::of(&surface).unwrap().m2;
         assert!((plain.moments.m2 / true_m2 - 1.0).abs() < 0.2, "{} {true_m2}", plain.moments.m2);
         let mut tilted = surface.heights().to_owned();

@@ -1,13 +1,13 @@
-//! Height distributions: the ordered heights that a surface of n points shall have.
+//! Height distributions: the required ordered heights of a surface of n points.
 
 use std::f64::consts::{SQRT_2, TAU};
 
 use crate::error::{Error, Result};
 
-/// How the heights of a synthetic surface are distributed; mean and rms are set by the roughness.
+/// The distribution of the heights of a synthetic surface; the roughness determines mean and rms.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub enum HeightDistribution {
-    /// Normal, as the sum of many waves is by itself.
+    /// Normal, like the sum of many waves.
     #[default]
     Gaussian,
     /// Skewness Ssk and kurtosis Sku (3: Gaussian), by a cubic of a normal variable (A. I. Fleishman,
@@ -18,7 +18,7 @@ pub enum HeightDistribution {
         /// Sku.
         kurtosis: f64,
     },
-    /// That of the given samples (of a measured surface, say), linear between them.
+    /// That of the given samples (for example of a measured surface), linear between them.
     Samples(Vec<f64>),
 }
 
@@ -46,7 +46,7 @@ impl HeightDistribution {
                 shares.map(|share| quantile(&sorted, share)).collect()
             }
         };
-        // A cubic may turn at its ends.
+        // A cubic may be non-monotone at its ends.
         values.sort_by(f64::total_cmp);
         let mean = values.iter().sum::<f64>() / n as f64;
         values.iter_mut().for_each(|z| *z -= mean);
@@ -94,7 +94,7 @@ fn sorted_samples(samples: &[f64]) -> Result<Vec<f64>> {
     Ok(sorted)
 }
 
-/// Linear between the samples, sample i at the share (i + 1/2) / m; flat beyond the ends.
+/// Linear between the samples, sample i at the fraction (i + 1/2) / m; constant beyond the ends.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let last = sorted.len() - 1;
     let at = (share * sorted.len() as f64 - 0.5).clamp(0.0, last as f64);
@@ -118,8 +118,8 @@ fn normal_quantile(share: f64) -> f64 {
     if share < 0.5 { -z } else { z }
 }
 
-/// b, c, d of Y = b Z + c (Z^2 - 1) + d Z^3 with variance 1 and the given skewness and kurtosis, by
-/// Newton's method along the way from the Gaussian.
+/// b, c, d of Y = b Z + c (Z^2 - 1) + d Z^3 with variance 1 and the given skewness and kurtosis, by Newton's method with
+/// continuation from the Gaussian.
 fn cubic(skewness: f64, kurtosis: f64) -> Result<[f64; 3]> {
     let refuse = || {
         Error::invalid(
@@ -181,7 +181,7 @@ fn jacobian([b, c, d]: [f64; 3]) -> [[f64; 3]; 3] {
     ]
 }
 
-/// Cramer's rule; `None` where the determinant vanishes.
+/// Cramer's rule; `None` if the determinant vanishes.
 fn solve3(m: [[f64; 3]; 3], r: [f64; 3]) -> Option<[f64; 3]> {
     let det = |m: [[f64; 3]; 3]| {
         m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
@@ -214,7 +214,7 @@ mod tests {
         for (skewness, kurtosis) in [(0.0, 3.0), (-1.0, 5.0), (1.5, 7.0), (0.0, 2.0), (0.3, 12.0)] {
             let values = HeightDistribution::Moments { skewness, kurtosis }.values(200_000).unwrap();
             let moment = |n: i32| values.iter().map(|z| z.powi(n)).sum::<f64>() / values.len() as f64;
-            // The quantiles cut the tails off at 1 in 400,000, which costs high moments a little.
+            // The quantiles cut off the tails at 1 in 400,000, which reduces high moments slightly.
             assert!((moment(3) - skewness).abs() < 0.02, "{skewness} {kurtosis}: {}", moment(3));
             assert!((moment(4) / kurtosis - 1.0).abs() < 0.04, "{skewness} {kurtosis}: {}", moment(4));
             assert!(moment(1).abs() < 1e-12 && (moment(2) - 1.0).abs() < 1e-12);

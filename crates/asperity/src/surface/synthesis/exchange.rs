@@ -1,5 +1,5 @@
-//! A surface with given ordered heights and, as nearly as they allow, the spectrum of another one:
-//! iterated exchange of amplitudes (T. Schreiber and A. Schmitz, Phys. Rev. Lett. 77 (1996) 635).
+//! A surface with given ordered heights and, as closely as possible, the spectrum of another one: iterated exchange of amplitudes
+//! (T. Schreiber and A. Schmitz, Phys. Rev. Lett. 77 (1996) 635).
 
 use std::f64::consts::TAU;
 
@@ -10,10 +10,10 @@ use rustfft::num_complex::Complex64;
 use super::super::fourier::Plane;
 use crate::grid::Grid;
 
-/// Exchanges are stopped here at the latest; a few usually do.
+/// Largest number of exchanges; a few are usually enough.
 const MOST: usize = 40;
 
-/// Heights with the (sorted) `values` and nearly the spectrum of `gaussian`, and their rms gradient.
+/// Heights with the (sorted) `values` and approximately the spectrum of `gaussian`, and their rms gradient.
 pub(super) fn exchange(grid: &Grid, gaussian: Array2<f64>, values: &[f64]) -> (Array2<f64>, f64) {
     let plane = Plane::new(grid.shape());
     let mut heights = gaussian;
@@ -54,7 +54,7 @@ fn amplitudes(plane: &Plane, heights: &Array2<f64>) -> Array2<Complex64> {
     spectrum
 }
 
-/// Replaces each height by the value of its rank; equal heights rank by place.
+/// Replaces each height by the value of its rank; equal heights are ranked by position.
 fn rank(heights: &mut Array2<f64>, values: &[f64]) {
     let mut order: Vec<(f64, usize)> = heights.iter().copied().zip(0..).collect();
     order.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

@@ -7,13 +7,13 @@
 //! sqrt(q_across^2 + (ratio q_along)^2)
 //! ```
 //!
-//! so that the wavelengths given hold across the lay and are `ratio` times longer along it.
+//! so the given wavelengths hold across the lay and are `ratio` times longer along it.
 //!
-//! **Height distribution.** Worn and plateau-honed surfaces are not Gaussian. The heights of a Gaussian
-//! surface are replaced, rank by rank, by those of the distribution, which disturbs the spectrum; the
-//! spectrum is set right, which disturbs the distribution; and so on (T. Schreiber and A. Schmitz, Phys.
-//! Rev. Lett. 77 (1996) 635). The distribution has the last word: it is exact, the spectrum is met as
-//! nearly as it allows (short waves beyond the cut-off remain of the order of a per cent of the rms).
+//! **Height distribution.** Worn and plateau-honed surfaces are not Gaussian. The heights of a Gaussian surface are replaced,
+//! rank by rank, by those of the distribution, which changes the spectrum. The spectrum is then restored, which changes the
+//! distribution, and so on (T. Schreiber and A. Schmitz, Phys. Rev. Lett. 77 (1996) 635). At the end the distribution is exact,
+//! and the spectrum is as close as the distribution allows (short waves beyond the cut-off remain, of the order of a per cent of
+//! the rms).
 
 mod distribution;
 mod exchange;
@@ -74,8 +74,7 @@ impl Synthesis {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`SelfAffine::heights`], where the lay is outside its domain, or where no
-    /// such distribution exists.
+    /// [`Error::Invalid`] as [`SelfAffine::heights`], if the lay is outside its domain, or if no such distribution exists.
     pub fn heights(&self, grid: &Grid) -> Result<Array2<f64>> {
         self.validate()?;
         let Lay { angle, ratio } = self.lay.unwrap_or(Lay { angle: 0.0, ratio: 1.0 });
@@ -101,16 +100,16 @@ impl Synthesis {
     /// Checks the lay and the distribution; [`SelfAffine::validate`] checks the spectrum against a grid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the lay is outside its domain, or where no such distribution exists.
+    /// [`Error::Invalid`] if the lay is outside its domain, or if no such distribution exists.
     pub fn validate(&self) -> Result<()> {
         let Lay { angle, ratio } = self.lay.unwrap_or(Lay { angle: 0.0, ratio: 1.0 });
         if !(ratio.is_finite() && ratio >= 1.0) {
-            return Err(Error::invalid("ratio of the lay", ratio, "finite, 1 or more"));
+            return Err(Error::invalid("ratio of the lay", ratio, "finite, 1 or more").of("lay"));
         }
         if !angle.is_finite() {
-            return Err(Error::invalid("angle of the lay", angle, "finite, in rad"));
+            return Err(Error::invalid("angle of the lay", angle, "finite, in rad").of("lay"));
         }
-        self.distribution.validate()
+        self.distribution.validate().map_err(|error| error.of("distribution"))
     }
 }
 
@@ -144,8 +143,8 @@ mod tests {
 
     #[test]
     fn the_lay_stretches_the_correlation() {
-        // Along x: the rms slope along y is `ratio` times that along x, but for the waves that the
-        // domain cannot hold along the lay.
+        // Along x: the rms slope along y is `ratio` times that along x, except for the waves that are too long for the domain
+        // along the lay.
         let lay = Some(Lay { angle: 0.0, ratio: 4.0 });
         let fine = SelfAffine { longest: 2e-4, roll_off: 2e-4, shortest: 5e-5, ..spectrum() };
         let laid = Synthesis { spectrum: fine, lay, distribution: HeightDistribution::Gaussian };
@@ -159,7 +158,7 @@ mod tests {
         };
         let ratio = slope(1) / slope(0);
         assert!((3.0..5.0).contains(&ratio), "{ratio}");
-        // Turned by a right angle the axes change places.
+        // After rotation by a right angle the axes are exchanged.
         let turned = Synthesis { lay: Some(Lay { angle: std::f64::consts::FRAC_PI_2, ratio: 4.0 }), ..laid };
         assert!(turned.heights(&grid()).is_ok());
     }
@@ -186,7 +185,7 @@ mod tests {
             let wanted = (of_samples(share) - of_samples(0.1)) / (of_samples(0.9) - of_samples(0.1));
             assert!((got - wanted).abs() < 0.01, "{share}: {got} {wanted}"); // one sample in 500
         }
-        // Waves beyond the cut-off hold little: 5 % of the variance for this strongly skewed case.
+        // Waves beyond the cut-off have little power: 5 % of the variance for this strongly skewed case.
         let surface = Surface::new(grid(), z).unwrap();
         let kept = super::super::process::filter(
             &surface,

@@ -1,0 +1,167 @@
+//! The case file as it is written: its sections.
+//!
+//! Each section is a struct with a field per key, in a file of its own. The comments on the fields are the descriptions in the JSON
+//! Schema; the types of the fields carry dimension and range; what needs more than one key to judge is checked where the
+//! section is converted.
+
+use schemars::JsonSchema;
+
+use super::body::Body;
+use super::domain::Domain;
+use super::error::CaseError;
+use super::leakage::LeakageKeys;
+use super::load::Load;
+use super::material::Material;
+use super::motion::Motion;
+use super::output::{OutputKeys, Solver};
+use super::read::Reader;
+use super::stress::Stress;
+use super::surface::Surface;
+use super::temperature::Temperature;
+use super::text::Text;
+use super::time::Times;
+use crate::quantity::range::{Poisson, Positive};
+use crate::quantity::{Number, Pressure};
+
+/// The keys of the root.
+const SECTIONS: &[&str] = &[
+    "title",
+    "domain",
+    "surface",
+    "body",
+    "load",
+    "time",
+    "temperature",
+    "motion",
+    "leakage",
+    "solver",
+    "output",
+    "stress",
+];
+
+/// Keys of a `[[body]]` that may stand next to a material of its own file: `fit-indentation` writes `poisson`.
+const OF_A_BODY: &[&str] = &["material", "name", "poisson", "bulk_modulus", "hardness"];
+
+/// A case of asperity: two bodies, the gap between them, a load over time.
+#[derive(Debug, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Document {
+    /// Title of the case, stored in the result.
+    #[schemars(example = "PMMA rough sphere, step load")]
+    #[schemars(length(max = 1000))]
+    pub title: Option<String>,
+    /// The computational domain: a rectangle of equal cells, or a line of them.
+    pub domain: Domain,
+    /// The parts whose sum is the undeformed gap.
+    #[schemars(length(min = 1))]
+    pub surface: Vec<Surface>,
+    /// The deformable bodies, one or two; a missing second body is rigid.
+    #[schemars(length(min = 1, max = 2))]
+    pub body: Vec<Body>,
+    /// What presses the bodies together.
+    pub load: Load,
+    /// The times of the solution; not for steady states of motion.
+    pub time: Option<Times>,
+    /// The temperature of bodies whose material has a `shift`; they are at its reference if not given.
+    #[schemars(example = serde_json::json!({ "history": { "kind": "constant", "value": "60 °C" } }))]
+    pub temperature: Option<Temperature>,
+    /// Motion of the contact over the bodies; nothing moves if not given.
+    #[schemars(example = serde_json::json!({ "velocity": "10 mm/s" }))]
+    pub motion: Option<Motion>,
+    /// The flow of a fluid through the gap.
+    #[schemars(example = serde_json::json!({ "pressure_drop": "2 bar", "viscosity": "1 mPa s" }))]
+    pub leakage: Option<LeakageKeys>,
+    /// How each step is solved.
+    #[schemars(default)]
+    pub solver: Solver,
+    /// What is stored, and where.
+    #[schemars(default)]
+    pub output: OutputKeys,
+    /// The stress below the surface, from the stored pressures; not computed if not given.
+    #[schemars(example = serde_json::json!({ "depths": "auto", "yield_stress": "110 MPa" }))]
+    pub stress: Option<Stress>,
+}
+
+/// What was read, or the faults found.
+type Read<T> = Result<T, Vec<CaseError>>;
+
+impl Document {
+    /// The document, or the faults that its sections have.
+    pub fn read(text: &Text<'_>) -> Read<Document> {
+        let mut reader = Reader::new(text);
+        reader.only(SECTIONS);
+        let title = reader.optional("title");
+        let domain = reader.required("domain");
+        let surface = reader.list("surface");
+        let body = reader.list("body");
+        let load = reader.required("load");
+        let motion = reader.optional("motion");
+        // Steady states of motion have no times.
+        let time = match text.has("motion.steady") {
+            true => reader.optional("time"),
+            false => reader.required("time"),
+        };
+        let temperature = reader.optional("temperature");
+        let leakage = reader.optional("leakage");
+        let solver = reader.optional("solver").unwrap_or_default();
+        let output = reader.optional("output").unwrap_or_default();
+        let stress = reader.optional("stress");
+        reader.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
+        reader.finish(domain.zip(load)).map(|(domain, load)| Document {
+            title,
+            domain,
+            surface,
+            body,
+            load,
+            time,
+            temperature,
+            motion,
+            leakage,
+            solver,
+            output,
+            stress,
+        })
+    }
+}
+
+/// The surfaces of a document that may have nothing else.
+pub fn surfaces(text: &Text<'_>) -> Read<Vec<Surface>> {
+    let mut reader = Reader::new(text);
+    let surfaces = reader.list("surface");
+    reader.finish(Some(surfaces))
+}
+
+/// The domain and the surfaces of a document that may have nothing else.
+pub fn roughness(text: &Text<'_>) -> Read<(Domain, Vec<Surface>)> {
+    let mut reader = Reader::new(text);
+    let (domain, surfaces) = (reader.required("domain"), reader.list("surface"));
+    reader.finish(domain.map(|domain| (domain, surfaces)))
+}
+
+/// The bodies and the temperature of a document that may have nothing else.
+pub fn bodies(text: &Text<'_>) -> Read<(Vec<Body>, Option<Temperature>)> {
+    let mut reader = Reader::new(text);
+    let (bodies, temperature) = (reader.list("body"), reader.optional("temperature"));
+    reader.finish(Some((bodies, temperature)))
+}
+
+/// The section `[stress]` of a document that may have nothing else.
+pub fn stress(text: &Text<'_>) -> Read<Stress> {
+    let mut reader = Reader::new(text);
+    let stress = reader.required("stress");
+    reader.finish(stress)
+}
+
+/// The material of a file that holds the lines of a body, `material = { ... }` at least, or the faults that it has.
+pub fn material(text: &Text<'_>) -> Read<Material> {
+    let mut reader = Reader::new(text);
+    reader.only(OF_A_BODY);
+    // The other keys do not change the functions of a material, but a slip in them is an error all the same.
+    let _: Option<String> = reader.optional("name");
+    let _: Option<Number<Poisson>> = reader.optional("poisson");
+    for key in ["bulk_modulus", "hardness"] {
+        let _: Option<Pressure<Positive>> = reader.optional(key);
+    }
+    let material = reader.optional("material");
+    reader.finish(material)
+}

@@ -1,0 +1,123 @@
+//! `[domain]`: the grid, and whether the machine can hold the problem.
+
+use asperity::{Boundary, Grid, Scheme};
+
+use super::keys::*;
+use super::list::wrong_number;
+use super::measured::Measured;
+use super::memory;
+use crate::resources::available_memory;
+
+/// A rectangle of equal cells; or a line of cells, with one value in `cells` and `size`: a line contact in plane strain, in which
+/// nothing changes along y.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Domain {
+    /// Number of cells along x and y; any numbers, also not square and not powers of two. One number for a line contact.
+    /// Those of the measured surface if not given; needed without a measured surface.
+    #[schemars(example = (1024, 1024), example = (1024,))]
+    cells: Option<Axes<Whole<1>>>,
+    /// Length of the domain along x and y; one length for a line contact. That of the measured surface if not given; needed
+    /// without a measured surface.
+    #[schemars(example = ("0.1 mm", "0.1 mm"), example = ("2 mm",))]
+    size: Option<Axes<Length<Positive>>>,
+    /// Boundary condition of the domain; "free" if not given.
+    #[serde(default)]
+    pub boundary: Boundary,
+}
+
+impl Domain {
+    /// The grid. What the domain does not say is that of the measured surface, where there is exactly one; `files` are the
+    /// measured surfaces, `None` for one whose keys are wrong.
+    pub fn grid(&self, at: &Place<'_>, files: &[Option<&Measured>]) -> Option<Grid> {
+        if let (Some(cells), Some(size)) = (&self.cells, &self.size)
+            && cells.is_line() != size.is_line()
+        {
+            return wrong_number(&at.key("size"), cells.is_line());
+        }
+        let (cells, line) = (self.cells(), self.is_line());
+        // Of a line, the length along y that its grid has.
+        let size = self.size.map(|size| size.map(1.0, Length::get));
+        // A count that no machine can hold is refused by `fits`, with its numbers.
+        if cells.is_some_and(|cells| memory::estimate(cells, 0) > present()) {
+            return None;
+        }
+        let (cells, size, line) = match (cells, size, files) {
+            (Some(cells), Some(size), _) => (cells, size, line == Some(true)),
+            (_, _, [one]) => {
+                let file = (*one)?;
+                let prepared = match file.prepared(cells) {
+                    Ok(prepared) => prepared,
+                    Err(reason) => return at.sibling(&file.key).fault(reason, "", ""),
+                };
+                let of_file = prepared.surface.grid();
+                if line.is_some_and(|line| line != of_file.is_line()) {
+                    let given = if self.size.is_some() { "size" } else { "cells" };
+                    return wrong_number(&at.key(given), of_file.is_line());
+                }
+                (cells.unwrap_or(of_file.cells()), size.unwrap_or(of_file.size()), of_file.is_line())
+            }
+            (cells, size, files) => {
+                let why = match files.len() {
+                    0 => String::new(),
+                    many => format!(
+                        ": there are {many} measured surfaces, so it cannot be taken from one of them; give it"
+                    ),
+                };
+                for (key, missing) in [("cells", cells.is_none()), ("size", size.is_none())] {
+                    if missing {
+                        at.missing::<()>(key, &why);
+                    }
+                }
+                return None;
+            }
+        };
+        let grid = if line { Grid::line(cells[0], size[0]) } else { Grid::new(cells, size) };
+        self.place_of_cells(at).core(grid)
+    }
+
+    /// Whether the domain says that it is a line: one value in `cells` or `size`; `None` where it gives neither.
+    pub fn is_line(&self) -> Option<bool> {
+        self.cells.map(|cells| cells.is_line()).or(self.size.map(|size| size.is_line()))
+    }
+
+    fn cells(&self) -> Option<[usize; 2]> {
+        self.cells.map(|cells| cells.map(1, Whole::count))
+    }
+
+    /// Where the number of cells stands, or the domain that leaves it out.
+    fn place_of_cells<'c>(&self, at: &Place<'c>) -> Place<'c> {
+        if self.cells.is_some() { at.key("cells") } else { at.clone() }
+    }
+
+    /// Refuses a problem that takes more memory than the machine has: its bodies remember `fields` fields, and the solver keeps
+    /// `extra` ones.
+    pub fn fits(&self, at: &Place<'_>, grid: Option<&Grid>, fields: usize, extra: usize, scheme: Scheme) {
+        let Some(cells) = self.cells().or(grid.map(Grid::cells)) else { return };
+        let (needed, present) = (memory::estimate(cells, fields.saturating_add(extra)), present());
+        if needed <= present {
+            return;
+        }
+        let [nx, ny] = cells;
+        let count = if self.is_line() == Some(true) { nx.to_string() } else { format!("{nx} x {ny}") };
+        let (detail, help) = match (scheme, fields) {
+            (Scheme::Direct, _) => (
+                format!(" with the {fields} pressure fields that the direct scheme keeps"),
+                "take fewer cells or steps, or scheme = \"linear\"",
+            ),
+            (_, 0) => (String::new(), "take fewer cells"),
+            _ => (format!(" with {fields} retarded terms"), "take fewer cells"),
+        };
+        let [needed, present] = [needed, present].map(memory::words);
+        self.place_of_cells(at).fault::<()>(
+            format!("{count} cells{detail} need about {needed}, but this machine has {present} available"),
+            "a problem that fits into memory",
+            help,
+        );
+    }
+}
+
+/// Memory that the run may take.
+fn present() -> u128 {
+    available_memory().into()
+}

@@ -1,0 +1,87 @@
+//! `hardness_file` of a body: the hardness of each cell.
+
+use super::keys::*;
+
+use asperity::Grid;
+use ndarray::{Array2, Zip};
+
+use crate::digest::md5;
+use crate::topography::{Format, ReadOptions, read};
+
+/// A number for each cell of the domain.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HardnessFile {
+    /// The file, relative to the case file: an array of shape (nx, ny) as NPY or NPZ, or a text matrix with a line for
+    /// each y and values along x.
+    #[schemars(example = "hardness.npy")]
+    path: String,
+    /// Unit of the numbers in the file; 1 Pa if not given.
+    #[schemars(example = "1 MPa")]
+    unit: Option<Pressure<Positive>>,
+}
+
+/// The cut-off of each cell \[Pa\] over all bodies that have one, and the files with their MD5.
+#[derive(Default)]
+pub struct Hardness {
+    pub map: Option<Array2<f64>>,
+    pub files: Vec<(String, String)>,
+}
+
+impl Hardness {
+    /// Adds a body: the softer one decides in each cell.
+    pub fn and(self, map: Array2<f64>, file: Option<(String, String)>) -> Hardness {
+        let map = match self.map {
+            Some(softer) => Zip::from(&softer).and(&map).map_collect(|a, b| a.min(*b)),
+            None => map,
+        };
+        Hardness { map: Some(map), files: [self.files, Vec::from_iter(file)].concat() }
+    }
+}
+
+impl HardnessFile {
+    /// The cut-off of each cell \[Pa\]; the file and its MD5.
+    pub fn of_cells(&self, at: &Place<'_>, grid: Option<&Grid>) -> Option<(Array2<f64>, (String, String))> {
+        let at = at.key("path");
+        let full = at.file(&self.path)?;
+        let name = full.display();
+        let digest = match std::fs::read(&full) {
+            Ok(bytes) => md5(&bytes),
+            Err(error) => return at.fault(format!("{name} cannot be read: {error}"), "a file", ""),
+        };
+        // The readers of heights read numbers of any kind, where the file does not call them heights.
+        let options =
+            ReadOptions { size: Some([1.0, 1.0]), height_unit: Some(1.0), ..ReadOptions::default() };
+        let numbers = match read(&full, &options) {
+            Ok(numbers) => numbers,
+            Err(error) => return at.fault(error, "an array of nx x ny numbers", ""),
+        };
+        if !matches!(numbers.format, Format::Npy | Format::Npz | Format::Text | Format::Csv) {
+            let what = format!("{name} is a file of heights ({})", numbers.format);
+            return at.fault(what, "an NPY or NPZ file or a text matrix", "");
+        }
+        let grid = grid?;
+        if numbers.heights.dim() != grid.shape() {
+            let ((mx, my), [nx, ny]) = (numbers.heights.dim(), grid.cells());
+            let what = format!("{name} holds {mx} x {my} numbers, but the domain has {nx} x {ny} cells");
+            return at.fault(what, "one number for each cell", "axis 0 of an array is x");
+        }
+        let unit = self.unit.map_or(1.0, Pressure::get);
+        let map = numbers.heights.mapv(|number| number * unit);
+        Some((positive(&at, map, &name.to_string())?, (self.path.clone(), digest)))
+    }
+}
+
+/// The cut-off of each cell \[Pa\], of the array of this name.
+pub fn of_array(at: &Place<'_>, name: &str, grid: Option<&Grid>) -> Option<Array2<f64>> {
+    positive(at, at.array(name, grid?)?, "the array")
+}
+
+/// The map, where every cell has a hardness.
+fn positive(at: &Place<'_>, map: Array2<f64>, holder: &str) -> Option<Array2<f64>> {
+    if let Some(((i, j), hardness)) = map.indexed_iter().find(|(_, h)| !(h.is_finite() && **h > 0.0)) {
+        let what = format!("the hardness of cell ({i}, {j}) in {holder} is {hardness} Pa");
+        return at.fault(what, "finite and greater than 0 in every cell", "");
+    }
+    Some(map)
+}

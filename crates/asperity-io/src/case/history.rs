@@ -1,0 +1,234 @@
+//! A value over time: a load, a pressure, an approach, a velocity or a position.
+
+use asperity::Control;
+
+use super::history_file;
+use super::keys::*;
+use super::words::number;
+
+/// A value over time.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(tag = "kind")]
+pub enum History {
+    /// Applied suddenly and held.
+    Step {
+        /// Value held from t = 0 on.
+        value: Prescribed,
+    },
+    /// Linear rise, then held.
+    Ramp {
+        /// Value reached and held.
+        value: Prescribed,
+        /// Value at which the ramp starts; "zero" if not given.
+        #[serde(default)]
+        from: From,
+        /// Time to reach it.
+        duration: Time<Positive>,
+    },
+    /// The value at the start of the stage, held; only in stages.
+    Hold {},
+    /// Linear rise and fall, then 0.
+    Triangle {
+        /// Largest value.
+        peak: Prescribed,
+        /// Duration of the rise.
+        rise: Time<Positive>,
+        /// Duration of the fall.
+        fall: Time<Positive>,
+    },
+    /// Linear rise, hold, linear fall, then 0.
+    Trapezoid {
+        /// Largest value.
+        peak: Prescribed,
+        /// Duration of the rise.
+        rise: Time<Positive>,
+        /// Duration of the hold at the peak.
+        #[schemars(example = "60 s")]
+        hold: Time<NonNegative>,
+        /// Duration of the fall.
+        fall: Time<Positive>,
+    },
+    /// mean + amplitude sin(2 pi frequency t).
+    Sine {
+        /// Mean value.
+        mean: Prescribed,
+        /// Amplitude; not above the mean if a load or a pressure is prescribed.
+        #[schemars(example = "0.2 N")]
+        amplitude: Prescribed,
+        /// Frequency.
+        #[schemars(example = "2 Hz")]
+        frequency: Frequency<Positive>,
+    },
+    /// Straight lines between points; two points at one time are a jump.
+    Table {
+        /// Pairs [time, value] in order of time, the first at 0; a time given twice is a jump.
+        #[schemars(example = (("0 s", "0 N"), ("10 s", "0.5 N")))]
+        #[schemars(length(min = 1))]
+        points: Vec<Two<Time, Prescribed>>,
+    },
+    /// The points of a table from a file of two columns, time and value.
+    File {
+        /// The file, relative to the case file: one line per point, time and value separated by comma, semicolon
+        /// or blanks, each with unit or in SI; `#` begins a comment, one header line may name the columns with
+        /// units, as in "time [s], load [mN]".
+        #[schemars(example = "history.csv")]
+        path: String,
+    },
+}
+
+/// Value at which a ramp starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum From {
+    /// At 0.
+    #[default]
+    Zero,
+    /// At the value at the start of the stage.
+    Current,
+}
+
+/// A history in SI.
+pub struct Read<'c> {
+    pub history: asperity::History,
+    /// Where its largest value stands.
+    pub largest: Place<'c>,
+    /// The file that holds it, as written, and its MD5.
+    pub file: Option<(String, String)>,
+}
+
+impl History {
+    /// The history; a hold has none without an earlier value. `help` says what to do instead.
+    pub fn read<'c>(&self, at: &Place<'c>, kind: Kind, help: &str) -> Option<Read<'c>> {
+        let value = |key: &str, value: &Prescribed| at.key(key).quantity(kind.resolve(value));
+        let mut file = None;
+        let (history, largest) = match self {
+            History::Hold {} => return at.fault("there is no earlier value to hold", "another kind", help),
+            History::Step { value: step } => {
+                (asperity::History::Step { value: value("value", step)? }, at.key("value"))
+            }
+            History::Ramp { value: top, duration, .. } => {
+                let value = value("value", top)?;
+                (asperity::History::Ramp { value, duration: duration.get() }, at.key("value"))
+            }
+            History::Triangle { peak, rise, fall } => {
+                let (peak, [rise, fall]) = (value("peak", peak)?, [rise, fall].map(|time| time.get()));
+                (asperity::History::Triangle { peak, rise, fall }, at.key("peak"))
+            }
+            History::Trapezoid { peak, rise, hold, fall } => {
+                let (peak, hold) = (value("peak", peak)?, hold.get());
+                let [rise, fall] = [rise, fall].map(|time| time.get());
+                (asperity::History::Trapezoid { peak, rise, hold, fall }, at.key("peak"))
+            }
+            History::Sine { mean, amplitude, frequency } => {
+                let (mean, amplitude) = (value("mean", mean), value("amplitude", amplitude));
+                let (mean, amplitude) = (mean?, amplitude?);
+                if kind.presses() && amplitude > mean {
+                    return at.key("amplitude").wrong(
+                        format!("at most the mean, {} {}", number(mean), kind.unit()),
+                        "the load would become negative; raise the mean or lower the amplitude",
+                    );
+                }
+                let frequency = frequency.get();
+                (asperity::History::Sine { mean, amplitude, frequency }, at.key("mean"))
+            }
+            History::Table { points } => table(&at.key("points"), points, kind)?,
+            History::File { path } => {
+                let at = at.key("path");
+                let (points, read) = history_file::of_key(&at, path, "value", |value| kind.resolve(value))?;
+                file = Some(read);
+                (asperity::History::Table { points }, at)
+            }
+        };
+        Some(Read { history, largest, file })
+    }
+}
+
+fn table<'c>(
+    at: &Place<'c>,
+    points: &[Two<Time, Prescribed>],
+    kind: Kind,
+) -> Option<(asperity::History, Place<'c>)> {
+    // All of them are looked at, also after one that is wrong.
+    let point = |(n, Two(time, value)): (usize, &Two<Time, Prescribed>)| match kind.resolve(value) {
+        Ok(value) => Some((time.get(), value)),
+        wrong => at.item(n).item(1).quantity(wrong).map(|value| (time.get(), value)),
+    };
+    let points: Vec<_> = points.iter().enumerate().map(point).collect();
+    let points = points.into_iter().collect::<Option<Vec<_>>>()?;
+    history_file::in_order(at, &points, "value")?;
+    let mut largest = (f64::NEG_INFINITY, at.clone());
+    for (n, (_, value)) in points.iter().enumerate() {
+        if *value > largest.0 {
+            largest = (*value, at.item(n).item(1));
+        }
+    }
+    Some((asperity::History::Table { points }, largest.1))
+}
+
+/// What a prescribed value is.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Kind {
+    Load,
+    /// Of a line contact.
+    LoadPerLength,
+    Pressure,
+    Approach,
+    Velocity,
+    Position,
+}
+
+impl Kind {
+    pub fn of(control: Control, line: bool) -> Self {
+        match control {
+            Control::Load if line => Kind::LoadPerLength,
+            Control::Load => Kind::Load,
+            Control::Pressure => Kind::Pressure,
+            Control::Approach => Kind::Approach,
+        }
+    }
+
+    /// Whether it may not be negative.
+    pub fn presses(self) -> bool {
+        matches!(self, Kind::Load | Kind::LoadPerLength | Kind::Pressure)
+    }
+
+    /// The value in SI, in the dimension that the control has. A load presses; an approach may be negative.
+    pub fn resolve(self, value: &Prescribed) -> Result<f64, QuantityError> {
+        let si = match self {
+            Kind::LoadPerLength => value.resolve::<dimension::ForcePerLength, NonNegative>().map(|v| v.get()),
+            Kind::Load => value.resolve::<dimension::Force, NonNegative>().map(|v| v.get()),
+            Kind::Pressure => value.resolve::<dimension::Pressure, NonNegative>().map(|v| v.get()),
+            Kind::Approach | Kind::Position => value.resolve::<dimension::Length, Finite>().map(|v| v.get()),
+            Kind::Velocity => value.resolve::<dimension::Velocity, Finite>().map(|v| v.get()),
+        };
+        si.map_err(|QuantityError { expected, help }| {
+            let help = match (self, help) {
+                (Kind::LoadPerLength, Some(help)) if help.contains("unit of a force;") => {
+                    format!("{help}; the domain is a line of cells, so the load is per length along y")
+                }
+                (Kind::Load, Some(help)) if help.contains("unit of a force per length") => {
+                    format!(
+                        "{help}; loads per length are for a line contact, with cells = [N] and size = [\"L\"]"
+                    )
+                }
+                (kind, None) if kind.presses() => {
+                    "there is no adhesion; to pull the bodies apart prescribe the approach".to_owned()
+                }
+                (_, help) => return QuantityError { expected, help },
+            };
+            QuantityError { expected, help: Some(help) }
+        })
+    }
+
+    /// Its SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Kind::LoadPerLength => "N/m",
+            Kind::Load => "N",
+            Kind::Pressure => "Pa",
+            Kind::Approach | Kind::Position => "m",
+            Kind::Velocity => "m/s",
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! `[solver]` and `[output]`: how each step is solved; what is stored, and where.
+
+use std::borrow::Cow;
+use std::path::PathBuf;
+
+use asperity::quantities::{Quantities, Quantity};
+use asperity::{Method, Plasticity, Programme, Scheme, SolverOptions, TimeGrid};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde_json::{Value, json};
+
+use super::keys::*;
+use super::plan::{Output, Rows};
+use super::time;
+use super::words::{nearest, number};
+use crate::store::FieldKind;
+
+/// How each step is solved.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Solver {
+    /// Method; "projected-cg" if not given.
+    #[serde(default)]
+    method: Method,
+    /// Largest residual of a converged step, relative to the mean displacement; 1e-6 if not given.
+    tolerance: Option<Number<Tolerance>>,
+    /// Largest number of iterations of one step.
+    #[schemars(example = 1000)]
+    max_iterations: Option<Whole<1>>,
+    /// What remains of the flattening at the hardness after unloading; "cap" if not given.
+    #[serde(default)]
+    pub plasticity: Plasticity,
+}
+
+/// What is stored, and where.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Output")]
+pub struct OutputKeys {
+    /// The result, relative to the working directory; the case file's name with ".zarr" if not given.
+    #[schemars(example = "rough_pmma.zarr")]
+    path: Option<String>,
+    /// The fields that are stored; ["pressure", "gap"] if not given, [] for none.
+    #[schemars(example = ("pressure", "gap"))]
+    fields: Option<Vec<FieldKind>>,
+    /// Optional quantities of each row, in addition to load, approach and areas; ["all"] for all that the case allows.
+    #[schemars(example = ("contact_stiffness", "contact_spots", "dissipated_energy"))]
+    #[serde(default)]
+    quantities: Vec<Wanted>,
+    /// Bins of the histograms among the quantities.
+    #[schemars(example = serde_json::json!({ "bins": 50, "pressure": "300 MPa" }))]
+    histogram: Option<Histogram>,
+    /// Fields are stored at the first row, at every n-th row after it and at the last row; if not given, n is
+    /// a tenth of the number of steps (10 if steps are adaptive). This or `times`.
+    #[schemars(example = 10)]
+    pub every: Option<Whole<1>>,
+    /// Times at which fields are stored, in addition to the first and the last row. Each becomes a step; if steps are
+    /// adaptive the state there is interpolated instead. This or `every`.
+    #[schemars(example = ("1 s", "10 s", "100 s"))]
+    pub times: Option<Vec<Time<NonNegative>>>,
+    /// Whether a run can be resumed; true if not given.
+    #[schemars(example = true)]
+    checkpoint: Option<bool>,
+}
+
+/// A quantity of each row, or all that the case allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Wanted(Option<Quantity>);
+
+impl Scalar for Wanted {
+    fn expected() -> String {
+        "\"all\" or the name of a quantity".to_owned()
+    }
+
+    fn from_text(word: &str) -> Result<Self, QuantityError> {
+        if word == "all" {
+            return Ok(Wanted(None));
+        }
+        Quantity::from_name(word).map(|quantity| Wanted(Some(quantity))).ok_or_else(|| {
+            let help = match nearest(word, &Quantity::ALL.map(Quantity::name)) {
+                Some(near) => format!("did you mean \"{near}\"?"),
+                None => format!("the quantities: {}", Quantity::ALL.map(Quantity::name).join(", ")),
+            };
+            QuantityError { expected: Self::expected(), help: Some(help) }
+        })
+    }
+}
+
+deserialize!(Wanted);
+
+impl JsonSchema for Wanted {
+    fn schema_name() -> Cow<'static, str> {
+        Quantity::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut schema = Quantity::json_schema(generator);
+        if let Some(Value::Array(members)) = schema.get_mut("oneOf") {
+            members.insert(
+                0,
+                json!({ "type": "string", "const": "all", "description": "All that the case allows." }),
+            );
+        }
+        schema
+    }
+}
+
+/// Bins of the histograms of pressure and gap; they begin at 0 and have equal widths.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct Histogram {
+    /// Number of bins, at most 10000; 50 if not given.
+    #[schemars(example = 50)]
+    bins: Option<Whole<1>>,
+    /// Upper end of the pressure; the hardness if not given, needed without a hardness.
+    pressure: Option<Pressure<Positive>>,
+    /// Upper end of the gap; the largest undeformed gap if not given.
+    #[schemars(example = "5 um")]
+    gap: Option<Length<Positive>>,
+}
+
+/// What a run does that decides which quantities its rows have.
+#[derive(Clone, Copy)]
+pub struct Conditions {
+    pub scheme: Scheme,
+    /// Whether displacements are known up to a constant.
+    pub up_to_a_constant: bool,
+    /// Whether layers creep differently.
+    pub waves: bool,
+    /// Whether the contact moves.
+    pub moves: bool,
+}
+
+impl Conditions {
+    /// Why the rows do not have a quantity, and what to do.
+    pub fn refuse(&self, quantity: Quantity) -> Option<(String, &'static str)> {
+        if quantity.is_of_motion() && !self.moves {
+            let why = "this quantity belongs to a contact in motion, but the case has no [motion]".to_owned();
+            return Some((why, "leave it out, or add [motion]: its rows have it"));
+        }
+        if quantity.is_of_time() && self.up_to_a_constant {
+            return Some((
+                format!(
+                    "\"{quantity}\" depends on displacements, which a line contact on a free domain knows up to a constant only"
+                ),
+                "leave it out, or take a periodic domain: domain.boundary = \"periodic\"",
+            ));
+        }
+        if quantity.is_energy() && self.scheme == Scheme::Direct {
+            let why = format!(
+                "{quantity} needs the springs and dashpots of the material, which scheme = \"direct\" does not use"
+            );
+            return Some((why, "set time.scheme to \"linear\" or \"constant\""));
+        }
+        if (quantity.is_energy() || quantity == Quantity::ContactStiffness) && self.waves {
+            let why =
+                format!("{quantity} is asked for: this is not solved for layers that creep differently");
+            return Some((why, "omit it, or give all layers and bodies the same relative creep"));
+        }
+        None
+    }
+}
+
+impl Solver {
+    pub fn options(&self) -> SolverOptions {
+        let default = SolverOptions::default();
+        SolverOptions {
+            method: self.method,
+            tolerance: self.tolerance.map_or(default.tolerance, Number::get),
+            max_iterations: self.max_iterations.map_or(default.max_iterations, Whole::count),
+        }
+    }
+
+    /// Refuses flattening that stays where nothing is flattened.
+    pub fn possible(&self, at: &Place<'_>, capped: bool) {
+        if self.plasticity == Plasticity::Accumulate && !capped {
+            at.key("plasticity").fault::<()>(
+                "plasticity = \"accumulate\" needs a hardness, but no body has one",
+                "\"cap\", or a hardness of a body",
+                "give a body its `hardness`",
+            );
+        }
+    }
+}
+
+impl OutputKeys {
+    /// What is stored; at `default_path` where the case gives no path.
+    pub fn output(
+        &self,
+        at: &Place<'_>,
+        times: Option<&TimeGrid>,
+        programme: Option<&Programme>,
+        default_path: PathBuf,
+    ) -> Option<Output> {
+        if self.path.as_ref().is_some_and(|path| path.trim().is_empty()) {
+            return at.key("path").wrong("the path of a directory for the run to create", "");
+        }
+        let usual = || vec![FieldKind::Pressure, FieldKind::Gap];
+        Some(Output {
+            path: self.path.as_ref().map_or(default_path, PathBuf::from),
+            fields: self.fields.clone().unwrap_or_else(usual).into_iter().collect(),
+            rows: self.rows(at, times?, programme)?,
+            quantities: self.quantities(),
+            all_quantities: self.quantities.contains(&Wanted(None)),
+            checkpoint: self.checkpoint.unwrap_or(true),
+        })
+    }
+
+    fn rows(&self, at: &Place<'_>, times: &TimeGrid, programme: Option<&Programme>) -> Option<Rows> {
+        match (self.every, &self.times) {
+            (Some(_), Some(_)) => {
+                let message = "`times` and `every` exclude each other";
+                at.key("times").fault(message, "one of the two", "leave one of them out")
+            }
+            (Some(every), None) => Some(Rows::Every(every.count())),
+            (None, None) => {
+                let stages = programme.iter().flat_map(|programme| &programme.stages);
+                let own: usize = stages.filter_map(|stage| stage.times.as_ref()).map(time::steps).sum();
+                let own_only = matches!(times, TimeGrid::List(end) if end.len() == 1);
+                let steps = if own > 0 && own_only { own } else { time::steps(times) + own };
+                Some(Rows::Every(steps.div_ceil(10)))
+            }
+            (None, Some(list)) => {
+                let (at, end) = (at.key("times"), times.end());
+                let instants = at.increasing(list.iter().map(|time| time.get()))?;
+                if let Some(n) = instants.iter().position(|time| *time > end) {
+                    let expected = format!("a time up to the end of the run, {} s", number(end));
+                    return at.item(n).wrong(expected, "");
+                }
+                Some(Rows::At(instants))
+            }
+        }
+    }
+
+    /// Whether the case leaves the stored rows open.
+    pub fn is_silent_on_rows(&self) -> bool {
+        self.every.is_none() && self.times.is_none()
+    }
+
+    fn named(&self) -> impl Iterator<Item = (usize, Quantity)> {
+        self.quantities.iter().enumerate().filter_map(|(n, wanted)| Some((n, wanted.0?)))
+    }
+
+    /// The quantities that are named, each once, and their bins.
+    fn quantities(&self) -> Quantities {
+        let mut list: Vec<Quantity> = vec![];
+        for (_, quantity) in self.named() {
+            if !list.contains(&quantity) {
+                list.push(quantity);
+            }
+        }
+        let mut quantities = Quantities::of(list);
+        if let Some(histogram) = &self.histogram {
+            quantities.bins = histogram.bins.map_or(quantities.bins, Whole::count);
+            quantities.largest_pressure = histogram.pressure.map(Pressure::get);
+            quantities.largest_gap = histogram.gap.map(Length::get);
+        }
+        quantities
+    }
+
+    /// Refuses what the run does not have; `capped` where there is a hardness.
+    pub fn possible(&self, at: &Place<'_>, plasticity: Plasticity, conditions: &Conditions, capped: bool) {
+        let flattening = self.fields.iter().flatten().position(|field| *field == FieldKind::Flattening);
+        if let Some(n) = flattening.filter(|_| plasticity == Plasticity::Cap) {
+            let message = "there is no permanent flattening with plasticity = \"cap\"";
+            let help = "set solver.plasticity = \"accumulate\"";
+            at.key("fields").item(n).fault::<()>(message, "another field", help);
+        }
+        for (n, quantity) in self.named() {
+            if let Some((message, help)) = conditions.refuse(quantity) {
+                at.key("quantities").item(n).fault::<()>(message, "another quantity", help);
+            }
+        }
+        at.core(self.quantities().validate(capped));
+    }
+
+    /// Fields that dents and quantities take besides, in units of 16 bytes per cell: the dented gap and its copy in a
+    /// checkpoint; the vectors of the contact stiffness; the forest of contact spots.
+    pub fn extra_fields(&self, plasticity: Plasticity) -> usize {
+        use Quantity::{ContactSpots, ContactStiffness, LargestSpot, MeanSpot, SpotHistogram};
+        let wants = |list: &[Quantity]| {
+            self.quantities.iter().any(|wanted| wanted.0.is_none_or(|quantity| list.contains(&quantity)))
+        };
+        let stiffness = wants(&[ContactStiffness]);
+        let spots = wants(&[ContactSpots, LargestSpot, MeanSpot, SpotHistogram]);
+        let dents = plasticity == Plasticity::Accumulate;
+        usize::from(dents) + 3 * usize::from(stiffness) + usize::from(spots)
+    }
+}

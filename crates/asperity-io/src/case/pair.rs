@@ -1,0 +1,250 @@
+//! What the pair of bodies is to the contact.
+
+use std::sync::Arc;
+
+use asperity::finding::{self, Finding};
+use asperity::history::check_layers;
+use asperity::layer::{Layered, NonseparableLayers, Response, response};
+use asperity::material::{Body, Creep, ReducedTime, ThermalCreep, pair_hardness};
+use asperity::time::Plan;
+use asperity::{Boundary, Error, Grid};
+
+use super::body::{self, Part};
+use super::describe::MaterialReport;
+use super::material::Sample;
+use super::place::Place;
+use super::warmth::{Course, Warmth, at_temperature, warmth};
+use super::words::number;
+
+/// One body or layer, ready for the contact.
+struct Made {
+    body: Body,
+    creep: Creep,
+    clock: Option<ReducedTime>,
+    report: MaterialReport,
+    findings: Vec<Finding>,
+}
+
+/// The bodies, and what the pair of them is to the contact.
+pub struct Pair {
+    /// What they consist of: each half-space, layer and base.
+    pub bodies: Vec<Body>,
+    /// How the bodies yield in space, where they have layers.
+    pub layers: Option<Arc<Layered>>,
+    /// How their waves creep, where they creep differently.
+    pub waves: Option<Arc<NonseparableLayers>>,
+    /// Contact creep compliance [1/Pa] of each body without layers, and its clock where its temperature changes.
+    pub creeps: Vec<(Creep, Option<ReducedTime>)>,
+    /// Contact creep compliance of the bodies of constant temperature [1/Pa].
+    pub creep: Creep,
+    /// The bodies whose temperature changes.
+    pub thermal: Vec<ThermalCreep>,
+    /// Hardness of the softer body [Pa]; infinite without.
+    pub hardness: f64,
+    /// Where the materials come from, one for each of `bodies`.
+    pub reports: Vec<MaterialReport>,
+    /// Where fits are poor, and where the run goes beyond what is known of a material.
+    pub findings: Vec<Finding>,
+    /// Rows of the run.
+    pub plan: Plan,
+}
+
+impl Pair {
+    /// Adds the bodies up.
+    pub fn sum(&mut self) {
+        (self.creep, self.thermal) = (Creep::default(), Vec::new());
+        for (creep, clock) in &self.creeps {
+            match clock {
+                Some(clock) => {
+                    self.thermal.push(ThermalCreep { creep: creep.clone(), clock: clock.clone() });
+                }
+                None => self.creep = self.creep.sum(creep),
+            }
+        }
+    }
+
+    /// C(0+) [1/Pa].
+    pub fn instantaneous(&self) -> f64 {
+        self.creep.instantaneous + self.thermal.iter().map(|body| body.creep.instantaneous).sum::<f64>()
+    }
+
+    /// Fields that the memory keeps.
+    pub fn branches(&self) -> usize {
+        let parts = std::iter::once(&self.creep).chain(self.thermal.iter().map(|body| &body.creep));
+        parts.map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum()
+    }
+}
+
+/// The pair of `bodies`, whose materials are the `parts`; `list` is their place.
+pub fn pair(
+    list: &Place<'_>,
+    bodies: &[body::Body],
+    parts: &[Part<'_>],
+    samples: &[Option<Sample>],
+    course: &Course<'_>,
+) -> Option<Pair> {
+    if bodies.len() > 2 {
+        return list.item(2).wrong("one of at most two bodies", "a missing second body is rigid");
+    }
+    let warmths: Vec<Option<Warmth>> = parts
+        .iter()
+        .zip(samples)
+        .map(|(part, sample)| part.at.key("material").core(warmth(sample.as_ref()?, course)))
+        .collect();
+    let clocks = warmths.iter().flatten().filter_map(Warmth::clock);
+    let end = course.end.unwrap_or(0.0);
+    let plan = (course.plan)(&clocks.flat_map(|clock| clock.breaks(end)).collect::<Vec<f64>>());
+    let made: Vec<_> = parts
+        .iter()
+        .zip(samples)
+        .zip(warmths)
+        .map(|((part, sample), warmth)| made(part, sample.as_ref(), warmth, &plan, course))
+        .collect();
+    let made = made.into_iter().collect::<Option<Vec<Made>>>()?;
+    let mut pair = Pair {
+        bodies: Vec::new(),
+        layers: None,
+        waves: None,
+        creeps: Vec::new(),
+        creep: Creep::default(),
+        thermal: Vec::new(),
+        hardness: f64::INFINITY,
+        reports: Vec::new(),
+        findings: Vec::new(),
+        plan,
+    };
+    let layered = bodies.iter().any(|body| !body.layer.is_empty());
+    if layered {
+        let response = respond(list, bodies, parts, &made)?;
+        pair.layers = Some(Arc::new(response.kernel));
+        pair.waves = response.waves;
+        match made.first().and_then(|made| made.clock.clone()) {
+            Some(clock) => pair.thermal.push(ThermalCreep { creep: response.creep, clock }),
+            None => pair.creep = response.creep,
+        }
+    }
+    for made in made {
+        if !layered {
+            pair.creeps.push((made.creep, made.clock));
+        }
+        pair.bodies.push(made.body);
+        pair.findings.extend(made.findings);
+        pair.reports.push(made.report);
+    }
+    if !layered {
+        pair.sum();
+    }
+    pair.hardness = pair_hardness(&pair.bodies);
+    Some(pair)
+}
+
+fn made(
+    part: &Part<'_>,
+    sample: Option<&Sample>,
+    warmth: Option<Warmth>,
+    plan: &Plan,
+    course: &Course<'_>,
+) -> Option<Made> {
+    let lateral = part.lateral()?;
+    let (sample, warmth, name) = (sample?, warmth?, part.name.clone());
+    let window = warmth.window(plan);
+    let place = part.at.key("material");
+    let (material, report, outside) =
+        at_temperature(&place, sample, warmth.constant(), window, course.beyond)?;
+    let mut findings = findings(&name, &report, window, outside);
+    findings.extend(finding::unlikely_temperature(&name, coldest(sample, course.temperatures)));
+    let report = MaterialReport { body: name.clone(), ..report };
+    let body = Body { name, material, lateral, hardness: part.hardness };
+    let creep = part.at.core(body.contact_creep())?;
+    Some(Made { body, creep, clock: warmth.clock().cloned(), report, findings })
+}
+
+/// The lowest temperature that a material with a shift is told \[K\]; infinite without a shift.
+fn coldest(sample: &Sample, course: Option<&[(f64, f64)]>) -> f64 {
+    let Some(shift) = &sample.shift else { return f64::INFINITY };
+    let course = course.unwrap_or_default().iter().map(|point| point.1);
+    shift.reference().into_iter().chain(sample.temperature).chain(course).fold(f64::INFINITY, f64::min)
+}
+
+/// What is found about the material of the body `name`; `beyond` says where a run over `window` [s] leaves the data.
+fn findings(
+    name: &str,
+    report: &MaterialReport,
+    window: Option<[f64; 2]>,
+    beyond: Option<String>,
+) -> Vec<Finding> {
+    let misfit = match (report.rms_misfit, report.max_misfit) {
+        (Some(rms), Some(largest)) => finding::misfit(name, rms, largest, report.noise.unwrap_or(0.0)),
+        _ => None,
+    };
+    let beyond = match (beyond, window, report.window) {
+        (Some(words), Some(needed), Some(known)) => Some(finding::beyond_data(name, needed, known, &words)),
+        _ => None,
+    };
+    let other = report
+        .other_misfit
+        .as_ref()
+        .and_then(|(column, misfit)| finding::contradiction(name, column, *misfit));
+    let measured = report.points.unwrap_or(0) + report.left_out;
+    let left_out = finding::points_left_out(name, report.left_out, measured);
+    misfit.into_iter().chain(other).chain(beyond).chain(left_out).collect()
+}
+
+/// What the bodies are to the contact. `made` are the `parts`, in their order.
+fn respond(list: &Place<'_>, bodies: &[body::Body], parts: &[Part<'_>], made: &[Made]) -> Option<Response> {
+    let body = |(n, body): (usize, &body::Body)| {
+        let of_body = parts.iter().zip(made).filter(|(part, _)| part.body == n);
+        body.of(of_body.map(|(_, made)| made.body.clone()))
+    };
+    let all: Vec<_> = bodies.iter().enumerate().map(body).collect();
+    let found = match made.iter().position(|one| one.clock != made[0].clock) {
+        None => response(&all),
+        Some(n) => Err(Error::invalid(
+            format!("temperature shift of {}", parts[n].name),
+            format!("not that of {}", parts[0].name),
+            "the same law for all layers and bodies while the temperature changes: otherwise waves of different lengths creep \
+             differently, which is not solved yet. Give all of them the same `shift`, or hold the temperature constant",
+        )
+        .of(&parts[n].at.key)),
+    };
+    let layered = list.item(bodies.iter().position(|body| !body.layer.is_empty())?);
+    if let Ok(Response { waves: Some(_), .. }) = &found
+        && made.iter().any(|one| one.clock.is_some())
+    {
+        let message = "the temperature changes, and the layers creep differently: this is not solved";
+        let help = "hold the temperature constant, or give all layers the same relative creep";
+        return layered.fault(message, "layers of one relative creep", help);
+    }
+    match &found {
+        Err(Error::Invalid { parameter, .. }) if !parameter.is_empty() => list.sibling(parameter).core(found),
+        _ => layered.core(found),
+    }
+}
+
+impl Pair {
+    /// Refuses cells of a free domain that do not resolve the top layers, and a domain that is not wide enough for waves that
+    /// creep differently; a periodic domain takes layers of any thickness.
+    pub fn resolved(&self, list: &Place<'_>, bodies: &[body::Body], grid: &Grid, boundary: Boundary) {
+        let Some(layers) = self.layers.as_ref().filter(|_| boundary == Boundary::Free) else { return };
+        let tops = bodies.iter().enumerate();
+        let tops = tops.filter_map(|(n, body)| Some((n, body.layer.first()?.thickness.get())));
+        let Some((n, _)) = tops.min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
+        let at = list.item(n).key("layer").item(0);
+        let (longest, cell) = (layers.longest_cell(), grid.longest_cell());
+        if cell > longest {
+            let least: Vec<String> =
+                grid.extents().iter().map(|side| (side / longest).ceil().to_string()).collect();
+            let message = format!(
+                "the cells are {} m long, more than 4 times the thickness of this layer: they do not resolve it",
+                number(cell)
+            );
+            let help = format!(
+                "set domain.cells to [{}] or more, take a smaller domain, or boundary = \"periodic\", which needs no such cells",
+                least.join(", ")
+            );
+            at.fault::<()>(message, &format!("cells of at most {} m", number(longest)), &help);
+        } else if let Some(waves) = &self.waves {
+            at.core(check_layers(grid, boundary, waves));
+        }
+    }
+}

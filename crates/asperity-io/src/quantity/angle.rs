@@ -1,0 +1,86 @@
+//! Angles: text with its unit, "30 deg" or "0.5 rad", or a bare number in rad.
+
+use std::f64::consts::PI;
+use std::str::FromStr;
+
+use super::QuantityError;
+use super::scalar::{Scalar, deserialize, schema};
+
+/// An angle \[rad\].
+///
+/// ```
+/// use asperity_io::quantity::Angle;
+/// let angle: Angle = "30 deg".parse()?;
+/// assert!((angle.get() - std::f64::consts::PI / 6.0).abs() < 1e-15);
+/// # Ok::<(), asperity_io::quantity::QuantityError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Angle(f64);
+
+const EXPECTED: &str = "an angle such as \"30 deg\" or \"0.5 rad\"";
+
+impl Angle {
+    /// The angle \[rad\].
+    pub fn get(self) -> f64 {
+        self.0
+    }
+
+    fn new(radians: f64) -> Result<Self, QuantityError> {
+        if radians.is_finite() { Ok(Angle(radians)) } else { Err(Angle::error()) }
+    }
+}
+
+impl FromStr for Angle {
+    type Err = QuantityError;
+
+    fn from_str(text: &str) -> Result<Self, QuantityError> {
+        let text = text.trim();
+        const UNITS: [(&str, f64); 5] =
+            [("deg", PI / 180.0), ("\u{b0}", PI / 180.0), ("mrad", 1e-3), ("rad", 1.0), ("", 1.0)];
+        let known = UNITS.iter().find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, *factor)));
+        let (number, factor) = known.unwrap_or((text, 1.0));
+        let number = number.trim_end().parse::<f64>().map_err(|_| QuantityError {
+            expected: EXPECTED.into(),
+            help: Some(format!("{text:?} is not a number with one of the units deg, rad, mrad")),
+        })?;
+        Angle::new(number * factor)
+    }
+}
+
+impl Scalar for Angle {
+    fn expected() -> String {
+        EXPECTED.to_owned()
+    }
+
+    fn from_text(text: &str) -> Result<Self, QuantityError> {
+        text.parse()
+    }
+
+    fn from_number(value: f64) -> Result<Self, QuantityError> {
+        Angle::new(value)
+    }
+}
+
+deserialize!(Angle);
+
+schema!(Angle, "Angle", {
+    "description": "An angle: text with its unit (deg, rad, mrad), or a bare number in rad.",
+    "anyOf": [{ "type": "string" }, { "type": "number" }],
+    "examples": ["30 deg"],
+});
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_and_radians() {
+        for (text, radians) in [("180 deg", PI), ("90\u{b0}", PI / 2.0), ("0.5 rad", 0.5), ("-2", -2.0)] {
+            assert!((text.parse::<Angle>().unwrap().get() - radians).abs() < 1e-15, "{text}");
+        }
+        for text in ["", "deg", "3 m", "inf", "nan rad"] {
+            let error = text.parse::<Angle>().unwrap_err();
+            assert!(error.to_string().contains("30 deg"), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Values that are a text or a number in a file: one visitor for all of them.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::{Deserializer, Error, Visitor};
+
+use super::QuantityError;
+
+/// A type that serde reads from a text or a number.
+pub trait Scalar: Sized {
+    /// What is accepted, for errors.
+    fn expected() -> String;
+
+    fn from_text(_: &str) -> Result<Self, QuantityError> {
+        Err(Self::error())
+    }
+
+    fn from_number(_: f64) -> Result<Self, QuantityError> {
+        Err(Self::error())
+    }
+
+    fn from_whole(value: i64) -> Result<Self, QuantityError> {
+        Self::from_number(value as f64)
+    }
+
+    fn error() -> QuantityError {
+        QuantityError { expected: Self::expected(), help: None }
+    }
+}
+
+/// Reads a scalar.
+pub fn scalar<'de, T: Scalar, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    deserializer.deserialize_any(ScalarVisitor(PhantomData))
+}
+
+struct ScalarVisitor<T>(PhantomData<fn() -> T>);
+
+impl<T: Scalar> Visitor<'_> for ScalarVisitor<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&T::expected())
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<T, E> {
+        T::from_text(text).map_err(E::custom)
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<T, E> {
+        T::from_number(value).map_err(E::custom)
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<T, E> {
+        T::from_whole(value).map_err(E::custom)
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<T, E> {
+        self.visit_i64(i64::try_from(value).unwrap_or(i64::MAX))
+    }
+}
+
+/// serde's `Deserialize` of scalars.
+macro_rules! deserialize {
+    ($type:ty $(, $($generics:tt)*)?) => {
+        impl<'de, $($($generics)*)?> serde::Deserialize<'de> for $type {
+            fn deserialize<S: serde::Deserializer<'de>>(deserializer: S) -> Result<Self, S::Error> {
+                $crate::quantity::scalar::scalar(deserializer)
+            }
+        }
+    };
+}
+pub(crate) use deserialize;
+
+/// The JSON Schema of a type, under its name.
+macro_rules! schema {
+    ($type:ty, $name:expr, $schema:tt $(, $($generics:tt)*)?) => {
+        impl<$($($generics)*)?> schemars::JsonSchema for $type {
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                $name.into()
+            }
+
+            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+                schemars::json_schema!($schema)
+            }
+        }
+    };
+}
+pub(crate) use schema;

@@ -16,8 +16,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, ConvergenceError, raised};
+use crate::given::{choose, grid_of, memory};
 use crate::kernel::Table;
-use crate::march::{choose, fill, grid_of, memory, solver as solver_of};
+use crate::march::fill;
 use crate::trace::{Iteration, traced};
 use crate::wait::without_python;
 
@@ -91,7 +92,8 @@ impl Elastic {
                 format!("hardness holds {value}, but must be finite and greater than 0 Pa in every cell");
             return Err(CaseError::new_err(words));
         }
-        let options = solver_of(method, tolerance, max_iterations)?;
+        let options =
+            asperity::SolverOptions { method: choose("method", method)?, tolerance, max_iterations };
         options.validate().map_err(|error| raised(py, error))?;
         let kernel = kernel.map(|values| Table::new(grid, boundary, values.as_array().to_owned()));
         let kernel = kernel.transpose().map_err(|error| raised(py, error))?;

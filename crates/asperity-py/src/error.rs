@@ -54,6 +54,41 @@ pub fn case(errors: CaseErrors) -> PyErr {
     CaseError::new_err(errors.to_string())
 }
 
+/// The faults of keys that Python gave, one to a line: their places in a text that nobody wrote are left out.
+pub fn given(errors: &CaseErrors) -> PyErr {
+    let said = errors.errors.iter().map(|error| {
+        let help = error.help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
+        spoken(&format!("{}{help}", error.message)).replace('`', "")
+    });
+    CaseError::new_err(said.collect::<Vec<_>>().join("\n"))
+}
+
+/// The same of a body alone.
+pub fn of_body(errors: CaseErrors) -> PyErr {
+    alone(errors, &[("body[0].material", "the material"), ("body[0]", "the body")])
+}
+
+/// The same of a shift alone.
+pub fn of_shift(errors: CaseErrors) -> PyErr {
+    alone(errors, &[("shift", "the shift")])
+}
+
+/// The same of a surface alone.
+pub fn of_surface(errors: CaseErrors) -> PyErr {
+    alone(errors, &[("surface[0]", "the surface"), ("domain", "the domain")])
+}
+
+/// Faults of tables that stand alone, whose keys are parameters: a message begins with the parameter, or with a word for the table.
+fn alone(mut errors: CaseErrors, tables: &[(&str, &str)]) -> PyErr {
+    for error in &mut errors.errors {
+        let rest = tables.iter().find_map(|(table, word)| Some((error.message.strip_prefix(table)?, word)));
+        if let Some((rest, word)) = rest {
+            error.message = rest.strip_prefix('.').map_or_else(|| format!("{word}{rest}"), str::to_owned);
+        }
+    }
+    given(&errors)
+}
+
 /// An error of a run from a case file.
 pub fn run(py: Python<'_>, error: RunError) -> PyErr {
     match error {
@@ -65,7 +100,9 @@ pub fn run(py: Python<'_>, error: RunError) -> PyErr {
 
 /// The words of a message with the parameters of Python in place of the options of the command.
 fn spoken(message: &str) -> String {
-    const WORDS: [(&str, &str); 7] = [
+    const WORDS: [(&str, &str); 9] = [
+        ("add shift = { model = \"wlf\", ... }", "give shift=asperity.wlf(...)"),
+        ("add histogram = { pressure = \"...\" }", "give largest_pressure"),
         ("(`size`, --size A,B)", "(size=(Lx, Ly))"),
         ("(`height_unit`, --height-unit U)", "(height_unit= in m)"),
         ("asperity run --resume", "asperity.run(..., resume=True)"),

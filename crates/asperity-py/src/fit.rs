@@ -14,19 +14,18 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, file};
-use crate::march::choose;
-use crate::material::{ShiftWords, shift, words};
+use crate::given::{choose, dictionary, entries};
+use crate::material::{shift, shift_keys};
 use crate::wait::detached;
 
 /// How to fit, as Python gives it.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Options {
+pub struct Options<'py> {
     /// None: what the header of the file names, or else Young's modulus.
     measure: Option<String>,
-    shift: Option<ShiftWords>,
-    /// Reference temperature of a shift that is to be estimated.
-    estimate: Option<f64>,
+    /// Keys of a shift, also of one that is to be estimated.
+    shift: Option<Bound<'py, PyDict>>,
     /// "density", "free", or none.
     vertical: Option<String>,
     window: Option<[f64; 2]>,
@@ -40,17 +39,13 @@ pub struct Options {
     loss_weight: f64,
 }
 
-impl Options {
+impl Options<'_> {
     /// The request; `named` is the modulus that the header of the file names.
     fn request(self, named: Option<Modulus>) -> PyResult<Request> {
         let measure = self.measure.map(|word| choose("modulus", &word)).transpose()?;
-        let (shift, vertical) = match (self.shift, self.estimate) {
-            (Some(words), _) => {
-                let (shift, vertical) = shift(words)?;
-                (ShiftRequest::Given(shift), vertical)
-            }
-            (None, Some(reference)) => (ShiftRequest::Estimate(reference), VerticalRequest::None),
-            (None, None) => (ShiftRequest::None, VerticalRequest::None),
+        let (shift, vertical) = match &self.shift {
+            Some(keys) => shift(keys)?,
+            None => (ShiftRequest::None, VerticalRequest::None),
         };
         let word = self.vertical.map(|word| choose("vertical", &word)).transpose()?;
         let vertical = match (word, vertical) {
@@ -89,7 +84,7 @@ pub fn fit<'py>(
     py: Python<'py>,
     kind: &str,
     sweeps: Vec<(Option<f64>, PyReadonlyArray1<'_, f64>, Vec<PyReadonlyArray1<'_, f64>>)>,
-    options: Options,
+    options: Options<'_>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let array = |array: &PyReadonlyArray1<'_, f64>| array.as_array().to_vec();
     let mut points = 0;
@@ -124,7 +119,7 @@ pub fn fit_file<'py>(
     kind: Option<String>,
     columns: Vec<Said>,
     sheet: Option<String>,
-    options: Options,
+    options: Options<'_>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let mut said = Columns { sheet, ..Columns::default() };
     for (role, name, number, unit) in columns {
@@ -168,12 +163,13 @@ fn reference_of_several(curves: &Curves) -> Option<f64> {
 
 /// The shift that a table of temperatures and shift factors holds, in a text file or a spreadsheet.
 #[pyfunction]
-pub fn read_shift_table(path: PathBuf) -> PyResult<ShiftWords> {
+pub fn read_shift_table(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
     let unreadable = |error: CurveError| match error.path.is_file() {
         true => CaseError::new_err(error.told(Remedy::in_python)),
         false => file(error),
     };
-    asperity_io::curve::read_shift_table(&path).map(|shift| words(shift, None)).map_err(unreadable)
+    let read = asperity_io::curve::read_shift_table(&path).map_err(unreadable)?;
+    dictionary(py, &shift_keys(&read, None))
 }
 
 fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> PyResult<Bound<'py, PyDict>> {
@@ -195,16 +191,14 @@ fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> PyResult<Bound
     let columns = fitted.columns.iter().map(|(name, m)| (*name, (m.rms, m.max)));
     out.set_item("misfits", columns.collect::<std::collections::BTreeMap<_, _>>())?;
     out.set_item("worst", fitted.misfit.worst)?;
-    out.set_item("noise", fitted.noise)?;
+    entries!(out, fitted; noise shift_rms temperatures notes);
     out.set_item("uncertainty", fitted.uncertainty.iter().map(|u| (u[0], u[1])).collect::<Vec<_>>())?;
     out.set_item("window", (fitted.window[0], fitted.window[1]))?;
-    out.set_item("shift", fitted.shift.clone().map(|shift| words(shift, fitted.vertical.as_ref())))?;
-    out.set_item("shift_rms", fitted.shift_rms)?;
+    let shift = fitted.shift.as_ref().map(|shift| shift_keys(shift, fitted.vertical.as_ref()));
+    out.set_item("shift", shift.map(|keys| dictionary(py, &keys)).transpose()?)?;
     let factors = |list: &[[f64; 3]]| list.iter().map(|f| (f[0], f[1], f[2])).collect::<Vec<_>>();
     out.set_item("shift_factors", factors(&fitted.factors))?;
     out.set_item("vertical_factors", factors(&fitted.vertical_factors))?;
-    out.set_item("temperatures", fitted.temperatures.clone())?;
-    out.set_item("notes", fitted.notes.clone())?;
     out.set_item("toml", fitted.to_toml(curves))?;
     out.set_item("x", fitted.data.x.into_pyarray(py))?;
     let columns: Vec<_> = fitted.data.curves.into_iter().map(|curve| curve.into_pyarray(py)).collect();

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::raised;
-use crate::march::{choose, choose_among};
+use crate::given::{choose, choose_among, entries};
 use crate::wait::detached;
 
 fn sample((thickness, poisson, interface): (f64, f64, String)) -> PyResult<SampleLayer> {
@@ -64,12 +64,8 @@ pub fn fit_indentation<'py>(
     out.set_item("touch", interval(fit.touch))?;
     out.set_item("given", choice::word(&fit.given))?;
     out.set_item("predicted", fit.predicted.into_pyarray(py))?;
-    out.set_item("rows", fit.rows)?;
-    out.set_item("rms", fit.rms)?;
-    out.set_item("relative_rms", fit.relative_rms)?;
-    out.set_item("durbin_watson", fit.durbin_watson)?;
-    out.set_item("numbers_of_terms", fit.numbers)?;
-    out.set_item("notes", fit.notes)?;
+    out.set_item("numbers_of_terms", &fit.numbers)?;
+    entries!(out, fit; rows rms relative_rms durbin_watson notes);
     out.set_item("window", (fit.window[0], fit.window[1]))?;
     Ok(out)
 }

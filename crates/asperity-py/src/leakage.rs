@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, raised};
+use crate::given::entries;
 use crate::wait::without_python;
 
 /// The leak of one state. `keys` are those of `[leakage]` as JSON.
@@ -40,21 +41,11 @@ pub fn leakage<'py>(
     let out = PyDict::new(py);
     out.set_item("leak_resolved", resolved)?;
     out.set_item("findings", asperity_io::finding::list(&diagnostics.findings()).to_string())?;
-    out.set_item("percolates", state.percolates)?;
-    out.set_item("hydraulic_gap", state.hydraulic_gap)?;
-    out.set_item("critical_gap", state.critical_gap)?;
+    entries!(out, state; percolates hydraulic_gap critical_gap critical_width medium_gap open_fraction);
+    entries!(out, state; trapped_area trapped_volume conductance leak_rate leak_rate_standard);
+    entries!(out, state; leak_estimate_junction leak_estimate_medium);
     out.set_item("critical_x", state.critical[0])?;
     out.set_item("critical_y", state.critical[1])?;
-    out.set_item("critical_width", state.critical_width)?;
-    out.set_item("medium_gap", state.medium_gap)?;
-    out.set_item("open_fraction", state.open_fraction)?;
-    out.set_item("trapped_area", state.trapped_area)?;
-    out.set_item("trapped_volume", state.trapped_volume)?;
-    out.set_item("conductance", state.conductance)?;
-    out.set_item("leak_rate", state.leak_rate)?;
-    out.set_item("leak_rate_standard", state.leak_rate_standard)?;
-    out.set_item("leak_estimate_junction", state.leak_estimate_junction)?;
-    out.set_item("leak_estimate_medium", state.leak_estimate_medium)?;
     out.set_item("knudsen_number", state.knudsen)?;
     out.set_item("pressure", state.pressure.into_pyarray(py))?;
     out.set_item("cells", state.cells.mapv(|kind| kind as u8).into_pyarray(py))?;

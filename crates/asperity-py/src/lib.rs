@@ -6,6 +6,7 @@ mod contact;
 mod cycles;
 mod error;
 mod fit;
+mod given;
 mod indentation;
 mod kernel;
 mod leakage;
@@ -42,7 +43,7 @@ mod _core {
     #[pymodule_export]
     use super::leakage::{judge_leaks, leakage};
     #[pymodule_export]
-    use super::march::{March, quantities};
+    use super::march::{March, fields, quantities, rows};
     #[pymodule_export]
     use super::material::{Body, layer_compliance, shift_factor, vertical_shift_factor};
     #[pymodule_export]
@@ -50,13 +51,13 @@ mod _core {
     #[pymodule_export]
     use super::sliding::Persson;
     #[pymodule_export]
-    use super::store::{Store, derive_again, save};
+    use super::store::{Store, derive_again};
     #[pymodule_export]
     use super::stress::{stress_check, stress_depths, stress_field, stress_survey, stress_transverse};
     #[pymodule_export]
     use super::surface::{
-        autocorrelation, bearing_curve, describe, gap, height_distribution, power_spectrum, process,
-        profile_parameters, read_surface, roughness, self_affine, shape, write_surface,
+        autocorrelation, bearing_curve, describe, gap, height_distribution, heights, power_spectrum, process,
+        profile_parameters, read_surface, write_surface,
     };
     #[pymodule_export]
     use super::units::unit_factor;

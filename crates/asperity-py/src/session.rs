@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error;
+use crate::given::{entries, table};
 use crate::march::fill;
 use crate::wait::{detached, without_python};
 
@@ -22,6 +23,12 @@ fn read(path: &Path, text: Option<&str>, overrides: &[String]) -> PyResult<Case>
         None => Case::read(path, overrides),
     }
     .map_err(error::case)
+}
+
+/// A case given as keys, as the text of a case file.
+#[pyfunction]
+pub fn case_text(keys: Bound<'_, PyDict>) -> PyResult<String> {
+    toml::to_string(&table(&keys)?).map_err(error::file)
 }
 
 /// Runs a case; `told` is called with (row, done, total) after each row. Returns a summary.
@@ -65,11 +72,7 @@ pub fn run<'py>(
     let out = PyDict::new(py);
     out.set_item("status", summary.status.as_str())?;
     out.set_item("steps", summary.rows)?;
-    out.set_item("wall_s", summary.wall_s)?;
-    out.set_item("convolutions", summary.convolutions)?;
-    out.set_item("iterations", summary.iterations)?;
-    out.set_item("peak_memory_bytes", summary.peak_memory_bytes)?;
-    out.set_item("result", summary.result)?;
+    entries!(out, summary; wall_s convolutions iterations peak_memory_bytes result);
     Ok(out)
 }
 
@@ -85,16 +88,6 @@ pub fn check(
     let case = read(&path, text.as_deref(), &overrides)?;
     let examined = detached(py, || case.examine())?.map_err(error::case)?;
     serde_json::to_string(&examined).map_err(error::file)
-}
-
-/// A case given as JSON, as the text of a case file.
-#[pyfunction]
-pub fn case_text(json: &str) -> PyResult<String> {
-    let wrong = |error: &dyn std::fmt::Display| {
-        error::CaseError::new_err(format!("the case is not a table of keys: {error}"))
-    };
-    let table: toml::Table = serde_json::from_str(json).map_err(|error| wrong(&error))?;
-    toml::to_string(&table).map_err(|error| wrong(&error))
 }
 
 /// Writes the report of a stored result.

@@ -6,10 +6,11 @@ use asperity::sliding::Direction;
 use asperity::surface::Surface;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::error::{CaseError, raised};
-use crate::march::choose_among;
-use crate::material::{Body, pair};
+use crate::error::raised;
+use crate::given::choose_among;
+use crate::material::bodies;
 use crate::wait::detached;
 
 type Curve<'py> = Bound<'py, PyArray1<f64>>;
@@ -22,16 +23,15 @@ pub struct Persson {
 
 #[pymethods]
 impl Persson {
-    /// `direction` is "x", "y" or "angle", with its `angle` in rad; `temperature` in kelvin.
+    /// `direction` is "x", "y" or "angle", with its `angle` in rad; `keys` are `body` and `temperature`.
     #[new]
-    #[pyo3(signature = (heights, size, body, temperature, pressure, direction, angle, correction))]
+    #[pyo3(signature = (heights, size, keys, pressure, direction, angle, correction))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         heights: PyReadonlyArray2<'_, f64>,
         size: [f64; 2],
-        body: PyRef<'_, Body>,
-        temperature: Option<f64>,
+        keys: Bound<'_, PyDict>,
         pressure: f64,
         direction: &str,
         angle: f64,
@@ -41,15 +41,7 @@ impl Persson {
         let correction = choose_among("correction", correction, &corrections)?;
         let directions = [("x", Direction::X), ("y", Direction::Y), ("angle", Direction::Angle(angle))];
         let direction = choose_among("direction", direction, &directions)?;
-        if temperature.is_some() && !body.is_thermal() {
-            return Err(CaseError::new_err(
-                "temperature is given, but the material does not depend on it: it has no shift (without a temperature of its \
-                 own); give it shift=asperity.wlf(...), or leave the temperature out",
-            ));
-        }
-        let temperatures: Vec<_> = temperature.iter().map(|kelvin| (0.0, *kelvin)).collect();
-        let half_space = (vec![], true);
-        let creep = pair(&[body], &[half_space], &temperatures)?.map_err(|error| raised(py, error))?.creep;
+        let creep = bodies(&keys, None)?.creep;
         let heights = heights.as_array().to_owned();
         let inner = detached(py, || {
             let (nx, ny) = heights.dim();

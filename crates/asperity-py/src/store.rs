@@ -4,17 +4,15 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use asperity::quantities::Column;
 use asperity_io::leakage;
-use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, SCALARS, Status, Writer};
+use asperity_io::store::{At, FieldKind, Reader, Row, SCALARS, Status, Writer};
 use asperity_io::stress::{self, StressPlan};
-use ndarray::{ArrayView3, Axis};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, file};
-use crate::march::{choose, grid_of};
+use crate::given::choose;
 use crate::wait::detached;
 
 /// The ends of the bins, and the numbers of all rows.
@@ -189,151 +187,6 @@ impl Store {
     }
 }
 
-/// A stack of fields, (kept instants, nx, ny), as Python holds it.
-enum Held<'py> {
-    Real(FieldKind, PyReadonlyArray3<'py, f64>),
-    Contact(PyReadonlyArray3<'py, u8>),
-}
-
-/// The same without Python.
-#[derive(Clone, Copy)]
-enum Stack<'a> {
-    Real(FieldKind, ArrayView3<'a, f64>),
-    Contact(ArrayView3<'a, u8>),
-}
-
-impl<'a> Stack<'a> {
-    /// The field of the kept instant number `k`.
-    fn field(self, k: usize) -> Field<'a> {
-        let at = Axis(0);
-        match self {
-            Stack::Real(FieldKind::Gap, maps) => Field::Gap(maps.index_axis_move(at, k)),
-            Stack::Real(FieldKind::Displacement, maps) => Field::Displacement(maps.index_axis_move(at, k)),
-            Stack::Real(FieldKind::Flattening, maps) => Field::Flattening(maps.index_axis_move(at, k)),
-            Stack::Real(_, maps) => Field::Pressure(maps.index_axis_move(at, k)),
-            Stack::Contact(maps) => Field::Contact(maps.index_axis_move(at, k)),
-        }
-    }
-
-    fn kind(&self) -> FieldKind {
-        match self {
-            Stack::Real(kind, _) => *kind,
-            Stack::Contact(_) => FieldKind::Contact,
-        }
-    }
-
-    fn dim(&self) -> (usize, usize, usize) {
-        match self {
-            Stack::Real(_, maps) => maps.dim(),
-            Stack::Contact(maps) => maps.dim(),
-        }
-    }
-}
-
-/// A quantity: its name, the ends of its bins (none for a single number), and its rows.
-type Asked<'py> = (String, PyReadonlyArray1<'py, f64>, PyReadonlyArray2<'py, f64>);
-
-/// Writes a result that was in memory. `columns` are the numbers of all rows by their names, `fields` the stacks of
-/// the rows `field_steps`; `setup` is JSON that says what was solved, `findings` a JSON list, `status` how the run ended.
-#[pyfunction]
-#[allow(clippy::too_many_arguments)]
-pub fn save(
-    py: Python<'_>,
-    path: PathBuf,
-    force: bool,
-    title: String,
-    setup: &str,
-    size: Vec<f64>,
-    initial_gap: PyReadonlyArray2<'_, f64>,
-    columns: HashMap<String, PyReadonlyArray1<'_, f64>>,
-    fields: Vec<(String, Bound<'_, PyAny>)>,
-    field_steps: Vec<usize>,
-    field_times: Vec<f64>,
-    quantities: Vec<Asked<'_>>,
-    findings: &str,
-    status: &str,
-) -> PyResult<()> {
-    let status = status_of(status);
-    let (nx, ny) = initial_gap.as_array().dim();
-    let grid = grid_of(py, (nx, ny), &size)?;
-    let setup = serde_json::from_str(setup).map_err(|error| CaseError::new_err(error.to_string()))?;
-    let findings = serde_json::from_str(findings).map_err(|error| CaseError::new_err(error.to_string()))?;
-    let findings = asperity_io::finding::from_list(&findings);
-    let mut header = Header {
-        title,
-        case_text: String::new(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        grid,
-        fields: vec![],
-        quantities: vec![],
-        rows_expected: None,
-        setup,
-    };
-    let rows = rows(&columns, header.axis())?;
-    let mut held = Vec::new();
-    for (name, stack) in &fields {
-        let kind = FieldKind::from_name(name)
-            .ok_or_else(|| CaseError::new_err(format!("there is no field '{name}' in results")))?;
-        held.push(match kind {
-            FieldKind::Contact => Held::Contact(stack.extract()?),
-            kind => Held::Real(kind, stack.extract()?),
-        });
-    }
-    let stacks = held.iter().map(|held| match held {
-        Held::Real(kind, stack) => Stack::Real(*kind, stack.as_array()),
-        Held::Contact(stack) => Stack::Contact(stack.as_array()),
-    });
-    let stacks: Vec<Stack> = stacks.collect();
-    if let Some(stack) = stacks.iter().find(|stack| stack.dim() != (field_steps.len(), nx, ny)) {
-        let expected = format!("({}, {nx}, {ny})", field_steps.len());
-        let (kind, found) = (stack.kind(), stack.dim());
-        return Err(CaseError::new_err(format!(
-            "the field '{kind}' has shape {found:?}, but must have {expected}"
-        )));
-    }
-    let mut asked = Vec::new();
-    for (name, edges, values) in &quantities {
-        let column = Column { quantity: choose("quantity", name)?, edges: edges.as_array().to_vec() };
-        let (found, width) = (values.as_array().dim(), column.width());
-        if found != (rows.len(), width) {
-            let expected = format!("({}, {width})", rows.len());
-            return Err(CaseError::new_err(format!(
-                "'{name}' has shape {found:?}, but must have {expected}"
-            )));
-        }
-        asked.push(column);
-    }
-    let numbers: Vec<_> = quantities.iter().map(|(_, _, values)| values.as_array()).collect();
-    header.fields = stacks.iter().map(Stack::kind).collect();
-    header.quantities = asked;
-    header.rows_expected = Some(rows.len());
-    if field_times.len() != field_steps.len() {
-        return Err(CaseError::new_err("the number of times must equal the number of rows of the fields"));
-    }
-    let gap = initial_gap.as_array();
-    detached(py, || {
-        let mut writer = Writer::create(&path, &header, gap, force)?;
-        for (n, row) in rows.iter().enumerate() {
-            let mut fields: Vec<Field> = vec![];
-            for (k, time) in field_times.iter().enumerate().filter(|(k, _)| field_steps[*k] == n) {
-                let maps: Vec<Field> = stacks.iter().map(|stack| stack.field(k)).collect();
-                // A state between the row before and this one has a time of its own.
-                if *time < row.coordinate.value() {
-                    writer.stage(*time, &maps)?;
-                } else {
-                    fields = maps;
-                }
-            }
-            let numbers: Vec<f64> = numbers.iter().flat_map(|values| values.row(n).to_vec()).collect();
-            writer.append_with(row, &numbers, &fields)?;
-        }
-        writer.set_findings(findings);
-        writer.finish(&Outcome::new(status))
-    })?
-    .map(drop)
-    .map_err(file)
-}
-
 /// Computes the stress and the leaks of the result at `source` again in its copy.
 #[pyfunction]
 pub fn derive_again(py: Python<'_>, source: PathBuf, copy: PathBuf) -> PyResult<()> {
@@ -372,24 +225,4 @@ pub fn row_of(numbers: &Bound<'_, PyDict>, axis: asperity::Axis) -> PyResult<Row
         scalar.set(&mut row, found.extract()?);
     }
     Ok(row)
-}
-
-/// The rows of columns of equal length: the inverse of [`crate::march::fill`].
-fn rows(columns: &HashMap<String, PyReadonlyArray1<'_, f64>>, axis: asperity::Axis) -> PyResult<Vec<Row>> {
-    let mut rows: Option<Vec<Row>> = None;
-    for scalar in SCALARS {
-        let name = scalar.name;
-        let column = columns
-            .get(name)
-            .ok_or_else(|| CaseError::new_err(format!("the result has no column '{name}'")))?
-            .as_array();
-        let (found, template) = (column.len(), Row { coordinate: axis.at(0.0), ..Row::default() });
-        let rows = rows.get_or_insert_with(|| vec![template; found]);
-        if found != rows.len() {
-            let length = rows.len();
-            return Err(CaseError::new_err(format!("'{name}' has {found} rows, but time has {length}")));
-        }
-        rows.iter_mut().zip(column).for_each(|(row, value)| scalar.set(row, *value));
-    }
-    Ok(rows.unwrap_or_default())
 }

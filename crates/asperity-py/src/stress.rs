@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, raised};
-use crate::march::choose;
+use crate::given::{choose, entries};
 use crate::wait::without_python;
 
 /// Where the Poisson's ratio changes with time, int nu(t - s) dp(s) \[Pa\] in each cell and the lateral pressure \[Pa\] that
@@ -171,16 +171,11 @@ pub fn stress_survey<'py>(
             out.set_item(format!("max_{name}_y"), grid.y(cell % ny))?;
         }
     }
-    out.set_item("mises_by_depth", found.mises_by_depth)?;
-    out.set_item("tresca_by_depth", found.tresca_by_depth)?;
-    out.set_item("tension_by_depth", found.tension_by_depth)?;
-    out.set_item("stressed_volume", found.stressed_volume)?;
+    entries!(out, found; mises_by_depth tresca_by_depth tension_by_depth stressed_volume at_the_deepest unresolved);
     if let Some(shear) = found.orthogonal_shear {
         out.set_item("orthogonal_shear", shear.largest.value)?;
         out.set_item("orthogonal_shear_depth", shear.largest.depth)?;
         out.set_item("orthogonal_shear_by_depth", shear.by_depth)?;
     }
-    out.set_item("at_the_deepest", found.at_the_deepest)?;
-    out.set_item("unresolved", found.unresolved)?;
     Ok(out)
 }

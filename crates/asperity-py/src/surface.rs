@@ -7,8 +7,8 @@ use asperity::surface::profile::{self, ProfileParameters};
 use asperity::surface::statistics::{
     Autocorrelation, BearingCurve, Extent, RadialSpectrum, Rings, SelfAffineFit, Summary,
 };
-use asperity::surface::{self, Part, Roughness, SelfAffine, Shape, Surface, undeformed_gap};
-use asperity_io::case::fragment;
+use asperity::surface::{self, Part, Surface, undeformed_gap};
+use asperity_io::case::{fragment, given};
 use asperity_io::preparation::{Step, prepare};
 use asperity_io::topography::{Format, ReadOptions, Topography, read, read_profile, write};
 use ndarray::Array2;
@@ -16,75 +16,31 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2}
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, file, raised, topography as topography_error};
-use crate::march::grid_of;
+use crate::error::{self, CaseError, file, raised, topography as topography_error};
+use crate::given::{entries, grid_of, table};
 use crate::wait::detached;
 
 type Heights<'py> = Bound<'py, PyArray2<f64>>;
 
-/// Heights of a self-affine surface.
+/// Heights of the shape or the synthetic roughness that the keys `domain` and `surface` describe; minus infinity where a shape
+/// cannot touch.
 #[pyfunction]
-#[pyo3(signature = (cells, size, hurst, rms_gradient, rms_height, longest, shortest, roll_off, seed))]
-#[allow(clippy::too_many_arguments)]
-pub fn self_affine<'py>(
-    py: Python<'py>,
-    cells: (usize, usize),
-    size: Vec<f64>,
-    hurst: f64,
-    rms_gradient: Option<f64>,
-    rms_height: Option<f64>,
-    longest: f64,
-    shortest: f64,
-    roll_off: Option<f64>,
-    seed: u64,
-) -> PyResult<Heights<'py>> {
-    let roughness = match (rms_gradient, rms_height) {
-        (Some(gradient), None) => Roughness::RmsGradient(gradient),
-        (None, Some(height)) => Roughness::RmsHeight(height),
-        _ => return Err(CaseError::new_err("give rms_gradient or rms_height, exactly one of them")),
-    };
-    let roll_off = roll_off.unwrap_or(longest);
-    let grid = grid_of(py, cells, &size)?;
-    let made =
-        detached(py, || SelfAffine { hurst, roughness, longest, shortest, roll_off, seed }.heights(&grid))?;
-    Ok(made.map_err(|error| raised(py, error))?.into_pyarray(py))
-}
-
-/// Heights of a smooth shape in the middle of the domain; minus infinity where it cannot touch.
-#[pyfunction]
-pub fn shape<'py>(
-    py: Python<'py>,
-    kind: &str,
-    numbers: Vec<f64>,
-    center: [f64; 2],
-    cells: (usize, usize),
-    size: Vec<f64>,
-) -> PyResult<Heights<'py>> {
-    let shape = match (kind, numbers.as_slice()) {
-        ("sphere", [radius]) => Shape::Sphere { radius: *radius },
-        ("ellipsoid", [x, y]) => Shape::Ellipsoid { radius_x: *x, radius_y: *y },
-        ("cylinder", [radius]) => Shape::Cylinder { radius: *radius },
-        ("wedge", [slope]) => Shape::Wedge { slope: *slope },
-        ("cone", [slope]) => Shape::Cone { slope: *slope },
-        ("flat-punch", [radius]) => Shape::FlatPunch(surface::Punch::Circle { radius: *radius }),
-        ("flat-punch", [a, b]) => Shape::FlatPunch(surface::Punch::Rectangle { size: [*a, *b] }),
-        ("wave", [amplitude, x, y]) => Shape::Wave { amplitude: *amplitude, wavelength: [*x, *y] },
-        _ => {
-            return Err(CaseError::new_err(format!(
-                "there is no shape '{kind}' of {} numbers",
-                numbers.len()
-            )));
+pub fn heights<'py>(py: Python<'py>, keys: Bound<'_, PyDict>) -> PyResult<Heights<'py>> {
+    let (grid, part) = given::surface(&table(&keys)?).map_err(error::of_surface)?;
+    let made = detached(py, || match part {
+        Part::SelfAffine(roughness) => roughness.heights(&grid),
+        Part::Synthesis(roughness) => roughness.heights(&grid),
+        Part::Heights { heights, .. } => Ok(heights),
+        Part::Shape { shape, center } => {
+            let [x0, y0] = grid.centre();
+            let at = |i: usize, j: usize| (grid.x(i) - (x0 + center[0]), grid.y(j) - (y0 + center[1]));
+            Ok(Array2::from_shape_fn(grid.shape(), |(i, j)| {
+                let (x, y) = at(i, j);
+                -shape.gap(x, y)
+            }))
         }
-    };
-    shape.validate().map_err(|error| raised(py, error))?;
-    let grid = grid_of(py, cells, &size)?;
-    let [x0, y0] = grid.centre();
-    let at = |i: usize, j: usize| (grid.x(i) - (x0 + center[0]), grid.y(j) - (y0 + center[1]));
-    let heights = Array2::from_shape_fn(grid.shape(), |(i, j)| {
-        let (x, y) = at(i, j);
-        -shape.gap(x, y)
-    });
-    Ok(heights.into_pyarray(py))
+    })?;
+    Ok(made.map_err(|error| raised(py, error))?.into_pyarray(py))
 }
 
 /// The undeformed gap of heights, least value 0; a height of minus infinity cannot touch.
@@ -96,20 +52,9 @@ pub fn gap<'py>(
 ) -> PyResult<Heights<'py>> {
     let heights = heights.as_array().as_standard_layout().into_owned();
     let grid = grid_of(py, heights.dim(), &size)?;
-    if heights.iter().all(|z| z.is_finite()) {
-        let part = Part::Heights { name: "surface".into(), heights };
-        let gap = detached(py, || undeformed_gap(&grid, &[part]))?.map_err(|error| raised(py, error))?;
-        return Ok(gap.into_pyarray(py));
-    }
-    if let Some(value) = heights.iter().find(|z| z.is_nan() || **z == f64::INFINITY) {
-        let words = "finite, or minus infinity where nothing can touch; fill undefined points first";
-        return Err(CaseError::new_err(format!("a height is {value}, but must be {words}")));
-    }
-    let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if highest == f64::NEG_INFINITY {
-        return Err(CaseError::new_err("no height is finite: nothing can touch"));
-    }
-    Ok(heights.mapv(|z| highest - z).into_pyarray(py))
+    let part = Part::Heights { name: "surface".into(), heights };
+    let gap = detached(py, || undeformed_gap(&grid, &[part]))?.map_err(|error| raised(py, error))?;
+    Ok(gap.into_pyarray(py))
 }
 
 /// Reads a measured surface: heights, size, and what the file says.
@@ -171,26 +116,6 @@ pub fn write_surface(
     detached(py, || write(&path, &topography, format))?.map_err(file)
 }
 
-/// Synthetic roughness from the keys of a case (`cells`, `size`, `hurst`, `lay.angle`, ...): heights and size.
-#[pyfunction]
-pub fn roughness<'py>(py: Python<'py>, keys: Vec<(String, String)>) -> PyResult<(Heights<'py>, Vec<f64>)> {
-    let keys: Vec<(&str, &str)> = keys.iter().map(|(key, text)| (key.as_str(), text.as_str())).collect();
-    let (grid, part) = fragment::roughness(&keys).map_err(|faults| {
-        let told = |fault: &fragment::Fault| {
-            let help = fault.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
-            format!("{}: {}{help}", fault.key, fault.message)
-        };
-        CaseError::new_err(faults.iter().map(told).collect::<Vec<_>>().join("\n"))
-    })?;
-    let heights = detached(py, || match part {
-        Part::SelfAffine(roughness) => roughness.heights(&grid),
-        Part::Synthesis(roughness) => roughness.heights(&grid),
-        Part::Heights { heights, .. } => Ok(heights),
-        Part::Shape { shape, .. } => Err(asperity::Error::invalid("kind", shape.name(), "self-affine")),
-    })?;
-    Ok((heights.map_err(|error| raised(py, error))?.into_pyarray(py), grid.extents().to_vec()))
-}
-
 /// Steps of a preparation, each in words as `asperity surface process --op` takes them: heights, size, and one
 /// sentence per step.
 #[pyfunction]
@@ -231,30 +156,13 @@ pub fn describe<'py>(
     let map = map(py, heights, size)?;
     let summary = detached(py, || Summary::of(&map, extent(periodic)))?.map_err(|error| raised(py, error))?;
     let out = PyDict::new(py);
-    let z = &summary.heights;
-    for (name, value) in [
-        ("sa", z.sa),
-        ("sq", z.sq),
-        ("ssk", z.ssk),
-        ("sku", z.sku),
-        ("sp", z.sp),
-        ("sv", z.sv),
-        ("sz", z.sz),
-        ("min", z.min),
-        ("max", z.max),
-        ("mean", z.mean),
-    ] {
-        out.set_item(name, value)?;
-    }
+    entries!(out, summary.heights; sa sq ssk sku sp sv sz min max mean);
     out.set_item("undefined", map.undefined())?;
     if let Some(slopes) = &summary.slopes {
-        out.set_item("sdq", slopes.sdq)?;
-        out.set_item("sdr", slopes.sdr)?;
+        entries!(out, slopes; sdq sdr);
     }
     if let Some(waves) = &summary.waves {
-        out.set_item("m0", waves.moments.m0)?;
-        out.set_item("m2", waves.moments.m2)?;
-        out.set_item("m4", waves.moments.m4)?;
+        entries!(out, waves.moments; m0 m2 m4);
         out.set_item("bandwidth", waves.moments.bandwidth())?;
         out.set_item("lay", waves.lay.is_clear())?;
         out.set_item("lay_ratio", waves.lay.ratio)?;
@@ -266,10 +174,8 @@ pub fn describe<'py>(
             None => waves.fit,
         };
         if let Some(fit) = fit {
-            out.set_item("hurst", fit.hurst)?;
+            entries!(out, fit; hurst roll_off plateau);
             out.set_item("hurst_error", fit.error)?;
-            out.set_item("roll_off", fit.roll_off)?;
-            out.set_item("plateau", fit.plateau)?;
             out.set_item("spectrum_misfit", fit.misfit)?;
             let found = Vec::from_iter(asperity::finding::hurst(&fit));
             out.set_item("findings", asperity_io::finding::list(&found).to_string())?;
@@ -297,19 +203,7 @@ pub fn profile_parameters<'py>(
     })?;
     let found = found.map_err(|error| raised(py, error))?;
     let out = PyDict::new(py);
-    let numbers = [
-        ("ra", found.ra),
-        ("rq", found.rq),
-        ("rz", found.rz),
-        ("rt", found.rt),
-        ("rsk", found.rsk),
-        ("rku", found.rku),
-    ];
-    for (name, value) in numbers {
-        out.set_item(name, value)?;
-    }
-    out.set_item("rsm", found.rsm)?;
-    out.set_item("rdq", found.rdq)?;
+    entries!(out, found; ra rq rz rt rsk rku rsm rdq);
     Ok(out)
 }
 

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, file};
-use crate::march::{choose, grid_of};
+use crate::given::{choose, grid_of};
 use crate::store::{row_of, status_of};
 use crate::wait::detached;
 
@@ -89,26 +89,20 @@ impl Writer {
         fields: &Bound<'_, PyDict>,
     ) -> PyResult<()> {
         let row = row_of(row, self.axis)?;
-        let mut held = vec![];
-        for kind in self.kinds.iter().filter(|_| !fields.is_empty()) {
-            let found = fields.get_item(kind.name())?;
-            let found = found
-                .ok_or_else(|| CaseError::new_err(format!("the field '{kind}' of the row is missing")))?;
-            held.push(match kind {
-                FieldKind::Contact => {
-                    Held::Contact(found.extract::<PyReadonlyArray2<'_, u8>>()?.as_array().to_owned())
-                }
-                kind => {
-                    Held::Real(*kind, found.extract::<PyReadonlyArray2<'_, f64>>()?.as_array().to_owned())
-                }
-            });
-        }
+        let held = self.held(fields)?;
         let writer = open(&mut self.writer)?;
         detached(py, || {
             let fields: Vec<Field<'_>> = held.iter().map(Held::field).collect();
             writer.append_with(&row, &quantities, &fields)
         })?
         .map_err(file)
+    }
+
+    /// Stores the fields of a state between the last row and the next one.
+    fn stage(&mut self, py: Python<'_>, time: f64, fields: &Bound<'_, PyDict>) -> PyResult<()> {
+        let held = self.held(fields)?;
+        let writer = open(&mut self.writer)?;
+        detached(py, || writer.stage(time, &held.iter().map(Held::field).collect::<Vec<_>>()))?.map_err(file)
     }
 
     /// Rows stored.
@@ -133,6 +127,27 @@ impl Writer {
         writer.set_findings(asperity_io::finding::from_list(&findings));
         let outcome = Outcome { message, ..Outcome::new(status) };
         detached(py, || writer.finish(&outcome))?.map(drop).map_err(file)
+    }
+}
+
+impl Writer {
+    /// Fields by their names, all of them or none.
+    fn held(&self, fields: &Bound<'_, PyDict>) -> PyResult<Vec<Held>> {
+        let kept = self.kinds.iter().filter(|_| !fields.is_empty());
+        let held = kept.map(|kind| {
+            let found = fields.get_item(kind.name())?;
+            let found = found
+                .ok_or_else(|| CaseError::new_err(format!("the field '{kind}' of the row is missing")))?;
+            Ok(match kind {
+                FieldKind::Contact => {
+                    Held::Contact(found.extract::<PyReadonlyArray2<'_, u8>>()?.as_array().to_owned())
+                }
+                kind => {
+                    Held::Real(*kind, found.extract::<PyReadonlyArray2<'_, f64>>()?.as_array().to_owned())
+                }
+            })
+        });
+        held.collect()
     }
 }
 

@@ -93,7 +93,7 @@ def test_hardness_and_pickles():
             lambda: asp.steady(sphere(), coated(), load=1.0, velocities=[0.1], boundary="periodic"),
             "layers that creep differently",
         ),
-        (lambda: asp.solve(sphere(), tread(thickness=1e-6), load=1.0, times=[1.0]), "thickness of the top layer"),
+        (lambda: asp.solve(sphere(), tread(thickness=1e-6), load=1.0, times=[1.0]), "thickness of this layer"),
     ],
 )
 def test_wrong_bodies_are_told(make, words):

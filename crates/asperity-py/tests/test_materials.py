@@ -169,7 +169,7 @@ def test_a_vertical_shift_divides_the_moduli(tmp_path):
         (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0]).material, "poisson"),
         (lambda: asp.wlf(c1=-1.0, c2=50.0, reference=300.0), "c1"),
         (lambda: asp.wlf(c1=10.0, c2=50.0, reference=300.0).factor(240.0), "240"),
-        (lambda: asp.arrhenius(activation_energy=0.0, reference=300.0), "activation"),
+        (lambda: asp.arrhenius(activation_energy=0.0, reference=300.0), "energy is 0"),
         (lambda: asp.shift_table([(300.0, 0.0)]), "at least 2"),
         (lambda: asp.Elastic(young=1e6, poisson=0.5, temperature=300.0), "shift"),
         (lambda: asp.Elastic(young=1e6, poisson=0.5, shift="wlf"), "shift"),

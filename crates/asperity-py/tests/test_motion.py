@@ -133,3 +133,15 @@ def test_a_study_of_slides_runs_in_time():
     travelled = data.sliding_distance.values[:, -1]
     last = [row[np.isfinite(row)][-1] for row in data.sliding_distance.values]
     assert np.allclose(last, [1e-4, 5e-4], rtol=1e-12), travelled
+
+
+def test_a_sweep_takes_the_body_that_stands_still_relaxed() -> None:
+    wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
+    track = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5)
+    slider = asp.Zener(shear=5e6, shear_kelvin=5e6, retardation_time=1.0, poisson=0.5)
+    given = dict(pressure=20e3, velocities=[0.05], boundary="periodic")
+    found = asp.steady(wave, (track, slider), **given)
+    relaxed = asp.steady(wave, (track, asp.Elastic(shear=2.5e6, poisson=0.5)), **given)
+    assert found.friction_coefficient[0] == pytest.approx(relaxed.friction_coefficient[0], rel=1e-9)
+    with pytest.raises(asp.CaseError, match="motion"):
+        asp.slide(wave, (track, slider), pressure=20e3, velocity=0.05, times=[0.01], boundary="periodic")

@@ -95,7 +95,7 @@ def test_the_temperature_moves_the_curve_along_the_velocity():
         (dict(correction="half"), "'yang-persson' or 'none'"),
         (dict(direction="z"), "'x', 'y'"),
         (dict(direction=float("inf")), "direction"),
-        (dict(temperature=300.0), "temperature is given"),
+        (dict(temperature=300.0), "temperature.*none has a shift"),
     ],
 )
 def test_wrong_input_is_told(change, words):

@@ -182,7 +182,7 @@ def test_any_array_with_the_same_numbers_gives_the_same_result():
         (dict(scheme="euler"), "linear"),
         (dict(method="newton"), "projected-cg"),
         (dict(hardness=0.0), "hardness"),
-        (dict(hardness=1.0), "hardness times the area"),
+        (dict(hardness=1.0), "hardness .*times the area"),
         (dict(fields=["stress"]), "stress"),
         (dict(tolerance=1.0), "tolerance"),
         (dict(every=2, field_times=[1.0]), "one of them"),
@@ -204,7 +204,7 @@ def test_wrong_input_is_named(sphere, change, words):
 def test_materials_name_what_is_wrong():
     for make, words in [
         (lambda: asp.Elastic(young=1e6), "poisson or bulk_modulus"),
-        (lambda: asp.Elastic(young=1e6, shear=1e6, poisson=0.3), "young or shear"),
+        (lambda: asp.Elastic(young=1e6, shear=1e6, poisson=0.3), "only one of them"),
         (lambda: asp.Elastic(young=-1.0, poisson=0.3), "-1"),
         (lambda: asp.Elastic(young=1e6, poisson=0.6), "0.6"),
         (lambda: asp.Prony(equilibrium=1.0, terms=[(1.0, 0.0)], poisson=0.3), "0"),
@@ -483,7 +483,7 @@ stages = [
         (dict(stages=[1.0]), "asperity.Stage"),
         (dict(stages=[asp.Stage(load=1.0)], load=1.0), "one of them"),
         (dict(stages=[asp.Stage(load=1.0, approach=1.0)]), "one of them"),
-        (dict(stages=[asp.Stage(load=1.0), asp.Stage(load=2.0)]), "stage 1"),
+        (dict(stages=[asp.Stage(load=1.0), asp.Stage(load=2.0)]), r"stages\[0\].*never ends"),
     ],
 )
 def test_stages_that_cannot_be_are_refused(wrong, words):
@@ -506,5 +506,5 @@ def test_an_elastic_contact_takes_a_hardness_for_each_cell():
 
 
 def test_more_steps_than_there_may_be_are_refused_before_memory_is_taken(sphere):
-    with pytest.raises(asp.CaseError, match="number of steps is 1000000000000"):
+    with pytest.raises(asp.CaseError, match="steps is 1000000000000"):
         asp.solve(sphere, asp.Zener(**ZENER), load=1.0, times=asp.uniform(1.0, 10**12))

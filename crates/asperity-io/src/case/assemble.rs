@@ -10,12 +10,13 @@ use asperity::{Boundary, Grid, Scheme, TimeGrid};
 use super::body::{self, Body};
 use super::document::Document;
 use super::error::CaseError;
-use super::hardness::Hardness;
+use super::hardness::{self, Hardness};
 use super::material::Sample;
 use super::output::Conditions;
 use super::pair::{self, Pair};
 use super::place::Checks;
 use super::plan::{Motion, Output, Rows, Surface};
+use super::temperature::{Temperature, Temperatures};
 use super::text::Text;
 use super::warmth;
 use super::{Case, motion, time};
@@ -39,6 +40,44 @@ pub fn case(
     }
 }
 
+/// Bodies that stand alone, in a run of these instants.
+pub fn bodies(
+    text: &Text<'_>,
+    bodies: &[Body],
+    temperature: Option<&Temperature>,
+    plan: &Plan,
+) -> Result<Pair, Vec<CaseError>> {
+    let checks = Checks::new(text, Path::new(""));
+    let parts = body::parts(&checks.at("body"), bodies);
+    let samples: Vec<Option<Sample>> =
+        parts.iter().map(|part| part.material.sample(&part.at.key("material"))).collect();
+    let temperatures = temperatures(&checks, temperature, &samples);
+    let points = temperatures.iter().flatten().map(|read| read.points.as_slice()).next();
+    let instants = |_: &[f64]| plan.clone();
+    let course = warmth::Course { end: None, plan: &instants, temperatures: points, beyond: 1.0 };
+    let pair = pair::pair(&checks.at("body"), bodies, &parts, &samples, &course);
+    match pair {
+        Some(pair) if !checks.any() => Ok(pair),
+        _ => Err({
+            drop((parts, samples));
+            checks.into_errors()
+        }),
+    }
+}
+
+/// The temperatures of the run.
+fn temperatures(
+    checks: &Checks<'_>,
+    temperature: Option<&Temperature>,
+    samples: &[Option<Sample>],
+) -> Optional<Temperatures> {
+    optional(temperature, |temperature| {
+        let depends = |sample: &Sample| sample.shift.is_some() && sample.temperature.is_none();
+        let matters = samples.iter().any(|sample| sample.as_ref().is_none_or(depends));
+        temperature.temperatures(&checks.at("temperature"), matters)
+    })
+}
+
 /// A section that may be left out: where it has a fault, `Err`.
 type Optional<T> = Result<Option<T>, ()>;
 
@@ -60,11 +99,7 @@ impl Document {
         let parts = body::parts(&at("body"), &self.body);
         let samples: Vec<Option<Sample>> =
             parts.iter().map(|part| part.material.sample(&part.at.key("material"))).collect();
-        let temperatures = optional(self.temperature.as_ref(), |temperature| {
-            let depends = |sample: &Sample| sample.shift.is_some() && sample.temperature.is_none();
-            let matters = samples.iter().any(|sample| sample.as_ref().is_none_or(depends));
-            temperature.temperatures(&at("temperature"), matters)
-        });
+        let temperatures = temperatures(checks, self.temperature.as_ref(), &samples);
         let points = temperatures.iter().flatten().map(|read| read.points.as_slice()).next();
         let first_step = |end: f64, course: Option<&Course>| {
             let shortest = samples.iter().flatten().map(|sample| sample.shortest(points, end));
@@ -262,10 +297,17 @@ impl Document {
     /// The hardness of the cells over all bodies that give it.
     fn hardness(&self, checks: &Checks<'_>, grid: Option<&Grid>) -> Option<Hardness> {
         let of_body = |(n, body): (usize, &Body)| {
-            let place = checks.at("body").item(n).key("hardness_file");
-            body.hardness_file.as_ref().map(|file| file.of_cells(&place, grid))
+            let place = |key: &str| checks.at("body").item(n).key(key);
+            let file = body.hardness_file.as_ref().map(|file| {
+                file.of_cells(&place("hardness_file"), grid).map(|(map, file)| (map, Some(file)))
+            });
+            let array = body
+                .hardness_array
+                .as_ref()
+                .map(|name| hardness::of_array(&place("hardness_array"), name, grid).map(|map| (map, None)));
+            [file, array]
         };
-        let all: Vec<_> = self.body.iter().enumerate().filter_map(of_body).collect();
+        let all: Vec<_> = self.body.iter().enumerate().flat_map(of_body).flatten().collect();
         let add = |hardness: Hardness, found: Option<_>| found.map(|(map, file)| hardness.and(map, file));
         all.into_iter().try_fold(Hardness::default(), add)
     }

@@ -36,6 +36,9 @@ pub struct Body {
     /// Cut-off for the pressure in each cell, from a file. Of several hardnesses the smallest counts.
     #[schemars(example = serde_json::json!({ "path": "hardness.npy", "unit": "1 MPa" }))]
     pub hardness_file: Option<HardnessFile>,
+    /// Name of an array that a program gives beside the case: the cut-off for the pressure in each cell.
+    #[schemars(skip)]
+    pub hardness_array: Option<String>,
     /// Linear viscoelastic material; needed unless the base is rigid. With layers: of the half-space below.
     #[schemars(example = serde_json::json!({ "model": "elastic", "young": "2.1 GPa" }))]
     pub material: Option<Material>,

@@ -138,6 +138,13 @@ pub fn roughness(text: &Text<'_>) -> Read<(Domain, Vec<Surface>)> {
     reader.finish(domain.map(|domain| (domain, surfaces)))
 }
 
+/// The bodies and the temperature of a document that may have nothing else.
+pub fn bodies(text: &Text<'_>) -> Read<(Vec<Body>, Option<Temperature>)> {
+    let mut reader = Reader::new(text);
+    let (bodies, temperature) = (reader.list("body"), reader.optional("temperature"));
+    reader.finish(Some((bodies, temperature)))
+}
+
 /// The section `[stress]` of a document that may have nothing else.
 pub fn stress(text: &Text<'_>) -> Read<Stress> {
     let mut reader = Reader::new(text);

@@ -8,6 +8,7 @@ use toml::Value;
 
 use super::document;
 use super::error::CaseError;
+use super::given;
 use super::place::Checks;
 use super::surface::Kind;
 use super::text::Text;
@@ -180,21 +181,11 @@ pub fn roughness(keys: &[(&str, &str)]) -> Result<(Grid, Part), Vec<Fault>> {
             }
         }
     }
-    let document = written(vec![
-        ("domain", Value::Table(domain)),
-        ("surface", Value::Array(vec![Value::Table(surface)])),
+    let document = toml::Table::from_iter([
+        ("domain".to_owned(), Value::Table(domain)),
+        ("surface".to_owned(), Value::Array(vec![Value::Table(surface)])),
     ]);
-    let text = Text::parse(&document).map_err(faults)?;
-    let (domain, surfaces) = document::roughness(&text).map_err(faults)?;
-    let checks = Checks::new(&text, Path::new(""));
-    let grid = domain.grid(&checks.at("domain"), &[]);
-    domain.fits(&checks.at("domain"), grid.as_ref(), 0, 0, asperity::Scheme::Linear);
-    let place = checks.at("surface").item(0);
-    let part = surfaces.first().and_then(|surface| surface.part(&place, grid.as_ref(), false));
-    match (grid, part, checks.any()) {
-        (Some(grid), Some(part), false) => Ok((grid, part)),
-        _ => Err(faults(checks.into_errors())),
-    }
+    given::surface(&document).map_err(|wrong| faults(wrong.errors))
 }
 
 /// The stress below the surface from words: the keys of `[stress]` but `times`, for a body among these.

@@ -30,12 +30,12 @@ pub struct Hardness {
 
 impl Hardness {
     /// Adds a body: the softer one decides in each cell.
-    pub fn and(self, map: Array2<f64>, file: (String, String)) -> Hardness {
+    pub fn and(self, map: Array2<f64>, file: Option<(String, String)>) -> Hardness {
         let map = match self.map {
             Some(softer) => Zip::from(&softer).and(&map).map_collect(|a, b| a.min(*b)),
             None => map,
         };
-        Hardness { map: Some(map), files: [self.files, vec![file]].concat() }
+        Hardness { map: Some(map), files: [self.files, Vec::from_iter(file)].concat() }
     }
 }
 
@@ -68,10 +68,20 @@ impl HardnessFile {
         }
         let unit = self.unit.map_or(1.0, Pressure::get);
         let map = numbers.heights.mapv(|number| number * unit);
-        if let Some(((i, j), hardness)) = map.indexed_iter().find(|(_, h)| !(h.is_finite() && **h > 0.0)) {
-            let what = format!("the hardness of cell ({i}, {j}) in {name} is {hardness} Pa");
-            return at.fault(what, "finite and greater than 0 in every cell", "");
-        }
-        Some((map, (self.path.clone(), digest)))
+        Some((positive(&at, map, &name.to_string())?, (self.path.clone(), digest)))
     }
+}
+
+/// The cut-off of each cell \[Pa\], of the array of this name.
+pub fn of_array(at: &Place<'_>, name: &str, grid: Option<&Grid>) -> Option<Array2<f64>> {
+    positive(at, at.array(name, grid?)?, "the array")
+}
+
+/// The map, where every cell has a hardness.
+fn positive(at: &Place<'_>, map: Array2<f64>, holder: &str) -> Option<Array2<f64>> {
+    if let Some(((i, j), hardness)) = map.indexed_iter().find(|(_, h)| !(h.is_finite() && **h > 0.0)) {
+        let what = format!("the hardness of cell ({i}, {j}) in {holder} is {hardness} Pa");
+        return at.fault(what, "finite and greater than 0 in every cell", "");
+    }
+    Some(map)
 }

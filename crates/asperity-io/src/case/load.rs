@@ -5,7 +5,7 @@ use asperity::{Control, Course, Event, Grid, Programme, TimeGrid};
 use super::history::{From, History, Kind};
 use super::keys::*;
 use super::pair::Pair;
-use super::time::{Spacing, Steps};
+use super::time::{Spacing, Steps, Times};
 use super::words::number;
 
 /// What presses the bodies together.
@@ -59,6 +59,10 @@ pub struct Stage {
     /// If the spacing is "adaptive": as in `[time]`.
     #[schemars(example = 1e-3)]
     tolerance: Option<Number<Positive>>,
+    /// The times of the stage after its start, with the keys of `[time]` but `scheme`; instead of the four keys above, and without
+    /// a need of `duration`.
+    #[schemars(example = serde_json::json!({ "times": ["1 s", "10 s"] }))]
+    time: Option<Times>,
 }
 
 /// What ends a stage.
@@ -140,7 +144,7 @@ impl Load {
 
     /// Whether every stage has steps of its own.
     pub fn has_own_steps(&self) -> bool {
-        let own = |stage: &Stage| stage.steps.is_some() || stage.spacing.is_some();
+        let own = |stage: &Stage| stage.steps.is_some() || stage.spacing.is_some() || stage.time.is_some();
         self.stages.as_ref().is_some_and(|stages| stages.iter().all(own))
     }
 }
@@ -181,6 +185,14 @@ impl Stage {
     fn times(&self, at: &Place<'_>, first_step: impl Fn(f64) -> f64) -> Option<Option<TimeGrid>> {
         let Stage { steps, spacing, first, tolerance, .. } = *self;
         let steps = Steps { end: "the duration of the stage", steps, spacing, first, tolerance };
+        if let Some(time) = &self.time {
+            let at = at.key("time");
+            if !steps.none() || at.has("scheme") {
+                let message = "has all keys of the steps of a stage, and no `scheme`";
+                return at.fault(message, "one of the two", "leave the others out");
+            }
+            return time.grid(&at, false, first_step).map(Some);
+        }
         if steps.none() {
             return Some(None);
         }

@@ -4,7 +4,8 @@ use std::cell::RefCell;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use asperity::Error;
+use asperity::{Error, Grid};
+use ndarray::Array2;
 
 use super::error::CaseError;
 use super::text::{MOST_ERRORS, Spot, Text, join};
@@ -22,6 +23,11 @@ pub struct Checks<'c> {
 impl<'c> Checks<'c> {
     pub fn new(text: &'c Text<'c>, dir: &'c Path) -> Self {
         Checks { text, dir, errors: RefCell::default() }
+    }
+
+    /// The place of the document itself.
+    pub fn root(&'c self) -> Place<'c> {
+        self.at("")
     }
 
     /// The place of a section.
@@ -68,6 +74,22 @@ impl<'c> Place<'c> {
     /// Whether the file gives this key of the table.
     pub fn has(&self, name: &str) -> bool {
         self.checks.text.has(&join(&self.key, name))
+    }
+
+    /// The array of this name, which a program gives beside the case: a number for each cell of the grid.
+    pub fn array(&self, name: &str, grid: &Grid) -> Option<Array2<f64>> {
+        match self.checks.text.arrays.get(name) {
+            None => self.fault(
+                format!("there is no array \"{name}\""),
+                "the name of an array that a program gives beside the case",
+                "",
+            ),
+            Some(array) if array.dim() != grid.shape() => {
+                let expected = format!("shape {:?}, a number for each cell", grid.shape());
+                self.fault(format!("the array has shape {:?}", array.dim()), &expected, "")
+            }
+            Some(array) => Some(array.as_standard_layout().into_owned()),
+        }
     }
 
     fn push<T>(&self, error: impl FnOnce(&Text<'_>, Spot) -> CaseError) -> Option<T> {

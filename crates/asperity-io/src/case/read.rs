@@ -35,6 +35,8 @@ const UNIONS: &[Union] = &[
     // A material of its own file.
     Union("material.shift", "model", SHIFT),
     Union("material", "model", MATERIAL),
+    // A shift that stands alone.
+    Union("shift", "model", SHIFT),
 ];
 
 /// Keys that the members of the union at `path` ("body[0].material") share.

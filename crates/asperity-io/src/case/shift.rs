@@ -2,8 +2,13 @@
 
 use asperity::material::{self, VerticalShift};
 
+use std::path::Path;
+
+use super::error::CaseError;
 use super::keys::*;
 use super::material::Dependence;
+use super::place::Checks;
+use super::text::Text;
 use crate::curve::{self, ShiftRequest, VerticalRequest, VerticalWord};
 
 /// How all times of a material scale with temperature: by the shift factor a_T, 1 at the reference.
@@ -76,6 +81,14 @@ pub struct VerticalDensity {
 }
 
 impl Shift {
+    /// The shift, and how moduli depend on temperature, of a shift that stands alone.
+    pub fn alone(&self, text: &Text<'_>) -> Result<Dependence, Vec<CaseError>> {
+        let checks = Checks::new(text, Path::new(""));
+        // The shift is the only key of its document.
+        let dependence = dependence(&checks.root(), Some(self), None);
+        dependence.ok_or_else(|| checks.into_errors())
+    }
+
     fn request(&self, at: &Place<'_>) -> Option<ShiftRequest> {
         let shift = match &self.model {
             Model::Wlf { c1, c2, reference } => {

@@ -101,6 +101,12 @@ pub enum Kind {
     SelfAffine(Box<SelfAffine>),
     /// A measured topography from a file.
     File(Box<File>),
+    /// Heights that a program gives beside the case.
+    #[schemars(skip)]
+    Array {
+        /// Name of the array: heights \[m\], minus infinity where nothing can touch.
+        array: String,
+    },
 }
 
 impl Surface {
@@ -152,6 +158,10 @@ impl Surface {
             }
             Kind::SelfAffine(roughness) => return roughness.part(at, grid, line),
             Kind::File(_) => return None, // see `measured`
+            Kind::Array { array } => {
+                let heights = at.key("array").array(array, grid?)?;
+                return Some(Part::Heights { name: array.clone(), heights });
+            }
         };
         at.core(shape.validate())?;
         let center = match center {

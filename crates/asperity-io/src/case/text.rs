@@ -6,11 +6,13 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::CaseError;
+use super::given::Arrays;
 
-/// A case file's text and its TOML tree.
+/// A case file's text, its TOML tree, and the arrays that a program gives beside it.
 pub struct Text<'t> {
     pub source: &'t str,
     pub root: DeTable<'t>,
+    pub arrays: &'t Arrays,
 }
 
 impl<'t> Text<'t> {
@@ -20,7 +22,7 @@ impl<'t> Text<'t> {
     /// The faults of the TOML grammar, in order.
     pub fn parse(source: &'t str) -> Result<Self, Vec<CaseError>> {
         let (root, errors) = DeTable::parse_recoverable(source);
-        let text = Text { source, root: root.into_inner() };
+        let text = Text { source, root: root.into_inner(), arrays: &NO_ARRAYS };
         if errors.is_empty() {
             return Ok(text);
         }
@@ -153,6 +155,8 @@ impl<'t> Text<'t> {
         }
     }
 }
+
+static NO_ARRAYS: Arrays = Arrays::new();
 
 /// A case file with more faults than this has one cause.
 pub const MOST_ERRORS: usize = 20;

@@ -27,6 +27,7 @@ use crate::stress::{self, Below, StressError};
 use maps::Maps;
 use record::{Earlier, Record};
 use setup::header;
+pub use setup::setup;
 
 pub use memory::peak_memory_bytes;
 

@@ -34,8 +34,8 @@ fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     points.iter().enumerate().filter(|(n, _)| is_kept(*n)).map(|(_, point)| *point).collect()
 }
 
-/// The case in numbers, SI.
-fn setup(case: &Case) -> Map<String, Value> {
+/// The case in numbers, SI: the attribute `setup` of its result.
+pub fn setup(case: &Case) -> Map<String, Value> {
     let description = serde_json::to_value(case.describe()).unwrap_or_default();
     let mut setup = match description {
         Value::Object(map) => map,

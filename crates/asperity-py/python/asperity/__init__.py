@@ -14,128 +14,58 @@ approach is zero at first touch.
 True
 """
 
-from . import compat
-from ._core import CaseError, ConvergenceError, __version__
-from ._cite import cite
-from ._contact import ConvergenceHistory, ElasticContact, ElasticCurve, elastic
-from ._findings import Finding, ResultWarning
-from ._fit import Fit, fit_creep, fit_dma, fit_file, fit_relaxation
+from . import compat as compat
+from ._core import CaseError as CaseError, ConvergenceError as ConvergenceError, __version__ as __version__
+from ._cite import cite as cite
+from ._contact import (
+    ConvergenceHistory as ConvergenceHistory,
+    ElasticContact as ElasticContact,
+    ElasticCurve as ElasticCurve,
+    elastic as elastic,
+)
+from ._findings import Finding as Finding, ResultWarning as ResultWarning
+from ._fit import Fit as Fit, fit_creep as fit_creep, fit_dma as fit_dma, fit_file as fit_file, fit_relaxation as fit_relaxation
 from ._histories import (
-    History,
-    Stage,
-    Times,
-    adaptive,
-    hold,
-    listed,
-    log,
-    ramp,
-    ramp_to,
-    sine,
-    step,
-    table,
-    trapezoid,
-    triangle,
-    uniform,
+    History as History,
+    Stage as Stage,
+    Times as Times,
+    adaptive as adaptive,
+    hold as hold,
+    listed as listed,
+    log as log,
+    ramp as ramp,
+    ramp_to as ramp_to,
+    sine as sine,
+    step as step,
+    table as table,
+    trapezoid as trapezoid,
+    triangle as triangle,
+    uniform as uniform,
 )
-from ._indentation import IndentationFit, fit_indentation
-from ._leakage import Leakage, leakage
-from ._layers import Body, Layer, layer_compliance
+from ._indentation import IndentationFit as IndentationFit, fit_indentation as fit_indentation
+from ._leakage import Leakage as Leakage, leakage as leakage
+from ._layers import Body as Body, Layer as Layer, layer_compliance as layer_compliance
 from ._materials import (
-    Burgers,
-    Creep,
-    Elastic,
-    FractionalMaxwell,
-    FractionalZener,
-    KelvinVoigt,
-    Material,
-    Maxwell,
-    Prony,
-    Springpot,
-    Zener,
+    Burgers as Burgers,
+    Creep as Creep,
+    Elastic as Elastic,
+    FractionalMaxwell as FractionalMaxwell,
+    FractionalZener as FractionalZener,
+    KelvinVoigt as KelvinVoigt,
+    Material as Material,
+    Maxwell as Maxwell,
+    Prony as Prony,
+    Springpot as Springpot,
+    Zener as Zener,
 )
-from ._motion import rubber_friction, slide, steady
-from ._persson import Magnification, PerssonFriction, persson_friction
-from ._result import Cycle, Result, open as open
-from ._shifts import Shift, arrhenius, shift_table, wlf
-from ._solve import March, Step, check, march, run, solve
-from ._stress import Stress, stress
-from ._study import study
-from ._surface import Autocorrelation, Surface
-from ._threads import set_threads, threads
+from ._motion import rubber_friction as rubber_friction, slide as slide, steady as steady
+from ._persson import Magnification as Magnification, PerssonFriction as PerssonFriction, persson_friction as persson_friction
+from ._result import Cycle as Cycle, Result as Result, open as open
+from ._shifts import Shift as Shift, arrhenius as arrhenius, shift_table as shift_table, wlf as wlf
+from ._solve import March as March, Step as Step, check as check, march as march, run as run, solve as solve
+from ._stress import Stress as Stress, stress as stress
+from ._study import study as study
+from ._surface import Autocorrelation as Autocorrelation, Surface as Surface
+from ._threads import set_threads as set_threads, threads as threads
 
-__all__ = [
-    "Autocorrelation",
-    "Body",
-    "Burgers",
-    "CaseError",
-    "ConvergenceError",
-    "ConvergenceHistory",
-    "Creep",
-    "Cycle",
-    "Elastic",
-    "ElasticContact",
-    "ElasticCurve",
-    "Finding",
-    "Fit",
-    "FractionalMaxwell",
-    "FractionalZener",
-    "History",
-    "IndentationFit",
-    "KelvinVoigt",
-    "Leakage",
-    "Layer",
-    "Magnification",
-    "March",
-    "Material",
-    "Maxwell",
-    "PerssonFriction",
-    "Prony",
-    "Result",
-    "ResultWarning",
-    "Shift",
-    "Springpot",
-    "Stage",
-    "Step",
-    "Stress",
-    "Surface",
-    "Times",
-    "Zener",
-    "__version__",
-    "adaptive",
-    "arrhenius",
-    "check",
-    "cite",
-    "compat",
-    "elastic",
-    "fit_creep",
-    "fit_dma",
-    "fit_file",
-    "fit_indentation",
-    "fit_relaxation",
-    "hold",
-    "leakage",
-    "layer_compliance",
-    "listed",
-    "log",
-    "march",
-    "persson_friction",
-    "rubber_friction",
-    "slide",
-    "steady",
-    "ramp",
-    "ramp_to",
-    "run",
-    "set_threads",
-    "shift_table",
-    "sine",
-    "solve",
-    "step",
-    "stress",
-    "study",
-    "table",
-    "threads",
-    "trapezoid",
-    "triangle",
-    "uniform",
-    "wlf",
-]
+__all__ = sorted(name for name in globals() if name == "__version__" or (name[0] != "_" and name != "open"))

@@ -1,4 +1,4 @@
-"""The numbers of the rows: as arrays of a result, and as numbers of a step. Each is declared, so that editors and type checkers know it."""
+"""The numbers of the rows: as arrays of a result, and as numbers of a step. `_rows.pyi` declares each for editors and type checkers."""
 
 from __future__ import annotations
 
@@ -9,24 +9,7 @@ from ._arrays import Floats
 from ._units import written
 
 #: Numbers of each row: unit and meaning.
-ROW: dict[str, tuple[str, str]] = {
-    "time": ("s", "time"),
-    "load": ("N", "normal load"),
-    "approach": ("m", "rigid-body approach"),
-    "contact_area": ("m^2", "contact area"),
-    "contact_area_corrected": ("m^2", "contact area corrected by its perimeter"),
-    "contact_fraction": ("1", "contact area over nominal area"),
-    "capped_area": ("m^2", "area at the hardness"),
-    "mean_pressure": ("Pa", "load over nominal area"),
-    "max_pressure": ("Pa", "largest pressure"),
-    "mean_gap": ("m", "mean gap"),
-    "iterations": ("1", "iterations of the solver"),
-    "convolutions": ("1", "convolutions"),
-    "residual": ("1", "KKT residual"),
-    "certificate": ("1", "certified relative error in the energy norm"),
-    "time_error": ("1", "estimated error of the stress, relative"),
-    "stage": ("1", "stage of the load"),
-}
+ROW: dict[str, tuple[str, str]] = {name: (written(unit), words) for name, unit, words in _core.rows()}
 #: Optional quantities of a row: unit and meaning.
 QUANTITIES: dict[str, tuple[str, str]] = {name: (written(unit), words) for name, unit, words, _ in _core.quantities()}
 #: Those of them with a number for each bin: names of dimension and ends, unit and meaning of what is counted.
@@ -47,45 +30,45 @@ def units_of(name: str, unit: str, line: bool) -> str:
     return "1" if name == "contact_perimeter" else ON_LINE.get(unit, unit)
 
 
-class Column:
-    """A column of the rows as attribute of their holder, which finds it by `_column(name)`; it cannot be replaced."""
+class _Held:
+    """A number or column as attribute of its holder, which finds it by a method; it cannot be replaced."""
+
+    _find: str
+    _sealed: str
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
         unit, words = {**ROW, **QUANTITIES}.get(name, ("", name.replace("_", " ")))
         self.__doc__ = f"{words[:1].upper()}{words[1:]}{f' [{unit}]' if unit not in ('', '1') else ''}."
+
+    def _of(self, holder: Any) -> Any:
+        return self if holder is None else getattr(holder, self._find)(self._name)
+
+    def __set__(self, holder: object, value: Any) -> NoReturn:
+        raise AttributeError(f"{self._name} cannot be set: {self._sealed}")
+
+
+class Column(_Held):
+    """A column of the rows, which its holder finds by `_column(name)`."""
+
+    _find, _sealed = "_column", "a result is what was computed; work on a copy of its numbers"
 
     @overload
     def __get__(self, holder: None, owner: type) -> Column: ...
     @overload
     def __get__(self, holder: object, owner: type) -> Floats: ...
-    def __get__(self, holder: Any, owner: type) -> Column | Floats:
-        if holder is None:
-            return self
-        values: Floats = holder._column(self._name)
-        return values
-
-    def __set__(self, holder: object, value: Any) -> NoReturn:
-        raise AttributeError(f"{self._name} cannot be set: a result is what was computed; work on a copy of its numbers")
+    def __get__(self, holder: Any, owner: type) -> Any:
+        return self._of(holder)
 
 
-class Number:
-    """A number of one row, as :class:`Column`."""
+class Number(_Held):
+    """A number of one row, which its holder finds by `_number(name)`."""
 
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-        unit, words = {**ROW, **QUANTITIES}.get(name, ("", name.replace("_", " ")))
-        self.__doc__ = f"{words[:1].upper()}{words[1:]}{f' [{unit}]' if unit not in ('', '1') else ''}."
+    _find, _sealed = "_number", "a step is what was computed"
 
     @overload
     def __get__(self, holder: None, owner: type) -> Number: ...
     @overload
     def __get__(self, holder: object, owner: type) -> float: ...
-    def __get__(self, holder: Any, owner: type) -> Number | float:
-        if holder is None:
-            return self
-        value: float = holder._number(self._name)
-        return value
-
-    def __set__(self, holder: object, value: Any) -> NoReturn:
-        raise AttributeError(f"{self._name} cannot be set: a step is what was computed")
+    def __get__(self, holder: Any, owner: type) -> Any:
+        return self._of(holder)

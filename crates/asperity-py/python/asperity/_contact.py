@@ -15,10 +15,11 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Floats, array, as_plane, cells_of, centres, check_places, choice, count, field, frozen, number
-from ._columns import ROW, Column
+from ._columns import ROW
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
 from ._result import Result
+from ._rows import ContactColumns
 from ._sealed import ReadOnlyArrays, Sealed
 from ._surface import Surface, surface_of
 from ._units import bare, is_labelled
@@ -286,25 +287,11 @@ class ElasticContact(Sealed):
         )
 
 
-class ElasticCurve(Sealed, Sequence[ElasticContact]):
+class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
     """Elastic contacts of one surface under a list of loads, pressures or approaches; made by :func:`elastic`.
 
     ``curve[n]`` is a contact with its fields; `load`, `approach`, `contact_area`, ... are arrays over all of them.
     """
-
-    load = Column()
-    approach = Column()
-    contact_area = Column()
-    contact_area_corrected = Column()
-    contact_fraction = Column()
-    capped_area = Column()
-    mean_pressure = Column()
-    max_pressure = Column()
-    mean_gap = Column()
-    residual = Column()
-    certificate = Column()
-    iterations = Column()
-    convolutions = Column()
 
     def __init__(self, contacts: list[ElasticContact]) -> None:
         self._contacts = contacts

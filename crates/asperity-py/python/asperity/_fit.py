@@ -378,10 +378,10 @@ def _options(rest: dict[str, Any], kind: str | None) -> dict[str, Any]:
     if reference is not None and not estimated:
         raise CaseError("reference goes with shift='estimated'; other shifts have their own")
     most = rest["max_terms"]
+    keys = {"model": "estimated", "reference": number("reference", reference)} if estimated else None
     return {
         "measure": rest["modulus"],
-        "shift": shift._words if isinstance(shift, Shift) else None,
-        "estimate": number("reference", reference) if estimated else None,
+        "shift": shift._keys if isinstance(shift, Shift) else keys,
         "vertical": rest["vertical"],
         "window": _window(rest["window"], kind),
         "per_decade": number("per_decade", rest["per_decade"]),

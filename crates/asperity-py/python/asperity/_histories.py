@@ -9,12 +9,22 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
 from ._arrays import choice, count, in_hertz, line, number, points
 from ._core import CaseError
 from ._units import has_unit, unit_among
 
 __all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
+
+
+#: What the numbers of a history are called in a case.
+_NUMBERS = {
+    "step": ("value",),
+    "ramp": ("value", "duration"),
+    "ramp-to": ("value", "duration"),
+    "triangle": ("peak", "rise", "fall"),
+    "trapezoid": ("peak", "rise", "hold", "fall"),
+    "sine": ("mean", "amplitude", "frequency"),
+}
 
 
 @dataclass(frozen=True)
@@ -26,6 +36,16 @@ class History:
     points: tuple[tuple[float, float], ...] = ()
     #: SI unit of its values, where they were given with one.
     unit: str | None = None
+
+    @property
+    def _keys(self) -> dict[str, Any]:
+        """The keys of a `history`."""
+        if self.kind == "ramp-to":
+            kind = {"kind": "ramp", "from": "current"}
+        else:
+            kind = {"kind": self.kind}
+        points = {"points": [list(point) for point in self.points]} if self.kind == "table" else {}
+        return {**kind, **dict(zip(_NUMBERS.get(self.kind, ()), self.numbers)), **points}
 
     def __repr__(self) -> str:
         if len(self.points) > 4:
@@ -40,6 +60,16 @@ class Times:
 
     kind: str
     numbers: tuple[float, ...]
+
+    @property
+    def _keys(self) -> dict[str, Any]:
+        """The keys of `[time]`."""
+        if self.kind == "list":
+            return {"times": list(self.numbers)}
+        end, second, *first = self.numbers
+        if self.kind == "adaptive":
+            return {"end": end, "spacing": "adaptive", "tolerance": second, "first": first[0]}
+        return {"end": end, "steps": int(second), "spacing": self.kind, **({"first": first[0]} if first else {})}
 
     def __repr__(self) -> str:
         if self.kind == "list" and len(self.numbers) > 4:
@@ -168,34 +198,26 @@ class Stage:
                 raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or a pair as in ('load', 0.1)")
             choice("the event of until", self.until[0], ("approach", "load", "pressure"))
 
-    def _parts(self, load_unit: str) -> _core._Stage:
-        """As the core takes it; the unit of a load is N, or N/m of a line contact."""
+    def _keys(self, load_unit: str) -> dict[str, Any]:
+        """The keys of one of the `stages`; the unit of a load is N, or N/m of a line contact."""
         given = {"load": self.load, "pressure": self.pressure, "approach": self.approach}
         control, value = one_of(given, "a stage needs load, pressure or approach")
-        history = as_history(control, value, load_unit if control == "load" else None)
-        until: tuple[str, float] | None = None
-        if isinstance(self.until, str):
-            until = (self.until, 0.0)
-        elif self.until is not None:
+        keys: dict[str, Any] = {
+            "control": control,
+            "history": as_history(control, value, load_unit if control == "load" else None)._keys,
+            "after_jump": self.after_jump,
+        }
+        if self.duration is not None:
+            keys["duration"] = number("duration of the stage", self.duration)
+        if isinstance(self.until, tuple):
             event, limit = self.until
-            until = (str(event), number(f"until {event}", limit, {"approach": "m", "load": load_unit, "pressure": "Pa"}.get(str(event))))
-        grid = None if self.times is None else as_times(self.times)
-        return (
-            control,
-            (history.kind, list(history.numbers)),
-            list(history.points),
-            None if self.duration is None else number("duration of the stage", self.duration),
-            until,
-            self.after_jump,
-            None if grid is None else (grid.kind, list(grid.numbers)),
-        )
-
-
-def as_stage(control: str, history: History) -> Stage:
-    """One stage to the end of the run."""
-    if control == "load":
-        return Stage(load=history)
-    return Stage(pressure=history) if control == "pressure" else Stage(approach=history)
+            unit = {"approach": "m", "load": load_unit, "pressure": "Pa"}[event]
+            keys["until"] = {event: number(f"until {event}", limit, unit)}
+        elif self.until is not None:
+            keys["until"] = self.until
+        if self.times is not None:
+            keys["time"] = as_times(self.times)._keys
+        return keys
 
 
 def one_of(given: dict[str, History | float | None], otherwise: str) -> tuple[str, History | float]:
@@ -253,9 +275,3 @@ def as_history(what: str, value: Any, unit: str | None = None) -> History:
 def as_times(value: Times | npt.ArrayLike) -> Times:
     """A time grid; a sequence or an array holds the times."""
     return value if isinstance(value, Times) else listed(value)
-
-
-def sines_of(programme: list[Stage]) -> list[dict[str, float]]:
-    """Number and frequency [Hz] of each stage whose history is a sine."""
-    histories = [(n, given) for n, stage in enumerate(programme) for given in (stage.load, stage.pressure, stage.approach)]
-    return [{"stage": n, "frequency": given.numbers[2]} for n, given in histories if isinstance(given, History) and given.kind == "sine"]

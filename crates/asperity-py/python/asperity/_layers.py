@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, get_args
 
 import numpy as np
@@ -14,9 +14,6 @@ from ._arrays import Floats, array, check_length, choice, line, number
 from ._core import CaseError
 from ._materials import Material
 from ._words import Interface
-
-#: Thickness and interface of each layer, and whether a half-space lies below.
-Stack = tuple[list[tuple[float, str]], bool]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +38,13 @@ class Layer:
         if self.poisson is not None:
             object.__setattr__(self, "poisson", number("poisson", self.poisson))
         choice("interface", self.interface, get_args(Interface))
+
+    @property
+    def _keys(self) -> dict[str, Any]:
+        """The keys of a `[[body.layer]]`."""
+        own = {"thickness": self.thickness, "interface": self.interface, "material": self.material._keys["material"]}
+        lateral = {key: value for key, value in self.material._keys.items() if key in ("poisson", "bulk_modulus")}
+        return {**own, **(lateral if self.poisson is None else {"poisson": self.poisson})}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,43 +77,18 @@ class Body:
         if not isinstance(self.base, Material) and self.base != "rigid":
             raise CaseError(f"base is {self.base!r}, but must be 'rigid', or the material of the half-space below")
 
-    def _parts(self) -> tuple[list[_core.Body], Stack]:
-        """The materials from the surface down, and how they lie on each other."""
-        prefix = f"{self.name}, " if self.name else ""
-        materials = [_named(layer.material, f"{prefix}layer {n}", layer.poisson) for n, layer in enumerate(self.layers, 1)]
-        if self.hardness is not None:
-            materials[0] = type(materials[0])(**{**materials[0]._given, "hardness": self.hardness})
+    @property
+    def _keys(self) -> dict[str, Any]:
+        """The keys of a `[[body]]`."""
+        own: dict[str, Any] = {"layer": [layer._keys for layer in self.layers]}
+        hardness = self.layers[0].material._given.get("hardness") if self.hardness is None else self.hardness
+        if hardness is not None:
+            own["hardness"] = hardness
+        if self.name is not None:
+            own["name"] = self.name
         if isinstance(self.base, Material):
-            materials.append(_named(self.base, f"{prefix}base", None))
-        stack: list[tuple[float, str]] = [(float(layer.thickness), layer.interface) for layer in self.layers]
-        return [material._body for material in materials], (stack, isinstance(self.base, Material))
-
-
-def _named(material: Material, name: str, poisson: float | None) -> Material:
-    given = {"name": name, **material._given}
-    if poisson is not None:
-        given = {**given, "poisson": poisson, "bulk_modulus": None}
-    return type(material)(**given)
-
-
-def parts_of(body: Material | Body) -> tuple[list[_core.Body], Stack]:
-    """The materials of a body from the surface down, and how they lie on each other."""
-    return body._parts() if isinstance(body, Body) else ([body._body], ([], True))
-
-
-def hardness_of(body: Material | Body) -> float | None:
-    """The pressure that the surface of a body bears [Pa]."""
-    if isinstance(body, Material):
-        return body._given.get("hardness")
-    return body.hardness if body.hardness is not None else body.layers[0].material._given.get("hardness")
-
-
-def with_hardness(body: Material | Body, hardness: float) -> Material | Body:
-    """The same body with another hardness."""
-    if isinstance(body, Body):
-        return replace(body, hardness=hardness)
-    given: dict[str, Any] = {**body._given, "hardness": hardness}
-    return type(body)(**given)
+            return {**{key: value for key, value in self.base._keys.items() if key not in ("name", "hardness")}, **own}
+        return {"base": "rigid", **own}
 
 
 def layer_compliance(q: npt.ArrayLike, body: Material | Body, *, time: float = 0.0) -> Floats:
@@ -131,6 +110,5 @@ def layer_compliance(q: npt.ArrayLike, body: Material | Body, *, time: float = 0
     waves = line("wave numbers", at.reshape(-1))
     if not (np.isfinite(waves) & (waves > 0.0)).all():
         raise CaseError("wave numbers must be finite and greater than 0 rad/m")
-    bodies, stack = parts_of(body)
-    values: Floats = _core.layer_compliance(waves, bodies, stack, number("time", time)).reshape(at.shape)
+    values: Floats = _core.layer_compliance(waves, {"body": [body._keys]}, number("time", time)).reshape(at.shape)
     return values

@@ -15,7 +15,8 @@ Mechanics (1985), section 3.2, for the contact compliance.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -25,54 +26,59 @@ from ._arrays import Floats, array, line, number, points
 from ._core import CaseError
 from ._sealed import Sealed
 from ._shifts import Shift
-from ._units import carries, frequency, is_labelled
+from ._units import frequency
 from ._words import Measure
 
 
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Material(Sealed):
     """A deformable body; the base of all models.
 
     Its functions take a number or an array of any shape and return the same.
     """
 
-    _given: dict[str, Any]
+    poisson: float | None = None
+    bulk_modulus: float | None = None
+    hardness: float | None = None
+    name: str | None = None
+    shift: Shift | None = None
+    temperature: float | None = None
 
-    def __init__(
-        self,
-        model: str,
-        measure: str,
-        numbers: Sequence[float],
-        terms: Sequence[tuple[float, float]] = (),
-        *,
-        given: dict[str, Any],
-    ) -> None:
+    #: Its name in a case.
+    _model: ClassVar[str]
+    #: The keys of a `[[body]]`, and what the core makes of them.
+    _keys: dict[str, Any] = field(init=False)
+    _body: _core.Body = field(init=False)
+
+    def __post_init__(self) -> None:
+        if self.shift is not None and not isinstance(self.shift, Shift):
+            raise CaseError(f"shift is {self.shift!r}, but must be one of asperity.wlf, arrhenius or shift_table")
         # Plain numbers, so that materials are compared, shown and sent without the package of their units.
-        self._given = {
-            key: number(key, value) if carries(value) or is_labelled(value) or isinstance(value, (np.ndarray, np.generic)) else value
-            for key, value in given.items()
-            if value is not None and key not in ("self", "__class__")
-        }
+        self._hold(**{key: self._plain(key, value) for key, value in self._given.items()})
+        own = {key: value for key, value in self._given.items() if key in _OF_BODY}
+        keys = {**own, "name": str(own.get("name", type(self).__name__)), "material": self._material()}
+        self._hold(_keys=keys, _body=_core.Body(keys))
 
-        def optional(name: str) -> float | None:
-            value = given.get(name)
-            return None if value is None else number(name, value)
+    @property
+    def _given(self) -> dict[str, Any]:
+        """What it was made with: the numbers of its model first."""
+        names = [one.name for one in fields(self) if one.init]
+        names.sort(key=lambda name: name in Material.__dataclass_fields__)
+        return {name: value for name in names if (value := getattr(self, name)) is not None}
 
-        name = given.get("name")
-        shift = given.get("shift")
-        if shift is not None and not isinstance(shift, Shift):
-            raise CaseError(f"shift is {shift!r}, but must be one of asperity.wlf, arrhenius or shift_table")
-        self._body = _core.Body(
-            model,
-            measure,
-            [float(n) for n in numbers],
-            list(terms),
-            optional("poisson"),
-            optional("bulk_modulus"),
-            optional("hardness"),
-            type(self).__name__ if name is None else str(name),
-            None if shift is None else shift._words,
-            optional("temperature"),
-        )
+    def _plain(self, key: str, value: Any) -> Any:
+        """A parameter without its unit."""
+        if key in ("name", "modulus", "compliance", "shift"):
+            return value
+        found = number(key, value)
+        return value if type(value) in (int, float) else found
+
+    def _material(self) -> dict[str, Any]:
+        """The keys of its `material`."""
+        own = {key: value for key, value in self._given.items() if key not in _OF_BODY}
+        if self.shift is not None:
+            own["shift"] = self.shift._keys
+        return {"model": self._model, **own}
 
     @property
     def _whole(self) -> str:
@@ -147,7 +153,7 @@ class Material(Sealed):
     @property
     def error(self) -> float | None:
         """Largest relative error of the Prony sum that stands for a fractional model, in its window; else None."""
-        return self._body.error
+        return None
 
     @property
     def relaxation_terms(self) -> tuple[float, list[tuple[float, float]]]:
@@ -165,132 +171,79 @@ def _make(kind: type[Material], given: dict[str, Any]) -> Material:
     return kind(**given)
 
 
-def _modulus(given: dict[str, Any]) -> tuple[str, float]:
-    young, shear = given.get("young"), given.get("shear")
-    if (young is None) == (shear is None):
-        raise CaseError("give young or shear, exactly one of them")
-    return ("young", number("young", young)) if shear is None else ("shear", number("shear", shear))
+#: What is said of the body, beside its material.
+_OF_BODY = ("name", "poisson", "bulk_modulus", "hardness")
 
 
-def _second(given: dict[str, Any], measure: str, young: str, shear: str) -> float:
-    key, other = (young, shear) if measure == "young" else (shear, young)
-    if given.get(key) is None or given.get(other) is not None:
-        raise CaseError(f"give {key}, as the other modulus is {measure}")
-    return number(key, given[key])
-
-
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Elastic(Material):
     """An elastic body of Young's modulus `young` or shear modulus `shear` [Pa]."""
 
-    def __init__(
-        self,
-        *,
-        young: float | None = None,
-        shear: float | None = None,
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        shift: Shift | None = None,
-        temperature: float | None = None,
-    ) -> None:
-        given = dict(locals())
-        measure, modulus = _modulus(given)
-        super().__init__("elastic", measure, [modulus], given=given)
+    _model = "elastic"
+
+    young: float | None = None
+    shear: float | None = None
+
+    def _material(self) -> dict[str, Any]:
+        own = super()._material()
+        measure = "shear" if self.young is None else "young"
+        if not {"shift", "temperature"} & own.keys() or {"young", "shear"} <= own.keys() or not own.get(measure):
+            return own
+        # A temperature changes its modulus: the case has this as creep without terms.
+        modulus = own.pop(measure)
+        return {**own, "model": "creep", "compliance": measure, "instantaneous": 1.0 / modulus}
 
 
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Maxwell(Material):
     """Spring and dashpot in series: a fluid. `relaxation_time` [s]."""
 
-    def __init__(
-        self,
-        *,
-        young: float | None = None,
-        shear: float | None = None,
-        relaxation_time: float,
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        shift: Shift | None = None,
-        temperature: float | None = None,
-    ) -> None:
-        given = dict(locals())
-        measure, modulus = _modulus(given)
-        super().__init__("maxwell", measure, [modulus, number("relaxation_time", relaxation_time)], given=given)
+    _model = "maxwell"
+
+    young: float | None = None
+    shear: float | None = None
+    relaxation_time: float
 
 
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class KelvinVoigt(Material):
     """Spring and dashpot in parallel: no instantaneous compliance. `retardation_time` [s]."""
 
-    def __init__(
-        self,
-        *,
-        young: float | None = None,
-        shear: float | None = None,
-        retardation_time: float,
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        shift: Shift | None = None,
-        temperature: float | None = None,
-    ) -> None:
-        given = dict(locals())
-        measure, modulus = _modulus(given)
-        super().__init__("kelvin-voigt", measure, [modulus, number("retardation_time", retardation_time)], given=given)
+    _model = "kelvin-voigt"
+
+    young: float | None = None
+    shear: float | None = None
+    retardation_time: float
 
 
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Zener(Material):
     """A spring in series with a Kelvin element: the standard linear solid. `retardation_time` [s] of creep."""
 
-    def __init__(
-        self,
-        *,
-        young: float | None = None,
-        young_kelvin: float | None = None,
-        shear: float | None = None,
-        shear_kelvin: float | None = None,
-        retardation_time: float,
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        shift: Shift | None = None,
-        temperature: float | None = None,
-    ) -> None:
-        given = dict(locals())
-        measure, modulus = _modulus(given)
-        kelvin = _second(given, measure, "young_kelvin", "shear_kelvin")
-        super().__init__("zener", measure, [modulus, kelvin, number("retardation_time", retardation_time)], given=given)
+    _model = "zener"
+
+    young: float | None = None
+    young_kelvin: float | None = None
+    shear: float | None = None
+    shear_kelvin: float | None = None
+    retardation_time: float
 
 
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Burgers(Material):
     """A Maxwell and a Kelvin element in series."""
 
-    def __init__(
-        self,
-        *,
-        young: float | None = None,
-        young_kelvin: float | None = None,
-        shear: float | None = None,
-        shear_kelvin: float | None = None,
-        relaxation_time: float,
-        retardation_time: float,
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        shift: Shift | None = None,
-        temperature: float | None = None,
-    ) -> None:
-        given = dict(locals())
-        measure, modulus = _modulus(given)
-        kelvin = _second(given, measure, "young_kelvin", "shear_kelvin")
-        times = [number("relaxation_time", relaxation_time), number("retardation_time", retardation_time)]
-        super().__init__("burgers", measure, [modulus, times[0], kelvin, times[1]], given=given)
+    _model = "burgers"
+
+    young: float | None = None
+    young_kelvin: float | None = None
+    shear: float | None = None
+    shear_kelvin: float | None = None
+    relaxation_time: float
+    retardation_time: float
 
 
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Prony(Material):
     """E(t) = equilibrium + sum of modulus exp(-t/time), a generalised Maxwell (Wiechert) solid.
 
@@ -308,65 +261,91 @@ class Prony(Material):
     2491.44
     """
 
-    def __init__(
-        self,
-        *,
-        equilibrium: float | None = None,
-        instantaneous: float | None = None,
-        terms: Sequence[tuple[float, float]],
-        modulus: Measure = "young",
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        shift: Shift | None = None,
-        temperature: float | None = None,
-    ) -> None:
-        terms = terms if hasattr(terms, "__len__") else list(terms)
-        given = dict(locals())
-        if (equilibrium is None) == (instantaneous is None):
-            raise CaseError(
-                "give equilibrium with terms of (modulus, time), or instantaneous with terms of (fraction, time)"
-            )
-        pairs = points("terms", terms, ("Pa" if equilibrium is not None else "", "s")) if len(terms) else []
-        given["terms"] = pairs
-        if equilibrium is not None:
-            super().__init__("prony", modulus, [number("equilibrium", equilibrium)], pairs, given=given)
-        else:
-            first = given["instantaneous"] = number("instantaneous", instantaneous, "Pa")
-            super().__init__("prony-instantaneous", modulus, [first], pairs, given=given)
+    _model = "prony"
+
+    equilibrium: float | None = None
+    instantaneous: float | None = None
+    terms: Sequence[tuple[float, float]]
+    modulus: Measure = "young"
+
+    def _plain(self, key: str, value: Any) -> Any:
+        if key == "terms":
+            return _pairs(value, ("" if self.equilibrium is None else "Pa", "s"))
+        return number(key, value, "Pa") if key == "instantaneous" else super()._plain(key, value)
+
+    def _material(self) -> dict[str, Any]:
+        value = "fraction" if self.equilibrium is None else "modulus"
+        return {**super()._material(), "terms": [{value: amount, "time": time} for amount, time in self.terms]}
 
 
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Creep(Material):
     """D(t) = instantaneous + sum of compliance (1 - exp(-t/time)) + fluidity t, a generalised Kelvin solid.
 
     `terms` are (compliance [1/Pa], retardation time [s]); `fluidity` in 1/(Pa s).
     """
 
-    def __init__(
-        self,
-        *,
-        instantaneous: float,
-        terms: Sequence[tuple[float, float]] = (),
-        fluidity: float = 0.0,
-        compliance: Measure = "young",
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        shift: Shift | None = None,
-        temperature: float | None = None,
-    ) -> None:
-        terms = terms if hasattr(terms, "__len__") else list(terms)
-        given = dict(locals())
-        pairs = points("terms", terms, ("1/Pa", "s")) if len(terms) else []
-        given["terms"] = pairs
-        given["instantaneous"] = number("instantaneous", instantaneous, "1/Pa")
-        numbers = [given["instantaneous"], number("fluidity", fluidity)]
-        super().__init__("creep", compliance, numbers, pairs, given=given)
+    _model = "creep"
+
+    instantaneous: float
+    terms: Sequence[tuple[float, float]] = ()
+    fluidity: float = 0.0
+    compliance: Measure = "young"
+
+    def _plain(self, key: str, value: Any) -> Any:
+        if key == "terms":
+            return _pairs(value, ("1/Pa", "s"))
+        return number(key, value, "1/Pa") if key == "instantaneous" else super()._plain(key, value)
+
+    def _material(self) -> dict[str, Any]:
+        return {**super()._material(), "terms": [{"compliance": amount, "time": time} for amount, time in self.terms]}
 
 
-class Springpot(Material):
+def _pairs(terms: Sequence[tuple[float, float]], units: tuple[str, str]) -> list[tuple[float, float]]:
+    """The terms of a series."""
+    listed = terms if hasattr(terms, "__len__") else list(terms)
+    return points("terms", listed, units) if len(listed) else []
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class _Fractional(Material):
+    """A model that becomes a Prony sum."""
+
+    #: The sum of its model alone.
+    _sum: _core.Body = field(init=False)
+
+    def _plain(self, key: str, value: Any) -> Any:
+        if key != "window":
+            return super()._plain(key, value)
+        try:
+            first, last = value
+        except (TypeError, ValueError):
+            raise CaseError(f"window is {value!r}, but must be (first, last) time in s") from None
+        return number("first time of the window", first), number("last time of the window", last)
+
+    def _material(self) -> dict[str, Any]:
+        own = super()._material()
+        window = own.pop("window")
+        thermal: dict[str, Any] = {key: own.pop(key) for key in ("shift", "temperature") if key in own}
+        self._hold(_sum=_core.Body({"poisson": 0.5, "material": own}, window))
+        instantaneous, terms, fluidity = self._sum.creep_terms()
+        return {
+            "model": "creep",
+            "compliance": "young" if any(key.startswith("young") for key in own) else "shear",
+            "instantaneous": instantaneous,
+            "terms": [{"compliance": amount, "time": time} for amount, time in terms],
+            "fluidity": fluidity,
+            **thermal,
+        }
+
+    @property
+    def error(self) -> float | None:
+        """Largest relative error of the Prony sum, in its window."""
+        return self._sum.error
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Springpot(_Fractional):
     """Creep (t/time)^order / (modulus Gamma(1 + order)), between spring and dashpot.
 
     As a Prony sum with a relative error of creep and relaxation below `tolerance` over `window` = (first, last) time [s];
@@ -378,101 +357,41 @@ class Springpot(Material):
     (1.0, True)
     """
 
-    def __init__(
-        self,
-        *,
-        young: float | None = None,
-        shear: float | None = None,
-        time: float,
-        order: float,
-        window: tuple[float, float],
-        tolerance: float = 1e-3,
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        shift: Shift | None = None,
-        temperature: float | None = None,
-    ) -> None:
-        given = dict(locals())
-        measure, modulus = _modulus(given)
-        numbers = [modulus, number("time", time), number("order", order), *_windowed(given), number("tolerance", tolerance)]
-        super().__init__("springpot", measure, numbers, given=given)
+    _model = "springpot"
+
+    young: float | None = None
+    shear: float | None = None
+    time: float
+    order: float
+    window: tuple[float, float]
+    tolerance: float = 1e-3
 
 
-class FractionalMaxwell(Material):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class FractionalMaxwell(_Fractional):
     """A spring and a springpot in series, as a Prony sum; see :class:`Springpot`."""
 
-    def __init__(
-        self,
-        *,
-        young: float | None = None,
-        shear: float | None = None,
-        time: float,
-        order: float,
-        window: tuple[float, float],
-        tolerance: float = 1e-3,
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        shift: Shift | None = None,
-        temperature: float | None = None,
-    ) -> None:
-        given = dict(locals())
-        measure, modulus = _modulus(given)
-        numbers = [modulus, number("time", time), number("order", order), *_windowed(given), number("tolerance", tolerance)]
-        super().__init__("fractional-maxwell", measure, numbers, given=given)
+    _model = "fractional-maxwell"
+
+    young: float | None = None
+    shear: float | None = None
+    time: float
+    order: float
+    window: tuple[float, float]
+    tolerance: float = 1e-3
 
 
-class FractionalZener(Material):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class FractionalZener(_Fractional):
     """A spring in parallel with a fractional Maxwell element, as a Prony sum; see :class:`Springpot`."""
 
-    def __init__(
-        self,
-        *,
-        young_equilibrium: float | None = None,
-        young_instantaneous: float | None = None,
-        shear_equilibrium: float | None = None,
-        shear_instantaneous: float | None = None,
-        time: float,
-        order: float,
-        window: tuple[float, float],
-        tolerance: float = 1e-3,
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        shift: Shift | None = None,
-        temperature: float | None = None,
-    ) -> None:
-        given = dict(locals())
-        pairs = {
-            "young": (young_equilibrium, young_instantaneous),
-            "shear": (shear_equilibrium, shear_instantaneous),
-        }
-        whole = [measure for measure, pair in pairs.items() if None not in pair]
-        some = [measure for measure, pair in pairs.items() if pair != (None, None)]
-        if len(whole) != 1 or some != whole:
-            raise CaseError("give equilibrium and instantaneous modulus, both as young_ or both as shear_")
-        equilibrium, instantaneous = pairs[whole[0]]
-        numbers = [
-            number("equilibrium modulus", equilibrium),
-            number("instantaneous modulus", instantaneous),
-            number("time", time),
-            number("order", order),
-            *_windowed(given),
-            number("tolerance", tolerance),
-        ]
-        super().__init__("fractional-zener", whole[0], numbers, given=given)
+    _model = "fractional-zener"
 
-
-def _windowed(given: dict[str, Any]) -> tuple[float, float]:
-    """The window [s], which is plain numbers in `given` then."""
-    try:
-        first, last = given["window"]
-    except (TypeError, ValueError):
-        raise CaseError(f"window is {given['window']!r}, but must be (first, last) time in s") from None
-    window = number("first time of the window", first), number("last time of the window", last)
-    given["window"] = window
-    return window
+    young_equilibrium: float | None = None
+    young_instantaneous: float | None = None
+    shear_equilibrium: float | None = None
+    shear_instantaneous: float | None = None
+    time: float
+    order: float
+    window: tuple[float, float]
+    tolerance: float = 1e-3

@@ -5,13 +5,11 @@ from __future__ import annotations
 import difflib
 import inspect
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
 from ._arrays import Floats, angle, choice, line, number
 from ._core import CaseError
 from ._histories import History, Times, as_history
@@ -22,69 +20,16 @@ if TYPE_CHECKING:
     from ._materials import Material
     from ._result import Result
 
-#: What each row of a contact in motion has.
-OF_MOTION = (
-    "velocity",
-    "sliding_distance",
-    "friction_force",
-    "side_force",
-    "friction_coefficient",
-    "friction_uncertainty",
-    "rolling_moment",
-    "dissipated_power",
-)
-
-
-@dataclass(frozen=True)
-class Motion:
-    """How a contact moves; made by :func:`slide` and :func:`steady`."""
-
-    what: str
-    kind: str
-    numbers: tuple[float, ...]
-    points: tuple[tuple[float, float], ...]
-    start: float
-    direction: tuple[str, float]
-    cells_per_step: float
-    shear_stress: float | None
-    rolls: bool
-
-    @property
-    def steady(self) -> bool:
-        """Whether it is a sweep over velocities."""
-        return self.what == "steady"
-
-    def parts(self) -> _core._Motion:
-        """For the compiled part."""
-        history = (self.kind, list(self.numbers))
-        return (self.what, history, list(self.points), self.start, self.direction, self.cells_per_step, self.shear_stress, self.rolls)
-
-    def quantities(self, surface: Any, boundary: str) -> list[str]:
-        """What its rows have."""
-        names = list(OF_MOTION)
-        if self.steady:
-            names = [name for name in names if name not in ("velocity", "sliding_distance")]
-        elif len(surface.size) == 1 and boundary == "free":
-            # Energies of a free line contact are known up to a constant.
-            names.remove("dissipated_power")
-        return names if self.shear_stress is None else [*names, "friction_coefficient_total"]
-
-    def setup(self) -> dict[str, Any]:
-        """As in stored results."""
-        x, y = {"x": (1.0, 0.0), "y": (0.0, 1.0)}.get(self.direction[0], (np.cos(self.direction[1]), np.sin(self.direction[1])))
-        return {"steady": self.steady, "direction": [float(x), float(y)], "rolls": self.rolls, "shear_stress": self.shear_stress}
-
-
-def _direction(direction: str | float) -> tuple[str, float]:
-    if isinstance(direction, str):
-        if direction not in ("x", "y"):
-            raise CaseError(f"direction is {direction!r}, but must be 'x', 'y' or an angle from x towards y [rad]")
-        return direction, 0.0
-    return "angle", angle("direction", direction)
-
-
-def _rolls(kind: str) -> bool:
-    return bool(choice("kind", kind, ("slide", "roll")) == "roll")
+def _keys(travel: dict[str, Any], direction: str | float, kind: str, shear_stress: float | None) -> dict[str, Any]:
+    """The keys of `[motion]`."""
+    if isinstance(direction, str) and direction not in ("x", "y"):
+        raise CaseError(f"direction is {direction!r}, but must be 'x', 'y' or an angle from x towards y [rad]")
+    keys = {
+        **travel,
+        "direction": direction if isinstance(direction, str) else angle("direction", direction),
+        "kind": choice("kind", kind, ("slide", "roll")),
+    }
+    return keys if shear_stress is None else {**keys, "shear_stress": number("shear_stress", shear_stress)}
 
 
 def _check_options(function: Callable[..., Any], options: dict[str, Any]) -> None:
@@ -153,18 +98,12 @@ def slide(
     if (velocity is None) == (path is None):
         raise CaseError("give velocity or path, exactly one of them")
     what, given = ("path", path) if velocity is None else ("velocity", velocity)
-    history = as_history(what, given)
-    motion = Motion(
-        what=what,
-        kind=history.kind,
-        numbers=history.numbers,
-        points=history.points,
-        start=number("start", start),
-        direction=_direction(direction),
-        cells_per_step=number("cells_per_step", cells_per_step),
-        shear_stress=None if shear_stress is None else number("shear_stress", shear_stress),
-        rolls=_rolls(kind),
-    )
+    travel = {
+        what: as_history(what, given)._keys,
+        "start": number("start", start),
+        "cells_per_step": number("cells_per_step", cells_per_step),
+    }
+    motion = _keys(travel, direction, kind, shear_stress)
     return solve(surface, material, times=times, load=load, pressure=pressure, _motion=motion, **options)
 
 
@@ -212,20 +151,7 @@ def steady(
     from ._solve import solve
 
     _check_options(steady, options)
-    speeds = np.sort(line("velocities", velocities))
-    motion = Motion(
-        what="steady",
-        kind="list",
-        numbers=tuple(float(v) for v in speeds),
-        points=(),
-        start=0.0,
-        direction=_direction(direction),
-        cells_per_step=1.0,
-        shear_stress=None if shear_stress is None else number("shear_stress", shear_stress),
-        rolls=_rolls(kind),
-    )
-    if len(np.unique(speeds)) != len(speeds):
-        raise CaseError("velocities holds a velocity twice, but must hold each once")
+    travel = {"steady": {"velocities": line("velocities", velocities).tolist()}}
     return solve(
         surface,
         material,
@@ -236,7 +162,7 @@ def steady(
         every=every,
         progress=progress,
         on_step=on_step,
-        _motion=motion,
+        _motion=_keys(travel, direction, kind, shear_stress),
         **options,
     )
 

@@ -117,11 +117,13 @@ def persson_friction(
     if isinstance(direction, str) and direction not in ("x", "y"):
         raise CaseError(f"direction is {direction!r}, but must be 'x', 'y' or an angle in rad")
     along, turned = (direction, 0.0) if isinstance(direction, str) else ("angle", angle("direction", direction))
+    keys: dict[str, Any] = {"body": [material._keys]}
+    if temperature is not None:
+        keys["temperature"] = {"history": {"kind": "constant", "value": number("temperature", temperature)}}
     theory = _core.Persson(
         shape.heights,
         list(shape.size),
-        material._body,
-        None if temperature is None else number("temperature", temperature),
+        keys,
         number("pressure", pressure),
         along,
         turned,

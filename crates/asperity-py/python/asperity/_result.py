@@ -18,6 +18,7 @@ from ._axis import TIME, VELOCITY
 from ._columns import HISTOGRAMS, QUANTITIES, ROW, Column, units_of
 from ._core import CaseError
 from ._findings import Finding, findings_of
+from ._rows import Columns
 from ._sealed import Sealed
 from ._words import Field, Flow, Sides
 
@@ -28,13 +29,8 @@ if TYPE_CHECKING:
     from .plot import Plots
 
 #: Fields: unit and meaning.
-FIELDS: dict[str, tuple[str, str]] = {
-    "pressure": ("Pa", "contact pressure"),
-    "gap": ("m", "gap between the deformed surfaces"),
-    "displacement": ("m", "normal displacement"),
-    "contact": ("1", "contact state"),
-    "flattening": ("m", "permanent flattening"),
-}
+FIELDS: dict[str, tuple[str, str]] = {name: (unit, words) for name, unit, words in _core.fields()}
+
 
 class Cycle(NamedTuple):
     """One period of a cyclic load; made by :meth:`Result.cycles`."""
@@ -53,7 +49,7 @@ class Cycle(NamedTuple):
     drift_work: float
 
 
-class Result(Sealed):
+class Result(Columns, Sealed):
     """What a run found: one-dimensional arrays over the rows, and fields at some of them.
 
     `time` [s], `load` [N], `approach` [m], `contact_area`, `contact_area_corrected`, `capped_area` [m^2],
@@ -65,46 +61,6 @@ class Result(Sealed):
     those of a result on disk are read anew each time, into arrays of your own.
     """
 
-    time = Column()
-    load = Column()
-    approach = Column()
-    contact_area = Column()
-    contact_area_corrected = Column()
-    contact_fraction = Column()
-    capped_area = Column()
-    mean_pressure = Column()
-    max_pressure = Column()
-    mean_gap = Column()
-    iterations = Column()
-    convolutions = Column()
-    residual = Column()
-    certificate = Column()
-    time_error = Column()
-    stage = Column()
-    # Where they were requested, or the contact moves.
-    contact_stiffness = Column()
-    contact_spots = Column()
-    largest_spot = Column()
-    mean_spot = Column()
-    contact_perimeter = Column()
-    contact_percolation = Column()
-    gap_percolation = Column()
-    rms_gap = Column()
-    contact_eccentricity = Column()
-    elastic_energy = Column()
-    dissipated_energy = Column()
-    flattening_work = Column()
-    external_work = Column()
-    load_power = Column()
-    velocity = Column()
-    sliding_distance = Column()
-    friction_force = Column()
-    side_force = Column()
-    friction_coefficient = Column()
-    friction_coefficient_total = Column()
-    friction_uncertainty = Column()
-    rolling_moment = Column()
-    dissipated_power = Column()
     # Stress below the surface, where it is stored, over `field_times` and `depth`.
     depth = Column()
     max_mises = Column()
@@ -209,7 +165,7 @@ class Result(Sealed):
 
     def __dir__(self) -> list[str]:
         # Columns that it does not have are left out.
-        columns = {name for name, value in vars(Result).items() if isinstance(value, Column)}
+        columns = {name for name, value in {**vars(Columns), **vars(Result)}.items() if isinstance(value, Column)}
         here = {*self._table, *self._stress, self._axis.name} - ({"time"} - {self._axis.name})
         return sorted({*super().__dir__()} - columns | here)
 
@@ -559,28 +515,26 @@ class Result(Sealed):
         attributes = self._attributes
         if not force and os.path.exists(path):
             raise FileExistsError(errno.EEXIST, "exists already; choose another path or replace it with force=True", os.fspath(path))
-        _core.save(
-            os.fspath(path),
-            force,
-            str(attributes.get("title") or ""),
-            str(attributes.get("setup") or "{}"),
-            list(self._size),
-            plain(as_plane(self.initial_gap)),
-            {name: plain(self._table[name]) for name in ROW},
-            [(name, np.require(self._planes(name), None, ["C_CONTIGUOUS", "ALIGNED"])) for name in self._fields],
-            [int(n) for n in self._field_steps],
-            [float(t) for t in self._field_times],
-            [
-                *(
-                    (name, np.empty(0), plain(np.reshape(self._table[name], (-1, 1))))
-                    for name in self._table
-                    if name in QUANTITIES
-                ),
-                *((name, plain(edges), plain(numbers)) for name, (edges, numbers) in self._histograms.items()),
-            ],
-            json.dumps(attributes.get("findings", [])),
-            str(attributes.get("status") or "complete"),
-        )
+        histograms = {name: (plain(edges), plain(numbers)) for name, (edges, numbers) in self._histograms.items()}
+        quantities = {name: (np.empty(0), np.reshape(self._table[name], (-1, 1))) for name in self._table if name in QUANTITIES}
+        columns = {**quantities, **histograms}
+        ends = [(name, edges) for name, (edges, _) in columns.items()]
+        # All of it is read first: it may be replaced.
+        stacks = {name: self._planes(name) for name in self._fields}
+        title, setup, gap = str(attributes.get("title") or ""), str(attributes.get("setup") or "{}"), plain(as_plane(self.initial_gap))
+        writer = _core.Writer(os.fspath(path), force, title, setup, list(self._size), gap, list(self._fields), ends, len(self))
+        for n in range(len(self)):
+            row = {name: float(self._table[name][n]) for name in ROW}
+            maps: dict[str, Any] = {}
+            for k in np.flatnonzero(self._field_steps == n).tolist():
+                fields = {name: np.require(stack[k], None, ["C_CONTIGUOUS", "ALIGNED"]) for name, stack in stacks.items()}
+                # A state between the row before and this one has a time of its own.
+                if self._field_times[k] < row["time"]:
+                    writer.stage(float(self._field_times[k]), fields)
+                else:
+                    maps = fields
+            writer.append(row, [float(number) for _, numbers in columns.values() for number in numbers[n]], maps)
+        writer.finish(str(attributes.get("status") or "complete"), json.dumps(attributes.get("findings", [])), None)
         if self._path is not None and (self._stress or self._leaks):
             _core.derive_again(self._path, os.fspath(path))
 

@@ -9,7 +9,6 @@ Soc. Rheology 4 (1960) 233.
 
 from __future__ import annotations
 
-import math
 import os
 import warnings
 from collections.abc import Sequence
@@ -26,8 +25,6 @@ from ._findings import ResultWarning
 from ._units import carries
 
 
-#: A shift as the core takes it.
-Words = tuple[str, list[float], list[tuple[float, float]], tuple[float | None, list[tuple[float, float]]] | None]
 #: How moduli depend on temperature, besides their times: "density", its expansion [1/K], or (temperature [K], b_T) points.
 Vertical = str | float | Sequence[tuple[float, float]] | None
 
@@ -43,10 +40,10 @@ class Shift:
 
     model: str
     numbers: tuple[float, ...]
-    #: Points of a table: (temperature [K], ln a_T).
+    #: Points of a table: (temperature [K], log10 a_T).
     points: tuple[tuple[float, float], ...] = ()
-    #: How moduli depend on temperature: (expansion [1/K] of a density, ()) or (None, ((temperature [K], ln b_T), ...)).
-    vertical: tuple[float | None, tuple[tuple[float, float], ...]] | None = None
+    #: How moduli depend on temperature: the expansion [1/K] of a density, or points (temperature [K], b_T).
+    vertical: float | tuple[tuple[float, float], ...] | None = None
 
     def factor(self, temperature: npt.ArrayLike) -> Floats:
         """a_T at temperatures [K]: processes take a_T times as long as at the reference temperature.
@@ -56,7 +53,7 @@ class Shift:
         0.161
         """
         at = array("temperatures", temperature)
-        out: Floats = _core.shift_factor(self._words, line("temperatures", at.reshape(-1)))
+        out: Floats = _core.shift_factor(self._keys, line("temperatures", at.reshape(-1)))
         return out.reshape(at.shape)
 
     def vertical_factor(self, temperature: npt.ArrayLike) -> Floats:
@@ -68,27 +65,36 @@ class Shift:
         1.2047
         """
         at = array("temperatures", temperature)
-        out: Floats = _core.vertical_shift_factor(self._words, line("temperatures", at.reshape(-1)))
+        out: Floats = _core.vertical_shift_factor(self._keys, line("temperatures", at.reshape(-1)))
         return out.reshape(at.shape)
 
     @property
-    def _words(self) -> Words:
-        vertical = None if self.vertical is None else (self.vertical[0], list(self.vertical[1]))
-        return self.model, list(self.numbers), list(self.points), vertical
+    def _keys(self) -> dict[str, Any]:
+        """The keys of a `shift`."""
+        keys: dict[str, Any] = {"model": self.model, **dict(zip(_NUMBERS[self.model], self.numbers))}
+        if self.model == "table":
+            keys["points"] = [list(point) for point in self.points]
+        if isinstance(self.vertical, tuple):
+            keys["vertical"] = [list(point) for point in self.vertical]
+        elif self.vertical is not None:
+            keys["vertical"] = {"expansion": self.vertical} if self.vertical else "density"
+        return keys
 
     def __repr__(self) -> str:
         raised = ""
         if self.vertical is not None:
-            expansion, points = self.vertical
-            pairs = [(t, math.exp(ln)) for t, ln in points]
-            raised = f", vertical={pairs if expansion is None else (expansion or 'density')!r}"
+            raised = f", vertical={list(self.vertical) if isinstance(self.vertical, tuple) else (self.vertical or 'density')!r}"
         if self.model == "wlf":
             c1, c2, reference = self.numbers
             return f"wlf(c1={c1!r}, c2={c2!r}, reference={reference!r}{raised})"
         if self.model == "arrhenius":
             energy, reference = self.numbers
             return f"arrhenius(activation_energy={energy!r}, reference={reference!r}{raised})"
-        return f"shift_table({[(t, ln / math.log(10.0)) for t, ln in self.points]!r}{raised})"
+        return f"shift_table({list(self.points)!r}{raised})"
+
+
+#: What the numbers of a shift are called in a case.
+_NUMBERS = {"wlf": ("c1", "c2", "reference"), "arrhenius": ("energy", "reference"), "table": ()}
 
 
 def wlf(*, c1: float, c2: float, reference: float, vertical: Vertical = None) -> Shift:
@@ -118,24 +124,22 @@ def shift_table(
         shift = made(_core.read_shift_table(os.fspath(pairs)))
         assert shift is not None
         return _checked(replace(shift, vertical=_vertical(vertical)))
-    ln10 = math.log(10.0)
-    factors = tuple((t, decades * ln10) for t, decades in points("points of the shift", pairs, ("K", "")))
-    return _checked(Shift("table", (), factors, _vertical(vertical)))
+    return _checked(Shift("table", (), tuple(points("points of the shift", pairs, ("K", ""))), _vertical(vertical)))
 
 
-def _vertical(given: Vertical) -> tuple[float | None, tuple[tuple[float, float], ...]] | None:
+def _vertical(given: Vertical) -> float | tuple[tuple[float, float], ...] | None:
     if given is None:
         return None
     if isinstance(given, str):
         if given != "density":
             raise CaseError(f"vertical is {given!r}, but must be 'density', an expansion in 1/K, or (temperature, b_T) points")
-        return 0.0, ()
+        return 0.0
     if not isinstance(given, (list, tuple)) and np.ndim(given) == 0:
-        return number("vertical", given), ()
+        return number("vertical", given)
     pairs = points("points of the vertical shift", given, ("K", ""))
     if any(not factor > 0.0 for _, factor in pairs):
         raise CaseError(f"points of the vertical shift are {pairs!r}, but the factors b_T must be greater than 0")
-    return None, tuple((t, math.log(factor)) for t, factor in pairs)
+    return tuple(pairs)
 
 
 #: Below this temperature no curves of a polymer are shifted [K]: it is one in degrees Celsius.
@@ -153,26 +157,28 @@ def _kelvin(what: str, value: Any, stacklevel: int) -> float:
 
 def _checked(shift: Shift) -> Shift:
     # The core checks the constants even where no temperature is asked for.
-    _core.shift_factor(shift._words, np.empty(0))
+    _core.shift_factor(shift._keys, np.empty(0))
     return shift
 
 
-def made(words: Words | None) -> Shift | None:
-    """The shift of the core's words."""
-    if words is None:
+def made(keys: dict[str, Any] | None) -> Shift | None:
+    """The shift of these keys."""
+    if keys is None:
         return None
-    model, numbers, pairs, vertical = words
-    raised = None if vertical is None else (vertical[0], tuple(vertical[1]))
-    return Shift(model, tuple(numbers), tuple(pairs), raised)
+    numbers = tuple(keys[name] for name in _NUMBERS[keys["model"]])
+    vertical = keys.get("vertical")
+    if isinstance(vertical, list):
+        vertical = tuple(tuple(point) for point in vertical)
+    elif vertical is not None:
+        vertical = 0.0 if vertical == "density" else vertical["expansion"]
+    return Shift(keys["model"], numbers, tuple(tuple(point) for point in keys.get("points", ())), vertical)
 
 
-def temperatures(value: float | Sequence[tuple[float, float]] | None) -> list[tuple[float, float]]:
-    """A temperature of the run [K], or its (time [s], temperature [K]) points."""
-    if value is None:
-        return []
+def temperature_keys(value: float | Sequence[tuple[float, float]]) -> dict[str, Any]:
+    """The keys of `[temperature]`, of a temperature of the run [K] or its (time [s], temperature [K]) points."""
     if carries(value) or (not isinstance(value, (list, tuple)) and np.ndim(value) == 0):
-        return [(0.0, _kelvin("temperature", value, 5))]
+        return {"history": {"kind": "constant", "value": _kelvin("temperature", value, 5)}}
     pairs = points("temperature", value, ("s", "K"))
     if not pairs:
         raise CaseError("temperature holds no points: give a number [K] or (time [s], temperature [K]) pairs")
-    return pairs
+    return {"history": {"kind": "table", "points": [list(point) for point in pairs]}}

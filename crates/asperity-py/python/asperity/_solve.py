@@ -15,73 +15,32 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import as_plane, cells_of, check_places, choice, count, field, in_order, number
-from ._columns import HISTOGRAMS, ROW, Number
+from ._columns import HISTOGRAMS, Number
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
-from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of, sines_of
-from ._layers import Body, hardness_of, parts_of, with_hardness
+from ._histories import History, Stage, Times, as_history, as_times, one_of
+from ._layers import Body
 from ._materials import Material
-from ._motion import Motion
 from ._progress import Progress
 from ._record import Keep, Record, path_of
 from ._result import Result, open
 from ._sealed import Sealed
-from ._shifts import temperatures
+from ._shifts import temperature_keys
 from ._surface import surface_of
 from ._units import bare
-from ._words import Boundary, Field, Method, Plasticity, Quantity, Scheme
+from ._rows import Numbers, Quantity
+from ._words import Boundary, Field, Method, Plasticity, Scheme
 
 if TYPE_CHECKING:
     from ._arrays import Floats
 
 
-class Step(Sealed):
+class Step(Numbers, Sealed):
     """The state after one row of a march: its numbers as attributes, its fields as arrays.
 
     `time`, `load`, `approach`, `contact_area`, ... as in results. A step is a view: when the march has moved on, its fields can
     no longer be read.
     """
-
-    time = Number()
-    load = Number()
-    approach = Number()
-    contact_area = Number()
-    contact_area_corrected = Number()
-    contact_fraction = Number()
-    capped_area = Number()
-    mean_pressure = Number()
-    max_pressure = Number()
-    mean_gap = Number()
-    iterations = Number()
-    convolutions = Number()
-    residual = Number()
-    certificate = Number()
-    time_error = Number()
-    stage = Number()
-    # Where they were requested, or the contact moves.
-    contact_stiffness = Number()
-    contact_spots = Number()
-    largest_spot = Number()
-    mean_spot = Number()
-    contact_perimeter = Number()
-    contact_percolation = Number()
-    gap_percolation = Number()
-    rms_gap = Number()
-    contact_eccentricity = Number()
-    elastic_energy = Number()
-    dissipated_energy = Number()
-    flattening_work = Number()
-    external_work = Number()
-    load_power = Number()
-    velocity = Number()
-    sliding_distance = Number()
-    friction_force = Number()
-    side_force = Number()
-    friction_coefficient = Number()
-    friction_coefficient_total = Number()
-    friction_uncertainty = Number()
-    rolling_moment = Number()
-    dissipated_power = Number()
 
     def __init__(self, march: March, row: dict[str, Any], index: int) -> None:
         self._march = march
@@ -135,7 +94,7 @@ class Step(Sealed):
 
     def __dir__(self) -> list[str]:
         # Numbers that it does not have are left out.
-        numbers = {name for name, value in vars(Step).items() if isinstance(value, Number)}
+        numbers = {name for name, value in vars(Numbers).items() if isinstance(value, Number)}
         return sorted({*super().__dir__()} - numbers | {name for name in self._row if name not in HISTOGRAMS})
 
     def __repr__(self) -> str:
@@ -159,7 +118,6 @@ class March(Sealed):
         core: _core.March,
         initial_gap: Floats,
         size: tuple[float, ...],
-        setup: dict[str, Any],
         keep: Keep,
         title: str,
         output: str | None,
@@ -169,7 +127,7 @@ class March(Sealed):
         # Threads that share a march take turns.
         self._turn = threading.Lock()
         self._hold(initial_gap=initial_gap, size=size)
-        self._setup = setup
+        self._setup: dict[str, Any] = json.loads(core.setup)
         self._record = Record(self, keep, title, output, force)
 
     def __repr__(self) -> str:
@@ -246,7 +204,7 @@ def march(
     every: int | None = None,
     field_times: npt.ArrayLike | None = None,
     title: str = "",
-    _motion: Motion | None = None,
+    _motion: dict[str, Any] | None = None,
     _output: str | None = None,
     _force: bool = False,
 ) -> March:
@@ -272,91 +230,58 @@ def march(
     keep = Keep(fields, every, field_times)
     shape = surface_of(surface, gap, size)
     check_places("hardness", hardness, surface if gap is None else gap)
-    gap = shape.gap()
-    bodies = bodies_of(material)
+    bodies = [dict(body._keys) for body in bodies_of(material)]
+    arrays = {"heights": as_plane(shape.heights)}
     cells, limit = hardness_parts(hardness, shape.size)
     if limit is not None:
-        bodies = [with_hardness(body, limit) for body in bodies]
-    given = {"load": load, "pressure": pressure, "approach": approach}
-    load_unit = "N/m" if shape.is_line else "N"
-    if stages is not None:
-        if any(value is not None for value in given.values()):
-            raise CaseError("give load, pressure, approach or stages, exactly one of them")
-        programme = list(stages)
-        if not programme or not all(isinstance(stage, Stage) for stage in programme):
-            raise CaseError("stages is a list of asperity.Stage, one at least")
-        control, history = "stages", repr(programme)
-    else:
-        control, value = one_of(given, "give load, pressure, approach or stages")
-        prescribed = as_history(control, value, load_unit if control == "load" else None)
-        programme = [as_stage(control, prescribed)]
-        history = repr(prescribed)
-    grid = as_times(times)
-    parts = [parts_of(body) for body in bodies]
+        bodies = [{**body, "hardness": limit} for body in bodies]
+    if cells is not None:
+        bodies[0]["hardness_array"], arrays["hardness"] = "hardness", as_plane(cells)
     if isinstance(quantities, str):
         raise CaseError(f"quantities is {quantities!r}, but must be a list, as in quantities=[{quantities!r}]")
     names = [str(choice("an entry of quantities", str(name), get_args(Quantity))) for name in quantities]
-    steady = _motion is not None and _motion.steady
-    include = [] if keep.times is None or steady else [t for t in keep.times.tolist() if t > 0]
-    of_motion = [] if _motion is None else _motion.quantities(shape, boundary)
-    kelvin = temperatures(temperature)
-    core = _core.March(
-        gap=as_plane(gap),
-        size=list(shape.size),
-        boundary=boundary,
-        bodies=[material for materials, _ in parts for material in materials],
-        stacks=[stack for _, stack in parts],
-        stages=[stage._parts(load_unit) for stage in programme],
-        times=grid.kind,
-        times_numbers=list(grid.numbers),
-        include=include,
-        temperatures=kelvin,
-        scheme=scheme,
-        method=method,
-        tolerance=number("tolerance", tolerance),
-        max_iterations=count("max_iterations", max_iterations),
-        hardness_map=None if cells is None else as_plane(cells),
-        plasticity=plasticity,
-        quantities=[*names, *(name for name in of_motion if name not in names)],
-        bins=count("bins", bins),
-        largest_pressure=None if largest_pressure is None else number("largest_pressure", largest_pressure),
-        largest_gap=None if largest_gap is None else number("largest_gap", largest_gap),
-        motion=None if _motion is None else _motion.parts(),
-    )
-    creeps = [{"instantaneous": first, "terms": terms, "fluidity": flow} for first, terms, flow in core.creep()]
-    ratios = [body._body.poisson() if isinstance(body, Material) else (None, None) for body in bodies]
-    setup: dict[str, Any] = {
-        "boundary": boundary,
-        "bodies": [body._whole if isinstance(body, Material) else repr(body) for body in bodies],
-        # None where it changes with time.
-        "poisson": [ratio for ratio, _ in ratios],
-        "control": control,
-        "history": history,
-        "sines": sines_of(programme),
-        "scheme": scheme,
-        "method": method,
-        "plasticity": plasticity,
-        "solver_tolerance": float(tolerance),
-        "end": core.times()[-1],
-        "contact_creep_compliance": creeps[0],
-        "retardation_times": [time for _, terms, _ in core.creep() for _, time in terms],
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise CaseError(f"quantities holds {twice[0]!r} twice")
+    given_ends = {"pressure": largest_pressure, "gap": largest_gap}
+    ends = {key: number(f"largest_{key}", value) for key, value in given_ends.items() if value is not None}
+    keys: dict[str, Any] = {
+        "domain": {"cells": list(shape.cells), "size": list(shape.size), "boundary": boundary},
+        "surface": [{"kind": "array", "array": "heights"}],
+        "body": bodies,
+        "load": _load_keys({"load": load, "pressure": pressure, "approach": approach}, stages, "N/m" if shape.is_line else "N"),
+        "solver": {
+            "method": method,
+            "tolerance": number("tolerance", tolerance),
+            "max_iterations": count("max_iterations", max_iterations),
+            "plasticity": plasticity,
+        },
+        "output": {"quantities": names, "histogram": {"bins": count("bins", bins), **ends}},
     }
-    if temperature is None and any(creep is not None for _, creep in ratios):
-        setup["poisson_creep"] = [None if creep is None else json.loads(creep) for _, creep in ratios]
-    if len(creeps) > 1:
-        setup["contact_creep_compliance_over_reduced_time"] = creeps[1:]
-    if _motion is not None:
-        setup["motion"] = _motion.setup()
+    steady = _motion is not None and "steady" in _motion
+    if not steady:
+        keys["time"] = {**as_times(times)._keys, "scheme": scheme}
+    elif scheme != "linear":
+        raise CaseError(f"scheme is {scheme!r}, but steady states of motion have no time, and so no scheme: leave it out")
     if temperature is not None:
-        setup["temperature"] = kelvin
-    if any(isinstance(body, Body) for body in bodies):
-        misfit = core.layer_misfit()
-        setup["layer_separable"], setup["layer_misfit"] = misfit is None, misfit or 0.0
-        setup["layer_rigid_base"] = not any(on_half_space for _, (_, on_half_space) in parts)
-    limits = [limit for limit in map(hardness_of, bodies) if limit is not None]
-    if limits:
-        setup["hardness"] = float(min(limits))
-    return March(core, gap, shape.size, setup, keep, title, _output, _force)
+        keys["temperature"] = temperature_keys(temperature)
+    if _motion is not None:
+        keys["motion"] = _motion
+    include = [] if keep.times is None or steady else [t for t in keep.times.tolist() if t > 0]
+    core = _core.March(keys, arrays, include)
+    return March(core, shape.gap(), shape.size, keep, title, _output, _force)
+
+
+def _load_keys(given: dict[str, Any], stages: Sequence[Stage] | None, load_unit: str) -> dict[str, Any]:
+    """The keys of `[load]`; the unit of a load is N, or N/m of a line contact."""
+    if stages is None:
+        control, value = one_of(given, "give load, pressure, approach or stages")
+        return {"control": control, "history": as_history(control, value, load_unit if control == "load" else None)._keys}
+    if any(value is not None for value in given.values()):
+        raise CaseError("give load, pressure, approach or stages, exactly one of them")
+    programme = list(stages)
+    if not programme or not all(isinstance(stage, Stage) for stage in programme):
+        raise CaseError("stages is a list of asperity.Stage, one at least")
+    return {"stages": [stage._keys(load_unit) for stage in programme]}
 
 
 def bodies_of(material: Any) -> list[Material | Body]:
@@ -411,7 +336,7 @@ def solve(
     force: bool = False,
     progress: bool | None = None,
     on_step: Callable[[Step], object] | None = None,
-    _motion: Motion | None = None,
+    _motion: dict[str, Any] | None = None,
 ) -> Result:
     """Solves a contact over time.
 
@@ -461,36 +386,8 @@ def solve(
     -----
     ResultWarning : the numbers may be off; the result's `findings` say where and why
     """
-    run = march(
-        surface,
-        material,
-        times=times,
-        load=load,
-        pressure=pressure,
-        approach=approach,
-        stages=stages,
-        gap=gap,
-        size=size,
-        hardness=hardness,
-        temperature=temperature,
-        boundary=boundary,
-        scheme=scheme,
-        method=method,
-        tolerance=tolerance,
-        max_iterations=max_iterations,
-        plasticity=plasticity,
-        quantities=quantities,
-        bins=bins,
-        largest_pressure=largest_pressure,
-        largest_gap=largest_gap,
-        fields=fields,
-        every=every,
-        field_times=field_times,
-        title=title,
-        _motion=_motion,
-        _output=path_of(output),
-        _force=force,
-    )
+    given = {name: value for name, value in locals().items() if name not in ("output", "force", "progress", "on_step")}
+    run = march(**given, _output=path_of(output), _force=force)
     if on_step is not None and not callable(on_step):
         raise CaseError(f"on_step is {on_step!r}, but must be a function that takes a Step")
     teller = Progress(run._core.rows_expected, progress)
@@ -594,12 +491,7 @@ def check(case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, An
 def _source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str | None]:
     """The path of a case file; or where the files of a case lie that is given as text or keys, and its text."""
     if isinstance(case, Mapping):
-        try:
-            return os.curdir, _core.case_text(json.dumps(case, allow_nan=False))
-        except (TypeError, ValueError) as error:
-            if isinstance(error, CaseError):
-                raise
-            raise CaseError(f"the case holds what a case file cannot: {error}; write quantities as text with units") from None
+        return os.curdir, _core.case_text(dict(case))
     if isinstance(case, str) and "\n" in case:
         return os.curdir, case
     path = os.fspath(case)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Sequence
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,23 @@ from ._sealed import Sealed
 from ._surface import _parts
 from ._words import Boundary
 from ._arrays import Floats, array, as_plane, cells_of, field, frozen, number, plain, size_of
+
+
+class _Field:
+    """A field of a stress, which is computed when it is first asked for."""
+
+    def __init__(self, words: str) -> None:
+        self.__doc__ = words
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, holder: Any, owner: type) -> Floats:
+        # A class shows the description of its fields.
+        if holder is None:
+            return self  # type: ignore[return-value]
+        values: Floats = holder._field(self._name)
+        return holder.__dict__.setdefault(self._name, values)  # type: ignore[no-any-return]
 
 
 class Stress(Sealed):
@@ -57,55 +73,16 @@ class Stress(Sealed):
         values: Floats = frozen(found[:, :, 0] if self._pressure.ndim == 1 else found)
         return values
 
-    @cached_property
-    def xx(self) -> Floats:
-        """Normal stress along x."""
-        return self._field("xx")
-
-    @cached_property
-    def yy(self) -> Floats:
-        """Normal stress along y."""
-        return self._field("yy")
-
-    @cached_property
-    def zz(self) -> Floats:
-        """Normal stress along z; minus the pressure at the surface."""
-        return self._field("zz")
-
-    @cached_property
-    def xy(self) -> Floats:
-        """Shear stress in the plane."""
-        return self._field("xy")
-
-    @cached_property
-    def xz(self) -> Floats:
-        """Shear stress on planes parallel to the surface, along x."""
-        return self._field("xz")
-
-    @cached_property
-    def yz(self) -> Floats:
-        """Shear stress on planes parallel to the surface, along y."""
-        return self._field("yz")
-
-    @cached_property
-    def mises(self) -> Floats:
-        """von Mises stress."""
-        return self._field("mises")
-
-    @cached_property
-    def tresca(self) -> Floats:
-        """Largest shear stress, half the difference of the largest and the least principal stress."""
-        return self._field("tresca")
-
-    @cached_property
-    def tension(self) -> Floats:
-        """Largest principal stress."""
-        return self._field("tension")
-
-    @cached_property
-    def pressure(self) -> Floats:
-        """Minus the mean of the normal stresses."""
-        return self._field("pressure")
+    xx = _Field("Normal stress along x.")
+    yy = _Field("Normal stress along y.")
+    zz = _Field("Normal stress along z; minus the pressure at the surface.")
+    xy = _Field("Shear stress in the plane.")
+    xz = _Field("Shear stress on planes parallel to the surface, along x.")
+    yz = _Field("Shear stress on planes parallel to the surface, along y.")
+    mises = _Field("von Mises stress.")
+    tresca = _Field("Largest shear stress, half the difference of the largest and the least principal stress.")
+    tension = _Field("Largest principal stress.")
+    pressure = _Field("Minus the mean of the normal stresses.")
 
     def survey(self, threshold: float | None = None, *, rolling: str | None = None) -> dict[str, Any]:
         """Maxima, refined between the depths, with their places: `max_mises`, `max_mises_depth`, `max_mises_x`, `max_mises_y`,

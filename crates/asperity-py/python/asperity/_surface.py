@@ -562,31 +562,27 @@ class Surface:
         >>> round(surface.statistics()["sq"] * 1e6, 12)
         1.0
         """
-        extent, grid = lengths("size", size), cell_counts("cells", cells)
-        special = {
-            "lay.angle": None if lay_angle is None else angle("lay_angle", lay_angle),
-            "lay.ratio": lay_ratio,
-            "distribution.skewness": skewness,
-            "distribution.kurtosis": kurtosis,
+        lay = {
+            "angle": None if lay_angle is None else angle("lay_angle", lay_angle),
+            "ratio": _optional("lay_ratio", lay_ratio),
         }
-        if any(value is not None for value in special.values()):
-            plain = dict(hurst=hurst, rms_gradient=rms_gradient, rms_height=rms_height, longest=longest, shortest=shortest)
-            if len(grid) == 1:
-                raise CaseError("a profile has no lay, and heights of a normal distribution: leave lay, skewness and kurtosis out")
-            return _roughness(grid, pair("size", size), seed, {**plain, "roll_off": roll_off, **special})
-        check_dimensions(grid, extent)
-        heights = _core.self_affine(
-            (grid[0], grid[1] if len(grid) == 2 else 1),
-            list(extent),
-            number("hurst", hurst),
-            None if rms_gradient is None else number("rms_gradient", rms_gradient),
-            None if rms_height is None else number("rms_height", rms_height),
-            number("longest", longest),
-            number("shortest", shortest),
-            None if roll_off is None else number("roll_off", roll_off),
-            count("seed", seed, 0, 2**64 - 1),
+        distribution = {"skewness": _optional("skewness", skewness), "kurtosis": _optional("kurtosis", kurtosis)}
+        if len(lengths("size", size)) == 1 and (_given(lay) or _given(distribution)):
+            raise CaseError("a profile has no lay, and heights of a normal distribution: leave lay, skewness and kurtosis out")
+        return _made(
+            cells,
+            size,
+            kind="self-affine",
+            hurst=number("hurst", hurst),
+            rms_gradient=_optional("rms_gradient", rms_gradient),
+            rms_height=_optional("rms_height", rms_height),
+            longest=number("longest", longest),
+            shortest=number("shortest", shortest),
+            roll_off=_optional("roll_off", roll_off),
+            lay=_given(lay),
+            distribution=_given(distribution),
+            seed=count("seed", seed, 0, 2**63 - 1),
         )
-        return Surface(heights.reshape(grid), size=extent)
 
     @staticmethod
     def contact_mechanics_challenge(*, cells: Sequence[int], seed: int = 0) -> Surface:
@@ -594,14 +590,15 @@ class Surface:
 
         Hurst exponent 0.8, roll-off 20 um, cut-off 0.1 um, rms gradient 1; it needs 2000 cells a side or more.
         """
-        return _roughness(cells, (1e-4, 1e-4), seed, {}, preset="contact-mechanics-challenge")
+        challenge = dict(kind="self-affine", preset="contact-mechanics-challenge", seed=count("seed", seed, 0, 2**63 - 1))
+        return _made(cells, (1e-4, 1e-4), **challenge)
 
     @staticmethod
     def sphere(
         *, cells: Sequence[int], size: Sequence[float], radius: float, center: Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A paraboloid of that radius [m]; `center` [m] from the middle of the domain."""
-        return _shape("sphere", [number("radius", radius)], center, cells, size)
+        return _shape(cells, size, center, kind="sphere", radius=number("radius", radius))
 
     @staticmethod
     def ellipsoid(
@@ -613,8 +610,8 @@ class Surface:
         center: Sequence[float] = (0.0, 0.0),
     ) -> Surface:
         """A paraboloid of two radii [m]; an infinite one makes a cylinder."""
-        radii = [number("radius_x", radius_x), number("radius_y", radius_y)]
-        return _shape("ellipsoid", radii, center, cells, size)
+        radii = dict(radius_x=number("radius_x", radius_x), radius_y=number("radius_y", radius_y))
+        return _shape(cells, size, center, kind="ellipsoid", **radii)
 
     @staticmethod
     def cylinder(
@@ -628,21 +625,21 @@ class Surface:
         >>> bool(abs(hertz.pressure.max() / np.sqrt(20e3 * 1e9 / (np.pi * 10e-3)) - 1) < 1e-3)
         True
         """
-        return _shape("cylinder", [number("radius", radius)], center, cells, size)
+        return _shape(cells, size, center, kind="cylinder", radius=number("radius", radius))
 
     @staticmethod
     def wedge(
         *, cells: int | Sequence[int], size: float | Sequence[float], slope: float, center: float | Sequence[float] = 0.0
     ) -> Surface:
         """A wedge along y that rises by `slope` per length; `center` [m] along x from the middle of the domain."""
-        return _shape("wedge", [number("slope", slope)], center, cells, size)
+        return _shape(cells, size, center, kind="wedge", slope=number("slope", slope))
 
     @staticmethod
     def cone(
         *, cells: Sequence[int], size: Sequence[float], slope: float, center: Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A cone that rises by `slope` per length."""
-        return _shape("cone", [number("slope", slope)], center, cells, size)
+        return _shape(cells, size, center, kind="cone", slope=number("slope", slope))
 
     @staticmethod
     def flat_punch(
@@ -655,51 +652,47 @@ class Surface:
     ) -> Surface:
         """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch. On a line of cells a strip of
         half the width `radius`, or of the width `sides`."""
-        if (radius is None) == (sides is None):
-            raise CaseError("give radius or sides, exactly one of them")
         dimensions = len(lengths("size", size))
-        numbers = [number("radius", radius)] if sides is None else along("sides", sides, dimensions, np.inf)
-        return _shape("flat-punch", numbers, center, cells, size)
+        face = None if sides is None else along("sides", sides, dimensions, np.inf)[:dimensions]
+        return _shape(cells, size, center, kind="flat-punch", radius=_optional("radius", radius), size=face)
 
     @staticmethod
     def wave(
         *, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]
     ) -> Surface:
         """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge. On a line one wavelength."""
-        x, y = along("wavelength", wavelength, len(lengths("size", size)), np.inf)
-        return _shape("wave", [number("amplitude", amplitude), x, y], (0.0, 0.0), cells, size)
+        dimensions = len(lengths("size", size))
+        waves = along("wavelength", wavelength, dimensions, np.inf)[:dimensions]
+        return _made(cells, size, kind="wave", amplitude=number("amplitude", amplitude), wavelength=waves)
 
 
 def _surface(heights: Any, size: Any, metadata: Any) -> Surface:
     return Surface(heights, size=size, metadata=metadata)
 
 
-def _roughness(
-    cells: Sequence[int], size: tuple[float, float], seed: int, numbers: dict[str, float | None], **words: str
-) -> Surface:
-    """Roughness by the keys of a case file."""
-    keys = [(key, repr(number(key, value))) for key, value in numbers.items() if value is not None]
-    grid = [("cells", "{},{}".format(*counts("cells", cells))), ("size", "{!r},{!r}".format(*size))]
-    heights, extent = _core.roughness([*grid, *words.items(), *keys, ("seed", str(count("seed", seed, 0, 2**64 - 1)))])
-    return Surface(heights, size=extent)
+def _optional(what: str, value: Any) -> float | None:
+    return None if value is None else number(what, value)
 
 
-def _shape(
-    kind: str,
-    numbers: list[float],
-    center: float | Sequence[float],
-    cells: int | Sequence[int],
-    size: float | Sequence[float],
-) -> Surface:
+def _given(keys: dict[str, Any]) -> dict[str, Any] | None:
+    """The keys that have a value; None where none has."""
+    return {key: value for key, value in keys.items() if value is not None} or None
+
+
+def _shape(cells: Any, size: Any, center: float | Sequence[float], /, **keys: Any) -> Surface:
+    """A smooth shape at `center` [m] from the middle of the domain."""
+    dimensions = len(lengths("size", size))
+    # What is straight along y has no place along it.
+    straight = keys["kind"] in ("cylinder", "wedge") and np.size(center) == 1
+    place = [*lengths("center", center), 0.0] if straight else along("center", center, dimensions)
+    return _made(cells, size, center=place[:dimensions], **keys)
+
+
+def _made(cells: Any, size: Any, /, **keys: Any) -> Surface:
+    """The surface of a case that has these keys."""
     extent, grid = lengths("size", size), cell_counts("cells", cells)
     check_dimensions(grid, extent)
-    straight = kind in ("cylinder", "wedge")
-    if len(grid) == 1 and kind in ("sphere", "ellipsoid", "cone"):
-        instead = "wedge" if kind == "cone" else "cylinder"
-        raise CaseError(f"a {kind} is not straight along y, but cells is one number: use Surface.{instead} for a line contact")
-    # What is straight along y has no place along it.
-    x, y = (along("center", center, 1) if straight and np.size(center) == 1 else along("center", center, len(grid)))
-    heights = _core.shape(kind, numbers, [x, y], (grid[0], grid[1] if len(grid) == 2 else 1), list(extent))
+    heights = _core.heights({"domain": {"cells": list(grid), "size": list(extent)}, "surface": [_given(keys)]})
     return Surface(heights.reshape(grid), size=extent)
 
 

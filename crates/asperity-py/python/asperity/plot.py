@@ -32,6 +32,7 @@ from ._drawing import (
 )
 from ._last_cycle import last_cycle as _last_cycle_of
 from ._prefixes import quantity, shown
+from ._result import FIELDS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -192,24 +193,24 @@ class Plots:
         """Map of the pressure at the stored time nearest to `time` [s] (of a sweep: velocity [m/s]), or with that index; default the
         last. Its colours begin at 0, and what is out of contact is light, unless `norm`, or a `vmin` other than 0, is given. A narrow domain is
         stretched, as its title says, where `aspect` is not given. Of a line contact a curve over x."""
-        return self._map("pressure", "pressure", "Pa", "inferno", (time, velocity, index), ax, style)
+        return self._map("pressure", "inferno", (time, velocity, index), ax, style)
 
     def gap(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the gap, as :meth:`pressure`, but what is in contact is light. Where a few pits take more than a third of the range of the
         values, the colours end at the quantile of a thousandth, and an arrow of the bar points beyond."""
-        return self._map("gap", "gap", "m", "viridis", (time, velocity, index), ax, style)
+        return self._map("gap", "viridis", (time, velocity, index), ax, style)
 
     def displacement(
         self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any
     ) -> Axes:
         """Map of the displacement, as :meth:`gap`, with its own colours everywhere."""
-        return self._map("displacement", "displacement", "m", "viridis", (time, velocity, index), ax, style)
+        return self._map("displacement", "viridis", (time, velocity, index), ax, style)
 
     def flattening(
         self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any
     ) -> Axes:
         """Map of the permanent flattening, as :meth:`displacement`."""
-        return self._map("flattening", "flattening", "m", "viridis", (time, velocity, index), ax, style)
+        return self._map("flattening", "viridis", (time, velocity, index), ax, style)
 
     def contact(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the contact state: open, in contact, at the hardness."""
@@ -267,9 +268,8 @@ class Plots:
         """A field along x at `y` [m]; default the pressure through the middle. In a new figure the gap has the undeformed one beside,
         where no `label` is given."""
         result, at = self._result, (time, velocity, index)
-        unit = "Pa" if field == "pressure" else "1" if field == "contact" else "m"
         if result.is_line:
-            return self._curve(field, unit, at, ax, style)
+            return self._curve(field, at, ax, style)
         values = self._closed(self._field(field, at), at) if field == "gap" else self._field(field, at)
         place = 0.5 * result.size[1] if y is None else number("y", y)
         if not 0 <= place <= result.size[1]:
@@ -277,18 +277,19 @@ class Plots:
         # Of the two rows beside the middle the upper one.
         row = min(int(place / result.size[1] * result.cells[1]), result.cells[1] - 1)
         before = result.initial_gap[:, row] if field == "gap" else None
-        return self._line(field, unit, values[:, row], at, ax, style, f"y = {quantity(float(result.y[row]), 'm')}", before)
+        return self._line(field, values[:, row], at, ax, style, f"y = {quantity(float(result.y[row]), 'm')}", before)
 
-    def _curve(self, name: str, unit: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
+    def _curve(self, name: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
         """A field of a line contact over x."""
         values = self._closed(self._field(name, at), at) if name == "gap" else self._field(name, at)
         before = self._result.initial_gap if name == "gap" else None
-        return self._line(name, unit, np.where(np.isfinite(values), values, np.nan), at, ax, style, before=before)
+        return self._line(name, np.where(np.isfinite(values), values, np.nan), at, ax, style, before=before)
 
     def _line(
-        self, name: str, unit: str, values: Any, at: Any, ax: Axes | None, style: dict[str, Any], place: str = "", before: Any = None
+        self, name: str, values: Any, at: Any, ax: Axes | None, style: dict[str, Any], place: str = "", before: Any = None
     ) -> Axes:
         """A field over x, and what it was `before` the bodies touched."""
+        unit = FIELDS[name][0]
         curves = [(style, values)]
         if before is not None and ax is None and "label" not in style:
             curves = [({"label": "now", **style}, values), ({"label": "undeformed", "color": "0.5", "linestyle": "--"}, before)]
@@ -310,10 +311,10 @@ class Plots:
             ax.set_title(ax.get_title(), pad=2.0 * _letters())
         return ax
 
-    def _map(self, name: str, words: str, unit: str, colours: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
+    def _map(self, name: str, colours: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
         if self._result.is_line:
-            return self._curve(name, unit, at, ax, style)
-        size, values = self._result.size, self._field(name, at)
+            return self._curve(name, at, ax, style)
+        unit, size, values = FIELDS[name][0], self._result.size, self._field(name, at)
         values = np.where(np.isfinite(values), values, np.nan)
         if name == "gap":
             values = self._closed(values, at)
@@ -323,7 +324,7 @@ class Plots:
         self._tell(ax, at, notes=[_stretched(size, style), told])
         image = _image(ax, values, size, {**(style if name == "pressure" else _robust(values, style)), **light})
         if not light or "vmax" in style or np.any(values > 0):
-            _bar(ax, image, words, unit)
+            _bar(ax, image, name, unit)
         return ax
 
     def _field(self, name: Any, at: Any) -> Any:

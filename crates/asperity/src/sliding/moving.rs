@@ -208,7 +208,12 @@ impl MovingGap {
 
 /// The middle of the first shape that has one, else the cell of the smallest gap \[m\].
 fn centre_of(grid: &Grid, parts: &[Part], gap: &Array2<f64>) -> Result<[f64; 2]> {
-    let has_slopes = !parts.iter().any(|part| matches!(part, Part::Shape { shape: Shape::FlatPunch(_), .. }));
+    let has_edge = |part: &Part| match part {
+        Part::Shape { shape, .. } => matches!(shape, Shape::FlatPunch(_)),
+        Part::Heights { heights, .. } => heights.iter().any(|z| z.is_infinite()),
+        Part::SelfAffine(_) | Part::Synthesis(_) => false,
+    };
+    let has_slopes = !parts.iter().any(has_edge);
     let expected = "a shape with slopes: the force on the edge of a punch cannot be computed from its slope";
     require(has_slopes, "surface of a contact in motion", "a flat punch", expected)?;
     let ([x0, y0], none) = (grid.centre(), ((0, 0), f64::INFINITY));
@@ -239,6 +244,16 @@ fn unit(angle: f64) -> Complex64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cells_that_cannot_touch_do_not_move() {
+        let grid = Grid::new([4, 4], [1.0, 1.0]).unwrap();
+        let mut heights = Array2::zeros((4, 4));
+        heights[[1, 2]] = f64::NEG_INFINITY;
+        let parts = [(Part::Heights { name: "punch".into(), heights }, true)];
+        let refused = MovingGap::new(&grid, Boundary::Free, &parts).unwrap_err().to_string();
+        assert!(refused.contains("flat punch"), "{refused}");
+    }
 
     #[test]
     fn waves_move_exactly_by_any_distance() {

@@ -24,7 +24,7 @@ pub enum Part {
     Heights {
         /// Name of the heights in messages (a file name).
         name: String,
-        /// Heights of shape (nx, ny) \[m\]; every one finite.
+        /// Heights of shape (nx, ny) \[m\]; every one finite, or minus infinity where nothing can touch.
         heights: Array2<f64>,
     },
 }
@@ -89,7 +89,7 @@ fn add(gap: &mut Array2<f64>, grid: &Grid, part: &Part) -> Result<()> {
 const LARGEST_HEIGHT: f64 = 1e100;
 
 fn subtract(gap: &mut Array2<f64>, name: &str, heights: &Array2<f64>) -> Result<()> {
-    let usable = |h: &f64| h.abs() <= LARGEST_HEIGHT;
+    let usable = |h: &f64| h.abs() <= LARGEST_HEIGHT || *h == f64::NEG_INFINITY;
     if let Some(((i, j), value)) = heights.indexed_iter().find(|(_, h)| !usable(h)) {
         let count = heights.iter().filter(|h| !usable(h)).count();
         return Err(Error::invalid(

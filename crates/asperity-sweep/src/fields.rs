@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn sets_are_read_to_their_last_cell() {
-        for cells in [1, 7, 8, 13, 8192, 8192 + 9] {
+        for cells in [1_usize, 7, 8, 13, 8192, 8192 + 9] {
             let set = vec![0xff; cells.div_ceil(8)];
             let mut field = vec![0.0; cells];
             each(&mut field, Set(&set), |to, on| *to = f64::from(u8::from(on)));

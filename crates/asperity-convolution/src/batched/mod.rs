@@ -19,9 +19,9 @@
 //! threads.
 //!
 //! # Memory
-//! For cells nx ny and lengths \[mx, my\] in scalars of s bytes: the half spectrum, nx (my + 2) s; the multiplier, 5/8 mx (my/2 +
-//! 1) s; per thread two blocks of lanes, of about 3 mx numbers each. On a free domain of N x N cells (lengths 2 N) that is 26
-//! bytes per cell in f64 and 13 in f32; on a periodic one 10.5 and 5.25.
+//! For nx ny cells and the lengths \[mx, my\], in scalars of s bytes: the half spectrum takes nx (my + 2) s, the multiplier
+//! 5/8 mx (my/2 + 1) s, and each thread two blocks of lanes, of about 3 mx numbers each. On a free domain of N x N cells
+//! (lengths 2 N) that is 26 bytes per cell in f64 and 13 in f32; on a periodic one 10.5 and 5.25.
 //!
 //! Only this module has `unsafe` code: the intrinsics, which need a suitable processor; the conversion between scalars and
 //! vectors; and the transposition, where each thread writes to its own rows in a shared array.

@@ -50,7 +50,7 @@ where
     }
 }
 
-struct FormVisitor<W, L, T>(PhantomData<fn() -> Form<W, L, T>>);
+struct FormVisitor<W, L, T>(PhantomData<Form<W, L, T>>);
 
 impl<W: Word, L, T> FormVisitor<W, L, T> {
     fn word<E: Error>(&self, word: Result<W, E>, found: Unexpected<'_>) -> Result<Form<W, L, T>, E> {

@@ -18,13 +18,16 @@ use crate::quantity::{Prescribed, QuantityError, Time};
 const MOST_BYTES: u64 = 64 << 20;
 const MOST_POINTS: usize = 10_000_000;
 
-/// The points (time \[s\], value in SI) of the file that the key at `at` names, its path as written and its MD5.
+/// Path of a file as the case writes it, and its MD5.
+pub type Origin = (String, String);
+
+/// The points (time \[s\], value in SI) of the file that the key at `at` names, and where they come from.
 pub fn of_key(
     at: &Place<'_>,
     path: &str,
     value: &str,
     resolve: impl Fn(&Prescribed) -> Result<f64, QuantityError>,
-) -> Option<(Vec<(f64, f64)>, (String, String))> {
+) -> Option<(Vec<(f64, f64)>, Origin)> {
     let full = at.file(path)?;
     let read = text(&full).and_then(|(text, digest)| Ok((parse(&text, resolve)?, digest)));
     match read {

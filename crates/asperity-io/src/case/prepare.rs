@@ -182,7 +182,7 @@ fn plain(at: &Place<'_>, file: &File) -> Option<Vec<Step>> {
     let level = (form != Level::None).then_some(surface::Operation::Level(form));
     let outliers = file.outliers.as_ref().map(Outliers::step);
     // Spikes tilt the form; without them it is fitted anew.
-    let again = level.clone().filter(|_| outliers.is_some());
+    let again = level.filter(|_| outliers.is_some());
     let fill = surface::Operation::Fill {
         method: file.fill.unwrap_or_default(),
         largest_share: file.fill_share.map_or(FILL_SHARE, Number::get),

@@ -129,10 +129,11 @@ impl<'r, 't> Reader<'r, 't> {
         let (mut value, span) = (value.clone(), value.span());
         let mut inside = UNIONS.iter().filter_map(|union| Some((union.0.strip_prefix(key)?, union)));
         let moved = inside.try_for_each(|(path, union)| self.move_tag(&mut value, path, union));
-        let read = moved.map_err(|error| *error).and_then(|()| {
-            T::deserialize(ValueDeserializer::from(value))
-                .map_err(|error| words::translate(self.text, &error, span))
-        });
+        let read = match moved {
+            Ok(()) => T::deserialize(ValueDeserializer::from(value))
+                .map_err(|error| words::translate(self.text, &error, span)),
+            Err(error) => Err(*error),
+        };
         read.map_err(|error| self.errors.push(error)).ok()
     }
 

@@ -16,8 +16,11 @@ pub(super) struct Reader {
     /// Heights in the file's unit.
     pub read: fn(&[u8], &Request) -> Result<Measured, Problem>,
     /// The bytes of a file, where the format is written too.
-    pub write: Option<fn(&Topography) -> Result<Vec<u8>, Problem>>,
+    pub write: Option<Write>,
 }
+
+/// Writes a surface as the bytes of a file.
+pub(super) type Write = fn(&Topography) -> Result<Vec<u8>, Problem>;
 
 /// Makes the enum of the formats from a table of readers.
 macro_rules! formats {

@@ -34,7 +34,7 @@ struct Declaration {
 /// Draws the map of a field.
 macro_rules! map {
     ($kind:ident) => {
-        |reader, options| Ok(fields::map(reader, FieldKind::$kind, options.at)?)
+        |reader, options| fields::map(reader, FieldKind::$kind, options.at)
     };
 }
 

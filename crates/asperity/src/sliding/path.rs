@@ -116,7 +116,7 @@ impl Path {
         let travel: f64 = turns.windows(2).map(|t| (self.position(t[1]) - self.position(t[0])).abs()).sum();
         let expected = format!("at most {MOST:e}; a steady state ([motion.steady]) needs no travel");
         let cells = travel / step;
-        require(!(cells > MOST), "travel in cells", format!("{cells:e}"), expected)?;
+        require(cells <= MOST, "travel in cells", format!("{cells:e}"), expected)?;
         let mut found = vec![];
         for pair in turns.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|t| self.position(t) / step);

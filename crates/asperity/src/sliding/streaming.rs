@@ -31,9 +31,9 @@ impl Streaming {
             let end = simulation.times.end();
             let rate = body.clock.elapsed(0.0, 1e-9 * end) / (1e-9 * end);
             let later = body.clock.elapsed(0.0, end) / end;
-            let steady = !((later / rate - 1.0).abs() > 1e-6);
+            let changes = (later / rate - 1.0).abs() > 1e-6;
             let (what, value) = ("temperature of a steady state", "one that changes in time");
-            require(steady, what, value, "a constant temperature")?;
+            require(!changes, what, value, "a constant temperature")?;
             parts.push((body.creep.clone(), rate));
         }
         let streaming = Streaming { parts };

@@ -1,8 +1,8 @@
 //! Spikes of optical instruments: points far from the median of their neighbourhood.
 //!
 //! With m the median of the defined heights of the (2 radius + 1)^2 cells around a point, d = z - m, and sigma = 1.4826 median
-//! |d| (the standard deviation of a normal d; P. J. Rousseeuw and C. Croux, J. Am. Stat. Assoc. 88 (1993) 1273), a point with |d|
-//! > threshold sigma becomes undefined. At an edge the neighbourhood is one-sided, so a tilt has an effect there: level the
+//! |d| (the standard deviation of a normal d; P. J. Rousseeuw and C. Croux, J. Am. Stat. Assoc. 88 (1993) 1273), a point becomes
+//! undefined if |d| > threshold sigma. At an edge the neighbourhood is one-sided, so a tilt has an effect there: level the
 //! surface first.
 
 use ndarray::parallel::prelude::*;

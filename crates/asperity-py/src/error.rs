@@ -102,7 +102,7 @@ pub fn run(py: Python<'_>, error: RunError) -> PyErr {
 fn spoken(message: &str) -> String {
     const WORDS: [(&str, &str); 9] = [
         ("add shift = { model = \"wlf\", ... }", "give shift=asperity.wlf(...)"),
-        ("add histogram = { pressure = \"...\" }", "give largest_pressure"),
+        ("histogram = { pressure = \"...\" }", "give largest_pressure"),
         ("(`size`, --size A,B)", "(size=(Lx, Ly))"),
         ("(`height_unit`, --height-unit U)", "(height_unit= in m)"),
         ("asperity run --resume", "asperity.run(..., resume=True)"),

@@ -166,7 +166,7 @@ def test_a_hardness_for_each_cell():
     for change, words in (
         (dict(quantities=["stiffness"]), "contact_stiffness"),
         (dict(quantities=["rms_gap", "rms_gap"]), "twice"),
-        (dict(quantities=["pressure_histogram"]), "pressure.*upper end"),
+        (dict(quantities=["pressure_histogram"]), "largest pressure"),
         (dict(quantities=["gap_histogram"], bins=0), "bins"),
         (dict(quantities=["gap_histogram"], largest_gap=-1.0), "gap"),
         (dict(plasticity="hard"), "'cap' or 'accumulate'"),

@@ -16,6 +16,15 @@ PMMA = dict(equilibrium=1973e6, terms=[(254.776e6, 8.93), (263.6628e6, 117.96)])
 WLF = dict(c1=8.86, c2=101.6, reference=293.15)
 
 
+def test_a_standard_linear_solid_is_the_zener_solid_of_the_same_relaxation():
+    # Springs G and Gk in series: G Gk/(G + Gk) at rest; the relaxation time is the retardation time times Gk/(G + Gk).
+    maxwell = asp.StandardLinearSolid(shear_equilibrium=0.75e6, shear_instantaneous=1e6, relaxation_time=1.5, poisson=0.5)
+    zener = asp.Zener(shear=1e6, shear_kelvin=3e6, retardation_time=2.0, poisson=0.5)
+    # Only rounding differs.
+    assert np.allclose(maxwell.relaxation_modulus(T), zener.relaxation_modulus(T), rtol=1e-12, atol=0)
+    assert np.allclose(maxwell.creep_compliance(T), zener.creep_compliance(T), rtol=1e-12, atol=0)
+
+
 def test_a_relaxation_test_gives_the_material_back():
     pmma = asp.Prony(**PMMA, poisson=0.38)
     fit = asp.fit_relaxation(T, pmma.relaxation_modulus(T), poisson=0.38, hardness=300e6, name="PMMA")

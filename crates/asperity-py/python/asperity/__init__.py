@@ -56,6 +56,7 @@ from ._materials import (
     Maxwell as Maxwell,
     Prony as Prony,
     Springpot as Springpot,
+    StandardLinearSolid as StandardLinearSolid,
     Zener as Zener,
 )
 from ._motion import rubber_friction as rubber_friction, slide as slide, steady as steady

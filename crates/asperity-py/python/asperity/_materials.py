@@ -230,6 +230,20 @@ class Zener(Material):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class StandardLinearSolid(Material):
+    """A spring in parallel with a Maxwell element: the solid of `Zener`, given by the moduli after all relaxation and at once and
+    the `relaxation_time` [s] of a relaxation test."""
+
+    _model = "standard-linear-solid"
+
+    young_equilibrium: float | None = None
+    young_instantaneous: float | None = None
+    shear_equilibrium: float | None = None
+    shear_instantaneous: float | None = None
+    relaxation_time: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Burgers(Material):
     """A Maxwell and a Kelvin element in series."""
 

@@ -314,7 +314,11 @@ class Surface:
         return self.process("invert")
 
     def window(self, shape: Window = "hann", *, share: float | None = None) -> Surface:
-        """Faded to zero at the edges by a "hann" window, or a "tukey" one that rises over a `share` of the length (0.1)."""
+        """Faded to zero at the edges by a "hann" window, or a "tukey" one that rises over a `share` of the length (0.1).
+
+        The window is scaled to mean square 1, as spectra need it: heights in the middle of a map grow 2.7 times by "hann" and 1.07
+        times by "tukey". Before a contact take "tukey".
+        """
         words = f"window shape={shape}"
         return self.process(words if share is None else f"{words} share={number('share', share)!r}")
 

@@ -24,7 +24,15 @@ fn inside(path: &str, given: &Bound<'_, PyDict>) -> PyResult<Table> {
     given.iter().map(entry).collect()
 }
 
+/// The deepest table or list of a case lies above this; what is deeper may hold itself.
+const DEEPEST: usize = 32;
+
 fn value(path: &str, given: &Bound<'_, PyAny>) -> PyResult<Value> {
+    if path.matches(['.', '[']).count() > DEEPEST {
+        let words =
+            format!("{path} lies more than {DEEPEST} tables and lists deep, which no key of a case does");
+        return Err(CaseError::new_err(words));
+    }
     if let Ok(table) = given.cast::<PyDict>() {
         return inside(path, table).map(Value::Table);
     }

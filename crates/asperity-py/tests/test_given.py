@@ -221,3 +221,12 @@ def test_the_window_of_a_fit_has_units():
         asp.fit_dma(omega, *moduli, window=(Q(0.1, "second"), Q(1.0, "second")))
     relaxed = asp.fit_relaxation(omega, ZENER.relaxation_modulus(omega), window=(Q(0.1, "second"), Q(10.0, "second")))
     assert len(relaxed.x) == len(plain.x)
+
+
+def test_a_case_that_holds_itself_is_refused():
+    case, stages = {}, []
+    case["domain"] = case
+    stages.append(stages)
+    for given in [case, {"load": {"stages": stages}}]:
+        with pytest.raises(asp.CaseError, match="deep"):
+            asp.check(given)

@@ -197,12 +197,14 @@ impl Motion {
                 Travel::Steady(self.steady.as_ref()?.velocities(&list)?)
             }
         };
+        let cells_per_step = self.cells_per_step.map_or(1.0, Number::get);
+        at.core(asperity::process::Motion::check_cells_per_step(cells_per_step))?;
         Some(Moving {
             travel,
             direction: self.direction.map_or(Direction::X, |heading| heading.0),
             moves: surfaces.iter().map(|surface| surface.moves.unwrap_or(true)).collect(),
             rolls: self.kind == MotionKind::Roll,
-            cells_per_step: self.cells_per_step.map_or(1.0, Number::get),
+            cells_per_step,
             shear_stress: self.shear_stress.map(Pressure::get),
         })
     }

@@ -30,6 +30,16 @@ pub fn translate(text: &Text<'_>, error: &toml::de::Error, section: Range<usize>
         let rest = message.strip_prefix(prefix)?;
         rest.rsplit_once("`, expected ").or_else(|| rest.rsplit_once("`, there "))
     };
+    // The crate toml hands a date on as a table with a key of its own.
+    if message.contains("`$__toml_private_datetime`") {
+        let found = text.value(&spot);
+        return text.fault(
+            spot,
+            &format!("{found} is a date, and a case has none"),
+            "another value",
+            "write texts between quotes",
+        );
+    }
     if let Some((name, known)) = named("unknown field `") {
         return unknown_key(text, spot, name, &backticked(known));
     }

@@ -32,6 +32,11 @@ class Keep:
         self.times = None if field_times is None else line("field_times", field_times)
         if self.times is not None and every is not None:
             raise CaseError("give every or field_times, exactly one of them")
+        if self.times is not None:
+            for time in self.times[~(np.isfinite(self.times) & (self.times >= 0))]:
+                raise CaseError(f"field_times holds {time:g} s, but must hold times of the run, from 0 s on")
+            if len(np.unique(self.times)) < len(self.times):
+                raise CaseError("field_times holds a time twice; give each one once")
         self.every = None if every is None else count("every", every)
 
 
@@ -49,6 +54,8 @@ class Record:
         rows = core.rows_expected
         self._stride = keep.every if keep.every is not None else max(1, -(-((rows or 1) - 1) // 20))
         self._end = core.times()[-1]
+        for time in () if keep.times is None else keep.times[keep.times > self._end * (1 + 1e-12)]:
+            raise CaseError(f"field_times holds {time:g} s, but the run ends at {self._end:g} s")
         self._output = output
         self._writer: _core.Writer | None = None
         if output is not None:

@@ -31,6 +31,16 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// Whether steps may be as long as this number of cells.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) where it is not above 0 and at most 8.
+    pub fn check_cells_per_step(cells: f64) -> Result<()> {
+        let fine = cells > 0.0 && cells <= 8.0;
+        require(fine, "cells_per_step", cells, "greater than 0 and at most 8")
+            .map_err(|error| error.of("cells_per_step"))
+    }
+
     /// Length of a step along the path, at most \[m\].
     fn step(&self, simulation: &Simulation) -> f64 {
         self.cells_per_step * self.direction.cell(&simulation.grid)
@@ -46,8 +56,7 @@ impl Motion {
 
     /// Checks what can be known before the run.
     pub(crate) fn validate(&self, simulation: &Simulation) -> Result<()> {
-        let fine = self.cells_per_step > 0.0 && self.cells_per_step <= 8.0;
-        require(fine, "cells_per_step", self.cells_per_step, "greater than 0 and at most 8")?;
+        Motion::check_cells_per_step(self.cells_per_step)?;
         let stops = self.stops(simulation)?;
         require(
             simulation.scheme == Scheme::Linear,

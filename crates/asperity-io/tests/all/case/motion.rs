@@ -49,6 +49,24 @@ fn the_body_that_stands_still_in_the_frame_has_relaxed() {
 }
 
 #[test]
+fn the_length_of_a_step_is_limited_at_its_key() {
+    let steady = "[motion.steady]\nvelocities = [\"1 mm/s\", \"1 m/s\"]\n";
+    let in_time = "velocity = \"1 mm/s\"\ncells_per_step = 9\n[time]\nend = \"1 s\"\nsteps = 2\n";
+    says(steady, in_time, "motion.cells_per_step", &["9", "at most 8"]);
+}
+
+#[test]
+fn a_date_is_named_where_a_table_belongs() {
+    says(
+        "history = { kind = \"step\", value = \"100 N/m\" }",
+        "history = 1979-05-27",
+        "load.history",
+        &["1979-05-27"],
+    );
+    says("[\"1 mm/s\", \"1 m/s\"]", "1979-05-27", "motion.steady.velocities", &["1979-05-27"]);
+}
+
+#[test]
 fn what_is_wrong_with_a_motion_is_named() {
     says("\"belt\"", "\"rubber\"", "motion.over", &["two bodies have the name \"rubber\""]);
     says("over = \"rubber\"", "over = \"road\"", "motion.over", &["rubber, belt"]);

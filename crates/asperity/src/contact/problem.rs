@@ -83,7 +83,7 @@ impl Problem<'_> {
         state: &mut ContactState,
     ) -> Result<Option<Outcome>> {
         let sound = load >= 0.0 && load.is_finite();
-        require(sound, "load", format!("{load} N"), "finite and not negative")?;
+        require(sound, "load", format_args!("{load} N"), "finite and not negative")?;
         if load == 0.0 {
             state.lift_off(extent.first_touch);
             return Ok(Some(Outcome::default()));
@@ -112,7 +112,7 @@ impl Problem<'_> {
         operator: &mut dyn Operator,
         state: &mut ContactState,
     ) -> Result<Option<Outcome>> {
-        require(approach.is_finite(), "approach", format!("{approach} m"), "finite")?;
+        require(approach.is_finite(), "approach", format_args!("{approach} m"), "finite")?;
         if approach <= extent.first_touch {
             state.lift_off(approach);
             return Ok(Some(Outcome::default()));

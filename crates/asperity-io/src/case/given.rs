@@ -150,7 +150,7 @@ fn from_keys<T>(
     let source = toml::to_string(keys).map_err(|error| {
         CaseErrors::without_place(name, error.to_string(), "keys and values of a case file", None)
     })?;
-    let made = Text::parse(&source).and_then(|text| make(&Text { arrays, ..text }));
+    let made = Text::parse(&source).and_then(|text| make(&Text { arrays: Some(arrays), ..text }));
     made.map_err(|errors| CaseErrors { name: name.to_owned(), source, errors })
 }
 

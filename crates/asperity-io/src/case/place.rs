@@ -78,7 +78,7 @@ impl<'c> Place<'c> {
 
     /// The array of this name, which a program gives beside the case: a number for each cell of the grid.
     pub fn array(&self, name: &str, grid: &Grid) -> Option<Array2<f64>> {
-        match self.checks.text.arrays.get(name) {
+        match self.checks.text.arrays.and_then(|arrays| arrays.get(name)) {
             None => self.fault(
                 format!("there is no array \"{name}\""),
                 "the name of an array that a program gives beside the case",

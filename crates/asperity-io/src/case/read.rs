@@ -176,6 +176,11 @@ impl<'r, 't> Reader<'r, 't> {
         let DeValue::String(name) = name.into_inner() else {
             return Err(words::wrong_choice(self.text, self.text.at(&place), None).into());
         };
+        if *tag == "kind" && name == "array" && self.text.arrays.is_none() {
+            let message = "\"array\" is for arrays that a Python program passes";
+            let help = "in a case file use kind = \"file\"";
+            return Err(self.text.fault(self.text.at(&place), message, "another kind", help).into());
+        }
         let (common, inner): (DeTable<'t>, DeTable<'t>) =
             std::mem::take(table).into_iter().partition(|(key, _)| shared.contains(&key.get_ref().as_ref()));
         let key: Spanned<DeString<'t>> = Spanned::new(place.clone(), name);

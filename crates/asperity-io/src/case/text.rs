@@ -8,11 +8,11 @@ use toml::de::{DeTable, DeValue};
 use super::error::CaseError;
 use super::given::Arrays;
 
-/// A case file's text, its TOML tree, and the arrays that a program gives beside it.
+/// A case file's text, its TOML tree, and, where a program gives the case, the arrays beside it.
 pub struct Text<'t> {
     pub source: &'t str,
     pub root: DeTable<'t>,
-    pub arrays: &'t Arrays,
+    pub arrays: Option<&'t Arrays>,
 }
 
 impl<'t> Text<'t> {
@@ -22,7 +22,7 @@ impl<'t> Text<'t> {
     /// The faults of the TOML grammar, in order.
     pub fn parse(source: &'t str) -> Result<Self, Vec<CaseError>> {
         let (root, errors) = DeTable::parse_recoverable(source);
-        let text = Text { source, root: root.into_inner(), arrays: &NO_ARRAYS };
+        let text = Text { source, root: root.into_inner(), arrays: None };
         if errors.is_empty() {
             return Ok(text);
         }
@@ -155,8 +155,6 @@ impl<'t> Text<'t> {
         }
     }
 }
-
-static NO_ARRAYS: Arrays = Arrays::new();
 
 /// A case file with more faults than this has one cause.
 pub const MOST_ERRORS: usize = 20;

@@ -8,14 +8,6 @@ use super::error::CaseError;
 use super::text::{Spot, Text, join};
 use super::{read, schema};
 
-/// Names that the format has, or will have, but this version does not know: they are refused, never ignored.
-const NOT_AVAILABLE: &[(&str, &str)] =
-    &[("array", "is for arrays that a Python program passes; in a case file use kind = \"file\"")];
-
-fn not_available(name: &str) -> Option<&'static str> {
-    NOT_AVAILABLE.iter().find(|known| known.0 == name).map(|known| known.1)
-}
-
 /// Keys of earlier versions: what became of them, and what to do.
 const RETIRED: &[(&str, &str)] =
     &[("solver.precision", "is retired: the solver works in double precision throughout; delete the line")];
@@ -81,9 +73,6 @@ pub fn unknown_key(text: &Text<'_>, spot: Spot, name: &str, known: &[&str]) -> C
     if let Some((_, reason)) = RETIRED.iter().find(|retired| retired.0 == key) {
         return text.error(spot, None, "no such key", "", format!("{key} {reason}"));
     }
-    if let Some(reason) = not_available(name) {
-        return text.error(spot, None, &expected, "", format!("{key} {reason}"));
-    }
     let help = match nearest(name, &known) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => "it has none".to_owned(),
@@ -105,10 +94,6 @@ pub fn wrong_choice(text: &Text<'_>, spot: Spot, found: Option<(&str, &[&str])>)
         _ => format!("one of {}", quoted.join(", ")),
     };
     let Some((name, known)) = found else { return text.wrong(spot, &expected, "") };
-    if let Some(reason) = not_available(name) {
-        let help = format!("available: {}", quoted.join(", "));
-        return text.fault(spot, &format!("\"{name}\" {reason}"), &expected, &help);
-    }
     let help = nearest(name, known).map(|near| format!("did you mean \"{near}\"?"));
     text.wrong(spot, &expected, &help.unwrap_or_default())
 }

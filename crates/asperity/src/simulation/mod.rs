@@ -174,7 +174,7 @@ impl Simulation {
     /// The quantities of each row, with the ends of their bins.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`Quantities::columns`].
+    /// [`Error::Invalid`](crate::Error::Invalid) as [`Quantities::columns`].
     pub fn columns(&self) -> Result<Vec<Column>> {
         self.columns_of(&self.quantities)
     }
@@ -182,7 +182,7 @@ impl Simulation {
     /// The bins of other quantities than those of the simulation.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`Quantities::columns`].
+    /// [`Error::Invalid`](crate::Error::Invalid) as [`Quantities::columns`].
     pub fn columns_of(&self, quantities: &Quantities) -> Result<Vec<Column>> {
         let hardness = match self.hardness_of_cells() {
             Some(cells) => cells.into_iter().fold(0.0, f64::max),

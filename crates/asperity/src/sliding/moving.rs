@@ -38,7 +38,7 @@ impl MovingGap {
     /// Of these parts; each with whether it moves.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`undeformed_gap`], and for a flat punch.
+    /// [`Error::Invalid`](crate::Error::Invalid) as [`undeformed_gap`], and for a flat punch.
     pub fn new(grid: &Grid, boundary: Boundary, parts: &[(Part, bool)]) -> Result<Self> {
         let all: Vec<Part> = parts.iter().map(|(part, _)| part.clone()).collect();
         let gap = undeformed_gap(grid, &all)?;

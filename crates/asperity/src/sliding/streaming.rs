@@ -24,7 +24,7 @@ impl Streaming {
     /// The bodies of a simulation, at the temperature that they have at the start.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the material flows, has no instantaneous compliance, or its temperature changes.
+    /// [`Error::Invalid`](crate::Error::Invalid) where the material flows, has no instantaneous compliance, or its temperature changes.
     pub fn new(simulation: &Simulation) -> Result<Self> {
         let mut parts = vec![(simulation.creep.clone(), 1.0)];
         for body in &simulation.thermal {

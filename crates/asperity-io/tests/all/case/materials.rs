@@ -296,7 +296,7 @@ fn a_vertical_shift_divides_the_moduli_at_a_constant_temperature() {
     refused(&with("\"free\"", ""), "", "only from a file with several temperatures");
     refused(&with("\"dense\"", ""), "", "pairs [temperature, b_T]");
     refused(&with("[[\"20 °C\", 1.0], [\"40 °C\", 0.9]]", warm), "", "as the vertical shift factors are");
-    refused(&with("[[\"20 °C\", -1.0]]", warm), "", "pairs [temperature, b_T]");
+    refused(&with("[[\"20 °C\", -1.0]]", warm), "", "shift.vertical[0][1] is -1.0");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Units in text, as attributes of arrays have them.
 
-use asperity_io::case::quantity::unit::Unit;
+use asperity_io::quantity::unit::Unit;
 use pyo3::prelude::*;
 
 use crate::error::CaseError;

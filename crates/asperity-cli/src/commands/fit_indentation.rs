@@ -8,8 +8,8 @@ use asperity::indentation::{
 use asperity::layer::Interface;
 use asperity::material::Modulus;
 use asperity::reference::MdrProfile;
-use asperity_io::case::quantity::{Length, Number, range};
 use asperity_io::curve::{Indentation, MaterialOf, indentation_block};
+use asperity_io::quantity::{Length, Number, range};
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
 

@@ -25,8 +25,8 @@ pub mod view;
 use std::path::Path;
 
 use asperity::Axis;
-use asperity_io::case::quantity::range::NonNegative;
-use asperity_io::case::quantity::{Time, Velocity};
+use asperity_io::quantity::range::NonNegative;
+use asperity_io::quantity::{Time, Velocity};
 use asperity_io::store::{At, Reader};
 
 use crate::failure::Failure;

@@ -68,7 +68,6 @@ mod pair;
 mod place;
 mod plan;
 mod prepare;
-
 mod read;
 mod roughness;
 mod schema;
@@ -110,8 +109,6 @@ pub use plan::{Motion, Output, Rows, Surface, Travel};
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
 pub use words::nearest;
-
-pub use crate::quantity;
 
 use crate::leakage::Leak;
 use crate::stress::StressPlan;

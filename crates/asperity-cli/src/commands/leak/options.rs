@@ -1,8 +1,8 @@
 //! The options of a leakage as keys of `[leakage]`.
 
 use asperity_io::case::LeakageKeys;
-use asperity_io::case::quantity::range::{NonNegative, Positive};
-use asperity_io::case::quantity::{Length, MolarMass, Pressure, Temperature, Viscosity};
+use asperity_io::quantity::range::{NonNegative, Positive};
+use asperity_io::quantity::{Length, MolarMass, Pressure, Temperature, Viscosity};
 
 use crate::args::FluidOptions;
 use crate::failure::Failure;

@@ -1,9 +1,9 @@
 //! `asperity material export`: a material for another program.
 
 use asperity::material::Lateral;
-use asperity_io::case::quantity::{Number, range};
 use asperity_io::case::{Specimen, specimens};
 use asperity_io::material_export::{Exported, Program, text};
+use asperity_io::quantity::{Number, range};
 
 use super::{failed, parsed, write};
 use crate::args::{MaterialExport, To};

@@ -12,8 +12,8 @@ use std::io::Write as _;
 use std::path::Path;
 
 use asperity::material::Modulus;
-use asperity_io::case::quantity::{Time, range};
 use asperity_io::case::{MaterialReport, Specimen, specimens};
+use asperity_io::quantity::{Time, range};
 use asperity_report::material as pictures;
 use serde_json::{Value, json};
 

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use asperity::material::{FitOptions, Shift};
-use asperity_io::case::quantity::{
-    Expansion, MolarEnergy, Number, Temperature, TemperatureDifference, Time, range,
-};
 use asperity_io::curve::{
     Column, Columns, CurveError, Curves, Kind, Remedy, Role, ShiftRequest, VerticalRequest, VerticalWord,
     angular_frequency, read_shift_table,
+};
+use asperity_io::quantity::{
+    Expansion, MolarEnergy, Number, Temperature, TemperatureDifference, Time, range,
 };
 
 use super::failed;

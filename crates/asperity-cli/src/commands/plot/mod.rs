@@ -5,7 +5,7 @@ mod options;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use asperity_io::case::quantity::{Time, range};
+use asperity_io::quantity::{Time, range};
 use asperity_io::store::{At, Reader};
 use asperity_report::animation::{AnimationError, Course, Frames, Motion, animation};
 use asperity_report::figure::Form;

@@ -1,6 +1,6 @@
 //! What the options of `asperity plot` say.
 
-use asperity_io::case::quantity::{Length, Pressure};
+use asperity_io::quantity::{Length, Pressure};
 use asperity_io::store::Reader;
 use asperity_report::figure::Palette;
 use asperity_report::result::{Line, Options, Plot};

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use asperity::stress::StressQuantity;
 use asperity_io::case::fragment::{self, Fault};
-use asperity_io::case::quantity::range::NonNegative;
-use asperity_io::case::quantity::{Number, Time};
 use asperity_io::export::volume;
+use asperity_io::quantity::range::NonNegative;
+use asperity_io::quantity::{Number, Time};
 use asperity_io::store::{At, Reader, Writer};
 use asperity_io::stress::{
     Below, StressBody, StressError, StressPlan, below_at, bodies_of, evaluate, of_result, refuse_layers,

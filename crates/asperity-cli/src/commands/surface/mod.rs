@@ -11,7 +11,7 @@ use std::path::Path;
 
 use asperity::Grid;
 use asperity::surface::Surface as Map;
-use asperity_io::case::quantity::Length;
+use asperity_io::quantity::Length;
 use asperity_io::topography::{Format, ReadOptions, Topography, read, write};
 
 use super::free;

@@ -42,7 +42,7 @@ impl Response {
     }
 
     fn head(&self) -> String {
-        // The address holds the token: it is told to nobody.
+        // The address holds the token, so no other page may learn it.
         format!(
             "HTTP/1.1 {}\r\n\
              content-type: {}\r\n\
@@ -94,7 +94,7 @@ fn parse(head: &[u8]) -> Result<Option<Request>, httparse::Error> {
             "sec-fetch-site" => &mut request.fetch_site,
             _ => continue,
         };
-        // Of several the first one counts.
+        // If a header is repeated, the first one counts.
         place.get_or_insert_with(|| String::from_utf8_lossy(header.value).into_owned());
     }
     Ok(Some(request))

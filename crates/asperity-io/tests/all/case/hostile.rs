@@ -6,8 +6,8 @@ use std::thread;
 use std::time::Duration;
 
 use asperity_examples::TEMPLATES;
-use asperity_io::case::quantity::{Compliance, Length};
 use asperity_io::case::{Case, CaseErrors};
+use asperity_io::quantity::{Compliance, Length};
 use proptest::prelude::*;
 
 /// Far more than any answer takes: beyond it there is none.

@@ -299,8 +299,7 @@ impl Case {
 
     /// The gap at the start of a motion.
     fn moving_gap(&self, parts: &[Part], motion: &Motion) -> Result<Array2<f64>, CaseErrors> {
-        let gap = self.moving(parts, motion)?.at(0.0, motion.direction);
-        gap.map(|(gap, _)| gap).map_err(|error| self.fault("motion", error.to_string()))
+        Ok(self.moving(parts, motion)?.at(0.0, motion.direction).0)
     }
 
     /// The motion in time, where there is one.
@@ -332,10 +331,7 @@ impl Case {
         else {
             return Ok(None);
         };
-        let (_, slopes) = self
-            .moving(parts, motion)?
-            .at(0.0, motion.direction)
-            .map_err(|error| self.fault("motion", error.to_string()))?;
+        let (_, slopes) = self.moving(parts, motion)?.at(0.0, motion.direction);
         let steady = SteadyMotion {
             direction: motion.direction,
             velocities: velocities.clone(),

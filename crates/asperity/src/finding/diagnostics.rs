@@ -74,8 +74,7 @@ pub struct Diagnostics {
     /// The finding for a held approach with cells at the hardness, and whether there were such cells.
     held: Option<Finding>,
     capped: bool,
-    /// Whether the error of steps of given length is estimated, the largest one, and the rows in which it is too large.
-    estimated: bool,
+    /// The largest error of time steps that is too large, and the rows in which it is.
     coarse: Option<(f64, [usize; 2])>,
     /// Thickness of a body on a free domain, and its contacts.
     thickness: Option<f64>,
@@ -105,7 +104,6 @@ impl Diagnostics {
             held: time::held_at_hardness(simulation)
                 .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
             capped: false,
-            estimated: simulation.layers.is_some() && !simulation.is_adaptive(),
             coarse: None,
             thickness: known.thickness.filter(|_| free),
             widest: Widest::default(),
@@ -184,7 +182,7 @@ impl Diagnostics {
 
     fn take(&mut self, index: usize, row: &Row, contact: Counted) {
         self.deepest = self.deepest.max(row.approach);
-        if let Some(error) = row.time_error.filter(|error| self.estimated && *error > time::COARSE) {
+        if let Some(error) = row.time_error.filter(|error| *error > time::COARSE) {
             let (most, first) = self.coarse.map_or((0.0, index), |(most, [first, _])| (most, first));
             self.coarse = Some((error.max(most), [first, index]));
         }
@@ -221,11 +219,12 @@ impl Diagnostics {
         if !found.iter().any(|finding| finding.code == LARGE_SLOPE) {
             found.extend(surface::near(&self.grid, &simulation.gap, self.deepest));
         }
-        if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
+        if let Some((error, at)) = self.coarse {
+            // What was expected before the run is known now.
+            found.retain(|finding| finding.code != STEPS_TOO_LONG);
+            found.push(time::coarse(error, at));
+        } else if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
             found.extend(self.held.clone().filter(|_| self.capped));
-        }
-        if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
-            found.extend(self.coarse.map(|(error, at)| time::coarse(error, at)));
         }
         found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
         found.extend(self.slides.finding());

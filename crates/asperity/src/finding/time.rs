@@ -23,8 +23,8 @@ const PER_RISE: usize = 4;
 const DRIFT: f64 = 0.5;
 /// Changes by less than this fraction of the largest value are scatter of a measured history.
 const SMALL: f64 = 0.05;
-/// Largest estimated error of a step of given length, if it is estimated.
-pub(super) const COARSE: f64 = 0.02;
+/// Largest estimated error of the stress.
+pub(super) const COARSE: f64 = 0.05;
 /// Relaxation times with less than this fraction of the modulus are ignored.
 const SHARE: f64 = 0.05;
 /// A material relaxes during a change of the load if one of its times is within this factor of the steps and of the change's
@@ -61,11 +61,12 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     found
 }
 
-/// The finding for steps whose estimated error is too large in these rows, for layers that creep differently.
+/// The finding for steps whose estimated error is too large in these rows.
 pub(super) fn coarse(error: f64, at: [usize; 2]) -> Finding {
     let text = format!(
-        "The layers creep differently, and the steps are long for that ({}): pressures are off by {} % or so, load or approach by \
-         less. Take more steps there, or spacing = \"adaptive\".",
+        "The time steps are long for the history and the material ({}): load or approach and the largest pressure may be off by up to \
+         {} %. Take more steps there, or spacing = \"adaptive\"; if steps are adaptive already, a smaller tolerance; if the contact \
+         moves, fewer cells_per_step.",
         rows(at),
         digits(100.0 * error)
     );

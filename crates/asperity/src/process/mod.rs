@@ -71,6 +71,8 @@ pub(crate) struct Solved<'a> {
     pub(crate) hardness: Hardness<'a>,
     pub(crate) operator: &'a mut dyn Operator,
     pub(crate) interrupt: Option<&'a AtomicBool>,
+    /// Estimated error of the stress, relative, if the history knows it.
+    pub(crate) time_error: Option<f64>,
     /// What the step did to the energy of the bodies, where account is kept of it.
     pub(crate) exchange: Option<Exchange>,
     /// Work that was done on the bodies in the step besides that of the load \[J\].

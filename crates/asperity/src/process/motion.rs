@@ -141,6 +141,7 @@ impl Process for Moving {
             velocity: self.motion.path.velocity(row.step.instant.time),
             distance: self.distance,
             shear_stress: self.motion.shear_stress,
+            time_error: row.time_error.unwrap_or(0.0),
         };
         let friction = Friction::of(&contact, SecondEstimate::Differences);
         let before = std::mem::replace(&mut self.before, self.distance);

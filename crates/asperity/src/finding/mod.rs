@@ -210,7 +210,7 @@ pub const YIELD_EXCEEDED: &str = "yield-exceeded";
 /// A half-space that is too thin for the contact or the waves.
 pub const THIN_BODY: &str = "thin-body";
 
-/// Two estimates of the friction force differ.
+/// The friction force is uncertain.
 pub const FRICTION_UNCERTAIN: &str = "friction-uncertain";
 /// No viscoelastic body moves.
 pub const FRICTION_ZERO: &str = "friction-zero";

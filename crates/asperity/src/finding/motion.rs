@@ -42,9 +42,9 @@ impl Slides {
         let at = [found.first()?.0, found.last()?.0];
         let worst = found.iter().map(|row| row.2).fold(0.0, f64::max);
         let text = format!(
-            "Two estimates of the friction force differ by up to {} of it ({}), more than {UNCERTAIN}: the cells do not resolve the \
-             edges of the contact. Refine the grid (domain.cells), or leave short waves out; a motion in time also takes shorter \
-             steps (cells_per_step).",
+            "The friction force is uncertain by up to {} of it ({}), more than {UNCERTAIN}: the cells do not resolve the edges of the \
+             contact, or the time steps are long for the material. Refine the grid (domain.cells), leave short waves out, or take \
+             shorter steps (motion.cells_per_step).",
             digits(worst),
             rows(at)
         );

@@ -21,7 +21,7 @@
 //! | `velocity`, `sliding_distance` | m/s, m | velocity of a contact in motion, and how far it has moved |
 //! | `friction_force`, `side_force` | N | force against motion and across it |
 //! | `friction_coefficient`, `friction_coefficient_total` | | friction force over load, without and with a shear stress on the contact |
-//! | `friction_uncertainty` | | difference of two estimates of the friction force |
+//! | `friction_uncertainty` | | estimated error of the friction force, relative |
 //! | `rolling_moment` | N m | moment of the pressure about the middle of the shapes |
 //! | `dissipated_power` | W | power lost in the bodies |
 //!
@@ -159,7 +159,7 @@ quantities! {
     /// Friction coefficient with the share of a given shear stress on the area in contact.
     FrictionCoefficientTotal = "friction_coefficient_total" ["1"] "friction coefficient with the shear stress on the contact", MotionOnRequest, ("Friction coefficient", "friction coefficient", "with the shear stress");
     /// Difference of the friction force from its second estimate, -Σ p du/ds, over the force.
-    FrictionUncertainty = "friction_uncertainty" ["1"] "difference of two estimates of friction, relative", Motion, ("Uncertainty of friction", "share of the force", "");
+    FrictionUncertainty = "friction_uncertainty" ["1"] "estimated error of the friction force, relative", Motion, ("Uncertainty of friction", "share of the force", "");
     /// Moment of the pressure about the middle of the shapes, in N m.
     RollingMoment = "rolling_moment" ["N m"] "rolling moment", Motion, ("Rolling moment", "moment", "");
     /// Power lost in the bodies, in W.

@@ -173,6 +173,7 @@ pub const ROW_COLUMNS: [RowColumn; 16] = columns![
         .shown(Work, ["Error of each row", "relative error", "contact conditions (residual)"]);
     Real certificate ["1"] "certified relative error in the energy norm"
         .shown(Work, ["Error of each row", "relative error", "pressure (certificate)"]);
-    Maybe time_error ["1"] "estimated error of the stress, relative";
+    Maybe time_error ["1"] "estimated error of the stress because of the time steps, relative"
+        .shown(Work, ["Error of each row", "relative error", "stress (time steps)"]);
     Count stage ["1"] "stage of the load";
 ];

@@ -105,6 +105,7 @@ impl Relaxation {
             }
             // A cell that comes into contact had this gap before.
             let late = if p > 0.0 || !lasts { 0.0 } else { (rigid_before + u - w_before).max(0.0) };
+            let late = if late.is_finite() { late } else { 0.0 };
             let bends = curved.max(if in_time { LATE * late } else { 0.0 });
             let own = if p_now > 0.0 { curved.max(late) } else { 0.0 };
             let touches = f64::from(u8::from(p_now > 0.0));

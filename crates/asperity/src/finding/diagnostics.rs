@@ -8,6 +8,7 @@ use super::expected::{ROOM, radius};
 use super::motion::Slides;
 use super::strain::Strain;
 use super::thin::Widest;
+use super::worst::{Worst, extend};
 use super::{
     CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN, STEPS_TOO_LONG, domain, material,
     strain, surface, thin, time,
@@ -74,9 +75,9 @@ pub struct Diagnostics {
     /// The finding for a held approach with cells at the hardness, and whether there were such cells.
     held: Option<Finding>,
     capped: bool,
-    /// Whether the error of steps of given length is estimated, the largest one, and the rows in which it is too large.
+    /// Whether the error of steps of given length is estimated, and the rows in which it is too large.
     estimated: bool,
-    coarse: Option<(f64, [usize; 2])>,
+    coarse: Worst,
     /// Thickness of a body on a free domain, and its contacts.
     thickness: Option<f64>,
     widest: Widest,
@@ -106,7 +107,7 @@ impl Diagnostics {
                 .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
             capped: false,
             estimated: simulation.layers.is_some() && !simulation.is_adaptive(),
-            coarse: None,
+            coarse: Worst::default(),
             thickness: known.thickness.filter(|_| free),
             widest: Widest::default(),
             earlier_balance: None,
@@ -164,7 +165,7 @@ impl Diagnostics {
         compliance: f64,
     ) {
         if self.free && row.contact_area > 0.0 && domain::touches_border(&self.grid, pressure) {
-            self.border = Some(self.border.map_or([index; 2], |[first, _]| [first, index]));
+            extend(&mut self.border, index);
             let needed = ROOM
                 * self.radius.map_or(0.0, |radius| match control {
                     Control::Approach => (radius * row.approach.max(0.0)).sqrt(),
@@ -184,9 +185,8 @@ impl Diagnostics {
 
     fn take(&mut self, index: usize, row: &Row, contact: Counted) {
         self.deepest = self.deepest.max(row.approach);
-        if let Some(error) = row.time_error.filter(|error| self.estimated && *error > time::COARSE) {
-            let (most, first) = self.coarse.map_or((0.0, index), |(most, [first, _])| (most, first));
-            self.coarse = Some((error.max(most), [first, index]));
+        if let Some(error) = row.time_error.filter(|_| self.estimated) {
+            self.coarse.above(index, error, time::COARSE);
         }
         self.resolution.see(index, contact);
         self.strain.see(index, row, contact);
@@ -215,17 +215,15 @@ impl Diagnostics {
         }
         found.extend(self.resolution.findings());
         found.extend(self.strain.findings());
-        if !found.iter().any(|finding| finding.code == LARGE_STRAIN) {
+        let lacks = |found: &[Finding], code: &str| found.iter().all(|finding| finding.code != code);
+        if lacks(&found, LARGE_STRAIN) {
             found.extend(simulation.kernel.depth().and_then(|depth| strain::compressed(self.deepest, depth)));
         }
-        if !found.iter().any(|finding| finding.code == LARGE_SLOPE) {
+        if lacks(&found, LARGE_SLOPE) {
             found.extend(surface::near(&self.grid, &simulation.gap, self.deepest));
         }
-        if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
-            found.extend(self.held.clone().filter(|_| self.capped));
-        }
-        if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
-            found.extend(self.coarse.map(|(error, at)| time::coarse(error, at)));
+        if lacks(&found, STEPS_TOO_LONG) {
+            found.extend(self.held.clone().filter(|_| self.capped).or_else(|| time::coarse(&self.coarse)));
         }
         found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
         found.extend(self.slides.finding());

@@ -11,7 +11,7 @@ pub use programme::{Course, Event, Programme, Stage};
 pub(crate) use time_grid::SHORTEST;
 pub use time_grid::TimeGrid;
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive, require};
 
 /// The prescribed quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -230,9 +230,7 @@ fn validate_table(points: &[(f64, f64)]) -> Result<()> {
     let Some(first) = points.first() else {
         return Err(Error::invalid("table of the history", "empty", "one point at least"));
     };
-    if first.0 != 0.0 {
-        return Err(Error::invalid("first time of the history's table", format!("{} s", first.0), "0 s"));
-    }
+    require(first.0 == 0.0, "first time of the history's table", format!("{} s", first.0), "0 s")?;
     for (n, (t, v)) in points.iter().enumerate() {
         if !t.is_finite() || !v.is_finite() {
             return Err(Error::invalid(

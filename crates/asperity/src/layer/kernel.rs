@@ -7,7 +7,7 @@ use ndarray::parallel::prelude::*;
 
 use super::hankel::{Load, Smooth};
 use super::{Base, Stack};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::kernel::{Kernel, love, strip_at};
 
 /// Longest side of a cell over the thickness of a top layer.
@@ -64,9 +64,12 @@ impl Layered {
     /// # Errors
     /// [`Error::Invalid`] if there are no bodies or more than two.
     pub fn new(stacks: Vec<Stack>) -> Result<Self> {
-        if stacks.is_empty() || stacks.len() > 2 {
-            return Err(Error::invalid("number of bodies", stacks.len(), "1 (against a rigid one) or 2"));
-        }
+        require(
+            (1..=2).contains(&stacks.len()),
+            "number of bodies",
+            stacks.len(),
+            "1 (against a rigid one) or 2",
+        )?;
         let scale = 2.0 / stacks.iter().map(Stack::short_waves).sum::<f64>();
         Ok(Layered { stacks, scale })
     }

@@ -24,7 +24,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 
 /// R \[J/(mol K)\].
 pub const GAS_CONSTANT: f64 = 8.314_462_618;
@@ -143,13 +143,12 @@ impl Gas {
     /// # Errors
     /// [`Error::Invalid`] if the temperature is not between 200 K and 500 K.
     pub fn of(species: Species, temperature: f64) -> Result<Gas> {
-        if !(KNOWN[0]..=KNOWN[1]).contains(&temperature) {
-            return Err(Error::invalid(
-                "temperature of the gas",
-                format!("{temperature} K"),
-                "between 200 K and 500 K, where its viscosity is known; give viscosity and molar mass outside",
-            ));
-        }
+        require(
+            (KNOWN[0]..=KNOWN[1]).contains(&temperature),
+            "temperature of the gas",
+            format!("{temperature} K"),
+            "between 200 K and 500 K, where its viscosity is known; give viscosity and molar mass outside",
+        )?;
         Gas::new(species.viscosity(temperature), species.molar_mass(), temperature)
     }
 

@@ -1,6 +1,6 @@
 //! Checks of measured curves before the fit: order, sign, noise, and passivity.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 
 /// Number of points above which a curve is averaged.
 const MOST_POINTS: usize = 10_000_000;
@@ -41,13 +41,12 @@ pub(super) enum Trend {
 /// Checks that the abscissae increase strictly from a positive number (or from 0, where `zero`).
 pub(super) fn check_abscissae(words: Words, xs: &[f64], zero: bool) -> Result<()> {
     let name = |n: usize| format!("{} of point {}", words.abscissa, n + 1);
-    if xs.len() < 2 || xs.len() > MOST_POINTS {
-        return Err(Error::invalid(
-            format!("number of points of the {}", words.ordinate),
-            xs.len(),
-            format!("between 2 and {MOST_POINTS}"),
-        ));
-    }
+    require(
+        (2..=MOST_POINTS).contains(&xs.len()),
+        format!("number of points of the {}", words.ordinate),
+        xs.len(),
+        format!("between 2 and {MOST_POINTS}"),
+    )?;
     for (n, x) in xs.iter().enumerate() {
         let positive = *x >= f64::MIN_POSITIVE || (zero && n == 0 && *x == 0.0);
         if !(positive && x.is_finite()) {
@@ -67,25 +66,23 @@ pub(super) fn check_abscissae(words: Words, xs: &[f64], zero: bool) -> Result<()
     }
     let first = if xs[0] > 0.0 { xs[0] } else { xs[1] };
     let decades = xs[xs.len() - 1].log10() - first.log10();
-    if decades > MOST_DECADES {
-        return Err(Error::invalid(
-            format!("range of the {}", words.abscissa),
-            format!("{decades:.0} decades"),
-            format!("at most {MOST_DECADES} decades"),
-        ));
-    }
+    require(
+        decades <= MOST_DECADES,
+        format!("range of the {}", words.abscissa),
+        format!("{decades:.0} decades"),
+        format!("at most {MOST_DECADES} decades"),
+    )?;
     Ok(())
 }
 
 /// Checks that there is one finite, positive (or not negative) value for each abscissa.
 pub(super) fn check_values(words: Words, xs: &[f64], values: &[f64], zero: bool) -> Result<()> {
-    if values.len() != xs.len() {
-        return Err(Error::invalid(
-            format!("number of values of the {}", words.ordinate),
-            values.len(),
-            format!("{}, one for each {}", xs.len(), words.abscissa),
-        ));
-    }
+    require(
+        values.len() == xs.len(),
+        format!("number of values of the {}", words.ordinate),
+        values.len(),
+        format!("{}, one for each {}", xs.len(), words.abscissa),
+    )?;
     for (n, (x, value)) in xs.iter().zip(values).enumerate() {
         if !(value.is_finite() && (*value >= f64::MIN_POSITIVE || (zero && *value == 0.0))) {
             let bound = if zero { "not less than" } else { "greater than" };

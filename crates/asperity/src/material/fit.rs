@@ -5,7 +5,7 @@
 //! over its value. Terms that the data do not require are then merged or left out, and the remaining times are refined. If the
 //! fit cannot describe the data, no passive material can: such data are refused, with the position.
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive, require};
 use crate::material::data::{self, Trend, Words};
 use crate::material::refine;
 use crate::material::spectrum::{Kernel, Problem, Row, Spectrum};
@@ -233,25 +233,24 @@ pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Re
 
 impl FitOptions {
     fn validate(&self) -> Result<()> {
-        if !(0.5..=20.0).contains(&self.per_decade) {
-            return Err(Error::invalid("times per decade of the fit", self.per_decade, "from 0.5 to 20"));
-        }
+        require(
+            (0.5..=20.0).contains(&self.per_decade),
+            "times per decade of the fit",
+            self.per_decade,
+            "from 0.5 to 20",
+        )?;
         non_negative("margin of the fit", self.margin, "decades")?;
-        if self.margin > 5.0 {
-            return Err(Error::invalid("margin of the fit", self.margin, "at most 5 decades"));
-        }
-        if self.max_terms == 0 {
-            return Err(Error::invalid("most terms of the fit", 0, "1 at least"));
-        }
+        require(self.margin <= 5.0, "margin of the fit", self.margin, "at most 5 decades")?;
+
+        require(self.max_terms > 0, "most terms of the fit", 0, "1 at least")?;
         if let Some(misfit) = self.misfit {
             positive("misfit to be held by the fit", misfit, "")?;
-            if misfit >= 0.5 {
-                return Err(Error::invalid(
-                    "misfit to be held by the fit",
-                    misfit,
-                    "a share below 0.5, such as 0.02 for 2 %",
-                ));
-            }
+            require(
+                misfit < 0.5,
+                "misfit to be held by the fit",
+                misfit,
+                "a share below 0.5, such as 0.02 for 2 %",
+            )?;
         }
         positive("weight of the loss modulus", self.loss_weight, "")?;
         positive("largest misfit of the fit", self.limit, "").map(|_| ())
@@ -260,13 +259,12 @@ impl FitOptions {
     /// Fits the curves and computes the misfit at every point of every curve.
     fn solve(&self, problem: &Problem, curves: &[Curve]) -> Result<Solved> {
         let count = (problem.range[1] / problem.range[0]).log10() * self.per_decade;
-        if count > MOST_TIMES {
-            return Err(Error::invalid(
-                "number of times of the fit",
-                format!("{count:.0}"),
-                format!("at most {MOST_TIMES}: fewer per decade, or data over fewer decades"),
-            ));
-        }
+        require(
+            count <= MOST_TIMES,
+            "number of times of the fit",
+            format!("{count:.0}"),
+            format!("at most {MOST_TIMES}: fewer per decade, or data over fewer decades"),
+        )?;
         let spectrum = match self.misfit {
             Some(misfit) => problem.fit_within(self.per_decade, misfit),
             None => problem.fit(self.per_decade, self.max_terms),
@@ -287,17 +285,16 @@ impl FitOptions {
         for curve in curves {
             data::check_misfit(curve.words, curve.xs, curve.values, &curve.residuals(&spectrum), self.limit)?;
         }
-        if misfit.rms.is_nan() || misfit.rms > self.limit {
-            return Err(Error::invalid(
-                "rms misfit of the fit",
-                format!("{:.2} % ({:.2} % at {:e})", 100.0 * misfit.rms, 100.0 * misfit.max, misfit.worst),
-                format!(
-                    "at most {:.2} % (the largest misfit allowed): fit a narrower window, allow more terms, leave \
+        require(
+            misfit.rms <= self.limit,
+            "rms misfit of the fit",
+            format!("{:.2} % ({:.2} % at {:e})", 100.0 * misfit.rms, 100.0 * misfit.max, misfit.worst),
+            format!(
+                "at most {:.2} % (the largest misfit allowed): fit a narrower window, allow more terms, leave \
                      outliers out, or allow a larger misfit",
-                    100.0 * self.limit
-                ),
-            ));
-        }
+                100.0 * self.limit
+            ),
+        )?;
         let uncertainty = refine::uncertainty(problem, &spectrum);
         Ok(Solved { spectrum, misfit, columns, uncertainty })
     }

@@ -13,7 +13,7 @@
 //! where x = t/tau and x_c = x (G_inf/G_0)^(1/alpha): a fractional Zener solid retards as it relaxes. All are completely
 //! monotone, so Prony series with positive weights approximate them to any accuracy.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, positive, require};
 use crate::material::mittag_leffler::{LEAST_ORDER, mittag_leffler};
 use crate::material::prony_sum::{self, ColeCole, Exact, PowerLaw};
 use crate::material::{Creep, CreepTerm};
@@ -174,7 +174,7 @@ impl Fractional {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] if an argument is out of its range, or if the tolerance is too small.
+    /// [`Error::Invalid`](crate::Error::Invalid) if an argument is out of its range, or if the tolerance is too small.
     pub fn to_prony(&self, window: [f64; 2], tolerance: f64) -> Result<Approximation> {
         self.validate()?;
         let (time, order) = self.time_and_order();
@@ -212,13 +212,12 @@ impl Fractional {
     fn validate(&self) -> Result<()> {
         let (time, order) = self.time_and_order();
         positive("time of the fractional model", time, "s")?;
-        if !(order > 0.0 && order <= 1.0) {
-            return Err(Error::invalid(
-                "order of the fractional model",
-                order,
-                "greater than 0 (a spring) and not greater than 1 (a dashpot)",
-            ));
-        }
+        require(
+            order > 0.0 && order <= 1.0,
+            "order of the fractional model",
+            order,
+            "greater than 0 (a spring) and not greater than 1 (a dashpot)",
+        )?;
         match *self {
             Fractional::Springpot { modulus, .. } | Fractional::Maxwell { modulus, .. } => {
                 positive("modulus of the fractional model", modulus, "Pa").map(|_| ())
@@ -226,13 +225,12 @@ impl Fractional {
             Fractional::Zener { equilibrium, instantaneous, .. } => {
                 positive("equilibrium modulus of the fractional model", equilibrium, "Pa")?;
                 positive("instantaneous modulus of the fractional model", instantaneous, "Pa")?;
-                if instantaneous <= equilibrium {
-                    return Err(Error::invalid(
-                        "instantaneous modulus of the fractional model",
-                        format!("{instantaneous:e} Pa"),
-                        format!("greater than the equilibrium modulus, {equilibrium:e} Pa"),
-                    ));
-                }
+                require(
+                    instantaneous > equilibrium,
+                    "instantaneous modulus of the fractional model",
+                    format!("{instantaneous:e} Pa"),
+                    format!("greater than the equilibrium modulus, {equilibrium:e} Pa"),
+                )?;
                 Ok(())
             }
         }

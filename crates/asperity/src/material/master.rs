@@ -5,7 +5,7 @@
 //! the temperature T the reduced time of t is t/a_T, and the reduced frequency of omega is omega a_T. The shift factors come from
 //! a law ([`Shift`]) or from neighbouring isotherms ([`estimate_shift`](super::estimate_shift)).
 
-use crate::error::{Error, Result, kelvin, positive};
+use crate::error::{Error, Result, kelvin, positive, require};
 use crate::material::shift::Shift;
 
 /// The abscissa of a curve.
@@ -84,9 +84,7 @@ pub(super) fn validate(isotherms: &[Isotherm]) -> Result<()> {
     for isotherm in isotherms {
         positive("temperature of an isotherm", isotherm.temperature, "K (absolute)")?;
         let at = format!("the isotherm at {}", kelvin(isotherm.temperature));
-        if isotherm.x.len() < 2 {
-            return Err(Error::invalid(format!("number of points of {at}"), isotherm.x.len(), "at least 2"));
-        }
+        require(isotherm.x.len() >= 2, format!("number of points of {at}"), isotherm.x.len(), "at least 2")?;
         if isotherm.curves.is_empty() || isotherm.curves.len() != first.curves.len() {
             let expected = format!("{}, and at least 1, as in the first", first.curves.len());
             return Err(Error::invalid(format!("number of curves of {at}"), isotherm.curves.len(), expected));

@@ -8,7 +8,7 @@
 //!   fractional Zener solid of order near 1). A relative error of the relaxation function bounds that of the creep function, but
 //!   not the other way round.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::material::fit;
 use crate::material::fractional::Approximation;
 use crate::material::mittag_leffler::{Spread, sine};
@@ -228,15 +228,18 @@ fn widen([first, last]: [f64; 2], decades: f64) -> [f64; 2] {
 }
 
 fn check([first, last]: [f64; 2], tolerance: f64) -> Result<()> {
-    if !(first > 0.0 && first < last && last.is_finite() && last.log10() - first.log10() <= MOST_DECADES) {
-        return Err(Error::invalid(
-            "time window of the Prony sum",
-            format!("{first:e} s to {last:e} s"),
-            format!("two positive, increasing times at most {MOST_DECADES} decades apart"),
-        ));
-    }
-    if !(1e-8..=0.5).contains(&tolerance) {
-        return Err(Error::invalid("error allowed to the Prony sum", tolerance, "from 1e-8 to 0.5"));
-    }
+    require(
+        first > 0.0 && first < last && last.is_finite() && last.log10() - first.log10() <= MOST_DECADES,
+        "time window of the Prony sum",
+        format!("{first:e} s to {last:e} s"),
+        format!("two positive, increasing times at most {MOST_DECADES} decades apart"),
+    )?;
+
+    require(
+        (1e-8..=0.5).contains(&tolerance),
+        "error allowed to the Prony sum",
+        tolerance,
+        "from 1e-8 to 0.5",
+    )?;
     Ok(())
 }

@@ -4,7 +4,7 @@
 //! 4 (1960) 233). The argument of the creep function is xi(t) - xi(s) instead of t - s, so time stepping in xi instead of t is
 //! exact.
 
-use crate::error::{Error, Result, kelvin};
+use crate::error::{Error, Result, kelvin, require};
 use crate::material::Shift;
 use crate::material::quadrature::integrate;
 
@@ -88,13 +88,12 @@ impl ReducedTime {
                 clock.pieces.push(piece);
             }
         }
-        if !reduced.is_finite() {
-            return Err(Error::invalid(
-                "reduced time of the temperature history",
-                reduced,
-                "finite: check the temperatures and the constants of the shift",
-            ));
-        }
+        require(
+            reduced.is_finite(),
+            "reduced time of the temperature history",
+            reduced,
+            "finite: check the temperatures and the constants of the shift",
+        )?;
         Ok(clock)
     }
 
@@ -234,9 +233,7 @@ fn validate(temperatures: &[(f64, f64)]) -> Result<()> {
     let Some(first) = temperatures.first() else {
         return Err(Error::invalid("temperature history", "empty", "one point at least"));
     };
-    if first.0 != 0.0 {
-        return Err(Error::invalid("first time of the temperature history", first.0, "0 s"));
-    }
+    require(first.0 == 0.0, "first time of the temperature history", first.0, "0 s")?;
     let name = |n: usize| format!("time of point {} of the temperature history", n + 1);
     for (n, (t, _)) in temperatures.iter().enumerate() {
         if !t.is_finite() {

@@ -4,7 +4,7 @@
 //! E*(omega a_T, T_r). Above the glass transition a_T follows M. L. Williams, R. F. Landel & J. D. Ferry, J. Am. Chem. Soc. 77
 //! (1955) 3701, log10 a_T = -c1 (T - T_r) / (c2 + T - T_r), and otherwise often S. Arrhenius, ln a_T = (E_a/R) (1/T - 1/T_r).
 
-use crate::error::{Error, Result, kelvin, positive};
+use crate::error::{Error, Result, kelvin, positive, require};
 use std::f64::consts::LN_10;
 
 /// Gas constant R \[J/(mol K)\], exact in the SI of 2019.
@@ -181,9 +181,7 @@ impl Shift {
 }
 
 fn validate_table(points: &[(f64, f64)]) -> Result<()> {
-    if points.len() < 2 {
-        return Err(Error::invalid("number of shift factors", points.len(), "at least 2"));
-    }
+    require(points.len() >= 2, "number of shift factors", points.len(), "at least 2")?;
     for (n, (temperature, ln)) in points.iter().enumerate() {
         positive(&format!("temperature of shift factor {}", n + 1), *temperature, "K (absolute)")?;
         if !ln.is_finite() {
@@ -280,13 +278,12 @@ fn usable(points: &[(f64, f64)], reference: f64, least: usize) -> Result<Vec<(f6
         }
     }
     let points: Vec<_> = points.iter().filter(|p| p.0 != reference).copied().collect();
-    if points.len() < least {
-        return Err(Error::invalid(
-            "number of shift factors besides the reference",
-            points.len(),
-            format!("at least {least}"),
-        ));
-    }
+    require(
+        points.len() >= least,
+        "number of shift factors besides the reference",
+        points.len(),
+        format!("at least {least}"),
+    )?;
     Ok(points)
 }
 

@@ -14,7 +14,7 @@
 //!
 //! with the expansion of the volume per kelvin. The moduli of a glass do not follow this law.
 
-use crate::error::{Error, Result, kelvin, positive};
+use crate::error::{Error, Result, kelvin, positive, require};
 
 /// A vertical shift factor b_T as a function of temperature: moduli at T are those at the reference temperature divided by b_T.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,9 +110,7 @@ pub(super) fn interpolated(points: &[(f64, f64)], temperature: f64) -> f64 {
 const MOST: f64 = 6.9;
 
 fn validate_table(points: &[(f64, f64)]) -> Result<()> {
-    if points.is_empty() {
-        return Err(Error::invalid("number of vertical shift factors", 0, "at least 1"));
-    }
+    require(!points.is_empty(), "number of vertical shift factors", 0, "at least 1")?;
     for (n, (temperature, ln)) in points.iter().enumerate() {
         positive(&format!("temperature of vertical shift factor {}", n + 1), *temperature, "K (absolute)")?;
         if ln.is_nan() || ln.abs() > MOST {

@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 
 use super::hereditary::{hereditary, hereditary_before};
 use super::quadrature::{integrate_to, root};
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive, require};
 use crate::load::History;
 use crate::material::{Creep, Relaxation};
 
@@ -86,9 +86,7 @@ impl Ting {
         positive("instantaneous compliance", creep.instantaneous, "1/Pa")?;
         history.validate()?;
         let lowest = history.range(end)[0];
-        if lowest < 0.0 {
-            return Err(Error::invalid("smallest load of the history", format!("{lowest} N"), "0 N or more"));
-        }
+        require(lowest >= 0.0, "smallest load of the history", format!("{lowest} N"), "0 N or more")?;
         let (creep, history) = (creep.clone(), history.clone());
         let relaxation = creep.to_relaxation()?;
         let mut contact = Ting { radius, creep, relaxation, history, end, turn: 0.0, largest: 0.0 };

@@ -19,7 +19,7 @@ use super::coefficients::{corner, strip, wave};
 use super::depths::check_depth;
 use super::history::{PressureHistory, mean};
 use crate::convolution::Convolution;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::grid::{Boundary, Grid};
 
 /// Rows of coefficients that a task computes together: their corners are shared.
@@ -66,9 +66,7 @@ impl SubsurfaceStress {
     /// # Errors
     /// [`Error::Invalid`] for a Poisson's ratio that is not between 0 and 0.5.
     pub fn new(grid: Grid, boundary: Boundary, poisson: f64) -> Result<Self> {
-        if !(0.0..=0.5).contains(&poisson) {
-            return Err(Error::invalid("Poisson's ratio", poisson, "between 0 and 0.5"));
-        }
+        require((0.0..=0.5).contains(&poisson), "Poisson's ratio", poisson, "between 0 and 0.5")?;
         let lengths = match boundary {
             Boundary::Free => grid.cells().map(|n| Convolution::good_length(2 * n - 1)),
             Boundary::Periodic => grid.cells(),

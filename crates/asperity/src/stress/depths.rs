@@ -1,6 +1,6 @@
 //! The depths at which the stress is computed.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::grid::{Boundary, Grid};
 
 /// Depths between 0 and this fraction of a cell are refused: they would show the jumps of the pressure from cell to cell.
@@ -98,9 +98,12 @@ pub fn check_depth(grid: &Grid, depth: f64) -> Result<()> {
 /// # Errors
 /// [`Error::Invalid`] with the first invalid depth.
 pub fn check_depths(grid: &Grid, depths: &[f64]) -> Result<()> {
-    if !(1..=MOST).contains(&depths.len()) {
-        return Err(Error::invalid("number of depths", depths.len(), format!("from 1 to {MOST}")));
-    }
+    require(
+        (1..=MOST).contains(&depths.len()),
+        "number of depths",
+        depths.len(),
+        format!("from 1 to {MOST}"),
+    )?;
     depths.iter().try_for_each(|depth| check_depth(grid, *depth))?;
     match depths.windows(2).find(|two| two[0] >= two[1]) {
         Some(two) => {

@@ -22,7 +22,7 @@ use std::f64::consts::TAU;
 use ndarray::Array2;
 
 use super::waves::{SAME, Waves};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 use crate::grid::Grid;
 
 /// The roughness of a synthetic surface.
@@ -119,13 +119,12 @@ impl SelfAffine {
         let exponent = if grid.is_line() { -1.0 - 2.0 * self.hurst } else { -2.0 * (1.0 + self.hurst) };
         let amplitude = |qx: f64, qy: f64| self.spectrum(seen(qx, qy), exponent).sqrt();
         let (mut columns, moments) = waves.amplitudes(self.seed, amplitude);
-        if moments.height <= 0.0 {
-            return Err(Error::invalid(
-                "band of wavelengths",
-                format!("{:e} m to {:e} m", self.shortest, self.longest),
-                "wide enough to hold a wave that fits the domain (size over an integer along x and y)",
-            ));
-        }
+        require(
+            moments.height > 0.0,
+            "band of wavelengths",
+            format!("{:e} m to {:e} m", self.shortest, self.longest),
+            "wide enough to hold a wave that fits the domain (size over an integer along x and y)",
+        )?;
         let scale = match self.roughness {
             Roughness::RmsHeight(height) => height / moments.height.sqrt(),
             Roughness::RmsGradient(gradient) => gradient / moments.gradient.sqrt(),
@@ -155,9 +154,12 @@ impl SelfAffine {
     /// # Errors
     /// [`Error::Invalid`] as [`heights`](Self::heights).
     pub fn validate(&self, grid: &Grid) -> Result<()> {
-        if !(self.hurst > 0.0 && self.hurst <= 1.0) {
-            return Err(Error::invalid("Hurst exponent", self.hurst, "greater than 0 and at most 1"));
-        }
+        require(
+            self.hurst > 0.0 && self.hurst <= 1.0,
+            "Hurst exponent",
+            self.hurst,
+            "greater than 0 and at most 1",
+        )?;
         match self.roughness {
             Roughness::RmsGradient(g) => positive("rms gradient", g, "")?,
             Roughness::RmsHeight(h) => positive("rms height", h, "m")?,
@@ -167,34 +169,33 @@ impl SelfAffine {
         positive("roll-off wavelength", self.roll_off, "m")?;
         let meters = |l: f64| format!("{l:e} m");
         let (two_cells, domain) = (2.0 * grid.cell_sides().fold(0.0, f64::max), grid.longest_side());
-        if self.shortest < two_cells * (1.0 - SAME) {
-            return Err(Error::invalid(
-                "shortest wavelength",
+        require(
+            self.shortest >= two_cells * (1.0 - SAME),
+            "shortest wavelength",
+            meters(self.shortest),
+            format!("at least two cells, {}; refine the grid or cut longer waves off", meters(two_cells)),
+        )
+        .map_err(|error| error.of("shortest"))?;
+
+        require(
+            self.longest <= domain * (1.0 + SAME),
+            "longest wavelength",
+            meters(self.longest),
+            format!("at most the size of the domain, {}", meters(domain)),
+        )
+        .map_err(|error| error.of("longest"))?;
+
+        require(
+            self.shortest <= self.roll_off && self.roll_off <= self.longest,
+            "roll-off wavelength",
+            meters(self.roll_off),
+            format!(
+                "between the shortest, {}, and the longest, {}",
                 meters(self.shortest),
-                format!("at least two cells, {}; refine the grid or cut longer waves off", meters(two_cells)),
-            )
-            .of("shortest"));
-        }
-        if self.longest > domain * (1.0 + SAME) {
-            return Err(Error::invalid(
-                "longest wavelength",
-                meters(self.longest),
-                format!("at most the size of the domain, {}", meters(domain)),
-            )
-            .of("longest"));
-        }
-        if !(self.shortest <= self.roll_off && self.roll_off <= self.longest) {
-            return Err(Error::invalid(
-                "roll-off wavelength",
-                meters(self.roll_off),
-                format!(
-                    "between the shortest, {}, and the longest, {}",
-                    meters(self.shortest),
-                    meters(self.longest)
-                ),
-            )
-            .of("roll_off"));
-        }
+                meters(self.longest)
+            ),
+        )
+        .map_err(|error| error.of("roll_off"))?;
         Ok(())
     }
 }

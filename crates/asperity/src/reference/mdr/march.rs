@@ -1,7 +1,7 @@
 //! Time stepping of a row of springs through a load or approach history.
 
 use super::{Mdr, MdrProfile, MdrState, MdrTarget};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::load::{Control, Loading};
 use crate::material::Relaxation;
 
@@ -88,13 +88,7 @@ impl Mdr {
             }
             Control::Approach => profile.reach(highest.max(0.0)),
             Control::Load => {
-                if lowest < 0.0 {
-                    return Err(Error::invalid(
-                        "smallest load of the history",
-                        format!("{lowest} N"),
-                        "0 N or more",
-                    ));
-                }
+                require(lowest >= 0.0, "smallest load of the history", format!("{lowest} N"), "0 N or more")?;
                 profile.elastic_radius(highest, relaxation.to_creep()?.value(end))
             }
         };
@@ -115,8 +109,6 @@ fn check_times(times: &[f64]) -> Result<f64> {
         }
         last = *t;
     }
-    if times.is_empty() {
-        return Err(Error::invalid("list of times", "empty", "one time at least"));
-    }
+    require(!times.is_empty(), "list of times", "empty", "one time at least")?;
     Ok(last)
 }

@@ -20,7 +20,7 @@ mod shells;
 
 use rayon::prelude::*;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 use crate::material::{Creep, integrate};
 use crate::sliding::Direction;
 use crate::surface::Surface;
@@ -184,9 +184,7 @@ impl Persson {
 
     /// Contact fraction and friction coefficient; calls `told` with those at the end of each shell.
     fn accumulate(&self, velocity: f64, mut told: impl FnMut(f64, f64, f64)) -> Result<(f64, f64)> {
-        if !velocity.is_finite() {
-            return Err(Error::invalid("velocity", velocity, "finite, in m/s"));
-        }
+        require(velocity.is_finite(), "velocity", velocity, "finite, in m/s")?;
         let (mut root, mut friction) = (0.0, 0.0);
         self.shells.each(&self.creep, velocity.abs(), |shell| {
             // sqrt(G), which does not overflow if G would.

@@ -13,7 +13,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 use crate::material::Creep;
 use crate::sliding::Direction;
 use crate::surface::Surface;
@@ -68,9 +68,12 @@ impl Waves {
     /// From a surface that slides in a direction.
     pub(super) fn of(surface: &Surface, direction: Direction) -> Result<Self> {
         let [cos, sin] = direction.unit();
-        if !(cos.is_finite() && sin.is_finite()) {
-            return Err(Error::invalid("direction", format!("{direction:?}"), "of a finite angle in rad"));
-        }
+        require(
+            cos.is_finite() && sin.is_finite(),
+            "direction",
+            format!("{direction:?}"),
+            "of a finite angle in rad",
+        )?;
         let along = |wave: &Wave| (wave.wave_vector[0] * cos + wave.wave_vector[1] * sin).abs();
         let spectrum = PowerSpectrum::of(surface)?;
         let power: f64 = spectrum.waves().map(|wave| wave.power).sum();
@@ -226,13 +229,12 @@ fn no_roughness() -> Error {
 }
 
 fn check(wave_numbers: &[f64], power: &[f64]) -> Result<()> {
-    if wave_numbers.len() != power.len() || power.len() < 2 {
-        return Err(Error::invalid(
-            "number of points of the spectrum",
-            format!("{} wave numbers and {} values of C", wave_numbers.len(), power.len()),
-            "the same for both, 2 at least",
-        ));
-    }
+    require(
+        wave_numbers.len() == power.len() && power.len() >= 2,
+        "number of points of the spectrum",
+        format!("{} wave numbers and {} values of C", wave_numbers.len(), power.len()),
+        "the same for both, 2 at least",
+    )?;
     for q in wave_numbers {
         positive("wave number of the spectrum", *q, "1/m")?;
     }

@@ -13,7 +13,7 @@ use ndarray::parallel::prelude::*;
 use ndarray::{ArrayView1, Axis};
 
 use super::super::Surface;
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 
 /// Sdq and Sdr.
 ///
@@ -45,7 +45,7 @@ impl SlopeStatistics {
     /// Of the defined points.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if no two neighbours are defined.
+    /// [`Error::Invalid`](crate::Error::Invalid) if no two neighbours are defined.
     pub fn of(surface: &Surface) -> Result<Self> {
         let (heights, [dx, dy]) = (surface.heights(), surface.grid().spacing());
         // Rows in parallel, their sums added in order.
@@ -62,13 +62,12 @@ impl SlopeStatistics {
             along_y: add(a.along_y, b.along_y),
             area: add(a.area, b.area),
         });
-        if total.along_x.1 + total.along_y.1 == 0 {
-            return Err(Error::invalid(
-                "number of defined neighbours",
-                0,
-                "1 pair at least, to have a slope",
-            ));
-        }
+        require(
+            total.along_x.1 + total.along_y.1 > 0,
+            "number of defined neighbours",
+            0,
+            "1 pair at least, to have a slope",
+        )?;
         let mean = |(sum, count): (f64, usize)| if count > 0 { sum / count as f64 } else { 0.0 };
         Ok(SlopeStatistics { sdq: (mean(total.along_x) + mean(total.along_y)).sqrt(), sdr: mean(total.area) })
     }

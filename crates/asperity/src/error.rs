@@ -133,6 +133,23 @@ pub(crate) fn require(
     if holds { Ok(()) } else { Err(Error::invalid(what, value, expected)) }
 }
 
+/// Checks that numbers increase. `name` names number n, counted from 0; `show` writes a number with its unit.
+pub(crate) fn increasing(
+    numbers: impl IntoIterator<Item = f64>,
+    name: impl Fn(usize) -> String,
+    show: impl Fn(f64) -> String,
+) -> Result<()> {
+    let mut last = f64::NEG_INFINITY;
+    for (n, x) in numbers.into_iter().enumerate() {
+        if x <= last {
+            let expected = format!("greater than the one before it, {} (in order, none twice)", show(last));
+            return Err(Error::invalid(name(n), show(x), expected));
+        }
+        last = x;
+    }
+    Ok(())
+}
+
 /// `Ok(value)` if it is finite and > 0.
 pub(crate) fn positive(what: &str, value: f64, unit: &str) -> Result<f64> {
     if value.is_finite() && value > 0.0 {

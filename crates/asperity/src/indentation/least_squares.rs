@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::model::Model;
 use super::parameters::Parameters;
 use crate::error::{Result, require};
+use crate::material::dot;
 
 /// Steps of the central differences, in logarithms: the model's own steps are 1e-5 of its values.
 const STEP: f64 = 1e-2;
@@ -176,10 +177,6 @@ pub(super) fn invert(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
             .map(|(i, row)| (0..n).map(|j| row[n + j] / (scale[i] * scale[j])).collect())
             .collect(),
     )
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn squares(r: &[f64]) -> f64 {

@@ -2,11 +2,11 @@
 //! depth are linear in the weights (theory of Lee and Radok, see [`super`]).
 
 use super::Given;
-use super::least_squares::{dot, invert};
+use super::least_squares::invert;
 use super::model::Model;
 use super::parameters::Parameters;
 use crate::error::{Error, Result};
-use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
+use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm, dot};
 
 /// Times of the grid per decade.
 const PER_DECADE: f64 = 4.0;

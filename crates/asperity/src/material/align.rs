@@ -21,7 +21,8 @@
 mod polynomial;
 
 use super::shift::minimise;
-use polynomial::{Joint, dot, orthonormal, remove};
+use crate::material::dot;
+use polynomial::{Joint, orthonormal, remove};
 
 /// A curve as (ln x, ln value), x increasing.
 pub(super) type Logs = Vec<(f64, f64)>;

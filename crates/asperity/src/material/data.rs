@@ -1,6 +1,6 @@
 //! Checks of measured curves before the fit: order, sign, noise, and passivity.
 
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Result, increasing, require};
 
 /// Number of points above which a curve is averaged.
 const MOST_POINTS: usize = 10_000_000;
@@ -21,6 +21,18 @@ pub(super) struct Words {
 }
 
 impl Words {
+    pub(super) const RELAXATION: Words =
+        Words { abscissa: "time", abscissa_unit: "s", ordinate: "relaxation modulus", ordinate_unit: "Pa" };
+    pub(super) const CREEP: Words =
+        Words { ordinate: "creep compliance", ordinate_unit: "1/Pa", ..Words::RELAXATION };
+    pub(super) const STORAGE: Words = Words {
+        abscissa: "angular frequency",
+        abscissa_unit: "rad/s",
+        ordinate: "storage modulus",
+        ordinate_unit: "Pa",
+    };
+    pub(super) const LOSS: Words = Words { ordinate: "loss modulus", ..Words::STORAGE };
+
     /// "relaxation modulus of point 3 (time 0.5 s)"
     fn point(&self, n: usize, x: f64) -> String {
         format!("{} of point {} ({} {x:e} {})", self.ordinate, n + 1, self.abscissa, self.abscissa_unit)
@@ -55,15 +67,7 @@ pub(super) fn check_abscissae(words: Words, xs: &[f64], zero: bool) -> Result<()
             return Err(Error::invalid(name(n), x, expected));
         }
     }
-    for (n, pair) in xs.windows(2).enumerate() {
-        if pair[1] <= pair[0] {
-            return Err(Error::invalid(
-                name(n + 1),
-                format!("{:e} {}", pair[1], words.abscissa_unit),
-                format!("greater than the one before it, {:e} (in order, none twice)", pair[0]),
-            ));
-        }
-    }
+    increasing(xs.iter().copied(), name, |x| format!("{x:e} {}", words.abscissa_unit))?;
     let first = if xs[0] > 0.0 { xs[0] } else { xs[1] };
     let decades = xs[xs.len() - 1].log10() - first.log10();
     require(

@@ -113,6 +113,12 @@ pub struct Misfit {
 }
 
 impl<F> Fit<F> {
+    /// The same fit as a function of another form.
+    fn map<G>(self, form: impl FnOnce(F) -> Result<G>) -> Result<Fit<G>> {
+        let Fit { function, misfit, columns, window, noise, uncertainty } = self;
+        Ok(Fit { function: form(function)?, misfit, columns, window, noise, uncertainty })
+    }
+
     /// A sentence with the numbers if a run from `first` to `last` \[s\] leaves the fitted window.
     ///
     /// ```
@@ -169,8 +175,7 @@ fn short(value: f64) -> String {
 /// [`Error::Invalid`] naming the point: fewer than two points, times out of order or repeated, values that are not positive or
 /// grow with time by more than their scatter, or a misfit of every passive material above `options.limit`.
 pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Result<Fit<Relaxation>> {
-    let words =
-        Words { abscissa: "time", abscissa_unit: "s", ordinate: "relaxation modulus", ordinate_unit: "Pa" };
+    let words = Words::RELAXATION;
     options.validate()?;
     data::check_abscissae(words, times, true)?;
     data::check_values(words, times, moduli, false)?;
@@ -188,9 +193,7 @@ pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Re
         flow: false,
         range: [window[0] / fastest, window[1] * margin],
     };
-    let Solved { spectrum, misfit, columns, uncertainty } = options.solve(&problem, &[curve])?;
-    let noise = data::noise(times, moduli);
-    Ok(Fit { function: relaxation(spectrum)?, misfit, columns, window, noise, uncertainty })
+    options.solve(&problem, &[curve], window)?.map(relaxation)
 }
 
 /// Fits C(t) \[1/Pa\] at increasing times \[s\] of a creep test, for any compliance (uniaxial or shear). The first point may be
@@ -210,8 +213,7 @@ pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Re
 /// # Errors
 /// As [`fit_relaxation`], for a compliance that falls with time.
 pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Result<Fit<Creep>> {
-    let words =
-        Words { abscissa: "time", abscissa_unit: "s", ordinate: "creep compliance", ordinate_unit: "1/Pa" };
+    let words = Words::CREEP;
     options.validate()?;
     data::check_abscissae(words, times, true)?;
     let from_zero = times[0] == 0.0 && compliances.first() == Some(&0.0);
@@ -226,9 +228,7 @@ pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Re
         flow: options.long_time != LongTime::Solid,
         range: [window[0] / margin, window[1] * margin],
     };
-    let Solved { spectrum, misfit, columns, uncertainty } = options.solve(&problem, &[curve])?;
-    let noise = data::noise(kept, values);
-    Ok(Fit { function: creep(spectrum)?, misfit, columns, window, noise, uncertainty })
+    options.solve(&problem, &[curve], window)?.map(creep)
 }
 
 impl FitOptions {
@@ -257,7 +257,7 @@ impl FitOptions {
     }
 
     /// Fits the curves and computes the misfit at every point of every curve.
-    fn solve(&self, problem: &Problem, curves: &[Curve]) -> Result<Solved> {
+    fn solve(&self, problem: &Problem, curves: &[Curve], window: [f64; 2]) -> Result<Fit<Spectrum>> {
         let count = (problem.range[1] / problem.range[0]).log10() * self.per_decade;
         require(
             count <= MOST_TIMES,
@@ -295,8 +295,9 @@ impl FitOptions {
                 100.0 * self.limit
             ),
         )?;
+        let noise = curves.iter().map(|curve| data::noise(curve.xs, curve.values)).fold(0.0, f64::max);
         let uncertainty = refine::uncertainty(problem, &spectrum);
-        Ok(Solved { spectrum, misfit, columns, uncertainty })
+        Ok(Fit { function: spectrum, misfit, columns, window, noise, uncertainty })
     }
 }
 
@@ -313,14 +314,6 @@ fn together(curves: &[Curve], columns: &[Misfit]) -> Misfit {
     }
     all.rms = (squares / count).sqrt();
     all
-}
-
-/// A spectrum and its uncertainty.
-struct Solved {
-    spectrum: Spectrum,
-    misfit: Misfit,
-    columns: Vec<Misfit>,
-    uncertainty: Vec<[f64; 2]>,
 }
 
 /// One measured curve.

@@ -5,7 +5,7 @@
 //! the temperature T the reduced time of t is t/a_T, and the reduced frequency of omega is omega a_T. The shift factors come from
 //! a law ([`Shift`]) or from neighbouring isotherms ([`estimate_shift`](super::estimate_shift)).
 
-use crate::error::{Error, Result, kelvin, positive, require};
+use crate::error::{Error, Result, increasing, kelvin, positive, require};
 use crate::material::shift::Shift;
 
 /// The abscissa of a curve.
@@ -100,17 +100,8 @@ pub(super) fn validate(isotherms: &[Isotherm]) -> Result<()> {
                 positive(&format!("point {} of {at}", n + 1), *value, "")?;
             }
         }
-        for (n, pair) in isotherm.x.windows(2).enumerate() {
-            if pair[1] <= pair[0] {
-                let expected =
-                    format!("greater than the one before it, {:e} (in order, none twice)", pair[0]);
-                return Err(Error::invalid(
-                    format!("abscissa of point {} of {at}", n + 2),
-                    pair[1],
-                    expected,
-                ));
-            }
-        }
+        let name = |n: usize| format!("abscissa of point {} of {at}", n + 1);
+        increasing(isotherm.x.iter().copied(), name, |x| x.to_string())?;
     }
     Ok(())
 }

@@ -51,7 +51,7 @@ pub use fit::{Fit, FitOptions, LongTime, Misfit, Moduli, fit_creep, fit_dma, fit
 pub use fractional::{Approximation, Fractional};
 pub use master::{Abscissa, Isotherm, MasterCurve, master_curve};
 pub use models::{Material, Modulus};
-pub(crate) use nnls::solve as least_squares;
+pub(crate) use nnls::{dot, solve as least_squares};
 pub(crate) use quadrature::integrate;
 pub use reduced_time::ReducedTime;
 pub use relaxation::{Relaxation, RelaxationTerm};

@@ -14,6 +14,7 @@
 //!
 //! with the expansion of the volume per kelvin. The moduli of a glass do not follow this law.
 
+use super::shift::{increasing_temperatures, interpolated};
 use crate::error::{Error, Result, kelvin, positive, require};
 
 /// A vertical shift factor b_T as a function of temperature: moduli at T are those at the reference temperature divided by b_T.
@@ -97,15 +98,6 @@ impl VerticalShift {
     }
 }
 
-/// ln b_T between two points of a table, constant beyond its ends.
-pub(super) fn interpolated(points: &[(f64, f64)], temperature: f64) -> f64 {
-    let [first, .., last] = points else { return points.first().map_or(0.0, |point| point.1) };
-    let temperature = temperature.clamp(first.0, last.0);
-    let next = points.partition_point(|p| p.0 <= temperature).clamp(1, points.len() - 1);
-    let ((t0, v0), (t1, v1)) = (points[next - 1], points[next]);
-    v0 + (v1 - v0) * (temperature - t0) / (t1 - t0)
-}
-
 /// Largest |ln b_T|: moduli of one master curve do not differ by more than a thousand for the same reduced time.
 const MOST: f64 = 6.9;
 
@@ -118,14 +110,7 @@ fn validate_table(points: &[(f64, f64)]) -> Result<()> {
             return Err(Error::invalid(name, libm::exp(*ln), "positive, and from 0.001 to 1000"));
         }
     }
-    match points.windows(2).position(|pair| pair[1].0 <= pair[0].0) {
-        None => Ok(()),
-        Some(n) => Err(Error::invalid(
-            format!("temperature of vertical shift factor {}", n + 2),
-            kelvin(points[n + 1].0),
-            format!("greater than the one before it, {} (in order, none twice)", kelvin(points[n].0)),
-        )),
-    }
+    increasing_temperatures("vertical shift factor", points)
 }
 
 #[cfg(test)]

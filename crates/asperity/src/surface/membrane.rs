@@ -12,6 +12,7 @@ use ndarray::{Array2, ArrayView2};
 
 use crate::error::{NotConverged, Result};
 use crate::grid::Grid;
+use crate::material::dot;
 
 /// The equations, and their levels from fine to coarse.
 pub(super) struct Membrane {
@@ -90,7 +91,6 @@ impl Membrane {
 
     /// Solves for heights of range one, starting from `z`; returns the number of iterations.
     pub(super) fn solve(&self, z: &mut [f64]) -> Result<usize> {
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (finest, n) = (&self.levels[0], z.len());
         // Tens are enough; exact arithmetic would end after n.
         const MOST: usize = 2000;

@@ -1,6 +1,7 @@
 //! Least-squares polynomials through two curves, of which the second is moved and raised.
 
 use super::Logs;
+use crate::material::dot;
 
 /// The polynomials of all quantities, with the second curves moved by d and, if v is free, raised by the best v.
 pub(super) struct Joint {
@@ -120,10 +121,6 @@ fn chebyshev(n: usize, u: f64) -> f64 {
         (before, now) = (now, 2.0 * u * now - before);
     }
     if n == 0 { 1.0 } else { now }
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Removes the part along a unit vector.

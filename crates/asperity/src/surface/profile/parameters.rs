@@ -12,6 +12,7 @@
 
 use std::f64::consts::{LN_2, PI};
 
+use super::super::spectrum::check_defined;
 use crate::error::{Result, positive, require};
 
 /// Sections of a profile, for Rz.
@@ -139,14 +140,7 @@ pub(super) fn check(heights: &[f64], least: usize) -> Result<()> {
         heights.len(),
         format!("{least} at least"),
     )?;
-    let undefined = heights.iter().filter(|z| !z.is_finite()).count();
-    require(
-        undefined == 0,
-        "number of undefined heights",
-        undefined,
-        "0 here; fill the undefined points first",
-    )?;
-    Ok(())
+    check_defined(heights.iter())
 }
 
 #[cfg(test)]

@@ -45,7 +45,7 @@ impl Autocorrelation {
     /// [`Error::Invalid`](crate::Error::Invalid) if a point is undefined or the surface is flat.
     pub fn of(surface: &Surface, extent: Extent) -> Result<Self> {
         let (grid, heights) = (*surface.grid(), surface.heights());
-        check_defined(heights)?;
+        check_defined(heights.iter())?;
         let mean = mean(heights)?;
         let [nx, ny] = grid.cells();
         // Padded by the longest lag, so that no pair wraps around.

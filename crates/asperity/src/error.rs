@@ -96,6 +96,15 @@ pub struct NotConverged {
     pub velocity: Option<f64>,
 }
 
+impl NotConverged {
+    /// A solve other than that of the contact, which has no certificate.
+    pub(crate) fn of(method: &'static str, iterations: usize, residual: f64, tolerance: f64) -> Error {
+        let certificate = f64::NAN;
+        NotConverged { method, iterations, residual, tolerance, certificate, time: None, velocity: None }
+            .into()
+    }
+}
+
 /// Result of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
@@ -146,6 +155,27 @@ pub(crate) fn increasing(
             return Err(Error::invalid(name(n), show(x), expected));
         }
         last = x;
+    }
+    Ok(())
+}
+
+/// Checks the times \[s\] of a table in which two equal times are a jump: the first is 0, and they do not decrease.
+pub(crate) fn times_with_jumps(table: &str, times: &[f64]) -> Result<()> {
+    let name = |n: usize| format!("time of point {} of {table}", n + 1);
+    let Some(first) = times.first() else { return Err(Error::invalid(table, "empty", "one point at least")) };
+    require(*first == 0.0, format!("first time of {table}"), format!("{first} s"), "0 s")?;
+    for (n, t) in times.iter().enumerate().skip(1) {
+        if !t.is_finite() {
+            return Err(Error::invalid(name(n), t, "finite"));
+        }
+        if *t < times[n - 1] {
+            let expected = format!("not less than the time before it, {} s", times[n - 1]);
+            return Err(Error::invalid(name(n), format!("{t} s"), expected));
+        }
+        if n > 1 && *t == times[n - 2] {
+            let expected = "given at most twice (a jump has one value before and one after)";
+            return Err(Error::invalid(name(n), format!("{t} s"), expected));
+        }
     }
     Ok(())
 }

@@ -37,7 +37,7 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     let plan = simulation.plan();
     let mut found = vec![];
     let mut long: Option<Piece> = None;
-    let energies = simulation.quantities.list.iter().any(|quantity| quantity.is_energy());
+    let energies = simulation.quantities.has_energy();
     for (n, stage) in simulation.loading.stages.iter().enumerate() {
         if stage.times.as_ref().unwrap_or(&simulation.times).is_adaptive() {
             continue;

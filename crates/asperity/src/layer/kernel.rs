@@ -8,6 +8,7 @@ use ndarray::parallel::prelude::*;
 use super::hankel::{Load, Smooth};
 use super::{Base, Stack};
 use crate::error::{Error, Result, require};
+use crate::kernel::gauss::{GAUSS_2, GAUSS_3, GAUSS_4};
 use crate::kernel::{Kernel, love, strip_at};
 
 /// Longest side of a cell over the thickness of a top layer.
@@ -19,20 +20,6 @@ const NEAR: f64 = 30.0;
 /// The same for a line.
 const PART_OF_LINE: f64 = 0.25;
 
-/// Gauss-Legendre rule on \[-1, 1\] (Abramowitz & Stegun, table 25.4).
-pub(super) const GAUSS_4: [(f64, f64); 4] = [
-    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-    (-0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
-    (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
-    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-];
-
-const GAUSS_2: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
-const GAUSS_3: [(f64, f64); 3] = [
-    (-0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
-    (0.0, 0.888_888_888_888_889),
-    (0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
-];
 /// The rules for parts up to these lengths, over the length on which k varies there, with errors below 1e-8.
 const RULES: [(f64, &[(f64, f64)]); 2] = [(0.03, &GAUSS_2), (0.15, &GAUSS_3)];
 

@@ -34,7 +34,7 @@ pub use kernel::Layered;
 pub use nonseparable::NonseparableLayers;
 pub(crate) use nonseparable::TOLERANCE;
 
-use crate::error::{Error, Result, length, positive};
+use crate::error::{Error, Result, length, positive, require};
 
 /// The interface between the lower face of a layer and the material below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -145,11 +145,6 @@ impl Stack {
         }
     }
 
-    /// The modulus E* = 2/(q C(q)) of the half-space of the same compliance under a wave of wave number q \[Pa\].
-    pub fn equivalent_modulus(&self, q: f64) -> f64 {
-        2.0 / (q * self.compliance(q))
-    }
-
     /// Ratio of the largest to the smallest shear modulus of the layers and the base.
     fn contrast(&self) -> f64 {
         let base = match self.base {
@@ -181,10 +176,6 @@ impl Layer {
 
 fn elasticity(of: impl Fn(&str) -> String, shear: f64, poisson: f64) -> Result<()> {
     positive(&of("shear modulus"), shear, "Pa")?;
-    match poisson > -1.0 && poisson <= 0.5 {
-        true => Ok(()),
-        false => {
-            Err(Error::invalid(of("Poisson's ratio"), poisson, "greater than -1 and not greater than 0.5"))
-        }
-    }
+    let expected = "greater than -1 and not greater than 0.5";
+    require(poisson > -1.0 && poisson <= 0.5, of("Poisson's ratio"), poisson, expected)
 }

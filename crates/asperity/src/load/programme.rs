@@ -157,11 +157,6 @@ impl Programme {
         }
         Ok(())
     }
-
-    /// Whether a stage ends at an event, so that times are only known during the run.
-    pub fn has_events(&self) -> bool {
-        self.stages.iter().any(|stage| stage.until.is_some())
-    }
 }
 
 impl Stage {

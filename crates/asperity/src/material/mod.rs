@@ -43,7 +43,7 @@ mod temperature;
 mod thermal;
 mod vertical;
 
-pub use body::{Body, Lateral, PoissonCreep, pair_creep, pair_hardness};
+pub use body::{Body, Lateral, PoissonCreep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
 pub(crate) use dual::Dual;
 pub use estimate::{ModulusChange, ShiftEstimate, VerticalEstimate, estimate_shift, estimate_vertical};

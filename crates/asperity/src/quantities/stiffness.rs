@@ -119,15 +119,7 @@ impl ContactStiffness {
                 *r -= if on { length * moved } else { 0.0 };
             });
         }
-        Err(Error::NotConverged(NotConverged {
-            method: "contact stiffness",
-            iterations: MOST_ITERATIONS,
-            residual: f64::NAN,
-            tolerance: SMALLEST_SHARE,
-            certificate: f64::NAN,
-            time: None,
-            velocity: None,
-        }))
+        Err(NotConverged::of("contact stiffness", MOST_ITERATIONS, f64::NAN, SMALLEST_SHARE))
     }
 
     /// d = z + beta d on S.

@@ -124,23 +124,6 @@ impl Ting {
         Ok(self.pressure_at(r, t, reached, self.radius_of(seen)))
     }
 
-    /// Normal displacement of the half-space at the distance r from the axis and the time t while the
-    /// contact grows \[m\]: int C(t - s) d(K p)(s) is the elastic displacement of the contact radius a(t).
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if t is outside \[0, turn\] or r is negative.
-    pub fn growing_displacement(&self, r: f64, t: f64) -> Result<f64> {
-        self.check_time(t)?;
-        non_negative("distance from the axis", r, "m")?;
-        let (reached, seen) = self.reached(t);
-        if reached != t {
-            return Err(Error::invalid("time", format!("{t} s"), format!("at most {} s", self.turn)));
-        }
-        // The displacement depends only on a and R; any modulus gives the same result.
-        let depth = self.depth_of(seen);
-        Ok(super::HertzSphere::under_approach(self.radius, 1.0, depth)?.displacement(r))
-    }
-
     fn check_time(&self, t: f64) -> Result<()> {
         if (0.0..=self.end).contains(&t) {
             return Ok(());

@@ -65,15 +65,7 @@ impl PressureHistory {
         let last = self.time.unwrap_or(time);
         require(time >= last, "time", format!("{time} s"), format!("not before the last, {last} s"))?;
 
-        require(
-            p.len() == self.pressure.len(),
-            "number of pressures",
-            p.len(),
-            self.pressure.len().to_string(),
-        )?;
-        if let Some(p) = p.iter().find(|p| !p.is_finite()) {
-            return Err(Error::invalid("pressure", format!("{p} Pa"), "finite in every cell"));
-        }
+        check_pressure(p, self.pressure.len())?;
         let dt = time - last;
         let [mean, new_mean] = [mean(&self.pressure), mean(p)];
         for (r, term) in self.retarded_mean.iter_mut().zip(&self.creep.confined.terms) {
@@ -111,6 +103,15 @@ impl PressureHistory {
         let Creep { instantaneous, terms, .. } = &self.creep.confined;
         let retarded: f64 = self.retarded_mean.iter().zip(terms).map(|(r, term)| term.compliance * r).sum();
         instantaneous * mean(&self.pressure) + retarded
+    }
+}
+
+/// Checks that there is a finite pressure for each cell.
+pub(super) fn check_pressure(p: &[f64], cells: usize) -> Result<()> {
+    require(p.len() == cells, "number of pressures", p.len(), format!("{cells}, one for each cell"))?;
+    match p.iter().find(|p| !p.is_finite()) {
+        Some(p) => Err(Error::invalid("pressure", format!("{p} Pa"), "finite in every cell")),
+        None => Ok(()),
     }
 }
 

@@ -1,9 +1,7 @@
 //! The fields of the stress at a depth: a component, or an invariant of the tensor.
 
-#![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
-
 use super::{Component, Invariants, invariants};
-use asperity_sweep::sweep;
+use asperity_sweep::each;
 
 /// A field of the stress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -81,15 +79,8 @@ impl StressQuantity {
 
     /// The component, if it is one.
     pub fn component(self) -> Option<Component> {
-        Some(match self {
-            StressQuantity::Xx => Component::Xx,
-            StressQuantity::Yy => Component::Yy,
-            StressQuantity::Zz => Component::Zz,
-            StressQuantity::Xy => Component::Xy,
-            StressQuantity::Xz => Component::Xz,
-            StressQuantity::Yz => Component::Yz,
-            _ => return None,
-        })
+        // The components follow the four invariants, in the order of `Component::ALL`.
+        (self as usize).checked_sub(4).map(|n| Component::ALL[n])
     }
 
     /// Its field, from the six components in the order of [`Component::ALL`]; all of one length.
@@ -109,18 +100,8 @@ impl StressQuantity {
         };
         assert!(six.iter().all(|field| field.len() == out.len()), "all fields have one length");
         let [xx, yy, zz, xy, xz, yz] = six.each_ref().map(Vec::as_slice);
-        sweep((out, xx, yy, zz, xy, xz, yz), &|(out, xx, yy, zz, xy, xz, yz): (
-            &mut [f64],
-            &[f64],
-            &[f64],
-            &[f64],
-            &[f64],
-            &[f64],
-            &[f64],
-        )| {
-            for (n, out) in out.iter_mut().enumerate() {
-                *out = pick(&invariants([xx[n], yy[n], zz[n], xy[n], xz[n], yz[n]]));
-            }
+        each(out, (xx, yy, zz, xy, xz, yz), |out, (xx, yy, zz, xy, xz, yz)| {
+            *out = pick(&invariants([xx, yy, zz, xy, xz, yz]));
         });
     }
 }

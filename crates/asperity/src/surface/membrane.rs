@@ -121,16 +121,7 @@ impl Membrane {
                 direction[k] = scaled[k] + beta * direction[k];
             }
         }
-        Err(NotConverged {
-            method: "harmonic fill",
-            iterations: MOST,
-            residual: missed(&residual),
-            tolerance: TOLERANCE,
-            certificate: f64::INFINITY,
-            time: None,
-            velocity: None,
-        }
-        .into())
+        Err(NotConverged::of("harmonic fill", MOST, missed(&residual), TOLERANCE))
     }
 
     /// One V-cycle from zero: sweep down, correct by blocks, sweep up; symmetric, as conjugate gradients

@@ -1,7 +1,7 @@
 //! Time stepping of a row of springs through a load or approach history.
 
 use super::{Mdr, MdrProfile, MdrState, MdrTarget};
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Result, increasing, positive, require};
 use crate::load::{Control, Loading};
 use crate::material::Relaxation;
 
@@ -98,17 +98,10 @@ impl Mdr {
 }
 
 fn check_times(times: &[f64]) -> Result<f64> {
-    let mut last = 0.0;
+    let name = |n: usize| format!("time {} of the list", n + 1);
     for (n, t) in times.iter().enumerate() {
-        if !(t.is_finite() && *t > last) {
-            return Err(Error::invalid(
-                format!("time {} of the list", n + 1),
-                format!("{t} s"),
-                format!("finite and greater than {last} s"),
-            ));
-        }
-        last = *t;
+        positive(&name(n), *t, "s")?;
     }
-    require(!times.is_empty(), "list of times", "empty", "one time at least")?;
-    Ok(last)
+    increasing(times.iter().copied(), name, |t| format!("{t} s"))?;
+    times.last().copied().ok_or_else(|| Error::invalid("list of times", "empty", "one time at least"))
 }

@@ -118,7 +118,7 @@ impl Diagnostics {
     /// The same for steady states of motion, whose rows have velocities in place of times.
     #[must_use]
     pub fn of_sweep(mut self, streaming: Streaming) -> Self {
-        let cell = self.grid.cell_sides().fold(0.0, f64::max);
+        let cell = self.grid.longest_cell();
         self.strain.sweep(streaming, cell);
         self
     }

@@ -130,7 +130,7 @@ impl Expected {
             found.push(domain::at_border(grid, true, Some(ROOM * radius), &words));
         }
         if radius > 0.0 {
-            let cell = grid.cell_sides().fold(0.0, f64::max);
+            let cell = grid.longest_cell();
             found.extend(contact::expected(2.0 * radius / cell, grid.is_line()));
         }
         found.extend(strain::expected(self.width.unwrap_or(0.0), self.strain.unwrap_or(0.0)));

@@ -81,7 +81,7 @@ fn of_shape(grid: &Grid, shape: &Shape) -> Vec<Finding> {
 }
 
 fn of_spectrum(grid: &Grid, surface: &SelfAffine) -> Vec<Finding> {
-    let cell = grid.cell_sides().fold(0.0, f64::max);
+    let cell = grid.longest_cell();
     let slope = match surface.roughness {
         Roughness::RmsGradient(gradient) => steep("self-affine surface", gradient),
         // Known once the surface is made: see `of_given_height`.

@@ -1,7 +1,7 @@
 //! Checks of the record and of the options.
 
 use super::{IndentationOptions, IndentationRecord};
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Result, increasing, require};
 use crate::material::LongTime;
 
 /// Smallest number of rows.
@@ -70,13 +70,11 @@ pub(super) fn record(record: &IndentationRecord) -> Result<()> {
             ));
         }
     }
-    if let Some(row) = record.times.windows(2).position(|pair| pair[1] <= pair[0]) {
-        return Err(Error::invalid(
-            format!("time of row {}", row + 2),
-            format!("{} s", record.times[row + 1]),
-            format!("later than the row before, {} s", record.times[row]),
-        ));
-    }
+    increasing(
+        record.times.iter().copied(),
+        |row| format!("time of row {}", row + 1),
+        |time| format!("{time} s"),
+    )?;
     let largest = |column: &[f64]| column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     for (name, unit, column) in [("load", "N", record.loads), ("depth", "m", record.depths)] {
         require(

@@ -38,7 +38,7 @@ mod start;
 #[cfg(test)]
 mod tests;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::layer::Interface;
 use crate::material::{LongTime, Relaxation, RelaxationTerm};
 use crate::reference::MdrProfile;
@@ -274,17 +274,15 @@ pub fn fit_indentation(
 }
 
 fn require_fit(relative_rms: f64, limit: f64) -> Result<()> {
-    if relative_rms <= limit {
-        return Ok(());
-    }
-    Err(Error::invalid(
+    require(
+        relative_rms <= limit,
         "misfit of the record",
         format!("{:.1} % of the largest value (rms)", 100.0 * relative_rms),
         format!(
             "at most {:.1} %: check radius, units and the depth of first touch, and whether the body is as thick as assumed",
             100.0 * limit
         ),
-    ))
+    )
 }
 
 /// Refuses more terms than the record determines.

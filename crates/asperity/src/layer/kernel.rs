@@ -7,7 +7,7 @@ use ndarray::parallel::prelude::*;
 
 use super::hankel::{Load, Smooth};
 use super::{Base, Stack};
-use crate::error::{Error, Result, require};
+use crate::error::{Result, require};
 use crate::kernel::gauss::{GAUSS_2, GAUSS_3, GAUSS_4};
 use crate::kernel::{Kernel, love, strip_at};
 
@@ -49,7 +49,7 @@ impl Layered {
     /// The kernel of these bodies against each other, or of one against a rigid one.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if there are no bodies or more than two.
+    /// [`Error::Invalid`](crate::Error::Invalid) if there are no bodies or more than two.
     pub fn new(stacks: Vec<Stack>) -> Result<Self> {
         require(
             (1..=2).contains(&stacks.len()),
@@ -76,7 +76,7 @@ impl Layered {
     /// unit pressure; distances must be ascending.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the layers differ too much.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the layers differ too much.
     pub(crate) fn response(&self, cell: [f64; 2], [xs, ys]: [&[f64]; 2]) -> Result<Array2<f64>> {
         let [dx, dy] = cell;
         let farthest = |side: &[f64], d: f64| side.last().copied().unwrap_or(0.0) + d;
@@ -108,7 +108,7 @@ impl Layered {
     /// is 0. Distances must be ascending.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the layers differ too much.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the layers differ too much.
     pub(crate) fn response_of_line(&self, dx: f64, xs: &[f64]) -> Result<Vec<f64>> {
         let reach = xs.last().copied().unwrap_or(0.0) + dx;
         let smooth = self.stacks.iter().map(|stack| Smooth::new(stack, Load::Line, self.scale, reach));
@@ -162,17 +162,15 @@ impl Kernel for Layered {
 
     fn check(&self, longest: f64) -> Result<()> {
         let most = self.longest_cell();
-        if longest <= most {
-            return Ok(());
-        }
-        Err(Error::invalid(
+        require(
+            longest <= most,
             "longest side of a cell",
             format!("{longest:e} m"),
             format!(
                 "at most {most:e} m on a free domain, {COARSEST} times the thickness of the top layer: take more cells, a \
                  smaller domain or a periodic one"
             ),
-        ))
+        )
     }
 }
 

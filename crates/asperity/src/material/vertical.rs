@@ -44,14 +44,12 @@ impl VerticalShift {
         match self {
             VerticalShift::Density { reference, expansion } => {
                 positive("reference temperature of the vertical shift", *reference, "K")?;
-                match (0.0..=0.01).contains(expansion) {
-                    true => Ok(()),
-                    false => Err(Error::invalid(
-                        "expansion of the vertical shift",
-                        format!("{expansion:e} 1/K"),
-                        "from 0 to 0.01 1/K: the relative growth of the volume per kelvin, about 6e-4 1/K for rubbers",
-                    )),
-                }
+                require(
+                    (0.0..=0.01).contains(expansion),
+                    "expansion of the vertical shift",
+                    format!("{expansion:e} 1/K"),
+                    "from 0 to 0.01 1/K: the relative growth of the volume per kelvin, about 6e-4 1/K for rubbers",
+                )
             }
             VerticalShift::Table { points } => validate_table(points),
         }

@@ -125,10 +125,8 @@ impl Ting {
     }
 
     fn check_time(&self, t: f64) -> Result<()> {
-        if (0.0..=self.end).contains(&t) {
-            return Ok(());
-        }
-        Err(Error::invalid("time", format!("{t} s"), format!("between 0 and {} s", self.end)))
+        let expected = format!("between 0 and {} s", self.end);
+        require((0.0..=self.end).contains(&t), "time", format!("{t} s"), expected)
     }
 
     /// L(t+).

@@ -1,6 +1,5 @@
 //! The largest stresses: maxima over depths, refined between them, and the profile over depth.
 
-use super::depths::longest_cell;
 use super::slab::{First, Slab};
 use super::{Component, SubsurfaceStress, check_depths};
 use crate::error::{Error, Result};
@@ -156,7 +155,7 @@ pub fn survey_with<E: From<Error>>(
 
 /// Whether a maximum at this depth is less than two cells below the surface, but not at the surface.
 fn is_unresolved(grid: &Grid, depth: f64) -> bool {
-    depth > 0.0 && depth < 2.0 * longest_cell(grid)
+    depth > 0.0 && depth < 2.0 * grid.longest_cell()
 }
 
 /// Trapezoidal rule over the depths.

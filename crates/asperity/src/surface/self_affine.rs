@@ -22,7 +22,7 @@ use std::f64::consts::TAU;
 use ndarray::Array2;
 
 use super::waves::{SAME, Waves};
-use crate::error::{Error, Result, positive, require};
+use crate::error::{Result, positive, require};
 use crate::grid::Grid;
 
 /// The roughness of a synthetic surface.
@@ -101,7 +101,7 @@ impl SelfAffine {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the exponent, the roughness or a wavelength is outside its domain, the wavelengths are out of order
+    /// [`Error::Invalid`](crate::Error::Invalid) if the exponent, the roughness or a wavelength is outside its domain, the wavelengths are out of order
     /// or do not fit the grid, or the domain has no wave between them.
     pub fn heights(&self, grid: &Grid) -> Result<Array2<f64>> {
         self.heights_where(grid, |qx, qy| (qx * qx + qy * qy).sqrt())
@@ -130,15 +130,13 @@ impl SelfAffine {
             Roughness::RmsGradient(gradient) => gradient / moments.gradient.sqrt(),
         };
         let heights = waves.sum(&mut columns, scale);
-        if heights.iter().all(|z| z.is_finite()) {
-            Ok(heights)
-        } else {
-            Err(Error::invalid(
-                "height of the self-affine surface",
-                "too large for a number",
-                "finite; check the roughness and its unit",
-            ))
-        }
+        require(
+            heights.iter().all(|z| z.is_finite()),
+            "height of the self-affine surface",
+            "too large for a number",
+            "finite; check the roughness and its unit",
+        )?;
+        Ok(heights)
     }
 
     /// Power spectrum up to a factor: 1 on the flat part, (q / q_rolloff)^exponent beyond.
@@ -152,7 +150,7 @@ impl SelfAffine {
     /// Checks the numbers, also against the grid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`heights`](Self::heights).
+    /// [`Error::Invalid`](crate::Error::Invalid) as [`heights`](Self::heights).
     pub fn validate(&self, grid: &Grid) -> Result<()> {
         require(
             self.hurst > 0.0 && self.hurst <= 1.0,
@@ -168,7 +166,7 @@ impl SelfAffine {
         positive("shortest wavelength", self.shortest, "m")?;
         positive("roll-off wavelength", self.roll_off, "m")?;
         let meters = |l: f64| format!("{l:e} m");
-        let (two_cells, domain) = (2.0 * grid.cell_sides().fold(0.0, f64::max), grid.longest_side());
+        let (two_cells, domain) = (2.0 * grid.longest_cell(), grid.longest_side());
         require(
             self.shortest >= two_cells * (1.0 - SAME),
             "shortest wavelength",

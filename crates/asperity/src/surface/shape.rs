@@ -14,7 +14,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::error::{Error, Result, positive, require};
+use crate::error::{Result, positive, require};
 
 /// A smooth shape, placed with its centre on the centre of the domain or at an offset from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,7 +162,7 @@ impl Shape {
     /// Checks the shape's numbers.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a radius or wavelength is not positive (infinity is accepted), the
+    /// [`Error::Invalid`](crate::Error::Invalid) if a radius or wavelength is not positive (infinity is accepted), the
     /// slope or a punch's size is not positive, or the amplitude is not finite.
     pub fn validate(&self) -> Result<()> {
         match self {
@@ -209,11 +209,7 @@ impl Punch {
 
 /// A length > 0 that may be infinite: straight along that axis.
 fn radius_or_flat(what: &str, value: f64) -> Result<()> {
-    if value > 0.0 {
-        Ok(())
-    } else {
-        Err(Error::invalid(what, value, "greater than 0 m (inf for a straight line)"))
-    }
+    require(value > 0.0, what, value, "greater than 0 m (inf for a straight line)")
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::error::{Error, Result, positive, require};
+use crate::error::{Error, Result, increasing, positive, require};
 use crate::material::Creep;
 use crate::sliding::Direction;
 use crate::surface::Surface;
@@ -238,13 +238,8 @@ fn check(wave_numbers: &[f64], power: &[f64]) -> Result<()> {
     for q in wave_numbers {
         positive("wave number of the spectrum", *q, "1/m")?;
     }
-    if let Some(pair) = wave_numbers.windows(2).find(|pair| pair[1] <= pair[0]) {
-        return Err(Error::invalid(
-            "wave number of the spectrum",
-            pair[1],
-            format!("greater than the one before, {}", pair[0]),
-        ));
-    }
+    let name = |_| "wave number of the spectrum".to_owned();
+    increasing(wave_numbers.iter().copied(), name, |q| q.to_string())?;
     if let Some(c) = power.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
         return Err(Error::invalid("value of the spectrum", c, "finite and not less than 0 m^4"));
     }

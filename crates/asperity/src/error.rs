@@ -23,7 +23,7 @@ pub enum Error {
     #[error(
         "the load {} N exceeds {} N, the hardness times the area that can touch; \
          lower the load, raise the hardness or enlarge the domain",
-        four(*load), four(*max)
+        significant(*load, 4), significant(*max, 4)
     )]
     Infeasible {
         /// Prescribed load \[N\].
@@ -35,7 +35,7 @@ pub enum Error {
     #[error(
         "the approach {} m closes the whole periodic gap (largest with a determined load: \
          {} m); use load control for full contact",
-        four(*approach), four(*max)
+        significant(*approach, 4), significant(*max, 4)
     )]
     Undetermined {
         /// Prescribed approach \[m\].
@@ -212,27 +212,14 @@ pub(crate) fn kelvin(temperature: f64) -> String {
     format!("{} K", (100.0 * temperature).round() / 100.0)
 }
 
-/// A number to four digits, as short as it can be written.
-pub(crate) fn rounded(x: f64) -> String {
-    format!("{x:.3e}").parse::<f64>().map_or_else(|_| x.to_string(), |x| x.to_string())
-}
-
-/// A number with four digits: "5", "0.025", "1.234e-7".
-fn four(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || (1e-3..1e5).contains(&size) {
-        let digits = if size == 0.0 { 0.0 } else { (3.0 - size.log10().floor()).clamp(0.0, 6.0) };
-        let text = format!("{value:.*}", digits as usize);
-        return match text.contains('.') {
-            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => text,
-        };
+/// A number with this many significant digits, without zeros at the end: "5", "0.025", "1.234e-7".
+pub(crate) fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
     }
-    let text = format!("{value:.3e}");
-    match text.split_once('e') {
-        Some((digits, power)) if digits.contains('.') => {
-            format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
-        }
-        _ => text,
+    let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
+    match rounded.abs() {
+        1e-4..1e6 => rounded.to_string(),
+        _ => format!("{rounded:e}"),
     }
 }

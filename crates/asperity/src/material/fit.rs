@@ -5,7 +5,7 @@
 //! over its value. Terms that the data do not require are then merged or left out, and the remaining times are refined. If the
 //! fit cannot describe the data, no passive material can: such data are refused, with the position.
 
-use crate::error::{Error, Result, non_negative, positive, require};
+use crate::error::{Error, Result, non_negative, positive, require, significant};
 use crate::material::data::{self, Trend, Words};
 use crate::material::refine;
 use crate::material::spectrum::{Kernel, Problem, Row, Spectrum};
@@ -125,7 +125,7 @@ impl<F> Fit<F> {
     /// use asperity::material::{FitOptions, fit_relaxation};
     /// let fit = fit_relaxation(&[1.0, 10.0, 100.0], &[3e6, 2e6, 1e6], &FitOptions::default())?;
     /// assert_eq!(fit.beyond(1.0, 50.0), None);
-    /// assert!(fit.beyond(0.1, 50.0).unwrap().contains("from 1e-1 s to 5e1 s"));
+    /// assert!(fit.beyond(0.1, 50.0).unwrap().contains("from 0.1 s to 50 s"));
     /// # Ok::<(), asperity::Error>(())
     /// ```
     pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
@@ -133,7 +133,7 @@ impl<F> Fit<F> {
         // Rounding of 1/omega is not extrapolation.
         (first < start * (1.0 - 1e-9) || last > end * (1.0 + 1e-9)).then(|| {
             let covered = 100.0 * covered([first, last], [start, end]);
-            let [first, last, start, end] = [first, last, start, end].map(short);
+            let [first, last, start, end] = [first, last, start, end].map(|time| significant(time, 4));
             format!(
                 "the run needs the material from {first} s to {last} s, but the data cover only \
                  {start} s to {end} s ({covered:.0} % of these decades); beyond them the fit is an extrapolation"
@@ -149,12 +149,6 @@ fn covered(run: [f64; 2], data: [f64; 2]) -> f64 {
         decades if decades > 0.0 => inside / decades,
         _ => 0.0,
     }
-}
-
-/// Four digits, without zeros at their end.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    format!("{rounded:e}")
 }
 
 /// Fits E(t) \[Pa\] at increasing times \[s\] (0 may be the first) of a relaxation test.

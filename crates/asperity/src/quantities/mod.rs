@@ -1,4 +1,4 @@
-//! Quantities of each row beyond load, approach and area, computed where they are asked for.
+//! Quantities of each row beyond load, approach and area, computed on request.
 //!
 //! | quantity | unit | meaning |
 //! |---|---|---|
@@ -27,7 +27,7 @@
 //!
 //! What each costs and how it is derived: docs/theory.md ("Energy and other
 //! quantities of a row", "Permanent flattening"). A march takes them by
-//! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::step::Step::quantity).
+//! [`Simulation::quantities`](crate::Simulation::quantities) and gives them in [`Step::quantity`](crate::step::Step::quantity).
 
 mod eccentricity;
 mod histogram;
@@ -195,7 +195,7 @@ enum Kind {
     Percolation,
     SpotHistogram,
     Histogram,
-    /// The energy of the bodies, kept account of from row to row.
+    /// The energy of the bodies, summed from row to row.
     Energy,
     /// The step or the response of the contact: known in time only.
     Response,
@@ -297,7 +297,7 @@ impl Quantity {
         matches!(self.declaration().kind, Kind::Motion | Kind::MotionOnRequest)
     }
 
-    /// Whether it takes the memory of [`Spots`](crate::spots::Spots): connected cells are found.
+    /// Whether it needs the memory of [`Spots`](crate::spots::Spots), because connected cells are found.
     pub(crate) fn connects(self) -> bool {
         self.is_of_spots() || self.declaration().kind == Kind::Percolation
     }
@@ -363,12 +363,12 @@ impl Quantities {
         Quantities { list: list.into_iter().collect(), ..Quantities::default() }
     }
 
-    /// Whether a quantity is asked for.
+    /// Whether a quantity is requested.
     pub fn has(&self, quantity: Quantity) -> bool {
         self.list.contains(&quantity)
     }
 
-    /// Whether any energy is asked for.
+    /// Whether any energy is requested.
     pub fn has_energy(&self) -> bool {
         self.list.iter().any(|quantity| quantity.is_energy())
     }

@@ -39,10 +39,10 @@ pub(super) enum Shells {
 
 impl Shells {
     /// The shells at a speed, starting from the longest waves.
-    pub(super) fn each(&self, creep: &Creep, speed: f64, told: impl FnMut(Shell)) {
+    pub(super) fn each(&self, creep: &Creep, speed: f64, visit: impl FnMut(Shell)) {
         match self {
-            Shells::Waves(waves) => waves.each(creep, speed, told),
-            Shells::Isotropic(spectrum) => spectrum.each(creep, speed, told),
+            Shells::Waves(waves) => waves.each(creep, speed, visit),
+            Shells::Isotropic(spectrum) => spectrum.each(creep, speed, visit),
         }
     }
 }
@@ -102,7 +102,7 @@ impl Waves {
         Ok(Waves { waves: weighed.collect(), along: different, shells })
     }
 
-    fn each(&self, creep: &Creep, speed: f64, mut told: impl FnMut(Shell)) {
+    fn each(&self, creep: &Creep, speed: f64, mut visit: impl FnMut(Shell)) {
         let moduli: Vec<(f64, f64)> = self.along.iter().map(|q| square_and_loss(creep, q * speed)).collect();
         let mut start = 0;
         for &(wave_number, end) in &self.shells {
@@ -112,7 +112,7 @@ impl Waves {
                 shell.square += for_square * square;
                 shell.stress += for_stress * loss;
             }
-            told(shell);
+            visit(shell);
             start = end;
         }
     }
@@ -194,7 +194,7 @@ impl Isotropic {
         Ok(Isotropic { panels, circle: (0..=count).map(node).collect() })
     }
 
-    fn each(&self, creep: &Creep, speed: f64, mut told: impl FnMut(Shell)) {
+    fn each(&self, creep: &Creep, speed: f64, mut visit: impl FnMut(Shell)) {
         for panel in &self.panels {
             let mut shell = Shell { wave_number: panel.end, square: 0.0, stress: 0.0 };
             for (q, power) in panel.points {
@@ -207,7 +207,7 @@ impl Isotropic {
                 shell.square += 0.125 * power * squares;
                 shell.stress += 0.5 * power * losses;
             }
-            told(shell);
+            visit(shell);
         }
     }
 }

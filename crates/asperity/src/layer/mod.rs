@@ -61,7 +61,7 @@ pub struct Layer {
     pub interface: Interface,
 }
 
-/// What the layers lie on.
+/// The support of the layers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Base {
     /// A rigid base.
@@ -123,7 +123,7 @@ impl Stack {
         &self.layers
     }
 
-    /// What they lie on.
+    /// The support of the layers.
     pub fn base(&self) -> Base {
         self.base
     }

@@ -13,10 +13,10 @@ pub struct TemperatureFactors {
 }
 
 impl TemperatureFactors {
-    /// Those of the reference temperature.
+    /// The factors at the reference temperature.
     pub const NONE: Self = TemperatureFactors { times: 1.0, moduli: 1.0 };
 
-    /// Those at a temperature \[K\].
+    /// The factors at a temperature \[K\].
     ///
     /// ```
     /// use asperity::material::{Shift, TemperatureFactors, VerticalShift};

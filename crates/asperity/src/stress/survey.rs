@@ -103,7 +103,7 @@ pub fn survey(stress: &mut SubsurfaceStress, depths: &[f64], options: &SurveyOpt
 /// the search of a maximum). An error of `visit` ends the survey.
 ///
 /// # Errors
-/// As [`survey`], and those of `visit`.
+/// The errors of [`survey`] and of `visit`.
 pub fn survey_with<E: From<Error>>(
     stress: &mut SubsurfaceStress,
     depths: &[f64],

@@ -47,7 +47,7 @@ pub struct RadialSpectrum {
 }
 
 impl RadialSpectrum {
-    /// Of a surface whose points are all defined.
+    /// The spectrum of a surface whose points are all defined.
     ///
     /// ```
     /// use asperity::{Grid, surface::{Surface, statistics::{RadialSpectrum, Rings}}};
@@ -76,7 +76,7 @@ pub struct PowerSpectrum {
 }
 
 impl PowerSpectrum {
-    /// Of a surface whose points are all defined.
+    /// The spectrum of a surface whose points are all defined.
     ///
     /// # Errors
     /// [`Error::Invalid`] if a point is undefined.
@@ -122,8 +122,8 @@ impl PowerSpectrum {
         self.averaged(rings, [[1.0, 0.0], [0.0, 1.0]])
     }
 
-    /// Spectrum averaged over ellipses along the axes of a lay, as a function of the wave number across it: that of the isotropic
-    /// surface from which the surface is obtained by stretching along the lay.
+    /// Spectrum averaged over ellipses along the axes of a lay, as a function of the wave number across it: the spectrum of the
+    /// isotropic surface from which the surface is obtained by stretching along the lay.
     ///
     /// # Errors
     /// As [`radial`](Self::radial).
@@ -301,7 +301,7 @@ pub struct SpectralMoments {
 }
 
 impl SpectralMoments {
-    /// Of a surface whose points are all defined. Waves on the Nyquist frequency of an axis have no
+    /// The moments of a surface whose points are all defined. Waves on the Nyquist frequency of an axis have no
     /// slope along it.
     ///
     /// # Errors

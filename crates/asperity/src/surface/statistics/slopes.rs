@@ -37,7 +37,7 @@ pub struct SlopeStatistics {
 type Sums = [(f64, usize); 3];
 
 impl SlopeStatistics {
-    /// Of the defined points.
+    /// The value for the defined points.
     ///
     /// # Errors
     /// [`Error::Invalid`](crate::Error::Invalid) if no two neighbours are defined.

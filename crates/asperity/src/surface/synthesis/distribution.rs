@@ -18,7 +18,7 @@ pub enum HeightDistribution {
         /// Sku.
         kurtosis: f64,
     },
-    /// That of the given samples (for example of a measured surface), linear between them.
+    /// The distribution of the given samples (for example of a measured surface), linear between them.
     Samples(Vec<f64>),
 }
 

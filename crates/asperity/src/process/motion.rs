@@ -7,7 +7,7 @@
 use ndarray::{Array2, ArrayView2};
 
 use super::{Process, Solved};
-use crate::error::{Result, require, rounded};
+use crate::error::{Result, require, significant};
 use crate::grid::Boundary;
 use crate::material::Creep;
 use crate::quantities::Quantity;
@@ -77,9 +77,9 @@ impl Motion {
                 "within 0 m and {length} m, its track: the grid does not go with the body. Take a domain that holds the travel of \
                  {} m and the contact, let the body start elsewhere (center), or take a periodic domain or steady states \
                  ([motion.steady])",
-                rounded(most - least)
+                significant(most - least, 4)
             );
-            let track = format!("{} m to {} m", rounded(least), rounded(most));
+            let track = format!("{} m to {} m", significant(least, 4), significant(most, 4));
             let on_track = least >= 0.0 && most <= length;
             require(on_track, "place of the moving body on a free domain", track, expected)?;
         }

@@ -4,7 +4,7 @@ use asperity_sweep::sums;
 
 use super::Slopes;
 use crate::contact::ContactState;
-use crate::error::{Error, Result, require, rounded};
+use crate::error::{Error, Result, require, significant};
 use crate::grid::{Boundary, Grid};
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
@@ -38,7 +38,7 @@ impl Direction {
         match self {
             Direction::Angle(angle) if simulation.boundary == Boundary::Free => Err(Error::invalid(
                 "direction of motion on a free domain",
-                format!("{} degrees", rounded(angle.to_degrees())),
+                format!("{} degrees", significant(angle.to_degrees(), 4)),
                 "x or y; other directions need a periodic domain",
             )),
             _ => Ok(()),

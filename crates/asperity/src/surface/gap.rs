@@ -3,7 +3,7 @@
 use ndarray::{Array2, Zip};
 
 use super::{SelfAffine, Shape, Synthesis};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::grid::Grid;
 
 /// One contribution to the undeformed gap.
@@ -49,13 +49,12 @@ pub enum Part {
 pub fn undeformed_gap(grid: &Grid, parts: &[Part]) -> Result<Array2<f64>> {
     let mut gap = gap_of(grid, parts)?;
     let lowest = gap.fold(f64::INFINITY, |low, h| low.min(*h));
-    if !lowest.is_finite() {
-        return Err(Error::invalid(
-            "area that can touch",
-            "no cell",
-            "one cell centre at least inside the flat punch; enlarge the punch, move it or refine the grid",
-        ));
-    }
+    require(
+        lowest.is_finite(),
+        "area that can touch",
+        "no cell",
+        "one cell centre at least inside the flat punch; enlarge the punch, move it or refine the grid",
+    )?;
     gap.par_mapv_inplace(|h| h - lowest);
     Ok(gap)
 }

@@ -118,7 +118,7 @@ fn torus_bytes(grid: &Grid, [mx, my]: [usize; 2]) -> usize {
     let half = my / 2 + 1;
     32 * grid.cells()[0] * half
         + 64 * mx * half
-        + Convolution::bytes(grid.cells(), [mx, my])
+        + Convolution::bytes(grid.cells(), [mx, my], 1)
         + 8 * mx * my
         + 8 * (mx + 1) * half
 }

@@ -13,21 +13,8 @@ use super::error::{ExportError, Result, WriteError};
 use crate::output::{Output, PartialFile};
 
 pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Result<Vec<PathBuf>> {
-    let maps: Vec<_> = contents
-        .variables
-        .iter()
-        .filter(|variable| matches!(variable.data, Data::Field(_)))
-        .flat_map(|variable| (0..contents.instants.len()).map(move |n| (variable, n)))
-        .map(|(variable, n)| {
-            let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let name = format!("{stem}_{}_{:04}.csv", variable.name, contents.instants[n]);
-            (variable, n, path.with_file_name(name))
-        })
-        .collect();
-    let beside = |name: &str| {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        path.with_file_name(format!("{stem}_{name}.csv"))
-    };
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let beside = |name: &str| path.with_file_name(format!("{stem}_{name}.csv"));
     // More than the coordinates of the dimension.
     let lists = |(n, (name, _)): (usize, &(&'static str, usize))| {
         let numbers =
@@ -51,13 +38,16 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
     for (variable, path) in &tables {
         make(path, &|file| by_two(contents, variable, file))?;
     }
-    for (variable, n, path) in &maps {
+    for variable in contents.variables.iter().filter(|variable| variable.is_field()) {
         let heading = named(variable);
-        make(path, &|file| match contents.map(&variable.data, *n)? {
-            Some(Map::Real(map)) => matrix(contents, file, &heading, |i, j| number(map[(i, j)])),
-            Some(Map::Byte(map)) => matrix(contents, file, &heading, |i, j| map[(i, j)].to_string()),
-            None => Ok(()),
-        })?;
+        for (n, instant) in contents.instants.iter().enumerate() {
+            make(&beside(&format!("{}_{instant:04}", variable.name)), &|file| match contents
+                .map(variable, n)?
+            {
+                Map::Real(map) => matrix(contents, file, &heading, |i, j| number(map[(i, j)])),
+                Map::Byte(map) => matrix(contents, file, &heading, |i, j| map[(i, j)].to_string()),
+            })?;
+        }
     }
     let finish = |(partial, path): (PartialFile, PathBuf)| match partial.finish() {
         Ok(()) => Ok(path),

@@ -14,6 +14,7 @@
 mod contents;
 mod csv;
 mod error;
+mod frame;
 mod hdf5;
 mod netcdf;
 mod npz;

@@ -6,7 +6,7 @@
 
 use std::io::Write;
 
-use super::contents::{Contents, Data, FIELD_TIME, Map, Variable};
+use super::contents::{Contents, Data, DataType, FIELD_TIME, Map, Variable};
 use super::error::WriteError;
 use crate::classic::{ATTRIBUTE, Attribute, DIMENSION, Header, Type, VARIABLE, padded};
 use crate::output::Output;
@@ -58,9 +58,8 @@ fn write_slabs(
 
 fn slab<'a>(contents: &Contents<'_>, variable: &'a Variable) -> Slab<'a> {
     let kind = match &variable.data {
-        Data::Reals(_) | Data::InitialGap => Type::Double,
-        Data::Field(crate::store::FieldKind::Contact) => Type::Byte,
-        Data::Field(_) | Data::Stress(_) | Data::FluidPressure => Type::Double,
+        Data::Maps(DataType::UInt8) => Type::Byte,
+        Data::Reals(_) | Data::Maps(_) => Type::Double,
         // Counts beyond 2^31 are exact as doubles up to 2^53.
         Data::Counts(counts) if counts.iter().all(|n| i32::try_from(*n).is_ok()) => Type::Int,
         Data::Counts(_) => Type::Double,
@@ -84,9 +83,7 @@ fn write_slab(
     };
     match &slab.variable.data {
         Data::Reals(reals) => {
-            for x in &reals[part(reals.len())] {
-                file.write_all(&x.to_be_bytes())?;
-            }
+            reals[part(reals.len())].iter().try_for_each(|x| file.write_all(&x.to_be_bytes()))?;
         }
         Data::Counts(counts) => {
             for count in &counts[part(counts.len())] {
@@ -96,21 +93,11 @@ fn write_slab(
                 }
             }
         }
-        data => {
-            let maps = contents.maps_of_instant(data);
-            for n in n * maps..(n + 1) * maps {
-                match contents.map(data, n)? {
-                    Some(Map::Real(map)) => {
-                        for x in &map {
-                            file.write_all(&x.to_be_bytes())?;
-                        }
-                    }
-                    Some(Map::Byte(map)) => {
-                        for cell in &map {
-                            file.write_all(&[*cell])?;
-                        }
-                    }
-                    None => {}
+        Data::Maps(_) => {
+            for n in part(contents.lead(slab.variable).iter().product()) {
+                match contents.map(slab.variable, n)? {
+                    Map::Real(map) => map.iter().try_for_each(|x| file.write_all(&x.to_be_bytes()))?,
+                    Map::Byte(map) => file.write_all(map.as_slice().unwrap_or_default())?,
                 }
             }
         }

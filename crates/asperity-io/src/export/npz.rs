@@ -5,7 +5,7 @@
 
 use serde_json::{Value, json};
 
-use super::contents::{Contents, Data, Map};
+use super::contents::{Contents, Data, DataType, Map};
 use super::error::WriteError;
 use crate::npz::Npz;
 use crate::output::Output;
@@ -24,7 +24,7 @@ fn members(contents: &Contents<'_>, npz: &mut Npz<&mut Output<'_>>) -> Result<()
     for variable in &contents.variables {
         let kind = match variable.data {
             Data::Counts(_) => "<i8",
-            Data::Field(crate::store::FieldKind::Contact) => "|u1",
+            Data::Maps(DataType::UInt8) => "|u1",
             _ => "<f8",
         };
         npz.begin(variable.name, kind, &variable.shape(contents))?;
@@ -34,12 +34,11 @@ fn members(contents: &Contents<'_>, npz: &mut Npz<&mut Output<'_>>) -> Result<()
                 let bytes: Vec<u8> = counts.iter().flat_map(|n| n.to_le_bytes()).collect();
                 npz.put(&bytes)?;
             }
-            data => {
-                for n in 0..contents.maps(data) {
-                    match contents.map(data, n)? {
-                        Some(Map::Real(map)) => npz.put_reals(map)?,
-                        Some(Map::Byte(map)) => npz.put(map.as_slice().unwrap_or_default())?,
-                        None => {}
+            Data::Maps(_) => {
+                for n in 0..contents.lead(variable).iter().product() {
+                    match contents.map(variable, n)? {
+                        Map::Real(map) => npz.put_reals(map)?,
+                        Map::Byte(map) => npz.put(map.as_slice().unwrap_or_default())?,
                     }
                 }
             }

@@ -9,8 +9,9 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::contents::{Contents, Data, Map, Variable};
+use super::contents::{Contents, Data, DataType, Map, Variable};
 use super::error::{ExportError, Result, WriteError};
+use super::frame::{END, Frame};
 use crate::output::{Output, PartialDirectory, PartialFile};
 
 pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Result<Vec<PathBuf>> {
@@ -31,14 +32,11 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
 /// Makes the directory of the images.
 fn images(contents: &Contents<'_>, directory: &Path) -> Result<(), WriteError> {
     let partial = PartialDirectory::new(directory)?;
-    let of = |kind: fn(&Data) -> bool| -> Vec<&Variable> {
-        contents.variables.iter().filter(|variable| kind(&variable.data)).collect()
-    };
-    let fields = of(|data| matches!(data, Data::Field(_)));
+    let fields: Vec<_> = contents.variables.iter().filter(|variable| variable.is_field()).collect();
     for n in 0..contents.instants.len() {
         image(contents, &partial.place().join(state_name(n)), &fields, n)?;
     }
-    let gap = of(|data| matches!(data, Data::InitialGap));
+    let gap: Vec<_> = contents.variables.iter().filter(|variable| variable.name == "initial_gap").collect();
     image(contents, &partial.place().join("initial_gap.vti"), &gap, 0)?;
     Ok(partial.finish()?)
 }
@@ -91,63 +89,35 @@ fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output<'_>) -
 
 fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize) -> Result<(), WriteError> {
     let grid = &contents.reader().header().grid;
+    let ([nx, ny], [dx, dy]) = (grid.cells(), grid.spacing());
+    // A line of cells has no extent along y.
+    let (my, dy) = if grid.is_line() { (0, dx) } else { (ny, dy) };
+    let attributes = format!(" Origin=\"0 0 0\" Spacing=\"{dx:e} {dy:e} {dx:e}\"");
+    let mut frame = Frame::new("ImageData", &format!("0 {nx} 0 {my} 0 0"), &attributes);
+    let cells = (nx * ny) as u64;
+    let arrays = variables.iter().map(|variable| match variable.data {
+        Data::Maps(DataType::UInt8) => ("UInt8", variable.name.to_owned(), variable.units, cells),
+        _ => ("Float64", variable.name.to_owned(), variable.units, 8 * cells),
+    });
+    frame.section("CellData", arrays);
     crate::output::write(path, false, |file| {
-        let [nx, ny] = grid.cells();
-        let [dx, dy] = grid.spacing();
-        let cells = (nx * ny) as u64;
-        writeln!(file, r#"<?xml version="1.0"?>"#)?;
-        writeln!(
-            file,
-            r#"<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#
-        )?;
-        // A line of cells has no extent along y.
-        let (my, dy) = if grid.is_line() { (0, dx) } else { (ny, dy) };
-        let extent = format!("0 {nx} 0 {my} 0 0");
-        writeln!(
-            file,
-            r#"  <ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing="{dx:e} {dy:e} {dx:e}">"#
-        )?;
-        writeln!(file, r#"    <Piece Extent="{extent}">"#)?;
-        writeln!(file, "      <CellData>")?;
-        let mut offset = 0;
+        file.write_all(frame.text().as_bytes())?;
         for variable in variables {
-            let (kind, size) = match variable.data {
-                Data::Field(crate::store::FieldKind::Contact) => ("UInt8", 1),
-                _ => ("Float64", 8),
-            };
-            let (name, units) = (variable.name, variable.units);
-            writeln!(
-                file,
-                r#"        <DataArray type="{kind}" Name="{name}" format="appended" offset="{offset}">"#
-            )?;
-            writeln!(
-                file,
-                r#"          <InformationKey name="UNITS_LABEL" location="vtkDataArray">{units}</InformationKey>"#
-            )?;
-            writeln!(file, "        </DataArray>")?;
-            offset += 8 + size * cells;
-        }
-        writeln!(file, "      </CellData>\n    </Piece>\n  </ImageData>")?;
-        write!(file, "  <AppendedData encoding=\"raw\">\n_")?;
-        for variable in variables {
-            match contents.map(&variable.data, n)? {
-                Some(Map::Real(map)) => {
+            match contents.map(variable, n)? {
+                Map::Real(map) => {
                     file.write_all(&(8 * cells).to_le_bytes())?;
                     for x in map.t() {
                         let x = if x.is_finite() { *x } else { f64::NAN };
                         file.write_all(&x.to_le_bytes())?;
                     }
                 }
-                Some(Map::Byte(map)) => {
+                Map::Byte(map) => {
                     file.write_all(&cells.to_le_bytes())?;
-                    for cell in map.t() {
-                        file.write_all(&[*cell])?;
-                    }
+                    map.t().iter().try_for_each(|cell| file.write_all(&[*cell]))?;
                 }
-                None => {}
             }
         }
-        Ok(write!(file, "\n  </AppendedData>\n</VTKFile>\n")?)
+        Ok(file.write_all(END.as_bytes())?)
     })
 }
 

@@ -12,8 +12,8 @@ use super::chunks::Chunks;
 use super::document::{self, Document};
 use super::error::{Result, StoreError, input, io};
 use super::field_kind::FieldKind;
-use super::header::Header;
-use super::layout::{self, ArraySpec, SCALARS, bins, coordinates};
+use super::header::{Header, Progress};
+use super::layout::{self, BINS, SCALARS, Storage, coordinates};
 use super::leak;
 use super::leftovers;
 use super::replace;
@@ -129,7 +129,7 @@ fn vacate(path: &Path, force: bool) -> Result<Option<Option<File>>> {
 
 /// Whether a result has an entry of that name.
 pub(super) fn is_part(name: &str) -> bool {
-    document::owns(name)
+    name == document::NAME
         || leak::owns(name)
         || name == checkpoint::DIRECTORY
         || stress::names().any(|known| known == name)
@@ -137,10 +137,7 @@ pub(super) fn is_part(name: &str) -> bool {
         || SCALARS.iter().any(|scalar| scalar.name == name)
         || FieldKind::from_name(name).is_some()
         || Quantity::from_name(name).is_some()
-        || Quantity::ALL
-            .into_iter()
-            .filter_map(bins)
-            .any(|bins| [bins.middles.name, bins.edges.name].contains(&name))
+        || BINS.iter().flat_map(|(_, series)| series).any(|series| series.name == name)
 }
 
 /// A new directory beside `path`.
@@ -188,19 +185,16 @@ fn names_beside(path: &Path, role: &str) -> Result<impl Iterator<Item = PathBuf>
 }
 
 /// The files of what does not change over time.
-pub(super) fn constants(root: &Path, header: &Header, form: u64) -> Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    let is_constant = |spec: &ArraySpec| {
-        !(layout::is_of_rows(spec.dimensions[0]) || layout::is_of_maps(spec.dimensions[0]))
-    };
-    for spec in layout::arrays(header, 0, 0).into_iter().filter(is_constant) {
-        let chunks = Chunks::new(root, &spec.clone().of_form(form));
-        match spec.name {
-            "initial_gap" => files.extend(chunks.paths(&[], header.grid.shape())),
-            _ => files.push(chunks.path(&[0])),
-        }
-    }
-    Ok(files)
+pub(super) fn constants(root: &Path, header: &Header) -> Vec<PathBuf> {
+    let growth = Progress::default();
+    let arrays = layout::arrays(header, 0, 0).into_iter();
+    let constant = arrays.filter(|spec| growth.length_of(spec.dimensions[0].0).is_none());
+    constant
+        .flat_map(|spec| match spec.storage {
+            Storage::Maps => Chunks::new(root, &spec).paths(&[], header.grid.shape()),
+            _ => vec![Chunks::new(root, &spec).whole()],
+        })
+        .collect()
 }
 
 /// Writes what does not change over time: the coordinates x and y, those of the histograms, and the undeformed gap.
@@ -214,19 +208,14 @@ pub(super) fn write_constants(
     let lines: Vec<_> =
         document.header.quantities.iter().flat_map(|column| coordinates(column, grid)).collect();
     for spec in document.arrays() {
-        let centres: Vec<f64> = match spec.name {
-            "x" => (0..nx).map(|i| grid.x(i)).collect(),
-            "y" => (0..ny).map(|j| grid.y(j)).collect(),
-            "initial_gap" => {
-                Chunks::new(root, &spec).write_map(&[], initial_gap)?;
-                continue;
-            }
-            name => match lines.iter().find(|(series, _)| series.name == name) {
-                Some((_, numbers)) => numbers.clone(),
-                None => continue,
-            },
-        };
-        Chunks::new(root, &spec).write(&[0], &centres)?;
+        let chunks = Chunks::new(root, &spec);
+        let line = || lines.iter().find(|(series, _)| series.name == spec.name());
+        match spec.name() {
+            "x" => chunks.write_whole(&(0..nx).map(|i| grid.x(i)).collect::<Vec<_>>())?,
+            "y" => chunks.write_whole(&(0..ny).map(|j| grid.y(j)).collect::<Vec<_>>())?,
+            "initial_gap" => chunks.write_map(&[], initial_gap)?,
+            _ => line().map_or(Ok(()), |(_, numbers)| chunks.write_whole(numbers))?,
+        }
     }
     Ok(())
 }

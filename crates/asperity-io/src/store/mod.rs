@@ -78,7 +78,7 @@ pub use asperity::step::{Checkpoint, Row};
 pub use error::{Result, StoreError};
 pub use field_kind::FieldKind;
 pub use header::{Header, Status, Work};
-pub(crate) use layout::coordinates;
+pub(crate) use layout::{ArraySpec, DataType, Storage};
 pub use layout::{SCALARS, Scalar, Series};
 pub use leak::{LeakTable, LeakWriter, Leaks};
 pub use reader::{At, Reader};

@@ -17,7 +17,7 @@ use super::document::{Document, Pages};
 use super::error::{Result, StoreError, input, io};
 use super::field_kind::FieldKind;
 use super::header::{Header, Progress, SCHEMA, Status, Work};
-use super::layout::{Entry, SCALARS, Stored};
+use super::layout::SCALARS;
 use super::leftovers;
 use super::replace::Way;
 use super::stress::{self, StressSet};
@@ -104,11 +104,10 @@ pub struct Writer {
     header: Header,
     progress: Progress,
     pages: Pages,
-    columns: Vec<(Entry, Column)>,
-    /// The quantities asked for, and how many numbers of a row each has.
-    quantities: Vec<(usize, Column)>,
-    field_time: Column,
-    field_step: Column,
+    /// The [`SCALARS`] and the quantities that were asked for.
+    per_row: Vec<Column>,
+    /// `field_time` and `field_step`.
+    per_map: [Column; 2],
     fields: Vec<(FieldKind, Chunks)>,
     /// The coordinate of the last row.
     last: f64,
@@ -188,21 +187,20 @@ impl Writer {
         let header = document.header.clone();
         let spec = |name: &'static str| {
             let name = header.stored(name);
-            specs.iter().find(|spec| spec.name == name).ok_or_else(|| input("array", name, "one of a result"))
+            specs
+                .iter()
+                .find(|spec| spec.name() == name)
+                .ok_or_else(|| input("array", name, "one of a result"))
         };
         let Progress { rows, maps, sums, .. } = &document.progress;
-        let per_row = |name: &'static str| Ok(Column::new(root, spec(name)?, *rows, sums));
-        let per_map = |name: &'static str| Ok(Column::new(root, spec(name)?, *maps, sums));
-        let columns = SCALARS.iter().map(|s| Ok((s.entry, per_row(s.name)?)));
-        let quantities = document.header.quantities.iter();
-        let quantities = quantities.map(|q| Ok((q.width(), per_row(q.quantity.name())?)));
+        let column = |name: &'static str, rows| Ok(Column::new(root, spec(name)?, rows, sums));
+        let quantities = document.header.quantities.iter().map(|column| column.quantity.name());
+        let per_row = SCALARS.iter().map(|scalar| scalar.name).chain(quantities);
         let fields = document.header.fields.iter();
         let fields = fields.map(|kind| Ok((*kind, Chunks::new(root, spec(kind.name())?))));
         Ok(Writer {
-            columns: columns.collect::<Result<_>>()?,
-            quantities: quantities.collect::<Result<_>>()?,
-            field_time: per_map("field_time")?,
-            field_step: per_map("field_step")?,
+            per_row: per_row.map(|name| column(name, *rows)).collect::<Result<_>>()?,
+            per_map: [column("field_time", *maps)?, column("field_step", *maps)?],
             fields: fields.collect::<Result<_>>()?,
             root: root.to_owned(),
             last,
@@ -276,18 +274,15 @@ impl Writer {
     }
 
     /// Appends a step with the quantities of the header: their numbers one after the other, as
-    /// [`Step::quantities`](asperity::step::Step::quantities) lends them.
+    /// [`Step::quantities`](asperity::step::Step::quantities) gives them.
     ///
     /// # Errors
     /// As [`append`](Self::append); [`StoreError::Input`] where there are more or fewer numbers.
     pub fn append_with(&mut self, row: &Row, quantities: &[f64], fields: &[Field<'_>]) -> Result<()> {
-        let wanted: usize = self.quantities.iter().map(|(width, _)| width).sum();
+        let wanted: usize = self.per_row.iter().skip(SCALARS.len()).map(Column::width).sum();
         if quantities.len() != wanted {
-            return Err(input(
-                "numbers of the quantities",
-                quantities.len(),
-                format!("{wanted}, those of the header"),
-            ));
+            let expected = format!("{wanted}, those of the header");
+            return Err(input("numbers of the quantities", quantities.len(), expected));
         }
         let at = row.coordinate.value();
         self.check_order("row", at, self.last)?;
@@ -298,14 +293,12 @@ impl Writer {
         }
         let Progress { rows, maps, .. } = self.progress;
         let maps = maps + self.staged;
-        for (entry, column) in &mut self.columns {
-            column.put(rows, entry.to_bytes(row))?;
-        }
-        let mut rest = quantities;
-        for (width, column) in &mut self.quantities {
-            let (own, after) = rest.split_at(*width);
-            let bytes: Vec<u8> = own.iter().flat_map(|x| x.to_le_bytes()).collect();
-            column.put_row(rows, &bytes)?;
+        let numbers: Vec<f64> =
+            SCALARS.iter().map(|scalar| scalar.of(row)).chain(quantities.iter().copied()).collect();
+        let mut rest = numbers.as_slice();
+        for column in &mut self.per_row {
+            let (own, after) = rest.split_at(column.width());
+            column.put(rows, own)?;
             rest = after;
         }
         let mut progress = self.progress.clone();
@@ -320,17 +313,14 @@ impl Writer {
         progress.work.wall_s = self.wall();
         if self.form > 1 {
             let (rows, maps, sums) = (progress.rows, progress.maps, &mut progress.sums);
-            self.columns.iter().for_each(|(_, column)| column.sum(rows, sums));
-            self.quantities.iter().for_each(|(_, column)| column.sum(rows, sums));
-            [&self.field_time, &self.field_step].into_iter().for_each(|column| column.sum(maps, sums));
+            self.per_row.iter().for_each(|column| column.sum(rows, sums));
+            self.per_map.iter().for_each(|column| column.sum(maps, sums));
         }
         let way = if self.committed.elapsed() < QUICK { Way::Quick } else { Way::Safe };
         self.pages.commit(&self.root, &progress, way)?;
         self.committed = Instant::now();
-        let (rows, maps) = (progress.rows, progress.maps);
-        self.columns.iter_mut().for_each(|(_, column)| column.commit(rows));
-        self.quantities.iter_mut().for_each(|(_, column)| column.commit(rows));
-        [&mut self.field_time, &mut self.field_step].into_iter().for_each(|column| column.commit(maps));
+        self.per_row.iter_mut().for_each(|column| column.commit(progress.rows));
+        self.per_map.iter_mut().for_each(|column| column.commit(progress.maps));
         self.progress = progress;
         self.staged = 0;
         self.last = at;
@@ -367,17 +357,15 @@ impl Writer {
                 continue;
             };
             match field {
+                Field::Contact(map) => chunks.write_map(&index, *map)?,
                 Field::Pressure(map)
                 | Field::Gap(map)
                 | Field::Displacement(map)
-                | Field::Flattening(map) => {
-                    chunks.write_map(&index, *map)?;
-                }
-                Field::Contact(map) => chunks.write_map(&index, *map)?,
+                | Field::Flattening(map) => chunks.write_map(&index, *map)?,
             }
         }
-        self.field_time.put(map, time.to_le_bytes())?;
-        self.field_step.put(map, (self.progress.rows as i64).to_le_bytes())
+        let numbers = [time, self.progress.rows as f64];
+        self.per_map.iter_mut().zip(numbers).try_for_each(|(column, number)| column.put(map, &[number]))
     }
 
     /// Sets the stress below the surface that readers see; `sums` are the checksums of its per-step arrays.
@@ -453,9 +441,7 @@ impl Writer {
 
     /// The same file by file.
     fn synchronise_files(&self) -> Result<()> {
-        let columns = self.columns.iter().map(|(_, column)| column);
-        let columns = columns.chain(self.quantities.iter().map(|(_, column)| column));
-        for (path, file) in columns.chain([&self.field_time, &self.field_step]).filter_map(Column::file) {
+        for (path, file) in self.per_row.iter().chain(&self.per_map).filter_map(Column::file) {
             file.sync_data().map_err(io("write", path))?;
         }
         for (_, chunks) in &self.fields {
@@ -465,7 +451,7 @@ impl Writer {
         }
         if !self.unsynced.constants {
             sync::documents(&self.root, &self.pages.names())?;
-            sync::files(&self.root, &create::constants(&self.root, &self.header, self.form)?)?;
+            sync::files(&self.root, &create::constants(&self.root, &self.header))?;
         }
         sync::document(&self.root)
     }
@@ -484,8 +470,9 @@ impl Writer {
         work.peak_memory_bytes = work.peak_memory_bytes.max(outcome.peak_memory_bytes);
         work.threads = outcome.threads.or(work.threads);
         work.wall_s = wall;
-        self.pages.commit(&self.root, &self.progress, Way::Safe)?;
+        // The documents of the arrays first: those of a complete result do not lag behind.
         self.flush_documents(Way::Safe)?;
+        self.pages.commit(&self.root, &self.progress, Way::Safe)?;
         if self.unsynced.since.elapsed() >= SYNC_PAUSE {
             self.unsynced.constants = false; // the arrays' own documents are new
             self.synchronise()?;

@@ -32,11 +32,6 @@ impl Chunks {
         index.iter().fold(self.root.join("c"), |path, n| path.join(n.to_string()))
     }
 
-    /// The file of an array of one chunk.
-    pub(super) fn whole(&self) -> PathBuf {
-        self.path(&vec![0; self.chunk.len()])
-    }
-
     /// Writes the numbers of an array of one chunk, and makes its directory.
     pub(super) fn write_whole(&self, numbers: &[f64]) -> Result<()> {
         let index = vec![0; self.chunk.len()];
@@ -118,11 +113,6 @@ impl Chunks {
             }
             self.put(&block.index, self.codec.encode(&cells))
         })
-    }
-
-    /// The files of a map.
-    pub(super) fn paths(&self, lead: &[u64], shape: (usize, usize)) -> Vec<PathBuf> {
-        self.blocks(lead, shape).0.iter().map(|block| self.path(&block.index)).collect()
     }
 
     /// Compares all chunks of a map with their checksums.

@@ -85,11 +85,6 @@ impl Column {
         self.rows += new;
     }
 
-    /// The file that is written now.
-    pub(super) fn file(&self) -> Option<(&Path, &File)> {
-        self.open.as_ref().map(|(_, path, file)| (path.as_path(), file))
-    }
-
     /// Writes row `index`, all of its numbers.
     pub(super) fn put(&mut self, index: usize, numbers: &[f64]) -> Result<()> {
         let bytes: Vec<u8> = numbers.iter().flat_map(|number| self.data_type.to_bytes(*number)).collect();
@@ -102,12 +97,6 @@ impl Column {
             let file = OpenOptions::new().write(true).create(true).truncate(false).open(&path);
             let file = file.map_err(io("open", &path))?;
             file.set_len(layout.bytes()).map_err(io("write", &path))?;
-            // Where files are synchronised one by one, it is those that are open then.
-            if cfg!(not(target_os = "linux"))
-                && let Some((_, path, file)) = &self.open
-            {
-                file.sync_data().map_err(io("write", path))?;
-            }
             self.open = Some((chunk, path, file));
         }
         if let Some((_, path, file)) = &mut self.open {

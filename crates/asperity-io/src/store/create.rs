@@ -12,8 +12,7 @@ use super::chunks::Chunks;
 use super::document::{self, Document};
 use super::error::{Result, StoreError, input, io};
 use super::field_kind::FieldKind;
-use super::header::{Header, Progress};
-use super::layout::{self, BINS, SCALARS, Storage, coordinates};
+use super::layout::{BINS, SCALARS, coordinates};
 use super::leak;
 use super::leftovers;
 use super::replace;
@@ -182,19 +181,6 @@ fn names_beside(path: &Path, role: &str) -> Result<impl Iterator<Item = PathBuf>
         }
         path.with_file_name(name)
     }))
-}
-
-/// The files of what does not change over time.
-pub(super) fn constants(root: &Path, header: &Header) -> Vec<PathBuf> {
-    let growth = Progress::default();
-    let arrays = layout::arrays(header, 0, 0).into_iter();
-    let constant = arrays.filter(|spec| growth.length_of(spec.dimensions[0].0).is_none());
-    constant
-        .flat_map(|spec| match spec.storage {
-            Storage::Maps => Chunks::new(root, &spec).paths(&[], header.grid.shape()),
-            _ => vec![Chunks::new(root, &spec).whole()],
-        })
-        .collect()
 }
 
 /// Writes what does not change over time: the coordinates x and y, those of the histograms, and the undeformed gap.

@@ -70,12 +70,6 @@ impl Pages {
         Pages { group, guarded }
     }
 
-    /// Names of the arrays.
-    pub(super) fn names(&self) -> Vec<String> {
-        let arrays = self.group["consolidated_metadata"]["metadata"].as_object();
-        arrays.into_iter().flatten().map(|(name, _)| name.clone()).collect()
-    }
-
     /// Replaces the group's document: from now on readers see `progress`.
     pub(super) fn commit(&mut self, root: &Path, progress: &Progress, way: Way) -> Result<()> {
         if let Some(attributes) = self.group["attributes"].as_object_mut() {
@@ -99,7 +93,9 @@ impl Pages {
         let directory = checkpoint::directory(root)?;
         let (path, partial) = (directory.join(checkpoint::GROUP), directory.join(checkpoint::GROUP_PARTIAL));
         replace(&path, &partial, self.group.to_string().as_bytes(), Way::Safe)?;
-        sync::files(root, &[path])
+        sync::file(&path)?;
+        sync::directory(&directory);
+        Ok(())
     }
 
     /// Brings the arrays' own documents up to what was committed.

@@ -2,7 +2,7 @@
 
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use asperity::finding::Finding;
 use asperity::step::{Checkpoint, Row};
@@ -30,6 +30,8 @@ const LAG: Duration = Duration::from_secs(1);
 /// Least time between two synchronisations with the medium. One takes a tenth of a second for the
 /// fields that a run of 1024 x 1024 cells stores in that time.
 const SYNC_PAUSE: Duration = Duration::from_secs(5);
+/// File systems may round the times of files by so much.
+const CLOCK: Duration = Duration::from_secs(2);
 /// A checkpoint is due when the time since the last is this many times what its writing took.
 const CHECKPOINT_SHARE: u32 = 100;
 
@@ -120,8 +122,8 @@ pub struct Writer {
     documents_written: Instant,
     documents_behind: bool,
     checkpoint: Option<(Instant, Duration)>,
-    /// What has not been brought to the medium.
-    unsynced: Unsynced,
+    /// When the result was brought to the medium last, by the clock of this process and by that of the files.
+    synchronised: (Instant, SystemTime),
     /// The directory that is written: another one may take its path.
     directory: Option<Identity>,
     _lock: Option<File>,
@@ -213,7 +215,7 @@ impl Writer {
             documents_behind: false,
             // The first one is not brought to the medium: it may not replace one that is.
             checkpoint: (*rows > 0).then(|| (Instant::now(), Duration::ZERO)),
-            unsynced: Unsynced::new(*maps),
+            synchronised: (Instant::now(), SystemTime::UNIX_EPOCH),
             pages: Pages::new(&document),
             form: document.form,
             header: document.header,
@@ -419,7 +421,7 @@ impl Writer {
         }
         self.check_place()?;
         let start = Instant::now();
-        let is_synced = self.unsynced.since.elapsed() >= SYNC_PAUSE;
+        let is_synced = self.synchronised.0.elapsed() >= SYNC_PAUSE;
         if is_synced {
             self.synchronise()?;
             // First, so that no checkpoint is of more rows than the copy.
@@ -432,28 +434,10 @@ impl Writer {
 
     /// Brings rows, fields and documents to the medium.
     fn synchronise(&mut self) -> Result<()> {
-        if !sync::file_system(&self.root)? {
-            self.synchronise_files()?;
-        }
-        self.unsynced = Unsynced { constants: true, ..Unsynced::new(self.progress.maps) };
+        let started = SystemTime::now();
+        sync::result(&self.root, self.synchronised.1)?;
+        self.synchronised = (Instant::now(), started.checked_sub(CLOCK).unwrap_or(SystemTime::UNIX_EPOCH));
         Ok(())
-    }
-
-    /// The same file by file.
-    fn synchronise_files(&self) -> Result<()> {
-        for (path, file) in self.per_row.iter().chain(&self.per_map).filter_map(Column::file) {
-            file.sync_data().map_err(io("write", path))?;
-        }
-        for (_, chunks) in &self.fields {
-            for map in self.unsynced.maps..self.progress.maps {
-                sync::files(&self.root, &chunks.paths(&[map as u64], self.header.grid.shape()))?;
-            }
-        }
-        if !self.unsynced.constants {
-            sync::documents(&self.root, &self.pages.names())?;
-            sync::files(&self.root, &create::constants(&self.root, &self.header))?;
-        }
-        sync::document(&self.root)
     }
 
     /// Ends the result. Where the run is complete its checkpoint is removed, and so is the complete result that it replaces;
@@ -473,8 +457,7 @@ impl Writer {
         // The documents of the arrays first: those of a complete result do not lag behind.
         self.flush_documents(Way::Safe)?;
         self.pages.commit(&self.root, &self.progress, Way::Safe)?;
-        if self.unsynced.since.elapsed() >= SYNC_PAUSE {
-            self.unsynced.constants = false; // the arrays' own documents are new
+        if self.synchronised.0.elapsed() >= SYNC_PAUSE {
             self.synchronise()?;
         }
         if outcome.status == Status::Complete {
@@ -522,21 +505,6 @@ impl Drop for Writer {
             // Nobody is left to tell; readers of the group's document miss nothing.
             let _ = self.flush_documents(Way::Quick);
         }
-    }
-}
-
-/// What a loss of power may take.
-struct Unsynced {
-    since: Instant,
-    /// First of the maps.
-    maps: usize,
-    /// Whether what is written once is on the medium: the gap, the coordinates, the documents of the arrays.
-    constants: bool,
-}
-
-impl Unsynced {
-    fn new(maps: usize) -> Self {
-        Unsynced { since: Instant::now(), maps, constants: false }
     }
 }
 
@@ -600,12 +568,10 @@ mod tests {
             writer.checkpoint(&Checkpoint { step: rows, numbers: vec![], fields: vec![] }).unwrap();
             assert_eq!(copy.exists(), rows == 2);
             assert!(!writer.checkpoint_due());
-            writer.unsynced.since = Instant::now().checked_sub(SYNC_PAUSE).unwrap();
+            writer.synchronised.0 = Instant::now().checked_sub(SYNC_PAUSE).unwrap();
         }
         assert_eq!(fs::read(copy).unwrap(), fs::read(path.join("zarr.json")).unwrap());
-        assert_eq!((writer.unsynced.maps, writer.unsynced.constants), (2, true));
         // Systems that synchronise file by file find all of them.
-        writer.unsynced = Unsynced::new(0);
-        writer.synchronise_files().unwrap();
+        sync::result_by_files(&path, SystemTime::UNIX_EPOCH).unwrap();
     }
 }

@@ -13,8 +13,7 @@ use super::{Problem, Reader, Request};
 
 const SIGNATURE: &[u8] = b"AliconaImaging\0\r\n";
 
-pub(super) const AL3D: Reader =
-    Reader { name: "al3d", aliases: &[], sniff: |bytes| bytes.starts_with(SIGNATURE), read, write: None };
+pub(super) const AL3D: Reader = Reader::new("al3d", |bytes| bytes.starts_with(SIGNATURE), read);
 
 /// Reads the depth image.
 fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {

@@ -1,6 +1,6 @@
 //! Why a file cannot be read or written as a topography, and what to do about it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -115,6 +115,20 @@ pub enum Problem {
         /// What is accepted.
         expected: String,
     },
+}
+
+impl TopographyError {
+    /// A problem with the file at `path`.
+    pub(super) fn at(path: &Path) -> impl Fn(Problem) -> TopographyError {
+        move |problem| TopographyError { path: Some(path.to_owned()), problem }
+    }
+}
+
+/// A problem with bytes that come from no file.
+impl From<Problem> for TopographyError {
+    fn from(problem: Problem) -> Self {
+        TopographyError { path: None, problem }
+    }
 }
 
 impl Problem {

@@ -1,4 +1,4 @@
-//! From what a file says to metres: the one place where size and unit are settled, and never guessed.
+//! From the units of a file to metres: size and unit are decided only here, and never guessed.
 
 use ndarray::Array2;
 
@@ -82,7 +82,7 @@ impl Lateral {
     }
 }
 
-/// Settles size and unit.
+/// Decides size and unit.
 pub(super) fn finish(
     format: Format,
     measured: Measured,
@@ -94,15 +94,13 @@ pub(super) fn finish(
     let height_unit = match (options.height_unit, &unit) {
         (Some(metres), _) => metres,
         (None, Unit::Metres(metres)) => *metres,
-        (None, Unit::Unstated) => {
-            return Err(Problem::MissingHeightUnit { format, detail: String::new() });
-        }
-        (None, Unit::Other(label)) => {
+        (None, unit) => {
             let channel = channel.map_or(String::new(), |c| format!(" in channel {c:?}"));
-            return Err(Problem::MissingHeightUnit {
-                format,
-                detail: format!("{channel} (it says {label:?})"),
-            });
+            let detail = match unit {
+                Unit::Other(label) => format!("{channel} (it says {label:?})"),
+                _ => String::new(),
+            };
+            return Err(Problem::MissingHeightUnit { format, detail });
         }
     };
     let size = match (options.size, lateral) {
@@ -117,14 +115,12 @@ pub(super) fn finish(
         }
         (None, Lateral::Unstated(detail)) => return Err(Problem::MissingSize { format, detail }),
     };
-    for length in size {
-        if !(length.is_finite() && length > 0.0) {
-            return Err(Problem::malformed(
-                "the physical size",
-                format!("{:e} m x {:e} m", size[0], size[1]),
-                "positive and finite; give the lengths along x and y (`size`, --size A,B)",
-            ));
-        }
+    if !size.into_iter().all(is_positive) {
+        return Err(Problem::malformed(
+            "the physical size",
+            format!("{:e} m x {:e} m", size[0], size[1]),
+            "positive and finite; give the lengths along x and y (`size`, --size A,B)",
+        ));
     }
     // Infinite heights can only come from scaling absurd numbers: undefined, like every other value that is none.
     let clean = |h: f64| if h.is_finite() { h } else { f64::NAN };
@@ -137,21 +133,21 @@ pub(super) fn finish(
 }
 
 fn check_options(options: &ReadOptions) -> Result<(), Problem> {
-    let positive = |v: f64| v.is_finite() && v > 0.0;
-    if let Some(size) = options.size
-        && !size.iter().all(|l| positive(*l))
-    {
-        let value = format!("{} m x {} m", size[0], size[1]);
-        return Err(Problem::Option { what: "size", value, expected: "two lengths greater than 0 m".into() });
-    }
-    match options.height_unit {
-        Some(unit) if !positive(unit) => Err(Problem::Option {
-            what: "height_unit",
-            value: unit.to_string(),
-            expected: "metres per unit, greater than 0".into(),
-        }),
+    let wrong = |what, value, expected: &str| Err(Problem::Option { what, value, expected: expected.into() });
+    match (options.size, options.height_unit) {
+        (Some(size), _) if !size.into_iter().all(is_positive) => {
+            wrong("size", format!("{} m x {} m", size[0], size[1]), "two lengths greater than 0 m")
+        }
+        (_, Some(unit)) if !is_positive(unit) => {
+            wrong("height_unit", unit.to_string(), "metres per unit, greater than 0")
+        }
         _ => Ok(()),
     }
+}
+
+/// Whether a length is greater than 0 and finite.
+pub(super) fn is_positive(length: f64) -> bool {
+    length.is_finite() && length > 0.0
 }
 
 /// The unit with this label; no label is no unit.

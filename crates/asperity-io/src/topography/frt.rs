@@ -11,8 +11,7 @@ use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::{Problem, Reader, Request};
 
-pub(super) const FRT: Reader =
-    Reader { name: "frt", aliases: &[], sniff: |bytes| bytes.starts_with(SIGNATURE), read, write: None };
+pub(super) const FRT: Reader = Reader::new("frt", |bytes| bytes.starts_with(SIGNATURE), read);
 
 const SIGNATURE: &[u8] = b"FRTM_GLIDERV1.0";
 const UNDEFINED: f64 = 1.0;

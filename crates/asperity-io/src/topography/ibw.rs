@@ -16,7 +16,7 @@ use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::{Problem, Reader, Request};
 
-pub(super) const IBW: Reader = Reader { name: "ibw", aliases: &[], sniff: is_ibw, read, write: None };
+pub(super) const IBW: Reader = Reader::new("ibw", is_ibw, read);
 
 const HEADER: u64 = 64;
 const WAVE_HEADER: u64 = 320;

@@ -15,13 +15,8 @@ use super::grid::Layout;
 use super::sample::{Kind, Order};
 use super::{Problem, Reader, Request};
 
-pub(super) const METROPRO: Reader = Reader {
-    name: "metropro",
-    aliases: &["dat"],
-    sniff: |bytes| header_length(bytes).is_some(),
-    read,
-    write: None,
-};
+pub(super) const METROPRO: Reader =
+    Reader::new("metropro", |bytes| header_length(bytes).is_some(), read).also_called(&["dat"]);
 
 /// The least phase that is none.
 const UNDEFINED: f64 = 2_147_483_640.0;

@@ -17,7 +17,7 @@ use std::io::Read;
 use flate2::read::ZlibDecoder;
 
 use super::compound::{self, is_compound};
-use super::cursor::Cursor;
+use super::cursor::{Cursor, utf16};
 use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
@@ -26,7 +26,7 @@ use super::unpack::{most_unpacked, read_bounded};
 use super::{Problem, Reader, Request, foreign};
 
 // Other documents of this kind are refused by the reader.
-pub(super) const MNT: Reader = Reader { name: "mnt", aliases: &[], sniff: is_compound, read, write: None };
+pub(super) const MNT: Reader = Reader::new("mnt", is_compound, read);
 
 const CONTENTS: &str = "ScopedContents";
 /// Tag of the part that an entry extends.
@@ -117,9 +117,7 @@ impl<'a> Node<'a> {
 
     /// A mark (4) and UTF-16.
     fn text(self) -> Option<String> {
-        let characters = self.0.strip_prefix(&[4])?.as_chunks::<2>().0.iter().map(|b| u16::from_le_bytes(*b));
-        let text: String =
-            char::decode_utf16(characters).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+        let text = utf16(self.0.strip_prefix(&[4])?, Order::Little);
         Some(text.trim_matches(['\0', ' ']).to_owned())
     }
 }
@@ -144,13 +142,8 @@ impl Scale {
         })?;
         let unit = text(0x2)?;
         let display_unit = Some(text(0x3)?).filter(|u| !u.is_empty()).unwrap_or_else(|| unit.clone());
-        Ok(Scale {
-            step,
-            unit,
-            display_unit,
-            ratio: number(0x4)?.unwrap_or(1.0),
-            origin: number(0x5)?.unwrap_or(0.0),
-        })
+        let (ratio, origin) = (number(0x4)?.unwrap_or(1.0), number(0x5)?.unwrap_or(0.0));
+        Ok(Scale { step, unit, display_unit, ratio, origin })
     }
 
     /// Metres per count, and the origin in metres.

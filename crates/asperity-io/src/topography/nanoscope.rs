@@ -22,8 +22,7 @@ use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
 use super::{Problem, Reader, Request};
 
-pub(super) const NANOSCOPE: Reader =
-    Reader { name: "di", aliases: &["spm", "nanoscope"], sniff: is_nanoscope, read, write: None };
+pub(super) const NANOSCOPE: Reader = Reader::new("di", is_nanoscope, read).also_called(&["spm", "nanoscope"]);
 
 /// First words of a file; "?" in place of "\\" says that the numbers are written as text.
 const STARTS: [&str; 3] = ["*file list", "*force file list", "*ec file list"];

@@ -21,15 +21,12 @@ use super::{Format, Problem, Reader, Request, foreign, grid, groups, write};
 const DEFAULT_FILL: f64 = 9.969_209_968_386_869e36;
 
 // NetCDF-4 is HDF5; reading tells which.
-pub(super) const NETCDF: Reader = Reader {
-    name: "nc",
-    aliases: &["netcdf"],
-    sniff: |bytes| matches!(bytes, [b'C', b'D', b'F', 1 | 2 | 5, ..]),
-    read,
-    write: Some(write::netcdf::encode),
-};
+pub(super) const NETCDF: Reader =
+    Reader::new("nc", |bytes| matches!(bytes, [b'C', b'D', b'F', 1 | 2 | 5, ..]), read)
+        .also_called(&["netcdf"])
+        .written_by(write::netcdf::encode);
 
-pub(super) const HDF5: Reader = Reader { name: "h5", aliases: &["hdf5"], sniff: is_hdf5, read, write: None };
+pub(super) const HDF5: Reader = Reader::new("h5", is_hdf5, read).also_called(&["hdf5"]);
 
 fn is_hdf5(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x89HDF\r\n\x1a\n")

@@ -19,7 +19,7 @@ use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::{Problem, Reader, Request};
 
-pub(super) const NID: Reader = Reader { name: "nid", aliases: &["ezd"], sniff: is_nid, read, write: None };
+pub(super) const NID: Reader = Reader::new("nid", is_nid, read).also_called(&["ezd"]);
 
 const START: &[u8] = b"[DataSet]";
 /// Headers have some 30 kB.

@@ -11,7 +11,7 @@ use super::finish::{Lateral, Measured, Unit};
 use super::sample::{Kind, Order, decode};
 use super::{Problem, Reader, Request, cursor, grid};
 
-pub(super) const OPD: Reader = Reader { name: "opd", aliases: &[], sniff: is_opd, read, write: None };
+pub(super) const OPD: Reader = Reader::new("opd", is_opd, read);
 
 /// Names of the arrays that hold heights; others ("Image", "SecArr_0") hold intensities.
 const HEIGHTS: [&str; 5] = ["RAW_DATA", "RAW DATA", "Raw", "OPD", "SAMPLE_DATA"];

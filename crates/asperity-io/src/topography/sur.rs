@@ -21,13 +21,11 @@ use super::unit::LoneA;
 use super::unpack::{most_unpacked, read_bounded};
 use super::{Problem, Reader, Request};
 
-pub(super) const SUR: Reader = Reader {
-    name: "sur",
-    aliases: &[],
-    sniff: |bytes| bytes.starts_with(b"DIGITAL SURF") || bytes.starts_with(b"DSCOMPRESSED"),
+pub(super) const SUR: Reader = Reader::new(
+    "sur",
+    |bytes| bytes.starts_with(b"DIGITAL SURF") || bytes.starts_with(b"DSCOMPRESSED"),
     read,
-    write: None,
-};
+);
 
 /// Kinds of objects whose first object, or every one, is a surface.
 mod studiable {

@@ -15,13 +15,9 @@ use super::unpack::{Archive, holds_member};
 use super::{HISTORY, Problem, Reader, Request, write};
 use crate::xml::{Malformed, Piece, walk};
 
-pub(super) const X3P: Reader = Reader {
-    name: "x3p",
-    aliases: &[],
-    sniff: |bytes| holds_member(bytes, |name| name == "main.xml"),
-    read,
-    write: Some(write::x3p::encode),
-};
+pub(super) const X3P: Reader =
+    Reader::new("x3p", |bytes| holds_member(bytes, |name| name == "main.xml"), read)
+        .written_by(write::x3p::encode);
 
 /// Elements nest five deep in the standard's schema.
 const DEEPEST: usize = 32;

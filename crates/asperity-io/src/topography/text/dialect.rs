@@ -47,7 +47,7 @@ pub(super) fn is_numbers(line: &[u8]) -> bool {
         if token.is_empty() {
         } else if is_number(token) {
             numbers += 1;
-        } else if is_undefined(token) {
+        } else if is_undefined(token) || is_infinite(token) {
             marks += 1;
         } else {
             return false;
@@ -74,26 +74,20 @@ fn is_number(token: &[u8]) -> bool {
 /// Whether a token marks an undefined point.
 pub(super) fn is_undefined(token: &[u8]) -> bool {
     let token = token.strip_prefix(b"+").or(token.strip_prefix(b"-")).unwrap_or(token);
-    const MARKS: [&str; 16] = [
-        "",
-        "nan",
-        "nan(ind)",
-        "nan(snan)",
-        "1.#qnan",
-        "1.#nan",
-        "1.#ind",
-        "1.#inf",
-        "inf",
-        "infinity",
-        "infinite",
-        "bad",
-        "na",
-        "n/a",
-        "#n/a",
-        "null",
-    ];
-    MARKS.iter().any(|mark| token.eq_ignore_ascii_case(mark.as_bytes()))
+    const MARKS: &str = "nan nan(ind) nan(snan) 1.#qnan 1.#nan 1.#ind bad na n/a #n/a null";
+    token.is_empty()
+        || is_one_of(token, MARKS)
         || (token.len() < 16 && (token.iter().all(|b| *b == b'*') || token.iter().all(|b| *b == b'-')))
+}
+
+/// Whether a token is infinite, which no height is.
+fn is_infinite(token: &[u8]) -> bool {
+    let token = token.strip_prefix(b"+").or(token.strip_prefix(b"-")).unwrap_or(token);
+    is_one_of(token, "inf infinity infinite 1.#inf")
+}
+
+fn is_one_of(token: &[u8], words: &str) -> bool {
+    words.split(' ').any(|word| token.eq_ignore_ascii_case(word.as_bytes()))
 }
 
 impl Dialect {

@@ -5,7 +5,7 @@
 //! rows of column names with units ("x [mm]; y [mm]; z [µm]"). Other lines are kept as metadata.
 
 use super::encoding;
-use super::labels::{Label, label};
+use super::labels::in_english;
 use crate::topography::finish::{Lateral, Unit, unit_of};
 use crate::topography::unit::{LoneA, metres};
 
@@ -103,18 +103,9 @@ impl Header {
     }
 
     fn entry(&mut self, is_comment: bool, key: &str, value: &str) {
-        match label(key) {
-            Some(Label::Channel) => return self.channel = Some(value.to_owned()),
-            Some(Label::Width) => return self.length[0] = length(value),
-            Some(Label::Height) => return self.length[1] = length(value),
-            Some(Label::LateralUnits) => {
-                return self.lateral_unit = [Some(value.to_owned()), Some(value.to_owned())];
-            }
-            Some(Label::ValueUnits) => return self.value_unit = Some(value.to_owned()),
-            None => {}
-        }
         let unit = || Some(value.to_owned());
-        match key.to_lowercase().as_str() {
+        match in_english(key).as_str() {
+            "channel" => self.channel = Some(value.to_owned()),
             // "h=305 w=75"
             "h" => {
                 let (height, rest) = value.split_once(char::is_whitespace).unwrap_or((value, ""));
@@ -123,19 +114,17 @@ impl Header {
                     self.points[0] = width.trim().parse().ok();
                 }
             }
-            "w" => self.points[0] = value.parse().ok(),
-            "x-pixels" | "nx" => self.points[0] = value.parse().ok(),
+            "w" | "x-pixels" | "nx" => self.points[0] = value.parse().ok(),
             "y-pixels" | "ny" => self.points[1] = value.parse().ok(),
-            "x-length" => self.length[0] = length(value),
-            "y-length" => self.length[1] = length(value),
+            "width" | "x-length" => self.length[0] = length(value),
+            "height" | "y-length" => self.length[1] = length(value),
             "scale x" => self.spacing[0] = length(value),
             "scale y" => self.spacing[1] = length(value),
             "pixel size" => self.spacing = [length(value), length(value)],
             "x-unit" => self.lateral_unit[0] = unit(),
-            "y-unit" => self.lateral_unit[1] = unit(),
-            "unit x" => self.lateral_unit = [unit(), unit()],
-            "unit y" => self.lateral_unit[1] = unit(),
-            "z-unit" | "unit data" => self.value_unit = unit(),
+            "y-unit" | "unit y" => self.lateral_unit[1] = unit(),
+            "lateral units" | "unit x" => self.lateral_unit = [unit(), unit()],
+            "value units" | "z-unit" | "unit data" => self.value_unit = unit(),
             "bit2nm" if self.value_unit.is_none() => {
                 self.scale = number(value).map(|(bits, _)| bits);
                 self.value_unit = Some("nm".to_owned());

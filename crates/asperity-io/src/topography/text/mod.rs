@@ -25,29 +25,13 @@ use super::{Format, Problem, Reader, write};
 pub(super) use parse::numbers;
 pub(super) use profile::{is_profile, read_columns};
 
-pub(super) const XYZ: Reader = Reader {
-    name: "xyz",
-    aliases: &[],
-    sniff: |bytes| detect(bytes) == Some(Format::Xyz),
-    read: xyz::read,
-    write: None,
-};
+pub(super) const XYZ: Reader = Reader::new("xyz", |bytes| detect(bytes) == Some(Format::Xyz), xyz::read);
 
-pub(super) const CSV: Reader = Reader {
-    name: "csv",
-    aliases: &[],
-    sniff: |bytes| detect(bytes) == Some(Format::Csv),
-    read: matrix::read,
-    write: None,
-};
+pub(super) const CSV: Reader = Reader::new("csv", |bytes| detect(bytes) == Some(Format::Csv), matrix::read);
 
-pub(super) const TEXT: Reader = Reader {
-    name: "asc",
-    aliases: &["text", "txt", "matrix"],
-    sniff: |bytes| detect(bytes) == Some(Format::Text),
-    read: matrix::read,
-    write: Some(write::text::encode),
-};
+pub(super) const TEXT: Reader = Reader::new("asc", |bytes| detect(bytes) == Some(Format::Text), matrix::read)
+    .also_called(&["text", "txt", "matrix"])
+    .written_by(write::text::encode);
 
 /// One block of numbers and what the lines before it say.
 struct Block<'a> {

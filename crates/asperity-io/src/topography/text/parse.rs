@@ -98,7 +98,7 @@ impl Fault {
             Fault::Number { at, length } => Problem::malformed(
                 format!("line {}", line(at)),
                 format!("{:?} where a number was expected", encoding::label(&run[at..at + length])),
-                "all numbers, or marks of undefined points such as nan",
+                "all finite numbers, or marks of undefined points such as nan",
             ),
             Fault::Columns { at, found, columns } => Problem::malformed(
                 format!("line {}", line(at)),

@@ -55,14 +55,9 @@ impl From<Kind> for Form {
 impl Form {
     /// All that its columns may hold, each once.
     fn roles(&self) -> Vec<Role> {
-        let mut roles: Vec<Role> = Vec::new();
         let all = self.needed.iter().chain(self.pairs.iter().flatten()).chain(self.optional);
-        for role in all {
-            if !roles.contains(role) {
-                roles.push(*role);
-            }
-        }
-        roles
+        let place = |role: &Role| all.clone().position(|other| other == role);
+        all.clone().enumerate().filter(|(n, role)| place(role) == Some(*n)).map(|(_, role)| *role).collect()
     }
 }
 
@@ -396,17 +391,23 @@ fn is_sheared(table: &Table) -> bool {
 
 /// Whether the header names storage and loss modulus, or what stands in their place.
 pub(super) fn is_dynamic(table: &Table) -> bool {
-    let form = Form::from(Kind::Dma);
-    let has = |role: &Role| (0..table.names.len()).any(|n| means(table, n, *role, form));
-    form.pairs.iter().any(|pair| pair.iter().all(&has))
+    names_pair(table, Kind::Dma.into())
 }
 
 /// Whether the header names all that a file of this kind needs.
 pub(super) fn named(table: &Table, kind: Kind) -> bool {
     let form = Form::from(kind);
-    let has = |role: &Role| (0..table.names.len()).any(|n| means(table, n, *role, form));
-    let pair = form.pairs.is_empty() || form.pairs.iter().any(|pair| pair.iter().all(&has));
-    form.needed.iter().all(&has) && pair
+    form.needed.iter().all(|role| names(table, *role, form))
+        && (form.pairs.is_empty() || names_pair(table, form))
+}
+
+fn names_pair(table: &Table, form: Form) -> bool {
+    form.pairs.iter().any(|pair| pair.iter().all(|role| names(table, *role, form)))
+}
+
+/// Whether a column is named as one of the role.
+fn names(table: &Table, role: Role, form: Form) -> bool {
+    (0..table.names.len()).any(|column| means(table, column, role, form))
 }
 
 fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {

@@ -102,7 +102,7 @@ pub struct Sweep {
 }
 
 /// What a file holds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
     /// The file.
     pub path: PathBuf,
@@ -184,7 +184,6 @@ impl Curves {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(path: &Path, bytes: &[u8], kind: Kind, columns: &Columns) -> Result<Curves, CurveError> {
-        let digest = crate::digest::md5(bytes);
         let parse = || -> Result<Curves, Fault> {
             let sheets = workbook::sheets(bytes, columns.sheet.as_deref())?;
             let held = match sheets.as_slice() {
@@ -214,28 +213,15 @@ impl Curves {
                 columns: used,
                 held,
                 notes,
-                digest: String::new(),
+                digest: crate::digest::md5(bytes),
             })
         };
-        let curves = parse().map_err(|fault| fault.of(path))?;
-        Ok(Curves { digest, ..curves })
+        parse().map_err(|fault| fault.of(path))
     }
 
     /// Curves that no file holds; `name` is what messages call them.
     pub fn of(name: &str, kind: Kind, sweeps: Vec<Sweep>) -> Curves {
-        Curves {
-            path: PathBuf::from(name),
-            kind,
-            measure: None,
-            sweeps,
-            left_out: 0,
-            sheet: None,
-            columns: Vec::new(),
-            unused: Vec::new(),
-            held: HeldShift::default(),
-            notes: Vec::new(),
-            digest: String::new(),
-        }
+        Curves { path: PathBuf::from(name), kind, sweeps, ..Curves::default() }
     }
 
     /// Number of points.

@@ -19,7 +19,7 @@ pub(super) struct Form {
     pub(super) name: &'static str,
     /// What its columns must hold, in their order where the file does not name them.
     pub(super) needed: &'static [Role],
-    /// Pairs of columns, of which it must hold one as well; the first that it holds is taken. Without names it is the first.
+    /// Pairs of columns: the file must hold one of these too. The first that it holds is taken; without names, the first of all.
     pub(super) pairs: &'static [[Role; 2]],
     /// What it may hold besides.
     pub(super) optional: &'static [Role],
@@ -70,12 +70,12 @@ pub enum Column {
     Number(usize),
 }
 
-/// What is said about the table; the rest is found from the header.
+/// What the caller says about the table; the rest is found from the header.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Columns {
     /// Where the quantities stand.
     pub columns: BTreeMap<Role, Column>,
-    /// Their units, which go before those of the header.
+    /// Their units, which replace those of the header.
     pub units: BTreeMap<Role, String>,
     /// The sheet of a spreadsheet, by its name; the first with a curve where none is named.
     pub sheet: Option<String>,
@@ -110,7 +110,7 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
         let header_unit = if base.is_some() { role::logarithm(header_unit).1 } else { header_unit };
         let unit = match (said.units.get(&role), role) {
             (Some(unit), _) => tidy(role, name, unit.trim()),
-            // "tan(delta) [-]": a ratio whatever the brackets say, but for per cent and numbers.
+            // "tan(delta) [-]": a ratio, unless the brackets hold per cent or a number.
             (None, Role::TanDelta) if is_ratio(header_unit) => String::new(),
             (None, _) => tidy(role, name, header_unit),
         };
@@ -244,7 +244,7 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
             ))
             .remedy(Remedy::Header));
         }
-        // No names: the columns in the order of the documentation.
+        // Without names, the columns are in the order of the documentation.
         let order = form.needed.iter().chain(form.pairs.first().into_iter().flatten());
         for (n, role) in order.enumerate() {
             if n < table.columns && !places.values().any(|place| *place == n) {
@@ -291,8 +291,8 @@ fn once(table: &Table, places: &BTreeMap<Role, usize>, said: &Columns) -> Result
     Ok(())
 }
 
-/// Keeps one pair of columns and drops those of all others: the pair with most columns that were said, the first of those
-/// that are there. What is missing, if there is none.
+/// Keeps one complete pair of columns and drops all others: the pair with most columns that the caller named, or else the first.
+/// Without a complete pair, returns what is missing.
 fn one_pair(places: &mut BTreeMap<Role, usize>, form: Form, said: &Columns) -> Option<Role> {
     let told = |pair: &[Role; 2]| pair.iter().filter(|role| said.columns.contains_key(role)).count();
     let complete = form.pairs.iter().filter(|pair| pair.iter().all(|role| places.contains_key(role)));

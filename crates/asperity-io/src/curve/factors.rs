@@ -13,7 +13,7 @@ use super::units::tidy;
 use super::workbook::{Sheet, sheets};
 use crate::quantity::Temperature;
 
-/// What a file says of its shift.
+/// The shift that a file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeldShift {
     /// Its list of factors.
@@ -33,8 +33,8 @@ impl HeldShift {
 /// by which processes take longer than at the reference temperature, so that it falls with temperature.
 ///
 /// # Errors
-/// [`CurveError`]: no such columns, a unit that is none of a temperature, factors that rise with temperature, a temperature
-/// twice.
+/// [`CurveError`] if there are no such columns, the unit is not one of temperature, the factors rise with temperature, or a
+/// temperature occurs twice.
 pub fn read_shift_table(path: &Path) -> Result<Shift, CurveError> {
     let read = || -> Result<Shift, Fault> {
         let mut last = None;
@@ -49,7 +49,7 @@ pub fn read_shift_table(path: &Path) -> Result<Shift, CurveError> {
     read().map_err(|fault| fault.of(path))
 }
 
-/// What the sheets of a spreadsheet say of the shift.
+/// The shift that the sheets of a spreadsheet hold.
 pub(super) fn held(sheets: &[Sheet]) -> HeldShift {
     let mut found = HeldShift::default();
     for sheet in sheets {

@@ -5,9 +5,8 @@
 //!      --Request::fit--> master curve --> Prony series with its misfit
 //! ```
 //!
-//! Separator and decimal mark are found from the file; which column is what, from its header or as told; a unit
-//! stands in the header or is told. A spreadsheet may hold shift factors as well. What does not fit is refused with the
-//! line.
+//! Separator and decimal mark are found from the file. The meaning and the unit of each column come from its header or from the
+//! caller. A spreadsheet may hold shift factors as well. An error names the line that does not fit.
 //!
 //! ```
 //! use asperity_io::curve::{Columns, Curves, Kind, Request};
@@ -141,10 +140,10 @@ impl Curves {
         Curves::parse(path, &bytes(path)?, kind, columns)
     }
 
-    /// What a file (or the sheet of it) holds, as its header tells.
+    /// What a file, or a sheet of it, holds according to its header.
     ///
     /// # Errors
-    /// [`CurveError`] where the file cannot be read, holds no table, or its header does not tell.
+    /// [`CurveError`] if the file cannot be read, holds no table, or its header does not say what was measured.
     pub fn kind_of(path: &Path, sheet: Option<&str>) -> Result<Kind, CurveError> {
         let kind = |bytes: Vec<u8>| -> Result<Kind, Fault> {
             let (mut tables, mut refused) = (Vec::new(), None);

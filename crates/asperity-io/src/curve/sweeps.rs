@@ -10,11 +10,11 @@ use super::columns::Values;
 use super::error::{Fault, Remedy, fault};
 use super::{Kind, Role, Sweep};
 
-/// Temperatures closer than this belong to one sweep \[K\]: chambers hold no better.
+/// Temperatures closer than this belong to one sweep \[K\]: no chamber holds a temperature better.
 pub(super) const SAME_TEMPERATURE: f64 = 1.0;
 /// Temperatures of one sweep spread by no more \[K\].
 const SPREAD: f64 = 3.0;
-/// More sweeps than anybody measures.
+/// Largest number of sweeps; a file with more is another kind of table.
 const MOST_SWEEPS: usize = 1000;
 
 /// The rows by temperature, the coldest first; each sweep in the order of the file, or the reverse where that goes down;

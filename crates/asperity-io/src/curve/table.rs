@@ -77,14 +77,14 @@ impl Table {
     /// From text whose separator and decimal mark are known.
     pub(super) fn split(text: String, separator: Option<char>, decimal_comma: bool) -> Result<Table, Fault> {
         let lines: Vec<&str> = text.lines().map(trim).collect();
-        // "NaN" stands where a number would; dashes may be anything.
+        // "NaN" counts as a number; dashes may be anything.
         let number = |cell: &str| parse_number(cell, decimal_comma).is_some() || is_undefined(cell);
         let numbers = |line: &str| cells(line, separator).iter().filter(|cell| number(cell)).count();
         let first = first_row(&lines, separator, &numbers).ok_or_else(|| {
             fault("there is no line with two numbers; a curve is a text table with one point per line")
         })?;
         let cells_of_first = cells(lines[first], separator);
-        // An empty last cell is one of a column that has a name, or a separator ends the line.
+        // An empty last cell belongs to a column that has a name; otherwise a separator ends the line.
         let unnamed = || {
             let above = lines[..first].iter().rev().find(|line| !is_blank(line, separator));
             let named =
@@ -252,7 +252,7 @@ fn trim(line: &str) -> &str {
 }
 
 /// The first line of the table: with two numbers at least, and with as many cells as the next such line (exports begin with
-/// lines of other numbers); where there is no such pair, the first line with two numbers.
+/// lines of other numbers); without such a pair, the first line with two numbers.
 fn first_row(lines: &[&str], separator: Option<char>, numbers: &dyn Fn(&str) -> usize) -> Option<usize> {
     let width = |line: &str| cells(line, separator).len();
     let rows: Vec<usize> =
@@ -289,7 +289,7 @@ fn names_column(cell: &str) -> bool {
     !is_missing(cell) && (is_called() || (!unit.is_empty() && is_unit(unit)) || wide::tells_value(cell))
 }
 
-/// What is said of a line between the points that is not the heading again.
+/// The error for a line between the points that does not repeat the heading.
 fn another_heading(line: &str) -> Fault {
     let shown: String = line.chars().take(60).collect();
     fault(format!(
@@ -299,10 +299,10 @@ fn another_heading(line: &str) -> Fault {
     ))
 }
 
-/// What is said of numbers whose comma nothing tells.
+/// The error for numbers whose comma is ambiguous.
 pub(super) fn doubtful(cell: &str) -> Fault {
     fault(format!(
-        "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and nothing in the file tells which; write \
+        "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and the file does not show which; write \
          them with a decimal point, or without commas"
     ))
 }
@@ -329,7 +329,7 @@ fn parse_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     number.ok().filter(|value: &f64| value.is_finite())
 }
 
-/// Whether a cell is a word for a number that is none.
+/// Whether a cell is a word for an undefined number.
 fn is_undefined(cell: &str) -> bool {
     let cell = cell.trim_matches('"');
     ["nan", "na", "n/a", "#n/a", "#nv"].iter().any(|word| cell.eq_ignore_ascii_case(word))

@@ -41,7 +41,7 @@ impl Value {
 /// The table with its sweeps below each other; as it is where they are already.
 ///
 /// # Errors
-/// Where columns are repeated and nothing tells the temperatures.
+/// If columns are repeated and no temperatures are given for them.
 pub(super) fn long(table: Table) -> Result<Table, Fault> {
     if let Some(blocks) = repeated(&table)? {
         let headers = blocks[0].columns.iter().map(|column| header(&table, *column, None)).collect();
@@ -59,7 +59,7 @@ fn repeated(table: &Table) -> Result<Option<Vec<Block>>, Fault> {
     let plain: Vec<String> = table.headers.iter().map(|header| unnumbered(header)).collect();
     let name = |column: usize| plain.get(column).map_or("", String::as_str);
     let repeats = |period: usize| {
-        // The last block may lack the empty column that parts the blocks.
+        // The last block may lack the empty column that separates the blocks.
         let whole = columns.is_multiple_of(period)
             || (columns + 1).is_multiple_of(period) && name(period - 1).is_empty();
         let named = (0..period).filter(|column| !name(*column).is_empty()).count() >= 2;
@@ -85,7 +85,7 @@ fn repeated(table: &Table) -> Result<Option<Vec<Block>>, Fault> {
     let found = table.above().rev().find_map(temperatures);
     found.map(Some).ok_or_else(|| {
         fault(format!(
-            "columns 1 to {period} are repeated {count} times, and no line above tells the temperatures; write one above each block, as \
+            "columns 1 to {period} are repeated {count} times, and no line above names their temperatures; write one above each block, as \
              in \"20 °C\", or put the sweeps below each other with a column of temperatures"
         ))
     })

@@ -1,7 +1,6 @@
 //! HDF5, with dimension scales: h5py and MATLAB open it, and NetCDF-4 readers (xarray) find its dimensions.
 //!
-//! Data sets are in one piece and maps go to the file one after the other: memory holds one of them, whatever their
-//! number.
+//! Data sets are contiguous, and maps are written one after the other: memory holds one of them.
 
 use std::path::Path;
 

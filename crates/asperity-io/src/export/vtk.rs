@@ -3,7 +3,7 @@
 //! Fields are cell data, x fastest, little-endian, appended raw. What is not finite (the gap where a punch
 //! cannot touch) becomes NaN, which ParaView leaves out of its colour range. Where two instants have
 //! the same time (before and after a jump), the earlier is given the next smaller number: ParaView
-//! takes files of equal time for parts of one state.
+//! takes files of equal time as parts of one state.
 
 use std::fs;
 use std::io::Write;

@@ -118,7 +118,7 @@ impl Fluid {
 pub struct Leakage {
     /// Whether inlet and outlet are connected.
     pub percolates: bool,
-    /// Gap of the parallel plates that leak as much of a liquid \[m\].
+    /// Hydraulic gap \[m\]: parallel plates at this distance have the same leak rate of a liquid.
     pub hydraulic_gap: f64,
     /// Gap of the critical constriction \[m\]; NaN where the seal is tight.
     pub critical_gap: f64,
@@ -136,7 +136,7 @@ pub struct Leakage {
     pub open_fraction: f64,
     /// Effective conductance \[m^3\], where both directions were asked for.
     pub conductance: Option<[[f64; 2]; 2]>,
-    /// Leak \[m^3/s; gas kg/s\], where there is a fluid.
+    /// Leak rate \[m^3/s; gas kg/s\]; `None` without a fluid.
     pub leak_rate: Option<f64>,
     /// Leak of a gas \[Pa m^3/s at 0 degC\].
     pub leak_rate_standard: Option<f64>,
@@ -146,14 +146,14 @@ pub struct Leakage {
     pub leak_estimate_medium: Option<f64>,
     /// Mean free path over critical gap, of a gas.
     pub knudsen: Option<f64>,
-    /// Pressure of the fluid \[Pa\], without one from 1 at the inlet to 0 at the outlet; NaN where there is none.
+    /// Pressure of the fluid \[Pa\]; without a fluid, from 1 at the inlet to 0 at the outlet. NaN in closed cells and pockets.
     pub pressure: Array2<f64>,
     /// What each cell is connected to.
     pub cells: Array2<CellKind>,
 }
 
 impl Leakage {
-    /// What the diagnostics look at of a map of the gap of which nothing else is known: the cells across the constriction.
+    /// What the diagnostics can judge without a result: the cells across the constriction.
     pub fn alone(&self) -> LeakState {
         LeakState {
             row: None,

@@ -26,7 +26,7 @@ pub enum LeakError {
         /// Time of the fields \[s\].
         time: f64,
     },
-    /// Somebody asked to stop.
+    /// The user asked to stop.
     #[error("interrupted")]
     Interrupted,
 }
@@ -38,7 +38,7 @@ pub struct LeakHistory {
     pub leak: Leak,
     /// The numbers.
     pub table: LeakTable,
-    /// What was found against them.
+    /// The findings about them.
     pub findings: Vec<Finding>,
 }
 
@@ -80,8 +80,8 @@ pub fn settings(reader: &Reader) -> Option<Leak> {
     serde_json::from_value(last.or_else(of_case)?).ok()
 }
 
-/// Computes the leakage at the times asked for and stores it in the result at `path`, in place of an earlier one. `observe` is
-/// told the number of times done and of all.
+/// Computes the leakage at the times asked for and stores it in the result at `path`, in place of an earlier one. `observe`
+/// gets the number of times done and of all times.
 ///
 /// # Errors
 /// [`LeakError`]; the result is then as it was.

@@ -1,4 +1,4 @@
-//! How a result comes to be at its path: built beside it, then renamed, never half-made.
+//! A new result is built beside its path and then renamed, so that no unfinished one is ever seen.
 
 use std::fs::{self, File};
 use std::io::ErrorKind;
@@ -19,7 +19,7 @@ use super::replace;
 use super::stress;
 use super::writer::lock;
 
-/// Lets `build` fill a new directory, which then appears at `path`; returns its lock. A complete result that was there is put by
+/// Lets `build` fill a new directory, which then appears at `path`; returns its lock. A complete result that was there is kept
 /// until the new one is complete.
 pub(super) fn publish(
     path: &Path,
@@ -32,7 +32,7 @@ pub(super) fn publish(
     leftovers::sweep(path);
     let old = vacate(path, force)?;
     let partial = make_beside(path, "partial")?;
-    // Held from here on: others see that somebody is at work.
+    // Held from here on: other processes see that this one is at work.
     let built = lock(&partial).and_then(|held| {
         build(&partial)?;
         match &old {
@@ -47,7 +47,7 @@ pub(super) fn publish(
     built.map_err(|error| {
         let _ = fs::remove_dir_all(&partial);
         match error {
-            // Said of the path that the user knows.
+            // The error names the path that the user knows.
             StoreError::Io { path: file, action, source } => {
                 let file = file.strip_prefix(&partial).map_or(file.clone(), |part| path.join(part));
                 StoreError::Io { path: file, action, source }
@@ -183,7 +183,7 @@ fn names_beside(path: &Path, role: &str) -> Result<impl Iterator<Item = PathBuf>
     }))
 }
 
-/// Writes what does not change over time: the coordinates x and y, those of the histograms, and the undeformed gap.
+/// Writes what does not change over time: the coordinates x and y, the coordinates of the histograms, and the undeformed gap.
 pub(super) fn write_constants(
     root: &Path,
     document: &Document,

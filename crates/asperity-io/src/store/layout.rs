@@ -99,7 +99,7 @@ pub(super) const BINS: [(Kind, [Series; 2]); 3] = [
     ),
 ];
 
-/// The coordinates of a quantity with their numbers: middles, then ends; none of a single number.
+/// The coordinates of a histogram with their numbers: middles, then ends. Another quantity has none.
 pub(super) fn coordinates(column: &Quantity, grid: &Grid) -> Vec<(Series, Vec<f64>)> {
     let Some((_, series)) = BINS.iter().find(|(kind, _)| *kind == column.quantity) else { return vec![] };
     let middle = |pair: &[f64]| match column.quantity {
@@ -263,7 +263,7 @@ pub(super) fn cells(grid: &Grid) -> Vec<(&'static str, usize)> {
     ["x", "y"].into_iter().zip(grid.cells()).take(grid.dimensions()).collect()
 }
 
-/// All arrays of a result with `rows` rows and `maps` instants of its fields, but for those of stress and leakage.
+/// All arrays of a result with `rows` rows and `maps` instants of its fields, except those of stress and leakage.
 pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec> {
     let grid = &header.grid;
     let [row, map] = [(header.stored("time"), rows), (header.stored("field_time"), maps)];

@@ -1,4 +1,4 @@
-//! Removing results: what a replaced one leaves, and what killed processes left.
+//! Removing results that were replaced, and what killed processes left.
 //!
 //! Only files that a result has by its own list of arrays are removed, each under the name that the store gives it.
 //! Anything else stays where it is, in a directory that its user can see.
@@ -47,8 +47,8 @@ pub(super) fn remove_kept(path: &Path) {
     }
 }
 
-/// Removes the files of the replaced result at `aside`. Where others are left, it is renamed so that its user finds
-/// them, and told.
+/// Removes the files of the replaced result at `aside`. If other files are left, the directory gets a name that its user can find,
+/// with a warning.
 pub(super) fn remove(aside: &Path, path: &Path) {
     remove_own(aside);
     if fs::symlink_metadata(aside).is_err() {
@@ -80,9 +80,9 @@ pub(super) fn sweep(path: &Path) {
             let directory = entry.path();
             let age = entry.metadata().and_then(|data| data.modified()).map(|at| at.elapsed());
             let is_old = matches!(age, Ok(Ok(age)) if age >= YOUNG);
-            // Whoever is at work on it holds its lock.
+            // A process that works on it holds its lock.
             if is_old && let Ok(Some(_held)) = lock(&directory) {
-                // Killed after the old result was put aside, before the new one took its place.
+                // The process was killed after it had moved the old result and before the new one took its place.
                 if found.to_str().is_some_and(|name| name.starts_with(&prefixes[1])) && !path.exists() {
                     let _ = fs::rename(&directory, path);
                     continue;

@@ -83,7 +83,7 @@ impl Reader {
         attributes
     }
 
-    /// What the run found about itself, as far as it has come.
+    /// The findings of the run so far.
     pub fn findings(&self) -> &[Finding] {
         &self.document.progress.findings
     }
@@ -100,7 +100,7 @@ impl Reader {
         matches!(shared, Ok(Err(std::fs::TryLockError::WouldBlock)))
     }
 
-    /// Where the complete result is that this one replaces, which is kept until this one is complete.
+    /// The complete result that this one replaces; it is kept until this one is complete.
     pub fn replaces(&self) -> Option<PathBuf> {
         leftovers::kept(&self.root).filter(|_| self.status() != Status::Complete)
     }
@@ -144,7 +144,7 @@ impl Reader {
             rows.resize(numbers.len(), Row { coordinate: self.header().axis().at(0.0), ..Row::default() });
             rows.iter_mut().zip(numbers).for_each(|(row, number)| scalar.set(row, number));
         }
-        // What a loss of power did not let reach the disk reads as zeros.
+        // Bytes that did not reach the disk before a loss of power read as zeros.
         let coordinate = |row: &Row| row.coordinate.value();
         if let Some(n) = rows.windows(2).position(|pair| coordinate(&pair[1]) < coordinate(&pair[0])) {
             let (name, what) = (self.header().stored("time"), self.header().axis().plural());
@@ -250,7 +250,7 @@ impl Reader {
 
     /// Whether a time is one of the run, from 0 to its last row.
     fn is_within(&self, time: f64) -> Result<bool> {
-        /// Times that are written with 12 digits are those of rows.
+        /// A time that is written with 12 digits is inside too.
         const DIGITS: f64 = 1e-12;
         let rows = self.series("time")?;
         let end = rows.iter().chain(&self.field_times).copied().fold(0.0, f64::max);
@@ -278,14 +278,14 @@ impl Reader {
         self.field_map(FieldKind::Contact, at)
     }
 
-    /// The field that tells contact: the states where they were kept, else the pressure, else the gap.
+    /// The field that shows the contact: the states if they were kept, else the pressure, else the gap.
     pub fn contact_kind(&self) -> Option<FieldKind> {
         let kept = &self.header().fields;
         [FieldKind::Contact, FieldKind::Pressure, FieldKind::Gap].into_iter().find(|kind| kept.contains(kind))
     }
 
-    /// The contact states at a stored instant (0 open, 1 in contact, 2 at the hardness), from whatever field tells them. (The gap
-    /// of a cell in contact is zero to rounding, and below zero at the hardness.)
+    /// The contact states at a stored instant (0 open, 1 in contact, 2 at the hardness), from the field of
+    /// [`contact_kind`](Self::contact_kind). The gap of a cell in contact is zero to rounding, and below zero at the hardness.
     ///
     /// # Errors
     /// As of [`field`](Self::field).

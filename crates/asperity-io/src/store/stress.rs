@@ -278,7 +278,7 @@ impl Writer {
     }
 }
 
-/// Removes all arrays of the stress; those of no document are seen by nobody.
+/// Removes all arrays of the stress. No reader sees an array that no document names.
 pub(super) fn clear(root: &Path) -> Result<()> {
     names().try_for_each(|name| remove(&root.join(name)))
 }

@@ -383,17 +383,17 @@ impl Writer {
         Ok(())
     }
 
-    /// What the run has found about itself so far.
+    /// The findings of the run so far.
     pub fn findings(&self) -> &[Finding] {
         &self.progress.findings
     }
 
-    /// Sets what the run has found about itself; readers see it with the next row, [`note`](Self::note) or end.
+    /// Sets the findings of the run; readers see them with the next row, [`note`](Self::note) or end.
     pub fn set_findings(&mut self, findings: Vec<Finding>) {
         self.progress.findings = findings;
     }
 
-    /// Sets what the run has found about itself, for readers to see at once.
+    /// Sets the findings of the run, which readers see at once.
     ///
     /// # Errors
     /// [`StoreError::Io`] where the system refuses.
@@ -502,7 +502,7 @@ impl Writer {
 impl Drop for Writer {
     fn drop(&mut self) {
         if self.documents_behind && self.check_place().is_ok() {
-            // Nobody is left to tell; readers of the group's document miss nothing.
+            // An error cannot be reported any more; readers of the group's document miss nothing.
             let _ = self.flush_documents(Way::Quick);
         }
     }

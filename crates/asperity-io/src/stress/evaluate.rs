@@ -47,8 +47,8 @@ pub const LAYERED: &str = "the stress below the surface is not computed for bodi
 /// Why there is no range of a shear stress along y in plane strain.
 pub const ROLLS_ALONG_LINE: &str = "a line contact rolls along x: nothing changes along y";
 
-/// Computes the stress of a result that `writer` holds, and stores it there in place of one that is stored. `observe` is told
-/// the number of times done and of all. Nothing of the stress is stored where it ends early.
+/// Computes the stress of a result that `writer` holds, and stores it there, in place of an earlier one. `observe` gets the
+/// number of times done and of all times. If the computation ends early, no stress is stored.
 ///
 /// # Errors
 /// [`StressError::Store`] where there are no pressures or the system refuses; [`StressError::Solve`] for depths that the grid

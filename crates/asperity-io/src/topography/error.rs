@@ -27,9 +27,9 @@ pub enum Problem {
     /// The file takes more memory than there is.
     #[error("{0}; crop or thin it out first")]
     TooLarge(String),
-    /// The content belongs to none of the formats.
+    /// The content is in no known format.
     #[error(
-        "the content is none of the known formats ({}); export it from the instrument's software as x3p, sdf or text",
+        "the content is in none of the known formats ({}); export it from the instrument's software as x3p, sdf or text",
         format::list(Format::ALL.iter().copied())
     )]
     Unrecognised,
@@ -51,7 +51,7 @@ pub enum Problem {
         /// What it holds instead.
         detail: String,
     },
-    /// The file states no unit of the heights, or none of length.
+    /// The file states no unit of the heights, or a unit that is not a length.
     #[error(
         "the {format} file holds no unit of length for its heights{detail}; give it (`height_unit`, --height-unit U)"
     )]

@@ -5,7 +5,7 @@ use ndarray::Array2;
 use super::unit::{LoneA, metres};
 use super::{Format, Problem, ReadOptions, Topography, grid};
 
-/// What a reader found.
+/// The result of a reader.
 #[derive(Debug)]
 pub(super) struct Measured {
     /// The format, where the content tells it better than the signature.
@@ -29,9 +29,9 @@ pub(super) struct Measured {
 pub(super) enum Unit {
     /// Metres per unit.
     Metres(f64),
-    /// The file does not say.
+    /// The file does not state it.
     Unstated,
-    /// The file says something that is no length ("V").
+    /// The file states a unit that is not a length ("V").
     Other(String),
 }
 
@@ -42,7 +42,7 @@ pub(super) enum Lateral {
     Metres([f64; 2]),
     /// In a unit that the file does not state.
     Bare([f64; 2]),
-    /// Not in the file; the text says what it holds instead.
+    /// Not in the file; the text describes what it holds instead.
     Unstated(String),
 }
 
@@ -61,7 +61,7 @@ impl Measured {
         }
     }
 
-    /// With what else the file says; empty values say nothing.
+    /// Adds further metadata; empty values are left out.
     pub(super) fn with<K: Into<String>>(mut self, metadata: impl IntoIterator<Item = (K, String)>) -> Self {
         let entries = metadata.into_iter().filter(|(_, value)| !value.is_empty());
         self.metadata.extend(entries.map(|(key, value)| (key.into(), value)));
@@ -122,7 +122,7 @@ pub(super) fn finish(
             "positive and finite; give the lengths along x and y (`size`, --size A,B)",
         ));
     }
-    // Infinite heights can only come from scaling absurd numbers: undefined, like every other value that is none.
+    // Infinite heights can only come from scaling absurd numbers: they are undefined.
     let clean = |h: f64| if h.is_finite() { h } else { f64::NAN };
     if height_unit != 1.0 {
         grid::replace(&mut heights, |h| clean(h * height_unit));

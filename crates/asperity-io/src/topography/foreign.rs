@@ -1,4 +1,4 @@
-//! Formats that are not read: which instrument or program wrote the file, and how to get its heights.
+//! Formats that are not read: the instrument or program that wrote the file, and how to get its heights.
 
 use super::{Problem, compound, unpack};
 
@@ -58,7 +58,7 @@ const BY_EXPORT: [(&[u8], &str, &str); 5] = [
     (b"\xff\xd8\xff", "JPEG", PICTURE),
 ];
 
-/// The error for a file of none of the formats that are read.
+/// The error for a file in a format that is not read.
 pub(super) fn unread(bytes: &[u8]) -> Problem {
     let groups =
         [(Way::SurfaceTopography, &BY_PACKAGE[..]), (Way::Gwyddion, &BY_GWYDDION), (Way::Export, &BY_EXPORT)];
@@ -97,7 +97,7 @@ fn foreign((name, way, export): Known) -> Problem {
     Problem::Foreign { name: name.to_owned(), instead: format!("{elsewhere}export {export}") }
 }
 
-/// Zip archives of instruments: endings of the names of members of which each archive has one, or all; and what it is.
+/// Zip archives of instruments: endings of the names of members, whether an archive must hold all of them or one, and its format.
 const ARCHIVES: [(&[&str], bool, Known); 5] = [
     (
         &["index.xml", ".raw"],
@@ -126,7 +126,7 @@ const ARCHIVES: [(&[&str], bool, Known); 5] = [
     (&["[content_types].xml"], false, ("Excel or Word", Way::Export, "the heights as CSV")),
 ];
 
-/// TIFF of instruments: texts near the start or the end, and what it is.
+/// TIFF of instruments: texts near the start or the end of the file, and its format.
 const PICTURES: [(&[&[u8]], Known); 3] = [
     (
         &[b"jpk-data-file", b"JPK"],
@@ -140,7 +140,7 @@ const PICTURES: [(&[&[u8]], Known); 3] = [
 ];
 const PARK: Known =
     ("Park Systems TIFF (atomic force microscope)", Way::SurfaceTopography, "text from XEI or SmartAnalysis");
-/// Tags of Park's TIFF, which may hold none of its texts.
+/// Tags of Park's TIFF, for files without its texts.
 const PARK_TAGS: [u16; 2] = [50432, 50434];
 
 /// Zip archives, TIFF and compound documents, which many instruments write.

@@ -18,12 +18,12 @@ use super::{Problem, Reader, Request};
 pub(super) const METROPRO: Reader =
     Reader::new("metropro", |bytes| header_length(bytes).is_some(), read).also_called(&["dat"]);
 
-/// The least phase that is none.
+/// Phases from this number on are undefined.
 const UNDEFINED: f64 = 2_147_483_640.0;
 /// Name of the only channel.
 const NAME: &str = "Default";
 
-/// Length of the header that the signature says, where it is one.
+/// Length of the header by the signature; `None` for another file.
 fn header_length(bytes: &[u8]) -> Option<u32> {
     match bytes {
         [0x88, 0x1b, 0x03, 0x6f | 0x70, ..] => Some(834),

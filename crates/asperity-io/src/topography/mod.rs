@@ -137,7 +137,7 @@ impl Topography {
         self.heights.iter().filter(|h| h.is_nan()).count()
     }
 
-    /// What was done to the heights since they were measured or made, where the file or [`record`](Self::record) says.
+    /// The steps by which the heights were changed since they were measured or made, from the file and [`record`](Self::record).
     pub fn history(&self) -> impl Iterator<Item = &str> {
         let entries = self.metadata.iter().filter(|(key, _)| key.eq_ignore_ascii_case(HISTORY));
         entries
@@ -164,7 +164,7 @@ impl Topography {
         }
     }
 
-    /// The history as one line, where there is one.
+    /// The history as one line; `None` without a history.
     fn history_line(&self) -> Option<String> {
         // A line break would end the entry in a text file.
         let steps: Vec<String> = self.history().map(|step| step.replace(['\n', '\r'], " ")).collect();
@@ -176,7 +176,7 @@ impl Topography {
 const HISTORY: &str = "History";
 const BETWEEN_STEPS: &str = "; ";
 
-/// What the caller knows and the file may not say.
+/// What the caller knows about a file.
 ///
 /// The defaults take everything from the file.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -9,7 +9,7 @@
 //! height = n Z S / 2^(8 B),   B: `Bytes/pixel`
 //! ```
 //!
-//! From version 9.2 every number takes 4 bytes, whatever B says. Files before version 4.3 have other scales and are
+//! From version 9.2 on every number takes 4 bytes; B is ignored. Files before version 4.3 have other scales and are
 //! refused. (Digital Instruments, "Nanoscope command reference manual", and the readers of Gwyddion and
 //! SurfaceTopography.)
 

@@ -46,7 +46,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let names: Vec<String> = sets.iter().map(Set::name).collect();
     let unit = |i: usize| match sets[i].lateral() {
         Lateral::Metres(_) => sets[i].unit("Dim2Unit"),
-        // A curve over a voltage or a force is no map, whatever its values are.
+        // A curve over a voltage or a force is not a map, even if its values are lengths.
         _ => Unit::Unstated,
     };
     let index = request.choose_heights(&names, unit)?;

@@ -29,7 +29,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     Ok(Measured::new(heights, Unit::Unstated, Lateral::Unstated(String::new())))
 }
 
-/// Reads the channel asked for of an NPZ file: each two-dimensional array is one.
+/// Reads the channel asked for from an NPZ file: each two-dimensional array is a channel.
 fn read_archive(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let mut archive = Archive::open(bytes)?;
     let (mut names, mut size, mut unit, mut metadata) = (Vec::new(), None, None, Vec::new());

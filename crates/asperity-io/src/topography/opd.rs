@@ -89,7 +89,7 @@ fn blocks(bytes: &[u8]) -> Result<Vec<Block<'_>>, Problem> {
 }
 
 impl Block<'_> {
-    /// The number in a block. Some files declare a type that the length belies: the length decides.
+    /// The number in a block. In some files the declared type does not fit the length: then the length decides.
     fn number(&self) -> Option<f64> {
         let mut c = Cursor::new(self.content, Order::Little);
         let value = match (self.kind, self.content.len()) {

@@ -4,7 +4,7 @@ use memchr::memchr;
 
 use crate::topography::Problem;
 
-/// What stands between two numbers.
+/// The separator between two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Separator {
     /// Spaces and tabs.
@@ -115,9 +115,9 @@ impl Dialect {
                 let mut commas = Commas::default();
                 blocks.for_each(|block| commas.scan(block));
                 if commas.blank_between_numbers {
-                    // "1,5 2,5": blanks part the numbers.
+                    // "1,5 2,5": the numbers are separated by blanks.
                     if commas.beside_blank || commas.twice_in_token {
-                        return Err(mixed("both between and inside numbers that blanks part"));
+                        return Err(mixed("both between and inside numbers that are separated by blanks"));
                     }
                     dialect(Separator::Blank, true)
                 } else if commas.beside_blank && commas.inside {
@@ -134,7 +134,7 @@ impl Dialect {
 /// Where the commas of a file without decimal points and semicolons stand.
 #[derive(Default)]
 struct Commas {
-    /// Two tokens parted by blanks alone.
+    /// Two tokens are separated by blanks alone.
     blank_between_numbers: bool,
     /// A comma next to a blank (not at the end of a line).
     beside_blank: bool,
@@ -159,7 +159,7 @@ impl Commas {
                     self.twice_in_token |= in_token > 1;
                 } else if byte.is_ascii_whitespace() {
                     in_token = 0;
-                    // A run of blanks parts numbers where no comma is at either end of it.
+                    // A run of blanks separates numbers if there is no comma at either end of it.
                     if neighbours[1].is_some_and(|b| !b.is_ascii_whitespace() && b != b',') {
                         let before = line[..at].iter().rev().find(|b| !b.is_ascii_whitespace());
                         self.blank_between_numbers |= before.is_some_and(|b| *b != b',');

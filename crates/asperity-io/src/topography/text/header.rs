@@ -72,7 +72,7 @@ impl Header {
         self.above = Default::default();
     }
 
-    /// Takes in one header line; gives it back as key and value for the metadata.
+    /// Reads one header line; returns it as key and value for the metadata.
     pub(super) fn line(&mut self, line: &[u8]) -> Option<(String, String)> {
         // Longer lines are no header of any program.
         let line = encoding::label(&line[..line.len().min(4096)]);
@@ -304,7 +304,7 @@ fn columns(text: &str, before: &[Column]) -> Vec<Column> {
             None => (field, None),
         };
         match columns.last_mut() {
-            // Blanks part the names of columns, and a name from its unit.
+            // Blanks separate the names of columns, and a name from its unit.
             Some(last) if name.is_empty() && last.unit.is_none() => last.unit = unit,
             _ => columns.push(Column { name: name.to_owned(), unit }),
         }

@@ -11,7 +11,7 @@ const LABELS: [&str; 5] = [
      единицы измерения|единицы значений",
 ];
 
-/// A label in small letters, in English where it is one of Gwyddion's.
+/// A label in lower case; one of Gwyddion's labels in English.
 pub(super) fn in_english(label: &str) -> String {
     let label = label.trim().to_lowercase();
     let known = LABELS.iter().find(|words| words.split('|').any(|word| word == label));

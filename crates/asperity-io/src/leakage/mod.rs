@@ -194,9 +194,29 @@ impl Leak {
         let critical = passages.constriction.map_or(0.0, |constriction| constriction.gap);
         let medium = effective_medium(&opening).cbrt();
         let place = passages.constriction.map_or([f64::NAN; 2], |c| [grid.x(c.cell[0]), grid.y(c.cell[1])]);
-        let mut leakage = Leakage {
+        let hydraulic_gap = flow.hydraulic_gap();
+        let (pressure, rates) = match self.fluid {
+            None => (flow.pressure, [None; 5]),
+            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
+                let of = |t: f64| leak_rate(t, &opening, pressure_drop, viscosity).map(Some);
+                let rates = [flow.transmissivity, critical.powi(3), medium.powi(3)].map(of);
+                let [rate, junction, medium] = rates;
+                (flow.pressure * pressure_drop, [rate?, None, junction?, medium?, None])
+            }
+            Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
+                drop(flow);
+                let gas = self.gas(kind, temperature, time)?;
+                let ends = [inlet, outlet];
+                let flow = gas_flow(&opening, &passages, &gas, rarefaction, ends, &options)?;
+                let of = |gap: f64| plate(&gas, rarefaction, gap, opening.size(), ends);
+                let (rate, standard) = (flow.leak_rate, standard(flow.leak_rate, &gas));
+                (flow.pressure, [rate, standard, of(critical)?, of(medium)?, flow.knudsen].map(Some))
+            }
+        };
+        let [leak_rate, leak_rate_standard, leak_estimate_junction, leak_estimate_medium, knudsen] = rates;
+        Ok(Leakage {
             percolates: passages.percolates(),
-            hydraulic_gap: flow.hydraulic_gap(),
+            hydraulic_gap,
             critical_gap: if passages.percolates() { critical } else { f64::NAN },
             critical: place,
             critical_width: passages.constriction.and_then(|constriction| constriction.width),
@@ -208,39 +228,14 @@ impl Leak {
                 LeakDirection::Both => Some(conductance(&opening, &options)?),
                 _ => None,
             },
-            leak_rate: None,
-            leak_rate_standard: None,
-            leak_estimate_junction: None,
-            leak_estimate_medium: None,
-            knudsen: None,
+            leak_rate,
+            leak_rate_standard,
+            leak_estimate_junction,
+            leak_estimate_medium,
+            knudsen,
             cells: passages.map(&opening),
-            pressure: Array2::zeros((0, 0)),
-        };
-        match self.fluid {
-            None => leakage.pressure = flow.pressure,
-            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
-                let of = |t: f64| leak_rate(t, &opening, pressure_drop, viscosity);
-                leakage.leak_rate = Some(of(flow.transmissivity)?);
-                leakage.leak_estimate_junction = Some(of(critical.powi(3))?);
-                leakage.leak_estimate_medium = Some(of(medium.powi(3))?);
-                leakage.pressure = flow.pressure;
-                leakage.pressure.mapv_inplace(|p| p * pressure_drop);
-            }
-            Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
-                drop(flow);
-                let gas = self.gas(kind, temperature, time)?;
-                let ends = [inlet, outlet];
-                let flow = gas_flow(&opening, &passages, &gas, rarefaction, ends, &options)?;
-                let of = |gap: f64| plate(&gas, rarefaction, gap, opening.size(), ends);
-                leakage.leak_rate = Some(flow.leak_rate);
-                leakage.leak_rate_standard = Some(standard(flow.leak_rate, &gas));
-                leakage.leak_estimate_junction = Some(of(critical)?);
-                leakage.leak_estimate_medium = Some(of(medium)?);
-                leakage.knudsen = Some(flow.knudsen);
-                leakage.pressure = flow.pressure;
-            }
-        }
-        Ok(leakage)
+            pressure,
+        })
     }
 
     fn gas(&self, kind: GasKind, temperature: Option<f64>, time: f64) -> Result<Gas> {

@@ -105,17 +105,14 @@ fn vacate(path: &Path, force: bool) -> Result<Option<Option<File>>> {
         Ok(metadata) => metadata,
     };
     let foreign = |found: &str| StoreError::Foreign { path: path.to_owned(), found: found.to_owned() };
-    if metadata.is_symlink() {
-        return Err(foreign("is a link"));
-    }
-    if metadata.is_dir() && !document::is_result(path) {
-        return Err(foreign("is a directory, but not a result of asperity"));
-    }
-    if !metadata.is_dir() {
-        return Err(foreign("is a file"));
-    }
-    if !force {
-        return Err(StoreError::Exists { path: path.to_owned() });
+    match metadata.file_type() {
+        kind if kind.is_symlink() => return Err(foreign("is a link")),
+        kind if !kind.is_dir() => return Err(foreign("is a file")),
+        _ if !document::is_result(path) => {
+            return Err(foreign("is a directory, but not a result of asperity"));
+        }
+        _ if !force => return Err(StoreError::Exists { path: path.to_owned() }),
+        _ => {}
     }
     for entry in fs::read_dir(path).map_err(io("read", path))? {
         let name = entry.map_err(io("read", path))?.file_name();
@@ -141,19 +138,15 @@ pub(super) fn is_part(name: &str) -> bool {
 
 /// A new directory beside `path`.
 fn make_beside(path: &Path, role: &str) -> Result<PathBuf> {
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     for directory in names_beside(path, role)? {
-        match fs::create_dir(&directory) {
+        match fs::create_dir(&directory).map_err(|error| (error.kind(), error)) {
             Ok(()) => return Ok(directory),
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-            Err(source) => {
-                let parent =
-                    directory.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-                let (path, action) = match source.kind() {
-                    ErrorKind::NotFound | ErrorKind::NotADirectory => (parent, "write into"),
-                    _ => (path, "make"),
-                };
-                return Err(StoreError::Io { path: path.to_owned(), action, source });
+            Err((ErrorKind::AlreadyExists, _)) => {}
+            Err((ErrorKind::NotFound | ErrorKind::NotADirectory, error)) => {
+                return Err(io("write into", parent)(error));
             }
+            Err((_, error)) => return Err(io("make", path)(error)),
         }
     }
     Err(StoreError::Busy { path: path.to_owned() })
@@ -167,20 +160,19 @@ fn free_name(path: &Path, role: &str) -> Result<PathBuf> {
 
 /// Names beside `path` for what this process works on: `.NAME.ROLE-PID`, `.NAME.ROLE-PID-1`, ...
 fn names_beside(path: &Path, role: &str) -> Result<impl Iterator<Item = PathBuf>> {
-    let Some(name) = path.file_name() else {
+    if path.file_name().is_none() {
         return Err(input("path of the result", path.display(), "the path of a directory to be made"));
-    };
-    let mut base = std::ffi::OsString::from(".");
-    base.push(name);
-    base.push(format!(".{role}-{}", std::process::id()));
-    let path = path.to_owned();
-    Ok((0..100).map(move |n| {
-        let mut name = base.clone();
-        if n > 0 {
-            name.push(format!("-{n}"));
-        }
-        path.with_file_name(name)
-    }))
+    }
+    let (path, role) = (path.to_owned(), format!(".{role}-{}", std::process::id()));
+    Ok((0..100).map(move |n| beside(&path, ".", &if n > 0 { format!("{role}-{n}") } else { role.clone() })))
+}
+
+/// The path of a file beside `path`, whose name has more before and after the name of that.
+pub(super) fn beside(path: &Path, before: &str, after: &str) -> PathBuf {
+    let mut name = std::ffi::OsString::from(before);
+    name.push(path.file_name().unwrap_or_default());
+    name.push(after);
+    path.with_file_name(name)
 }
 
 /// Writes what does not change over time: the coordinates x and y, the coordinates of the histograms, and the undeformed gap.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::checkpoint;
-use super::create::is_part;
+use super::create::{beside, is_part};
 use super::document::{GROUP_PARTIAL, NAME, PARTIAL};
 use super::header::Status;
 use super::reader::Reader;
@@ -19,10 +19,7 @@ const YOUNG: Duration = Duration::from_secs(10);
 
 /// Where a complete result is kept that a run at `path` replaces, until that run is complete.
 fn replaced(path: &Path) -> PathBuf {
-    let mut name = std::ffi::OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(".replaced");
-    path.with_file_name(name)
+    beside(path, ".", ".replaced")
 }
 
 /// The complete result that is kept until the one at `path` is complete, where there is one.
@@ -54,11 +51,8 @@ pub(super) fn remove(aside: &Path, path: &Path) {
     if fs::symlink_metadata(aside).is_err() {
         return;
     }
-    let names = (0..1000).map(|n| {
-        let mut name = path.file_name().unwrap_or_default().to_owned();
-        name.push(if n == 0 { ".old".to_owned() } else { format!(".old-{n}") });
-        path.with_file_name(name)
-    });
+    let old = |n| if n == 0 { ".old".to_owned() } else { format!(".old-{n}") };
+    let names = (0..1000).map(|n| beside(path, "", &old(n)));
     let mut free = names.filter(|name| fs::symlink_metadata(name).is_err());
     let kept = free.next().filter(|name| fs::rename(aside, name).is_ok()).unwrap_or(aside.to_owned());
     tracing::warn!(

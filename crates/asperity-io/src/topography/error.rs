@@ -151,6 +151,15 @@ impl Problem {
         Problem::Truncated { what: what.into(), needed, available }
     }
 
+    /// # Errors
+    /// Where fewer bytes of the file are left than `what` needs.
+    pub(super) fn check_length(what: &str, needed: u64, available: usize) -> Result<(), Problem> {
+        match needed <= available as u64 {
+            true => Ok(()),
+            false => Err(Problem::truncated(what, needed, available as u64)),
+        }
+    }
+
     /// `what` is not read here; do `instead`.
     pub(super) fn unsupported(what: impl Into<String>, instead: impl Into<String>) -> Self {
         Problem::Unsupported { what: what.into(), instead: instead.into() }

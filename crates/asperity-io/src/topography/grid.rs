@@ -78,9 +78,10 @@ impl Layout {
         points(nx, ny)?;
         let line = nx.saturating_mul(self.kind.width() as u64);
         let needed = self.stride.saturating_mul(ny - 1).saturating_add(line);
-        if self.stride < line || (bytes.len() as u64) < needed {
+        if self.stride < line {
             return Err(Problem::truncated(what, needed.max(line), bytes.len() as u64));
         }
+        Problem::check_length(what, needed, bytes.len())?;
         // In range: checked against the length of `bytes`.
         let (nx, ny, stride) = (nx as usize, ny as usize, self.stride as usize);
         let width = self.kind.width();
@@ -105,6 +106,15 @@ pub(super) fn from_lines(nx: usize, lines: &[&[f64]], value: impl Fn(f64) -> f64
 /// Replaces every value.
 pub(super) fn replace(map: &mut Array2<f64>, value: impl Fn(f64) -> f64 + Sync + Send) {
     if map.len() < FEW { map.mapv_inplace(value) } else { map.par_mapv_inplace(value) }
+}
+
+/// Marks the points as undefined whose number in the mask is `masked`.
+pub(super) fn undefine(map: &mut Array2<f64>, mask: &Array2<f64>, masked: impl Fn(f64) -> bool) {
+    map.zip_mut_with(mask, |value, mask| {
+        if masked(*mask) {
+            *value = f64::NAN;
+        }
+    });
 }
 
 /// Writes the values of line y between two columns.

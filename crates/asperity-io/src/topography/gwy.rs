@@ -12,7 +12,7 @@ use ndarray::Array2;
 
 use super::cursor::{Cursor, text};
 use super::finish::{Lateral, Measured, Unit, unit_of};
-use super::grid::Layout;
+use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::{Problem, Reader, Request, write};
@@ -54,11 +54,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
             let expected = format!("{:?} as that of the heights", heights.dim());
             return Err(Problem::malformed("the shape of the mask", format!("{:?}", mask.dim()), expected));
         }
-        heights.zip_mut_with(&mask, |h, masked| {
-            if *masked > 0.5 {
-                *h = f64::NAN;
-            }
-        });
+        grid::undefine(&mut heights, &mask, |masked| masked > 0.5);
     }
     let length = |key: &str| match data.get(key) {
         Some(Value::Double(length)) if length.is_finite() && *length != 0.0 => Some(length.abs()),

@@ -55,14 +55,13 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let [wave, formula, note, unit, dim_units @ .., _, _, _, _, _] = lengths;
     let label_lengths = [lengths[8], lengths[9], lengths[10], lengths[11]];
 
-    let mut c = Cursor::at(bytes, 80, order, H)?;
-    let code = c.u16(H)?;
-    let mut c = Cursor::at(bytes, 92, order, H)?;
-    let name = c.text(LABEL as u64, H)?;
-    let mut c = Cursor::at(bytes, 132, order, H)?;
+    let at = |offset| Cursor::at(bytes, offset, order, H);
+    let code = at(80)?.u16(H)?;
+    let name = at(92)?.text(LABEL as u64, H)?;
+    let mut c = at(132)?;
     let points = [c.u32(H)?, c.u32(H)?, c.u32(H)?, c.u32(H)?].map(u64::from);
     let spacing = [c.f64(H)?, c.f64(H)?];
-    let mut c = Cursor::at(bytes, 212, order, H)?;
+    let mut c = at(212)?;
     let short_units = [c.text(4, H)?, c.text(4, H)?, c.text(4, H)?];
     let kind = kind(code)?;
 
@@ -102,10 +101,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     check_channels(usize::try_from(layers).unwrap_or(usize::MAX))?;
     let layer = grid::points(nx, ny)? as u64 * kind.width() as u64;
     let data = Cursor::at(bytes, HEADER + WAVE_HEADER, order, "the Igor wave")?.rest();
-    let available = data.len() as u64;
-    if layer.saturating_mul(layers) > available {
-        return Err(Problem::truncated("the Igor wave", layer.saturating_mul(layers), available));
-    }
+    Problem::check_length("the Igor wave", layer.saturating_mul(layers), data.len())?;
     let label = |i: usize| labels[2].get(i).filter(|l| !l.is_empty());
     let names: Vec<String> = (0..layers as usize)
         .map(|i| label(i).cloned().unwrap_or_else(|| format!("no name ({})", i + 1)))

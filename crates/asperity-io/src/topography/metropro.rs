@@ -41,11 +41,8 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let at = |offset: u64| Cursor::at(bytes, offset, Order::Big, H);
     let header = at(6)?.u32(H)?;
     if header != expected {
-        return Err(Problem::malformed(
-            "the length of the MetroPro header",
-            header,
-            format!("{expected} bytes"),
-        ));
+        let expected = format!("{expected} bytes");
+        return Err(Problem::malformed("the length of the MetroPro header", header, expected));
     }
     let date = at(12)?.text(30, H)?;
     let intensities = at(60)?.u32(H)?;

@@ -31,7 +31,7 @@ pub(super) const MNT: Reader = Reader::new("mnt", is_compound, read);
 const CONTENTS: &str = "ScopedContents";
 /// Tag of the part that an entry extends.
 const BASE: u16 = 0xffff;
-const MEASURED: u8 = 9;
+const MEASURED: f64 = 9.0;
 
 mod class {
     pub(super) const SURFACE: u32 = 9012;
@@ -227,14 +227,9 @@ impl<'a> Surface<'a> {
             // With a border of one point.
             let points = self.points.map(|n| n + 2);
             let bytes = blocks(mask, points[0].saturating_mul(points[1]), MASK)?;
-            let layout =
-                Layout { points: self.points, kind: Kind::U8, order: Order::Little, stride: points[0] };
+            let layout = Layout { kind: Kind::U8, stride: points[0], ..layout };
             let first = bytes.get(points[0] as usize + 1..).unwrap_or_default();
-            heights.zip_mut_with(&layout.map(first, MASK, |m| m)?, |h, m| {
-                if *m != f64::from(MEASURED) {
-                    *h = f64::NAN;
-                }
-            });
+            grid::undefine(&mut heights, &layout.map(first, MASK, |m| m)?, |m| m != MEASURED);
         }
         let [nx, ny] = self.points.map(|n| n as f64);
         let size = [nx * x.step.abs(), ny * y.step.abs()];
@@ -286,8 +281,6 @@ fn blocks(array: Node, count: u64, what: &str) -> Result<Vec<u8>, Problem> {
         }
         whole.extend(block);
     }
-    match whole.len() as u64 == length {
-        true => Ok(whole),
-        false => Err(Problem::truncated(what, length, whole.len() as u64)),
-    }
+    Problem::check_length(what, length, whole.len())?;
+    Ok(whole)
 }

@@ -71,11 +71,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
         && mask.shape() == shape
     {
         let mask = two_dimensional(file.read_variable_as_f64(&sibling(name, "mask")), "mask")?;
-        heights.zip_mut_with(&mask, |h, masked| {
-            if *masked != 0.0 {
-                *h = f64::NAN;
-            }
-        });
+        grid::undefine(&mut heights, &mask, |masked| masked != 0.0);
     }
     let dimension = |axis: usize| variable.dimensions().get(axis).map_or("", |d| d.name.as_str());
     let y_first =

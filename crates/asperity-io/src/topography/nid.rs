@@ -85,11 +85,8 @@ fn header(bytes: &[u8]) -> Result<(Vec<Entries>, &[u8]), Problem> {
             section.push(key, value);
         }
     }
-    Err(Problem::truncated(
-        "the header of the Nanosurf file, up to \"#!\",",
-        bytes.len() as u64 + 2,
-        bytes.len() as u64,
-    ))
+    let length = bytes.len() as u64;
+    Err(Problem::truncated("the header of the Nanosurf file, up to \"#!\",", length + 2, length))
 }
 
 /// The data sets in their order.

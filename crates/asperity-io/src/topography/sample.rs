@@ -77,10 +77,7 @@ pub(super) fn decode(
     what: &str,
 ) -> Result<Vec<f64>, Problem> {
     let needed = (count as u64).saturating_mul(kind.width() as u64);
-    let available = bytes.len() as u64;
-    if available < needed {
-        return Err(Problem::truncated(what, needed, available));
-    }
+    Problem::check_length(what, needed, bytes.len())?;
     let mut numbers = vec![0.0; count];
     let parts = bytes[..needed as usize].par_chunks(FEW * kind.width());
     numbers

@@ -7,7 +7,7 @@ use asperity::material::Modulus;
 use super::Kind;
 use super::error::{Fault, Remedy, fault};
 use super::role::{self, Role, unnumbered};
-use super::table::Table;
+use super::table::{Heading, Table};
 use super::units::{convert, taken, tidy};
 use crate::quantity::unit::Unit;
 use crate::quantity::{Dimension, dimension};
@@ -103,11 +103,9 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
     let (kept, mut notes) = complete(table, &places)?;
     let (mut values, mut used) = (Values::new(), Vec::new());
     for (role, column) in places {
-        let name = table.names.get(column).map_or("", String::as_str);
-        let header_unit = table.units.get(column).map_or("", String::as_str);
-        let base = table.bases.get(column).copied().flatten();
+        let Heading { header, name, unit: own, base } = &table.headings[column];
         // "[log Pa]" under "log G'".
-        let header_unit = if base.is_some() { role::logarithm(header_unit).1 } else { header_unit };
+        let header_unit = if base.is_some() { role::logarithm(own).1 } else { own };
         let unit = match (said.units.get(&role), role) {
             (Some(unit), _) => tidy(role, name, unit.trim()),
             // "tan(delta) [-]": a ratio, unless the brackets hold per cent or a number.
@@ -122,12 +120,10 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
         let numbers: Vec<f64> = kept.iter().map(|row| numbers[*row]).collect();
         let numbers = match base {
             Some(base) => {
-                notes.push(format!(
-                    "{} ({place}) holds logarithms, of base {}, as its name says",
-                    role.name(),
-                    if base == 10.0 { "10" } else { "e" }
-                ));
-                powers(base, &numbers).map_err(|why| fault(format!("{} ({place}) {why}", role.name())))?
+                let word = if *base == 10.0 { "10" } else { "e" };
+                let name = role.name();
+                notes.push(format!("{name} ({place}) holds logarithms, of base {word}, as its name says"));
+                powers(*base, &numbers).map_err(|why| fault(format!("{} ({place}) {why}", role.name())))?
             }
             None => numbers,
         };
@@ -142,9 +138,8 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
             notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));
         }
         values.insert(role, converted);
-        let header = table.headers.get(column).cloned().unwrap_or_default();
         let unit = if unit.is_empty() { taken(role).to_owned() } else { unit };
-        used.push(Place { role, column: column + 1, header, unit });
+        used.push(Place { role, column: column + 1, header: header.clone(), unit });
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();
     Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })
@@ -230,7 +225,7 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
     }
     for role in &possible {
         let taken = |n: &usize| places.values().any(|place| place == n);
-        let column = (0..table.names.len()).find(|n| means(table, *n, *role, form) && !taken(n));
+        let column = (0..table.headings.len()).find(|n| means(table, *n, *role, form) && !taken(n));
         if let (false, Some(column)) = (places.contains_key(role), column) {
             places.insert(*role, column);
         }
@@ -240,14 +235,14 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
             let shown: String = line.chars().take(60).collect();
             return Err(fault(format!(
                 "the line before the numbers, {shown:?}, does not name {} columns, and it may hold a unit",
-                table.columns
+                table.headings.len()
             ))
             .remedy(Remedy::Header));
         }
         // Without names, the columns are in the order of the documentation.
         let order = form.needed.iter().chain(form.pairs.first().into_iter().flatten());
         for (n, role) in order.enumerate() {
-            if n < table.columns && !places.values().any(|place| *place == n) {
+            if n < table.headings.len() && !places.values().any(|place| *place == n) {
                 places.insert(*role, n);
             }
         }
@@ -267,7 +262,7 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
 /// # Errors
 /// Where a column was found by a heading that another one has too, with other numbers.
 fn once(table: &Table, places: &BTreeMap<Role, usize>, said: &Columns) -> Result<(), Fault> {
-    let header = |column: usize| unnumbered(table.headers.get(column).map_or("", String::as_str));
+    let header = |column: usize| unnumbered(&table.headings[column].header);
     let numbered = |role: &Role| matches!(said.columns.get(role), Some(Column::Number(_)));
     for (role, column) in places.iter().filter(|(role, _)| **role != Role::Set && !numbered(role)) {
         let differs =
@@ -276,8 +271,8 @@ fn once(table: &Table, places: &BTreeMap<Role, usize>, said: &Columns) -> Result
             let name = header(*column);
             other != column && !name.is_empty() && header(*other) == name
         };
-        let others: Vec<String> =
-            (0..table.columns).filter(alike).filter(differs).map(|other| (other + 1).to_string()).collect();
+        let others = (0..table.headings.len()).filter(alike).filter(differs);
+        let others: Vec<String> = others.map(|other| (other + 1).to_string()).collect();
         if !others.is_empty() {
             let (name, first, others) = (header(*column), column + 1, others.join(", "));
             return Err(fault(format!(
@@ -317,7 +312,7 @@ fn one_pair(places: &mut BTreeMap<Role, usize>, form: Form, said: &Columns) -> O
 
 /// Whether the name of a column says that it holds the role.
 fn means(table: &Table, column: usize, role: Role, form: Form) -> bool {
-    let name = table.names[column].trim();
+    let name = table.headings[column].name.trim();
     match role::bare(name).as_str() {
         "t" => time_or_temperature(table, column, form) == role,
         _ => role.is_called(name),
@@ -326,15 +321,13 @@ fn means(table: &Table, column: usize, role: Role, form: Form) -> bool {
 
 /// What a column called t or T holds: as its unit says; else T is a temperature where another column is a time.
 fn time_or_temperature(table: &Table, column: usize, form: Form) -> Role {
-    let unit = table.units.get(column).map_or("", String::as_str);
-    let another = || {
-        (0..table.names.len())
-            .any(|n| n != column && (table.names[n] == "t" || Role::Time.is_called(&table.names[n])))
-    };
+    let Heading { name, unit, .. } = &table.headings[column];
+    let is_time = |name: &str| name == "t" || Role::Time.is_called(name);
+    let mut others = table.headings.iter().enumerate().filter(|(n, _)| *n != column);
     match tidy(Role::Temperature, "", unit).as_str() {
         "K" | "°C" | "°F" => Role::Temperature,
         unit if Unit::parse(unit).is_ok_and(|unit| unit.powers == dimension::Time::POWERS) => Role::Time,
-        _ if table.names[column] == "T" && another() => Role::Temperature,
+        _ if name == "T" && others.any(|(_, other)| is_time(&other.name)) => Role::Temperature,
         _ => form.t,
     }
 }
@@ -349,8 +342,7 @@ pub(super) fn measure(used: &[Place], table: &Table) -> Result<Option<Modulus>, 
             place.role,
             Role::Time | Role::Frequency | Role::TanDelta | Role::Phase | Role::Temperature | Role::Set
         );
-        let name = table.names.get(place.column - 1).filter(|_| is_modulus)?;
-        role::measure_of(name)
+        role::measure_of(&table.headings[place.column - 1].name).filter(|_| is_modulus)
     };
     let of = |measure: Modulus| used.iter().find(|place| called(place) == Some(measure));
     if let (Some(young), Some(shear)) = (of(Modulus::Young), of(Modulus::Shear)) {
@@ -375,7 +367,7 @@ fn said(used: &[Place], table: &Table) -> Option<Modulus> {
     let place = moduli.iter().find_map(|role| used.iter().find(|place| place.role == *role));
     match place {
         Some(place) => {
-            let named = role::measure_of(table.names.get(place.column - 1)?);
+            let named = role::measure_of(&table.headings[place.column - 1].name);
             named.or_else(|| is_sheared(table).then_some(Modulus::Shear))
         }
         // Viscosities of rheometers are those of shear.
@@ -386,7 +378,8 @@ fn said(used: &[Place], table: &Table) -> Option<Modulus> {
 /// Whether other columns say that the test was one in shear: its strain, its stress, or a torque.
 fn is_sheared(table: &Table) -> bool {
     let words = ["shearstr", "torque", "scher", "schubspannung", "drehmoment"];
-    table.names.iter().any(|name| words.iter().any(|word| role::bare(name).starts_with(word)))
+    let names = table.headings.iter().map(|heading| role::bare(&heading.name));
+    names.into_iter().any(|name| words.iter().any(|word| name.starts_with(word)))
 }
 
 /// Whether the header names storage and loss modulus, or what stands in their place.
@@ -407,7 +400,7 @@ fn names_pair(table: &Table, form: Form) -> bool {
 
 /// Whether a column is named as one of the role.
 fn names(table: &Table, role: Role, form: Form) -> bool {
-    (0..table.names.len()).any(|column| means(table, column, role, form))
+    (0..table.headings.len()).any(|column| means(table, column, role, form))
 }
 
 fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
@@ -415,12 +408,13 @@ fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
         fault(format!("{} must be {what}, but the columns are {}", role.name(), table.listed()))
     };
     match column {
-        Column::Number(n) if *n >= 1 && *n <= table.columns => Ok(n - 1),
+        Column::Number(n) if *n >= 1 && *n <= table.headings.len() => Ok(n - 1),
         Column::Number(n) => Err(wrong(format!("column {n}"))),
         Column::Name(name) => {
             let wanted = name.trim();
-            let same = |text: &String| text.trim() == wanted;
-            let found = table.headers.iter().position(same).or_else(|| table.names.iter().position(same));
+            let mut headings = table.headings.iter();
+            let whole = headings.clone().position(|heading| heading.header.trim() == wanted);
+            let found = whole.or_else(|| headings.position(|heading| heading.name.trim() == wanted));
             found.ok_or_else(|| wrong(format!("in the column {wanted:?}")))
         }
     }

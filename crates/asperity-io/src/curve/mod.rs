@@ -196,9 +196,10 @@ impl Curves {
                 columns::values(&table, kind.into(), columns)?;
             notes.extend(also);
             let measure = columns::measure(&used, &table)?;
-            let unused = (1..=table.columns).filter(|n| !used.iter().any(|place| place.column == *n));
-            let unused =
-                unused.filter_map(|n| table.headers.get(n - 1).filter(|name| !name.is_empty()).cloned());
+            let is_used = |column: usize| used.iter().any(|place| place.column == column);
+            let headers = (1..).zip(&table.headings).filter(|(n, _)| !is_used(*n));
+            let unused = headers.map(|(_, heading)| heading.header.clone()).filter(|name| !name.is_empty());
+            let unused = unused.collect();
             let (sweeps, repeated) = sweeps::sweeps(kind, &values, &lines)?;
             notes.extend(repeated);
             Ok(Curves {
@@ -208,7 +209,7 @@ impl Curves {
                 sweeps,
                 left_out,
                 sheet,
-                unused: unused.collect(),
+                unused,
                 columns: used,
                 held,
                 notes,

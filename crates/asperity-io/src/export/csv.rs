@@ -9,7 +9,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::contents::{Contents, Data, Map, TIME, Variable};
-use super::error::{ExportError, Result, WriteError};
+use super::error::{ExportError, Result};
 use crate::output::{Output, PartialFile};
 
 pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Result<Vec<PathBuf>> {
@@ -26,7 +26,7 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
     let tables: Vec<_> = contents.variables.iter().filter(table).map(|v| (v, beside(v.name))).collect();
     // All are written before the first gets its name.
     let mut made = Vec::new();
-    let mut make = |path: &Path, fill: &dyn Fn(&mut Output<'_>) -> Result<(), WriteError>| {
+    let mut make = |path: &Path, fill: &dyn Fn(&mut Output<'_>) -> Result<()>| {
         let partial = PartialFile::filled(path, force, fill).map_err(|error| error.at(path))?;
         made.push((partial, path.to_owned()));
         Ok::<(), ExportError>(())
@@ -51,13 +51,13 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
     }
     let finish = |(partial, path): (PartialFile, PathBuf)| match partial.finish() {
         Ok(()) => Ok(path),
-        Err(error) => Err(WriteError::Io(error).at(&path)),
+        Err(error) => Err(ExportError::from(error).at(&path)),
     };
     made.into_iter().map(finish).collect()
 }
 
 /// The numbers over one dimension; tensors over it with a column for each entry.
-fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output<'_>) -> Result<(), WriteError> {
+fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output<'_>) -> Result<()> {
     let is_of = |v: &&Variable| {
         v.dimensions == [dimension] || v.dimensions.first() == Some(&dimension) && v.dimensions.len() == 3
     };
@@ -86,7 +86,7 @@ fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output<'_>) -> R
 }
 
 /// The numbers of a variable over two dimensions.
-fn by_two(contents: &Contents<'_>, variable: &Variable, file: &mut Output<'_>) -> Result<(), WriteError> {
+fn by_two(contents: &Contents<'_>, variable: &Variable, file: &mut Output<'_>) -> Result<()> {
     let Data::Reals(numbers) = &variable.data else { return Ok(()) };
     let [rows, columns] = [0, 1].map(|axis| contents.dimensions[variable.dimensions[axis]]);
     let coordinate = |(name, length): (&str, usize)| {
@@ -119,7 +119,7 @@ fn matrix(
     file: &mut Output<'_>,
     heading: &str,
     cell: impl Fn(usize, usize) -> String,
-) -> Result<(), WriteError> {
+) -> Result<()> {
     let grid = &contents.reader().header().grid;
     let [nx, ny] = grid.cells();
     if grid.is_line() {
@@ -134,7 +134,7 @@ fn matrix(
     Ok(())
 }
 
-fn line(file: &mut Output<'_>, cells: impl Iterator<Item = String>) -> Result<(), WriteError> {
+fn line(file: &mut Output<'_>, cells: impl Iterator<Item = String>) -> Result<()> {
     for (n, cell) in cells.enumerate() {
         let comma = if n > 0 { "," } else { "" };
         write!(file, "{comma}{cell}")?;

@@ -7,10 +7,10 @@ use std::path::Path;
 use rust_hdf5::{H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
 
 use super::contents::{Attribute, Contents, Data, DataType, Map, Variable};
-use super::error::WriteError;
+use super::error::Result;
 
 /// Fills the file at `path`, which is made anew.
-pub(super) fn write(contents: &Contents<'_>, path: &Path) -> Result<(), WriteError> {
+pub(super) fn write(contents: &Contents<'_>, path: &Path) -> Result<()> {
     // Nobody else knows the path yet; and some network file systems have no locks.
     let file = H5File::options().no_locking().create(path)?;
     for (name, attribute) in &contents.attributes {
@@ -67,7 +67,7 @@ fn create(file: &H5File, contents: &Contents<'_>, variable: &Variable) -> Result
     }
 }
 
-fn write_data(contents: &Contents<'_>, variable: &Variable, data_set: &H5Dataset) -> Result<(), WriteError> {
+fn write_data(contents: &Contents<'_>, variable: &Variable, data_set: &H5Dataset) -> Result<()> {
     if data_set.total_elements() == 0 {
         return Ok(()); // no instant is exported: a data set without numbers takes no write
     }

@@ -32,7 +32,6 @@ use crate::choice;
 use crate::output::{self, PartialFile};
 use crate::store::{At, FieldKind, Leaks, Reader, StoreError};
 use contents::Contents;
-use error::WriteError;
 
 /// A format of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
@@ -159,7 +158,7 @@ pub fn export(reader: &Reader, format: Format, path: &Path, options: &Options) -
     Ok(vec![path.to_owned()])
 }
 
-fn hdf5(contents: &Contents<'_>, path: &Path, force: bool) -> Result<(), WriteError> {
+fn hdf5(contents: &Contents<'_>, path: &Path, force: bool) -> Result<()> {
     let partial = PartialFile::new(path, force)?;
     hdf5::write(contents, partial.place())?;
     Ok(partial.finish()?)

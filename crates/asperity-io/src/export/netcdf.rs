@@ -7,7 +7,7 @@
 use std::io::Write;
 
 use super::contents::{Contents, Data, DataType, FIELD_TIME, Map, Variable};
-use super::error::WriteError;
+use super::error::Result;
 use crate::classic::{self, Attribute, Type, padded};
 use crate::output::Output;
 
@@ -17,7 +17,7 @@ const LARGEST: u64 = (1 << 32) - 4;
 /// A variable of the result, and how it is written.
 type Slab<'a> = (&'a Variable, classic::Variable<'a>);
 
-pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<(), WriteError> {
+pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<()> {
     let slabs: Vec<Slab<'_>> = contents.variables.iter().map(|v| slab(contents, v)).collect();
     let wide = slabs.iter().any(|(_, slab)| slab.bytes > LARGEST);
     write_slabs(contents, slabs, wide, file)
@@ -28,7 +28,7 @@ fn write_slabs(
     slabs: Vec<Slab<'_>>,
     wide: bool,
     file: &mut impl Write,
-) -> Result<(), WriteError> {
+) -> Result<()> {
     let mut dimensions = contents.dimensions.clone();
     dimensions[FIELD_TIME].1 = 0; // along the records
     let (variables, slabs): (Vec<_>, Vec<_>) = slabs.into_iter().unzip();
@@ -64,7 +64,7 @@ fn write_slab(
     slab: &classic::Variable<'_>,
     n: usize,
     file: &mut impl Write,
-) -> Result<(), WriteError> {
+) -> Result<()> {
     let instants = contents.instants.len().max(1);
     let part = |length: usize| match slab.record {
         true => n * (length / instants)..(n + 1) * (length / instants),

@@ -6,11 +6,11 @@
 use serde_json::{Value, json};
 
 use super::contents::{Contents, Data, DataType, Map};
-use super::error::WriteError;
+use super::error::Result;
 use crate::npz::Npz;
 use crate::output::Output;
 
-pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<(), WriteError> {
+pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<()> {
     let mut npz = Npz::new(file);
     if let Err(error) = members(contents, &mut npz) {
         npz.abandon();
@@ -20,7 +20,7 @@ pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<()
     Ok(())
 }
 
-fn members(contents: &Contents<'_>, npz: &mut Npz<&mut Output<'_>>) -> Result<(), WriteError> {
+fn members(contents: &Contents<'_>, npz: &mut Npz<&mut Output<'_>>) -> Result<()> {
     for variable in &contents.variables {
         let kind = match variable.data {
             Data::Counts(_) => "<i8",

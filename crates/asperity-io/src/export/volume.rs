@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use asperity::Grid;
 use asperity::stress::{StressQuantity, automatic_depths, contact_box};
 
-use super::error::{ExportError, Result, WriteError};
+use super::error::{ExportError, Result};
 use super::frame::{END, Frame};
 use crate::output;
 use crate::store::{At, FieldKind, Reader};
@@ -117,7 +117,7 @@ pub fn volume(
         file.seek(SeekFrom::End(0))?;
         Ok(file.write_all(END.as_bytes())?)
     });
-    written.map_err(|error: WriteError| error.at(path))?;
+    written.map_err(|error: ExportError| error.at(path))?;
     Ok(vec![path.to_owned()])
 }
 

@@ -10,7 +10,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::contents::{Contents, Data, DataType, Map, Variable};
-use super::error::{ExportError, Result, WriteError};
+use super::error::{ExportError, Result};
 use super::frame::{END, Frame};
 use crate::output::{Output, PartialDirectory, PartialFile};
 
@@ -25,12 +25,12 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
         .map_err(|error| error.at(path))?;
     check_directory(&directory, force)?;
     images(contents, &directory).map_err(|error| error.at(&directory))?;
-    list.finish().map_err(|error| WriteError::Io(error).at(path))?;
+    list.finish().map_err(|error| ExportError::from(error).at(path))?;
     Ok(vec![path.to_owned(), directory])
 }
 
 /// Makes the directory of the images.
-fn images(contents: &Contents<'_>, directory: &Path) -> Result<(), WriteError> {
+fn images(contents: &Contents<'_>, directory: &Path) -> Result<()> {
     let partial = PartialDirectory::new(directory)?;
     let fields: Vec<_> = contents.variables.iter().filter(|variable| variable.is_field()).collect();
     for n in 0..contents.instants.len() {
@@ -56,9 +56,9 @@ fn check_directory(directory: &Path, force: bool) -> Result<()> {
     if !force {
         return Err(ExportError::Exists { path: directory.to_owned() });
     }
-    let entries = fs::read_dir(directory).map_err(|error| WriteError::Io(error).at(directory))?;
+    let entries = fs::read_dir(directory).map_err(|error| ExportError::from(error).at(directory))?;
     for entry in entries {
-        let name = entry.map_err(|error| WriteError::Io(error).at(directory))?.file_name();
+        let name = entry.map_err(|error| ExportError::from(error).at(directory))?.file_name();
         let ours = name.to_str().is_some_and(|name| {
             name == "initial_gap.vti" || name.starts_with("state_") && name.ends_with(".vti")
         });
@@ -69,7 +69,7 @@ fn check_directory(directory: &Path, force: bool) -> Result<()> {
     Ok(())
 }
 
-fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output<'_>) -> Result<(), WriteError> {
+fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output<'_>) -> Result<()> {
     writeln!(file, r#"<?xml version="1.0"?>"#)?;
     writeln!(file, r#"<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">"#)?;
     writeln!(file, "  <Collection>")?;
@@ -87,7 +87,7 @@ fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output<'_>) -
     Ok(writeln!(file, "  </Collection>\n</VTKFile>")?)
 }
 
-fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize) -> Result<(), WriteError> {
+fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize) -> Result<()> {
     let grid = &contents.reader().header().grid;
     let ([nx, ny], [dx, dy]) = (grid.cells(), grid.spacing());
     // A line of cells has no extent along y.

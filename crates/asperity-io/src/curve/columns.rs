@@ -7,6 +7,7 @@ use asperity::material::Modulus;
 use super::Kind;
 use super::error::{Fault, Remedy, fault};
 use super::role::{self, Role, unnumbered};
+use super::sweeps::{DYNAMIC, Pair};
 use super::table::{Heading, Table};
 use super::units::{convert, taken, tidy};
 use crate::quantity::unit::Unit;
@@ -20,25 +21,12 @@ pub(super) struct Form {
     /// What its columns must hold, in their order where the file does not name them.
     pub(super) needed: &'static [Role],
     /// Pairs of columns: the file must hold one of these too. The first that it holds is taken; without names, the first of all.
-    pub(super) pairs: &'static [[Role; 2]],
+    pub(super) pairs: &'static [Pair],
     /// What it may hold besides.
     pub(super) optional: &'static [Role],
     /// What "t" means.
     pub(super) t: Role,
 }
-
-/// The columns from which storage and loss modulus follow.
-const DYNAMIC: [[Role; 2]; 9] = [
-    [Role::Storage, Role::Loss],
-    [Role::Storage, Role::TanDelta],
-    [Role::Storage, Role::Phase],
-    [Role::ComplexModulus, Role::TanDelta],
-    [Role::ComplexModulus, Role::Phase],
-    [Role::StorageCompliance, Role::LossCompliance],
-    [Role::ImaginaryViscosity, Role::RealViscosity],
-    [Role::ComplexViscosity, Role::TanDelta],
-    [Role::ComplexViscosity, Role::Phase],
-];
 
 impl From<Kind> for Form {
     fn from(kind: Kind) -> Self {
@@ -53,9 +41,13 @@ impl From<Kind> for Form {
 }
 
 impl Form {
+    fn pairs(&self) -> impl Iterator<Item = &'static [Role; 2]> + Clone + use<> {
+        self.pairs.iter().map(|(pair, _)| pair)
+    }
+
     /// All that its columns may hold, each once.
     fn roles(&self) -> Vec<Role> {
-        let all = self.needed.iter().chain(self.pairs.iter().flatten()).chain(self.optional);
+        let all = self.needed.iter().chain(self.pairs().flatten()).chain(self.optional);
         let place = |role: &Role| all.clone().position(|other| other == role);
         all.clone().enumerate().filter(|(n, role)| place(role) == Some(*n)).map(|(_, role)| *role).collect()
     }
@@ -240,7 +232,7 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
             .remedy(Remedy::Header));
         }
         // Without names, the columns are in the order of the documentation.
-        let order = form.needed.iter().chain(form.pairs.first().into_iter().flatten());
+        let order = form.needed.iter().chain(form.pairs().next().into_iter().flatten());
         for (n, role) in order.enumerate() {
             if n < table.headings.len() && !places.values().any(|place| *place == n) {
                 places.insert(*role, n);
@@ -290,22 +282,22 @@ fn once(table: &Table, places: &BTreeMap<Role, usize>, said: &Columns) -> Result
 /// Without a complete pair, returns what is missing.
 fn one_pair(places: &mut BTreeMap<Role, usize>, form: Form, said: &Columns) -> Option<Role> {
     let told = |pair: &[Role; 2]| pair.iter().filter(|role| said.columns.contains_key(role)).count();
-    let complete = form.pairs.iter().filter(|pair| pair.iter().all(|role| places.contains_key(role)));
+    let complete = form.pairs().filter(|pair| pair.iter().all(|role| places.contains_key(role)));
     let most = complete.clone().map(told).max();
     match complete.clone().find(|pair| Some(told(pair)) == most) {
         Some(pair) => {
-            places.retain(|role, _| pair.contains(role) || !form.pairs.iter().flatten().any(|r| r == role));
+            places.retain(|role, _| pair.contains(role) || !form.pairs().flatten().any(|r| r == role));
             None
         }
         // The other one of a pair that has one, else the first of all.
         None => {
             let half =
-                form.pairs.iter().find_map(|[a, b]| match (places.contains_key(a), places.contains_key(b)) {
+                form.pairs().find_map(|[a, b]| match (places.contains_key(a), places.contains_key(b)) {
                     (true, false) => Some(*b),
                     (false, true) => Some(*a),
                     _ => None,
                 });
-            half.or_else(|| form.pairs.first().map(|pair| pair[0]))
+            half.or_else(|| form.pairs().next().map(|pair| pair[0]))
         }
     }
 }
@@ -395,7 +387,7 @@ pub(super) fn named(table: &Table, kind: Kind) -> bool {
 }
 
 fn names_pair(table: &Table, form: Form) -> bool {
-    form.pairs.iter().any(|pair| pair.iter().all(|role| names(table, *role, form)))
+    form.pairs().any(|pair| pair.iter().all(|role| names(table, *role, form)))
 }
 
 /// Whether a column is named as one of the role.

@@ -123,7 +123,7 @@ mod tests {
         for step in 0..3 {
             let pressure = Array2::from_shape_fn((5, 3), |(i, j)| (step * 15 + i * 3 + j) as f64 / 3.0);
             let contact = Array2::from_elem((5, 3), step as u8);
-            let fields = [Field::Pressure(pressure.view()), Field::Contact(contact.view())];
+            let fields = [Field::Real(FieldKind::Pressure, pressure.view()), Field::Contact(contact.view())];
             writer
                 .append(&Row { coordinate: Coordinate::Time(step as f64), ..Row::default() }, &fields)
                 .unwrap();

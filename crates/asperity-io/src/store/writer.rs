@@ -38,35 +38,24 @@ const CHECKPOINT_SHARE: u32 = 100;
 /// A field of one step, to be kept.
 #[derive(Clone, Copy, Debug)]
 pub enum Field<'a> {
-    /// Pressure \[Pa\].
-    Pressure(ArrayView2<'a, f64>),
-    /// Gap \[m\].
-    Gap(ArrayView2<'a, f64>),
-    /// Normal displacement \[m\].
-    Displacement(ArrayView2<'a, f64>),
-    /// 0 out of contact, 1 in contact, 2 at the hardness.
+    /// A field of this kind, in its unit.
+    Real(FieldKind, ArrayView2<'a, f64>),
+    /// The contact state: 0 out of contact, 1 in contact, 2 at the hardness.
     Contact(ArrayView2<'a, u8>),
-    /// Permanent flattening \[m\].
-    Flattening(ArrayView2<'a, f64>),
 }
 
 impl Field<'_> {
     /// Its kind.
     pub fn kind(&self) -> FieldKind {
         match self {
-            Field::Pressure(_) => FieldKind::Pressure,
-            Field::Gap(_) => FieldKind::Gap,
-            Field::Displacement(_) => FieldKind::Displacement,
+            Field::Real(kind, _) => *kind,
             Field::Contact(_) => FieldKind::Contact,
-            Field::Flattening(_) => FieldKind::Flattening,
         }
     }
 
     fn dim(&self) -> (usize, usize) {
         match self {
-            Field::Pressure(map) | Field::Gap(map) | Field::Displacement(map) | Field::Flattening(map) => {
-                map.dim()
-            }
+            Field::Real(_, map) => map.dim(),
             Field::Contact(map) => map.dim(),
         }
     }
@@ -360,10 +349,7 @@ impl Writer {
             };
             match field {
                 Field::Contact(map) => chunks.write_map(&index, *map)?,
-                Field::Pressure(map)
-                | Field::Gap(map)
-                | Field::Displacement(map)
-                | Field::Flattening(map) => chunks.write_map(&index, *map)?,
+                Field::Real(_, map) => chunks.write_map(&index, *map)?,
             }
         }
         let numbers = [time, self.progress.rows as f64];
@@ -477,6 +463,9 @@ impl Writer {
         let header = &self.header;
         for field in fields {
             check_shape(&format!("shape of the {}", field.kind()), field.dim(), header)?;
+            if matches!(field, Field::Real(FieldKind::Contact, _)) {
+                return Err(input("contact state", "a field of real numbers", "a `Field::Contact`"));
+            }
         }
         let same = fields.len() == self.fields.len()
             && self.fields.iter().all(|(kind, _)| fields.iter().any(|field| field.kind() == *kind));
@@ -564,7 +553,7 @@ mod tests {
         let mut writer = Writer::create(&path, &header, map.view(), false).unwrap();
         let copy = path.join(checkpoint::DIRECTORY).join(checkpoint::GROUP);
         for rows in 1..=2 {
-            writer.append(&Row::default(), &[Field::Pressure(map.view())]).unwrap();
+            writer.append(&Row::default(), &[Field::Real(FieldKind::Pressure, map.view())]).unwrap();
             writer.checkpoint(&Checkpoint { step: rows, numbers: vec![], fields: vec![] }).unwrap();
             assert_eq!(copy.exists(), rows == 2);
             assert!(!writer.checkpoint_due());

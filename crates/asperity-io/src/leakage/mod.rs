@@ -106,11 +106,6 @@ impl Fluid {
             Fluid::Gas { inlet, outlet, .. } => inlet - outlet,
         }
     }
-
-    /// Whether it is a gas, whose leak is a mass per time.
-    pub fn is_gas(&self) -> bool {
-        matches!(self, Fluid::Gas { .. })
-    }
 }
 
 /// The leak of one state.

@@ -7,7 +7,7 @@ use asperity::finding::{Finding, LeakDiagnostics, LeakState};
 use serde_json::Value;
 use thiserror::Error;
 
-use super::{Fluid, Leak, LeakDirection, words};
+use super::{Fluid, Leak, words};
 use crate::instants;
 use crate::readable::quantity;
 use crate::store::{At, FieldKind, LeakTable, LeakWriter, Reader, StoreError};
@@ -131,8 +131,7 @@ fn evaluate(
     let tolerance = reader.header().setup.get("solver_tolerance").and_then(Value::as_f64).unwrap_or(1e-6);
     let initial = reader.initial_gap()?;
     let mut diagnostics = LeakDiagnostics::default();
-    let mut table =
-        LeakTable::new(leak.fluid.as_ref().map(Fluid::is_gas), leak.direction == LeakDirection::Both);
+    let mut table = LeakTable::default();
     for (done, index) in instants.iter().copied().enumerate() {
         if interrupt.load(Ordering::Relaxed) {
             return Err(LeakError::Interrupted);

@@ -44,21 +44,12 @@ struct State<'a> {
     resolved: bool,
 }
 
-/// For which fluids a number is stored.
-#[derive(Clone, Copy, PartialEq)]
-enum For {
-    Any,
-    Fluid,
-    Gas,
-}
-
-/// A number of each leak: name, units (of a liquid and of a gas) and meaning.
+/// A number of each leak: name, units (of a liquid and of a gas) and meaning; it is stored where `of` gives one.
 struct Number {
     name: &'static str,
     units: [&'static str; 2],
     long_name: &'static str,
     data_type: DataType,
-    stored: For,
     of: fn(&State) -> Option<f64>,
 }
 
@@ -68,26 +59,22 @@ const fn number(
     long_name: &'static str,
     of: fn(&State) -> Option<f64>,
 ) -> Number {
-    Number { name, units: [units; 2], long_name, data_type: DataType::Float64, stored: For::Any, of }
+    Number { name, units: [units; 2], long_name, data_type: DataType::Float64, of }
 }
 
 const fn rate(name: &'static str, long_name: &'static str, of: fn(&State) -> Option<f64>) -> Number {
-    Number { units: ["m3/s", "kg/s"], stored: For::Fluid, ..number(name, "", long_name, of) }
+    Number { units: ["m3/s", "kg/s"], ..number(name, "", long_name, of) }
 }
 
 const fn count(name: &'static str, long_name: &'static str, of: fn(&State) -> Option<f64>) -> Number {
     Number { data_type: DataType::Int64, ..number(name, "1", long_name, of) }
 }
 
-const fn of_gas(number: Number) -> Number {
-    Number { stored: For::Gas, ..number }
-}
-
 const NUMBERS: [Number; 16] = [
     number("leak_time", "s", "time of the leak", |at| Some(at.time)),
     count("leak_step", "row of the leak", |at| Some(at.step as f64)),
     rate("leak_rate", "leak rate", |at| at.leak.leak_rate),
-    of_gas(number("leak_rate_standard", "Pa m3/s", "leak rate at 0 degC", |at| at.leak.leak_rate_standard)),
+    number("leak_rate_standard", "Pa m3/s", "leak rate at 0 degC", |at| at.leak.leak_rate_standard),
     rate("leak_estimate_junction", "leak rate of plates at the critical gap", |at| {
         at.leak.leak_estimate_junction
     }),
@@ -105,7 +92,7 @@ const NUMBERS: [Number; 16] = [
         Some(at.leak.trapped_area)
     }),
     number("trapped_volume", "m3", "volume of it", |at| Some(at.leak.trapped_volume)),
-    of_gas(number("knudsen_number", "1", "mean free path over critical gap", |at| at.leak.knudsen)),
+    number("knudsen_number", "1", "mean free path over critical gap", |at| at.leak.knudsen),
 ];
 
 fn flag(flag: bool) -> f64 {
@@ -193,7 +180,7 @@ fn spec(name: &'static str, rows: usize, grid: &Grid, gas: bool) -> ArraySpec {
 }
 
 /// Leaks over time, by name.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LeakTable {
     /// One column per array.
     columns: Vec<(&'static str, Vec<f64>)>,
@@ -201,18 +188,6 @@ pub struct LeakTable {
 }
 
 impl LeakTable {
-    /// An empty table, of a liquid or a gas, or without a fluid; with the effective conductance or without.
-    pub fn new(gas: Option<bool>, both: bool) -> LeakTable {
-        let is_stored = |number: &&Number| match number.stored {
-            For::Any => true,
-            For::Fluid => gas.is_some(),
-            For::Gas => gas == Some(true),
-        };
-        let names = NUMBERS.iter().filter(is_stored).map(|number| number.name);
-        let names = names.chain(both.then_some(CONDUCTANCE.name));
-        LeakTable { columns: names.map(|name| (name, vec![])).collect(), gas: gas == Some(true) }
-    }
-
     /// The leaks that a result holds.
     ///
     /// # Errors
@@ -229,9 +204,15 @@ impl LeakTable {
         CODES.contains(&code)
     }
 
-    /// Adds the leak at a time.
+    /// Adds the leak at a time. The first one decides which numbers are kept: those of its fluid and direction.
     pub fn push(&mut self, time: f64, step: usize, leak: &Leakage, resolved: bool) {
         let state = State { time, step, leak, resolved };
+        if self.columns.is_empty() {
+            let stored = NUMBERS.iter().filter(|number| (number.of)(&state).is_some());
+            let names = stored.map(|number| number.name).chain(leak.conductance.map(|_| CONDUCTANCE.name));
+            self.columns = names.map(|name| (name, vec![])).collect();
+            self.gas = leak.leak_rate_standard.is_some();
+        }
         for (name, column) in &mut self.columns {
             match NUMBERS.iter().find(|number| number.name == *name) {
                 Some(number) => column.push((number.of)(&state).unwrap_or(f64::NAN)),
@@ -247,7 +228,7 @@ impl LeakTable {
 
     /// Times.
     pub fn len(&self) -> usize {
-        self.columns[0].1.len()
+        self.columns.first().map_or(0, |(_, times)| times.len())
     }
 
     /// Whether it has no row.

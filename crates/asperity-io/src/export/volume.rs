@@ -8,13 +8,13 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use asperity::Grid;
-use asperity::stress::{StressQuantity, automatic_depths, contact_box};
+use asperity::stress::StressQuantity;
 
 use super::error::{ExportError, Result};
 use super::frame::{END, Frame};
 use crate::output;
-use crate::store::{At, FieldKind, Reader};
-use crate::stress::{Depths, Pressures, StressPlan};
+use crate::store::{At, Reader};
+use crate::stress::{Pressures, StressPlan, boundary, depths};
 
 /// Most slices of an image whose depths are not equally far apart.
 const SLICES: usize = 32;
@@ -48,17 +48,10 @@ pub fn volume(
             return Err(ExportError::Limit { format: "VTK", what, hint: "name it NAME.vti or NAME.vtr" });
         }
     };
-    let grid = reader.header().grid;
-    let boundary = crate::stress::boundary(reader);
-    let mut stress = plan.poisson.transforms(grid, boundary)?;
-    Pressures::new(reader, &plan.poisson)?.give(reader.index(at)?, &mut stress)?;
-    let depths = match &plan.depths {
-        Depths::List(list) => list.clone(),
-        Depths::Auto => {
-            let pressure = reader.field(FieldKind::Pressure, at)?;
-            automatic_depths(&grid, boundary, contact_box(&grid, pressure.as_slice().unwrap_or_default()))
-        }
-    };
+    let (grid, index) = (reader.header().grid, reader.index(at)?);
+    let mut stress = plan.poisson.transforms(grid, boundary(reader))?;
+    Pressures::new(reader, &plan.poisson)?.give(index, &mut stress)?;
+    let depths = depths(reader, plan, &[index])?;
     let depths = if form == Form::Image { even(&depths, &grid) } else { depths };
     let lines = lines(&grid, &depths);
     let extent = lines.each_ref().map(|line| format!("0 {}", line.len() - 1)).join(" ");

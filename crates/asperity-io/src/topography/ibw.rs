@@ -52,8 +52,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     for length in &mut lengths {
         *length = u64::from(c.u32(H)?);
     }
-    let [wave, formula, note, unit, dim_units @ .., _, _, _, _, _] = lengths;
-    let label_lengths = [lengths[8], lengths[9], lengths[10], lengths[11]];
+    let [wave, formula, note, ..] = lengths;
 
     let at = |offset| Cursor::at(bytes, offset, order, H);
     let code = at(80)?.u16(H)?;
@@ -69,22 +68,15 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let mut c = Cursor::at(bytes, HEADER + wave, order, "the end of the Igor wave")?;
     c.bytes(formula, "the formula")?;
     let note = note_entries(c.bytes(note, "the note")?);
-    let mut units = [c.text(unit, "the unit of the data")?, String::new(), String::new()];
-    for (i, length) in dim_units.iter().take(4).enumerate() {
-        let text = c.text(*length, "the unit of a dimension")?;
-        if i < 2 {
-            units[i + 1] = text;
-        }
-    }
+    // The units of the data and of the dimensions; long ones replace the short ones of the header.
+    let long = lengths[3..8].iter().map(|length| c.text(*length, "a unit of the Igor wave"));
+    let long = long.collect::<Result<Vec<_>, _>>()?.into_iter();
+    let either = |(long, short): (String, String)| if long.is_empty() { short } else { long };
+    let units: Vec<String> = long.zip(short_units).map(either).collect();
     let mut labels = Vec::new();
-    for length in label_lengths {
-        let block = c.bytes(length, "the labels of a dimension")?;
+    for length in &lengths[8..12] {
+        let block = c.bytes(*length, "the labels of a dimension")?;
         labels.push(block.as_chunks::<LABEL>().0.iter().skip(1).map(|l| text(l)).collect::<Vec<_>>());
-    }
-    for (long, short) in units.iter_mut().zip(short_units) {
-        if long.is_empty() {
-            *long = short;
-        }
     }
 
     let [nx, ny, layers, more] = points;

@@ -92,14 +92,8 @@ impl<'a> Node<'a> {
     }
 
     fn at(self, path: &[u16]) -> Result<Option<Node<'a>>, Problem> {
-        let mut node = self;
-        for tag in path {
-            match node.find(*tag)? {
-                Some(inner) => node = inner,
-                None => return Ok(None),
-            }
-        }
-        Ok(Some(node))
+        let step = |node: Option<Node<'a>>, tag: &u16| node.map_or(Ok(None), |node| node.find(*tag));
+        path.iter().try_fold(Some(self), step)
     }
 
     fn class(self) -> Result<Option<u32>, Problem> {

@@ -108,27 +108,22 @@ fn write_file(path: &Path, checkpoint: &Checkpoint, is_synced: bool) -> std::io:
 
 /// The checkpoint of the result at `root` of that header, which holds so many rows, or `None` where none was written.
 pub(super) fn read(root: &Path, header: &Header, rows: usize) -> Result<Option<Checkpoint<'static>>> {
-    let path = root.join(DIRECTORY).join(FILE);
+    let path = path(root);
     let file = match crate::resources::open(&path) {
         Ok(file) => file,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(StoreError::Io { path, action: "read", source }),
     };
     let length = file.metadata().map_err(io("read", &path))?.len();
-    let checkpoint = read_file(file, length).map_err(|error| match error {
-        Unreadable::System(source) => StoreError::Io { path: path.clone(), action: "read", source },
-        Unreadable::Damaged(what) => damaged(&path, what),
-        Unreadable::Former => {
-            StoreError::FormerCheckpoint { path: path.clone(), version: header.version.clone(), rows }
-        }
-    })?;
-    Ok(Some(checkpoint))
+    let former =
+        || StoreError::FormerCheckpoint { path: path.clone(), version: header.version.clone(), rows };
+    read_file(&path, file, length, former).map(Some)
 }
 
 /// The error of a checkpoint that cannot be used.
-pub(super) fn damaged(path: &Path, what: String) -> StoreError {
+pub(super) fn damaged(path: &Path, what: &str) -> StoreError {
     let hint = "remove it, then --resume starts from the beginning";
-    StoreError::Corrupt { path: path.to_owned(), what, hint }
+    StoreError::Corrupt { path: path.to_owned(), what: what.to_owned(), hint }
 }
 
 /// The file of the checkpoint.
@@ -136,40 +131,25 @@ pub(super) fn path(root: &Path) -> PathBuf {
     root.join(DIRECTORY).join(FILE)
 }
 
-/// Removes the checkpoint; nothing happens where there is none.
-pub(super) fn remove(root: &Path) -> Result<()> {
-    let directory = root.join(DIRECTORY);
-    match fs::remove_dir_all(&directory) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(io("remove", &directory)(error)),
-        _ => Ok(()),
-    }
-}
-
-enum Unreadable {
-    System(std::io::Error),
-    Damaged(String),
-    /// Of a form before [`FORM`].
-    Former,
-}
-
-impl From<std::io::Error> for Unreadable {
-    fn from(error: std::io::Error) -> Self {
-        match error.kind() {
-            std::io::ErrorKind::UnexpectedEof => Unreadable::Damaged("it ends too early".into()),
-            _ => Unreadable::System(error),
-        }
-    }
-}
-
-fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable> {
-    let damaged = |what: &str| Unreadable::Damaged(what.to_owned());
+/// Reads a checkpoint of this form; the error of an earlier one is `former`.
+fn read_file(
+    path: &Path,
+    file: File,
+    length: u64,
+    former: impl Fn() -> StoreError,
+) -> Result<Checkpoint<'static>> {
+    let damaged = |what: &str| damaged(path, what);
+    let unreadable = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::UnexpectedEof => damaged("it ends too early"),
+        _ => io("read", path)(error),
+    };
     let mut file = CrcReader::new(BufReader::with_capacity(BUFFER, file));
     let mut prefix = [0; 16];
-    file.read_exact(&mut prefix)?;
+    file.read_exact(&mut prefix).map_err(unreadable)?;
     let (magic, size) = prefix.split_at(8);
     match magic.split_last() {
         Some((&FORM, magic)) if magic == MAGIC => {}
-        Some((form, magic)) if magic == MAGIC && (1..FORM).contains(form) => return Err(Unreadable::Former),
+        Some((form, magic)) if magic == MAGIC && (1..FORM).contains(form) => return Err(former()),
         _ => return Err(damaged("it does not begin as a checkpoint of this version")),
     }
     let size = size.try_into().map_or(u64::MAX, u64::from_le_bytes);
@@ -177,9 +157,9 @@ fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable>
         return Err(damaged("its header is too long"));
     }
     let mut header = vec![0; size as usize];
-    file.read_exact(&mut header)?;
-    let contents: Contents = serde_json::from_slice(&header)
-        .map_err(|error| Unreadable::Damaged(format!("its header: {error}")))?;
+    file.read_exact(&mut header).map_err(unreadable)?;
+    let contents: Contents =
+        serde_json::from_slice(&header).map_err(|error| damaged(&format!("its header: {error}")))?;
     // The length of the file has to be that of the header's numbers before memory is asked for.
     let cells = contents.fields.iter().map(|field| field.shape.0.checked_mul(field.shape.1));
     let mut counts = contents.numbers.iter().map(|numbers| Some(numbers.count)).chain(cells);
@@ -188,9 +168,9 @@ fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable>
     if expected != Some(length) {
         return Err(damaged("its length is not that of its contents"));
     }
-    let mut read = |count: usize| -> Result<Vec<f64>, Unreadable> {
+    let mut read = |count: usize| -> Result<Vec<f64>> {
         let mut bytes = vec![0; 8 * count];
-        file.read_exact(&mut bytes)?;
+        file.read_exact(&mut bytes).map_err(unreadable)?;
         Ok(bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect())
     };
     let mut numbers = Vec::with_capacity(contents.numbers.len());
@@ -200,11 +180,11 @@ fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable>
     let mut fields = Vec::with_capacity(contents.fields.len());
     for FieldShape { name, shape } in contents.fields {
         let field = Array2::from_shape_vec(shape, read(shape.0 * shape.1)?);
-        let field = field.map_err(|error| Unreadable::Damaged(error.to_string()))?;
+        let field = field.map_err(|error| damaged(&error.to_string()))?;
         fields.push((name, field.into()));
     }
     let (found, mut stated) = (file.crc().sum(), [0; 4]);
-    file.read_exact(&mut stated)?;
+    file.read_exact(&mut stated).map_err(unreadable)?;
     if u32::from_le_bytes(stated) != found {
         return Err(damaged("its checksum is wrong"));
     }

@@ -49,7 +49,7 @@ impl Writer {
         let rows = checkpoint.as_ref().map_or(0, |checkpoint| checkpoint.step);
         if rows > reader.len() {
             let what = format!("it is of row {rows}, but {} rows are stored", reader.len());
-            return Err(checkpoint::damaged(&checkpoint::path(path), what));
+            return Err(checkpoint::damaged(&checkpoint::path(path), &what));
         }
         let all = reader.rows()?;
         let maps = reader.field_steps().iter().take_while(|step| **step < rows).count();

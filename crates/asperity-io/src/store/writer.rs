@@ -447,7 +447,7 @@ impl Writer {
             self.synchronise()?;
         }
         if outcome.status == Status::Complete {
-            checkpoint::remove(&self.root)?;
+            remove(&self.root.join(checkpoint::DIRECTORY))?;
             leftovers::remove_kept(&self.root);
         } else if let Some(kept) = leftovers::kept(&self.root) {
             tracing::warn!("the complete result that this one replaces is kept in {}", kept.display());

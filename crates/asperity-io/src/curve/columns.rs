@@ -69,7 +69,7 @@ pub struct Columns {
     pub columns: BTreeMap<Role, Column>,
     /// Their units, which replace those of the header.
     pub units: BTreeMap<Role, String>,
-    /// The sheet of a spreadsheet, by its name; the first with a curve where none is named.
+    /// The sheet of a spreadsheet, by its name; the first with a curve if the caller names none.
     pub sheet: Option<String>,
 }
 
@@ -83,7 +83,7 @@ pub struct Place {
     pub role: Role,
     /// Its number, from 1.
     pub column: usize,
-    /// Its header, empty where it has none.
+    /// Its header; empty if it has none.
     pub header: String,
     /// The unit in which its numbers are taken.
     pub unit: String,

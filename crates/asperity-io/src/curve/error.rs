@@ -9,7 +9,7 @@ use super::Role;
 pub struct CurveError {
     /// The file.
     pub path: PathBuf,
-    /// Line of the file (row of the sheet), from 1, where one is to blame.
+    /// Line of the file (row of the sheet) that is wrong, from 1.
     pub line: Option<usize>,
     /// What is wrong and what was expected.
     pub message: String,
@@ -17,7 +17,7 @@ pub struct CurveError {
     pub remedy: Option<Remedy>,
 }
 
-/// What to do about a file, which is said in the words of a case file, of the command or of Python.
+/// What to do about a file; its text is in the words of a case file, of the command or of Python.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remedy {
     /// Say what was measured.

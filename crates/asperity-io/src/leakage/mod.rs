@@ -129,7 +129,7 @@ pub struct Leakage {
     pub trapped_volume: f64,
     /// Share of the cells that are open.
     pub open_fraction: f64,
-    /// Effective conductance \[m^3\], where both directions were asked for.
+    /// Effective conductance \[m^3\]; `None` unless both directions were asked for.
     pub conductance: Option<[[f64; 2]; 2]>,
     /// Leak rate \[m^3/s; gas kg/s\]; `None` without a fluid.
     pub leak_rate: Option<f64>,

@@ -73,7 +73,7 @@ impl LeakHistory {
     }
 }
 
-/// The leakage that was asked for last, or else that which the case of a result asks for; `None` where neither.
+/// The settings of the stored leakage, or else those of the case of the result; `None` without both.
 pub fn settings(reader: &Reader) -> Option<Leak> {
     let last = reader.leaks().map(|leaks| leaks.settings.clone());
     let of_case = || reader.header().setup.get("leakage").cloned();

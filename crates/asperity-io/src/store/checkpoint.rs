@@ -2,8 +2,8 @@
 //!
 //! `checkpoint/state.bin`: eight bytes of magic, the length of a JSON header (u64), the header
 //! `{rows, numbers: [{name, count}], fields: [{name, shape}]}`, then the numbers as little-endian doubles, then the
-//! CRC-32 of all before it. Form 1 had its numbers without names and is not read. It lies in a group of its own, so that the directory stays a sound
-//! Zarr hierarchy.
+//! CRC-32 of all before it. Form 1 had its numbers without names and is not read. The file lies in a group of its own, so that the
+//! directory stays a valid Zarr hierarchy.
 
 use std::fs::{self, File};
 use std::io::{BufReader, BufWriter, Read, Write};
@@ -106,7 +106,7 @@ fn write_file(path: &Path, checkpoint: &Checkpoint, is_synced: bool) -> std::io:
     if is_synced { file.get_ref().get_ref().sync_data() } else { Ok(()) }
 }
 
-/// The checkpoint of the result at `root` of that header, which holds so many rows, or `None` where none was written.
+/// The checkpoint of the result at `root`, whose header and number of rows are given; `None` if none was written.
 pub(super) fn read(root: &Path, header: &Header, rows: usize) -> Result<Option<Checkpoint<'static>>> {
     let path = path(root);
     let file = match crate::resources::open(&path) {

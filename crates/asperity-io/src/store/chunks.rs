@@ -75,7 +75,7 @@ impl Chunks {
         resources::read(&path).map_err(io("read", &path))
     }
 
-    /// Checks that a chunk is there and no larger than its numbers can be, before memory is asked for.
+    /// Checks that a chunk exists and is not larger than its numbers can be, before memory is allocated.
     fn find(&self, index: &[u64]) -> Result<()> {
         let path = self.path(index);
         let length = match fs::metadata(&path) {
@@ -139,7 +139,7 @@ impl Chunks {
         Ok(map)
     }
 
-    /// The chunks that cover a map, and the sides of a chunk. An array with one dimension after those of `lead` holds a line.
+    /// The chunks that cover a map, and the sides of a chunk. After the dimensions of `lead`, the maps of a line have one dimension.
     fn blocks(&self, lead: &[u64], (nx, ny): (usize, usize)) -> (Vec<Block>, [usize; 2]) {
         let own = self.chunk.get(lead.len()..).unwrap_or_default();
         let (line, sides) = match *own {

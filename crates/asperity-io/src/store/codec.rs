@@ -72,7 +72,7 @@ impl Codec {
         Ok(bytes)
     }
 
-    /// The bytes of the numbers in the file of a chunk. Memory is taken for the numbers that it should hold, not for more.
+    /// The bytes of the numbers in the file of a chunk. No more memory is allocated than its numbers need.
     ///
     /// # Errors
     /// What is wrong with the file.

@@ -27,7 +27,7 @@ pub(super) const NAME: &str = "zarr.json";
 /// hierarchy looks.
 pub(super) const PARTIAL: &str = "zarr.json.partial";
 pub(super) const GROUP_PARTIAL: &str = "x/group.json.partial";
-/// Documents larger than this are not read (a result's has tens of kilobytes and its case file).
+/// Larger documents are not read: that of a result has tens of kilobytes and the case file.
 const LARGEST: u64 = 64 << 20;
 
 /// What the group's document says.
@@ -216,7 +216,7 @@ pub(super) fn read_json(root: &Path) -> Result<(PathBuf, Value)> {
     }
     let bytes = resources::read(&file).map_err(io("read", &file))?;
     let document = serde_json::from_slice(&bytes).or_else(|error| {
-        // A loss of power may leave less than the text that was written last.
+        // After a loss of power the text may be incomplete.
         let copy = resources::read(&root.join(checkpoint::DIRECTORY).join(checkpoint::GROUP));
         copy.ok().and_then(|bytes| serde_json::from_slice(&bytes).ok()).ok_or(error)
     });

@@ -1,5 +1,5 @@
-//! The arrays of the stress below the surface. They are added to a result once its pressures are stored, and over `field_time`:
-//! instants at which the stress was not computed are NaN.
+//! The arrays of the stress below the surface. They are added to a result once its pressures are stored. Their dimension is
+//! `field_time`; instants at which the stress was not computed are NaN.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ use super::replace::Way;
 use super::writer::{Writer, lock, remove};
 use crate::stress::Ratio;
 
-/// What was computed of the stress: which body, where, when.
+/// The computed stress: which body, where and when.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StressSet {
     /// Name of the body.
@@ -292,7 +292,7 @@ pub(super) fn publish(root: &Path, document: &Document) -> Result<Pages> {
 }
 
 impl Reader {
-    /// What was computed of the stress below the surface; `None` where nothing was.
+    /// The stress below the surface that was computed; `None` if it was not.
     pub fn stress(&self) -> Option<&StressSet> {
         self.document().stress.as_ref()
     }

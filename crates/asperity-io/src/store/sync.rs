@@ -1,6 +1,6 @@
-//! Bringing files to the medium, so that a loss of power leaves them.
+//! Bringing files to the medium, so that they survive a loss of power.
 //!
-//! A file is there after a loss of power when its contents and the entry in its directory are on the medium.
+//! A file survives a loss of power when its contents and the entry in its directory are on the medium.
 
 use std::fs::File;
 use std::path::Path;

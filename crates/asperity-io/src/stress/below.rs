@@ -68,7 +68,7 @@ pub(super) fn missed(reader: &Reader, rows: impl Iterator<Item = usize>) -> Resu
 }
 
 impl Below {
-    /// What a result holds; `None` where nothing was computed.
+    /// The stress that a result holds; `None` if none was computed.
     ///
     /// # Errors
     /// [`crate::store::StoreError`] where the result is damaged.

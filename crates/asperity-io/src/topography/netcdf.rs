@@ -115,7 +115,7 @@ fn maps(file: &NcFile) -> Result<Vec<(String, &NcVariable)>, Problem> {
     Ok(maps)
 }
 
-/// Bytes of a number of this type, 0 where it is none.
+/// Bytes of a number of this type; 0 for another type.
 fn width(kind: &NcType) -> u64 {
     match kind {
         NcType::Byte | NcType::UByte => 1,
@@ -178,7 +178,7 @@ fn text(value: &NcAttrValue) -> Option<String> {
     }
 }
 
-/// The size, and the label of the unit where both axes have the same.
+/// The size, and the label of its unit if both axes have the same unit.
 fn lateral(lengths: [Option<(f64, Option<String>)>; 2]) -> (Lateral, Option<String>) {
     let [Some((x, x_label)), Some((y, y_label))] = lengths else {
         return (Lateral::Unstated(String::new()), None);

@@ -12,6 +12,7 @@ use super::table::{Heading, Table, split_unit};
 use super::units::tidy;
 use super::workbook::{Sheet, sheets};
 use crate::quantity::Temperature;
+use crate::topography::leading_number;
 
 /// The shift that a file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -96,12 +97,7 @@ fn labelled(cells: &[Vec<String>], labels: &[&str]) -> Option<(f64, String)> {
 
 /// "25.0 °C" or "13,5": a number, and what follows it.
 fn number(text: &str) -> Option<(f64, String)> {
-    let text = text.trim_start_matches([':', '=', ' ']);
-    let end = text
-        .find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+')))
-        .unwrap_or(text.len());
-    let value: f64 = text[..end].replacen(',', ".", 1).parse().ok()?;
-    Some((value, text[end..].trim().to_owned()))
+    leading_number(text.trim_start_matches([':', '=', ' '])).map(|(value, rest)| (value, rest.to_owned()))
 }
 
 /// The number of "C1 : 13.50" or of "C1" and "13.50" in another cell.

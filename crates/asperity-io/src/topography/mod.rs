@@ -55,7 +55,7 @@ use crate::resources;
 use finish::finish;
 use format::{Reader, formats};
 use request::Request;
-pub(crate) use text::{dialect, is_numbers, to_text};
+pub(crate) use text::{dialect, is_numbers, leading_number, to_text};
 
 formats! {
     /// A file format.

@@ -126,7 +126,7 @@ impl Header {
             "lateral units" | "unit x" => self.lateral_unit = [unit(), unit()],
             "value units" | "z-unit" | "unit data" => self.value_unit = unit(),
             "bit2nm" if self.value_unit.is_none() => {
-                self.scale = number(value).map(|(bits, _)| bits);
+                self.scale = leading_number(value).map(|(bits, _)| bits);
                 self.value_unit = Some("nm".to_owned());
             }
             "file format" => self.spip |= value.eq_ignore_ascii_case("ascii"),
@@ -134,7 +134,7 @@ impl Header {
                 // "height conversion factor (-> m)=2.9e-8"
                 let unit = key.split_once("->").map(|(_, unit)| unit.trim_end_matches(')').trim());
                 self.value_unit = unit.map(str::to_owned);
-                self.scale = number(value).map(|(factor, _)| factor);
+                self.scale = leading_number(value).map(|(factor, _)| factor);
             }
             _ if is_comment && self.unexplained.len() < MOST_UNEXPLAINED => {
                 self.unexplained.push((key.to_owned(), value.to_owned()));
@@ -267,7 +267,7 @@ fn split(text: &str) -> Option<(&str, &str)> {
 }
 
 /// The number at the start of a text, with a decimal point or comma, and the rest.
-fn number(text: &str) -> Option<(f64, &str)> {
+pub(crate) fn leading_number(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let end = text
         .char_indices()
@@ -283,7 +283,7 @@ fn number(text: &str) -> Option<(f64, &str)> {
 }
 
 fn length(text: &str) -> Option<Length> {
-    let (value, unit) = number(text)?;
+    let (value, unit) = leading_number(text)?;
     Some(Length { value, unit: unit.trim_matches(['[', ']', '(', ')']).to_owned() })
 }
 

@@ -119,7 +119,7 @@ fn degrees(unit: &str, numbers: &[f64]) -> Result<f64, String> {
     }
 }
 
-/// rad/s of one unit: cycles and radians are told apart, never guessed.
+/// rad/s of one unit: the unit must say whether it counts cycles or radians.
 fn frequency(unit: &str) -> Result<f64, String> {
     let radians = unit.contains("rad");
     if !radians && !unit.contains("Hz") {

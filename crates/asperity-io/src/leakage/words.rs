@@ -1,4 +1,4 @@
-//! Leakage in words: what is asked for, how much leaks, when it is tight.
+//! Leakage in words: the settings, the leak rate, and the times at which the seal is tight.
 
 use super::{Fluid, GasKind, Leak, LeakDirection, ROOM};
 use crate::choice;

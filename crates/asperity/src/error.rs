@@ -26,6 +26,8 @@ pub enum Error {
         four(*load), four(*max)
     )]
     Infeasible {
+        /// Path of the argument that prescribes the load, as for [`Error::Invalid`]; empty where only the load is known.
+        parameter: String,
         /// Prescribed load \[N\].
         load: f64,
         /// Largest load that the hardness allows \[N\].
@@ -113,12 +115,31 @@ impl Error {
     /// The same error, for the argument `outer` or one inside it.
     #[must_use]
     pub fn of(self, outer: &str) -> Self {
+        let mut error = self;
+        if let Error::Invalid { parameter, .. } | Error::Infeasible { parameter, .. } = &mut error {
+            let dot = if parameter.is_empty() { "" } else { "." };
+            *parameter = format!("{outer}{dot}{parameter}");
+        }
+        error
+    }
+
+    /// Path of the argument that is wrong, as far as it is known: see [`Error::Invalid`].
+    pub fn parameter(&self) -> &str {
         match self {
-            Error::Invalid { parameter, what, value, expected } => {
-                let dot = if parameter.is_empty() { "" } else { "." };
-                Error::Invalid { parameter: format!("{outer}{dot}{parameter}"), what, value, expected }
-            }
-            other => other,
+            Error::Invalid { parameter, .. } | Error::Infeasible { parameter, .. } => parameter,
+            _ => "",
+        }
+    }
+
+    /// A word for the kind of error, which stays the same when the message changes: "out-of-range", "infeasible", ...
+    pub fn code(&self) -> &'static str {
+        match self {
+            Error::Invalid { .. } => "out-of-range",
+            Error::Infeasible { .. } => "infeasible",
+            Error::Undetermined { .. } => "undetermined",
+            Error::NotConverged(_) => "not-converged",
+            Error::Missed { .. } => "missed-event",
+            Error::Interrupted => "interrupted",
         }
     }
 }

@@ -2,17 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::kernel::Kernel;
 use asperity::load::Course;
 use asperity::time::Plan;
-use asperity::{Boundary, Grid, Scheme, TimeGrid};
+use asperity::{Grid, Programme, Scheme, Simulation, TimeGrid};
+use ndarray::Array2;
 
 use super::body::{self, Body};
 use super::document::Document;
 use super::error::CaseError;
 use super::hardness::{self, Hardness};
 use super::material::Sample;
-use super::output::Conditions;
 use super::pair::{self, Pair};
 use super::place::Checks;
 use super::plan::{Motion, Output, Rows, Surface};
@@ -105,8 +104,8 @@ impl Document {
             let shortest = samples.iter().flatten().map(|sample| sample.shortest(points, end));
             time::first_step(shortest.fold(f64::INFINITY, f64::min), course)
         };
-        let prescription = self.load.prescription(&at("load"), line, &first_step);
-        let programme = prescription.as_ref().map(|prescription| &prescription.programme);
+        let loading = self.load.programme(&at("load"), line, &first_step);
+        let programme = loading.as_ref().map(|(programme, _)| programme);
         if self.motion.is_none() {
             motion::nothing_moves(&at("surface"), &self.surface);
         }
@@ -170,28 +169,17 @@ impl Document {
             }
             pair
         });
-        if let (Some(times), Some(prescription), Some(pair)) = (&times, &prescription, &pair) {
-            prescription.possible(times, grid.as_ref(), pair);
+        let conditions =
+            self.conditions(grid, pair.as_ref(), programme, times.as_ref(), hardness.as_ref(), include);
+        if let Some(conditions) = &conditions {
+            for error in conditions.faults() {
+                checks.root().core::<()>(Err(error));
+            }
+            self.output.possible(&at("output"), conditions, motion.is_some());
         }
-        let scheme = self.time.as_ref().map(|times| times.scheme).unwrap_or_default();
-        if adaptive && scheme != Scheme::Linear {
-            at("time").fault::<()>(
-                "adaptive steps need the scheme \"linear\", because their error estimate is derived for it",
-                "scheme = \"linear\"",
-                "omit `scheme`, or use spacing = \"log\" with `steps`",
-            );
+        if let (Some(pair), Some(grid)) = (&pair, &grid) {
+            pair.resolved(&at("body"), &self.body, grid, boundary);
         }
-        if let Some(pair) = &pair {
-            let mapped = hardness.as_ref().is_some_and(|hardness| hardness.map.is_some());
-            self.possible(checks, grid.as_ref(), pair, scheme, mapped || pair.hardness.is_finite());
-        }
-        let fields = match (scheme, &pair) {
-            (_, None) => 0,
-            (Scheme::Direct, Some(pair)) => pair.plan.instants.len(),
-            (_, Some(pair)) => pair.branches(),
-        };
-        let extra = self.output.extra_fields(self.solver.plasticity);
-        self.domain.fits(&at("domain"), grid.as_ref(), fields, extra, scheme);
         let end = times.as_ref().map(TimeGrid::end);
         let stress = self.stress.as_ref().zip(grid.as_ref().zip(pair.as_ref())).zip(output.as_ref().zip(end));
         let stress = stress.and_then(|((stress, (grid, pair)), (output, end))| {
@@ -209,44 +197,69 @@ impl Document {
                 leakage.of_case(&at("leakage"), boundary, points, output, end)
             });
 
-        let (hardness, prescription, pair, times) = (hardness?, prescription?, pair?, times?);
+        let (hardness, (_, histories), pair) = (hardness?, loading?, pair?);
         let mut files: Vec<_> = samples.iter().flatten().filter_map(Sample::file).collect();
         files.extend(temperatures.iter().flatten().filter_map(|read| read.file.clone()));
         files.extend(hardness.files);
-        files.extend(prescription.files);
+        files.extend(histories);
         let usual = pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 };
-        Some(Case {
+        let case = Case {
             title: self.title.clone(),
             name: String::new(),
             source: source.to_owned(),
-            grid: grid?,
-            boundary,
+            conditions: conditions?,
             surfaces: surfaces?,
             bodies: pair.bodies,
             layers: pair.layers,
-            waves: pair.waves,
             thickness: body::thickness(&self.body),
-            creep: pair.creep,
-            thermal: pair.thermal,
             temperatures: points.map(<[_]>::to_vec),
             materials: pair.reports,
             findings: pair.findings,
             files,
-            hardness: pair.hardness,
-            hardness_map: hardness.map,
-            loading: prescription.programme,
-            times,
-            include,
-            scheme,
-            plasticity: self.solver.plasticity,
-            solver: self.solver.options(),
             output: output?,
             stress,
             leakage,
             motion,
             usual_rows: swept.unwrap_or(usual),
             rows: swept.or(pair.plan.exact.then_some(pair.plan.instants.len())),
-            history: prescription.at.key,
+        };
+        let or = match case.conditions.scheme {
+            Scheme::Direct => {
+                " or steps, or scheme = \"linear\": the direct scheme keeps all pressure fields"
+            }
+            Scheme::Linear | Scheme::Constant => "",
+        };
+        self.domain.fits(&at("domain"), case.conditions.grid.cells(), case.memory_of_run(), or)?;
+        Some(case)
+    }
+
+    /// The simulation as far as the sections give it: without gap and motion.
+    fn conditions(
+        &self,
+        grid: Option<Grid>,
+        pair: Option<&Pair>,
+        programme: Option<&Programme>,
+        times: Option<&TimeGrid>,
+        hardness: Option<&Hardness>,
+        include: Vec<f64>,
+    ) -> Option<Simulation> {
+        let pair = pair?;
+        Some(Simulation {
+            boundary: self.domain.boundary,
+            kernel: pair.kernel(),
+            layers: pair.waves.clone(),
+            creep: pair.creep.clone(),
+            thermal: pair.thermal.clone(),
+            hardness: pair.hardness,
+            hardness_map: hardness?.map.clone(),
+            plasticity: self.solver.plasticity,
+            loading: programme?.clone(),
+            times: times?.clone(),
+            include,
+            scheme: self.time.as_ref().map(|times| times.scheme).unwrap_or_default(),
+            solver: self.solver.options(),
+            quantities: self.output.quantities(),
+            ..Simulation::new(grid?, Array2::default((0, 0)))
         })
     }
 
@@ -310,36 +323,5 @@ impl Document {
         let all: Vec<_> = self.body.iter().enumerate().flat_map(of_body).flatten().collect();
         let add = |hardness: Hardness, found: Option<_>| found.map(|(map, file)| hardness.and(map, file));
         all.into_iter().try_fold(Hardness::default(), add)
-    }
-
-    /// Refuses what is asked for and not solved for this pair; `capped` where there is a hardness.
-    fn possible(&self, checks: &Checks<'_>, grid: Option<&Grid>, pair: &Pair, scheme: Scheme, capped: bool) {
-        let deep = pair.layers.as_ref().is_none_or(|layers| layers.depth().is_none());
-        let free = self.domain.boundary == Boundary::Free;
-        let conditions = Conditions {
-            scheme,
-            up_to_a_constant: free && deep && grid.is_some_and(Grid::is_line),
-            waves: pair.waves.is_some(),
-            moves: self.motion.is_some(),
-        };
-        let plasticity = self.solver.plasticity;
-        self.solver.possible(&checks.at("solver"), capped);
-        self.output.possible(&checks.at("output"), plasticity, &conditions, capped);
-        if pair.waves.is_some() {
-            let fault = |section: &str, what: &str, expected: &str| {
-                let message = format!("{what}: this is not solved for layers that creep differently");
-                let help = "omit it, or give all layers and bodies the same relative creep";
-                checks.at(section).fault::<()>(message, expected, help);
-            };
-            if scheme != Scheme::Linear {
-                fault("time", "the scheme is not \"linear\"", "scheme = \"linear\"");
-            }
-            if self.motion.is_some() {
-                fault("motion", "the contact moves", "a contact that stays in its place");
-            }
-        }
-        if let Some(grid) = grid {
-            pair.resolved(&checks.at("body"), &self.body, grid, self.domain.boundary);
-        }
     }
 }

@@ -109,7 +109,7 @@ impl Case {
 
     /// Whether the expected contact is too wide for a body on a free domain.
     fn thin(&self, expected: Option<&Expected>) -> Option<Finding> {
-        match (expected?.contact?, self.boundary) {
+        match (expected?.contact?, self.conditions.boundary) {
             (Contact::Round([_, radius]), Boundary::Free) => {
                 thin_body("The expected contact", radius, self.thickness?)
             }
@@ -132,7 +132,7 @@ impl Case {
             })
         };
         let mut inputs = Inputs {
-            surfaces: parts.iter().map(|part| surface(&self.grid, part)).collect(),
+            surfaces: parts.iter().map(|part| surface(&self.conditions.grid, part)).collect(),
             moduli: self.bodies.iter().filter_map(relaxed).collect(),
             ..Inputs::default()
         };

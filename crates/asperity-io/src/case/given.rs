@@ -7,12 +7,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use asperity::kernel::{HalfSpace, Kernel};
+use asperity::kernel::Kernel;
 use asperity::layer::NonseparableLayers;
 use asperity::material::{Body, Creep};
 use asperity::surface::Part;
 use asperity::time::{Instant, Plan};
-use asperity::{Control, Grid, Scheme};
+use asperity::{Control, Grid};
 use ndarray::Array2;
 use toml::Table;
 
@@ -93,14 +93,10 @@ pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<GivenBodies, Cas
         let (bodies, temperature) = document::bodies(text)?;
         assemble::bodies(text, &bodies, temperature.as_ref(), &plan)
     })?;
-    let kernel: Arc<dyn Kernel> = match pair.layers {
-        Some(layers) => layers,
-        None => Arc::new(HalfSpace),
-    };
     Ok(GivenBodies {
+        kernel: pair.kernel(),
         bodies: pair.bodies,
         reports: pair.reports,
-        kernel,
         waves: pair.waves,
         creep: pair.creep,
     })
@@ -115,7 +111,6 @@ pub fn surface(keys: &Table) -> Result<(Grid, Part), CaseErrors> {
         let (domain, surfaces) = document::roughness(text)?;
         let checks = Checks::new(text, Path::new(""));
         let grid = domain.grid(&checks.at("domain"), &[]);
-        domain.fits(&checks.at("domain"), grid.as_ref(), 0, 0, Scheme::Linear);
         let line = grid.as_ref().is_some_and(Grid::is_line);
         let place = checks.at("surface").item(0);
         let part = surfaces.first().and_then(|surface| surface.part(&place, grid.as_ref(), line));
@@ -185,7 +180,7 @@ mod tests {
         let mut keys = keys();
         keys["load"]["history"]["value"] = odd.into();
         let case = Case::given(&keys, &heights(), Path::new("")).unwrap();
-        assert_eq!(case.loading.stages[0].course.resolve(0.0).after(0.0).to_bits(), odd.to_bits());
+        assert_eq!(case.conditions.loading.stages[0].course.resolve(0.0).after(0.0).to_bits(), odd.to_bits());
         assert_eq!(case.gap().unwrap(), arr2(&[[0.0, f64::INFINITY], [1e-6, 0.0]]));
     }
 
@@ -199,7 +194,7 @@ mod tests {
             arrays
         };
         let case = Case::given(&keys, &with(arr2(&[[1e6, 2e6], [3e6, 4e6]])), Path::new("")).unwrap();
-        assert_eq!(case.hardness_map.unwrap()[[1, 0]], 3e6);
+        assert_eq!(case.conditions.hardness_map.unwrap()[[1, 0]], 3e6);
         let (key, message) = fault(&keys, &with(arr2(&[[1e6, 0.0], [3e6, 4e6]])));
         assert_eq!(key, "body[0].hardness_array");
         assert!(message.contains("(0, 1)"), "{message}");
@@ -217,7 +212,7 @@ mod tests {
         }
         .into();
         let case = Case::given(&keys, &heights(), Path::new("")).unwrap();
-        let stage = &case.loading.stages[0];
+        let stage = &case.conditions.loading.stages[0];
         assert_eq!(stage.times, Some(TimeGrid::List(vec![0.1, 0.7])));
         assert_eq!(stage.until, Some(Event::Approach(1e-6)));
         keys["load"]["stages"][0].as_table_mut().unwrap().insert("steps".into(), 3.into());

@@ -30,8 +30,8 @@
 //!     steps = 1
 //! "#;
 //! let case = Case::parse(text, ".".as_ref(), &["load.history.value=8 N".into()])?;
-//! assert_eq!(case.grid.spacing(), [1e-3 / 32.0; 2]); // metres
-//! assert_eq!(case.loading.stages[0].course.resolve(0.0).after(0.0), 8.0); // newtons
+//! assert_eq!(case.conditions.grid.spacing(), [1e-3 / 32.0; 2]); // metres
+//! assert_eq!(case.conditions.loading.stages[0].course.resolve(0.0).after(0.0), 8.0); // newtons
 //!
 //! let errors = Case::parse(&text.replace("210 GPa", "210 mm"), ".".as_ref(), &[]).unwrap_err();
 //! assert_eq!(errors.errors[0].key, "body[0].material.young");
@@ -60,7 +60,6 @@ mod list;
 mod load;
 mod material;
 mod measured;
-mod memory;
 mod motion;
 mod output;
 mod overrides;
@@ -87,15 +86,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use asperity::finding::Finding;
-use asperity::kernel::{HalfSpace, Kernel};
-use asperity::layer::{Layered, NonseparableLayers};
-use asperity::material::{Body, Creep, ThermalCreep};
+use asperity::layer::Layered;
+use asperity::material::Body;
 use asperity::quantities::{Quantities, Quantity};
 use asperity::sliding::{MovingGap, SteadyMotion};
 use asperity::surface::{Part, undeformed_gap};
-use asperity::{
-    Axis, Boundary, Error, Grid, Plasticity, Programme, Scheme, Simulation, SolverOptions, TimeGrid,
-};
+use asperity::{Axis, Error, Scheme, Simulation};
 use ndarray::Array2;
 
 pub use cost::CostEstimate;
@@ -113,8 +109,8 @@ pub use words::nearest;
 use crate::leakage::Leak;
 use crate::stress::StressPlan;
 use document::Document;
-use output::Conditions;
 use overrides::Override;
+use place::{Checks, Place};
 use text::Text;
 
 /// A case file is text that a person writes; more is a mistake.
@@ -129,24 +125,16 @@ pub struct Case {
     pub name: String,
     /// Text of the file after the overrides.
     pub source: String,
-    /// The computational domain.
-    pub grid: Grid,
-    /// What surrounds it.
-    pub boundary: Boundary,
+    /// The simulation without its gap and motion; its quantities are those that the case names.
+    pub conditions: Simulation,
     /// The parts of the undeformed gap.
     pub surfaces: Vec<Surface>,
     /// What the deformable bodies, one or two, consist of: each half-space, layer and base.
     pub bodies: Vec<Body>,
     /// How the bodies yield in space, where they have layers; half-spaces otherwise.
     pub layers: Option<Arc<Layered>>,
-    /// How waves on the layers creep, where waves of different lengths creep differently.
-    pub waves: Option<Arc<NonseparableLayers>>,
     /// Thickness of the thinnest body that is taken as a half-space \[m\], where it is known.
     pub thickness: Option<f64>,
-    /// Contact creep compliance C(t) of the pair \[1/Pa\]; without the bodies of `thermal`.
-    pub creep: Creep,
-    /// Bodies whose temperature changes.
-    pub thermal: Vec<ThermalCreep>,
     /// Temperature of the run, where it has one: (time \[s\], temperature \[K\]), straight in between.
     pub temperatures: Option<Vec<(f64, f64)>>,
     /// Where the materials come from, and how well they are known.
@@ -155,22 +143,6 @@ pub struct Case {
     pub findings: Vec<Finding>,
     /// Files that hold numbers of the case (not surfaces), as it names them, and their MD5.
     pub files: Vec<(String, String)>,
-    /// Cut-off H of the pressure \[Pa\], the softer body's; infinite without.
-    pub hardness: f64,
-    /// Cut-off of the pressure in each cell \[Pa\], where a file gives it; the lesser of it and `hardness` holds.
-    pub hardness_map: Option<Array2<f64>>,
-    /// What is prescribed over time.
-    pub loading: Programme,
-    /// The instants of the solution.
-    pub times: TimeGrid,
-    /// Instants that are steps besides \[s\]: those of `output.times`, unless steps are adaptive.
-    pub include: Vec<f64>,
-    /// How the pressure goes over a step.
-    pub scheme: Scheme,
-    /// What flattening at the cut-off leaves behind.
-    pub plasticity: Plasticity,
-    /// How each step is solved.
-    pub solver: SolverOptions,
     /// What is stored, and where.
     pub output: Output,
     /// The stress below the surface, where it is asked for.
@@ -183,8 +155,6 @@ pub struct Case {
     rows: Option<usize>,
     /// About as many.
     usual_rows: usize,
-    /// Path of the key that holds what is prescribed.
-    history: String,
 }
 
 impl Case {
@@ -243,7 +213,9 @@ impl Case {
     pub fn parts(&self) -> Result<Vec<Part>, CaseErrors> {
         let part = |surface: &Surface| match surface {
             Surface::Part(part) => Ok(part.clone()),
-            Surface::File(file) => file.part(&self.grid).map_err(|reason| self.fault(&file.key, reason)),
+            Surface::File(file) => file.part(&self.conditions.grid).map_err(|reason| {
+                self.faults(&file.key, |place| place.data(Err(reason), "a surface of the domain"))
+            }),
         };
         self.surfaces.iter().map(part).collect()
     }
@@ -258,9 +230,7 @@ impl Case {
     }
 
     fn gap_of(&self, parts: &[Part]) -> Result<Array2<f64>, CaseErrors> {
-        undeformed_gap(&self.grid, parts).map_err(|error| {
-            CaseErrors::without_place(&self.name, format!("surface: {error}"), "a gap that can close", None)
-        })
+        undeformed_gap(&self.conditions.grid, parts).map_err(|error| self.refused("surface", error))
     }
 
     /// The simulation of the case, checked: the gap is built here.
@@ -276,46 +246,28 @@ impl Case {
     /// # Errors
     /// As [`simulation`](Self::simulation).
     pub fn simulation_of(&self, parts: &[Part]) -> Result<Simulation, CaseErrors> {
-        let gap = match &self.motion {
-            Some(motion) => self.moving_gap(parts, motion)?,
-            None => self.gap_of(parts)?,
+        let (gap, motion) = match &self.motion {
+            None => (self.gap_of(parts)?, None),
+            Some(motion) => {
+                let moving = self.moving(parts, motion)?;
+                let (gap, _) =
+                    moving.at(0.0, motion.direction).map_err(|error| self.refused("motion", error))?;
+                (gap, motion.in_time(moving))
+            }
         };
-        let simulation = Simulation { motion: self.motion_of(parts)?, ..self.with_gap(gap) };
+        let simulation = Simulation { gap, motion, ..self.conditions.clone() };
         let simulation = Simulation { quantities: self.quantities(&simulation), ..simulation };
         match simulation.validate() {
             Ok(()) => Ok(simulation),
-            // Under a punch only a part of the domain bears.
-            Err(error @ Error::Infeasible { .. }) => Err(self.fault(&self.history, error.to_string())),
-            Err(error) => Err(CaseErrors::without_place(&self.name, error.to_string(), "", None)),
+            Err(error) => Err(self.refused("", error)),
         }
     }
 
     /// The gap of parts that may move.
     fn moving(&self, parts: &[Part], motion: &Motion) -> Result<MovingGap, CaseErrors> {
         let parts: Vec<(Part, bool)> = parts.iter().cloned().zip(motion.moves.iter().copied()).collect();
-        MovingGap::new(&self.grid, self.boundary, &parts)
-            .map_err(|error| self.fault("motion", error.to_string()))
-    }
-
-    /// The gap at the start of a motion.
-    fn moving_gap(&self, parts: &[Part], motion: &Motion) -> Result<Array2<f64>, CaseErrors> {
-        let gap = self.moving(parts, motion)?.at(0.0, motion.direction);
-        gap.map(|(gap, _)| gap).map_err(|error| self.fault("motion", error.to_string()))
-    }
-
-    /// The motion in time, where there is one.
-    fn motion_of(&self, parts: &[Part]) -> Result<Option<asperity::process::Motion>, CaseErrors> {
-        let Some((motion, Travel::Path(path))) = self.motion.as_ref().map(|motion| (motion, &motion.travel))
-        else {
-            return Ok(None);
-        };
-        Ok(Some(asperity::process::Motion {
-            path: path.clone(),
-            direction: motion.direction,
-            gap: self.moving(parts, motion)?,
-            cells_per_step: motion.cells_per_step,
-            shear_stress: motion.shear_stress,
-        }))
+        MovingGap::new(&self.conditions.grid, self.conditions.boundary, &parts)
+            .map_err(|error| self.refused("motion", error))
     }
 
     /// The steady states of motion that are asked for, with the slopes of their gap.
@@ -327,25 +279,19 @@ impl Case {
         parts: &[Part],
         simulation: &Simulation,
     ) -> Result<Option<SteadyMotion>, CaseErrors> {
-        let Some((motion, Travel::Steady(velocities))) =
-            self.motion.as_ref().map(|motion| (motion, &motion.travel))
-        else {
+        let Some(motion @ Motion { travel: Travel::Steady(velocities), .. }) = &self.motion else {
             return Ok(None);
         };
-        let (_, slopes) = self
-            .moving(parts, motion)?
-            .at(0.0, motion.direction)
-            .map_err(|error| self.fault("motion", error.to_string()))?;
+        let refused = |error| self.refused("motion", error);
+        let (_, slopes) = self.moving(parts, motion)?.at(0.0, motion.direction).map_err(refused)?;
         let steady = SteadyMotion {
             direction: motion.direction,
             velocities: velocities.clone(),
             slopes,
             shear_stress: motion.shear_stress,
         };
-        match steady.validate(simulation) {
-            Ok(()) => Ok(Some(steady)),
-            Err(error) => Err(self.fault("motion", error.to_string())),
-        }
+        steady.validate(simulation).map_err(refused)?;
+        Ok(Some(steady))
     }
 
     /// What the rows of its run follow one another in.
@@ -356,49 +302,15 @@ impl Case {
         }
     }
 
-    /// How the bodies yield in space.
-    pub fn kernel(&self) -> Arc<dyn Kernel> {
-        match &self.layers {
-            Some(layers) => layers.clone(),
-            None => Arc::new(HalfSpace),
-        }
-    }
-
-    /// The simulation with a gap, without the quantities that are asked for.
-    fn with_gap(&self, gap: Array2<f64>) -> Simulation {
-        Simulation {
-            boundary: self.boundary,
-            kernel: self.kernel(),
-            layers: self.waves.clone(),
-            creep: self.creep.clone(),
-            thermal: self.thermal.clone(),
-            hardness: self.hardness,
-            hardness_map: self.hardness_map.clone(),
-            loading: self.loading.clone(),
-            times: self.times.clone(),
-            include: self.include.clone(),
-            scheme: self.scheme,
-            plasticity: self.plasticity,
-            solver: self.solver,
-            ..Simulation::new(self.grid, gap)
-        }
-    }
-
     /// The quantities that are asked for, of this simulation.
     fn quantities(&self, simulation: &Simulation) -> Quantities {
         let steady = self.axis() == Axis::Velocity;
-        let mut wanted = self.output.quantities.clone();
+        let mut wanted = simulation.quantities.clone();
         if self.output.all_quantities {
-            let conditions = Conditions {
-                scheme: simulation.scheme,
-                up_to_a_constant: simulation.is_up_to_a_constant(),
-                waves: self.waves.is_some(),
-                moves: self.motion.is_some(),
-            };
             let possible = |quantity: &Quantity| {
                 let alone = Quantities { list: vec![*quantity], ..wanted.clone() };
                 // Steady motion has no history.
-                conditions.refuse(*quantity).is_none()
+                simulation.allows(*quantity).is_ok()
                     && !(steady && quantity.is_of_time())
                     && simulation.columns_of(&alone).is_ok()
             };
@@ -420,9 +332,19 @@ impl Case {
         wanted
     }
 
-    fn fault(&self, key: &str, reason: String) -> CaseErrors {
+    /// The error that the solver's own check gives, at the key that it names below `key`.
+    fn refused(&self, key: &str, error: Error) -> CaseErrors {
+        self.faults(key, |place| place.core(Err(error)))
+    }
+
+    /// The errors that `report` gives at a key of the case.
+    fn faults(&self, key: &str, report: impl FnOnce(&Place<'_>) -> Option<()>) -> CaseErrors {
         let errors = match Text::parse(&self.source) {
-            Ok(text) => vec![text.fault(text.of(key), &reason, "", "")],
+            Ok(text) => {
+                let checks = Checks::new(&text, Path::new(""));
+                report(&checks.at(key));
+                checks.into_errors()
+            }
             Err(errors) => errors, // cannot be: the source was read before
         };
         CaseErrors { name: self.name.clone(), source: self.source.clone(), errors }

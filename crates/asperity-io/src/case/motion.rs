@@ -167,7 +167,7 @@ impl Motion {
         let start = self.start.map_or(0.0, Time::get);
         // There is no earlier value in a history of these.
         let history = |key: &str, history: &History, kind| {
-            history.read(&at.key(key), kind, "").map(|read| read.history)
+            history.read(&at.key(key), kind, "").map(|(history, _)| history)
         };
         let travel = match (&self.velocity, &self.path) {
             (Some(velocity), _) => {

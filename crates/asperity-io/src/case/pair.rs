@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use asperity::finding::{self, Finding};
 use asperity::history::check_layers;
+use asperity::kernel::{HalfSpace, Kernel};
 use asperity::layer::{Layered, NonseparableLayers, Response, response};
 use asperity::material::{Body, Creep, ReducedTime, ThermalCreep, pair_hardness};
 use asperity::time::Plan;
@@ -68,10 +69,12 @@ impl Pair {
         self.creep.instantaneous + self.thermal.iter().map(|body| body.creep.instantaneous).sum::<f64>()
     }
 
-    /// Fields that the memory keeps.
-    pub fn branches(&self) -> usize {
-        let parts = std::iter::once(&self.creep).chain(self.thermal.iter().map(|body| &body.creep));
-        parts.map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum()
+    /// How the bodies yield in space.
+    pub fn kernel(&self) -> Arc<dyn Kernel> {
+        match &self.layers {
+            Some(layers) => layers.clone(),
+            None => Arc::new(HalfSpace),
+        }
     }
 }
 
@@ -208,13 +211,6 @@ fn respond(list: &Place<'_>, bodies: &[body::Body], parts: &[Part<'_>], made: &[
         .of(&parts[n].at.key)),
     };
     let layered = list.item(bodies.iter().position(|body| !body.layer.is_empty())?);
-    if let Ok(Response { waves: Some(_), .. }) = &found
-        && made.iter().any(|one| one.clock.is_some())
-    {
-        let message = "the temperature changes, and the layers creep differently: this is not solved";
-        let help = "hold the temperature constant, or give all layers the same relative creep";
-        return layered.fault(message, "layers of one relative creep", help);
-    }
     match &found {
         Err(Error::Invalid { parameter, .. }) if !parameter.is_empty() => list.sibling(parameter).core(found),
         _ => layered.core(found),

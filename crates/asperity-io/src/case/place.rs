@@ -134,12 +134,30 @@ impl<'c> Place<'c> {
             Ok(value) => return Some(value),
             Err(error) => error,
         };
-        match &error {
-            Error::Invalid { parameter, expected, .. } if self.has(parameter) => {
-                self.key(parameter).fault(&error, expected, "")
-            }
-            Error::Invalid { expected, .. } => self.fault(&error, expected, ""),
-            _ => self.fault(&error, "", ""),
+        let expected = match &error {
+            Error::Invalid { expected, .. } => expected.split(". ").next().unwrap_or_default(),
+            _ => "",
+        };
+        self.given(error.parameter()).fault(&error, expected, "")
+    }
+
+    /// The key with this path inside the table, or the innermost one on the way to it that the case gives.
+    fn given(&self, path: &str) -> Place<'c> {
+        // A single stage stands in [load] itself.
+        let path = match path.strip_prefix("load.stages[0]") {
+            Some(rest) if !self.has("load.stages") => format!("load{rest}"),
+            _ => path.to_owned(),
+        };
+        let ends = path.rmatch_indices(['.', '[']).map(|(end, _)| end);
+        let found = std::iter::once(path.len()).chain(ends).find(|end| self.has(&path[..*end]));
+        found.map_or_else(|| self.clone(), |end| self.key(&path[..end]))
+    }
+
+    /// What was read from the file that the key names.
+    pub fn data<T>(&self, result: Result<T, impl Display>, expected: &str) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(error) => self.fault(error, expected, ""),
         }
     }
 

@@ -129,7 +129,9 @@ impl<'t> Text<'t> {
 
     /// Something is wrong with the value at the spot that a sentence says best; the key is put before it.
     pub fn fault(&self, spot: Spot, message: &str, expected: &str, help: &str) -> CaseError {
-        let (message, value) = (format!("{}: {message}", spot.key), self.value(&spot));
+        let value = self.value(&spot);
+        let message =
+            if spot.key.is_empty() { message.to_owned() } else { format!("{}: {message}", spot.key) };
         self.error(spot, Some(value), expected, help, message)
     }
 

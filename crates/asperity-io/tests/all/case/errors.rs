@@ -561,7 +561,7 @@ fn overrides_are_read_as_if_written() {
     let shown = case.unwrap_err().to_string();
     assert!(shown.contains("surface[1].shortest") && shown.contains("line 14"), "{shown}");
     let case = with(&["domain.cells=[64,32]", "body[0].hardness=20 MPa", "output.fields=[]"]).unwrap();
-    assert_eq!((case.grid.cells(), case.hardness), ([64, 32], 20e6));
+    assert_eq!((case.conditions.grid.cells(), case.conditions.hardness), ([64, 32], 20e6));
     assert!(case.output.fields.is_empty() && case.source.contains("cells = [64,32]"));
 
     let error = &with(&["body.0.hardnes=20 MPa"]).unwrap_err().errors[0];

@@ -60,15 +60,15 @@ fn layers_become_a_stack_from_the_surface_down() {
     assert_eq!((below.thickness, below.poisson, below.interface), (5e-3, 0.4, Interface::Slip));
     assert!((below.shear / top.shear - 2.0).abs() < 1e-12);
     // C(0) = (1 - nu)/(2 G) of the surface.
-    assert!((case.creep.instantaneous / (0.51 / 10e6) - 1.0).abs() < 1e-14);
-    assert_eq!(case.hardness, 10e6);
+    assert!((case.conditions.creep.instantaneous / (0.51 / 10e6) - 1.0).abs() < 1e-14);
+    assert_eq!(case.conditions.hardness, 10e6);
     let names: Vec<&str> = case.bodies.iter().map(|body| body.name.as_str()).collect();
     assert_eq!(names, ["tread, layer 1", "tread, layer 2"]);
     let report = case.describe().layers.unwrap();
     assert_eq!(report.bodies, ["10 mm bonded to 5 mm slipping on a rigid base"]);
     // The longest wave is carried by the base, the shortest sees the top layer.
     let [longest, shortest] = report.waves.map(|wave| wave.instantaneous_modulus.unwrap());
-    assert!(longest > 1.3 * shortest && (shortest * case.creep.instantaneous - 1.0).abs() < 1e-3);
+    assert!(longest > 1.3 * shortest && (shortest * case.conditions.creep.instantaneous - 1.0).abs() < 1e-3);
     let simulation = case.simulation().unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!(simulation.kernel.symbol(100.0, 0.0), layers.symbol(100.0, 0.0));
 }
@@ -82,7 +82,7 @@ fn a_base_of_the_same_law_and_a_second_body_may_be_half_spaces() {
     let [coated, plain] = case.layers.as_ref().unwrap().stacks() else { panic!("two bodies") };
     assert!(matches!(coated.base(), Base::HalfSpace { poisson: 0.3, .. }) && coated.layers().len() == 2);
     assert!(matches!(plain.base(), Base::HalfSpace { poisson: 0.2, .. }) && plain.layers().is_empty());
-    assert!((case.creep.instantaneous / (0.51 / 10e6 + 0.8 / 100e6) - 1.0).abs() < 1e-14);
+    assert!((case.conditions.creep.instantaneous / (0.51 / 10e6 + 0.8 / 100e6) - 1.0).abs() < 1e-14);
     let names: Vec<&str> = case.bodies.iter().map(|body| body.name.as_str()).collect();
     assert_eq!(names, ["tread, layer 1", "tread, layer 2", "tread, base", "body 2"]);
 }

@@ -72,8 +72,10 @@ fn a_standard_linear_solid_is_a_zener_solid() {
         )
     };
     let zener = r#"{ model = "zener", shear = "4 MPa", shear_kelvin = 1.3333333333333333e6, retardation_time = "8 s" }"#;
-    let (found, known) =
-        (case(&body(&solid(", shear_instantaneous = \"4 MPa\"")), "").creep, case(&body(zener), "").creep);
+    let (found, known) = (
+        case(&body(&solid(", shear_instantaneous = \"4 MPa\"")), "").conditions.creep,
+        case(&body(zener), "").conditions.creep,
+    );
     for t in [0.0, 0.5, 8.0, 1e3] {
         // Rounding of the conversion.
         assert!((found.value(t) / known.value(t) - 1.0).abs() < 1e-13, "{t}");
@@ -129,7 +131,7 @@ fn fractional_models_keep_their_error_over_the_run() {
     ] {
         let case = case(&body(text), "");
         for t in [10.0, 25.0, 63.0, 100.0] {
-            let error = (case.creep.value(t) / (0.25 * model.creep(t)) - 1.0).abs();
+            let error = (case.conditions.creep.value(t) / (0.25 * model.creep(t)) - 1.0).abs();
             assert!(error <= 1.05 * tolerance, "{text}: {error:e} at {t}");
         }
         let description = case.describe();
@@ -137,7 +139,7 @@ fn fractional_models_keep_their_error_over_the_run() {
         // From the smallest step to the end.
         assert_eq!(report.window, Some([10.0, 100.0]), "{text}");
         assert!(report.error.unwrap() <= tolerance && report.terms > 1, "{report:?}");
-        assert!(case.creep.instantaneous > 0.0 && description.warnings.is_empty());
+        assert!(case.conditions.creep.instantaneous > 0.0 && description.warnings.is_empty());
     }
     // Half the time per step on the clock at a_T = 2: a window of half the times.
     let shifted = format!(
@@ -147,14 +149,14 @@ fn fractional_models_keep_their_error_over_the_run() {
     let case = case(&body(&shifted), "");
     let [first, last] = case.describe().materials[0].window.unwrap();
     assert!((first - 5.0).abs() < 1e-12 && (last - 50.0).abs() < 1e-12, "{first} {last}");
-    assert!((case.creep.value(80.0) / (0.25 * springpot.creep(40.0)) - 1.0).abs() < 1.05e-3);
+    assert!((case.conditions.creep.value(80.0) / (0.25 * springpot.creep(40.0)) - 1.0).abs() < 1.05e-3);
 }
 
 #[test]
 fn a_prony_table_relative_to_the_relaxed_modulus() {
     let ratio = r#"{ model = "prony", modulus = "young", equilibrium = "1 MPa", terms = [{ ratio = 2, time = "5 s" }] }"#;
     let absolute = r#"{ model = "prony", modulus = "young", equilibrium = "1 MPa", terms = [{ modulus = "2 MPa", time = "5 s" }] }"#;
-    assert_eq!(case(&body(ratio), "").creep, case(&body(absolute), "").creep);
+    assert_eq!(case(&body(ratio), "").conditions.creep, case(&body(absolute), "").conditions.creep);
 }
 
 #[test]
@@ -178,7 +180,7 @@ fn tables_of_relaxation_and_creep_become_materials() {
         for t in [0.0, 0.1, 3.0, 80.0, 1e3] {
             let wanted = 0.75 * creep.value(t);
             // Nine digits in the file; the fit ends at residuals of 1e-7.
-            assert!((case.creep.value(t) / wanted - 1.0).abs() < 1e-5, "{material} {t}");
+            assert!((case.conditions.creep.value(t) / wanted - 1.0).abs() < 1e-5, "{material} {t}");
         }
         let report = &case.describe().materials[0];
         assert_eq!((report.terms, report.points), (1, Some(60)), "{report:?}");
@@ -205,7 +207,7 @@ fn dma_sweeps_at_several_temperatures_become_one_material() {
     let check = |material: &str, tolerance: f64| {
         let case = case_in(dir.path(), &body(material), "");
         for t in [0.1, 3.0, 80.0] {
-            let error = (case.creep.value(t) / (0.75 * creep.value(t)) - 1.0).abs();
+            let error = (case.conditions.creep.value(t) / (0.75 * creep.value(t)) - 1.0).abs();
             assert!(error < tolerance, "{material} {t}: {error}");
         }
         case.describe().materials[0].clone()
@@ -231,7 +233,7 @@ fn the_loss_factor_stands_for_the_loss_modulus() {
     let dir = files(&[("tan.csv", &text)]);
     let case = case_in(dir.path(), &body(r#"{ model = "dma", path = "tan.csv", modulus = "young" }"#), "");
     let wanted = 0.75 * solid().to_creep().unwrap().value(7.0);
-    assert!((case.creep.value(7.0) / wanted - 1.0).abs() < 1e-5);
+    assert!((case.conditions.creep.value(7.0) / wanted - 1.0).abs() < 1e-5);
 }
 
 /// A Zener solid with a shift; more keys.
@@ -254,8 +256,8 @@ fn a_constant_temperature_stretches_the_times() {
         (shifted(""), kelvin, 35.0),
     ] {
         let case = case(&body(&material), more);
-        assert!(case.thermal.is_empty());
-        assert!((case.creep.value(3.0) / at(celsius) - 1.0).abs() < 1e-12, "{material} {more}");
+        assert!(case.conditions.thermal.is_empty());
+        assert!((case.conditions.creep.value(3.0) / at(celsius) - 1.0).abs() < 1e-12, "{material} {more}");
         let factor = case.describe().materials[0].shift_factor.unwrap();
         assert!((factor / wlf().factor(celsius + 273.15).unwrap() - 1.0).abs() < 1e-12);
     }
@@ -268,7 +270,7 @@ fn a_vertical_shift_divides_the_moduli_at_a_constant_temperature() {
             .replace("reference = \"20 °C\" }", &format!("reference = \"20 °C\", vertical = {vertical} }}"))
     };
     let warm = ", temperature = \"80 °C\"";
-    let plain = case(&body(&shifted(warm)), "").creep;
+    let plain = case(&body(&shifted(warm)), "").conditions.creep;
     let volume = 1.0 + 6e-4 * 60.0;
     for (vertical, b) in [
         ("\"density\"", 293.15 / 353.15),
@@ -278,13 +280,19 @@ fn a_vertical_shift_divides_the_moduli_at_a_constant_temperature() {
         let case = case(&body(&with(vertical, warm)), "");
         for t in [0.0, 1e-3, 3.0, 100.0] {
             // Moduli over b_T: compliances times b_T.
-            assert!((case.creep.value(t) / (b * plain.value(t)) - 1.0).abs() < 1e-12, "{vertical} {t}");
+            assert!(
+                (case.conditions.creep.value(t) / (b * plain.value(t)) - 1.0).abs() < 1e-12,
+                "{vertical} {t}"
+            );
         }
         let report = &case.describe().materials[0];
         assert!((report.vertical_factor.unwrap() / b - 1.0).abs() < 1e-12 && report.vertical.is_some());
     }
     // At the reference there is no change.
-    assert_eq!(case(&body(&with("\"density\"", "")), "").creep, case(&body(&shifted("")), "").creep);
+    assert_eq!(
+        case(&body(&with("\"density\"", "")), "").conditions.creep,
+        case(&body(&shifted("")), "").conditions.creep
+    );
     let refused = |material: &str, more: &str, words: &str| {
         let Err(errors) = Case::parse(&text(&body(material), more), Path::new(""), &[]) else {
             panic!("accepted: {material} {more}")
@@ -306,11 +314,11 @@ fn a_temperature_history_gives_each_body_its_clock() {
     let elastic = r#"{ model = "elastic", young = "70 GPa" }"#;
     let history = "[temperature]\nhistory = { kind = \"file\", path = \"t.csv\" }\n";
     let case = case_in(dir.path(), &(body(&shifted("")) + &body(other)), history);
-    assert_eq!(case.thermal.len(), 2);
-    assert_eq!(case.creep.instantaneous, 0.0);
+    assert_eq!(case.conditions.thermal.len(), 2);
+    assert_eq!(case.conditions.creep.instantaneous, 0.0);
     let arrhenius = Shift::Arrhenius { activation_energy: 120e3, reference: 293.15 };
     // From 60 s on 20 °C is the reference of both.
-    for (body, law) in case.thermal.iter().zip([wlf(), arrhenius]) {
+    for (body, law) in case.conditions.thermal.iter().zip([wlf(), arrhenius]) {
         assert!((body.clock.elapsed(60.0, 100.0) - 40.0).abs() < 1e-12);
         assert!(body.clock.value(1.0) < 1.001 / law.factor(283.15).unwrap() + 0.1);
     }
@@ -319,8 +327,8 @@ fn a_temperature_history_gives_each_body_its_clock() {
 
     // An elastic counter-body has no clock; the break of the temperature is a step.
     let case = case_in(dir.path(), &(body(&shifted("")) + &body(elastic)), history);
-    assert_eq!((case.thermal.len(), case.creep.terms.len()), (1, 0));
-    assert!(case.creep.instantaneous > 0.0);
+    assert_eq!((case.conditions.thermal.len(), case.conditions.creep.terms.len()), (1, 0));
+    assert!(case.conditions.creep.instantaneous > 0.0);
     let ramp = "[temperature]\nhistory = { kind = \"ramp\", from = \"10 °C\", to = \"30 °C\", duration = \"35 s\" }\n";
     let case = case_in(dir.path(), &body(&shifted("")), ramp);
     let mut march = March::new(case.simulation().unwrap()).unwrap();
@@ -341,7 +349,7 @@ fn a_bulk_modulus_goes_with_every_model() {
     assert_eq!(case.bodies[0].lateral, Lateral::BulkModulus(4e9));
     // C(0) = (1/4) [1/G + 3/(3 B + G)]
     let wanted = 0.25 * (1e-6 + 3.0 / (12e9 + 1e6));
-    assert!((case.creep.instantaneous / wanted - 1.0).abs() < 1e-12);
+    assert!((case.conditions.creep.instantaneous / wanted - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -706,7 +714,10 @@ fn shift_factors_stand_in_a_file_and_one_modulus_is_fitted() {
         let case = case_in(dir.path(), &body(material), "");
         for t in [0.1, 3.0, 80.0] {
             // Nine digits in the file, as with the law itself.
-            assert!((case.creep.value(t) / (0.75 * creep.value(t)) - 1.0).abs() < 1e-5, "{material} {t}");
+            assert!(
+                (case.conditions.creep.value(t) / (0.75 * creep.value(t)) - 1.0).abs() < 1e-5,
+                "{material} {t}"
+            );
         }
         let contradictions = case.findings.iter().filter(|finding| finding.text.contains("Kramers-Kronig"));
         assert_eq!(contradictions.count(), findings, "{material}");

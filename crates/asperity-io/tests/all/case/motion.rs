@@ -44,8 +44,12 @@ fn the_body_that_stands_still_in_the_frame_has_relaxed() {
     let case = Case::parse(ROLLER, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}"));
     // C = 1/(4 G) where incompressible: that of the rubber at once, and that of the belt relaxed.
     let expected = 1.0 / 40e6 + 1.0 / 80e6 + 1.0 / 8e6;
-    assert!((case.creep.instantaneous / expected - 1.0).abs() < 1e-14, "{:?}", case.creep);
-    assert_eq!(case.creep.terms.len(), 1);
+    assert!(
+        (case.conditions.creep.instantaneous / expected - 1.0).abs() < 1e-14,
+        "{:?}",
+        case.conditions.creep
+    );
+    assert_eq!(case.conditions.creep.terms.len(), 1);
 }
 
 #[test]

@@ -108,8 +108,8 @@ impl Error {
         value: impl std::fmt::Display,
         expected: impl Into<String>,
     ) -> Self {
-        let (what, expected) = (what.into(), expected.into());
-        Error::Invalid { parameter: String::new(), what, value: value.to_string(), expected }
+        let (what, value, expected) = (what.into(), short(&value.to_string()), short(&expected.into()));
+        Error::Invalid { parameter: String::new(), what, value, expected }
     }
 
     /// The same error, for the argument `outer` or one inside it.
@@ -184,6 +184,20 @@ pub(crate) fn non_negative(what: &str, value: f64, unit: &str) -> Result<f64> {
 /// A temperature \[K\] to a hundredth: "293.15 K".
 pub(crate) fn kelvin(temperature: f64) -> String {
     format!("{} K", (100.0 * temperature).round() / 100.0)
+}
+
+/// The text with numbers of very many digits written with a power of ten.
+fn short(text: &str) -> String {
+    const LONGEST: usize = 24;
+    let word = |word: &str| match word.parse::<f64>() {
+        Ok(number) if word.len() > LONGEST && number.is_finite() => format!("{number:e}"),
+        _ => word.to_owned(),
+    };
+    if text.len() <= LONGEST {
+        text.to_owned()
+    } else {
+        text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+    }
 }
 
 /// A number to four digits, as short as it can be written.

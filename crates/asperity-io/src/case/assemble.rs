@@ -48,17 +48,15 @@ pub fn bodies(
 ) -> Result<Pair, Vec<CaseError>> {
     let checks = Checks::new(text, Path::new(""));
     let parts = body::parts(&checks.at("body"), bodies);
-    let samples: Vec<Option<Sample>> =
-        parts.iter().map(|part| part.material.sample(&part.at.key("material"))).collect();
-    let temperatures = temperatures(&checks, temperature, &samples);
+    let temperatures = temperatures(&checks, temperature, &parts);
     let points = temperatures.iter().flatten().map(|read| read.points.as_slice()).next();
     let instants = |_: &[f64]| plan.clone();
     let course = warmth::Course { end: None, plan: &instants, temperatures: points, beyond: 1.0 };
-    let pair = pair::pair(&checks.at("body"), bodies, &parts, &samples, &course);
+    let pair = pair::pair(&checks.at("body"), bodies, &parts, &course);
     match pair {
         Some(pair) if !checks.any() => Ok(pair),
         _ => Err({
-            drop((parts, samples));
+            drop(parts);
             checks.into_errors()
         }),
     }
@@ -68,11 +66,11 @@ pub fn bodies(
 fn temperatures(
     checks: &Checks<'_>,
     temperature: Option<&Temperature>,
-    samples: &[Option<Sample>],
+    parts: &[body::Part<'_>],
 ) -> Optional<Temperatures> {
     optional(temperature, |temperature| {
         let depends = |sample: &Sample| sample.shift.is_some() && sample.temperature.is_none();
-        let matters = samples.iter().any(|sample| sample.as_ref().is_none_or(depends));
+        let matters = parts.iter().any(|part| part.sample.as_ref().is_none_or(depends));
         temperature.temperatures(&checks.at("temperature"), matters)
     })
 }
@@ -96,12 +94,11 @@ impl Document {
         let (grid, line, surfaces) = self.gap(checks);
         let boundary = self.domain.boundary;
         let parts = body::parts(&at("body"), &self.body);
-        let samples: Vec<Option<Sample>> =
-            parts.iter().map(|part| part.material.sample(&part.at.key("material"))).collect();
-        let temperatures = temperatures(checks, self.temperature.as_ref(), &samples);
+        let temperatures = temperatures(checks, self.temperature.as_ref(), &parts);
+        let samples = || parts.iter().filter_map(|part| part.sample.as_ref());
         let points = temperatures.iter().flatten().map(|read| read.points.as_slice()).next();
         let first_step = |end: f64, course: Option<&Course>| {
-            let shortest = samples.iter().flatten().map(|sample| sample.shortest(points, end));
+            let shortest = samples().map(|sample| sample.shortest(points, end));
             time::first_step(shortest.fold(f64::INFINITY, f64::min), course)
         };
         let loading = self.load.programme(&at("load"), line, &first_step);
@@ -112,7 +109,7 @@ impl Document {
         let motion = self.motion.as_ref().and_then(|motion| motion.moving(&at("motion"), &self.surface));
         let swept = motion.as_ref().and_then(Motion::swept);
         let times = match (&motion, &grid, &self.time) {
-            (Some(motion), Some(grid), _) if swept.is_some() => motion.times(grid),
+            (Some(motion), Some(grid), _) if swept.is_some() => motion.times(&at("motion"), grid),
             (.., Some(times)) => {
                 let course =
                     programme.and_then(|programme| programme.stages.first()).map(|stage| &stage.course);
@@ -155,7 +152,7 @@ impl Document {
         };
         let hardness = self.hardness(checks, grid.as_ref());
         let pair = match &temperatures {
-            Ok(_) => pair::pair(&at("body"), &self.body, &parts, &samples, &course),
+            Ok(_) => pair::pair(&at("body"), &self.body, &parts, &course),
             Err(()) => None,
         };
         let pair = pair.map(|mut pair| {
@@ -198,7 +195,7 @@ impl Document {
             });
 
         let (hardness, (_, histories), pair) = (hardness?, loading?, pair?);
-        let mut files: Vec<_> = samples.iter().flatten().filter_map(Sample::file).collect();
+        let mut files: Vec<_> = samples().filter_map(Sample::file).collect();
         files.extend(temperatures.iter().flatten().filter_map(|read| read.file.clone()));
         files.extend(hardness.files);
         files.extend(histories);

@@ -82,13 +82,10 @@ impl CostEstimate {
 
 /// A part on the coarse grid.
 fn sample(part: Part, fine: &Grid, every: usize) -> Option<Part> {
-    let heights = match part {
-        Part::Shape { .. } => return Some(part),
-        Part::SelfAffine(surface) => surface.heights(fine).ok()?,
-        Part::Synthesis(surface) => surface.heights(fine).ok()?,
-        Part::Heights { heights, .. } => heights,
-    };
-    Some(Part::Heights { name: "heights".into(), heights: sampled(&heights, every) })
+    match part.heights(fine).ok()? {
+        None => Some(part),
+        Some(heights) => Some(Part::Heights { name: "heights".into(), heights: sampled(&heights, every) }),
+    }
 }
 
 /// One of so many values along each axis.

@@ -5,7 +5,6 @@ use asperity::layer::{Base, Interface, Layered, Stack};
 use asperity::material::{Body, Creep, Shift, VerticalShift};
 use asperity::quantities::Quantity;
 use asperity::sliding::Steady;
-use asperity::surface::Part;
 use asperity::{Axis, Course, History, Simulation};
 use serde::Serialize;
 
@@ -345,8 +344,6 @@ fn preparation(surface: &Surface) -> Option<Preparation> {
 fn name(surface: &Surface) -> String {
     match surface {
         Surface::File(file) => file.path.display().to_string(),
-        Surface::Part(Part::Shape { shape, .. }) => shape.name().to_owned(),
-        Surface::Part(Part::SelfAffine(_) | Part::Synthesis(_)) => "self-affine".to_owned(),
-        Surface::Part(Part::Heights { name, .. }) => name.clone(),
+        Surface::Part(part) => part.name().to_owned(),
     }
 }

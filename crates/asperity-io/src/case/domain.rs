@@ -5,6 +5,7 @@ use asperity::{Boundary, Grid};
 use super::keys::*;
 use super::list::wrong_number;
 use super::measured::Measured;
+use crate::Code;
 use crate::resources::check_memory;
 
 /// Bytes per cell of the smallest run: transform, solver, fields.
@@ -12,7 +13,7 @@ const BYTES_PER_CELL: u64 = 200;
 
 /// A rectangle of equal cells; or a line of cells, with one value in `cells` and `size`: a line contact in plane strain, in which
 /// nothing changes along y.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
     /// Number of cells along x and y; any numbers, also not square and not powers of two. One number for a line contact.
@@ -53,10 +54,7 @@ impl Domain {
             (Some(cells), Some(size), _) => (cells, size, line == Some(true)),
             (_, _, [one]) => {
                 let file = (*one)?;
-                let prepared = match file.prepared(cells) {
-                    Ok(prepared) => prepared,
-                    Err(reason) => return at.sibling(&file.key).fault(reason, "", ""),
-                };
+                let prepared = at.sibling(&file.key).data(file.prepared(cells), "a surface with heights")?;
                 let of_file = prepared.surface.grid();
                 if line.is_some_and(|line| line != of_file.is_line()) {
                     let given = if self.size.is_some() { "size" } else { "cells" };
@@ -104,7 +102,12 @@ impl Domain {
             Ok(()) => Some(()),
             Err(message) => {
                 let help = format!("take fewer cells{or}");
-                self.place_of_cells(at).fault(message, "a problem that fits into memory", &help)
+                self.place_of_cells(at).refuse(
+                    Code::TooLarge,
+                    message,
+                    "a problem that fits into memory",
+                    &help,
+                )
             }
         }
     }

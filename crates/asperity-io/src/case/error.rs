@@ -3,12 +3,16 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::Code;
+
 /// One fault of a case file.
 ///
 /// `message` is a sentence by itself; the other fields serve programs and renderers that point into the
 /// source (the `span` counts bytes of [`CaseErrors::source`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseError {
+    /// What kind of fault it is.
+    pub code: Code,
     /// Path of the key ("body\[0\].poisson"); empty for the file as a whole.
     pub key: String,
     /// Where in the source.
@@ -65,8 +69,15 @@ impl std::error::Error for CaseErrors {}
 
 impl CaseErrors {
     /// Errors that concern no place in the text: `message`, and what to do.
-    pub(crate) fn without_place(name: &str, message: String, expected: &str, help: Option<String>) -> Self {
+    pub(crate) fn without_place(
+        code: Code,
+        name: &str,
+        message: String,
+        expected: &str,
+        help: Option<String>,
+    ) -> Self {
         let error = CaseError {
+            code,
             key: String::new(),
             span: None,
             line: None,

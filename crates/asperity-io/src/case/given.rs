@@ -24,6 +24,7 @@ use super::read::Reader;
 use super::shift::Shift;
 use super::text::Text;
 use super::{Case, CaseErrors, MaterialReport, assemble};
+use crate::Code;
 use crate::curve::{ShiftRequest, VerticalRequest};
 
 /// Arrays of shape (nx, ny) by their names.
@@ -136,14 +137,14 @@ pub fn shift(keys: Table) -> Result<(ShiftRequest, VerticalRequest), CaseErrors>
 }
 
 /// What `make` makes of these keys as a text.
-fn from_keys<T>(
+pub(super) fn from_keys<T>(
     keys: &Table,
     arrays: &Arrays,
     make: impl FnOnce(&Text<'_>) -> Result<T, Vec<CaseError>>,
 ) -> Result<T, CaseErrors> {
     let name = "case";
     let source = toml::to_string(keys).map_err(|error| {
-        CaseErrors::without_place(name, error.to_string(), "keys and values of a case file", None)
+        CaseErrors::without_place(Code::Data, name, error.to_string(), "keys and values of a case file", None)
     })?;
     let made = Text::parse(&source).and_then(|text| make(&Text { arrays: Some(arrays), ..text }));
     made.map_err(|errors| CaseErrors { name: name.to_owned(), source, errors })

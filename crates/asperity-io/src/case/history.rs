@@ -175,7 +175,7 @@ impl Kind {
             Kind::Approach | Kind::Position => value.resolve::<dimension::Length, Finite>().map(|v| v.get()),
             Kind::Velocity => value.resolve::<dimension::Velocity, Finite>().map(|v| v.get()),
         };
-        si.map_err(|QuantityError { expected, help }| {
+        si.map_err(|QuantityError { code, expected, help }| {
             let help = match (self, help) {
                 (Kind::LoadPerLength, Some(help)) if help.contains("unit of a force;") => {
                     format!("{help}; the domain is a line of cells, so the load is per length along y")
@@ -188,9 +188,9 @@ impl Kind {
                 (kind, None) if kind.presses() => {
                     "there is no adhesion; to pull the bodies apart prescribe the approach".to_owned()
                 }
-                (_, help) => return QuantityError { expected, help },
+                (_, help) => return QuantityError { code, expected, help },
             };
-            QuantityError { expected, help: Some(help) }
+            QuantityError { code, expected, help: Some(help) }
         })
     }
 }

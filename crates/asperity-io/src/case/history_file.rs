@@ -30,13 +30,9 @@ pub fn of_key(
 ) -> Option<(Vec<(f64, f64)>, Origin)> {
     let full = at.file(path)?;
     let read = text(&full).and_then(|(text, digest)| Ok((parse(&text, resolve)?, digest)));
-    match read {
-        Ok((points, digest)) => Some((points, (path.to_owned(), digest))),
-        Err(reason) => {
-            let message = format!("{}: {reason}", full.display());
-            at.fault(message, &format!("a file of two columns, time and {value}"), "")
-        }
-    }
+    let read = read.map_err(|reason| format!("{}: {reason}", full.display()));
+    let (points, digest) = at.data(read, &format!("a file of two columns, time and {value}"))?;
+    Some((points, (path.to_owned(), digest)))
 }
 
 /// The text of the file and its MD5: another file has another one.

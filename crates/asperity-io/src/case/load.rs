@@ -8,7 +8,7 @@ use super::keys::*;
 use super::time::{Spacing, Steps, Times};
 
 /// What presses the bodies together.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
     /// The prescribed quantity; with `history`.

@@ -106,6 +106,7 @@ pub use schema::schema;
 pub use specimen::{Specimen, specimens};
 pub use words::nearest;
 
+use crate::Code;
 use crate::leakage::Leak;
 use crate::stress::StressPlan;
 use document::Document;
@@ -164,8 +165,9 @@ impl Case {
     /// [`CaseErrors`] where the file cannot be read, or with what is wrong in it.
     pub fn read(path: &Path, overrides: &[String]) -> Result<Case, CaseErrors> {
         let name = path.display().to_string();
-        let text = file_text(path)
-            .map_err(|(reason, help)| CaseErrors::without_place(&name, reason, "a case file", Some(help)))?;
+        let text = file_text(path).map_err(|(reason, help)| {
+            CaseErrors::without_place(Code::File, &name, reason, "a case file", Some(help))
+        })?;
         let dir = path.parent().unwrap_or(Path::new(""));
         let stem = path.file_stem().map_or("result".into(), |stem| stem.to_string_lossy());
         Case::from_text(&name, text, dir, format!("{stem}.zarr").into(), overrides)
@@ -230,7 +232,7 @@ impl Case {
     }
 
     fn gap_of(&self, parts: &[Part]) -> Result<Array2<f64>, CaseErrors> {
-        undeformed_gap(&self.conditions.grid, parts).map_err(|error| self.refused("surface", error))
+        undeformed_gap(&self.conditions.grid, parts).map_err(|error| self.refused("", error))
     }
 
     /// The simulation of the case, checked: the gap is built here.
@@ -370,7 +372,7 @@ fn overridden(name: &str, source: String, overrides: &[String]) -> Result<(Strin
             Ok(change) => keys.push(change.key),
             Err(reason) => {
                 let message = format!("cannot set {reason}");
-                return Err(CaseErrors::without_place(name, message, "KEY=VALUE", None));
+                return Err(CaseErrors::without_place(Code::Syntax, name, message, "KEY=VALUE", None));
             }
         }
     }
@@ -381,7 +383,7 @@ fn overridden(name: &str, source: String, overrides: &[String]) -> Result<(Strin
 fn file_text(path: &Path) -> Result<String, (String, String)> {
     let file = crate::resources::open(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => {
-            ("there is no such file".to_owned(), "`asperity new TEMPLATE` writes a starter case".to_owned())
+            ("the file does not exist".to_owned(), "`asperity new TEMPLATE` writes a starter case".to_owned())
         }
         std::io::ErrorKind::IsADirectory if path.join("zarr.json").exists() => (
             "it is a result, not a case file".to_owned(),

@@ -12,6 +12,7 @@ use super::keys::*;
 use super::plan::{Output, Rows};
 use super::time;
 use super::words::{nearest, number};
+use crate::Code;
 use crate::store::FieldKind;
 
 /// How each step is solved.
@@ -80,7 +81,7 @@ impl Scalar for Wanted {
                 Some(near) => format!("did you mean \"{near}\"?"),
                 None => format!("the quantities: {}", Quantity::ALL.map(Quantity::name).join(", ")),
             };
-            QuantityError { expected: Self::expected(), help: Some(help) }
+            QuantityError { code: Code::UnknownKind, expected: Self::expected(), help: Some(help) }
         })
     }
 }

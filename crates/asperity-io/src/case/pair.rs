@@ -83,26 +83,25 @@ pub fn pair(
     list: &Place<'_>,
     bodies: &[body::Body],
     parts: &[Part<'_>],
-    samples: &[Option<Sample>],
     course: &Course<'_>,
 ) -> Option<Pair> {
     if bodies.len() > 2 {
-        return list.item(2).wrong("one of at most two bodies", "a missing second body is rigid");
+        let help = "write a coating as [[body.layer]] of its body; a rigid body is left out";
+        return list.item(2).fault(
+            "a contact has one or two bodies, and this is the third",
+            "two bodies",
+            help,
+        );
     }
     let warmths: Vec<Option<Warmth>> = parts
         .iter()
-        .zip(samples)
-        .map(|(part, sample)| part.at.key("material").core(warmth(sample.as_ref()?, course)))
+        .map(|part| part.at.key("material").core(warmth(part.sample.as_ref()?, course)))
         .collect();
     let clocks = warmths.iter().flatten().filter_map(Warmth::clock);
     let end = course.end.unwrap_or(0.0);
     let plan = (course.plan)(&clocks.flat_map(|clock| clock.breaks(end)).collect::<Vec<f64>>());
-    let made: Vec<_> = parts
-        .iter()
-        .zip(samples)
-        .zip(warmths)
-        .map(|((part, sample), warmth)| made(part, sample.as_ref(), warmth, &plan, course))
-        .collect();
+    let made: Vec<_> =
+        parts.iter().zip(warmths).map(|(part, warmth)| made(part, warmth, &plan, course)).collect();
     let made = made.into_iter().collect::<Option<Vec<Made>>>()?;
     let mut pair = Pair {
         bodies: Vec::new(),
@@ -141,15 +140,9 @@ pub fn pair(
     Some(pair)
 }
 
-fn made(
-    part: &Part<'_>,
-    sample: Option<&Sample>,
-    warmth: Option<Warmth>,
-    plan: &Plan,
-    course: &Course<'_>,
-) -> Option<Made> {
+fn made(part: &Part<'_>, warmth: Option<Warmth>, plan: &Plan, course: &Course<'_>) -> Option<Made> {
     let lateral = part.lateral()?;
-    let (sample, warmth, name) = (sample?, warmth?, part.name.clone());
+    let (sample, warmth, name) = (part.sample.as_ref()?, warmth?, part.name.clone());
     let window = warmth.window(plan);
     let place = part.at.key("material");
     let (material, report, outside) =

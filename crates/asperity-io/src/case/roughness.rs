@@ -143,10 +143,8 @@ impl Distribution {
                 // Mean and rms come from the roughness: neither unit nor size matters.
                 let options =
                     ReadOptions { size: Some([1.0, 1.0]), height_unit: Some(1.0), ..ReadOptions::default() };
-                let heights = match read(&full, &options) {
-                    Ok(surface) => at.core(level(surface.heights.view(), Level::Plane))?,
-                    Err(error) => return at.fault(error, "a surface with heights", ""),
-                };
+                let surface = at.data(read(&full, &options), "a surface with heights")?;
+                let heights = at.core(level(surface.heights.view(), Level::Plane))?;
                 Some(HeightDistribution::Samples(heights.into_iter().filter(|z| z.is_finite()).collect()))
             }
             (Some(_), ..) => at.fault(

@@ -106,12 +106,8 @@ impl Shift {
                     None => material::Shift::Table { points: points.iter().flatten().map(point).collect() },
                     Some(path) => {
                         let at = at.key("path");
-                        match curve::read_shift_table(&at.file(path)?) {
-                            Ok(shift) => shift,
-                            Err(error) => {
-                                return at.fault(error, "a table of temperatures and shift factors", "");
-                            }
-                        }
+                        let read = curve::read_shift_table(&at.file(path)?);
+                        at.data(read, "a table of temperatures and shift factors")?
                     }
                 }
             }

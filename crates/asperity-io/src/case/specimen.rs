@@ -8,6 +8,7 @@ use asperity::material::{Lateral, Material, Shift};
 use super::place::Checks;
 use super::text::Text;
 use super::{Case, CaseErrors, MaterialReport, document, file_text, overridden, warmth};
+use crate::Code;
 
 /// A material with its name and where it comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +51,13 @@ pub fn specimens(
 ) -> Result<Vec<Specimen>, CaseErrors> {
     let name = path.display().to_string();
     let text = file_text(path).map_err(|(reason, help)| {
-        CaseErrors::without_place(&name, reason, "a case file, or a file with a material", Some(help))
+        CaseErrors::without_place(
+            Code::File,
+            &name,
+            reason,
+            "a case file, or a file with a material",
+            Some(help),
+        )
     })?;
     let (source, _) = overridden(&name, text, overrides)?;
     let alone = Text::parse(&source)

@@ -101,7 +101,7 @@ impl Scalar for Which {
     }
 
     fn from_whole(number: i64) -> Result<Self, QuantityError> {
-        usize::try_from(number).map(Which::Number).map_err(|_| Self::error())
+        usize::try_from(number).map(Which::Number).map_err(|_| Self::out_of_range())
     }
 }
 

@@ -22,7 +22,7 @@ impl Simulation {
     /// [`Error::Invalid`], [`Error::Infeasible`].
     pub fn validate(&self) -> Result<()> {
         self.validate_gap()?;
-        self.columns()?;
+        self.columns().map_err(|error| error.of("output"))?;
         self.validate_kernel()?;
         self.motion.iter().try_for_each(|motion| motion.validate(self))?;
         self.quantities.list.iter().try_for_each(|quantity| self.allows(*quantity))?;
@@ -39,6 +39,7 @@ impl Simulation {
         let instants = self.plan().instants;
         let mut checks = vec![
             self.validate_line(),
+            self.quantities.validate(self.is_capped()).map_err(|error| error.of("output")),
             self.validate_plasticity(),
             self.validate_scheme(),
             self.validate_layers(),
@@ -87,9 +88,14 @@ impl Simulation {
         self.solver.validate()
     }
 
+    /// Whether a hardness limits the pressure.
+    fn is_capped(&self) -> bool {
+        self.hardness.is_finite() || self.hardness_map.is_some()
+    }
+
     fn validate_plasticity(&self) -> Result<()> {
         require(
-            self.plasticity == Plasticity::Cap || self.hardness.is_finite() || self.hardness_map.is_some(),
+            self.plasticity == Plasticity::Cap || self.is_capped(),
             "hardness",
             "infinite",
             "finite where flattening stays (plasticity \"accumulate\"). No body has one; give a body its `hardness`",

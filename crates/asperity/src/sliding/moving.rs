@@ -59,12 +59,7 @@ impl MovingGap {
                         .for_each(|((i, j), h)| *h += shape.gap(grid.x(i) - cx, grid.y(j) - cy));
                 }
                 (part, moves) => {
-                    let own = match part {
-                        Part::SelfAffine(surface) => surface.heights(grid)?,
-                        Part::Synthesis(surface) => surface.heights(grid)?,
-                        Part::Heights { heights, .. } => heights.clone(),
-                        Part::Shape { .. } => continue,
-                    };
+                    let Some(own) = part.heights(grid)? else { continue };
                     if *moves {
                         heights = Some(heights.map_or_else(|| own.clone(), |sum| sum + &own));
                     } else {

@@ -29,6 +29,30 @@ pub enum Part {
     },
 }
 
+impl Part {
+    /// "sphere", "self-affine", the name of the heights.
+    pub fn name(&self) -> &str {
+        match self {
+            Part::Shape { shape, .. } => shape.name(),
+            Part::SelfAffine(_) | Part::Synthesis(_) => "self-affine",
+            Part::Heights { name, .. } => name,
+        }
+    }
+
+    /// The heights of a rough part at the cells of the grid \[m\]; `None` for a smooth shape.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the roughness does not fit the grid.
+    pub fn heights(&self, grid: &Grid) -> Result<Option<Array2<f64>>> {
+        match self {
+            Part::Shape { .. } => Ok(None),
+            Part::SelfAffine(surface) => surface.heights(grid).map(Some),
+            Part::Synthesis(surface) => surface.heights(grid).map(Some),
+            Part::Heights { heights, .. } => Ok(Some(heights.clone())),
+        }
+    }
+}
+
 /// The undeformed gap h0 at the cell centres \[m\], shape (nx, ny), smallest value 0;
 /// `+INFINITY` in the cells that a flat punch keeps from touching.
 ///
@@ -48,8 +72,8 @@ pub enum Part {
 /// overflows, or no cell can touch. Without any part the gap is 0 (flat on flat).
 pub fn undeformed_gap(grid: &Grid, parts: &[Part]) -> Result<Array2<f64>> {
     let mut gap = Array2::zeros(grid.shape());
-    for part in parts {
-        add(&mut gap, grid, part)?;
+    for (n, part) in parts.iter().enumerate() {
+        add(&mut gap, grid, part).map_err(|error| error.of(&format!("surface[{n}]")))?;
     }
     let lowest = gap.fold(f64::INFINITY, |low, h| low.min(*h));
     if !lowest.is_finite() {

@@ -19,6 +19,7 @@ use super::temperature::{Temperature, Temperatures};
 use super::text::Text;
 use super::warmth;
 use super::{Case, motion, time};
+use crate::Code;
 
 /// Most letters of a title.
 const TITLE: usize = 1000;
@@ -88,7 +89,7 @@ impl Document {
         let at = |section: &str| checks.at(section);
         if let Some(letters) = self.title.as_ref().map(|title| title.chars().count()).filter(|n| *n > TITLE) {
             let message = format!("the title has {letters} letters, but may have {TITLE}");
-            at("title").fault::<()>(message, &format!("{TITLE} letters at most"), "");
+            at("title").refuse::<()>(Code::OutOfRange, message, &format!("{TITLE} letters at most"), "");
         }
         // Where something is wrong, all the rest is looked at too.
         let (grid, line, surfaces) = self.gap(checks);

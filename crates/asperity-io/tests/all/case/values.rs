@@ -215,8 +215,8 @@ fn histories() {
         History::Trapezoid { peak: 1.0, rise: 1.0, hold: 0.0, fall: 2.0 }
     );
     assert_eq!(
-        history("load", r#"{ kind = "sine", mean = 1, amplitude = 1, frequency = "2 kHz" }"#),
-        History::Sine { mean: 1.0, amplitude: 1.0, frequency: 2e3 }
+        history("load", r#"{ kind = "sine", mean = 1, amplitude = 1, frequency = "2 mHz" }"#),
+        History::Sine { mean: 1.0, amplitude: 1.0, frequency: 2e-3 }
     );
     assert_eq!(
         history("load", r#"{ kind = "table", points = [[0, 0], ["1 min", "1 N"], ["1 min", "0 N"]] }"#),
@@ -393,7 +393,7 @@ fn a_punch_bears_only_under_its_face() {
         ..PARTS
     };
     let errors = case(parts).simulation().unwrap_err();
-    assert_eq!(errors.errors[0].key, "load.history");
+    assert_eq!(errors.errors[0].key, "load.history.value");
     assert!(errors.to_string().contains("hardness times the area that can touch"), "{errors}");
 }
 

@@ -63,25 +63,16 @@ pub fn bodies(
     }
 }
 
-/// The temperatures of the run.
+/// The temperatures of the run; the inner `None` where the case gives none.
 fn temperatures(
     checks: &Checks<'_>,
     temperature: Option<&Temperature>,
     parts: &[body::Part<'_>],
-) -> Optional<Temperatures> {
-    optional(temperature, |temperature| {
-        let depends = |sample: &Sample| sample.shift.is_some() && sample.temperature.is_none();
-        let matters = parts.iter().any(|part| part.sample.as_ref().is_none_or(depends));
-        temperature.temperatures(&checks.at("temperature"), matters)
-    })
-}
-
-/// A section that may be left out: where it has a fault, `Err`.
-type Optional<T> = Result<Option<T>, ()>;
-
-/// What is `given`, converted.
-fn optional<S, T>(given: Option<&S>, convert: impl FnOnce(&S) -> Option<T>) -> Optional<T> {
-    given.map(|section| convert(section).ok_or(())).transpose()
+) -> Option<Option<Temperatures>> {
+    let Some(temperature) = temperature else { return Some(None) };
+    let depends = |sample: &Sample| sample.shift.is_some() && sample.temperature.is_none();
+    let matters = parts.iter().any(|part| part.sample.as_ref().is_none_or(depends));
+    temperature.temperatures(&checks.at("temperature"), matters).map(Some)
 }
 
 impl Document {
@@ -152,21 +143,16 @@ impl Document {
             beyond: if swept.is_some() { 1e3 } else { 1.0 },
         };
         let hardness = self.hardness(checks, grid.as_ref());
-        let pair = match &temperatures {
-            Ok(_) => pair::pair(&at("body"), &self.body, &parts, &course),
-            Err(()) => None,
-        };
-        let pair = pair.map(|mut pair| {
-            if let (Some(section), Some(motion)) = (&self.motion, &motion) {
-                let end = times.as_ref().map_or(f64::INFINITY, TimeGrid::end);
-                section.met(&at("motion"), motion, &self.body, &mut pair, end);
-                if let Some(grid) = &grid {
-                    let found = motion.findings(&self.surface, grid, boundary, &pair);
-                    pair.findings.extend(found);
-                }
+        let mut pair =
+            temperatures.as_ref().and_then(|_| pair::pair(&at("body"), &self.body, &parts, &course));
+        if let (Some(section), Some(motion), Some(pair)) = (&self.motion, &motion, &mut pair) {
+            let end = times.as_ref().map_or(f64::INFINITY, TimeGrid::end);
+            section.met(&at("motion"), motion, &self.body, pair, end);
+            if let Some(grid) = &grid {
+                let found = motion.findings(&self.surface, grid, boundary, pair);
+                pair.findings.extend(found);
             }
-            pair
-        });
+        }
         let conditions =
             self.conditions(grid, pair.as_ref(), programme, times.as_ref(), hardness.as_ref(), include);
         if let Some(conditions) = &conditions {

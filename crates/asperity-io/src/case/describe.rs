@@ -98,7 +98,7 @@ pub struct Description {
     pub retardation_times: Vec<f64>,
     /// Where the materials come from.
     pub materials: Vec<MaterialReport>,
-    /// What should be known before the numbers are believed.
+    /// Warnings about the numbers.
     pub warnings: Vec<String>,
     /// Lowest and highest temperature of the run \[K\], where it has any.
     pub temperature: Option<[f64; 2]>,
@@ -114,7 +114,7 @@ pub struct Description {
     /// Rows of the result: the state at 0+, one per step, one more per jump; absent where they are found as the run
     /// goes (adaptive steps, events).
     pub rows: Option<usize>,
-    /// About as many.
+    /// Expected number of rows.
     pub usual_rows: usize,
     /// Stages of the load.
     pub stages: usize,
@@ -142,7 +142,7 @@ pub struct Sine {
     pub frequency: f64,
 }
 
-/// How layers yield: more than the half-space of the material at the surface, or less.
+/// How layers yield, compared with a half-space of the material at the surface.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LayerReport {
     /// The layers of each body in words.
@@ -159,7 +159,7 @@ pub struct LayerReport {
     pub waves: [WaveReport; 2],
 }
 
-/// The half-space that yields as much as the bodies under a wave of pressure.
+/// The moduli of the half-space that a wave of pressure deflects as much as the bodies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WaveReport {
     /// Length of the wave \[m\].

@@ -17,7 +17,7 @@ pub struct CaseError {
     pub key: String,
     /// Where in the source.
     pub span: Option<Range<usize>>,
-    /// Line of the source, counted from 1.
+    /// Line of the file, counted from 1: of the source without the lines that overrides added.
     pub line: Option<usize>,
     /// The value as written, where there is one.
     pub value: Option<String>,

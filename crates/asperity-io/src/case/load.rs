@@ -5,7 +5,7 @@ use asperity::{Control, Course, Event, Programme, TimeGrid};
 use super::history::{From, History, Kind};
 use super::history_file::Origin;
 use super::keys::*;
-use super::time::{Spacing, Steps, Times};
+use super::time::{Spacing, Times};
 
 /// What presses the bodies together.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
@@ -163,30 +163,27 @@ impl Stage {
 
     /// The instants of the stage, on its clock; the inner `None` where it has none of its own.
     fn times(&self, at: &Place<'_>, first_step: impl Fn(f64) -> f64) -> Option<Option<TimeGrid>> {
-        let Stage { steps, spacing, first, tolerance, .. } = *self;
-        let steps = Steps { end: "the duration of the stage", steps, spacing, first, tolerance };
+        let Stage { duration: end, steps, spacing, first, tolerance, .. } = *self;
+        let own = Times { end, steps, spacing, first, tolerance, ..Times::default() };
         if let Some(time) = &self.time {
             let at = at.key("time");
-            if !steps.none() || at.has("scheme") {
-                let message = "has all keys of the steps of a stage, and no `scheme`";
+            if !own.has_no_steps() || at.has("scheme") {
+                let message = "`time` replaces `steps`, `spacing`, `first` and `tolerance` of the stage, and takes no `scheme`";
                 return at.fault(message, "one of the two", "leave the others out");
             }
             return time.grid(&at, false, first_step).map(Some);
         }
-        if steps.none() {
+        if own.has_no_steps() {
             return Some(None);
         }
-        if steps.are_missing() {
-            return at.missing("steps", "");
-        }
-        let Some(duration) = self.duration else {
+        if end.is_none() && (steps.is_some() || spacing == Some(Spacing::Adaptive)) {
             return at.fault(
                 "steps of a stage need its `duration` (with `until`, the latest end)",
                 "a duration",
                 "add duration = \"10 s\", or leave the steps to [time]",
             );
-        };
-        steps.grid(at, duration.get(), first_step).map(Some)
+        }
+        own.grid(at, false, first_step).map(Some)
     }
 }
 

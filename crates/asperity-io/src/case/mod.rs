@@ -81,7 +81,6 @@ mod time;
 mod warmth;
 mod words;
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -154,7 +153,7 @@ pub struct Case {
     pub motion: Option<Motion>,
     /// Rows of the result, where known beforehand.
     rows: Option<usize>,
-    /// About as many.
+    /// Expected number of rows.
     usual_rows: usize,
 }
 
@@ -166,7 +165,7 @@ impl Case {
     pub fn read(path: &Path, overrides: &[String]) -> Result<Case, CaseErrors> {
         let name = path.display().to_string();
         let text = file_text(path).map_err(|(reason, help)| {
-            CaseErrors::without_place(Code::File, &name, reason, "a case file", Some(help))
+            CaseErrors::without_place(Code::File, &name, reason, "a case file", help)
         })?;
         let dir = path.parent().unwrap_or(Path::new(""));
         let stem = path.file_stem().map_or("result".into(), |stem| stem.to_string_lossy());
@@ -189,7 +188,7 @@ impl Case {
         output: PathBuf,
         overrides: &[String],
     ) -> Result<Case, CaseErrors> {
-        let (source, set) = overridden(name, source, overrides)?;
+        let Overridden { text: source, keys, added } = overridden(name, source, overrides)?;
         let result = Text::parse(&source).and_then(|text| {
             let document = Document::read(&text)?;
             assemble::case(&text, &document, dir, output)
@@ -198,10 +197,11 @@ impl Case {
             Ok(case) => Ok(Case { name: name.to_owned(), ..case }),
             Err(mut errors) => {
                 for error in &mut errors {
-                    if set.iter().any(|key| is_inside(&error.key, key)) {
+                    if keys.iter().any(|key| is_inside(&error.key, key)) {
                         let help = error.help.take().map(|help| format!("; {help}")).unwrap_or_default();
                         error.help = Some(format!("set by an override{help}"));
                     }
+                    error.line = error.line.map(|line| line_of_file(line, &added));
                 }
                 Err(CaseErrors { name: name.to_owned(), source, errors })
             }
@@ -296,7 +296,7 @@ impl Case {
         Ok(Some(steady))
     }
 
-    /// What the rows of its run follow one another in.
+    /// The axis along which the rows of its run are ordered.
     pub fn axis(&self) -> Axis {
         match self.motion.as_ref().map(|motion| &motion.travel) {
             Some(Travel::Steady(_)) => Axis::Velocity,
@@ -358,54 +358,53 @@ fn is_inside(key: &str, outer: &str) -> bool {
     key.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
-/// The text with the overrides applied, and the keys that they set.
-fn overridden(name: &str, source: String, overrides: &[String]) -> Result<(String, Vec<String>), CaseErrors> {
-    if overrides.is_empty() {
-        return Ok((source, Vec::new()));
-    }
-    // What is no TOML is reported by the reader, with its place.
-    let Ok(mut document) = source.parse::<toml_edit::DocumentMut>() else { return Ok((source, Vec::new())) };
-    let mut keys = Vec::with_capacity(overrides.len());
-    for text in overrides {
-        let change = Override::parse(text).and_then(|change| change.apply(&mut document).map(|()| change));
-        match change {
-            Ok(change) => keys.push(change.key),
-            Err(reason) => {
-                let message = format!("cannot set {reason}");
-                return Err(CaseErrors::without_place(Code::Syntax, name, message, "KEY=VALUE", None));
-            }
-        }
-    }
-    Ok((document.to_string(), keys))
+/// A text with overrides applied.
+#[derive(Default)]
+struct Overridden {
+    text: String,
+    /// The keys that they set.
+    keys: Vec<String>,
+    /// For each override that added lines: the line after which they stand, and how many.
+    added: Vec<[usize; 2]>,
 }
 
-/// The text of the file; or what is wrong and what to do.
-fn file_text(path: &Path) -> Result<String, (String, String)> {
-    let file = crate::resources::open(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => {
-            ("the file does not exist".to_owned(), "`asperity new TEMPLATE` writes a starter case".to_owned())
-        }
-        std::io::ErrorKind::IsADirectory if path.join("zarr.json").exists() => (
-            "it is a result, not a case file".to_owned(),
-            "asperity show and asperity report read it".to_owned(),
-        ),
-        std::io::ErrorKind::IsADirectory => (error.to_string(), "name a case file".to_owned()),
-        _ => (format!("the file cannot be read: {error}"), "check the path and its permissions".to_owned()),
-    })?;
-    let mut bytes = Vec::new();
-    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| {
-        (format!("the file cannot be read: {error}"), "check the path and its permissions".to_owned())
-    })?;
-    if bytes.len() as u64 > MOST_BYTES {
-        let reason = format!("the file is larger than {} MB, the limit for a case file", MOST_BYTES >> 20);
-        return Err((reason, "name a TOML case file".to_owned()));
+fn overridden(name: &str, source: String, overrides: &[String]) -> Result<Overridden, CaseErrors> {
+    let mut result = Overridden { text: source, ..Overridden::default() };
+    if overrides.is_empty() {
+        return Ok(result);
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let byte = error.utf8_error().valid_up_to();
-        let line = 1 + error.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count();
-        (
-            format!("the file is not UTF-8 text (line {line}, byte {byte})"),
-            "name a TOML case file, saved as UTF-8".to_owned(),
-        )
+    // What is no TOML is reported by the reader, with its place.
+    let Ok(mut document) = result.text.parse::<toml_edit::DocumentMut>() else { return Ok(result) };
+    for change in overrides {
+        let change = Override::parse(change).and_then(|change| change.apply(&mut document).map(|()| change));
+        let change = change.map_err(|reason| {
+            CaseErrors::without_place(Code::Syntax, name, format!("cannot set {reason}"), "KEY=VALUE", None)
+        })?;
+        let text = document.to_string();
+        let same = text.lines().zip(result.text.lines()).take_while(|(new, old)| new == old).count();
+        let more = text.lines().count().saturating_sub(result.text.lines().count());
+        result.added.push([same, more]);
+        result.keys.push(change.key);
+        result.text = text;
+    }
+    Ok(result)
+}
+
+/// The line of the file that a line of the text with overrides was, or that stands before it.
+fn line_of_file(line: usize, added: &[[usize; 2]]) -> usize {
+    added.iter().rev().fold(line, |line, [after, count]| line.saturating_sub(*count).max(line.min(*after)))
+}
+
+/// The text of a case file; or what is wrong and what to do.
+fn file_text(path: &Path) -> Result<String, (String, Option<String>)> {
+    crate::resources::text(path, MOST_BYTES).map_err(|reason| {
+        let help = if !path.exists() {
+            "`asperity new TEMPLATE` writes a starter case"
+        } else if path.join("zarr.json").exists() {
+            "this is a result; asperity show and asperity report read it"
+        } else {
+            "name a case file: TOML, saved as UTF-8"
+        };
+        (reason, Some(help.to_owned()))
     })
 }

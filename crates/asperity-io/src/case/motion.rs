@@ -222,7 +222,7 @@ impl Motion {
     ) -> Option<()> {
         if self.start.is_some_and(|start| start.get() >= end) {
             at.key("start").fault::<()>(
-                "the motion starts when the run is over",
+                "the motion starts after the end of the run",
                 "a time before the end",
                 "",
             );

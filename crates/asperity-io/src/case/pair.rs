@@ -155,7 +155,7 @@ fn made(part: &Part<'_>, warmth: Option<Warmth>, plan: &Plan, course: &Course<'_
     Some(Made { body, creep, clock: warmth.clock().cloned(), report, findings })
 }
 
-/// The lowest temperature that a material with a shift is told \[K\]; infinite without a shift.
+/// The lowest temperature of a material with a shift \[K\]: that of its shift, its own or that of the run; infinite without a shift.
 fn coldest(sample: &Sample, course: Option<&[(f64, f64)]>) -> f64 {
     let Some(shift) = &sample.shift else { return f64::INFINITY };
     let course = course.unwrap_or_default().iter().map(|point| point.1);
@@ -198,8 +198,8 @@ fn respond(list: &Place<'_>, bodies: &[body::Body], parts: &[Part<'_>], made: &[
         Some(n) => Err(Error::invalid(
             format!("temperature shift of {}", parts[n].name),
             format!("not that of {}", parts[0].name),
-            "the same law for all layers and bodies while the temperature changes: otherwise waves of different lengths creep \
-             differently, which is not solved yet. Give all of them the same `shift`, or hold the temperature constant",
+            "the same law for all layers and bodies. While the temperature changes, waves of different lengths would creep \
+             differently, which is not solved; give all of them the same `shift`, or hold the temperature constant",
         )
         .of(&parts[n].at.key)),
     };

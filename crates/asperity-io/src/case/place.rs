@@ -11,6 +11,7 @@ use super::error::CaseError;
 use super::text::{MOST_ERRORS, Spot, Text, in_order, join};
 use super::words;
 use crate::quantity::QuantityError;
+use crate::resources::{open, why};
 use crate::{Code, choice};
 
 /// The text of a case, and the faults found so far.
@@ -212,13 +213,8 @@ impl<'c> Place<'c> {
     /// The path of an existing file, relative to the case file.
     pub fn file(&self, path: &str) -> Option<PathBuf> {
         let full = self.checks.dir.join(path);
-        let reason = match std::fs::metadata(&full) {
-            Ok(metadata) if metadata.is_file() => return Some(full),
-            Ok(_) => "is not a file".to_owned(),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => "does not exist".to_owned(),
-            Err(error) => format!("cannot be read: {error}"),
-        };
-        let message = format!("{} {reason}", full.display());
+        let Err(error) = open(&full) else { return Some(full) };
+        let message = format!("{}: {}", full.display(), why(&error));
         self.refuse(Code::File, message, "a file", "paths are relative to the directory of the case file")
     }
 

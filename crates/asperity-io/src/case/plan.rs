@@ -83,7 +83,7 @@ pub enum Rows {
     At(Vec<f64>),
 }
 
-/// Times that agree to this share are the same: "0.1 s" times 3 is not quite "0.3 s".
+/// Times that differ by less than this share are equal: "0.1 s" times 3 is not quite "0.3 s".
 const SAME: f64 = 1e-9;
 
 impl Rows {

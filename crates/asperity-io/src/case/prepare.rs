@@ -7,7 +7,7 @@ use super::keys::*;
 use super::surface::File;
 use crate::preparation::{self, Step};
 
-/// More of a surface than this is not filled unless told: it would be invention, not measurement.
+/// Largest share of a surface that is filled by default; more would be invention, not measurement.
 const FILL_SHARE: f64 = 0.25;
 /// Share of the length over which Tukey's window rises and falls.
 const TUKEY_SHARE: f64 = 0.1;

@@ -129,7 +129,7 @@ impl Distribution {
     fn of_heights(&self, at: &Place<'_>) -> Option<HeightDistribution> {
         match (&self.path, self.skewness, self.kurtosis) {
             (None, None, None) => at.fault(
-                "says nothing",
+                "the table has no key",
                 "skewness, kurtosis or path",
                 "skewness and kurtosis set it, or path names a measured surface that has it",
             ),

@@ -126,7 +126,7 @@ pub fn dependence(at: &Place<'_>, shift: Option<&Shift>, of_fit: Option<Vertical
     };
     let vertical = match (shift.and_then(|shift| shift.vertical.as_ref()), of_fit) {
         (Some(_), Some(_)) => {
-            let message = "has `vertical`, and so has `shift`, but one of them is enough";
+            let message = "`vertical` is given here and in `shift`";
             return at.key("fit").fault(message, "one `vertical`", "leave one of them out");
         }
         (None, None) => VerticalRequest::None,

@@ -154,7 +154,7 @@ impl Source<'_> {
     pub fn model(self, at: &Place<'_>, fit: Option<&Fit>, dependence: Dependence) -> Option<Model> {
         let named = |role| self.columns.columns.contains_key(&role);
         if named(Role::Loss) && named(Role::TanDelta) {
-            let message = "has `loss` and `tan_delta`, but needs only one of them";
+            let message = "`loss` and `tan_delta` exclude each other";
             return at.key("columns").fault(message, "one of the two", "leave one of them out");
         }
         let path = at.key("path");

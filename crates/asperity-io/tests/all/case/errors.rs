@@ -574,6 +574,9 @@ fn overrides_are_read_as_if_written() {
     assert_eq!((case.conditions.grid.cells(), case.conditions.hardness), ([64, 32], 20e6));
     assert!(case.output.fields.is_empty() && case.source.contains("cells = [64,32]"));
 
+    // A new key moves the lines behind it, but not their numbers.
+    let error = &with(&["time.scheme=linear", "body.1.name=x", "solver.tolerance=1"]).unwrap_err().errors[0];
+    assert_eq!((error.key.as_str(), error.line), ("solver.tolerance", Some(43)));
     let error = &with(&["body.0.hardnes=20 MPa"]).unwrap_err().errors[0];
     assert_eq!(error.key, "body[0].hardnes");
     assert_eq!(error.help.as_deref(), Some("set by an override; did you mean `hardness`?"));

@@ -110,7 +110,11 @@ impl Document {
             (.., None) => None,
         };
         if swept.is_some() {
-            self.steady(checks);
+            let why = "belongs to a motion in time, but the case asks for steady states";
+            let sections = ["time", "stress", "leakage"];
+            checks.root().without(&sections, why, "[motion.steady] alone", "leave the section out");
+            let help = "store the fields of every n-th velocity by `every`";
+            at("output").without(&["times"], why, "`every`", help);
         }
         let stops = motion.as_ref().zip(grid.as_ref()).zip(times.as_ref());
         let stops = stops.and_then(|((motion, grid), times)| motion.stops(&at("motion"), grid, times.end()));
@@ -262,33 +266,6 @@ impl Document {
         let parts: Vec<_> = self.surface.iter().zip(&measured).enumerate().map(part).collect();
         let parts = parts.into_iter().collect();
         (grid, line, parts)
-    }
-
-    /// Refuses what steady states of motion do not have.
-    fn steady(&self, checks: &Checks<'_>) {
-        let refuse = |given: bool, key: &str, message: &str, expected: &str, help: &str| {
-            if given {
-                checks.at(key).fault::<()>(message, expected, help);
-            }
-        };
-        refuse(
-            self.time.is_some(),
-            "time",
-            "steady states of motion have no times, but the case has a [time]",
-            "[motion.steady] or [time]",
-            "leave [time] out",
-        );
-        for (key, given) in [("stress", self.stress.is_some()), ("leakage", self.leakage.is_some())] {
-            let message = format!("[{key}] is not computed of steady states of motion");
-            refuse(given, key, &message, "a motion in time", "leave the section out");
-        }
-        refuse(
-            self.output.times.is_some(),
-            "output.times",
-            "steady states of motion have no times",
-            "`every`",
-            "store the fields of every n-th velocity",
-        );
     }
 
     /// The hardness of the cells over all bodies that give it.

@@ -12,6 +12,7 @@ pub mod fft;
 mod on_rustfft;
 pub mod plane;
 mod spectrum;
+pub mod torus;
 
 use ndarray::ArrayView2;
 

@@ -252,9 +252,7 @@ impl Case {
             None => (self.gap_of(parts)?, None),
             Some(motion) => {
                 let moving = self.moving(parts, motion)?;
-                let (gap, _) =
-                    moving.at(0.0, motion.direction).map_err(|error| self.refused("motion", error))?;
-                (gap, motion.in_time(moving))
+                (moving.at(0.0, motion.direction).0, motion.in_time(moving))
             }
         };
         let simulation = Simulation { gap, motion, ..self.conditions.clone() };
@@ -284,15 +282,14 @@ impl Case {
         let Some(motion @ Motion { travel: Travel::Steady(velocities), .. }) = &self.motion else {
             return Ok(None);
         };
-        let refused = |error| self.refused("motion", error);
-        let (_, slopes) = self.moving(parts, motion)?.at(0.0, motion.direction).map_err(refused)?;
+        let (_, slopes) = self.moving(parts, motion)?.at(0.0, motion.direction);
         let steady = SteadyMotion {
             direction: motion.direction,
             velocities: velocities.clone(),
             slopes,
             shear_stress: motion.shear_stress,
         };
-        steady.validate(simulation).map_err(refused)?;
+        steady.validate(simulation).map_err(|error| self.refused("motion", error))?;
         Ok(Some(steady))
     }
 

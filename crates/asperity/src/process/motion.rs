@@ -100,26 +100,26 @@ pub(super) struct Moving {
 }
 
 impl Moving {
-    pub(super) fn new(simulation: &Simulation, motion: &Motion) -> Result<Self> {
-        let (_, slopes) = motion.gap.at(0.0, motion.direction)?;
+    pub(super) fn new(simulation: &Simulation, motion: &Motion) -> Self {
+        let (_, slopes) = motion.gap.at(0.0, motion.direction);
         let (motion, spacing) = (motion.clone(), simulation.grid.spacing());
-        Ok(Moving { motion, spacing, slopes, distance: 0.0, before: 0.0, friction: Friction::default() })
+        Moving { motion, spacing, slopes, distance: 0.0, before: 0.0, friction: Friction::default() }
     }
 
-    fn move_to(&mut self, distance: f64, gap: &mut UndeformedGap) -> Result<()> {
+    fn move_to(&mut self, distance: f64, gap: &mut UndeformedGap) {
         if distance == self.distance {
-            return Ok(());
+            return;
         }
-        let (moved, slopes) = self.motion.gap.at(distance, self.motion.direction)?;
+        let (moved, slopes) = self.motion.gap.at(distance, self.motion.direction);
         gap.own_mut().iter_mut().zip(&moved).for_each(|(to, h)| *to = *h);
         (self.slopes, self.distance) = (slopes, distance);
-        Ok(())
     }
 }
 
 impl Process for Moving {
     fn open(&mut self, step: &Interval, gap: &mut UndeformedGap) -> Result<()> {
-        self.move_to(self.motion.path.position(step.instant.time), gap)
+        self.move_to(self.motion.path.position(step.instant.time), gap);
+        Ok(())
     }
 
     fn shift(&self, step: &Interval) -> Option<[isize; 2]> {
@@ -163,7 +163,7 @@ impl Process for Moving {
     }
 
     fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
-        self.move_to(from.get("distance")?, gap)?;
+        self.move_to(from.get("distance")?, gap);
         self.before = self.distance;
         self.friction.force = from.get("force")?;
         Ok(())

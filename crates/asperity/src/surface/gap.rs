@@ -71,10 +71,7 @@ impl Part {
 /// [`Error::Invalid`] if a part is outside its domain, heights do not have the shape of the grid or are not finite, the sum
 /// overflows, or no cell can touch. Without any part the gap is 0 (flat on flat).
 pub fn undeformed_gap(grid: &Grid, parts: &[Part]) -> Result<Array2<f64>> {
-    let mut gap = Array2::zeros(grid.shape());
-    for (n, part) in parts.iter().enumerate() {
-        add(&mut gap, grid, part).map_err(|error| error.of(&format!("surface[{n}]")))?;
-    }
+    let mut gap = gap_of(grid, parts)?;
     let lowest = gap.fold(f64::INFINITY, |low, h| low.min(*h));
     if !lowest.is_finite() {
         return Err(Error::invalid(
@@ -84,6 +81,15 @@ pub fn undeformed_gap(grid: &Grid, parts: &[Part]) -> Result<Array2<f64>> {
         ));
     }
     gap.par_mapv_inplace(|h| h - lowest);
+    Ok(gap)
+}
+
+/// The sum of the gaps of the shapes less the heights \[m\].
+pub(crate) fn gap_of<'a>(grid: &Grid, parts: impl IntoIterator<Item = &'a Part>) -> Result<Array2<f64>> {
+    let mut gap = Array2::zeros(grid.shape());
+    for (n, part) in parts.into_iter().enumerate() {
+        add(&mut gap, grid, part).map_err(|error| error.of(&format!("surface[{n}]")))?;
+    }
     Ok(gap)
 }
 

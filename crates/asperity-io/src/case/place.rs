@@ -119,10 +119,10 @@ impl<'c> Place<'c> {
     }
 
     /// Keys of the table that are needed, or do not go together; the message names the table itself.
-    pub fn error<T>(&self, message: impl Display, expected: &str, help: &str) -> Option<T> {
+    pub fn error<T>(&self, code: Code, message: impl Display, expected: &str, help: &str) -> Option<T> {
         self.push(|text, spot| {
             let value = Some(text.value(&spot));
-            text.error(Code::MissingKey, spot, value, expected, help, message.to_string())
+            text.error(code, spot, value, expected, help, message.to_string())
         })
     }
 

@@ -1,5 +1,7 @@
 //! The steps that prepare a measured surface: `process = [...]`, and the same steps as keys of a `[[surface]]`.
 
+use std::collections::BTreeSet;
+
 use asperity::surface::process::{self, Axis, Band, Edge, Resampling};
 use asperity::surface::{self, Fill, Level};
 
@@ -146,23 +148,15 @@ pub struct Outliers {
 /// Without `process`: crop, flip, rotate, invert, level, outliers (and level again without them), fill, circle, filter,
 /// window, resample.
 pub fn steps(at: &Place<'_>, file: &File) -> Option<Vec<Step>> {
-    let Some(process) = &file.process else { return plain(at, file) };
-    let keys = [
-        "crop",
-        "flip",
-        "rotate",
-        "invert",
-        "level",
-        "outliers",
-        "fill",
-        "fill_share",
-        "circle",
-        "filter",
-        "window",
-        "resample",
-    ];
+    let operations = operations(file);
+    let Some(process) = &file.process else {
+        let given =
+            operations.iter().filter_map(|(key, operation)| Some(operation.as_ref()?.step(&at.key(key))));
+        return given.collect();
+    };
+    let keys: BTreeSet<&str> = operations.iter().map(|(key, _)| *key).chain(["fill_share"]).collect();
     let alone = at.without(
-        &keys,
+        &Vec::from_iter(keys),
         "cannot be combined with `process`, which lists all steps",
         "either `process` or single keys",
         "add it to `process` as a step, in the order wanted",
@@ -173,10 +167,10 @@ pub fn steps(at: &Place<'_>, file: &File) -> Option<Vec<Step>> {
     alone.and(steps.into_iter().collect())
 }
 
-fn plain(at: &Place<'_>, file: &File) -> Option<Vec<Step>> {
-    let level = Operation::Level { form: file.level };
-    let level = || (file.level != Some(Level::None)).then(|| level.clone());
-    let operations = [
+/// The operations of the single keys, in their order.
+fn operations(file: &File) -> [(&'static str, Option<Operation>); 12] {
+    let level = || (file.level != Some(Level::None)).then_some(Operation::Level { form: file.level });
+    [
         ("crop", file.crop.clone().map(Operation::Crop)),
         ("flip", file.flip.map(|axis| Operation::Flip { axis })),
         ("rotate", file.rotate.map(|turns| Operation::Rotate { quarter_turns: Some(turns) })),
@@ -190,8 +184,7 @@ fn plain(at: &Place<'_>, file: &File) -> Option<Vec<Step>> {
         ("filter", file.filter.clone().map(Operation::Filter)),
         ("window", file.window.clone().map(Operation::Window)),
         ("resample", file.resample.map(|method| Operation::Resample { method: Some(method), cells: None })),
-    ];
-    operations.iter().filter_map(|(key, operation)| Some(operation.as_ref()?.step(&at.key(key)))).collect()
+    ]
 }
 
 impl Operation {

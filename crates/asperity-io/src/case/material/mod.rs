@@ -20,6 +20,7 @@ use asperity::material::{Fractional, Material as Known, Modulus, Shift as ShiftL
 
 use super::keys::*;
 use super::shift::{self, Shift};
+use crate::Code;
 use crate::curve::{Fitted, ShiftRequest, VerticalRequest};
 use measured::Fit;
 
@@ -293,7 +294,9 @@ fn moduli<const N: usize>(
         return at.exactly_one(&[young, shear]).and(None);
     }
     let [young, shear] = [0, 1].map(|n| keys.map(|pair| format!("`{}`", pair[n])).join(" and "));
-    at.error(format!("{} needs {young}, or {shear}", at.key), &format!("{young}, or {shear}"), "")
+    let mixed = [0, 1].iter().all(|n| given.iter().any(|pair| pair[*n].is_some()));
+    let code = if mixed { Code::Conflict } else { Code::MissingKey };
+    at.error(code, format!("{} needs {young}, or {shear}", at.key), &format!("{young}, or {shear}"), "")
 }
 
 fn few_terms(at: &Place<'_>, terms: usize) -> Option<()> {

@@ -300,7 +300,7 @@ fn synthetic_roughness_takes_lay_distribution_and_preset() {
         ("lay = { ratio = 0.5 }", vec!["surface[0].lay", "1 or more"]),
         ("lay = { angle = \"3 m\", ratio = 2 }", vec!["surface[0].lay.angle", "30 deg"]),
         ("lay = {}", vec!["lay.ratio is missing"]),
-        ("distribution = {}", vec!["says nothing", "path names a measured surface"]),
+        ("distribution = {}", vec!["no key", "path names a measured surface"]),
         ("distribution = { skewness = 3, kurtosis = 4 }", vec!["surface[0].distribution", "well above"]),
         ("distribution = { path = \"a.sdf\", skewness = 1 }", vec!["leave path out"]),
         ("distribution = { path = \"none.sdf\" }", vec!["does not exist"]),

@@ -19,12 +19,7 @@ pub struct Examination {
     /// The inputs that a slip would hide in.
     pub inputs: Inputs,
     /// What was found.
-    #[serde(serialize_with = "as_list")]
     pub findings: Vec<Finding>,
-}
-
-fn as_list<S: serde::Serializer>(findings: &[Finding], serializer: S) -> Result<S::Ok, S::Error> {
-    crate::finding::list(findings).serialize(serializer)
 }
 
 /// Inputs in SI, and the contact that they lead one to expect.

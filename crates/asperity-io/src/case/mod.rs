@@ -266,8 +266,10 @@ impl Case {
     /// The gap of parts that may move.
     fn moving(&self, parts: &[Part], motion: &Motion) -> Result<MovingGap, CaseErrors> {
         let parts: Vec<(Part, bool)> = parts.iter().cloned().zip(motion.moves.iter().copied()).collect();
-        MovingGap::new(&self.conditions.grid, self.conditions.boundary, &parts)
-            .map_err(|error| self.refused("motion", error))
+        MovingGap::new(&self.conditions.grid, self.conditions.boundary, &parts).map_err(|error| {
+            let of_motion = error.parameter().is_empty();
+            self.refused(if of_motion { "motion" } else { "" }, error)
+        })
     }
 
     /// The steady states of motion that are asked for, with the slopes of their gap.

@@ -24,7 +24,9 @@ impl Simulation {
         self.validate_gap()?;
         self.columns().map_err(|error| error.of("output"))?;
         self.validate_kernel()?;
-        self.motion.iter().try_for_each(|motion| motion.validate(self))?;
+        self.motion
+            .iter()
+            .try_for_each(|motion| motion.validate(self).map_err(|error| error.of("motion")))?;
         self.quantities.list.iter().try_for_each(|quantity| self.allows(*quantity))?;
         self.faults().into_iter().next().map_or(Ok(()), Err)
     }

@@ -4,7 +4,7 @@ use asperity::finding::Finding;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-/// The findings as a list of objects; `value`, `limit` and `rows` are null where there are none.
+/// The findings as a list of objects; `value`, `limit` and `rows` are null if there are none.
 ///
 /// ```
 /// use asperity::finding::{Finding, LARGE_SLOPE};

@@ -30,7 +30,7 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// The grid. What the domain does not say is that of the measured surface, where there is exactly one; `files` are the
+    /// The grid. What the domain leaves out is taken from the measured surface, if there is exactly one; `files` are the
     /// measured surfaces, `None` for one whose keys are wrong.
     pub fn grid(&self, at: &Place<'_>, files: &[Option<&Measured>]) -> Option<Grid> {
         if let (Some(cells), Some(size)) = (&self.cells, &self.size)

@@ -19,11 +19,11 @@ pub struct CaseError {
     pub span: Option<Range<usize>>,
     /// Line of the file, counted from 1: of the source without the lines that overrides added.
     pub line: Option<usize>,
-    /// The value as written, where there is one.
+    /// The value as written, if there is one.
     pub value: Option<String>,
     /// What was expected there.
     pub expected: String,
-    /// What to do about it, where more can be said.
+    /// What to do about it, if more can be said.
     pub help: Option<String>,
     /// The fault in one sentence.
     pub message: String,

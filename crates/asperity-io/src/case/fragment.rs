@@ -100,7 +100,7 @@ fn keys(text: &str) -> Result<Vec<(String, Value)>, String> {
     Ok(keys.into_iter().map(|(key, text)| (key, value(&text))).collect())
 }
 
-/// A value as a case file has it: a number, true, false, a list where there are commas, or else text.
+/// A value as a case file writes it: a number, true, false, a list if there are commas, otherwise text.
 pub(super) fn value(text: &str) -> Value {
     let text = text.trim().trim_start_matches('[').trim_end_matches(']');
     if text.contains(',') {

@@ -78,7 +78,7 @@ pub struct Distribution {
 }
 
 impl SelfAffine {
-    /// The part of the gap; checked against the grid where there is one.
+    /// The part of the gap; checked against the grid, if there is one.
     pub fn part(&self, at: &Place<'_>, grid: Option<&Grid>, line: bool) -> Option<Part> {
         if line && self.lay.is_some() {
             let message = "a profile has no lay: the domain is a line of cells";

@@ -62,7 +62,7 @@ enum Model {
     },
 }
 
-/// How the moduli of a material depend on temperature, besides its times: at T they are those at the reference temperature of
+/// How the moduli of a material depend on temperature, in addition to its times: at T they are those at the reference temperature of
 /// the shift over b_T. "density" (b_T = reference/T, as for a rubber), "free" (one factor for each sweep of a file), a table, or
 /// pairs [temperature, b_T] in order of temperature: 1 at the reference, ln b_T is linear in between.
 type Vertical = Form<VerticalWord, Vec<Two<Temperature, Number<Positive>>>, VerticalDensity>;

@@ -31,7 +31,7 @@ impl Simulation {
         self.faults().into_iter().next().map_or(Ok(()), Err)
     }
 
-    /// Everything that is wrong besides the gap, which may still be empty, and what depends on it. The parameters of the errors are
+    /// Everything that is wrong apart from the gap and what depends on it; the gap may still be empty. The parameters of the errors are
     /// keys of case files ("time.scheme", "load.stages\[1\].history").
     pub fn faults(&self) -> Vec<Error> {
         // The other checks rely on numbers that are valid by themselves.
@@ -199,7 +199,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// An error says which stage it is of, where there are several.
+    /// The error names the stage, if there are several.
     fn of_stage(&self, n: usize, checked: Result<()>) -> Result<()> {
         let named = |error| if self.loading.stages.len() > 1 { of_stage(error, n) } else { error };
         checked.map_err(|error| named(error).of(&format!("load.stages[{n}]")))

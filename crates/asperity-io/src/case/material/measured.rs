@@ -132,7 +132,7 @@ pub struct Fit {
     max_misfit: Option<Number<Share>>,
     /// Behaviour at times longer than the data; "free" if not given.
     long_time: Option<LongTime>,
-    /// How the moduli of sweeps at several temperatures depend on temperature, besides their times; they do not if not given. It
+    /// How the moduli of sweeps at several temperatures depend on temperature, in addition to their times; they do not if not given. It
     /// may stand in `shift` as well.
     pub vertical: Option<VerticalWord>,
     /// The part of the curve that is fitted: two times or, for a dma, two frequencies (after the shift, if there

@@ -5,11 +5,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
-use asperity::kernel::Kernel;
-use asperity::layer::NonseparableLayers;
-use asperity::material::{Body, Creep};
 use asperity::surface::Part;
 use asperity::time::{Instant, Plan};
 use asperity::{Control, Grid};
@@ -23,7 +19,7 @@ use super::place::Checks;
 use super::read::Reader;
 use super::shift::Shift;
 use super::text::Text;
-use super::{Case, CaseErrors, MaterialReport, assemble};
+use super::{Case, CaseErrors, Pair, assemble};
 use crate::Code;
 use crate::curve::{ShiftRequest, VerticalRequest};
 
@@ -62,25 +58,11 @@ impl Case {
     }
 }
 
-/// Bodies without a load.
-pub struct GivenBodies {
-    /// What they consist of: each half-space, layer and base.
-    pub bodies: Vec<Body>,
-    /// How well the material of each is known.
-    pub reports: Vec<MaterialReport>,
-    /// How the pair yields in space.
-    pub kernel: Arc<dyn Kernel>,
-    /// How its waves creep, where waves of different lengths creep differently.
-    pub waves: Option<Arc<NonseparableLayers>>,
-    /// Its contact creep compliance \[1/Pa\], at its temperature where that is constant.
-    pub creep: Creep,
-}
-
 /// The bodies of the keys `body` and, where it is given, `temperature`; fractional models are Prony sums over `window` \[s\].
 ///
 /// # Errors
 /// [`CaseErrors`] with what is wrong.
-pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<GivenBodies, CaseErrors> {
+pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<Pair, CaseErrors> {
     let instant = |[dt, time]: [f64; 2]| Instant {
         time,
         dt,
@@ -90,16 +72,9 @@ pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<GivenBodies, Cas
         stage: 0,
     };
     let plan = Plan { instants: window.into_iter().map(instant).collect(), exact: true };
-    let pair = from_keys(keys, &Arrays::new(), |text| {
+    from_keys(keys, &Arrays::new(), |text| {
         let (bodies, temperature) = document::bodies(text)?;
         assemble::bodies(text, &bodies, temperature.as_ref(), &plan)
-    })?;
-    Ok(GivenBodies {
-        kernel: pair.kernel(),
-        bodies: pair.bodies,
-        reports: pair.reports,
-        waves: pair.waves,
-        creep: pair.creep,
     })
 }
 

@@ -100,6 +100,7 @@ pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
 pub use given::Arrays;
 pub use leakage::{LeakageKeys, leak};
 pub use measured::Measured;
+pub use pair::Pair;
 pub use plan::{Motion, Output, Rows, Surface, Travel};
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};

@@ -18,6 +18,11 @@ pub fn available_memory() -> u64 {
     available_below(Path::new("/"))
 }
 
+/// Largest resident memory of the process so far \[byte\], if the system reports it (Linux).
+pub fn peak_memory_bytes() -> Option<u64> {
+    kibibytes(&fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
+}
+
 /// Refuses a piece of work that takes more memory than there is. `what` is the subject of the sentence, in the plural:
 /// "40000 x 40000 points".
 ///

@@ -4,7 +4,6 @@
 //! numbers wherever it is started.
 
 mod maps;
-mod memory;
 mod record;
 mod setup;
 
@@ -29,7 +28,7 @@ use record::{Earlier, Record};
 use setup::header;
 pub use setup::setup;
 
-pub use memory::peak_memory_bytes;
+pub use crate::resources::peak_memory_bytes;
 
 /// How a case is run.
 #[derive(Clone, Debug, Default)]

@@ -22,6 +22,7 @@ impl Simulation {
     /// [`Error::Invalid`], [`Error::Infeasible`].
     pub fn validate(&self) -> Result<()> {
         self.validate_gap()?;
+        self.validate_numbers()?;
         self.columns().map_err(|error| error.of("output"))?;
         self.validate_kernel()?;
         self.motion
@@ -31,8 +32,8 @@ impl Simulation {
         self.faults().into_iter().next().map_or(Ok(()), Err)
     }
 
-    /// Everything that is wrong apart from the gap and what depends on it; the gap may still be empty. The parameters of the errors are
-    /// keys of case files ("time.scheme", "load.stages\[1\].history").
+    /// Everything that is wrong apart from the gap and what depends on it; the gap may still be empty. The parameters of the errors
+    /// are keys of case files ("time.scheme", "load.stages\[1\].history").
     pub fn faults(&self) -> Vec<Error> {
         // The other checks rely on numbers that are valid by themselves.
         if let Err(error) = self.validate_numbers() {

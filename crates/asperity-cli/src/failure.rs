@@ -99,6 +99,11 @@ fn drawn(error: &CaseError, name: &str, source: &str) -> Option<String> {
         expected => format!("expected {expected}"),
     };
     let line = error.line.map_or(String::new(), |line| format!("line {line}: "));
+    // Lines that overrides added are not counted: the line at the place has its number in the file.
+    let counted_lines = 1 + source[..span.start].matches('\n').count();
+    let added = error.line.map_or(0, |line| counted_lines.saturating_sub(line));
+    let start = source.match_indices('\n').nth(added.wrapping_sub(1)).map_or(0, |(end, _)| end + 1);
+    let (source, span) = (&source[start..], span.start - start..span.end - start);
     let place =
         Snippet::source(source).path(name).annotation(AnnotationKind::Primary.span(span).label(label));
     let mut report = Level::ERROR.primary_title(format!("{line}{}", error.message)).element(place);

@@ -33,8 +33,8 @@ impl PartialFile {
     /// An empty file that is to appear at `path`, in place of another one only with `force`.
     ///
     /// # Errors
-    /// `AlreadyExists` where there is a file that may not be replaced; `IsADirectory` and `InvalidInput` where there is a directory,
-    /// a device or a pipe; those of the system.
+    /// `AlreadyExists` if a file is there that may not be replaced; `IsADirectory` and `InvalidInput` if a directory, a device or a
+    /// pipe is there; those of the system.
     pub fn new(path: &Path, force: bool) -> io::Result<PartialFile> {
         PartialFile::filled(path, force, |_| Ok(()))
     }

@@ -26,6 +26,8 @@ pub enum Error {
         significant(*load, 4), significant(*max, 4)
     )]
     Infeasible {
+        /// Path of the argument that prescribes the load, as for [`Error::Invalid`]; empty where only the load is known.
+        parameter: String,
         /// Prescribed load \[N\].
         load: f64,
         /// Largest load that the hardness allows \[N\].
@@ -115,19 +117,38 @@ impl Error {
         value: impl std::fmt::Display,
         expected: impl Into<String>,
     ) -> Self {
-        let (what, expected) = (what.into(), expected.into());
-        Error::Invalid { parameter: String::new(), what, value: value.to_string(), expected }
+        let (what, value, expected) = (what.into(), short(&value.to_string()), short(&expected.into()));
+        Error::Invalid { parameter: String::new(), what, value, expected }
     }
 
     /// The same error, for the argument `outer` or one inside it.
     #[must_use]
     pub fn of(self, outer: &str) -> Self {
+        let mut error = self;
+        if let Error::Invalid { parameter, .. } | Error::Infeasible { parameter, .. } = &mut error {
+            let dot = if parameter.is_empty() { "" } else { "." };
+            *parameter = format!("{outer}{dot}{parameter}");
+        }
+        error
+    }
+
+    /// Path of the argument that is wrong, as far as it is known: see [`Error::Invalid`].
+    pub fn parameter(&self) -> &str {
         match self {
-            Error::Invalid { parameter, what, value, expected } => {
-                let dot = if parameter.is_empty() { "" } else { "." };
-                Error::Invalid { parameter: format!("{outer}{dot}{parameter}"), what, value, expected }
-            }
-            other => other,
+            Error::Invalid { parameter, .. } | Error::Infeasible { parameter, .. } => parameter,
+            _ => "",
+        }
+    }
+
+    /// A word for the kind of error, which stays the same when the message changes: "out-of-range", "infeasible", ...
+    pub fn code(&self) -> &'static str {
+        match self {
+            Error::Invalid { .. } => "out-of-range",
+            Error::Infeasible { .. } => "infeasible",
+            Error::Undetermined { .. } => "undetermined",
+            Error::NotConverged(_) => "not-converged",
+            Error::Missed { .. } => "missed-event",
+            Error::Interrupted => "interrupted",
         }
     }
 }
@@ -210,6 +231,20 @@ pub(crate) fn non_negative(what: &str, value: f64, unit: &str) -> Result<f64> {
 /// A temperature \[K\] to a hundredth: "293.15 K".
 pub(crate) fn kelvin(temperature: f64) -> String {
     format!("{} K", (100.0 * temperature).round() / 100.0)
+}
+
+/// The text with numbers of very many digits written with a power of ten.
+fn short(text: &str) -> String {
+    const LONGEST: usize = 24;
+    let word = |word: &str| match word.parse::<f64>() {
+        Ok(number) if word.len() > LONGEST && number.is_finite() => format!("{number:e}"),
+        _ => word.to_owned(),
+    };
+    if text.len() <= LONGEST {
+        text.to_owned()
+    } else {
+        text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+    }
 }
 
 /// A number with this many significant digits, without zeros at the end: "5", "0.025", "1.234e-7".

@@ -173,6 +173,20 @@ impl History {
         range
     }
 
+    /// The argument that sets the largest value, in the words of case files: "peak", "points\[2\]\[1\]".
+    pub(crate) fn largest_value(&self) -> String {
+        match self {
+            History::Step { .. } | History::Ramp { .. } => "value".to_owned(),
+            History::Triangle { .. } | History::Trapezoid { .. } => "peak".to_owned(),
+            History::Sine { .. } => "mean".to_owned(),
+            History::Table { points } => {
+                let values = points.iter().map(|point| point.1).enumerate();
+                let largest = values.rev().max_by(|a, b| a.1.total_cmp(&b.1));
+                format!("points[{}][1]", largest.map_or(0, |(n, _)| n))
+            }
+        }
+    }
+
     fn limit(&self, t: f64, side: Side) -> f64 {
         match self {
             History::Step { value } => *value,

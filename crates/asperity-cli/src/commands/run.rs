@@ -89,7 +89,7 @@ fn print_materials(args: &Run, case: &Case) {
 }
 
 fn best_state(best: &Row, case: &Case) -> String {
-    let grid = &case.grid;
+    let grid = &case.conditions.grid;
     format!(
         "  best state at {}: load {}, approach {}, contact {:.4} %, largest pressure {}",
         coordinate(best.coordinate),
@@ -106,7 +106,7 @@ fn print_summary(
     summary: &Summary,
     error: Option<&RunError>,
 ) -> Result<(), Failure> {
-    let grid = &case.grid;
+    let grid = &case.conditions.grid;
     if args.json {
         return crate::print(&format!("{}\n", json_object(summary, error)));
     }

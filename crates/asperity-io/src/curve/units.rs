@@ -144,6 +144,7 @@ fn frequency(unit: &str) -> Result<f64, String> {
 /// [`QuantityError`] for another dimension, or a unit that does not tell cycles from radians.
 pub fn angular_frequency(text: &str) -> Result<f64, QuantityError> {
     let expected = || QuantityError {
+        code: crate::Code::WrongUnit,
         expected: "a frequency greater than 0, such as \"0.1 Hz\" or \"2 rad/s\"".to_owned(),
         help: None,
     };

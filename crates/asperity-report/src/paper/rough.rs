@@ -49,7 +49,7 @@ fn geometry(case: &Case, reader: &Reader) -> Result<Reproduction> {
     let drawn = figure(reader, Plot::InitialGap, &Show::default()).map_err(plot_error)?;
     let gap = reader.initial_gap()?;
     // What is left of the gap without the sphere is the roughness, upside down.
-    let grid = &case.grid;
+    let grid = &case.conditions.grid;
     let [lx, ly] = grid.size();
     let sphere = |(i, j): (usize, usize)| (grid.x(i) - 0.5 * lx).powi(2) + (grid.y(j) - 0.5 * ly).powi(2);
     let rough = ndarray::Array2::from_shape_fn(gap.dim(), |at| gap[at] - sphere(at) / (2.0 * RADIUS));
@@ -82,7 +82,7 @@ fn contact(ours: &Reader, theirs: &Reader, number: u8, at: At) -> Result<Reprodu
 /// Figure 8.
 fn evolution(case: &Case, ours: &Reader, theirs: &Reader) -> Result<Reproduction> {
     let time = ours.series("time")?;
-    let ends = [case.creep.value(0.0), case.creep.long_time()];
+    let ends = [case.conditions.creep.value(0.0), case.conditions.creep.long_time()];
     let [fresh, relaxed] = [elastic(case, ours, ends[0])?, elastic(case, ours, ends[1])?];
     let mut figure = Figure::new("");
     let mut differences = Vec::new();
@@ -131,11 +131,11 @@ fn evolution(case: &Case, ours: &Reader, theirs: &Reader) -> Result<Reproduction
 /// Keer's method.
 fn elastic(case: &Case, reader: &Reader, compliance: f64) -> Result<[f64; 2]> {
     let simulation = Simulation {
-        boundary: case.boundary,
+        boundary: case.conditions.boundary,
         creep: Creep::elastic(compliance),
-        hardness: case.hardness,
-        solver: SolverOptions { method: Method::PolonskyKeer, ..case.solver },
-        ..Simulation::new(case.grid, reader.initial_gap()?)
+        hardness: case.conditions.hardness,
+        solver: SolverOptions { method: Method::PolonskyKeer, ..case.conditions.solver },
+        ..Simulation::new(case.conditions.grid, reader.initial_gap()?)
     };
     let mut contact = Elastic::new(simulation, [(Control::Load, 0.5)])?;
     let row = contact.advance()?.map(|step| step.row()).unwrap_or_default();

@@ -150,7 +150,7 @@ pub(super) fn capped(options: &Options) -> Result<Reproduction> {
 pub(super) fn triangle(options: &Options) -> Result<Reproduction> {
     let (case, reader) = options.run("fig4-pmma-triangle", FIGURE_4, &[])?;
     let history = History::Triangle { peak: 5.0, rise: 30.0, fall: 30.0 };
-    let ting = Ting::new(1e-3, &case.creep, &history, 60.0)?;
+    let ting = Ting::new(1e-3, &case.conditions.creep, &history, 60.0)?;
     let time = reader.series("time")?;
     let [load, depth] = [reader.series("load")?, reader.series("approach")?];
     let mut exact = Vec::with_capacity(time.len());

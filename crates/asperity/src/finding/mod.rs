@@ -53,6 +53,7 @@ pub use thin::thin_body;
 
 /// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Severity {
     /// Useful information; the numbers are valid.
     Note,
@@ -78,6 +79,7 @@ impl std::fmt::Display for Severity {
 
 /// A report about a run that the user should know before relying on its numbers.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Finding {
     /// One of [`CODES`].
     pub code: Cow<'static, str>,

@@ -29,6 +29,30 @@ pub enum Part {
     },
 }
 
+impl Part {
+    /// "sphere", "self-affine", the name of the heights.
+    pub fn name(&self) -> &str {
+        match self {
+            Part::Shape { shape, .. } => shape.name(),
+            Part::SelfAffine(_) | Part::Synthesis(_) => "self-affine",
+            Part::Heights { name, .. } => name,
+        }
+    }
+
+    /// The heights of a rough part at the cells of the grid \[m\]; `None` for a smooth shape.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the roughness does not fit the grid.
+    pub fn heights(&self, grid: &Grid) -> Result<Option<Array2<f64>>> {
+        match self {
+            Part::Shape { .. } => Ok(None),
+            Part::SelfAffine(surface) => surface.heights(grid).map(Some),
+            Part::Synthesis(surface) => surface.heights(grid).map(Some),
+            Part::Heights { heights, .. } => Ok(Some(heights.clone())),
+        }
+    }
+}
+
 /// The undeformed gap h0 at the cell centres \[m\], shape (nx, ny), smallest value 0;
 /// `+INFINITY` in the cells that a flat punch keeps from touching.
 ///
@@ -62,7 +86,9 @@ pub fn undeformed_gap(grid: &Grid, parts: &[Part]) -> Result<Array2<f64>> {
 /// The sum of the gaps of the shapes less the heights \[m\].
 pub(crate) fn gap_of<'a>(grid: &Grid, parts: impl IntoIterator<Item = &'a Part>) -> Result<Array2<f64>> {
     let mut gap = Array2::zeros(grid.shape());
-    parts.into_iter().try_for_each(|part| add(&mut gap, grid, part))?;
+    for (n, part) in parts.into_iter().enumerate() {
+        add(&mut gap, grid, part).map_err(|error| error.of(&format!("surface[{n}]")))?;
+    }
     Ok(gap)
 }
 

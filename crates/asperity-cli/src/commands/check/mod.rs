@@ -119,11 +119,11 @@ fn motion_lines(case: &Case) -> Vec<[String; 2]> {
             )
         }
         Travel::Path(path) => {
-            let end = case.times.end();
+            let end = case.conditions.times.end();
             let times = (0..=1000).map(|k| end * f64::from(k) / 1000.0);
             let fastest = times.clone().map(|t| path.velocity(t).abs()).fold(0.0, f64::max);
             let far = times.map(|t| path.position(t).abs()).fold(0.0, f64::max);
-            let cells = far / motion.direction.cell(&case.grid);
+            let cells = far / motion.direction.cell(&case.conditions.grid);
             let far = quantity(far, "m");
             (
                 format!("{way} {direction}, up to {far} ({cells:.0} cells) at {} at most", speed(fastest)),
@@ -132,7 +132,8 @@ fn motion_lines(case: &Case) -> Vec<[String; 2]> {
         }
     };
     let mut lines = vec![["motion".to_owned(), words]];
-    let parts = std::iter::once(&case.creep).chain(case.thermal.iter().map(|body| &body.creep));
+    let parts =
+        std::iter::once(&case.conditions.creep).chain(case.conditions.thermal.iter().map(|body| &body.creep));
     let all: Vec<_> = parts.flat_map(|creep| creep.terms.iter()).collect();
     let total: f64 = all.iter().map(|term| term.compliance).sum();
     // The branch that carries most.
@@ -147,7 +148,7 @@ fn motion_lines(case: &Case) -> Vec<[String; 2]> {
                 100.0 * term.compliance / total,
                 quantity(reach, "m"),
                 speed(fastest),
-                quantity(reach / motion.direction.cell(&case.grid), "")
+                quantity(reach / motion.direction.cell(&case.conditions.grid), "")
             ),
         ]);
     }
@@ -289,7 +290,7 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>) -> String {
     if let Some([least, most]) = d.hardness_of_cells {
         line("hardness", format!("{} to {}, by cell", quantity(least, "Pa"), quantity(most, "Pa")));
     }
-    for [name, value] in prospects(&case.grid, inputs, case.axis()) {
+    for [name, value] in prospects(&case.conditions.grid, inputs, case.axis()) {
         line(&name, value);
     }
     let end = quantity(d.end, "s");
@@ -329,7 +330,7 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>) -> String {
             .for_each(|[name, value]| line(&name, value));
     }
     if let Some(leak) = &case.leakage {
-        let memory = bytes(leak.bytes(case.grid.len()));
+        let memory = bytes(leak.bytes(case.conditions.grid.len()));
         let times = match &leak.times {
             Some(times) => crate::format::counted(times.len(), "time"),
             None => "the stored times".to_owned(),

@@ -5,7 +5,7 @@ mod summary;
 use std::time::{Duration, Instant};
 
 use asperity::stress::StressQuantity;
-use asperity_io::case::fragment::{self, Fault};
+use asperity_io::case::{CaseError, fragment};
 use asperity_io::export::volume;
 use asperity_io::quantity::range::NonNegative;
 use asperity_io::quantity::{Number, Time};
@@ -211,8 +211,8 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
     Ok(plan)
 }
 
-fn faults(faults: Vec<Fault>) -> Failure {
-    let sentence = |fault: &Fault| {
+fn faults(faults: Vec<CaseError>) -> Failure {
+    let sentence = |fault: &CaseError| {
         let help = fault.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
         // The table of a case as a whole has no option.
         let option = match fault.key.as_str() {

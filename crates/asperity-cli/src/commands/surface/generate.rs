@@ -37,7 +37,7 @@ impl Verb for SurfaceGenerate {
         let keys: Vec<(&str, &str)> =
             given.into_iter().filter_map(|(key, text)| Some((key, text?))).collect();
         let (grid, part) = fragment::roughness(&keys).map_err(|faults| {
-            let failed = |fault: &fragment::Fault| {
+            let failed = |fault: &asperity_io::case::CaseError| {
                 // A path of the command line is relative to where the command runs.
                 let help = fault.help.as_ref().filter(|_| fault.key != "distribution.path");
                 let help = help.map_or(String::new(), |help| format!("; {}", with_options(help)));

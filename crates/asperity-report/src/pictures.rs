@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use asperity_io::output::PartialDirectory;
+use asperity_io::output::{PartialDirectory, WriteError};
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use asperity_io::stress::StressError;
 
@@ -31,13 +31,8 @@ pub enum PicturesError {
         ours: bool,
     },
     /// The system refuses.
-    #[error("cannot write {}: {source}", path.display())]
-    Io {
-        /// The path.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 impl From<StoreError> for PicturesError {
@@ -59,12 +54,12 @@ pub fn pictures(
     force: bool,
 ) -> Result<(), PicturesError> {
     check(directory, force)?;
-    let failed = |source| PicturesError::Io { path: directory.to_owned(), source };
+    let failed = |source| PicturesError::from(WriteError::at(directory, source));
     let partial = PartialDirectory::new(directory).map_err(failed)?;
     let place = |name: String| partial.place().join(name);
     // Messages name the directory asked for.
     let write = |picture: &Figure, name: &str| match picture.write(&place(name.into()), false) {
-        Err(FigureError::Io { source, .. }) => Err(failed(source)),
+        Err(FigureError::Write(WriteError::Io { source, .. })) => Err(failed(source)),
         other => other.map_err(PicturesError::Figure),
     };
     write(&figure(reader, Plot::Evolution, &Options::default())?, "evolution.png")?;
@@ -133,7 +128,7 @@ fn check(directory: &Path, force: bool) -> Result<(), PicturesError> {
     if !found.is_dir() {
         return Err(taken("is not a directory", false));
     }
-    let failed = |source| PicturesError::Io { path: directory.to_owned(), source };
+    let failed = |source| PicturesError::from(WriteError::at(directory, source));
     for entry in fs::read_dir(directory).map_err(failed)? {
         let name = entry.map_err(failed)?.file_name();
         if !name.to_str().is_some_and(|name| name.ends_with(".png")) {

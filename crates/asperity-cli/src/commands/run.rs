@@ -46,7 +46,7 @@ impl Verb for Run {
                 Err(Failure::Interrupted(format!("{rows} rows are in {result}; continue with --resume")))
             }
             Err(RunError::Case(errors)) => Err(Failure::Case(errors)),
-            Err(error @ RunError::Output(_)) => Err(Failure::of(error)),
+            Err(error @ RunError::Output(_)) => Err(error.into()),
             Err(error) => {
                 let message = match &error {
                     RunError::Solve { best: Some(best), .. } => {

@@ -24,10 +24,9 @@ const SPARKS: usize = 40;
 impl Verb for ShowResult {
     /// Prints the summary.
     fn run(&self) -> Result<(), Failure> {
-        let reader = Reader::open(&self.result).map_err(|error| Failure::input(error.to_string()))?;
+        let reader = Reader::open(&self.result)?;
         let at = instant(&reader, self.time.as_deref())?;
-        let text = if self.json { object(&reader) } else { text(&reader, at) };
-        crate::print(&text.map_err(|error| Failure::input(error.to_string()))?)
+        crate::print(&if self.json { object(&reader)? } else { text(&reader, at)? })
     }
 }
 

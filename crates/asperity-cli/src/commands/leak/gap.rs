@@ -7,7 +7,6 @@ use asperity::{Boundary, Grid};
 use asperity_io::case::leak as checked;
 use asperity_io::finding;
 use asperity_io::leakage::{Leakage, words};
-use asperity_report::figure::Form;
 use serde_json::{Value, json};
 
 use super::options;
@@ -17,10 +16,6 @@ use crate::format::quantity;
 
 /// Computes the leakage of one state and prints it.
 pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
-    if let Some(plot) = &args.plot {
-        Form::of(plot).map_err(|error| Failure::input(error.to_string()))?;
-        super::super::free(plot, args.force)?;
-    }
     let file = |path: &Path, height_unit: Option<String>| SurfaceFile {
         file: path.to_owned(),
         size: args.size.clone(),
@@ -35,13 +30,12 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         }
         None => None,
     };
-    let leak = checked(&options::keys(&args.fluid)?, Boundary::Periodic).map_err(Failure::input)?;
-    let failed = |error: asperity::Error| Failure::input(format!("{}: {error}", path.display()));
+    let leak = checked(&options::keys(&args.fluid), Boundary::Periodic).map_err(Failure::input)?;
     let (nx, ny) = gap.heights.dim();
-    let grid = Grid::new([nx, ny], gap.size).map_err(failed)?;
+    let grid = Grid::new([nx, ny], gap.size).map_err(Failure::about(path.display()))?;
     let contact = contact.as_ref().map(|contact| contact.view());
     let state = leak.of_gap(&grid, gap.heights.view(), contact, 0.0).map_err(|error| match error {
-        asperity::Error::Invalid { .. } => failed(error),
+        asperity::Error::Invalid { .. } => Failure::about(path.display())(error),
         error => Failure::Solve(error.to_string()),
     })?;
     let mut diagnostics = LeakDiagnostics::default();

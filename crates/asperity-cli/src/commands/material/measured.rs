@@ -29,8 +29,8 @@ pub fn show(args: &Show) -> Result<(), Failure> {
     }
     let curves = options::curves(&args.file, &args.table)?;
     if let Some(path) = &args.plot {
-        let title = args.file.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
-        crate::commands::picture::write(&pictures::isotherms(&title, &curves), path, args.force)?;
+        let figure = pictures::isotherms(&crate::commands::title(&args.file), &curves);
+        crate::commands::picture::write(&figure, path, args.force)?;
     }
     let text = if args.json { format!("{}\n", object(&curves)) } else { text(&curves) };
     crate::print(&text)

@@ -8,28 +8,23 @@ mod options;
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::Path;
 
 use asperity::material::Modulus;
 use asperity_io::case::{MaterialReport, Specimen, specimens};
-use asperity_io::quantity::{Time, range};
+use asperity_io::quantity::Time;
 use asperity_report::material as pictures;
 use serde_json::{Value, json};
 
 use crate::args::Show;
 use crate::failure::Failure;
+use crate::files::Files;
 use crate::format::{counted, quantity};
-use crate::verb::{Paths, Verb};
-pub(super) use options::{columns, parsed};
+use crate::verb::Verb;
+pub(super) use options::columns;
 
 impl Verb for Show {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.file)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.plot.as_ref()]
+    fn files(&self) -> Files {
+        Files::default().reads([&self.file]).draws(&self.plot).force(self.force)
     }
 
     /// Prints what a material does, or what a file of measured data holds.
@@ -46,13 +41,7 @@ impl Verb for Show {
 const MOST_DECADES: f64 = 60.0;
 
 fn show(args: &Show) -> Result<(), Failure> {
-    let given = [("--from", &args.from), ("--to", &args.to)].map(|(name, text)| {
-        text.as_deref()
-            .map(|text| parsed::<Time<range::Positive>>(name, text).map(|time| time.get()))
-            .transpose()
-    });
-    let [from, to] = given;
-    let (from, to) = (from?, to?);
+    let [from, to] = [args.from, args.to].map(|time| time.map(Time::get));
     let asked = match (from, to) {
         (Some(from), Some(to)) if from >= to => {
             return Err(Failure::input(format!("--from is {from} s, but must be less than --to, {to} s")));
@@ -78,7 +67,7 @@ fn show(args: &Show) -> Result<(), Failure> {
         let materials: Vec<_> = specimens.iter().map(|s| (s.name.as_str(), &s.material)).collect();
         let title = args.file.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
         let drawn = if from.is_none() && to.is_none() { covered(&specimens, window) } else { window };
-        let figure = pictures::functions(&title, &materials, drawn).map_err(failed)?;
+        let figure = pictures::functions(&title, &materials, drawn)?;
         let shifts: Vec<pictures::Factors> = specimens.iter().filter_map(shift_of).collect();
         let figure =
             pictures::shift_factors(&shifts).into_iter().fold(figure, |figure, panel| figure.with(panel));
@@ -165,7 +154,7 @@ struct Table {
 
 impl Table {
     fn of(specimen: &Specimen, [first, last]: [f64; 2], per_decade: u16) -> Result<Table, Failure> {
-        let relaxation = specimen.material.relaxation().map_err(failed)?;
+        let relaxation = specimen.material.relaxation()?;
         let steps = ((last / first).log10() * f64::from(per_decade) - 1e-9).ceil().max(1.0) as usize;
         let decade = |k: usize| k as f64 / f64::from(per_decade);
         let times: Vec<f64> =
@@ -319,13 +308,4 @@ pub fn source(report: &MaterialReport) -> Vec<String> {
 /// A temperature of a sweep \[°C\] to a tenth, and no -0.
 fn celsius(kelvin: f64) -> f64 {
     (10.0 * (kelvin - 273.15)).round() / 10.0 + 0.0
-}
-
-pub(super) fn failed(error: impl std::fmt::Display) -> Failure {
-    Failure::input(error.to_string())
-}
-
-pub(super) fn write(path: &Path, text: &str, force: bool) -> Result<(), Failure> {
-    let written = asperity_io::output::write(path, force, |file| file.write_all(text.as_bytes()));
-    written.map_err(|error| Failure::input(format!("cannot write {}: {error}", path.display())))
 }

@@ -56,8 +56,7 @@ pub(super) fn check(args: &args::Plot, plot: Plot) -> Result<(), Failure> {
 
 /// The options as the figures take them; the instant is not among them.
 pub(super) fn of(args: &args::Plot, plot: Plot, reader: &Reader) -> Result<Options, Failure> {
-    let place = args.at.as_deref().map(|text| read::<Length>("--at", text, "20 um")).transpose()?;
-    let place = place.map(|place| place.get());
+    let place = args.at.map(Length::get);
     let window =
         [moment(reader, "--from", args.from.as_deref())?, moment(reader, "--to", args.to.as_deref())?];
     if let ([Some(from), Some(to)], Some(text)) = (window, &args.from)
@@ -121,7 +120,7 @@ fn size(text: &str) -> Result<[f64; 2], Failure> {
     };
     let mut points = [0.0; 2];
     for (point, side) in points.iter_mut().zip(&sides) {
-        let metres = read::<Length>("--size", side, example)?.get();
+        let metres = read::<Length>("--size", side)?.get();
         if !(SIDES[0]..=SIDES[1]).contains(&metres) {
             let [least, most] = SIDES.map(|side| 1e3 * side);
             let message = format!(

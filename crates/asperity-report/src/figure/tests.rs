@@ -291,7 +291,7 @@ fn curve_figure() -> Figure {
 
 #[test]
 fn curves_end_where_the_map_over_time_below_them_ends() {
-    let states = Values::States(vec![("open".to_owned(), [0; 3])]);
+    let states = Values::States(&[("open", [0; 3])]);
     for map in [map().over_time(0.0), Map { meaning: states, ..map().over_time(0.0) }] {
         let figure = Figure::new("").columns(1).with(curve()).with(map);
         let places = figure.places();

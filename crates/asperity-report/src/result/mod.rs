@@ -47,7 +47,7 @@ pub(crate) use temperature::at_rows as temperature_at_rows;
 pub use temperature::temperatures;
 pub use together::together;
 
-use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series, Values};
+use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series};
 
 /// What a figure shows of a result.
 #[derive(Clone, Debug, PartialEq)]
@@ -241,13 +241,12 @@ fn colour(panel: &mut Panel, plot: Plot, options: &Options) {
     match panel {
         Panel::Map(map) => {
             map.palette = options.palette;
-            let Values::Quantity { range, .. } = &mut map.meaning else { return };
             // Colours that are white in the middle have zero there, unless limits say otherwise.
             let own = match options.palette {
-                Some(Palette::RedBlue) => range.map(|ends| Colours::Diverging.ends(ends)),
-                _ => *range,
+                Some(Palette::RedBlue) => map.range.map(|ends| Colours::Diverging.ends(ends)),
+                _ => map.range,
             };
-            *range = options.limits.or(own);
+            map.range = options.limits.or(own);
             map.log |= options.log_values;
         }
         Panel::Curves(curves) if plot.unit() == Some(curves.y.unit.as_str()) && plot != Plot::Stress => {

@@ -6,7 +6,7 @@ use asperity_io::stress::{Below, Instant, Section, StressError, StressPlan, belo
 use ndarray::{Array2, s};
 
 use super::{Options, PlotError, caption, moment};
-use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, Values};
+use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style};
 
 /// A section is this many times as wide as deep, unless the domain ends before.
 const WIDE: f64 = 3.0;
@@ -60,11 +60,8 @@ pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Fig
     let length = |value: f64| quantity(value, "m");
     let size = reader.header().grid.size();
     let mises = |title: String, values: &Array2<f64>, size: [f64; 2]| {
-        let mut map = Map::new(title, ["von Mises stress", "Pa"], Colours::Heat, values.view(), size);
-        if let Values::Quantity { range, .. } = &mut map.meaning {
-            *range = Some([0.0, found.largest]);
-        }
-        map
+        Map::new(title, ["von Mises stress", "Pa"], Colours::Heat, values.view(), size)
+            .between([0.0, found.largest])
     };
     let cut = |values: &Array2<f64>, along: &'static str, place: f64, size: f64, title: String| {
         let cells = values.dim().0;

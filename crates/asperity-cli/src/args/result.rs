@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use asperity_io::quantity::range::Positive;
 use asperity_io::quantity::{Length, Time};
+use asperity_report::figure::Palette;
 use asperity_report::result::Plot as Figure;
 
 use crate::input::quantity;
@@ -116,10 +117,9 @@ pub struct Plot {
     /// Colours of all stored times of all results given: maps made at other times can be compared
     #[arg(long, conflicts_with = "limits")]
     pub same_colours: bool,
-    /// Colour map: viridis, cividis, inferno, magma, plasma, turbo, grey or red-blue [default: inferno for pressure and
-    /// stress, else viridis]
-    #[arg(long, value_name = "NAME")]
-    pub colours: Option<String>,
+    /// Colour map [default: inferno for pressure and stress, else viridis]
+    #[arg(long, value_name = "NAME", value_parser = super::choice::<Palette>())]
+    pub colours: Option<Palette>,
     /// Colours of a map by the logarithm of the values, e.g. of the gap; of a line contact the vertical axis
     #[arg(long)]
     pub log: bool,

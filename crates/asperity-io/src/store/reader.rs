@@ -29,7 +29,7 @@ pub struct Reader {
 }
 
 /// Which of the stored instants of a field.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum At {
     /// Number of the instant, from 0.
     Index(usize),
@@ -37,6 +37,7 @@ pub enum At {
     /// jump) the later.
     Time(f64),
     /// The last one.
+    #[default]
     Last,
 }
 

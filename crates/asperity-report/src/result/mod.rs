@@ -50,7 +50,7 @@ pub use together::together;
 use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series};
 
 /// What a figure shows of a result.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
     /// The instant of maps, profiles and distributions.
     pub at: At,
@@ -88,19 +88,9 @@ pub enum Line {
     AlongY(Option<f64>),
 }
 
-impl Default for Options {
+impl Default for Line {
     fn default() -> Self {
-        Options {
-            at: At::Last,
-            line: Line::AlongX(None),
-            log: None,
-            title: None,
-            window: [None, None],
-            limits: None,
-            palette: None,
-            log_values: false,
-            size: None,
-        }
+        Line::AlongX(None)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use asperity_io::quantity::{Length, Pressure};
 use asperity_io::store::Reader;
-use asperity_report::figure::Palette;
 use asperity_report::result::{Line, Options, Plot};
 
 use super::super::moment;
@@ -71,17 +70,10 @@ pub(super) fn of(args: &args::Plot, plot: Plot, reader: &Reader) -> Result<Optio
         title: args.title.clone(),
         window,
         limits: args.limits.as_deref().map(|text| limits(text, plot, args.log)).transpose()?,
-        palette: args.colours.as_deref().map(palette).transpose()?,
+        palette: args.colours,
         log_values: args.log,
         size: args.size.as_deref().map(size).transpose()?,
         ..Options::default()
-    })
-}
-
-fn palette(name: &str) -> Result<Palette, Failure> {
-    Palette::from_name(name).ok_or_else(|| {
-        let names: Vec<_> = Palette::ALL.iter().map(|palette| palette.name()).collect();
-        Failure::input(format!("--colours is \"{name}\", but must be one of {}", names.join(", ")))
     })
 }
 

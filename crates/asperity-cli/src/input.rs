@@ -66,6 +66,15 @@ pub fn note_unit(option: &str, text: &str, unit: &str) {
     }
 }
 
+/// A message about keys of a case with the options that give these keys: `roll_off` becomes --roll-off.
+pub fn with_options(message: &str, keys: &[&str]) -> String {
+    keys.iter().fold(message.to_owned(), |text, key| {
+        let option = format!("--{}", key.replace(['_', '.'], "-"));
+        let text = text.replace(&format!("`{key}`"), &option);
+        text.replace(&format!("{key} = \""), &format!("{option} \""))
+    })
+}
+
 /// " (did you mean "pressure"?)" of a misspelt name; empty where none of the known ones is near.
 pub fn meant(name: &str, known: &[&str]) -> String {
     asperity_io::case::nearest(name, known)

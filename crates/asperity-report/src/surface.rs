@@ -3,7 +3,9 @@
 use std::f64::consts::{LN_2, TAU};
 
 use asperity::Grid;
-use asperity::surface::statistics::{Autocorrelation, BearingCurve, Extent, SelfAffineFit, Summary};
+use asperity::surface::statistics::{
+    Autocorrelation, BearingCurve, Extent, RadialSpectrum, SelfAffineFit, Summary,
+};
 use asperity::surface::{Fill, Level, Surface, fill, level};
 use asperity_io::readable::quantity;
 
@@ -140,13 +142,15 @@ fn fits(fit: &SelfAffineFit) -> bool {
     within && fit.error < 0.25 && fit.misfit < LN_2 && fit.stray < LN_2
 }
 
-fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
-    let spectrum = &waves.spectrum;
+/// Wave numbers and powers of a spectrum without those that are rounding errors.
+pub(crate) fn roughness(spectrum: &RadialSpectrum) -> (Vec<f64>, Vec<f64>) {
     let largest = spectrum.power.iter().copied().fold(0.0, f64::max);
-    let kept: Vec<usize> =
-        (0..spectrum.power.len()).filter(|n| spectrum.power[*n] > ROUNDING * largest).collect();
-    let pick = |values: &[f64]| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
-    let (q, power) = (pick(&spectrum.wave_number), pick(&spectrum.power));
+    let all = spectrum.wave_number.iter().copied().zip(spectrum.power.iter().copied());
+    all.filter(|(_, power)| *power > ROUNDING * largest).unzip()
+}
+
+fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
+    let (q, power) = roughness(&waves.spectrum);
     let (title, along) = match waves.lay.is_clear() {
         true => ("Power spectrum, average over ellipses", "wave number across the lay"),
         false => ("Power spectrum, radial average", "wave number"),

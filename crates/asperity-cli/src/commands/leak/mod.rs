@@ -81,7 +81,7 @@ fn asked(args: &args::Leak, reader: &Reader) -> Result<Leak, Failure> {
         Some(earlier) => earlier.changed(given, boundary),
         None => checked(&given, boundary),
     };
-    let leak = leak.map_err(Failure::input)?;
+    let leak = leak.map_err(options::refused)?;
     Ok(match &args.times {
         Some(list) => Leak { times: super::times(list)?, ..leak },
         None => leak,

@@ -193,7 +193,8 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
 
 /// The option that gives a key.
 fn option(key: &str) -> String {
-    format!("--{}", key.replace('_', "-"))
+    // An element of a list: "depths[0]".
+    format!("--{}", key.split('[').next().unwrap_or(key).replace('_', "-"))
 }
 
 fn faults(faults: Vec<Fault>) -> Failure {

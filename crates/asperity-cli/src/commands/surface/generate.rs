@@ -79,12 +79,24 @@ impl Verb for SurfaceGenerate {
 
 /// The words of a case file's message with its keys replaced by the options that give them.
 fn with_options(message: &str) -> String {
-    const KEYS: [&str; 6] =
-        ["rms_gradient", "rms_height", "roll_off", "lay.angle", "lay.ratio", "distribution.path"];
-    const WORDS: [&str; 7] = ["cells", "size", "preset", "hurst", "longest", "shortest", "seed"];
-    let words = WORDS.iter().map(|key| (format!("`{key}`"), flag(key)));
-    let keys = KEYS.iter().flat_map(|key| [(format!("`{key}`"), flag(key)), ((*key).to_owned(), flag(key))]);
-    words.chain(keys).fold(message.to_owned(), |text, (key, option)| text.replace(&key, &option))
+    const KEYS: [&str; 12] = [
+        "rms_gradient",
+        "rms_height",
+        "roll_off",
+        "lay.angle",
+        "lay.ratio",
+        "cells",
+        "size",
+        "preset",
+        "hurst",
+        "longest",
+        "shortest",
+        "seed",
+    ];
+    // These names are no words of a sentence.
+    let bare = KEYS[..5].iter().chain(&["distribution.path"]);
+    let text = crate::input::with_options(&message.replace("`distribution.path`", "--distribution"), &KEYS);
+    bare.fold(text, |text, key| text.replace(key, &flag(key)))
 }
 
 /// The option that gives a key.

@@ -10,7 +10,7 @@ use asperity_report::material as pictures;
 use serde_json::{Map, Value, json};
 
 use super::options::{self, refused};
-use super::{celsius, symbols};
+use super::{celsius, law, symbols};
 use crate::args::Fit;
 use crate::failure::Failure;
 use crate::files::Files;
@@ -166,19 +166,6 @@ fn beyond(fitted: &Fitted) -> String {
             };
             format!("a plateau of {} at shorter times, {long}", quantity(creep.instantaneous, "1/Pa"))
         }
-    }
-}
-
-/// The law in words.
-fn law(shift: &Shift) -> String {
-    match shift {
-        Shift::Wlf { c1, c2, reference } => {
-            format!("WLF c1 = {c1:.4}, c2 = {c2:.4} K about {:.2} °C", reference - 273.15)
-        }
-        Shift::Arrhenius { activation_energy, reference } => {
-            format!("Arrhenius {:.3} kJ/mol about {:.2} °C", 1e-3 * activation_energy, reference - 273.15)
-        }
-        Shift::Table { points } => format!("{} shift factors", points.len()),
     }
 }
 

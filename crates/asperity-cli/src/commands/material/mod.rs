@@ -9,7 +9,7 @@ mod options;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use asperity::material::Modulus;
+use asperity::material::{Modulus, Relaxation, Shift};
 use asperity_io::case::{MaterialReport, Specimen, specimens};
 use asperity_io::quantity::Time;
 use asperity_report::material as pictures;
@@ -78,13 +78,9 @@ fn show(args: &Show) -> Result<(), Failure> {
     let tables = specimens.iter().map(|specimen| Table::of(specimen, window, args.per_decade));
     let tables = tables.collect::<Result<Vec<Table>, Failure>>()?;
     if args.json {
-        let list: Vec<Value> =
-            specimens.iter().zip(&tables).map(|(specimen, table)| table.json(specimen)).collect();
-        return crate::print(&format!("{}\n", json!(list)));
+        return crate::print(&format!("{}\n", tables.iter().map(Table::json).collect::<Value>()));
     }
-    let texts: Vec<String> =
-        specimens.iter().zip(&tables).map(|(specimen, table)| table.text(specimen)).collect();
-    crate::print(&texts.join("\n"))
+    crate::print(&tables.iter().map(Table::text).collect::<Vec<_>>().join("\n"))
 }
 
 /// The shift of a material with the temperatures of its measurement.
@@ -142,36 +138,32 @@ fn extrapolated(specimen: &Specimen, drawn: [f64; 2]) -> Option<String> {
     })
 }
 
-/// The functions of a material at times and frequencies.
-struct Table {
+/// The functions of a material at times, and at frequencies of one over these times.
+struct Table<'a> {
+    specimen: &'a Specimen,
+    relaxation: Relaxation,
     times: Vec<f64>,
-    relaxation: Vec<f64>,
-    creep: Vec<f64>,
-    frequencies: Vec<f64>,
-    storage: Vec<f64>,
-    loss: Vec<f64>,
 }
 
-impl Table {
-    fn of(specimen: &Specimen, [first, last]: [f64; 2], per_decade: u16) -> Result<Table, Failure> {
-        let relaxation = specimen.material.relaxation()?;
+impl<'a> Table<'a> {
+    fn of(specimen: &'a Specimen, [first, last]: [f64; 2], per_decade: u16) -> Result<Table<'a>, Failure> {
         let steps = ((last / first).log10() * f64::from(per_decade) - 1e-9).ceil().max(1.0) as usize;
         let decade = |k: usize| k as f64 / f64::from(per_decade);
-        let times: Vec<f64> =
-            (0..=steps).map(|k| (first * 10f64.powf(decade(k))).min(last * (1.0 + 1e-12))).collect();
-        let frequencies: Vec<f64> = times.iter().rev().map(|t| 1.0 / t).collect();
-        let complex: Vec<(f64, f64)> = frequencies.iter().map(|w| relaxation.complex(*w)).collect();
-        Ok(Table {
-            relaxation: times.iter().map(|t| relaxation.value(*t)).collect(),
-            creep: times.iter().map(|t| specimen.material.creep().value(*t)).collect(),
-            storage: complex.iter().map(|c| c.0).collect(),
-            loss: complex.iter().map(|c| c.1).collect(),
-            times,
-            frequencies,
+        let times = (0..=steps).map(|k| (first * 10f64.powf(decade(k))).min(last * (1.0 + 1e-12)));
+        Ok(Table { specimen, relaxation: specimen.material.relaxation()?, times: times.collect() })
+    }
+
+    /// Frequency, storage and loss modulus.
+    fn dynamic(&self) -> impl Iterator<Item = [f64; 3]> {
+        let frequencies = self.times.iter().rev().map(|time| 1.0 / time);
+        frequencies.map(|frequency| {
+            let (storage, loss) = self.relaxation.complex(frequency);
+            [frequency, storage, loss]
         })
     }
 
-    fn text(&self, specimen: &Specimen) -> String {
+    fn text(&self) -> String {
+        let specimen = self.specimen;
         let (name, modulus, compliance) = symbols(specimen.material.measure());
         let mut text = format!("{}: {}, {name}\n", specimen.name, specimen.report.model);
         source(&specimen.report).iter().for_each(|line| text += &format!("  {line}\n"));
@@ -184,7 +176,8 @@ impl Table {
         );
         let covered = specimen.report.window.unwrap_or([0.0, f64::INFINITY]);
         let mark = |t: f64| if t < covered[0] * 0.999 || t > covered[1] * 1.001 { " *" } else { "" };
-        for ((t, relaxation), creep) in self.times.iter().zip(&self.relaxation).zip(&self.creep) {
+        for t in &self.times {
+            let (relaxation, creep) = (self.relaxation.value(*t), specimen.material.creep().value(*t));
             let _ = writeln!(text, "  {t:>12.4e} {relaxation:>14.6e} {creep:>14.6e}{}", mark(*t));
         }
         let _ = writeln!(
@@ -196,7 +189,7 @@ impl Table {
             format!("{modulus}'' [Pa]"),
             "tan delta"
         );
-        for ((w, storage), loss) in self.frequencies.iter().zip(&self.storage).zip(&self.loss) {
+        for [w, storage, loss] in self.dynamic() {
             let (hertz, tan_delta) = (w / TAU, loss / storage);
             let _ = writeln!(
                 text,
@@ -214,11 +207,12 @@ impl Table {
         text
     }
 
-    fn json(&self, specimen: &Specimen) -> Value {
-        let material = &specimen.material;
-        let creep = material.creep();
-        let tan_delta: Vec<f64> =
-            self.loss.iter().zip(&self.storage).map(|(loss, storage)| loss / storage).collect();
+    fn json(&self) -> Value {
+        let specimen = self.specimen;
+        let (material, creep) = (&specimen.material, specimen.material.creep());
+        let over_time =
+            |of: &dyn Fn(f64) -> f64| self.times.iter().map(|time| of(*time)).collect::<Vec<f64>>();
+        let column = |of: fn([f64; 3]) -> f64| self.dynamic().map(of).collect::<Vec<f64>>();
         json!({
             "name": specimen.name,
             "modulus": material.measure(),
@@ -228,12 +222,12 @@ impl Table {
             "instantaneous_compliance": creep.instantaneous,
             "fluidity": creep.fluidity,
             "time": self.times,
-            "relaxation_modulus": self.relaxation,
-            "creep_compliance": self.creep,
-            "angular_frequency": self.frequencies,
-            "storage_modulus": self.storage,
-            "loss_modulus": self.loss,
-            "tan_delta": tan_delta,
+            "relaxation_modulus": over_time(&|time| self.relaxation.value(time)),
+            "creep_compliance": over_time(&|time| creep.value(time)),
+            "angular_frequency": column(|[frequency, ..]| frequency),
+            "storage_modulus": column(|[_, storage, _]| storage),
+            "loss_modulus": column(|[.., loss]| loss),
+            "tan_delta": column(|[_, storage, loss]| loss / storage),
         })
     }
 }
@@ -303,6 +297,23 @@ pub fn source(report: &MaterialReport) -> Vec<String> {
     }));
     lines.extend(report.notes.iter().map(|note| format!("note: {note}")));
     lines
+}
+
+/// The law in words.
+fn law(shift: &Shift) -> String {
+    match shift {
+        Shift::Wlf { c1, c2, reference } => {
+            format!("WLF c1 = {c1:.4}, c2 = {c2:.4} K about {:.2} °C", reference - 273.15)
+        }
+        Shift::Arrhenius { activation_energy, reference } => {
+            format!("Arrhenius {:.3} kJ/mol about {:.2} °C", 1e-3 * activation_energy, reference - 273.15)
+        }
+        Shift::Table { points } => {
+            let celsius = |point: Option<&(f64, f64)>| point.map_or(0.0, |point| point.0 - 273.15);
+            let [first, last] = [points.first(), points.last()].map(celsius);
+            format!("{} shift factors from {first:.1} °C to {last:.1} °C", points.len())
+        }
+    }
 }
 
 /// A temperature of a sweep \[°C\] to a tenth, and no -0.

@@ -1,6 +1,6 @@
 //! `asperity stress`: the stress below the surface of a result.
 
-mod summary;
+pub(super) mod summary;
 
 use std::time::{Duration, Instant};
 

@@ -15,7 +15,7 @@ use serde_json::json;
 use crate::args::{SurfaceFile, SurfaceFromProfile, SurfaceInfo};
 use crate::failure::Failure;
 use crate::files::Files;
-use crate::format::quantity;
+use crate::format::{extent, quantity};
 use crate::verb::Verb;
 
 /// Rings of the spectrum per decade.
@@ -75,11 +75,7 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
     let (heights, spacing, history) = prepared(&name, profile, args)?;
     let found = ProfileParameters::of(&heights, spacing).map_err(&failed)?;
     let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(&failed)?;
-    let finite = stored.heights().iter().copied().filter(|z| z.is_finite()).collect::<Vec<f64>>();
-    let (low, high) = (
-        finite.iter().copied().fold(f64::INFINITY, f64::min),
-        finite.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-    );
+    let [low, high] = extent(stored.heights().iter().copied());
     if let Some(path) = &args.plot {
         crate::commands::picture::write(&figure(&name, &heights, spacing, &spectrum), path, args.force)?;
     }

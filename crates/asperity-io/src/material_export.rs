@@ -19,7 +19,8 @@ use std::fmt::Write;
 use asperity::material::{GAS_CONSTANT, Lateral, Material, Modulus, Relaxation, Shift, VerticalShift};
 
 /// A program that reads materials.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Program {
     /// Keywords of an Abaqus input file.
     Abaqus,

@@ -86,7 +86,7 @@ fn slips_are_told() {
     };
     says(&[], &record(), &["--radius"]);
     says(&["--radius", "5 s"], &record(), &["--radius", "5 s", "length"]);
-    says(&["--radius", "5 mm", "--poisson", "0.6"], &record(), &["--poisson is 0.6"]);
+    says(&["--radius", "5 mm", "--poisson", "0.6"], &record(), &["--poisson", "0.6"]);
     says(&["--radius", "5 mm", "--terms", "7"], &record(), &["number of terms is 7"]);
     says(&["--radius", "5 mm", "--unit", "load=mm"], &record(), &["load", "mm"]);
     says(&["--radius", "5 mm", "--column", "depth=4"], &record(), &["depth", "column 4"]);

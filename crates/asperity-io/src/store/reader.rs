@@ -30,7 +30,7 @@ pub struct Reader {
 }
 
 /// Which of the stored instants of a field.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum At {
     /// Number of the instant, from 0.
     Index(usize),
@@ -38,6 +38,7 @@ pub enum At {
     /// jump) the later.
     Time(f64),
     /// The last one.
+    #[default]
     Last,
 }
 
@@ -111,12 +112,19 @@ impl Reader {
         self.status() == Status::Complete && asked && self.leaks().is_none()
     }
 
-    /// How a run that stopped early goes on: empty, unless a case file is stored from which `run --resume` can continue.
-    pub fn continuation(&self) -> &'static str {
-        match self.header().case_text.is_empty() {
-            true => "",
-            false => "; continue with asperity run --resume",
-        }
+    /// How far it is, in words: "complete"; "interrupted; continue with asperity run --resume".
+    pub fn state(&self) -> String {
+        let state = match self.status() {
+            Status::Complete if self.lacks_leakage() => "without its leakage",
+            Status::Complete => return "complete".to_owned(),
+            Status::Running if self.is_being_written() => return "running".to_owned(),
+            Status::Running => "incomplete: its run was killed",
+            Status::Interrupted => "incomplete: its run was interrupted",
+            Status::Failed => return "incomplete: its run failed".to_owned(),
+        };
+        // Without a stored case file no run can continue it.
+        let is_of_case = !self.header().case_text.is_empty();
+        format!("{state}{}", if is_of_case { "; continue with asperity run --resume" } else { "" })
     }
 
     /// Rows.

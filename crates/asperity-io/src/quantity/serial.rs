@@ -176,7 +176,7 @@ impl Label {
 
 impl Scalar for Label {
     fn expected() -> String {
-        "a name in quotes or a number from 0".to_owned()
+        "a name in quotes, or a number counted from 0".to_owned()
     }
 
     fn from_text(text: &str) -> Result<Self, QuantityError> {

@@ -68,8 +68,8 @@ impl Simulation {
             "one that does not depend on displacements. A line contact on a free domain knows them only up to a constant; a \
              periodic domain (boundary = \"periodic\") has no such limit"
         } else if self.scheme == Scheme::Direct && is_energy {
-            "one that is no energy. Energies need the springs and dashpots of the material, which the full hereditary sum does \
-             not use; set time.scheme to \"linear\" or \"constant\""
+            "one that is no energy. Energies need the springs and dashpots of the material, which scheme = \"direct\" does not \
+             use; set time.scheme to \"linear\" or \"constant\""
         } else if self.layers.is_some() && (is_energy || quantity == Quantity::ContactStiffness) {
             "one that is solved for layers that creep differently. Leave it out, or give all layers and bodies the same relative \
              creep"

@@ -409,7 +409,7 @@ fn faults_of_models_are_named() {
         dir,
         r#"{ model = "fractional-zener", shear_equilibrium = "1 MPa", young_instantaneous = "1 GPa", time = "1 s", order = 0.5 }"#,
         at,
-        "missing-key",
+        "conflict",
         &[],
     );
     says(

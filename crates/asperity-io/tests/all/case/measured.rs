@@ -216,7 +216,7 @@ fn slips_in_the_steps_are_told_with_their_place() {
         ("outliers = true", vec!["surface[0].outliers", "a table"]),
         ("resample = \"cubic\"", vec!["\"bilinear\""]),
         ("channel = \"Phase\"", vec!["Phase"]),
-        ("channel = -1", vec!["a number from 0"]),
+        ("channel = -1", vec!["a number counted from 0"]),
         ("process = [{ op = \"filter\", longest = \"5 um\" }]", vec!["step", "undefined", "fill"]),
         ("process = []", vec!["a.sdf", "finite", "fill the undefined points"]),
     ] {

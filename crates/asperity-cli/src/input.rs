@@ -67,12 +67,14 @@ pub fn note_unit(option: &str, text: &str, unit: &str) {
 }
 
 /// A message about keys of a case with the options that give these keys: `roll_off` becomes --roll-off.
-pub fn with_options(message: &str, keys: &[&str]) -> String {
-    keys.iter().fold(message.to_owned(), |text, key| {
-        let option = format!("--{}", key.replace(['_', '.'], "-"));
-        let text = text.replace(&format!("`{key}`"), &option);
-        text.replace(&format!("{key} = \""), &format!("{option} \""))
-    })
+pub fn with_options(message: &str) -> String {
+    let parts = message.split('`').enumerate();
+    parts.map(|(n, part)| if n % 2 == 1 { option(part) } else { part.to_owned() }).collect()
+}
+
+/// The option that gives a key; of an element of a list, "depths[0]", that of the list.
+pub fn option(key: &str) -> String {
+    format!("--{}", key.split('[').next().unwrap_or(key).replace(['_', '.'], "-"))
 }
 
 /// " (did you mean "pressure"?)" of a misspelt name; empty where none of the known ones is near.

@@ -14,6 +14,7 @@ use super::options;
 use crate::args::{self, SurfaceFile};
 use crate::failure::Failure;
 use crate::format::quantity;
+use crate::input::with_options;
 
 /// Computes the leakage of one state and prints it.
 pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
@@ -32,7 +33,8 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         None => None,
     };
     warn_of_heights(path, &gap.heights);
-    let leak = checked(&options::keys(&args.fluid), Boundary::Periodic).map_err(options::refused)?;
+    let leak = checked(&options::keys(&args.fluid), Boundary::Periodic)
+        .map_err(|message| Failure::Input(with_options(&message)))?;
     let (nx, ny) = gap.heights.dim();
     let grid = Grid::new([nx, ny], gap.size).map_err(Failure::about(path.display()))?;
     let contact = contact.as_ref().map(|contact| contact.view());

@@ -17,6 +17,7 @@ use crate::args;
 use crate::failure::Failure;
 use crate::files::Files;
 use crate::format::quantity;
+use crate::input::with_options;
 use crate::messages::message;
 use crate::verb::{Threads, Verb};
 
@@ -81,7 +82,7 @@ fn asked(args: &args::Leak, reader: &Reader) -> Result<Leak, Failure> {
         Some(earlier) => earlier.changed(given, boundary),
         None => checked(&given, boundary),
     };
-    let leak = leak.map_err(options::refused)?;
+    let leak = leak.map_err(|message| Failure::Input(with_options(&message)))?;
     Ok(match &args.times {
         Some(list) => Leak { times: super::times(list)?, ..leak },
         None => leak,

@@ -3,8 +3,6 @@
 use asperity_io::case::LeakageKeys;
 
 use crate::args::FluidOptions;
-use crate::failure::Failure;
-use crate::input::with_options;
 
 /// The keys that are given.
 pub fn keys(options: &FluidOptions) -> LeakageKeys {
@@ -23,21 +21,4 @@ pub fn keys(options: &FluidOptions) -> LeakageKeys {
         times: None,
         field: (options.field || options.no_field).then_some(options.field),
     }
-}
-
-/// What is wrong with the keys, in the words of the options.
-pub fn refused(message: String) -> Failure {
-    const KEYS: [&str; 10] = [
-        "direction",
-        "pressure_drop",
-        "viscosity",
-        "gas",
-        "molar_mass",
-        "temperature",
-        "inlet",
-        "outlet",
-        "rarefaction",
-        "sides",
-    ];
-    Failure::Input(with_options(&message, &KEYS))
 }

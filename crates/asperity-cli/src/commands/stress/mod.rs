@@ -17,7 +17,7 @@ use asperity_report::result::stress_figure;
 use crate::args::Stress;
 use crate::failure::Failure;
 use crate::files::Files;
-use crate::input::note_unit;
+use crate::input::{note_unit, option};
 use crate::messages::message;
 use crate::verb::{Threads, Verb};
 
@@ -189,12 +189,6 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
         plan.times = super::times(list)?;
     }
     Ok(plan)
-}
-
-/// The option that gives a key.
-fn option(key: &str) -> String {
-    // An element of a list: "depths[0]".
-    format!("--{}", key.split('[').next().unwrap_or(key).replace('_', "-"))
 }
 
 fn faults(faults: Vec<CaseError>) -> Failure {

@@ -7,7 +7,7 @@ use asperity_io::case::fragment;
 use crate::args::SurfaceGenerate;
 use crate::failure::Failure;
 use crate::files::Files;
-use crate::input::note_unit;
+use crate::input::{note_unit, option};
 use crate::verb::Verb;
 
 impl Verb for SurfaceGenerate {
@@ -79,35 +79,17 @@ impl Verb for SurfaceGenerate {
 
 /// The words of a case file's message with its keys replaced by the options that give them.
 fn with_options(message: &str) -> String {
-    const KEYS: [&str; 12] = [
-        "rms_gradient",
-        "rms_height",
-        "roll_off",
-        "lay.angle",
-        "lay.ratio",
-        "cells",
-        "size",
-        "preset",
-        "hurst",
-        "longest",
-        "shortest",
-        "seed",
-    ];
     // These names are no words of a sentence.
-    let bare = KEYS[..5].iter().chain(&["distribution.path"]);
-    let text = crate::input::with_options(&message.replace("`distribution.path`", "--distribution"), &KEYS);
-    bare.fold(text, |text, key| text.replace(key, &flag(key)))
+    let keys = ["rms_gradient", "rms_height", "roll_off", "lay.angle", "lay.ratio", "distribution.path"];
+    let message = message.replace("`distribution.path`", "--distribution");
+    let text = crate::input::with_options(&message);
+    keys.iter().fold(text, |text, key| text.replace(key, &flag(key)))
 }
 
 /// The option that gives a key.
 fn flag(key: &str) -> String {
     match key {
         "distribution.path" => "--distribution".to_owned(),
-        _ => {
-            let key = key.strip_prefix("distribution.").unwrap_or(key);
-            // An element of a list: "cells[1]".
-            let key = key.split('[').next().unwrap_or(key);
-            format!("--{}", key.replace(['_', '.'], "-"))
-        }
+        key => option(key.strip_prefix("distribution.").unwrap_or(key)),
     }
 }

@@ -91,7 +91,7 @@ pub(crate) fn bins(kind: Kind) -> Option<Bins> {
 }
 
 /// The coordinates of a histogram, with their numbers: middles, then ends.
-pub(crate) fn coordinates(column: &Quantity, grid: &Grid) -> Vec<(Series, Vec<f64>)> {
+pub fn coordinates(column: &Quantity, grid: &Grid) -> Vec<(Series, Vec<f64>)> {
     let Some(Bins { middles: of_middles, edges: of_edges }) = bins(column.quantity) else { return vec![] };
     let on = |series: Series| Series { units: grid.units(series.units), ..series };
     let middle = |pair: &[f64]| match column.quantity {

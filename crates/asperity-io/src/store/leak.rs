@@ -77,6 +77,16 @@ const NUMBERS: [Number; 17] = [
     number("conductance", "m3", "effective conductance"),
 ];
 
+/// What a leak of a gas, or of a liquid, may have one number of.
+pub fn leak_series(gas: bool) -> impl Iterator<Item = Series> {
+    let own = NUMBERS.iter().filter(|number| number.name != "conductance");
+    own.map(move |number| Series {
+        name: number.name,
+        units: if gas { number.gas_units } else { number.units },
+        long_name: number.long_name,
+    })
+}
+
 /// The pressure of the fluid.
 const PRESSURE: &str = "fluid_pressure";
 
@@ -114,14 +124,7 @@ impl Leaks {
 
     /// What each leak has one number of.
     pub fn series(&self) -> Vec<Series> {
-        let own =
-            NUMBERS.iter().filter(|number| number.name != "conductance" && self.names.contains(&number.name));
-        own.map(|number| Series {
-            name: number.name,
-            units: if self.gas { number.gas_units } else { number.units },
-            long_name: number.long_name,
-        })
-        .collect()
+        leak_series(self.gas).filter(|series| self.names.contains(&series.name)).collect()
     }
 
     /// Whether the pressure of the fluid is stored.

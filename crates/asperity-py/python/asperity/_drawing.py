@@ -172,18 +172,18 @@ def _in_si(style: dict[str, Any], unit: str) -> dict[str, Any]:
     return {key: number(key, value, unit) if key in ("vmin", "vmax") and value is not None else value for key, value in style.items()}
 
 
-def _scale(ax: Any, words: str, largest: float, unit: str, power: int = 1, axis: str = "y", log: bool = False) -> tuple[float, str]:
-    """Factor and text of the unit of an axis: that of a curve which is there already, else one that suits the numbers. A logarithmic
-    axis has powers of ten as its numbers, and needs none in its unit."""
+def _scale(ax: Any, words: str, largest: float, unit: str, power: int = 1, axis: str = "y", log: bool = False) -> float:
+    """Labels an axis with its unit and returns the factor of that unit: the unit of a curve which is there already, else one that suits
+    the numbers. A logarithmic axis has powers of ten as its numbers, and needs none in its unit."""
+    label, set_label = (ax.get_ylabel(), ax.set_ylabel) if axis == "y" else (ax.get_xlabel(), ax.set_xlabel)
     if unit == "1":
-        return 1.0, "1"
+        set_label(words)
+        return 1.0
     suited = prefixed if log else shown
-    label = ax.get_ylabel() if axis == "y" else ax.get_xlabel()
-    for tens in range(-60, 61):
-        factor, text = suited(10.0**tens, unit, power)
-        if label == f"{words} [{text}]":
-            return factor, text
-    return suited(largest, unit, power)
+    usual = (suited(10.0**tens, unit, power) for tens in range(-60, 61))
+    factor, text = next((one for one in usual if label == f"{words} [{one[1]}]"), suited(largest, unit, power))
+    set_label(f"{words} [{text}]")
+    return factor
 
 
 def _largest(*values: Any) -> float:

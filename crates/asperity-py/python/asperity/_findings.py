@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import warnings
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
@@ -61,8 +63,16 @@ def findings_of(objects: Iterable[Mapping[str, Any]], *, of_case: bool = False) 
     return found
 
 
-def warn(findings: Iterable[Finding], stacklevel: int) -> None:
-    """A :class:`ResultWarning` for each warning among the findings; `stacklevel` as of the caller."""
+def warn(findings: Iterable[Finding]) -> None:
+    """A :class:`ResultWarning` for each warning among the findings."""
     for found in findings:
         if found["severity"] == "warning":
-            warnings.warn(str(found), ResultWarning, stacklevel=stacklevel + 1)
+            warn_caller(str(found))
+
+
+def warn_caller(text: str, kind: type[Warning] = ResultWarning) -> None:
+    """A warning at the line of the user's program that called this package."""
+    package, frame, level = os.path.dirname(__file__), sys._getframe(), 1
+    while frame.f_code.co_filename.startswith(package) and frame.f_back is not None:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(text, kind, stacklevel=level)

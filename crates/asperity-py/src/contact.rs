@@ -110,22 +110,20 @@ impl Elastic {
 
     /// The contact under a load \[N\] or an approach \[m\], starting from a pressure; the numbers of its row by their names, and the
     /// fields; with `history` its iterations.
-    #[pyo3(signature = (load, approach, start, history))]
+    #[pyo3(signature = (control, value, start, history))]
     fn solve<'py>(
         &self,
         py: Python<'py>,
-        load: Option<f64>,
-        approach: Option<f64>,
+        control: &str,
+        value: f64,
         start: Option<PyReadonlyArray2<'_, f64>>,
         history: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let start: Option<Vec<f64>> = start.map(|pressure| pressure.as_array().iter().copied().collect());
-        let prescribed = match (load, approach) {
-            (Some(load), None) => (Control::Load, load),
-            (None, Some(_)) if self.is_free_line => return Err(CaseError::new_err(FREE_LINE)),
-            (None, Some(approach)) => (Control::Approach, approach),
-            _ => return Err(CaseError::new_err("give load or approach, exactly one of them")),
-        };
+        let control = choose("control", control)?;
+        if control == Control::Approach && self.is_free_line {
+            return Err(CaseError::new_err(FREE_LINE));
+        }
         let shape = self.shape;
         if start.as_ref().is_some_and(|start| start.len() != shape.0 * shape.1) {
             return Err(CaseError::new_err(format!("the start needs a pressure of shape {shape:?}")));
@@ -133,7 +131,7 @@ impl Elastic {
         let interrupt = Arc::new(AtomicBool::new(false));
         let solved = without_python(py, &interrupt, || {
             let mut planned = self.planned.lock().unwrap_or_else(PoisonError::into_inner);
-            planned.solve(prescribed, start, history, interrupt.clone())
+            planned.solve((control, value), start, history, interrupt.clone())
         })?;
         let Solution { row, pressure, displacement, findings, iterations } = match solved {
             Ok(solution) => solution,

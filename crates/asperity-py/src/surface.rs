@@ -27,7 +27,7 @@ type Map<'py> = Bound<'py, PyArray2<f64>>;
 /// cannot touch.
 #[pyfunction]
 pub fn heights<'py>(py: Python<'py>, keys: Bound<'_, PyDict>) -> PyResult<Map<'py>> {
-    let (grid, part) = given::surface(&table(&keys)?).map_err(error::of_surface)?;
+    let (grid, part) = given::surface(&table(&keys)?).map_err(error::alone)?;
     let made = detached(py, || match part {
         Part::SelfAffine(roughness) => roughness.heights(&grid),
         Part::Synthesis(roughness) => roughness.heights(&grid),

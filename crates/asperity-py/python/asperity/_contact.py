@@ -90,9 +90,9 @@ class _Planned:
         same = (np.array_equal(ours, theirs) for ours, theirs in ((self.hardness, hardness), (self.kernel, kernel)))
         return all(same) and np.array_equal(self.gap, surface.gap())
 
-    def solve(self, load: float | None, approach: float | None, start: Floats | None, history: bool, out: Any) -> ElasticContact:
+    def solve(self, control: str, value: float, start: Floats | None, history: bool, out: Any) -> ElasticContact:
         """One contact."""
-        found = self.core.solve(load, approach, None if start is None else as_plane(start), history)
+        found = self.core.solve(control, value, None if start is None else as_plane(start), history)
         fields = {name: found.pop(name).reshape(self.gap.shape) for name in ("pressure", "displacement")}
         for name, values in fields.items():
             if name in out:
@@ -493,8 +493,8 @@ def elastic(
     contacts: list[ElasticContact] = []
     try:
         for value in numbers:
-            force, depth = (None, value) if what == "approach" else (value, None)
-            contacts.append(planned.solve(force, depth, contacts[-1].pressure if contacts else first, history, receives))
+            control = "approach" if what == "approach" else "load"
+            contacts.append(planned.solve(control, value, contacts[-1].pressure if contacts else first, history, receives))
     except BaseException as error:
         if contacts:
             error.result = ElasticCurve(contacts)  # type: ignore[attr-defined]

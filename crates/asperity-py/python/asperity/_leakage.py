@@ -169,7 +169,7 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     """The leaks at the times of a result's fields."""
     if "gap" not in result.fields:
         raise _core.CaseError("leakage needs the field 'gap'; the result keeps " + (", ".join(result.fields) or "no fields"))
-    setup = json.loads(str(result.attributes.get("setup") or "{}"))
+    setup = result._setup
     boundary = setup.get("boundary", "free")
     keys = {"sides": "periodic" if boundary == "periodic" else "closed", **keys}
     if keys.get("direction") == "both" and boundary != "periodic":
@@ -185,24 +185,15 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     for index, time in enumerate(result.field_times):
         gap = result.field("gap", index=index)
         contact = contact_of(result, index)
-        found = _core.leakage(
-            np.ascontiguousarray(gap), contact, list(result.size), json.dumps(keys), temperatures, float(time)
-        )
+        found = _core.leakage(np.ascontiguousarray(gap), contact, list(result.size), json.dumps(keys), temperatures, float(time))
         step = int(result._field_steps[index])
         touching = (gap - result.initial_gap)[contact > 0]
         # The mean displacement in the contact, to which the tolerance is relative.
         displacement = float(touching.mean()) + float(result.approach[step]) if touching.size else 0.0
         area = float(result.contact_area[step])
-        states.append(
-            (
-                step,
-                found["critical_gap"] if found["percolates"] else None,
-                found["critical_width"],
-                tolerance * abs(displacement),
-                drop,
-                float(result.load[step]) / area if area > 0 else 0.0,
-            )
-        )
+        narrowest = found["critical_gap"] if found["percolates"] else None
+        pressure = float(result.load[step]) / area if area > 0 else 0.0
+        states.append((step, narrowest, found["critical_width"], tolerance * abs(displacement), drop, pressure))
         rows.append(found)
     resolved, told = _core.judge_leaks(states)
     for row, good in zip(rows, resolved):
@@ -217,10 +208,9 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
 
 def contact_of(result: Result, index: int) -> Any:
     """Where the surfaces touch: from the field that tells it."""
-    if "contact" in result.fields:
-        return np.ascontiguousarray(result.field("contact", index=index) != 0, dtype=np.uint8)
-    if "pressure" in result.fields:
-        return np.ascontiguousarray(result.field("pressure", index=index) > 0, dtype=np.uint8)
+    for name in ("contact", "pressure"):
+        if name in result.fields:
+            return np.ascontiguousarray(result.field(name, index=index) > 0, dtype=np.uint8)
     gap = result.field("gap", index=index)
     deepest = np.abs(gap[np.isfinite(gap)]).max(initial=0.0)
     return np.ascontiguousarray(gap <= 1e-9 * deepest, dtype=np.uint8)

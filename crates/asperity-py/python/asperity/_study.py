@@ -425,10 +425,7 @@ def _dataset(
     columns: dict[str, Any] = {}
     asked = dict.fromkeys(name for result in results if result is not None for name in result._table if name not in ROW)
     for name, entry in {**ROW, **{name: QUANTITIES[name] for name in asked}}.items():
-        table = np.full((len(points), most), np.nan)
-        for n, result in enumerate(results):
-            if result is not None and name in result._table:
-                table[n, : steps[n]] = result._table[name]
+        table = _padded([None if result is None else result._table.get(name) for result in results], most)
         units = {result.units(name) for result in results if result is not None}
         attributes = {"units": " or ".join(sorted(units)) or entry.unit, "long_name": entry.words}
         if name == "time":
@@ -454,6 +451,15 @@ def _dataset(
     return xarray.Dataset(columns, coords=coordinates, attrs=attributes)
 
 
+def _padded(columns: Sequence[Any], most: int, cells: tuple[int, ...] = ()) -> Any:
+    """The columns of all points, or stacks of their fields, with NaN beyond their ends."""
+    table = np.full((len(columns), most, *cells), np.nan)
+    for n, column in enumerate(columns):
+        if column is not None:
+            table[n, : len(column)] = column
+    return table
+
+
 def _add_leaks(
     columns: dict[str, Any], coordinates: dict[str, Any], plan: _Plan, dims: tuple[str, ...], results: list[Result | None]
 ) -> None:
@@ -464,10 +470,7 @@ def _add_leaks(
     for name, entry in (GAS_LEAKS if gas else LEAKS).items():
         if not any(name in table for table in leaks):
             continue
-        values = np.full((len(leaks), most), np.nan)
-        for n, table in enumerate(leaks):
-            if name in table:
-                values[n, : len(table[name])] = table[name]
+        values = _padded([table.get(name) for table in leaks], most)
         column = ((*dims, "leak_step"), values.reshape(*plan.shape, most), entry.attributes())
         (coordinates if name == "leak_time" else columns)[name] = column
 
@@ -488,18 +491,12 @@ def _add_fields(
         return
     first = whole[0]
     most = max(len(result.field_times) for result in whole)
-    times = np.full((len(results), most), np.nan)
-    for n, result in enumerate(results):
-        if result is not None:
-            times[n, : len(result.field_times)] = result.field_times
+    times = _padded([None if result is None else result.field_times for result in results], most)
     words = {"units": "s", "long_name": "time of the fields"}
     coordinates["field_time"] = ((*dims, "field_step"), times.reshape(*plan.shape, most), words)
     coordinates.update(first._coordinates)
     for name in names:
-        stack = np.full((len(results), most, *first.cells), np.nan)
-        for n, result in enumerate(results):
-            if result is not None:
-                stack[n, : len(result.field_times)] = result._stack(name)
+        stack = _padded([None if result is None else result._stack(name) for result in results], most, first.cells)
         shape = (*plan.shape, most, *first.cells)
         columns[name] = ((*dims, "field_step", *first._axes), stack.reshape(shape), FIELDS[name].attributes())
 

@@ -161,7 +161,7 @@ pub fn shift_factor<'py>(
     Ok(factors.map_err(|error| raised(py, error))?.into_pyarray(py))
 }
 
-/// Vertical shift factors b_T at temperatures; 1 where there is no vertical shift.
+/// Vertical shift factors b_T at temperatures; 1 without a vertical shift.
 #[pyfunction]
 pub fn vertical_shift_factor<'py>(
     py: Python<'py>,

@@ -28,8 +28,8 @@ pub struct Store {
 }
 
 impl Store {
-    /// The reader, unless another result stands in the place of the one that was opened: rows of one and fields of the other would
-    /// be mixed.
+    /// The reader. An error if another result has replaced the one that was opened: otherwise rows of one would be combined with
+    /// fields of the other.
     fn unchanged(&self) -> PyResult<&Reader> {
         #[cfg(unix)]
         {

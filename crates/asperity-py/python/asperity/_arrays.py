@@ -32,7 +32,7 @@ def number(what: str, value: Any, unit: str | None = None) -> float:
 
 
 def numbers_of(given: dict[str, Any], units: dict[str, str] | None = None) -> dict[str, Any]:
-    """What is given of these parameters: numbers in SI units, and words as they are. `units` are those that the names do not tell."""
+    """The parameters that are given: numbers in SI units, words as they are. `units` has the units that do not follow from the name."""
     return {
         name: value if isinstance(value, (str, bool)) else number(name, value, (units or {}).get(name))
         for name, value in given.items()

@@ -55,7 +55,7 @@ class Finding(dict[str, Any]):
 
 
 def findings_of(objects: Iterable[Mapping[str, Any]], *, of_case: bool = False) -> list[Finding]:
-    """The findings of a list of objects, in the words of Python, or of a case file."""
+    """The findings of a list of objects. Their texts name parameters of Python, or with `of_case` keys of the case file."""
     found = [Finding(one) for one in objects]
     for one in [] if of_case else found:
         for word, parameter in _WORDS.items():

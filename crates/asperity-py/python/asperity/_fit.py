@@ -65,7 +65,7 @@ class Fit(ReadOnlyArrays):
     window: tuple[float, float]
     #: How times depend on temperature, given or estimated.
     shift: Shift | None
-    #: Distance of an estimated law from the factors found [decades of a_T]; None where there is none.
+    #: Rms distance of an estimated law from the estimated factors [decades of a_T]; None if no law was estimated.
     shift_rms: float | None
     #: (temperature [K], log10 a_T, standard deviation [decades]) of each sweep whose factor was estimated.
     shift_factors: list[tuple[float, float, float]]

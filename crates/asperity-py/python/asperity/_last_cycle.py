@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def last_cycle(result: Result) -> slice | None:
     """Rows of the last full period of a load that is a sine; else from the last but one to the last peak of the load or, where this is
-    held, of the approach. None where there is none."""
+    held, of the approach. None if there is no cycle."""
     if result.is_sweep:
         return None
     for sine in reversed(result._setup.get("sines") or []):

@@ -41,7 +41,7 @@ class PerssonFriction(Sealed):
 
     #: Velocities [m/s], as given.
     velocity: Floats
-    #: Friction coefficient, against the motion whatever its sign.
+    #: Friction coefficient: positive against the motion, in either direction.
     friction_coefficient: Floats
     #: Share of the nominal area in contact.
     contact_fraction: Floats

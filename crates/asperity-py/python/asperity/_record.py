@@ -50,7 +50,7 @@ class Record:
         self._march, self._keep = march, keep
         self._edges: dict[str, Floats] = {name: np.array(ends) for name, ends in core.columns()}
         self._rows: list[dict[str, Any]] = []
-        # The fields that are kept, by the number of their row; with an output those that are not yet on disk.
+        # The fields that are kept, by the number of their row; with an output only those that are not yet on disk.
         self._maps: dict[int, dict[str, Any]] = {}
         # Adaptive steps find their rows as they go.
         rows = core.rows_expected
@@ -82,7 +82,7 @@ class Record:
         self._write(len(self) if keeps else len(self) - 1)
 
     def _write(self, end: int) -> None:
-        """Writes the rows up to this one to the output, where there is one."""
+        """Writes the rows before row `end` to the output, if there is one."""
         while self._writer is not None and self._writer.rows < end:
             row = self._rows[self._writer.rows]
             numbers = [float(n) for name in self._edges for n in np.ravel(row[name])]

@@ -150,7 +150,7 @@ class March(Sealed):
         return Step(self, self._core.row(), index)
 
     def result(self) -> Result:
-        """The rows so far, with the fields that :func:`march` was told to keep, and those of the last row. The march can go on.
+        """The rows so far, with the `fields` that were given to :func:`march`, and those of the last row. The march can go on.
 
         >>> import asperity as asp
         >>> cone = asp.Surface.cone(cells=(32, 32), size=(1e-3, 1e-3), slope=0.1)

@@ -219,7 +219,7 @@ class Surface(OnGrid):
         return list(self.metadata.get("history", []))
 
     def process(self, *steps: str) -> Surface:
-        """The surface after steps in the words of ``asperity surface process --op``, done in order.
+        """The surface after these steps, done in order; they are written as for ``asperity surface process --op``.
 
         ``level=plane``, ``fill=harmonic share=0.25``, ``crop cells=512,512 from=0,0``, ``filter longest=40um``, ... The
         methods below do the same steps one by one. Each step is recorded in :attr:`history`.
@@ -673,10 +673,10 @@ def surface_of(surface: Any, gap: Any, size: float | Sequence[float] | None) -> 
 
 
 def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict[str, Any]]:
-    """The numbers [m] of what stands for a surface, its size [m] and its metadata."""
+    """Heights [m], size [m] and metadata of a surface, or of an object that describes one."""
     value = variable_of(what, value)
     held = getattr(value, "magnitude", None)
-    if isinstance(held, Surface):  # of pint, which multiplies whatever it finds
+    if isinstance(held, Surface):  # a quantity of pint, which multiplies objects of any kind
         return _parts(held * number("factor of the surface", type(value)(1.0, value.units), ""), size, what)
     if isinstance(value, Surface):
         if size is not None and not np.allclose(size_of("heights", value.heights, size), value.size, rtol=1e-9, atol=0.0):

@@ -1,6 +1,6 @@
 """Figures of results, surfaces and fits by matplotlib (an optional dependency: pip install asperity[plot]).
 
-Units of axes are those that suit the numbers; a second curve in the same axes has the unit of the first."""
+Each axis has a unit that suits its numbers; a second curve in the same axes keeps the unit of the first."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _told(plots: Any, missing: frozenset[str] = frozenset()) -> str:
 _LIGHT = "#f0f0ee"
 #: Labels of the contact states, by number.
 _STATES = {0: ("open", _LIGHT), 1: ("contact", "#0072b2"), 2: ("at hardness", "#d55e00")}
-#: Gaps below this share of the largest undeformed gap or approach are closed but for rounding errors.
+#: Gaps below this share of the largest undeformed gap, or of the approach, are rounding errors: the gap is closed.
 _ROUNDING = 1e-12
 
 
@@ -179,7 +179,7 @@ class Plots:
         _, (whole, last) = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
         _load_displacement(approach, load, unit, whole, style)
         _load_displacement(approach[cycle], load[cycle], unit, last, style)
-        # The titles lie above the legend, where there is one.
+        # If there is a legend, the titles lie above it.
         pad = 2.0 * _letters() if "label" in style else None
         from_, to = result.time[cycle][[0, -1]]
         whole.set_title("all cycles", pad=pad)
@@ -347,8 +347,7 @@ class Plots:
         return bool(self._result.contact_area[self._result._field_steps[self._row(at)]] > 0)
 
     def _tell(self, ax: Any, at: Any, place: str = "", notes: Sequence[str] = ()) -> None:
-        """The place and the time, where there is more than one, as the title of the axes, and below it what there is to note, in lines of
-        their own."""
+        """Sets the title of the axes: the place, the time if fields of several times are stored, and notes below, one in each line."""
         result, when = self._result, ""
         if len(result.field_times) > 1:
             moment = float(result.field_times[self._row(at)])
@@ -546,7 +545,7 @@ def _load_displacement(approach: Any, load: Any, unit: str, ax: Axes | None, sty
 
 
 def _two_or_five(value: float) -> str:
-    """2 and 5 times a power of ten in the words of matplotlib; nothing for other numbers."""
+    """The label of 2 or 5 times a power of ten, written for matplotlib; empty for other numbers."""
     power = math.floor(math.log10(value) + 1e-9) if value > 0 else 0
     first = round(value / 10.0**power)
     return f"${first}\\times10^{{{power}}}$" if first in (2, 5) else ""

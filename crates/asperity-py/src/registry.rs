@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use asperity::Grid;
 use asperity::quantities::{Column, Quantity};
-use asperity_io::store::{FieldKind, SCALARS, Series, coordinates, leak_series, stress_series};
+use asperity::stress::Rolling;
+use asperity_io::store::{FieldKind, SCALARS, Series, StressSet, coordinates, leak_series};
+use asperity_io::stress::Ratio;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -28,9 +30,10 @@ pub fn registry(py: Python<'_>) -> PyResult<BTreeMap<&'static str, Vec<Entry>>> 
     });
     let fields =
         FieldKind::ALL.map(|field| real(field.name(), field.units(), field.units(), field.long_name()));
-    let stress = stress_series(false).into_iter().map(|Series { name, units, long_name }| {
-        let on_line = stress_series(true).into_iter().find(|series| series.name == name);
-        real(name, units, on_line.map_or(units, |series| series.units), long_name)
+    let on_line = stress(true);
+    let stress = stress(false).into_iter().map(|Series { name, units, long_name }| {
+        let line = on_line.iter().find(|series| series.name == name);
+        real(name, units, line.map_or(units, |series| series.units), long_name)
     });
     let depth = real("depth", "m", "m", "depth below the surface");
     let leaks =
@@ -47,6 +50,22 @@ pub fn registry(py: Python<'_>) -> PyResult<BTreeMap<&'static str, Vec<Entry>>> 
 
 fn real(name: &'static str, units: &'static str, on_line: &'static str, words: &'static str) -> Entry {
     (name, units, on_line, words, "real")
+}
+
+/// All that a result may hold of the stress below a plane contact, or a line contact.
+fn stress(line: bool) -> Vec<Series> {
+    let set = StressSet {
+        body: String::new(),
+        poisson: Ratio::Constant(0.0),
+        line,
+        depths: vec![],
+        quantities: vec![],
+        threshold: Some(0.0),
+        yield_stress: None,
+        rolling: Some(Rolling::X),
+        instants: vec![],
+    };
+    [set.scalars(), set.profiles()].concat()
 }
 
 /// Name, unit, meaning and numbers of a coordinate.

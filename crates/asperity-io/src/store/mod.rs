@@ -81,6 +81,6 @@ pub use header::{Header, Status, Work};
 pub use layout::{SCALARS, Scalar, Series, coordinates};
 pub use leak::{LeakTable, LeakWriter, Leaks, leak_series};
 pub use reader::{At, Reader};
-pub use stress::{StressSet, StressWriter, stress_series};
+pub use stress::{StressSet, StressWriter};
 pub use verify::{Damage, Verification, verify};
 pub use writer::{Field, Outcome, Writer};

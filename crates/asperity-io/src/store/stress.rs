@@ -100,26 +100,12 @@ pub(super) fn names() -> impl Iterator<Item = &'static str> {
     one.chain(rest).chain(StressQuantity::ALL.map(field_name))
 }
 
-/// What the stress below a plane contact, or a line contact, may have over the instants, and over the depths.
-pub fn stress_series(line: bool) -> Vec<Series> {
-    let mut all = [&MAXIMA[..], &[volume(line)], &SHEAR, &PROFILES, &[SHEAR_PROFILE]].concat();
-    all.retain(|series| !(line && series.name.ends_with("_y")));
-    all
-}
-
-fn volume(line: bool) -> Series {
-    match line {
-        true => series(VOLUME.name, "m2", "area of the section above the threshold"),
-        false => VOLUME,
-    }
-}
-
 impl StressSet {
     /// The numbers of each instant.
     pub fn scalars(&self) -> Vec<Series> {
         let mut all = MAXIMA.to_vec();
         all.retain(|series| !(self.line && series.name.ends_with("_y")));
-        all.extend(self.threshold.map(|_| volume(self.line)));
+        all.extend(self.threshold.map(|_| self.volume()));
         all.extend(self.rolling.iter().flat_map(|_| SHEAR));
         all
     }
@@ -128,6 +114,13 @@ impl StressSet {
     pub fn extra_scalars(&self) -> Vec<Series> {
         let is_extra = |series: &Series| !series.name.starts_with("max_");
         self.scalars().into_iter().filter(is_extra).collect()
+    }
+
+    fn volume(&self) -> Series {
+        match self.line {
+            true => series(VOLUME.name, "m2", "area of the section above the threshold"),
+            false => VOLUME,
+        }
     }
 
     /// What each instant has a number of for each depth.

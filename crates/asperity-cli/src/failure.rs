@@ -29,20 +29,9 @@ impl Failure {
         Failure::Input(message.into())
     }
 
-    /// An error of something that reads and writes: wrong input, unless the disk is full or fails.
-    pub fn of(error: impl std::error::Error + 'static) -> Self {
-        use std::io::{Error, ErrorKind};
-        let causes =
-            std::iter::successors(Some(&error as &(dyn std::error::Error + 'static)), |cause| cause.source());
-        let mut of_system = causes.filter_map(|cause| cause.downcast_ref::<Error>());
-        let fails = |error: &Error| {
-            let full = [ErrorKind::StorageFull, ErrorKind::QuotaExceeded, ErrorKind::FileTooLarge];
-            full.contains(&error.kind())
-        };
-        match of_system.any(fails) {
-            true => Failure::System(error.to_string()),
-            false => Failure::Input(error.to_string()),
-        }
+    /// Wrong input, which an error describes, of what has this name.
+    pub fn about<E: std::fmt::Display>(name: impl std::fmt::Display) -> impl Fn(E) -> Failure {
+        move |error| Failure::Input(format!("{name}: {error}"))
     }
 
     /// 1 the solve or the system failed, or there are warnings under --strict; 2 the input is wrong; 130 interrupted.
@@ -69,9 +58,24 @@ impl Failure {
     }
 }
 
-impl From<CaseErrors> for Failure {
-    fn from(errors: CaseErrors) -> Self {
-        Failure::Case(errors)
+/// An error is wrong input, unless the disk is full or fails.
+impl<E: std::error::Error + 'static> From<E> for Failure {
+    fn from(error: E) -> Self {
+        use std::io::{Error, ErrorKind};
+        let error: Box<dyn std::error::Error> = match Box::<dyn std::error::Error>::from(error).downcast() {
+            Ok(errors) => return Failure::Case(*errors),
+            Err(other) => other,
+        };
+        let causes = std::iter::successors(Some(&*error), |cause| cause.source());
+        let mut of_system = causes.filter_map(|cause| cause.downcast_ref::<Error>());
+        let fails = |error: &Error| {
+            let full = [ErrorKind::StorageFull, ErrorKind::QuotaExceeded, ErrorKind::FileTooLarge];
+            full.contains(&error.kind())
+        };
+        match of_system.any(fails) {
+            true => Failure::System(error.to_string()),
+            false => Failure::Input(error.to_string()),
+        }
     }
 }
 
@@ -99,6 +103,11 @@ fn drawn(error: &CaseError, name: &str, source: &str) -> Option<String> {
         expected => format!("expected {expected}"),
     };
     let line = error.line.map_or(String::new(), |line| format!("line {line}: "));
+    // Lines that overrides added are not counted: the line at the place has its number in the file.
+    let counted_lines = 1 + source[..span.start].matches('\n').count();
+    let added = error.line.map_or(0, |line| counted_lines.saturating_sub(line));
+    let start = source.match_indices('\n').nth(added.wrapping_sub(1)).map_or(0, |(end, _)| end + 1);
+    let (source, span) = (&source[start..], span.start - start..span.end - start);
     let place =
         Snippet::source(source).path(name).annotation(AnnotationKind::Primary.span(span).label(label));
     let mut report = Level::ERROR.primary_title(format!("{line}{}", error.message)).element(place);
@@ -147,9 +156,9 @@ mod tests {
     fn a_full_disk_is_no_wrong_input() {
         let code = |kind: ErrorKind| {
             let (path, source) = ("a".into(), Error::from(kind));
-            Failure::of(StoreError::Io { path, action: "write", source }).code()
+            Failure::from(StoreError::Io { path, action: "write", source }).code()
         };
         assert_eq!([ErrorKind::StorageFull, ErrorKind::NotFound].map(code), [1, 2]);
-        assert_eq!(Failure::of(Error::from(ErrorKind::FileTooLarge)).code(), 1);
+        assert_eq!(Failure::from(Error::from(ErrorKind::FileTooLarge)).code(), 1);
     }
 }

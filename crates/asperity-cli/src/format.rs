@@ -3,9 +3,18 @@
 use asperity::step::Row;
 pub use asperity_io::readable::{bytes, coordinate, counted, duration, quantity};
 
-/// The mean pressure over the contact [Pa]; 0 where nothing touches.
-pub fn in_contact(row: &Row) -> f64 {
-    if row.contact_fraction > 0.0 { row.mean_pressure / row.contact_fraction } else { 0.0 }
+/// The least and the greatest of the finite values.
+pub fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let finite = values.into_iter().filter(|value| value.is_finite());
+    finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+}
+
+/// The pressures of a row: nominal mean, mean in the contact, 0 if nothing touches, and largest.
+pub fn pressures(row: &Row) -> String {
+    let touching = if row.contact_fraction > 0.0 { row.mean_pressure / row.contact_fraction } else { 0.0 };
+    let [nominal, touching, largest] =
+        [row.mean_pressure, touching, row.max_pressure].map(|pressure| quantity(pressure, "Pa"));
+    format!("nominal mean {nominal}, in the contact {touching}, largest {largest}")
 }
 
 /// The mean gap \[m\] of a row, 0 where it is the rounding error of a full contact.

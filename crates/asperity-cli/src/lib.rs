@@ -7,11 +7,11 @@
 mod args;
 mod commands;
 mod failure;
+mod files;
 mod format;
 mod input;
 mod interrupt;
 mod messages;
-mod output_paths;
 mod progress;
 mod terminal;
 mod threads;

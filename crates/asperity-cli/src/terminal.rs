@@ -4,6 +4,8 @@ use asperity::Axis;
 use asperity_report::result::is_logarithmic;
 use ndarray::{Array2, ArrayView2};
 
+use crate::format::extent;
+
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 /// Numbers of rows at their coordinates on `axis`, as a row of `width` bars from the least to the greatest.
@@ -20,8 +22,7 @@ pub fn sparkline(axis: Axis, rows: &[f64], values: &[f64], width: usize) -> Stri
         .map(|(row, value)| [if log { row.log10() } else { *row }, *value])
         .collect();
     let [Some(first), Some(last)] = [points.first(), points.last()] else { return String::new() };
-    let [low, high] =
-        points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [_, v]| [a.min(*v), b.max(*v)]);
+    let [low, high] = extent(points.iter().map(|[_, value]| *value));
     let flat = high - low <= 1e-9 * high.abs();
     let bar = |v: f64| match flat {
         true => BARS[3],

@@ -1,28 +1,19 @@
-//! A verb of the command line: its arguments say what it reads and writes, how many threads it takes, and how it runs.
+//! A verb of the command line: its arguments say which files it reads and writes, how many threads it takes, and how it runs.
 //!
 //! A new one is an implementation of [`Verb`] in a file of `commands`, its arguments, and a line in the list of `args`.
 
-use std::path::PathBuf;
-
 use crate::failure::Failure;
-use crate::{output_paths, threads};
-
-/// Paths, some of which may not be given.
-pub type Paths<'a> = Vec<Option<&'a PathBuf>>;
+use crate::files::Files;
+use crate::threads;
 
 /// Arguments that can be carried out.
 pub trait Verb {
     /// Does it.
     fn run(&self) -> Result<(), Failure>;
 
-    /// The files and results that it reads and may not replace.
-    fn reads(&self) -> Paths<'_> {
-        vec![]
-    }
-
-    /// The files that an option tells it to write.
-    fn writes(&self) -> Paths<'_> {
-        vec![]
+    /// The files that it reads, and those that it writes unless they exist.
+    fn files(&self) -> Files {
+        Files::default()
     }
 
     /// The threads that it takes.
@@ -30,9 +21,9 @@ pub trait Verb {
         Threads::Default
     }
 
-    /// Does it, once its outputs replace no input and its threads have started.
+    /// Does it, once its files are checked and its threads have started.
     fn carry_out(&self) -> Result<(), Failure> {
-        output_paths::check(&self.reads(), &self.writes())?;
+        self.files().check()?;
         threads::start(self.threads())?;
         self.run()
     }

@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use asperity_convolution::batched::BatchedFft;
-use asperity_convolution::{Convolution, even_spectrum};
+use asperity_convolution::{OnRustfft, even_spectrum};
 use asperity_sweep::Instructions;
 use ndarray::Array2;
 
@@ -27,7 +27,7 @@ fn main() {
         let input: Vec<f64> = (0..n * n).map(|i| (i * 7919 % 1013) as f64 / 1013.0).collect();
         let single: Vec<f32> = input.iter().map(|x| *x as f32).collect();
         let mut exact = vec![0.0; n * n];
-        let mut form = Convolution::on_rustfft([n, n], lengths, spectrum.view());
+        let mut form = OnRustfft::new([n, n], lengths, spectrum.view());
         form.apply_into(&input, &mut exact);
         let scale = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         for threads in [1, 2] {
@@ -35,7 +35,7 @@ fn main() {
             let mut forms: Vec<Form> = Vec::new();
             pool.install(|| {
                 let (input, single, exact) = (input.clone(), single.clone(), exact.clone());
-                let mut form = Convolution::on_rustfft([n, n], lengths, spectrum.view());
+                let mut form = OnRustfft::new([n, n], lengths, spectrum.view());
                 let (i, mut out) = (input.clone(), vec![0.0; n * n]);
                 forms.push((
                     "rustfft f64".into(),

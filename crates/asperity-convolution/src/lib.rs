@@ -12,14 +12,13 @@ pub mod fft;
 mod on_rustfft;
 pub mod plane;
 mod spectrum;
+pub mod torus;
 
-use ndarray::ArrayView2;
-
-use batched::BatchedFft;
-use on_rustfft::OnRustfft;
+pub use on_rustfft::OnRustfft;
 pub use spectrum::even_spectrum;
 
-/// A planned convolution. Bit-identical for any number of threads; `apply_into` allocates nothing.
+/// A planned convolution in f64 on the batched engine. Bit-identical on every processor and for any number of threads;
+/// `apply_into` allocates nothing.
 ///
 /// ```
 /// use asperity_convolution::{Convolution, even_spectrum};
@@ -33,55 +32,7 @@ pub use spectrum::even_spectrum;
 /// Convolution::new([3, 1], lengths, spectrum.view()).apply_into(&[0.0, 2.0, 0.0], &mut u);
 /// assert!((u[0] - 1.0).abs() < 1e-15 && (u[1] - 2.0).abs() < 1e-15);
 /// ```
-pub struct Convolution {
-    engine: Engine,
-}
-
-enum Engine {
-    Batched(BatchedFft<f64>),
-    OnRustfft(Box<OnRustfft>),
-}
-
-impl Convolution {
-    /// Plans a convolution of `cells` = \[nx, ny\] with transforms of `lengths` = \[mx, my\], on the
-    /// batched engine ([`batched`]): the same bits on every processor.
-    ///
-    /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and ky.
-    ///
-    /// # Panics
-    /// If the shapes are inconsistent.
-    pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
-        Convolution { engine: Engine::Batched(BatchedFft::new(cells, lengths, spectrum)) }
-    }
-
-    /// The same convolution on rustfft. It is slower, rounds differently, and allocates buffers in each application. It serves as
-    /// the reference for results and speed of the engine.
-    ///
-    /// # Panics
-    /// As [`Self::new`].
-    pub fn on_rustfft(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
-        assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
-        Convolution { engine: Engine::OnRustfft(Box::new(OnRustfft::new(cells, lengths, spectrum))) }
-    }
-
-    /// A length of at least `minimum` with a fast transform.
-    pub fn good_length(minimum: usize) -> usize {
-        BatchedFft::<f64>::good_length(minimum)
-    }
-
-    /// `output` = S * `input`; both C-order, nx ny cells.
-    pub fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
-        match &mut self.engine {
-            Engine::Batched(fft) => fft.apply_into(input, output),
-            Engine::OnRustfft(fft) => fft.apply_into(input, output),
-        }
-    }
-
-    /// Bytes that [`Self::new`] needs for these cells and lengths.
-    pub fn bytes(cells: [usize; 2], lengths: [usize; 2]) -> usize {
-        BatchedFft::<f64>::bytes(cells, lengths, 1)
-    }
-}
+pub type Convolution = batched::BatchedFft<f64>;
 
 #[cfg(test)]
 mod tests {
@@ -122,9 +73,10 @@ mod tests {
             let input: Vec<f64> = (0..cells[0] * cells[1]).map(|n| ((n * 37 % 11) as f64) - 4.0).collect();
             let spectrum = even_spectrum(&kernel, lengths);
             let exact = direct(cells, lengths, &kernel, &input);
-            for plan in [Convolution::new, Convolution::on_rustfft] {
-                let mut output = vec![0.0; input.len()];
-                plan(cells, lengths, spectrum.view()).apply_into(&input, &mut output);
+            let (mut batched, mut on_rustfft) = (vec![0.0; input.len()], vec![0.0; input.len()]);
+            Convolution::new(cells, lengths, spectrum.view()).apply_into(&input, &mut batched);
+            OnRustfft::new(cells, lengths, spectrum.view()).apply_into(&input, &mut on_rustfft);
+            for output in [batched, on_rustfft] {
                 for (u, e) in output.iter().zip(&exact) {
                     // sums of ~100 terms of size 5: a few roundings of that size
                     assert!((u - e).abs() < 1e-13, "{cells:?} {lengths:?}: {u} against {e}");

@@ -21,41 +21,86 @@ impl Type {
     }
 }
 
-pub(crate) const DIMENSION: u32 = 0x0a;
-pub(crate) const VARIABLE: u32 = 0x0b;
-pub(crate) const ATTRIBUTE: u32 = 0x0c;
+const DIMENSION: u32 = 0x0a;
+const VARIABLE: u32 = 0x0b;
+const ATTRIBUTE: u32 = 0x0c;
+
 /// Lengths are multiples of four bytes.
 pub(crate) fn padded(bytes: u64) -> u64 {
     bytes.next_multiple_of(4)
 }
 
 /// What a file says of itself or of a variable.
+#[derive(Clone)]
 pub(crate) enum Attribute {
     Text(String),
     Reals(Vec<f64>),
     Counts(Vec<i64>),
 }
 
+/// A variable of a file.
+pub(crate) struct Variable<'a> {
+    pub(crate) name: &'a str,
+    /// Numbers of its dimensions.
+    pub(crate) dimensions: Vec<usize>,
+    pub(crate) attributes: Vec<(&'a str, Attribute)>,
+    pub(crate) kind: Type,
+    /// Bytes of its data, or of those of one record.
+    pub(crate) bytes: u64,
+    /// Whether its data follow in records.
+    pub(crate) record: bool,
+}
+
+/// The header of a file with so many records, in the form of 64-bit data (`wide`) or of 64-bit offsets. The data of the fixed
+/// variables follow in their order, then the records; each is [`padded`]. A dimension of length 0 is that of the records.
+pub(crate) fn header(
+    records: usize,
+    wide: bool,
+    dimensions: &[(&str, usize)],
+    attributes: &[(String, Attribute)],
+    variables: &[Variable<'_>],
+) -> Vec<u8> {
+    let with_offsets = |offsets: &[u64]| {
+        let mut header = Header { bytes: vec![b'C', b'D', b'F', if wide { 5 } else { 2 }], wide };
+        header.size(records as u64);
+        header.list(DIMENSION, dimensions.len());
+        for (name, length) in dimensions {
+            header.text(name);
+            header.size(*length as u64);
+        }
+        header.list(ATTRIBUTE, attributes.len());
+        attributes.iter().for_each(|(name, attribute)| header.attribute(name, attribute));
+        header.list(VARIABLE, variables.len());
+        for (variable, offset) in variables.iter().zip(offsets) {
+            header.variable(variable, *offset);
+        }
+        header.bytes
+    };
+    // The length of the header does not depend on the offsets in it.
+    let mut offsets = vec![0; variables.len()];
+    let mut end = with_offsets(&offsets).len() as u64;
+    for record in [false, true] {
+        for (variable, offset) in variables.iter().zip(&mut offsets).filter(|(v, _)| v.record == record) {
+            *offset = end;
+            end += padded(variable.bytes);
+        }
+    }
+    with_offsets(&offsets)
+}
+
 /// A header that grows.
-pub(crate) struct Header {
-    pub(crate) bytes: Vec<u8>,
+struct Header {
+    bytes: Vec<u8>,
     wide: bool,
 }
 
 impl Header {
-    /// Of a file with so many records, in the form of 64-bit data or of 64-bit offsets.
-    pub(crate) fn new(records: u64, wide: bool) -> Self {
-        let mut header = Header { bytes: vec![b'C', b'D', b'F', if wide { 5 } else { 2 }], wide };
-        header.size(records);
-        header
-    }
-
-    pub(crate) fn tag(&mut self, tag: u32) {
+    fn tag(&mut self, tag: u32) {
         self.bytes.extend(tag.to_be_bytes());
     }
 
     /// A count or length: 32 bits, 64 in the wide form.
-    pub(crate) fn size(&mut self, size: u64) {
+    fn size(&mut self, size: u64) {
         if self.wide {
             self.bytes.extend(size.to_be_bytes());
         } else {
@@ -64,12 +109,12 @@ impl Header {
     }
 
     /// Starts a list.
-    pub(crate) fn list(&mut self, tag: u32, length: usize) {
+    fn list(&mut self, tag: u32, length: usize) {
         self.tag(if length == 0 { 0 } else { tag });
         self.size(length as u64);
     }
 
-    pub(crate) fn text(&mut self, text: &str) {
+    fn text(&mut self, text: &str) {
         self.size(text.len() as u64);
         self.padded(text.as_bytes());
     }
@@ -79,7 +124,7 @@ impl Header {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
     }
 
-    pub(crate) fn attribute(&mut self, name: &str, attribute: &Attribute) {
+    fn attribute(&mut self, name: &str, attribute: &Attribute) {
         self.text(name);
         let doubles =
             |values: &mut dyn Iterator<Item = f64>| values.flat_map(f64::to_be_bytes).collect::<Vec<u8>>();
@@ -99,5 +144,17 @@ impl Header {
         self.tag(kind as u32);
         self.size(length as u64);
         self.padded(&bytes);
+    }
+
+    fn variable(&mut self, variable: &Variable<'_>, offset: u64) {
+        self.text(variable.name);
+        self.size(variable.dimensions.len() as u64);
+        variable.dimensions.iter().for_each(|dimension| self.size(*dimension as u64));
+        self.list(ATTRIBUTE, variable.attributes.len());
+        variable.attributes.iter().for_each(|(name, attribute)| self.attribute(name, attribute));
+        self.tag(variable.kind as u32);
+        // A size that 32 bits cannot hold is written as the greatest number, and readers take it from the shape.
+        self.size(padded(variable.bytes));
+        self.bytes.extend(offset.to_be_bytes());
     }
 }

@@ -15,8 +15,8 @@ pub struct Comparison {
     pub numbers: Vec<Number>,
     /// Rows of the first result at whose time the second has a row too.
     pub common_rows: usize,
-    /// Largest difference of the pressures stored last, over the largest one of the first; `None` where the grids
-    /// differ or one has none.
+    /// Largest difference of the last stored pressures, relative to the largest pressure of the first result; `None` where the
+    /// grids differ or a result stores no pressure.
     pub pressure: Option<f64>,
 }
 
@@ -29,7 +29,7 @@ pub struct Number {
     pub units: String,
     /// Its last value in both.
     pub last: [f64; 2],
-    /// Largest difference at a common time, over the largest magnitude of the first there; `None` without common times.
+    /// Largest difference at a common time, relative to the largest magnitude of the first result there; `None` without common times.
     pub largest_difference: Option<f64>,
 }
 

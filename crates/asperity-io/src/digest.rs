@@ -1,4 +1,4 @@
-//! MD5 of files: another file has another one. X3P asks for it, and a resumed run notices a change by it.
+//! MD5 of files: X3P stores it, and a resumed run recognises by it that a file has changed.
 
 /// MD5 in hexadecimal digits.
 pub(crate) fn md5(bytes: &[u8]) -> String {

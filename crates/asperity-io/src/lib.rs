@@ -3,6 +3,7 @@
 pub mod case;
 pub mod choice;
 mod classic;
+mod code;
 pub mod compare;
 pub mod curve;
 pub mod cycles;
@@ -23,3 +24,5 @@ pub mod store;
 pub mod stress;
 pub mod topography;
 mod xml;
+
+pub use code::Code;

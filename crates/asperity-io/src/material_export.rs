@@ -19,7 +19,8 @@ use std::fmt::Write;
 use asperity::material::{GAS_CONSTANT, Lateral, Material, Modulus, Relaxation, Shift, VerticalShift};
 
 /// A program that reads materials.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Program {
     /// Keywords of an Abaqus input file.
     Abaqus,
@@ -148,29 +149,38 @@ fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
 }
 
+/// A number with as many digits as fit into 20 characters, the width of a field in a data line of Abaqus.
+fn abaqus_number(x: f64) -> String {
+    let exact = [format!("{x:?}"), format!("{x:e}")].into_iter();
+    let rounded = (0..16).rev().map(|digits| format!("{x:.digits$e}"));
+    exact.chain(rounded).find(|text| text.len() <= 20).unwrap_or_default()
+}
+
 fn abaqus(exported: &Exported<'_>, relaxation: &Relaxation, isotropic: &Isotropic) -> String {
     let mut text = format!(
         "** {}: SI units (Pa, s, K).\n** The elastic constants are the instantaneous ones; g_i = G_i/G(0), k_i = K_i/K(0).\n\
-         *MATERIAL, NAME={}\n*ELASTIC, MODULI=INSTANTANEOUS\n{:e}, {:?}\n*VISCOELASTIC, TIME=PRONY\n",
+         *MATERIAL, NAME={}\n*ELASTIC, MODULI=INSTANTANEOUS\n{}, {}\n*VISCOELASTIC, TIME=PRONY\n",
         plain(exported.name),
         plain(exported.name),
-        isotropic.young,
-        isotropic.poisson
+        abaqus_number(isotropic.young),
+        abaqus_number(isotropic.poisson)
     );
     for (fraction, time) in fractions(relaxation) {
         let bulk = if isotropic.bulk_relaxes { fraction } else { 0.0 };
-        let _ = writeln!(text, "{fraction:e}, {bulk:e}, {time:e}");
+        let _ = writeln!(text, "{}", [fraction, bulk, time].map(abaqus_number).join(", "));
     }
     text.push_str(&match exported.shift {
         None => String::new(),
         Some(Shift::Wlf { c1, c2, reference }) => format!(
             "** log10 a_T = -C1 (T - T0)/(C2 + T - T0): T0, C1, C2. Temperatures are in K.\n*TRS, \
-             DEFINITION=WLF\n{reference:?}, {c1:?}, {c2:?}\n"
+             DEFINITION=WLF\n{}\n",
+            [*reference, *c1, *c2].map(abaqus_number).join(", ")
         ),
         Some(Shift::Arrhenius { activation_energy, reference }) => format!(
             "** ln a_T = (E0/R)(1/T - 1/T0): T0, E0. Temperatures are in K, R in J/(mol K); the model needs\n** *PHYSICAL \
              CONSTANTS, ABSOLUTE ZERO=0., UNIVERSAL GAS CONSTANT={GAS_CONSTANT:?}\n*TRS, \
-             DEFINITION=ARRHENIUS\n{reference:?}, {activation_energy:?}\n"
+             DEFINITION=ARRHENIUS\n{}\n",
+            [*reference, *activation_energy].map(abaqus_number).join(", ")
         ),
         Some(Shift::Table { points }) => format!(
             "** Shift factors are a table, which *TRS takes through a user subroutine only (T [K], log10 a_T):\n{}",
@@ -328,6 +338,9 @@ mod tests {
         let material = rubber(Modulus::Young);
         let written = text(&exported(&material, Lateral::Poisson(0.49)), Program::Abaqus).unwrap();
         assert!(written.contains("*TRS, DEFINITION=WLF\n293.15, 8.86, 101.6\n"), "{written}");
+        let fields = written.lines().filter(|line| !line.starts_with('*')).flat_map(|line| line.split(", "));
+        assert!(fields.map(str::len).max().is_some_and(|width| width <= 20), "{written}");
+        assert_eq!(abaqus_number(-1.0 / 30_000.0), "-3.33333333333333e-5");
         let rows = numbers(&written, '*');
         let terms: Vec<(f64, f64)> = rows[1..5].iter().map(|row| (row[0], row[2])).collect();
         assert!(rows[1..5].iter().all(|row| row[0] == row[1]) && rows[0][1] == 0.49, "{written}");

@@ -10,6 +10,44 @@ use tempfile::{TempDir, TempPath};
 /// What fills a file: buffered, and able to go back.
 pub type Output<'a> = BufWriter<&'a File>;
 
+/// Why a file was not written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// There is a file that may not be replaced.
+    #[error("{} already exists; choose another file or use --force", path.display())]
+    Exists {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The system refuses.
+    #[error("cannot write {}: {source}", path.display())]
+    Io {
+        /// The path.
+        path: PathBuf,
+        /// What the system reports.
+        source: Error,
+    },
+}
+
+impl WriteError {
+    /// The error of a file at this path.
+    pub fn at(path: &Path, source: Error) -> WriteError {
+        let path = path.to_owned();
+        match source.kind() {
+            ErrorKind::AlreadyExists => WriteError::Exists { path },
+            _ => WriteError::Io { path, source },
+        }
+    }
+}
+
+/// Writes a file of these bytes. It appears whole or not at all.
+///
+/// # Errors
+/// [`WriteError`]: `Exists` if there is a file already and `force` is not given.
+pub fn write_all(path: &Path, force: bool, bytes: &[u8]) -> Result<(), WriteError> {
+    write(path, force, |file| file.write_all(bytes)).map_err(|source| WriteError::at(path, source))
+}
+
 /// Lets `fill` write the file that then appears at `path`.
 ///
 /// # Errors
@@ -33,8 +71,8 @@ impl PartialFile {
     /// An empty file that is to appear at `path`, in place of another one only with `force`.
     ///
     /// # Errors
-    /// `AlreadyExists` where there is a file that may not be replaced; `IsADirectory` and `InvalidInput` where there is a directory,
-    /// a device or a pipe; those of the system.
+    /// `AlreadyExists` if a file is there that may not be replaced; `IsADirectory` and `InvalidInput` if a directory, a device or a
+    /// pipe is there; those of the system.
     pub fn new(path: &Path, force: bool) -> io::Result<PartialFile> {
         PartialFile::filled(path, force, |_| Ok(()))
     }

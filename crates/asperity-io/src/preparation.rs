@@ -63,7 +63,7 @@ pub struct Prepared {
     pub history: Vec<String>,
 }
 
-/// Does all steps in order; `domain` are the cells of the domain, where there is one.
+/// Does all steps in order; `domain` are the cells of the domain, if there is one.
 ///
 /// ```
 /// use asperity::{Grid, surface::{Level, Operation, Surface}};

@@ -1,8 +1,8 @@
-//! What the machine has left, asked before a number in a file makes the program want more.
+//! How much memory and disk the machine has left: checked before the program takes what a number in a file asks for.
 //!
 //! Memory: the least of what the system calls available, what the limits of control groups (containers, batch systems)
-//! leave, and what `ulimit -v` leaves. Disk: the free space of the file system. Where the system tells neither, there
-//! is no limit but 64 GiB of memory.
+//! leave, and what `ulimit -v` leaves. Disk: the free space of the file system. Where the system reports
+//! neither, the limit is 64 GiB of memory.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -16,6 +16,11 @@ const ASSUMED: u64 = 64 << 30;
 /// Bytes of memory that the process may still take.
 pub fn available_memory() -> u64 {
     available_below(Path::new("/"))
+}
+
+/// Largest resident memory of the process so far \[byte\], if the system reports it (Linux).
+pub fn peak_memory_bytes() -> Option<u64> {
+    kibibytes(&fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
 /// Refuses a piece of work that takes more memory than there is. `what` is the subject of the sentence, in the plural:
@@ -66,6 +71,33 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path)?.read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// The text of a file of at most `most` bytes.
+///
+/// # Errors
+/// A sentence: the file does not exist, is none, cannot be read, is larger, or is not UTF-8.
+pub fn text(path: &Path, most: u64) -> Result<String, String> {
+    let mut bytes = Vec::new();
+    let read = open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes));
+    read.map_err(|error| why(&error))?;
+    if bytes.len() as u64 > most {
+        return Err(format!("the file is larger than {} MB", most >> 20));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let byte = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count();
+        format!("the file is not UTF-8 text (line {line}, byte {byte})")
+    })
+}
+
+/// Why a file cannot be read, in a sentence.
+pub fn why(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "the file does not exist".to_owned(),
+        io::ErrorKind::IsADirectory | io::ErrorKind::InvalidInput => error.to_string(),
+        _ => format!("the file cannot be read: {error}"),
+    }
 }
 
 #[cfg(unix)]

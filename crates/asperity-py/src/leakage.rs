@@ -26,7 +26,11 @@ pub fn leakage<'py>(
     time: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let wrong = |error: &dyn std::fmt::Display| CaseError::new_err(format!("leakage: {error}"));
-    let keys: LeakageKeys = serde_json::from_str(keys).map_err(|error| wrong(&error))?;
+    let keys: LeakageKeys = serde_json::from_str(keys).map_err(|error| {
+        // The last line is a code, with a place in a text that nobody wrote.
+        let said = error.to_string();
+        wrong(&said.rsplit_once('\n').map_or(said.as_str(), |(said, _)| said.trim_end()))
+    })?;
     let leak = checked(&keys, Boundary::Periodic).map_err(|error| wrong(&error))?;
     let leak = Leak { temperatures, ..leak };
     let (gap, contact) = (gap.as_array(), contact.as_ref().map(|contact| contact.as_array()));

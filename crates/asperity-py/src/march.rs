@@ -49,7 +49,7 @@ impl March {
         let interrupt = Arc::new(AtomicBool::new(false));
         let made = without_python(py, &interrupt, || -> Result<_, CaseErrors> {
             let mut case = Case::given(&keys, &arrays, Path::new(""))?;
-            case.include = include;
+            case.conditions.include = include;
             let setup = serde_json::Value::Object(session::setup(&case)).to_string();
             let parts = case.parts()?;
             let simulation = case.simulation_of(&parts)?;

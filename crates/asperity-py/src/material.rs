@@ -1,7 +1,7 @@
 //! Materials, bodies of layers and shifts, from the keys of a case.
 
 use asperity::material::{Shift, VerticalShift};
-use asperity_io::case::given::{self, GivenBodies};
+use asperity_io::case::{Pair, given};
 use asperity_io::curve::{ShiftRequest, VerticalRequest};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -14,7 +14,7 @@ use crate::given::table;
 type Curve<'py> = Bound<'py, PyArray1<f64>>;
 
 /// The bodies of these keys (`body`, `temperature`).
-pub fn bodies(keys: &Bound<'_, PyDict>, window: Option<[f64; 2]>) -> PyResult<GivenBodies> {
+pub fn bodies(keys: &Bound<'_, PyDict>, window: Option<[f64; 2]>) -> PyResult<Pair> {
     given::bodies(&table(keys)?, window).map_err(error::alone)
 }
 
@@ -105,7 +105,7 @@ pub fn layer_compliance<'py>(
     let creep = made.creep.value(time);
     let of_wave = |q: &f64| match &made.waves {
         Some(waves) => waves.creep(*q).map(|creep| creep.value(time)),
-        None => Ok(creep * made.kernel.symbol(*q, 0.0)),
+        None => Ok(creep * made.kernel().symbol(*q, 0.0)),
     };
     let values: asperity::Result<Vec<f64>> = waves.as_array().iter().map(of_wave).collect();
     Ok(values.map_err(|error| raised(py, error))?.into_pyarray(py))
@@ -161,7 +161,7 @@ pub fn shift_factor<'py>(
     Ok(factors.map_err(|error| raised(py, error))?.into_pyarray(py))
 }
 
-/// Vertical shift factors b_T at temperatures; 1 without a vertical shift.
+/// Vertical shift factors b_T at temperatures; 1 where there is no vertical shift.
 #[pyfunction]
 pub fn vertical_shift_factor<'py>(
     py: Python<'py>,

@@ -32,10 +32,7 @@ enum Held {
 impl Held {
     fn field(&self) -> Field<'_> {
         match self {
-            Held::Real(FieldKind::Gap, map) => Field::Gap(map.view()),
-            Held::Real(FieldKind::Displacement, map) => Field::Displacement(map.view()),
-            Held::Real(FieldKind::Flattening, map) => Field::Flattening(map.view()),
-            Held::Real(_, map) => Field::Pressure(map.view()),
+            Held::Real(kind, map) => Field::Real(*kind, map.view()),
             Held::Contact(map) => Field::Contact(map.view()),
         }
     }

@@ -4,6 +4,13 @@
 const charts = [];
 const FONT = "12px system-ui, sans-serif";
 
+/** The value that the unit of a logarithmic axis suits: its middle if it spans decades, 1 if it spans many on both sides of 1. */
+function suited(low, high) {
+  const decades = Math.log10(high / low);
+  if (decades > 6 && low < 1 && high > 1) return 1;
+  return decades > 3 ? Math.sqrt(low * high) : high;
+}
+
 /** Ends of an axis for values from `low` to `high`: `room` on both sides, but none below or above zero. */
 function ends(low, high, log, room) {
   // What differs by rounding only is one value.
@@ -168,8 +175,9 @@ class Chart {
   }
 
   unit(u, key) {
-    const { min, max } = u.scales[key], largest = Math.max(Math.abs(min), Math.abs(max));
-    return shownOnAxis(this.spec[key].unit || "", largest, this.isLog(key));
+    const { min, max } = u.scales[key], log = this.isLog(key);
+    const largest = log ? suited(min, max) : Math.max(Math.abs(min), Math.abs(max));
+    return shownOnAxis(this.spec[key].unit || "", largest, log);
   }
 
   axis(key) {

@@ -59,7 +59,13 @@ function evolutionPart() {
     series: [{ name: "", x: numbers("approach").slice(from, to), y: numbers("load").slice(from, to) }],
   });
   const cycle = state.last_cycle;
-  loading.set([over("Load over approach"), ...(cycle ? [over("Load over approach, last cycle", cycle[0], cycle[1] + 1)] : [])]);
+  // A constant load or approach makes a straight line along an axis, which shows nothing.
+  const varies = (key) => {
+    const values = numbers(key).filter(isFinite), low = Math.min(...values), high = Math.max(...values);
+    return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high));
+  };
+  const whole = varies("load") && varies("approach") ? [over("Load over approach")] : [];
+  loading.set([...whole, ...(cycle ? [over("Load over approach, last cycle", cycle[0], cycle[1] + 1)] : [])]);
   $("last-cycle").hidden = !cycle;
   cyclesOf.set(state.cycles.filter((part) => part.loss_angle.length > 1).flatMap(cyclePanels));
 }
@@ -118,10 +124,10 @@ function stressPart() {
 
 /** Where the seal closes and opens: events, and a sentence of the first time that it closes. */
 function sealing(time, open) {
-  const events = open.flatMap((now, n) => (n > 0 && !now !== !open[n - 1] ? [{ at: time[n], text: now ? "leaks again" : "tight" }] : []));
+  const events = open.flatMap((now, n) => (n > 0 && !now !== !open[n - 1] ? [{ after: time[n - 1], at: time[n], text: now ? "leaks again" : "tight" }] : []));
   const closed = events.find((event) => event.text === "tight");
   const unit = state.rows.unit;
-  const note = closed ? `Tight at ${state.rows.symbol} = ${words(closed.at, unit)}: no open path from inlet to outlet. Zero has no place on a logarithmic axis.` : "";
+  const note = closed ? `Closes between ${state.rows.symbol} = ${words(closed.after, unit)} and ${words(closed.at, unit)}: then no open path leads from inlet to outlet. A logarithmic axis cannot show zero.` : "";
   return [events, note];
 }
 

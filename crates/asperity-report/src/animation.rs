@@ -6,8 +6,8 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use asperity_io::output::WriteError;
 use asperity_io::store::{At, Reader};
-
 use asperity_io::stress::StressError;
 
 use crate::figure::{FigureError, Pixels};
@@ -150,10 +150,7 @@ pub fn animation(
     match (stopped, written) {
         (Some(Stop::Frame(error)), _) => Err(error),
         (Some(Stop::Encoder(why)), _) => Err(AnimationError::Encoding { path: path.to_owned(), why }),
-        (None, Err(error)) if error.kind() == std::io::ErrorKind::AlreadyExists => {
-            Err(FigureError::Exists { path: path.to_owned() }.into())
-        }
-        (None, Err(source)) => Err(FigureError::Io { path: path.to_owned(), source }.into()),
+        (None, Err(source)) => Err(FigureError::from(WriteError::at(path, source)).into()),
         (None, Ok(())) => Ok(Frames { shown: chosen.len(), without_contact }),
     }
 }

@@ -6,17 +6,17 @@ use asperity_io::leakage::{Leak, Leakage};
 use asperity_io::readable::quantity;
 use ndarray::{Array2, ArrayView2, Zip};
 
-use crate::figure::{Colours, Figure, Map, typeset};
+use crate::figure::{Colours, Figure, Map, State, typeset};
 
 /// Names and colours of the cells where the seal leaks.
-const LEAKING: [(&str, [u8; 3]); 4] = [
+const LEAKING: &[State] = &[
     ("closed", CLOSED),
     ("through passage", [86, 180, 233]),
     ("dead end", [230, 159, 0]),
     ("closed pocket", POCKET),
 ];
 /// And where it is tight.
-const TIGHT: [(&str, [u8; 3]); 4] = [
+const TIGHT: &[State] = &[
     ("closed", CLOSED),
     ("open to the inlet", [86, 180, 233]),
     ("open to the outlet", [0, 158, 115]),
@@ -31,10 +31,7 @@ const DECADES: f64 = 4.0;
 pub fn state(leak: &Leak, found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Figure {
     let caption = format!("{}. {}", sentence(&leak.words()), words(found));
     let maps = maps(found, gap, size);
-    let mut figure =
-        maps.into_iter().fold(Figure::new(heading(found)), |figure, map| figure.with(map)).caption(caption);
-    figure.panel = [300.0, 260.0];
-    figure
+    Figure::new(heading(found)).with_all(maps).panel_size([300.0, 260.0]).caption(caption)
 }
 
 /// Passages, and the flow; where it is tight, the gap of the cells that are open.
@@ -47,7 +44,6 @@ pub(crate) fn maps(found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) ->
     };
     let kinds = found.cells.map(number);
     let names = if found.percolates { LEAKING } else { TIGHT };
-    let names = names.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
     let passages = Map::states("", names, kinds.view(), size);
     if found.percolates {
         return vec![passages.marked(found.critical), flow(found, gap, size).marked(found.critical)];

@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use asperity_io::output::PartialDirectory;
+use asperity_io::output::{PartialDirectory, WriteError};
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use asperity_io::stress::StressError;
 
-use crate::figure::{Curves, Figure, FigureError, Panel, Values};
+use crate::figure::{Figure, FigureError, extent};
 use crate::result::line::{curve, over_time};
 use crate::result::{Options, Plot, PlotError, figure};
 
@@ -31,13 +31,8 @@ pub enum PicturesError {
         ours: bool,
     },
     /// The system refuses.
-    #[error("cannot write {}: {source}", path.display())]
-    Io {
-        /// The path.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 impl From<StoreError> for PicturesError {
@@ -59,12 +54,12 @@ pub fn pictures(
     force: bool,
 ) -> Result<(), PicturesError> {
     check(directory, force)?;
-    let failed = |source| PicturesError::Io { path: directory.to_owned(), source };
+    let failed = |source| PicturesError::from(WriteError::at(directory, source));
     let partial = PartialDirectory::new(directory).map_err(failed)?;
     let place = |name: String| partial.place().join(name);
     // Messages name the directory asked for.
     let write = |picture: &Figure, name: &str| match picture.write(&place(name.into()), false) {
-        Err(FigureError::Io { source, .. }) => Err(failed(source)),
+        Err(FigureError::Write(WriteError::Io { source, .. })) => Err(failed(source)),
         other => other.map_err(PicturesError::Figure),
     };
     write(&figure(reader, Plot::Evolution, &Options::default())?, "evolution.png")?;
@@ -81,29 +76,20 @@ pub fn pictures(
     }
     for kind in fields.unwrap_or(&reader.header().fields) {
         let Some(plot) = Plot::of_field(*kind) else { continue };
-        let range = range(reader, *kind)?;
+        let limits = range(reader, *kind)?;
         let line = reader.header().grid.is_line();
         if line && let Some(map) = over_time(reader, *kind)? {
-            let picture = Figure { panel: [430.0, 260.0], ..Figure::new("").with(map) };
+            let picture = Figure::new("").with(map).panel_size([430.0, 260.0]);
             fs::write(place(format!("{}_over_time.png", kind.name())), picture.to_png(150.0)?)
                 .map_err(failed)?;
         }
         for n in 0..reader.field_times().len() {
-            let mut picture = figure(reader, plot, &Options { at: At::Index(n), ..Options::default() })?;
+            let at = At::Index(n);
+            let mut picture = figure(reader, plot, &Options { at, limits, ..Options::default() })?;
             if line {
-                let curve = curve(reader, *kind, At::Index(n))?;
-                let y = match range {
-                    Some([low, high]) => curve.y.clone().between(low, high),
-                    None => curve.y.clone(),
-                };
-                picture.panels = vec![Curves { y, ..curve }.into()];
-            }
-            for panel in &mut picture.panels {
-                if let Panel::Map(map) = panel
-                    && let Values::Quantity { range: ends, .. } = &mut map.meaning
-                {
-                    *ends = range;
-                }
+                let mut curve = curve(reader, *kind, at)?;
+                curve.y.range = limits.or(curve.y.range);
+                picture.panels = vec![curve.into()];
             }
             let name = place(format!("{}_{n:04}.png", kind.name()));
             fs::write(name, picture.to_png(150.0)?).map_err(failed)?;
@@ -114,14 +100,12 @@ pub fn pictures(
 
 /// Ends of the colours at all instants: zero to the largest value of any, or the least where that is below.
 fn range(reader: &Reader, kind: FieldKind) -> Result<Option<[f64; 2]>, StoreError> {
-    let mut ends = [0.0, 0.0];
     if kind == FieldKind::Contact {
         return Ok(None);
     }
+    let mut ends = [0.0, 0.0];
     for n in 0..reader.field_times().len() {
-        let field = reader.field(kind, At::Index(n))?;
-        let finite = field.iter().copied().filter(|v| v.is_finite());
-        ends = finite.fold(ends, |[low, high], v| [f64::min(low, v), f64::max(high, v)]);
+        ends = extent(reader.field(kind, At::Index(n))?.into_iter().chain(ends));
     }
     Ok((ends[0] < ends[1]).then_some(ends))
 }
@@ -133,7 +117,7 @@ fn check(directory: &Path, force: bool) -> Result<(), PicturesError> {
     if !found.is_dir() {
         return Err(taken("is not a directory", false));
     }
-    let failed = |source| PicturesError::Io { path: directory.to_owned(), source };
+    let failed = |source| PicturesError::from(WriteError::at(directory, source));
     for entry in fs::read_dir(directory).map_err(failed)? {
         let name = entry.map_err(failed)?.file_name();
         if !name.to_str().is_some_and(|name| name.ends_with(".png")) {

@@ -3,11 +3,13 @@
 use std::f64::consts::{LN_2, TAU};
 
 use asperity::Grid;
-use asperity::surface::statistics::{Autocorrelation, BearingCurve, Extent, SelfAffineFit, Summary};
+use asperity::surface::statistics::{
+    Autocorrelation, BearingCurve, Extent, RadialSpectrum, SelfAffineFit, Summary,
+};
 use asperity::surface::{Fill, Level, Surface, fill, level};
 use asperity_io::readable::quantity;
 
-use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, block, means, robust};
+use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, block, extent, means, robust};
 use crate::histogram;
 
 /// Bins of the height distribution.
@@ -59,7 +61,7 @@ pub fn picture(
         Axis::linear("share of the surface above [%]", "").between(0.0, 100.0),
         Axis::linear("height", "m"),
     )
-    .with(Series::new("", Style::Line, shares, bearing.heights.clone()));
+    .with(Series::new("", Style::Line, shares, &bearing.heights));
     figure = figure.with(curve);
     let mut words = caption(surface, summary) + &beyond;
     match correlation(surface, extent, summary) {
@@ -106,11 +108,12 @@ fn radial(correlation: &Autocorrelation) -> Curves {
     let last = lags.last().copied().unwrap_or(0.0);
     let panel = Curves::new("Autocorrelation", Axis::linear("lag", "m"), Axis::linear("autocorrelation", ""));
     let Some((angle, length)) = correlation.fastest_decay() else {
+        let name = "0.2, not reached in any direction";
         return panel.with(Series::new("mean of all directions", Style::Line, lags, mean)).with(Series::new(
-            "0.2, not reached in any direction",
+            name,
             Style::Reference,
-            vec![0.0, last],
-            vec![LEVEL; 2],
+            [0.0, last],
+            [LEVEL; 2],
         ));
     };
     let (sin, cos) = angle.sin_cos();
@@ -118,27 +121,17 @@ fn radial(correlation: &Autocorrelation) -> Curves {
         lags.iter().map(|lag| correlation.at(lag * cos, lag * sin).unwrap_or(f64::NAN)).collect();
     let foot = mean.iter().chain(&along).copied().fold(0.0, f64::min);
     let name = format!("0.2 is reached at Sal = {}", quantity(length, "m"));
+    let fastest = format!("fastest fall, at {:.0}° from x", angle.to_degrees());
     panel
-        .with(Series::new("mean of all directions", Style::Line, lags.clone(), mean))
-        .with(Series::new(
-            format!("fastest fall, at {:.0}° from x", angle.to_degrees()),
-            Style::Dashed,
-            lags,
-            along,
-        ))
-        .with(Series::new(name, Style::Reference, vec![0.0, length, length], vec![LEVEL, LEVEL, foot]))
+        .with(Series::new("mean of all directions", Style::Line, &lags, mean))
+        .with(Series::new(fastest, Style::Dashed, lags, along))
+        .with(Series::new(name, Style::Reference, [0.0, length, length], [LEVEL, LEVEL, foot]))
 }
 
 /// The autocorrelation over lags in both directions.
 fn lags(surface: &Surface, correlation: &Autocorrelation) -> Map {
-    let values = correlation.values.view();
-    let map = Map::new(
-        "Autocorrelation",
-        ["autocorrelation", ""],
-        Colours::Diverging,
-        values,
-        surface.grid().size(),
-    );
+    let (what, size) = (["autocorrelation", ""], surface.grid().size());
+    let map = Map::new("Autocorrelation", what, Colours::Diverging, correlation.values.view(), size);
     map.over_lags().between([-1.0, 1.0])
 }
 
@@ -149,13 +142,15 @@ fn fits(fit: &SelfAffineFit) -> bool {
     within && fit.error < 0.25 && fit.misfit < LN_2 && fit.stray < LN_2
 }
 
-fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
-    let spectrum = &waves.spectrum;
+/// Wave numbers and powers of a spectrum without those that are rounding errors.
+pub(crate) fn roughness(spectrum: &RadialSpectrum) -> (Vec<f64>, Vec<f64>) {
     let largest = spectrum.power.iter().copied().fold(0.0, f64::max);
-    let kept: Vec<usize> =
-        (0..spectrum.power.len()).filter(|n| spectrum.power[*n] > ROUNDING * largest).collect();
-    let pick = |values: &[f64]| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
-    let (q, power) = (pick(&spectrum.wave_number), pick(&spectrum.power));
+    let all = spectrum.wave_number.iter().copied().zip(spectrum.power.iter().copied());
+    all.filter(|(_, power)| *power > ROUNDING * largest).unzip()
+}
+
+fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
+    let (q, power) = roughness(&waves.spectrum);
     let (title, along) = match waves.lay.is_clear() {
         true => ("Power spectrum, average over ellipses", "wave number across the lay"),
         false => ("Power spectrum, radial average", "wave number"),
@@ -163,7 +158,7 @@ fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
     let mut curves = Curves::new(title, Axis::log(along, "1/m"), Axis::log("power", "m4")).with(Series::new(
         "",
         Style::Points,
-        q.clone(),
+        &q,
         power,
     ));
     // A line through a spectrum that is no power law says nothing.
@@ -171,11 +166,9 @@ fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
     if let (Some(fit), Some(first), Some(last)) = (fit, q.first(), q.last()) {
         let bend = TAU / fit.roll_off;
         let at = |q: f64| fit.plateau * (q / bend).max(1.0).powf(-2.0 * (1.0 + fit.hurst));
-        let places: Vec<f64> =
-            [*first, bend, *last].into_iter().filter(|q| (*first..=*last).contains(q)).collect();
-        let values: Vec<f64> = places.iter().map(|q| at(*q)).collect();
+        let places = [*first, bend, *last].into_iter().filter(|q| (*first..=*last).contains(q));
         let name = format!("fitted slope: H = {:.2} \u{b1} {:.2}", fit.hurst, fit.error);
-        curves = curves.with(Series::new(name, Style::Dashed, places, values));
+        curves = curves.with(Series::through(name, Style::Dashed, places.map(|q| [q, at(q)])));
     }
     curves
 }
@@ -184,8 +177,7 @@ fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
 fn distribution(surface: &Surface, summary: &Summary) -> (Curves, String) {
     let (mean, sq) = (summary.heights.mean, summary.heights.sq);
     let heights: Vec<f64> = surface.heights().iter().copied().filter(|z| z.is_finite()).collect();
-    let ends = [f64::INFINITY, f64::NEG_INFINITY];
-    let whole = heights.iter().fold(ends, |[a, b], z| [a.min(*z), b.max(*z)]);
+    let whole = extent(heights.iter().copied());
     let kept = robust(heights.iter().copied());
     let [low, high] = kept.unwrap_or(whole);
     let panel =
@@ -204,9 +196,8 @@ fn distribution(surface: &Surface, summary: &Summary) -> (Curves, String) {
         return (panel, beyond);
     }
     let places: Vec<f64> = (0..=100).map(|k| low + (high - low) * f64::from(k) / 100.0).collect();
-    let gauss = |z: &f64| (-0.5 * ((z - mean) / sq).powi(2)).exp() / (sq * TAU.sqrt());
-    let normal: Vec<f64> = places.iter().map(gauss).collect();
-    (panel.with(Series::new("Gaussian of the same Sq", Style::Reference, places, normal)), beyond)
+    let gauss = |z: f64| (-0.5 * ((z - mean) / sq).powi(2)).exp() / (sq * TAU.sqrt());
+    (panel.with(Series::of("Gaussian of the same Sq", Style::Reference, &places, gauss)), beyond)
 }
 
 fn caption(surface: &Surface, summary: &Summary) -> String {

@@ -22,26 +22,13 @@ pub fn sweep<C: Cells, M: Merge>(cells: C, block: &(impl Fn(C) -> M + Sync)) -> 
         return block(cells);
     }
     let (first, second) = cells.split((n / 2).next_multiple_of(BLOCK));
-    let (mut first, mut second) = (Half::Cells(first), Half::Cells(second));
-    both(&mut || first.sweep(block), &mut || second.sweep(block));
-    match (first, second) {
-        (Half::Yield(a), Half::Yield(b)) => a.merge(b),
+    let (mut first, mut second, mut a, mut b) = (Some(first), Some(second), None, None);
+    both(&mut || a = first.take().map(|cells| sweep(cells, block)), &mut || {
+        b = second.take().map(|cells| sweep(cells, block))
+    });
+    match (a, b) {
+        (Some(a), Some(b)) => a.merge(b),
         _ => unreachable!("both halves have run"),
-    }
-}
-
-/// Half of a field, before and after it is swept.
-enum Half<C, M> {
-    Cells(C),
-    Swept,
-    Yield(M),
-}
-
-impl<C: Cells, M: Merge> Half<C, M> {
-    fn sweep(&mut self, block: &(impl Fn(C) -> M + Sync)) {
-        if let Half::Cells(cells) = std::mem::replace(self, Half::Swept) {
-            *self = Half::Yield(sweep(cells, block));
-        }
     }
 }
 

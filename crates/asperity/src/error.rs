@@ -23,9 +23,11 @@ pub enum Error {
     #[error(
         "the load {} N exceeds {} N, the hardness times the area that can touch; \
          lower the load, raise the hardness or enlarge the domain",
-        four(*load), four(*max)
+        significant(*load, 4), significant(*max, 4)
     )]
     Infeasible {
+        /// Path of the argument that prescribes the load, as for [`Error::Invalid`]; empty where only the load is known.
+        parameter: String,
         /// Prescribed load \[N\].
         load: f64,
         /// Largest load that the hardness allows \[N\].
@@ -35,7 +37,7 @@ pub enum Error {
     #[error(
         "the approach {} m closes the whole periodic gap (largest with a determined load: \
          {} m); use load control for full contact",
-        four(*approach), four(*max)
+        significant(*approach, 4), significant(*max, 4)
     )]
     Undetermined {
         /// Prescribed approach \[m\].
@@ -96,6 +98,15 @@ pub struct NotConverged {
     pub velocity: Option<f64>,
 }
 
+impl NotConverged {
+    /// A solve other than that of the contact, which has no certificate.
+    pub(crate) fn of(method: &'static str, iterations: usize, residual: f64, tolerance: f64) -> Error {
+        let certificate = f64::NAN;
+        NotConverged { method, iterations, residual, tolerance, certificate, time: None, velocity: None }
+            .into()
+    }
+}
+
 /// Result of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
@@ -106,19 +117,38 @@ impl Error {
         value: impl std::fmt::Display,
         expected: impl Into<String>,
     ) -> Self {
-        let (what, expected) = (what.into(), expected.into());
-        Error::Invalid { parameter: String::new(), what, value: value.to_string(), expected }
+        let (what, value, expected) = (what.into(), short(&value.to_string()), short(&expected.into()));
+        Error::Invalid { parameter: String::new(), what, value, expected }
     }
 
     /// The same error, for the argument `outer` or one inside it.
     #[must_use]
     pub fn of(self, outer: &str) -> Self {
+        let mut error = self;
+        if let Error::Invalid { parameter, .. } | Error::Infeasible { parameter, .. } = &mut error {
+            let dot = if parameter.is_empty() { "" } else { "." };
+            *parameter = format!("{outer}{dot}{parameter}");
+        }
+        error
+    }
+
+    /// Path of the argument that is wrong, as far as it is known: see [`Error::Invalid`].
+    pub fn parameter(&self) -> &str {
         match self {
-            Error::Invalid { parameter, what, value, expected } => {
-                let dot = if parameter.is_empty() { "" } else { "." };
-                Error::Invalid { parameter: format!("{outer}{dot}{parameter}"), what, value, expected }
-            }
-            other => other,
+            Error::Invalid { parameter, .. } | Error::Infeasible { parameter, .. } => parameter,
+            _ => "",
+        }
+    }
+
+    /// A word for the kind of error, which stays the same when the message changes: "out-of-range", "infeasible", ...
+    pub fn code(&self) -> &'static str {
+        match self {
+            Error::Invalid { .. } => "out-of-range",
+            Error::Infeasible { .. } => "infeasible",
+            Error::Undetermined { .. } => "undetermined",
+            Error::NotConverged(_) => "not-converged",
+            Error::Missed { .. } => "missed-event",
+            Error::Interrupted => "interrupted",
         }
     }
 }
@@ -131,6 +161,44 @@ pub(crate) fn require(
     expected: impl Into<String>,
 ) -> Result<()> {
     if holds { Ok(()) } else { Err(Error::invalid(what, value, expected)) }
+}
+
+/// Checks that numbers increase. `name` names number n, counted from 0; `show` writes a number with its unit.
+pub(crate) fn increasing(
+    numbers: impl IntoIterator<Item = f64>,
+    name: impl Fn(usize) -> String,
+    show: impl Fn(f64) -> String,
+) -> Result<()> {
+    let mut last = f64::NEG_INFINITY;
+    for (n, x) in numbers.into_iter().enumerate() {
+        if x <= last {
+            let expected = format!("greater than the one before it, {} (in order, none twice)", show(last));
+            return Err(Error::invalid(name(n), show(x), expected));
+        }
+        last = x;
+    }
+    Ok(())
+}
+
+/// Checks the times \[s\] of a table in which two equal times are a jump: the first is 0, and they do not decrease.
+pub(crate) fn times_with_jumps(table: &str, times: &[f64]) -> Result<()> {
+    let name = |n: usize| format!("time of point {} of {table}", n + 1);
+    let Some(first) = times.first() else { return Err(Error::invalid(table, "empty", "one point at least")) };
+    require(*first == 0.0, format!("first time of {table}"), format!("{first} s"), "0 s")?;
+    for (n, t) in times.iter().enumerate().skip(1) {
+        if !t.is_finite() {
+            return Err(Error::invalid(name(n), t, "finite"));
+        }
+        if *t < times[n - 1] {
+            let expected = format!("not less than the time before it, {} s", times[n - 1]);
+            return Err(Error::invalid(name(n), format!("{t} s"), expected));
+        }
+        if n > 1 && *t == times[n - 2] {
+            let expected = "given at most twice (a jump has one value before and one after)";
+            return Err(Error::invalid(name(n), format!("{t} s"), expected));
+        }
+    }
+    Ok(())
 }
 
 /// `Ok(value)` if it is finite and > 0.
@@ -165,27 +233,28 @@ pub(crate) fn kelvin(temperature: f64) -> String {
     format!("{} K", (100.0 * temperature).round() / 100.0)
 }
 
-/// A number to four digits, as short as it can be written.
-pub(crate) fn rounded(x: f64) -> String {
-    format!("{x:.3e}").parse::<f64>().map_or_else(|_| x.to_string(), |x| x.to_string())
+/// The text with numbers of very many digits written with a power of ten.
+fn short(text: &str) -> String {
+    const LONGEST: usize = 24;
+    let word = |word: &str| match word.parse::<f64>() {
+        Ok(number) if word.len() > LONGEST && number.is_finite() => format!("{number:e}"),
+        _ => word.to_owned(),
+    };
+    if text.len() <= LONGEST {
+        text.to_owned()
+    } else {
+        text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+    }
 }
 
-/// A number with four digits: "5", "0.025", "1.234e-7".
-fn four(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || (1e-3..1e5).contains(&size) {
-        let digits = if size == 0.0 { 0.0 } else { (3.0 - size.log10().floor()).clamp(0.0, 6.0) };
-        let text = format!("{value:.*}", digits as usize);
-        return match text.contains('.') {
-            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => text,
-        };
+/// A number with this many significant digits, without zeros at the end: "5", "0.025", "1.234e-7".
+pub(crate) fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
     }
-    let text = format!("{value:.3e}");
-    match text.split_once('e') {
-        Some((digits, power)) if digits.contains('.') => {
-            format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
-        }
-        _ => text,
+    let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
+    match rounded.abs() {
+        1e-4..1e6 => rounded.to_string(),
+        _ => format!("{rounded:e}"),
     }
 }

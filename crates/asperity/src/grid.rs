@@ -3,7 +3,7 @@
 //! Cell (i, j) has its centre at ((i + 1/2) dx, (j + 1/2) dy) from the corner of the domain.
 //! Fields on the grid are C-order arrays of shape (nx, ny).
 
-use crate::error::{Error, Result, length};
+use crate::error::{Result, length, require};
 
 /// A rectangle Lx x Ly of nx x ny cells.
 ///
@@ -36,34 +36,30 @@ impl Grid {
     /// A grid of `cells` = \[nx, ny\] over `size` = \[Lx, Ly\] in metres.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a count is 0, a size is not from 1e-60 m to 1e60 m, there are more than 2^31 cells, or a cell is
+    /// [`Error::Invalid`](crate::Error::Invalid) if a count is 0, a size is not from 1e-60 m to 1e60 m, there are more than 2^31 cells, or a cell is
     /// longer than 1000 times its width.
     pub fn new(cells: [usize; 2], size: [f64; 2]) -> Result<Self> {
         for (count, axis) in cells.iter().zip(["x", "y"]) {
-            if *count == 0 {
-                return Err(Error::invalid(format!("number of cells along {axis}"), count, "at least 1"));
-            }
+            require(*count > 0, format!("number of cells along {axis}"), count, "at least 1")?;
         }
         for (side, axis) in size.iter().zip(["x", "y"]) {
             length(&format!("size of the domain along {axis}"), *side)?;
         }
         let product = cells[0].checked_mul(cells[1]);
-        if product.is_none_or(|n| n > 1 << 31) {
-            return Err(Error::invalid(
-                "number of cells",
-                format!("{} x {}", cells[0], cells[1]),
-                "at most 2^31 in all",
-            ));
-        }
+        require(
+            product.is_some_and(|n| n <= 1 << 31),
+            "number of cells",
+            format!("{} x {}", cells[0], cells[1]),
+            "at most 2^31 in all",
+        )?;
         let grid = Grid { cells, size, line: false };
         let [dx, dy] = grid.spacing();
-        if !(dx / dy < 1e3 && dy / dx < 1e3) {
-            return Err(Error::invalid(
-                "cell",
-                format!("{dx:e} m x {dy:e} m"),
-                "no longer than 1000 times its width",
-            ));
-        }
+        require(
+            dx / dy < 1e3 && dy / dx < 1e3,
+            "cell",
+            format!("{dx:e} m x {dy:e} m"),
+            "no longer than 1000 times its width",
+        )?;
         Ok(grid)
     }
 
@@ -77,19 +73,17 @@ impl Grid {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the count is 0 or more than 2^31, or the length is not from 1e-60 m to 1e60 m.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the count is 0 or more than 2^31, or the length is not from 1e-60 m to 1e60 m.
     pub fn line(cells: usize, side: f64) -> Result<Self> {
         length("size of the domain along x", side)?;
-        if cells == 0 || cells > 1 << 31 {
-            return Err(Error::invalid("number of cells along x", cells, "between 1 and 2^31"));
-        }
+        require((1..=1 << 31).contains(&cells), "number of cells along x", cells, "between 1 and 2^31")?;
         Ok(Grid { cells: [cells, 1], size: [side, 1.0], line: true })
     }
 
     /// The same domain with another number of cells; for a line, the number along y is 1.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`Grid::new`].
+    /// [`Error::Invalid`](crate::Error::Invalid) as [`Grid::new`].
     pub fn with_cells(&self, cells: [usize; 2]) -> Result<Self> {
         if self.line { Grid::line(cells[0], self.size[0]) } else { Grid::new(cells, self.size) }
     }

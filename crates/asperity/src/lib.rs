@@ -17,7 +17,7 @@
 //! - [`simulation`], [`drive`]: what is simulated, and the loops that make rows; [`mod@step`]: one step in time;
 //! - [`history`]: what the bodies remember; [`process`]: motion, flattening, energies; [`traction`]: forces on the surfaces;
 //! - [`contact`]: the elastic contact inside every step;
-//! - [`quantities`], [`spots`]: what each row may be asked for besides;
+//! - [`quantities`], [`spots`]: further numbers of each row, on request;
 //! - [`finding`]: where the numbers of a run may be off;
 //! - [`sliding`]: bodies that slide and roll;
 //! - [`leakage`]: flow of a fluid through the gap;

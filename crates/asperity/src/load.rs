@@ -11,7 +11,7 @@ pub use programme::{Course, Event, Programme, Stage};
 pub(crate) use time_grid::SHORTEST;
 pub use time_grid::TimeGrid;
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive, times_with_jumps};
 
 /// The prescribed quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -173,6 +173,20 @@ impl History {
         range
     }
 
+    /// The argument that sets the largest value, in the words of case files: "peak", "points\[2\]\[1\]".
+    pub(crate) fn largest_value(&self) -> String {
+        match self {
+            History::Step { .. } | History::Ramp { .. } => "value".to_owned(),
+            History::Triangle { .. } | History::Trapezoid { .. } => "peak".to_owned(),
+            History::Sine { .. } => "mean".to_owned(),
+            History::Table { points } => {
+                let values = points.iter().map(|point| point.1).enumerate();
+                let largest = values.rev().max_by(|a, b| a.1.total_cmp(&b.1));
+                format!("points[{}][1]", largest.map_or(0, |(n, _)| n))
+            }
+        }
+    }
+
     fn limit(&self, t: f64, side: Side) -> f64 {
         match self {
             History::Step { value } => *value,
@@ -227,40 +241,11 @@ fn interpolate(points: &[(f64, f64)], t: f64, side: Side) -> f64 {
 }
 
 fn validate_table(points: &[(f64, f64)]) -> Result<()> {
-    let Some(first) = points.first() else {
-        return Err(Error::invalid("table of the history", "empty", "one point at least"));
-    };
-    if first.0 != 0.0 {
-        return Err(Error::invalid("first time of the history's table", format!("{} s", first.0), "0 s"));
+    if let Some(n) = points.iter().position(|(t, v)| !t.is_finite() || !v.is_finite()) {
+        let (name, point) = (format!("point {} of the history's table", n + 1), format!("{:?}", points[n]));
+        return Err(Error::invalid(name, point, "finite"));
     }
-    for (n, (t, v)) in points.iter().enumerate() {
-        if !t.is_finite() || !v.is_finite() {
-            return Err(Error::invalid(
-                format!("point {} of the history's table", n + 1),
-                format!("({t}, {v})"),
-                "finite",
-            ));
-        }
-    }
-    for (n, pair) in points.windows(2).enumerate() {
-        if pair[1].0 < pair[0].0 {
-            return Err(Error::invalid(
-                format!("time of point {} of the history's table", n + 2),
-                format!("{} s after {} s", pair[1].0, pair[0].0),
-                "not less than the time before it",
-            ));
-        }
-    }
-    for (n, triple) in points.windows(3).enumerate() {
-        if triple[0].0 == triple[2].0 {
-            return Err(Error::invalid(
-                format!("time of point {} of the history's table", n + 3),
-                format!("{} s", triple[2].0),
-                "given at most twice (a jump has one value before and one after)",
-            ));
-        }
-    }
-    Ok(())
+    times_with_jumps("the history's table", &points.iter().map(|point| point.0).collect::<Vec<f64>>())
 }
 
 #[cfg(test)]

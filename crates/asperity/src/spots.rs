@@ -92,17 +92,7 @@ fn roots<T>(
     let (nx, ny) = cells.dim();
     let at = |i: usize, j: usize| i * ny + j;
     let on = |i: usize, j: usize| touches(&cells[[i, j]]);
-    let mut forest = Forest::new(nx * ny);
-    for i in 0..nx {
-        for j in (0..ny).filter(|j| on(i, *j)) {
-            if i > 0 && on(i - 1, j) {
-                forest.join(at(i - 1, j), at(i, j));
-            }
-            if j > 0 && on(i, j - 1) {
-                forest.join(at(i, j - 1), at(i, j));
-            }
-        }
-    }
+    let mut forest = Forest::of(nx, ny, on);
     if boundary == Boundary::Periodic && nx > 0 && ny > 0 {
         (0..ny).filter(|j| on(0, *j) && on(nx - 1, *j)).for_each(|j| forest.join(at(0, j), at(nx - 1, j)));
         (0..nx).filter(|i| on(*i, 0) && on(*i, ny - 1)).for_each(|i| forest.join(at(i, 0), at(i, ny - 1)));
@@ -136,19 +126,9 @@ fn spans_x<T>(boundary: Boundary, cells: ArrayView2<T>, on: impl Fn(&T) -> bool)
     let (nx, ny) = cells.dim();
     let at = |i: usize, j: usize| i * ny + j;
     let on = |i: usize, j: usize| on(&cells[[i, j]]);
-    let mut forest = Forest::new(nx * ny);
-    for i in 0..nx {
-        for j in (0..ny).filter(|j| on(i, *j)) {
-            if i > 0 && on(i - 1, j) {
-                forest.join(at(i - 1, j), at(i, j));
-            }
-            if j > 0 && on(i, j - 1) {
-                forest.join(at(i, j - 1), at(i, j));
-            }
-        }
-        if boundary == Boundary::Periodic && ny > 0 && on(i, 0) && on(i, ny - 1) {
-            forest.join(at(i, 0), at(i, ny - 1));
-        }
+    let mut forest = Forest::of(nx, ny, on);
+    if boundary == Boundary::Periodic && ny > 0 {
+        (0..nx).filter(|i| on(*i, 0) && on(*i, ny - 1)).for_each(|i| forest.join(at(i, 0), at(i, ny - 1)));
     }
     let mut reached = vec![false; nx * ny];
     for j in (0..ny).filter(|j| nx > 0 && on(0, *j)) {
@@ -164,6 +144,22 @@ impl Forest {
     /// Cells that are all separate.
     pub(crate) fn new(cells: usize) -> Self {
         Forest((0..cells).collect())
+    }
+
+    /// The cells of an nx x ny grid that are `on`, joined with their neighbours.
+    fn of(nx: usize, ny: usize, on: impl Fn(usize, usize) -> bool) -> Self {
+        let mut forest = Forest::new(nx * ny);
+        for i in 0..nx {
+            for j in (0..ny).filter(|j| on(i, *j)) {
+                if i > 0 && on(i - 1, j) {
+                    forest.join((i - 1) * ny + j, i * ny + j);
+                }
+                if j > 0 && on(i, j - 1) {
+                    forest.join(i * ny + j - 1, i * ny + j);
+                }
+            }
+        }
+        forest
     }
 
     /// The representative cell of its spot.

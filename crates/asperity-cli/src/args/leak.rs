@@ -4,6 +4,10 @@ use std::path::PathBuf;
 
 use asperity::leakage::{Rarefaction, Sides, Species};
 use asperity_io::leakage::LeakDirection;
+use asperity_io::quantity::range::{NonNegative, Positive};
+use asperity_io::quantity::{Length, MolarMass, Pressure, Temperature, Viscosity};
+
+use crate::input::quantity;
 
 #[derive(Debug, clap::Args)]
 pub struct Leak {
@@ -51,26 +55,26 @@ pub struct FluidOptions {
     #[arg(long, value_parser = super::choice::<LeakDirection>())]
     pub direction: Option<LeakDirection>,
     /// Pressure drop of a liquid, e.g. '2 bar'
-    #[arg(long, value_name = "P", allow_hyphen_values = true)]
-    pub pressure_drop: Option<String>,
+    #[arg(long, value_name = "P", value_parser = quantity::<Pressure<Positive>>(), allow_hyphen_values = true)]
+    pub pressure_drop: Option<Pressure<Positive>>,
     /// Viscosity of a liquid, e.g. '1 mPa s', or of a gas that --gas does not name
-    #[arg(long, value_name = "MU", allow_hyphen_values = true)]
-    pub viscosity: Option<String>,
+    #[arg(long, value_name = "MU", value_parser = quantity::<Viscosity<Positive>>(), allow_hyphen_values = true)]
+    pub viscosity: Option<Viscosity<Positive>>,
     /// A gas with known properties
     #[arg(long, value_parser = super::choice::<Species>())]
     pub gas: Option<Species>,
     /// Molar mass of a gas that --gas does not name, e.g. '44 g/mol'
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
-    pub molar_mass: Option<String>,
+    #[arg(long, value_name = "M", value_parser = quantity::<MolarMass<Positive>>(), allow_hyphen_values = true)]
+    pub molar_mass: Option<MolarMass<Positive>>,
     /// Temperature of the gas, e.g. '20 degC'
-    #[arg(long, value_name = "T", allow_hyphen_values = true)]
-    pub temperature: Option<String>,
+    #[arg(long, value_name = "T", value_parser = quantity::<Temperature>(), allow_hyphen_values = true)]
+    pub temperature: Option<Temperature>,
     /// Absolute pressure of the gas at the inlet, e.g. '3 bar'
-    #[arg(long, value_name = "P", allow_hyphen_values = true)]
-    pub inlet: Option<String>,
+    #[arg(long, value_name = "P", value_parser = quantity::<Pressure<Positive>>(), allow_hyphen_values = true)]
+    pub inlet: Option<Pressure<Positive>>,
     /// Absolute pressure of the gas at the outlet, e.g. '1 bar'
-    #[arg(long, value_name = "P", allow_hyphen_values = true)]
-    pub outlet: Option<String>,
+    #[arg(long, value_name = "P", value_parser = quantity::<Pressure<NonNegative>>(), allow_hyphen_values = true)]
+    pub outlet: Option<Pressure<NonNegative>>,
     /// Law for the rarefaction of the gas [default: boltzmann]
     #[arg(long, value_parser = super::choice::<Rarefaction>())]
     pub rarefaction: Option<Rarefaction>,
@@ -78,8 +82,8 @@ pub struct FluidOptions {
     #[arg(long, value_parser = super::choice::<Sides>())]
     pub sides: Option<Sides>,
     /// Cells with a smaller gap are closed, e.g. '0.3 nm'
-    #[arg(long, value_name = "H", allow_hyphen_values = true)]
-    pub smallest_gap: Option<String>,
+    #[arg(long, value_name = "H", value_parser = quantity::<Length<NonNegative>>(), allow_hyphen_values = true)]
+    pub smallest_gap: Option<Length<NonNegative>>,
     /// Store the pressure of the fluid as a field of the result
     #[arg(long, conflicts_with = "gap")]
     pub field: bool,

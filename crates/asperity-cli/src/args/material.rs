@@ -6,9 +6,12 @@ use asperity::indentation::Given;
 use asperity::layer::Interface;
 use asperity::material::{LongTime, Moduli, Modulus};
 use asperity_io::curve::{Kind, VerticalWord};
-use clap::{Subcommand, ValueEnum};
+use asperity_io::material_export::Program;
+use asperity_io::quantity::{Expansion, Length, Number, Time, range};
+use clap::Subcommand;
 
 use super::choice;
+use crate::input::quantity;
 
 #[derive(Debug, Subcommand)]
 pub enum Material {
@@ -20,32 +23,20 @@ pub enum Material {
     Export(MaterialExport),
 }
 
-/// A program that reads materials.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum To {
-    /// Keywords of an Abaqus input file
-    Abaqus,
-    /// Commands of Ansys Mechanical APDL
-    Ansys,
-    /// Branches of COMSOL's generalised Maxwell model
-    Comsol,
-    /// Comma-separated values
-    Csv,
-}
-
 #[derive(Debug, clap::Args)]
 pub struct MaterialExport {
     /// A case file, or a file with the `material = { ... }` of a body, as the fits write it
     pub file: PathBuf,
-    /// The program
-    #[arg(long, value_enum)]
-    pub to: To,
+    /// The program: abaqus (keywords of an input file), ansys (commands of Mechanical APDL), comsol (branches of the generalised
+    /// Maxwell model) or csv (comma-separated values)
+    #[arg(long, value_parser = choice::<Program>())]
+    pub to: Program,
     /// The body of a case [default: the only one with a viscoelastic material]
     #[arg(long, value_name = "NAME")]
     pub body: Option<String>,
     /// Poisson's ratio, where the file is no case
-    #[arg(long, value_name = "NU", allow_hyphen_values = true)]
-    pub poisson: Option<String>,
+    #[arg(long, value_name = "NU", allow_hyphen_values = true, value_parser = quantity::<Number<range::Poisson>>())]
+    pub poisson: Option<Number<range::Poisson>>,
     /// Set a key of the case
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
@@ -85,11 +76,11 @@ pub struct Show {
     #[command(flatten)]
     pub table: Data,
     /// First time, e.g. --from '1 ms' [default: a decade before the material's times]
-    #[arg(long, value_name = "TIME")]
-    pub from: Option<String>,
+    #[arg(long, value_name = "TIME", value_parser = quantity::<Time<range::Positive>>())]
+    pub from: Option<Time<range::Positive>>,
     /// Last time [default: a decade after the material's times]
-    #[arg(long, value_name = "TIME")]
-    pub to: Option<String>,
+    #[arg(long, value_name = "TIME", value_parser = quantity::<Time<range::Positive>>())]
+    pub to: Option<Time<range::Positive>>,
     /// Show how bodies of layers answer waves of pressure instead: q C(q) over the length of the wave
     #[arg(long, conflicts_with_all = ["from", "to"])]
     pub layers: bool,
@@ -128,8 +119,8 @@ pub struct Fit {
     #[arg(long, value_name = "WEIGHT")]
     pub loss_weight: Option<f64>,
     /// Rms misfit to hold with as few terms as possible, e.g. 0.02 or '2 %' [default: the data justify the number of terms]
-    #[arg(long, value_name = "SHARE", conflicts_with = "max_terms", allow_hyphen_values = true)]
-    pub misfit: Option<String>,
+    #[arg(long, value_name = "SHARE", conflicts_with = "max_terms", allow_hyphen_values = true, value_parser = quantity::<Number<range::Positive>>())]
+    pub misfit: Option<Number<range::Positive>>,
     /// Part of the curve to fit: --window '0.1 s, 100 s', for a dma --window '0.1 Hz, 100 Hz'
     #[arg(long, value_name = "A,B", allow_hyphen_values = true)]
     pub window: Option<String>,
@@ -166,8 +157,8 @@ pub struct Fit {
     #[arg(long, value_parser = choice::<VerticalWord>())]
     pub vertical: Option<VerticalWord>,
     /// Relative growth of the volume per kelvin for --vertical density, e.g. '6e-4 1/K' [default: a constant density]
-    #[arg(long, value_name = "1/K")]
-    pub expansion: Option<String>,
+    #[arg(long, value_name = "1/K", value_parser = quantity::<Expansion<range::NonNegative>>())]
+    pub expansion: Option<Expansion<range::NonNegative>>,
     /// The file to write, with a `material = { ... }` for a case [default: printed]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
@@ -187,17 +178,17 @@ pub struct FitIndentation {
     /// The record: a text table with columns of time, load and depth
     pub record: PathBuf,
     /// Radius of the sphere, e.g. '5 mm'
-    #[arg(long, value_name = "LENGTH", required_unless_present = "cone", conflicts_with = "cone")]
-    pub radius: Option<String>,
+    #[arg(long, value_name = "LENGTH", required_unless_present = "cone", conflicts_with = "cone", value_parser = quantity::<Length<range::Positive>>())]
+    pub radius: Option<Length<range::Positive>>,
     /// Slope of a cone instead: rise per length, the cotangent of its half angle
-    #[arg(long, value_name = "SLOPE")]
-    pub cone: Option<String>,
+    #[arg(long, value_name = "SLOPE", value_parser = quantity::<Number<range::Positive>>())]
+    pub cone: Option<Number<range::Positive>>,
     /// Poisson's ratio of the body
-    #[arg(long, value_name = "NU", default_value = "0.5", allow_hyphen_values = true)]
-    pub poisson: String,
+    #[arg(long, value_name = "NU", default_value = "0.5", allow_hyphen_values = true, value_parser = quantity::<Number<range::Poisson>>())]
+    pub poisson: Number<range::Poisson>,
     /// Thickness of a thin sample on a rigid base, e.g. '5 um' [default: much thicker than the contact is wide]
-    #[arg(long, value_name = "LENGTH")]
-    pub thickness: Option<String>,
+    #[arg(long, value_name = "LENGTH", value_parser = quantity::<Length<range::Positive>>())]
+    pub thickness: Option<Length<range::Positive>>,
     /// Contact of the thin sample with its base
     #[arg(long, value_parser = choice::<Interface>(), default_value = "bonded", requires = "thickness")]
     pub interface: Interface,

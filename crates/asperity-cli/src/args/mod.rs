@@ -13,7 +13,7 @@ use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
 pub use leak::{FluidOptions, Leak};
-pub use material::{Data, Fit, FitIndentation, Material, MaterialExport, Show, To};
+pub use material::{Data, Fit, FitIndentation, Material, MaterialExport, Show};
 pub use result::{Compare, Export, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
 pub use run::{Check, New, Run, Verify};
 pub use stress::Stress;

@@ -2,7 +2,12 @@
 
 use std::path::PathBuf;
 
+use asperity_io::quantity::range::Positive;
+use asperity_io::quantity::{Length, Time};
+use asperity_report::figure::Palette;
 use asperity_report::result::Plot as Figure;
+
+use crate::input::quantity;
 
 #[derive(Debug, clap::Args)]
 pub struct ShowResult {
@@ -80,8 +85,8 @@ pub struct Plot {
     #[arg(long, value_name = "PATH", conflicts_with_all = ["output", "time", "same_colours"])]
     pub animate: Option<PathBuf>,
     /// Length of the animation, e.g. '6 s' [default: 0.2 s for each frame, at most 12 s]
-    #[arg(long, value_name = "T", requires = "animate", allow_hyphen_values = true)]
-    pub duration: Option<String>,
+    #[arg(long, value_name = "T", requires = "animate", allow_hyphen_values = true, value_parser = quantity::<Time<Positive>>())]
+    pub duration: Option<Time<Positive>>,
     /// Largest number of frames of the animation; of more stored times some are left out evenly [default: 200]
     #[arg(long, value_name = "N", requires = "animate", value_parser = clap::value_parser!(u32).range(2..=10000))]
     pub frames: Option<u32>,
@@ -92,8 +97,8 @@ pub struct Plot {
     #[arg(long, value_name = "AXIS", default_value = "x", value_parser = ["x", "y"])]
     pub along: String,
     /// Position of a profile on the other axis, e.g. '20 um' [default: the middle]
-    #[arg(long, value_name = "PLACE", allow_hyphen_values = true)]
-    pub at: Option<String>,
+    #[arg(long, value_name = "PLACE", allow_hyphen_values = true, value_parser = quantity::<Length>())]
+    pub at: Option<Length>,
     /// Time on a logarithmic axis [default: where most rows lie in the first tenth of the run]
     #[arg(long, conflicts_with = "linear_time")]
     pub log_time: bool,
@@ -112,10 +117,9 @@ pub struct Plot {
     /// Colours of all stored times of all results given: maps made at other times can be compared
     #[arg(long, conflicts_with = "limits")]
     pub same_colours: bool,
-    /// Colour map: viridis, cividis, inferno, magma, plasma, turbo, grey or red-blue [default: inferno for pressure and
-    /// stress, else viridis]
-    #[arg(long, value_name = "NAME")]
-    pub colours: Option<String>,
+    /// Colour map [default: inferno for pressure and stress, else viridis]
+    #[arg(long, value_name = "NAME", value_parser = super::choice::<Palette>())]
+    pub colours: Option<Palette>,
     /// Colours of a map by the logarithm of the values, e.g. of the gap; of a line contact the vertical axis
     #[arg(long)]
     pub log: bool,

@@ -2,6 +2,10 @@
 
 use std::path::PathBuf;
 
+use asperity_io::quantity::{Number, Time, range};
+
+use crate::input::quantity;
+
 #[derive(Debug, clap::Args)]
 pub struct Stress {
     /// The result (a Zarr directory); its pressures must be stored
@@ -14,8 +18,8 @@ pub struct Stress {
     #[arg(long, value_name = "BODY", allow_hyphen_values = true)]
     pub body: Option<String>,
     /// Poisson's ratio, if the result does not say it or another one is wanted
-    #[arg(long, value_name = "NU", allow_hyphen_values = true)]
-    pub poisson: Option<String>,
+    #[arg(long, value_name = "NU", allow_hyphen_values = true, value_parser = quantity::<Number<range::Poisson>>())]
+    pub poisson: Option<Number<range::Poisson>>,
     /// Fields to store at each depth: mises, tresca, tension, pressure, xx, yy, zz, xy, xz, yz; or none
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub components: Option<String>,
@@ -32,8 +36,8 @@ pub struct Stress {
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub times: Option<String>,
     /// Time of the profile, the figure and the volume [default: the one with the largest von Mises stress]
-    #[arg(long, value_name = "T", allow_hyphen_values = true)]
-    pub time: Option<String>,
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = quantity::<Time>())]
+    pub time: Option<Time>,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,

@@ -2,7 +2,11 @@
 
 use std::path::PathBuf;
 
+use asperity_io::quantity::Length;
 use clap::Subcommand;
+
+use crate::files::Files;
+use crate::input::quantity;
 
 #[derive(Debug, Subcommand)]
 pub enum Surface {
@@ -26,14 +30,14 @@ pub struct SurfaceInfo {
     #[arg(long)]
     pub periodic: bool,
     /// Longest wavelength used to fit the Hurst exponent
-    #[arg(long, value_name = "LENGTH")]
-    pub longest: Option<String>,
+    #[arg(long, value_name = "LENGTH", value_parser = quantity::<Length>())]
+    pub longest: Option<Length>,
     /// Shortest wavelength used to fit the Hurst exponent
-    #[arg(long, value_name = "LENGTH")]
-    pub shortest: Option<String>,
+    #[arg(long, value_name = "LENGTH", value_parser = quantity::<Length>())]
+    pub shortest: Option<Length>,
     /// Of a profile: subtract the Gaussian mean line of this cut-off (ISO 16610-21), e.g. '0.8 mm'
-    #[arg(long, value_name = "LENGTH")]
-    pub cutoff: Option<String>,
+    #[arg(long, value_name = "LENGTH", value_parser = quantity::<Length>())]
+    pub cutoff: Option<Length>,
     /// Of a profile: subtract a circle of this radius instead of a straight line, or "fit" for the one that fits best
     #[arg(long, value_name = "RADIUS")]
     pub circle: Option<String>,
@@ -164,6 +168,13 @@ pub struct SurfaceOutput {
     /// Print the statistics as one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+impl SurfaceOutput {
+    /// The files that are written.
+    pub fn files(&self) -> Files {
+        Files::default().writes([&self.output]).draws(&self.plot).force(self.force)
+    }
 }
 
 #[derive(Debug, clap::Args)]

@@ -12,9 +12,7 @@ use crate::verb::Verb;
 impl Verb for args::Compare {
     /// Prints the table.
     fn run(&self) -> Result<(), Failure> {
-        let failed = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
-        let first = Reader::open(&self.first).map_err(|error| failed(&error))?;
-        let second = Reader::open(&self.second).map_err(|error| failed(&error))?;
+        let [first, second] = [Reader::open(&self.first)?, Reader::open(&self.second)?];
         let kind = |reader: &Reader| (reader.header().grid.is_line(), reader.header().axis());
         if kind(&first) != kind(&second) {
             let words = |reader: &Reader| match kind(reader) {
@@ -30,10 +28,9 @@ impl Verb for args::Compare {
                 words(&second)
             )));
         }
-        let found = compare(&first, &second).map_err(|error| failed(&error))?;
+        let found = compare(&first, &second)?;
         if self.json {
-            let object = serde_json::to_string(&found).map_err(|error| failed(&error))?;
-            return crate::print(&format!("{object}\n"));
+            return crate::print(&format!("{}\n", serde_json::to_string(&found)?));
         }
         crate::print(&text(&found, &first))
     }

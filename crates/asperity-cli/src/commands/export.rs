@@ -6,21 +6,25 @@ use asperity_report::pictures::pictures;
 
 use crate::args::Export;
 use crate::failure::Failure;
-use crate::verb::{Paths, Verb};
+use crate::files::Files;
+use crate::verb::Verb;
 
 impl Verb for Export {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.result)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.output.as_ref()]
+    fn files(&self) -> Files {
+        Files::default().reads([&self.result]).writes(&self.output).force(self.force)
     }
 
     /// Writes the result in the format asked for and prints the files written.
     fn run(&self) -> Result<(), Failure> {
+        let reader = Reader::open(&self.result)?;
+        let fields = self.fields.as_ref();
+        let fields = fields.map(|names| names.iter().map(|name| field(name)).collect::<Result<Vec<_>, _>>());
+        let fields = fields.transpose()?;
+        let output = |extension| self.output.clone().unwrap_or_else(|| self.result.with_extension(extension));
         if self.to == "png" {
-            return png(self);
+            let directory = output("pictures");
+            pictures(&reader, fields.as_deref(), &directory, self.force)?;
+            return crate::print(&format!("{}\n", directory.display()));
         }
         let Some(format) = Format::from_name(&self.to) else {
             let names: Vec<_> = Format::ALL.iter().map(|f| f.name()).collect();
@@ -30,30 +34,13 @@ impl Verb for Export {
                 names.join(", ")
             )));
         };
-        let options = Options { fields: fields(self)?, force: self.force, ..Options::default() };
-        let reader = Reader::open(&self.result).map_err(|error| Failure::input(error.to_string()))?;
-        let output = self.output.clone().unwrap_or_else(|| self.result.with_extension(format.extension()));
-        let written = export(&reader, format, &output, &options);
-        let written = written.map_err(Failure::of)?;
+        let options = Options { fields, force: self.force, ..Options::default() };
+        let written = export(&reader, format, &output(format.extension()), &options)?;
         if let Some(sentence) = format.left_out(&reader) {
             crate::messages::message!("{sentence}");
         }
         crate::print(&written.iter().map(|path| format!("{}\n", path.display())).collect::<String>())
     }
-}
-
-/// A directory of pictures.
-fn png(args: &Export) -> Result<(), Failure> {
-    let reader = Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
-    let output = args.output.clone().unwrap_or_else(|| args.result.with_extension("pictures"));
-    let fields = fields(args)?;
-    let written = pictures(&reader, fields.as_deref(), &output, args.force);
-    written.map_err(Failure::of)?;
-    crate::print(&format!("{}\n", output.display()))
-}
-
-fn fields(args: &Export) -> Result<Option<Vec<FieldKind>>, Failure> {
-    args.fields.as_ref().map(|names| names.iter().map(|name| field(name)).collect()).transpose()
 }
 
 fn field(name: &str) -> Result<FieldKind, Failure> {

@@ -9,49 +9,31 @@ use asperity::layer::Interface;
 use asperity::material::Modulus;
 use asperity::reference::MdrProfile;
 use asperity_io::curve::{Indentation, MaterialOf, indentation_block};
-use asperity_io::quantity::{Length, Number, range};
+use asperity_io::output::write_all;
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
 
-use super::material::{columns, failed, parsed, write};
+use super::material::columns;
 use crate::args::FitIndentation;
 use crate::failure::Failure;
+use crate::files::Files;
 use crate::format::quantity;
-use crate::verb::{Paths, Verb};
+use crate::verb::Verb;
 
 impl Verb for FitIndentation {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.record)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.output.as_ref(), self.plot.as_ref()]
+    fn files(&self) -> Files {
+        Files::default().reads([&self.record]).writes(&self.output).draws(&self.plot).force(self.force)
     }
 
     /// Fits a record.
     fn run(&self) -> Result<(), Failure> {
-        let profile = match (&self.radius, &self.cone) {
-            (_, Some(slope)) => {
-                MdrProfile::Cone { slope: parsed::<Number<range::Positive>>("--cone", slope)?.get() }
-            }
-            (Some(radius), None) => {
-                MdrProfile::Sphere { radius: parsed::<Length<range::Positive>>("--radius", radius)?.get() }
-            }
-            (None, None) => return Err(Failure::input("--radius or --cone is needed".to_owned())),
+        let profile = match (self.radius, self.cone) {
+            (_, Some(slope)) => MdrProfile::Cone { slope: slope.get() },
+            (Some(radius), None) => MdrProfile::Sphere { radius: radius.get() },
+            (None, None) => return Err(Failure::input("--radius or --cone is needed")),
         };
-        let poisson = parsed::<Number>("--poisson", &self.poisson)?.get();
-        if !(poisson > -1.0 && poisson <= 0.5) {
-            let message =
-                format!("--poisson is {poisson}, but must be greater than -1 and not greater than 0.5");
-            return Err(Failure::input(message));
-        }
-        let layer = match &self.thickness {
-            None => None,
-            Some(thickness) => {
-                let thickness = parsed::<Length<range::Positive>>("--thickness", thickness)?.get();
-                Some(SampleLayer { thickness, poisson, interface: self.interface })
-            }
-        };
+        let (poisson, interface) = (self.poisson.get(), self.interface);
+        let layer = self.thickness.map(|depth| SampleLayer { thickness: depth.get(), poisson, interface });
         let of = MaterialOf { modulus: self.modulus, poisson };
         let columns = columns(&self.column, &self.unit)?;
         let options = IndentationOptions {
@@ -62,21 +44,16 @@ impl Verb for FitIndentation {
             layer,
             ..IndentationOptions::default()
         };
-        // What cannot be written is said before the work.
-        for path in self.output.iter().chain(&self.plot) {
-            super::free(path, self.force)?;
-        }
-        let record = Indentation::read(&self.record, &columns).map_err(failed)?;
+        let record = Indentation::read(&self.record, &columns)?;
         let taken = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
-        let fit = fit_indentation(profile, &taken, &options)
-            .map_err(|error| Failure::input(format!("{}: {error}", self.record.display())))?;
+        let fit =
+            fit_indentation(profile, &taken, &options).map_err(Failure::about(self.record.display()))?;
         let block = indentation_block(&record, &fit, of);
         if let Some(path) = &self.output {
-            write(path, &block, self.force)?;
+            write_all(path, self.force, block.as_bytes())?;
         }
         if let Some(path) = &self.plot {
-            let title =
-                self.record.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+            let title = super::title(&self.record);
             super::picture::write(&picture(&title, &record, &fit), path, self.force)?;
         }
         if self.json {
@@ -115,6 +92,7 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
     line("given", format!("{taken}; the {fitted} is fitted"));
     if let Some(thickness) = &args.thickness {
         let interface = if args.interface == Interface::Bonded { "bonded to" } else { "slipping on" };
+        let thickness = quantity(thickness.get(), "m");
         line("sample", format!("{thickness} thick, {interface} a rigid base"));
     }
     let [step, length] = fit.window;

@@ -32,21 +32,6 @@ use asperity_io::store::{At, Reader};
 use crate::failure::Failure;
 use crate::input::read;
 
-/// Refuses a path where there is something already that `force` does not allow to replace, or in a folder that there is not.
-fn free(path: &Path, force: bool) -> Result<(), Failure> {
-    if path.exists() && !force {
-        let path = path.display();
-        return Err(Failure::input(format!("{path} already exists; choose another file or use --force")));
-    }
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
-        let [path, folder] = [path, folder].map(Path::display);
-        return Err(Failure::input(format!(
-            "cannot write {path}: there is no folder {folder}; make it first"
-        )));
-    }
-    Ok(())
-}
-
 /// The instant of an option --time: a time, of a sweep a velocity; the last one where the option is not given.
 pub fn instant(reader: &Reader, text: Option<&str>) -> Result<At, Failure> {
     Ok(moment(reader, "--time", text)?.map_or(At::Last, At::Time))
@@ -56,8 +41,8 @@ pub fn instant(reader: &Reader, text: Option<&str>) -> Result<At, Failure> {
 fn moment(reader: &Reader, option: &str, text: Option<&str>) -> Result<Option<f64>, Failure> {
     let Some(text) = text else { return Ok(None) };
     Ok(Some(match reader.header().axis() {
-        Axis::Velocity => read::<Velocity>(option, text, "10 mm/s")?.get(),
-        Axis::Time | Axis::None => read::<Time>(option, text, "500 s")?.get(),
+        Axis::Velocity => read::<Velocity>(option, text)?.get(),
+        Axis::Time | Axis::None => read::<Time>(option, text)?.get(),
     }))
 }
 
@@ -66,6 +51,11 @@ pub fn times(list: &str) -> Result<Option<Vec<f64>>, Failure> {
     if ["fields", "all"].contains(&list.trim()) {
         return Ok(None);
     }
-    let time = |text: &str| Ok(read::<Time<NonNegative>>("--times", text, "1 s,10 s")?.get());
+    let time = |text: &str| Ok(read::<Time<NonNegative>>("--times", text)?.get());
     list.split(',').map(time).collect::<Result<_, Failure>>().map(Some)
+}
+
+/// The name of a file, as the title of a figure.
+fn title(path: &Path) -> String {
+    path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned())
 }

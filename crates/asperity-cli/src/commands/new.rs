@@ -1,10 +1,9 @@
 //! `asperity new`: a starter case.
 
-use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 
 use asperity_examples::{TEMPLATES, Template};
-use asperity_io::output;
+use asperity_io::output::write_all;
 
 use crate::args::New;
 use crate::failure::Failure;
@@ -33,15 +32,7 @@ impl Verb for New {
             )));
         };
         let path = self.path.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
-        let written = output::write(&path, self.force, |file| file.write_all(template.text.as_bytes()));
-        written.map_err(|error| {
-            Failure::input(match error.kind() {
-                ErrorKind::AlreadyExists => {
-                    format!("{} already exists; choose another file or use --force", path.display())
-                }
-                _ => format!("cannot write {}: {error}", path.display()),
-            })
-        })?;
+        write_all(&path, self.force, template.text.as_bytes())?;
         crate::messages::message!("wrote {}; run it with: asperity run {}", path.display(), path.display());
         Ok(())
     }

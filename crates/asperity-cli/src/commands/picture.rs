@@ -8,7 +8,7 @@ use crate::failure::Failure;
 
 /// Writes a picture, and warns on stderr which letters it shows as boxes because its typeface lacks them.
 pub fn write(figure: &Figure, path: &Path, force: bool) -> Result<(), Failure> {
-    figure.write(path, force).map_err(Failure::of)?;
+    figure.write(path, force)?;
     if !matches!(Form::of(path), Ok(Form::Svg)) {
         warn_of_missing_letters(figure);
     }

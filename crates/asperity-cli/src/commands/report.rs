@@ -5,15 +5,12 @@ use asperity_report::page::{Options, write};
 
 use crate::args::Report;
 use crate::failure::Failure;
-use crate::verb::{Paths, Verb};
+use crate::files::Files;
+use crate::verb::Verb;
 
 impl Verb for Report {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.result)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.output.as_ref()]
+    fn files(&self) -> Files {
+        Files::default().reads([&self.result]).writes(&self.output).force(self.force)
     }
 
     /// Writes the page and prints where it is.
@@ -24,8 +21,8 @@ impl Verb for Report {
             instants: self.instants as usize,
             force: self.force,
         };
-        let reader = Reader::open(&self.result).map_err(|error| Failure::input(error.to_string()))?;
-        write(&reader, &output, &options).map_err(Failure::of)?;
+        let reader = Reader::open(&self.result)?;
+        write(&reader, &output, &options)?;
         crate::print(&format!("{}\n", output.display()))
     }
 }

@@ -14,21 +14,20 @@ impl Verb for Reproduce {
 
     /// Computes the figures one after another, writes each, and prints how far they are from what is independent.
     fn run(&self) -> Result<(), Failure> {
-        let failed = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
         let mut numbers = if self.figures.is_empty() { FIGURES.to_vec() } else { self.figures.clone() };
         numbers.sort_unstable();
         numbers.dedup();
         let files: Vec<_> =
             numbers.iter().map(|n| self.output.join(format!("figure-{n}.{}", self.form))).collect();
         if let Some(taken) = files.iter().find(|file| !self.force && file.exists()) {
-            return Err(failed(&format!(
+            return Err(Failure::input(format!(
                 "{} already exists; choose another directory or use --force",
                 taken.display()
             )));
         }
         let results = self.output.join("results");
         std::fs::create_dir_all(&results)
-            .map_err(|error| failed(&format!("cannot make {}: {error}", results.display())))?;
+            .map_err(Failure::about(format!("cannot make {}", results.display())))?;
         let options = Options { results, cells: self.cells.map(|n| n as usize) };
         let (mut list, mut table) = (Vec::new(), String::new());
         // The figures of the rough sphere come from the same runs.
@@ -37,9 +36,12 @@ impl Verb for Reproduce {
         for group in groups {
             let names: Vec<_> = group.iter().map(u8::to_string).collect();
             crate::messages::message!("figure {} ...", names.join(", "));
-            for one in reproduce(&group, &options).map_err(failure)? {
+            for one in reproduce(&group, &options).map_err(|error| match error {
+                PaperError::Run(error) => Failure::Solve(error.to_string()),
+                error => error.into(),
+            })? {
                 let file = self.output.join(format!("figure-{}.{}", one.number, self.form));
-                one.figure.write(&file, self.force).map_err(|error| failed(&error))?;
+                one.figure.write(&file, self.force)?;
                 table += &format!("Figure {}: {}\n  {}\n", one.number, one.title, file.display());
                 for difference in &one.differences {
                     table += &format!("  {}\n", difference.words());
@@ -53,13 +55,5 @@ impl Verb for Reproduce {
             }
         }
         crate::print(&if self.json { format!("{}\n", json!(list)) } else { table })
-    }
-}
-
-fn failure(error: PaperError) -> Failure {
-    match error {
-        PaperError::Case(errors) => Failure::Case(errors),
-        PaperError::Run(error) => Failure::Solve(error.to_string()),
-        error => Failure::input(error.to_string()),
     }
 }

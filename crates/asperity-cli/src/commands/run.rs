@@ -7,12 +7,11 @@ use asperity_io::case::Case;
 use asperity_io::leakage::LeakError;
 use asperity_io::session::{RunError, RunOptions, Summary, run as run_case};
 use asperity_io::store::Status;
-use asperity_io::stress::{Below, first_yield};
 use serde_json::{Value, json};
 
 use crate::args::Run;
 use crate::failure::Failure;
-use crate::format::{bytes, coordinate, duration, in_contact, mean_gap, quantity};
+use crate::format::{bytes, coordinate, duration, mean_gap, pressures, quantity};
 use crate::progress::ProgressDisplay;
 use crate::verb::{Threads, Verb};
 
@@ -46,7 +45,7 @@ impl Verb for Run {
                 Err(Failure::Interrupted(format!("{rows} rows are in {result}; continue with --resume")))
             }
             Err(RunError::Case(errors)) => Err(Failure::Case(errors)),
-            Err(error @ RunError::Output(_)) => Err(Failure::of(error)),
+            Err(error @ RunError::Output(_)) => Err(error.into()),
             Err(error) => {
                 let message = match &error {
                     RunError::Solve { best: Some(best), .. } => {
@@ -89,7 +88,7 @@ fn print_materials(args: &Run, case: &Case) {
 }
 
 fn best_state(best: &Row, case: &Case) -> String {
-    let grid = &case.grid;
+    let grid = &case.conditions.grid;
     format!(
         "  best state at {}: load {}, approach {}, contact {:.4} %, largest pressure {}",
         coordinate(best.coordinate),
@@ -106,7 +105,7 @@ fn print_summary(
     summary: &Summary,
     error: Option<&RunError>,
 ) -> Result<(), Failure> {
-    let grid = &case.grid;
+    let grid = &case.conditions.grid;
     if args.json {
         return crate::print(&format!("{}\n", json_object(summary, error)));
     }
@@ -142,18 +141,10 @@ fn print_summary(
         if last.capped_area > 0.0 {
             line("at hardness", quantity(last.capped_area, grid.units("m2")));
         }
-        line(
-            "pressure",
-            format!(
-                "nominal mean {}, in the contact {}, largest {}",
-                quantity(last.mean_pressure, "Pa"),
-                quantity(in_contact(last), "Pa"),
-                quantity(last.max_pressure, "Pa")
-            ),
-        );
+        line("pressure", pressures(last));
     }
     if let Some(below) = &summary.stress {
-        stress_lines(below).into_iter().for_each(|[name, value]| line(&name, value));
+        super::stress::summary::lines(below).into_iter().for_each(|[name, value]| line(&name, value));
     }
     if let Some(leak) = &summary.leak {
         line("leak", leak.clone());
@@ -175,29 +166,6 @@ fn print_summary(
     }
     line("result", summary.result.display().to_string());
     crate::print(&text)
-}
-
-/// The largest stress below the surface, and first yield.
-fn stress_lines(below: &Below) -> Vec<[String; 2]> {
-    let Some(worst) = below.worst() else { return vec![] };
-    let [mises, depth] = ["max_mises", "max_mises_depth"].map(|name| below.number(worst, name));
-    if !depth.is_finite() {
-        return vec![["stress".into(), "none: there is no contact at the times of the stress".into()]];
-    }
-    let mut lines = vec![[
-        "stress".to_owned(),
-        format!(
-            "largest von Mises {} at depth {} of {}, t = {}",
-            quantity(mises, "Pa"),
-            quantity(depth, "m"),
-            below.set.body,
-            quantity(worst.time, "s")
-        ),
-    ]];
-    if let Some(first) = first_yield(below) {
-        lines.push(["yield".into(), first.sentence(&below.set)]);
-    }
-    lines
 }
 
 fn json_object(summary: &Summary, error: Option<&RunError>) -> Value {

@@ -12,8 +12,6 @@ impl Verb for Schema {
     /// Prints the JSON Schema of the case file.
     fn run(&self) -> Result<(), Failure> {
         let schema = asperity_io::case::schema();
-        let text = serde_json::to_string_pretty(&schema)
-            .map_err(|error| Failure::input(format!("cannot write the schema: {error}")))?;
-        crate::print(&format!("{text}\n"))
+        crate::print(&format!("{}\n", serde_json::to_string_pretty(&schema)?))
     }
 }

@@ -5,15 +5,15 @@ use asperity::step::Row;
 use asperity::{Axis, Grid};
 use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
-use asperity_io::store::{At, Reader, Status, StoreError};
-use asperity_io::stress::{Below, first_yield};
+use asperity_io::store::{At, Reader, StoreError};
+use asperity_io::stress::Below;
 use asperity_report::result::{contact, moment, temperatures};
 use serde_json::json;
 
 use super::instant;
 use crate::args::ShowResult;
 use crate::failure::Failure;
-use crate::format::{bytes, duration, in_contact, mean_gap, quantity};
+use crate::format::{bytes, duration, extent, mean_gap, pressures, quantity};
 use crate::terminal::{shares, sparkline};
 use crate::verb::Verb;
 
@@ -24,10 +24,9 @@ const SPARKS: usize = 40;
 impl Verb for ShowResult {
     /// Prints the summary.
     fn run(&self) -> Result<(), Failure> {
-        let reader = Reader::open(&self.result).map_err(|error| Failure::input(error.to_string()))?;
+        let reader = Reader::open(&self.result)?;
         let at = instant(&reader, self.time.as_deref())?;
-        let text = if self.json { object(&reader) } else { text(&reader, at) };
-        crate::print(&text.map_err(|error| Failure::input(error.to_string()))?)
+        crate::print(&if self.json { object(&reader)? } else { text(&reader, at)? })
     }
 }
 
@@ -113,15 +112,7 @@ fn state(reader: &Reader) -> String {
         text += &format!("{}\n\n", header.title);
     }
     let of = header.rows_expected.map_or(String::new(), |total| format!(" of {total}"));
-    let state = match reader.status() {
-        Status::Complete if reader.lacks_leakage() => format!("without its leakage{}", reader.continuation()),
-        Status::Complete => "complete".to_owned(),
-        Status::Running if reader.is_being_written() => "running now".to_owned(),
-        Status::Running => format!("killed before its end{}", reader.continuation()),
-        Status::Interrupted => format!("interrupted{}", reader.continuation()),
-        Status::Failed => "failed".to_owned(),
-    };
-    text += &line("status", format!("{state}, {}{of} rows", reader.len()));
+    text += &line("status", format!("{}, {}{of} rows", reader.state(), reader.len()));
     if let Some(message) = &reader.work().message {
         text += &line("", message);
     }
@@ -139,11 +130,6 @@ fn state(reader: &Reader) -> String {
     text
 }
 
-/// The least and the greatest.
-fn extremes(values: &[f64]) -> [f64; 2] {
-    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)])
-}
-
 /// The last value of each quantity, with its curve over time or velocity.
 fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
     let Some(last) = rows.last() else { return Ok(String::new()) };
@@ -154,7 +140,7 @@ fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
     let bars = |values: &[f64]| sparkline(header.axis(), &times, values, SPARKS);
     let curve = |name: &str, value: fn(&Row) -> f64, words: &dyn Fn(f64) -> String| {
         let values: Vec<f64> = rows.iter().map(value).collect();
-        let [low, high] = extremes(&values).map(words);
+        let [low, high] = extent(values.iter().copied()).map(words);
         let ends = if low == high { "unchanged".to_owned() } else { format!("{low} to {high}") };
         line(name, format!("{:<14}{}  {ends}", words(value(last)), bars(&values)))
     };
@@ -166,7 +152,7 @@ fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
     };
     if reader.scalars().iter().any(|series| series.name == Quantity::FrictionCoefficient.name()) {
         let mu = reader.series(Quantity::FrictionCoefficient.name())?;
-        let [low, high] = extremes(&mu);
+        let [low, high] = extent(mu.iter().copied());
         let last = mu.last().copied().unwrap_or(f64::NAN);
         text += &line("friction", format!("{last:<14.4}{}  {low:.4} to {high:.4}", bars(&mu)));
     }
@@ -182,10 +168,7 @@ fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
     if last.capped_area > 0.0 {
         text += &line("at hardness", quantity(last.capped_area, area));
     }
-    let [nominal, touching, largest] =
-        [last.mean_pressure, in_contact(last), last.max_pressure].map(|p| quantity(p, "Pa"));
-    text +=
-        &line("pressure", format!("nominal mean {nominal}, in the contact {touching}, largest {largest}"));
+    text += &line("pressure", pressures(last));
     let asked = reader.scalars().into_iter().filter(|s| {
         let coordinate = axis == Axis::Velocity && s.name == Quantity::Velocity.name();
         Quantity::from_name(s.name).is_some() && !coordinate
@@ -202,18 +185,8 @@ fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
 /// The stress below the surface and the leakage, where the result has them.
 fn below_and_through(reader: &Reader) -> Result<String, StoreError> {
     let mut text = String::new();
-    if let Some(below) = Below::of(reader)?
-        && let Some(worst) = below.worst()
-    {
-        let [mises, depth] = ["max_mises", "max_mises_depth"].map(|name| below.number(worst, name));
-        let place =
-            if depth.is_finite() { format!(" at depth {}", quantity(depth, "m")) } else { String::new() };
-        let (mises, time) = (quantity(mises, "Pa"), quantity(worst.time, "s"));
-        text +=
-            &line("stress", format!("largest von Mises {mises}{place} of {}, t = {time}", below.set.body));
-        if let Some(first) = first_yield(&below) {
-            text += &line("yield", first.sentence(&below.set));
-        }
+    if let Some(below) = Below::of(reader)? {
+        text.extend(super::stress::summary::lines(&below).iter().map(|[name, value]| line(name, value)));
     }
     if let Some(leaks) = LeakHistory::of(reader)? {
         text += &line("leak", leaks.sentence());

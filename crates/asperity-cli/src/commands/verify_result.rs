@@ -11,7 +11,7 @@ use crate::verb::Verb;
 impl Verb for VerifyResult {
     /// Reads all of the result and prints what is damaged.
     fn run(&self) -> Result<(), Failure> {
-        let found = verify(&self.result).map_err(|error| Failure::input(error.to_string()))?;
+        let found = verify(&self.result)?;
         crate::print(&if self.json { object(self, &found) } else { text(self, &found) })?;
         match found.damage.len() {
             0 => Ok(()),

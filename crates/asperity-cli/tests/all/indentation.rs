@@ -48,7 +48,7 @@ fn the_example_gives_its_material_back() {
          [load]\ncontrol = \"load\"\nhistory = {{ kind = \"step\", value = 1e-3 }}\n[time]\nend = 1\nsteps = 1\n"
     );
     let case = Case::parse(&case, dir.path(), &[]).unwrap_or_else(|errors| panic!("{errors}"));
-    let young = 1.0 / case.creep.instantaneous * 0.75;
+    let young = 1.0 / case.conditions.creep.instantaneous * 0.75;
     assert!((young / found["instantaneous"][0].as_f64().unwrap() - 1.0).abs() < 1e-12);
     // And `material show` reads it as it is: E at once and relaxed.
     let mut show = Command::new(env!("CARGO_BIN_EXE_asperity"));
@@ -86,7 +86,7 @@ fn slips_are_told() {
     };
     says(&[], &record(), &["--radius"]);
     says(&["--radius", "5 s"], &record(), &["--radius", "5 s", "length"]);
-    says(&["--radius", "5 mm", "--poisson", "0.6"], &record(), &["--poisson is 0.6"]);
+    says(&["--radius", "5 mm", "--poisson", "0.6"], &record(), &["--poisson", "0.6"]);
     says(&["--radius", "5 mm", "--terms", "7"], &record(), &["number of terms is 7"]);
     says(&["--radius", "5 mm", "--unit", "load=mm"], &record(), &["load", "mm"]);
     says(&["--radius", "5 mm", "--column", "depth=4"], &record(), &["depth", "column 4"]);

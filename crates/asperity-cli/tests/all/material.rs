@@ -106,7 +106,7 @@ fn a_fit_becomes_a_block_that_a_case_takes() {
     let pasted = format!("{}{block}{}", &rubber[..start], &rubber[end..]);
     let read = |text: &str| Case::parse(text, &examples(), &[]).unwrap_or_else(|errors| panic!("{errors}"));
     let (from_data, from_block) = (read(&rubber), read(&pasted));
-    let creep = |case: &Case| case.thermal[0].creep.clone();
+    let creep = |case: &Case| case.conditions.thermal[0].creep.clone();
     for t in [1e-6, 1e-2, 10.0] {
         // Shortest decimal numbers give the same doubles back; the conversion is exact to rounding.
         assert!((creep(&from_block).value(t) / creep(&from_data).value(t) - 1.0).abs() < 1e-12);

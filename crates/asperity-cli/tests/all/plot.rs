@@ -179,7 +179,7 @@ fn options_that_cannot_be_followed_are_refused_with_exit_code_2() {
     refused(&["pressure", "--at", "0.1 mm"], &["--at does not apply", "a profile"]);
     refused(&["evolution", "--time", "1 s"], &["--time does not apply"]);
     refused(&["pressure", "-o", "none/a.png"], &["there is no folder none"]);
-    refused(&["pressure", "--colours", "jet"], &["--colours is \"jet\"", "viridis", "red-blue"]);
+    refused(&["pressure", "--colours", "jet"], &["--colours", "viridis", "red-blue"]);
     refused(&["pressure", "--from", "1 s"], &["--from does not apply", "--time"]);
     refused(&["evolution", "--from", "5 s", "--to", "2 s"], &["--from is \"5 s\"", "before --to"]);
     refused(&["evolution", "--from", "20 s"], &["no row", "t = 10 s"]);

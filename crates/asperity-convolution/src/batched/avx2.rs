@@ -1,122 +1,39 @@
 //! Lanes of 256 bits: AVX2 and FMA.
 
 use std::arch::x86_64::*;
-use std::ops::{Add, Mul, Sub};
 
-use super::vector::{Kernel, Vector, tile_end};
+use super::intrinsics::vector;
 
-/// Four f64.
-#[derive(Clone, Copy)]
-#[repr(transparent)]
-pub struct F64x4(__m256d);
-
-/// Eight f32.
-#[derive(Clone, Copy)]
-#[repr(transparent)]
-pub struct F32x8(__m256);
-
-/// Declares the arithmetic, given the names of the intrinsics.
-macro_rules! arithmetic {
-    ($vector:ident, $add:ident, $sub:ident, $mul:ident) => {
-        impl Add for $vector {
-            type Output = Self;
-            #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
-                $vector(unsafe { $add(self.0, other.0) })
-            }
-        }
-
-        impl Sub for $vector {
-            type Output = Self;
-            #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
-                $vector(unsafe { $sub(self.0, other.0) })
-            }
-        }
-
-        impl Mul for $vector {
-            type Output = Self;
-            #[inline(always)]
-            fn mul(self, other: Self) -> Self {
-                // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
-                $vector(unsafe { $mul(self.0, other.0) })
-            }
-        }
-    };
+vector! {
+    /// Four f64.
+    F64x4(__m256d): 4 of f64, with "avx2,fma",
+    splat: _mm256_set1_pd, mul_add: _mm256_fmadd_pd, neg_mul_add: _mm256_fnmadd_pd, transpose: transpose_4x4,
+    Add add: _mm256_add_pd, Sub sub: _mm256_sub_pd, Mul mul: _mm256_mul_pd
 }
 
-arithmetic!(F64x4, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd);
-arithmetic!(F32x8, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps);
-
-/// Declares splat, the fused products and the entry point, given the names of the intrinsics.
-macro_rules! lane_methods {
-    ($vector:ident, $scalar:ty, $splat:ident, $fmadd:ident, $fnmadd:ident) => {
-        type Scalar = $scalar;
-        const LANES: usize = size_of::<$vector>() / size_of::<$scalar>();
-
-        #[inline(always)]
-        fn splat(x: $scalar) -> Self {
-            // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
-            $vector(unsafe { $splat(x) })
-        }
-
-        #[inline(always)]
-        fn mul_add(self, b: Self, c: Self) -> Self {
-            // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
-            $vector(unsafe { $fmadd(self.0, b.0, c.0) })
-        }
-
-        #[inline(always)]
-        fn neg_mul_add(self, b: Self, c: Self) -> Self {
-            // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
-            $vector(unsafe { $fnmadd(self.0, b.0, c.0) })
-        }
-
-        #[inline(always)]
-        fn vectorize(kernel: impl Kernel) {
-            #[target_feature(enable = "avx2,fma")]
-            fn compiled(kernel: impl Kernel) {
-                kernel.run();
-            }
-            // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
-            unsafe { compiled(kernel) }
-        }
-    };
+vector! {
+    /// Eight f32.
+    F32x8(__m256): 8 of f32, with "avx2,fma",
+    splat: _mm256_set1_ps, mul_add: _mm256_fmadd_ps, neg_mul_add: _mm256_fnmadd_ps, transpose: transpose_8x8,
+    Add add: _mm256_add_ps, Sub sub: _mm256_sub_ps, Mul mul: _mm256_mul_ps
 }
 
-// SAFETY: __m256d is four f64.
-unsafe impl Vector for F64x4 {
-    lane_methods!(F64x4, f64, _mm256_set1_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd);
-
-    #[inline(always)]
-    fn transpose(from: &[f64], from_stride: usize, to: &mut [f64], to_stride: usize) {
-        assert!(from.len() >= tile_end(4, from_stride) && to.len() >= tile_end(4, to_stride));
-        // SAFETY: AVX was detected; the assertion bounds every row that is loaded or stored.
-        unsafe {
-            let row = |i: usize| _mm256_loadu_pd(from.as_ptr().add(i * from_stride));
-            let (a, b, c, d) = (row(0), row(1), row(2), row(3));
-            let (ab0, ab1) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
-            let (cd0, cd1) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
-            let to = to.as_mut_ptr();
-            _mm256_storeu_pd(to, _mm256_permute2f128_pd::<0x20>(ab0, cd0));
-            _mm256_storeu_pd(to.add(to_stride), _mm256_permute2f128_pd::<0x20>(ab1, cd1));
-            _mm256_storeu_pd(to.add(2 * to_stride), _mm256_permute2f128_pd::<0x31>(ab0, cd0));
-            _mm256_storeu_pd(to.add(3 * to_stride), _mm256_permute2f128_pd::<0x31>(ab1, cd1));
-        }
-    }
-}
-
-// SAFETY: __m256 is eight f32.
-unsafe impl Vector for F32x8 {
-    lane_methods!(F32x8, f32, _mm256_set1_ps, _mm256_fmadd_ps, _mm256_fnmadd_ps);
-
-    #[inline(always)]
-    fn transpose(from: &[f32], from_stride: usize, to: &mut [f32], to_stride: usize) {
-        assert!(from.len() >= tile_end(8, from_stride) && to.len() >= tile_end(8, to_stride));
-        // SAFETY: AVX was detected; the assertion bounds every row that is loaded or stored.
-        unsafe { transpose_8x8(from.as_ptr(), from_stride, to.as_mut_ptr(), to_stride) }
+/// The 4 x 4 transpose in f64: pairs, then halves.
+///
+/// # Safety
+/// AVX must be available; four rows of four scalars, a stride apart, must be readable at `from` and writable at `to`.
+#[inline(always)]
+unsafe fn transpose_4x4(from: *const f64, from_stride: usize, to: *mut f64, to_stride: usize) {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let row = |i: usize| _mm256_loadu_pd(from.add(i * from_stride));
+        let (a, b, c, d) = (row(0), row(1), row(2), row(3));
+        let (ab0, ab1) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+        let (cd0, cd1) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+        _mm256_storeu_pd(to, _mm256_permute2f128_pd::<0x20>(ab0, cd0));
+        _mm256_storeu_pd(to.add(to_stride), _mm256_permute2f128_pd::<0x20>(ab1, cd1));
+        _mm256_storeu_pd(to.add(2 * to_stride), _mm256_permute2f128_pd::<0x31>(ab0, cd0));
+        _mm256_storeu_pd(to.add(3 * to_stride), _mm256_permute2f128_pd::<0x31>(ab1, cd1));
     }
 }
 

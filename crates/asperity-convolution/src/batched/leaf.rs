@@ -68,41 +68,24 @@ impl<V: Vector> Energy<V> {
 /// Distance in bytes by which the spectrum is prefetched.
 const SPECTRUM_AHEAD: usize = 4096;
 
-/// Transforms, multiplies by the spectrum, and transforms back with exchanged real and imaginary parts.
-pub struct Product<'a, V>(pub &'a [V], pub &'a mut Energy<V>);
+/// Transforms, multiplies by the spectrum, and transforms back with exchanged real and imaginary parts. If `MIRRORED`, the spectrum
+/// is read backwards.
+pub struct Product<'a, V, const MIRRORED: bool>(pub &'a [V], pub &'a mut Energy<V>);
 
-impl<V: Vector> Leaf<V> for Product<'_, V> {
+impl<V: Vector, const MIRRORED: bool> Leaf<V> for Product<'_, V, MIRRORED> {
     #[inline(always)]
     fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
     where
         Whole<R>: Butterfly<V, R, R>,
     {
-        let spectrum = &self.0[at..at + R];
-        prefetch(Purpose::Reading, spectrum.as_ptr().wrapping_byte_add(SPECTRUM_AHEAD), R);
-        let mut y = Whole::<R>::transform(x);
-        for k in 0..R {
-            let product = y[k].times(spectrum[k]);
-            self.1.add(y[k], product);
-            y[k] = product.swapped();
+        let start = if MIRRORED { self.0.len() - at - R } else { at };
+        let spectrum = &self.0[start..start + R];
+        if !MIRRORED {
+            prefetch(Purpose::Reading, spectrum.as_ptr().wrapping_byte_add(SPECTRUM_AHEAD), R);
         }
-        Whole::<R>::transform(y)
-    }
-}
-
-/// The same with the spectrum read backwards.
-pub struct MirroredProduct<'a, V>(pub &'a [V], pub &'a mut Energy<V>);
-
-impl<V: Vector> Leaf<V> for MirroredProduct<'_, V> {
-    #[inline(always)]
-    fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
-    where
-        Whole<R>: Butterfly<V, R, R>,
-    {
-        let end = self.0.len() - at;
-        let spectrum = &self.0[end - R..end];
         let mut y = Whole::<R>::transform(x);
         for k in 0..R {
-            let product = y[k].times(spectrum[R - 1 - k]);
+            let product = y[k].times(spectrum[if MIRRORED { R - 1 - k } else { k }]);
             self.1.add(y[k], product);
             y[k] = product.swapped();
         }

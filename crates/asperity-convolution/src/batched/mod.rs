@@ -37,6 +37,8 @@ mod butterfly;
 mod complex;
 mod engine;
 mod factors;
+#[cfg(target_arch = "x86_64")]
+mod intrinsics;
 mod leaf;
 mod parts;
 mod portable;
@@ -57,7 +59,7 @@ use ndarray::{Array2, ArrayView2};
 
 use engine::Convolve;
 pub use engine::Modify;
-use factors::factors;
+use factors::{Factors, factors};
 pub use real::Real;
 use wrap::wrapped_spectrum;
 
@@ -121,8 +123,7 @@ impl<T: Real> BatchedFft<T> {
         for spectrum in spectra {
             assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
         }
-        let along_y = if lengths[1].is_multiple_of(2) { factors(lengths[1] / 2) } else { None };
-        if let (Some(x), Some(y)) = (factors(lengths[0]), along_y) {
+        if let Some([x, y]) = factors_of(lengths) {
             return BatchedFft { engine: T::plan(instructions, cells, lengths, [&x, &y], spectra) };
         }
         let longer = cells.map(|n| Self::good_length(2 * n - 1));
@@ -144,10 +145,9 @@ impl<T: Real> BatchedFft<T> {
 
     /// Bytes of a plan with this number of spectra, without the buffers of its threads (a few rows and columns).
     pub fn bytes(cells: [usize; 2], lengths: [usize; 2], spectra: usize) -> usize {
-        let along_y = if lengths[1].is_multiple_of(2) { factors(lengths[1] / 2) } else { None };
-        let [mx, my] = match (factors(lengths[0]), along_y) {
-            (Some(_), Some(_)) => lengths,
-            _ => cells.map(|n| Self::good_length(2 * n - 1)),
+        let [mx, my] = match factors_of(lengths) {
+            Some(_) => lengths,
+            None => cells.map(|n| Self::good_length(2 * n - 1)),
         };
         let columns = my / 2 + 1;
         size_of::<T>() * (2 * cells[0] * columns + spectra * (5 * mx).div_ceil(8) * columns)
@@ -161,6 +161,12 @@ impl<T: Real> BatchedFft<T> {
         self.engine.forward(input);
         Chain { engine: &mut *self.engine }
     }
+}
+
+/// The factors of mx and my/2; `None` if the engine has no transform of these lengths.
+fn factors_of([mx, my]: [usize; 2]) -> Option<[Factors; 2]> {
+    let half = my.is_multiple_of(2).then_some(my / 2)?;
+    Some([factors(mx)?, factors(half)?])
 }
 
 /// Several consecutive convolutions of a field, with an operation on the cells in between. The operation runs on a few rows at a

@@ -14,30 +14,15 @@ use super::vector::{Kernel, Scalar, Vector, tile_end};
 pub struct Portable<T, const N: usize>([T; N]);
 
 macro_rules! portable {
-    ($scalar:ty) => {
-        impl<const N: usize> Add for Portable<$scalar, N> {
+    ($scalar:ty, $($operator:ident $operate:ident),+) => {
+        $(impl<const N: usize> $operator for Portable<$scalar, N> {
             type Output = Self;
-            #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                Portable(std::array::from_fn(|i| self.0[i] + other.0[i]))
-            }
-        }
 
-        impl<const N: usize> Sub for Portable<$scalar, N> {
-            type Output = Self;
             #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                Portable(std::array::from_fn(|i| self.0[i] - other.0[i]))
+            fn $operate(self, other: Self) -> Self {
+                Portable(std::array::from_fn(|i| self.0[i].$operate(other.0[i])))
             }
-        }
-
-        impl<const N: usize> Mul for Portable<$scalar, N> {
-            type Output = Self;
-            #[inline(always)]
-            fn mul(self, other: Self) -> Self {
-                Portable(std::array::from_fn(|i| self.0[i] * other.0[i]))
-            }
-        }
+        })+
 
         // SAFETY: a transparent array of scalars, on which every operation is plain Rust.
         unsafe impl<const N: usize> Vector for Portable<$scalar, N>
@@ -82,5 +67,5 @@ macro_rules! portable {
     };
 }
 
-portable!(f64);
-portable!(f32);
+portable!(f64, Add add, Sub sub, Mul mul);
+portable!(f32, Add add, Sub sub, Mul mul);

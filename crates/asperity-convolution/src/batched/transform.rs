@@ -10,7 +10,7 @@
 
 use super::complex::Complex;
 use super::factors::Factors;
-use super::leaf::{Energy, Leaf, MirroredProduct, Plain, Product, run_leaves};
+use super::leaf::{Energy, Leaf, Plain, Product, run_leaves};
 use super::prefetch::PrefetchAhead;
 use super::stage::Stage;
 use super::vector::{Scalar, Vector};
@@ -130,9 +130,9 @@ impl<T: Scalar> Transform<T> {
             let stored = r.min(radix - r);
             let spectrum = &spectrum[stored * part_length..][..part_length];
             if stored == r {
-                self.descend::<V, true, true>(part, &mut Product(spectrum, energy), ahead);
+                self.descend::<V, true, true>(part, &mut Product::<V, false>(spectrum, energy), ahead);
             } else {
-                self.descend::<V, true, true>(part, &mut MirroredProduct(spectrum, energy), ahead);
+                self.descend::<V, true, true>(part, &mut Product::<V, true>(spectrum, energy), ahead);
             }
         }
         self.first.close(self.half, signal, margin, buffer);

@@ -2,17 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::kernel::Kernel;
 use asperity::load::Course;
 use asperity::time::Plan;
-use asperity::{Boundary, Grid, Scheme, TimeGrid};
+use asperity::{Grid, Programme, Scheme, Simulation, TimeGrid};
+use ndarray::Array2;
 
 use super::body::{self, Body};
 use super::document::Document;
 use super::error::CaseError;
 use super::hardness::{self, Hardness};
 use super::material::Sample;
-use super::output::Conditions;
 use super::pair::{self, Pair};
 use super::place::Checks;
 use super::plan::{Motion, Output, Rows, Surface};
@@ -20,6 +19,7 @@ use super::temperature::{Temperature, Temperatures};
 use super::text::Text;
 use super::warmth;
 use super::{Case, motion, time};
+use crate::Code;
 
 /// Most letters of a title.
 const TITLE: usize = 1000;
@@ -49,41 +49,30 @@ pub fn bodies(
 ) -> Result<Pair, Vec<CaseError>> {
     let checks = Checks::new(text, Path::new(""));
     let parts = body::parts(&checks.at("body"), bodies);
-    let samples: Vec<Option<Sample>> =
-        parts.iter().map(|part| part.material.sample(&part.at.key("material"))).collect();
-    let temperatures = temperatures(&checks, temperature, &samples);
+    let temperatures = temperatures(&checks, temperature, &parts);
     let points = temperatures.iter().flatten().map(|read| read.points.as_slice()).next();
     let instants = |_: &[f64]| plan.clone();
     let course = warmth::Course { end: None, plan: &instants, temperatures: points, beyond: 1.0 };
-    let pair = pair::pair(&checks.at("body"), bodies, &parts, &samples, &course);
+    let pair = pair::pair(&checks.at("body"), bodies, &parts, &course);
     match pair {
         Some(pair) if !checks.any() => Ok(pair),
         _ => Err({
-            drop((parts, samples));
+            drop(parts);
             checks.into_errors()
         }),
     }
 }
 
-/// The temperatures of the run.
+/// The temperatures of the run; the inner `None` where the case gives none.
 fn temperatures(
     checks: &Checks<'_>,
     temperature: Option<&Temperature>,
-    samples: &[Option<Sample>],
-) -> Optional<Temperatures> {
-    optional(temperature, |temperature| {
-        let depends = |sample: &Sample| sample.shift.is_some() && sample.temperature.is_none();
-        let matters = samples.iter().any(|sample| sample.as_ref().is_none_or(depends));
-        temperature.temperatures(&checks.at("temperature"), matters)
-    })
-}
-
-/// A section that may be left out: where it has a fault, `Err`.
-type Optional<T> = Result<Option<T>, ()>;
-
-/// What is `given`, converted.
-fn optional<S, T>(given: Option<&S>, convert: impl FnOnce(&S) -> Option<T>) -> Optional<T> {
-    given.map(|section| convert(section).ok_or(())).transpose()
+    parts: &[body::Part<'_>],
+) -> Option<Option<Temperatures>> {
+    let Some(temperature) = temperature else { return Some(None) };
+    let depends = |sample: &Sample| sample.shift.is_some() && sample.temperature.is_none();
+    let matters = parts.iter().any(|part| part.sample.as_ref().is_none_or(depends));
+    temperature.temperatures(&checks.at("temperature"), matters).map(Some)
 }
 
 impl Document {
@@ -91,29 +80,28 @@ impl Document {
         let at = |section: &str| checks.at(section);
         if let Some(letters) = self.title.as_ref().map(|title| title.chars().count()).filter(|n| *n > TITLE) {
             let message = format!("the title has {letters} letters, but may have {TITLE}");
-            at("title").fault::<()>(message, &format!("{TITLE} letters at most"), "");
+            at("title").refuse::<()>(Code::OutOfRange, message, &format!("{TITLE} letters at most"), "");
         }
         // Where something is wrong, all the rest is looked at too.
         let (grid, line, surfaces) = self.gap(checks);
         let boundary = self.domain.boundary;
         let parts = body::parts(&at("body"), &self.body);
-        let samples: Vec<Option<Sample>> =
-            parts.iter().map(|part| part.material.sample(&part.at.key("material"))).collect();
-        let temperatures = temperatures(checks, self.temperature.as_ref(), &samples);
+        let temperatures = temperatures(checks, self.temperature.as_ref(), &parts);
+        let samples = || parts.iter().filter_map(|part| part.sample.as_ref());
         let points = temperatures.iter().flatten().map(|read| read.points.as_slice()).next();
         let first_step = |end: f64, course: Option<&Course>| {
-            let shortest = samples.iter().flatten().map(|sample| sample.shortest(points, end));
+            let shortest = samples().map(|sample| sample.shortest(points, end));
             time::first_step(shortest.fold(f64::INFINITY, f64::min), course)
         };
-        let prescription = self.load.prescription(&at("load"), line, &first_step);
-        let programme = prescription.as_ref().map(|prescription| &prescription.programme);
+        let loading = self.load.programme(&at("load"), line, &first_step);
+        let programme = loading.as_ref().map(|(programme, _)| programme);
         if self.motion.is_none() {
             motion::nothing_moves(&at("surface"), &self.surface);
         }
         let motion = self.motion.as_ref().and_then(|motion| motion.moving(&at("motion"), &self.surface));
         let swept = motion.as_ref().and_then(Motion::swept);
         let times = match (&motion, &grid, &self.time) {
-            (Some(motion), Some(grid), _) if swept.is_some() => motion.times(grid),
+            (Some(motion), Some(grid), _) if swept.is_some() => motion.times(&at("motion"), grid),
             (.., Some(times)) => {
                 let course =
                     programme.and_then(|programme| programme.stages.first()).map(|stage| &stage.course);
@@ -122,7 +110,11 @@ impl Document {
             (.., None) => None,
         };
         if swept.is_some() {
-            self.steady(checks);
+            let why = "belongs to a motion in time, but the case asks for steady states";
+            let sections = ["time", "stress", "leakage"];
+            checks.root().without(&sections, why, "[motion.steady] alone", "leave the section out");
+            let help = "store the fields of every n-th velocity by `every`";
+            at("output").without(&["times"], why, "`every`", help);
         }
         let stops = motion.as_ref().zip(grid.as_ref()).zip(times.as_ref());
         let stops = stops.and_then(|((motion, grid), times)| motion.stops(&at("motion"), grid, times.end()));
@@ -155,43 +147,27 @@ impl Document {
             beyond: if swept.is_some() { 1e3 } else { 1.0 },
         };
         let hardness = self.hardness(checks, grid.as_ref());
-        let pair = match &temperatures {
-            Ok(_) => pair::pair(&at("body"), &self.body, &parts, &samples, &course),
-            Err(()) => None,
-        };
-        let pair = pair.map(|mut pair| {
-            if let (Some(section), Some(motion)) = (&self.motion, &motion) {
-                let end = times.as_ref().map_or(f64::INFINITY, TimeGrid::end);
-                section.met(&at("motion"), motion, &self.body, &mut pair, end);
-                if let Some(grid) = &grid {
-                    let found = motion.findings(&self.surface, grid, boundary, &pair);
-                    pair.findings.extend(found);
-                }
+        let mut pair =
+            temperatures.as_ref().and_then(|_| pair::pair(&at("body"), &self.body, &parts, &course));
+        if let (Some(section), Some(motion), Some(pair)) = (&self.motion, &motion, &mut pair) {
+            let end = times.as_ref().map_or(f64::INFINITY, TimeGrid::end);
+            section.met(&at("motion"), motion, &self.body, pair, end);
+            if let Some(grid) = &grid {
+                let found = motion.findings(&self.surface, grid, boundary, pair);
+                pair.findings.extend(found);
             }
-            pair
-        });
-        if let (Some(times), Some(prescription), Some(pair)) = (&times, &prescription, &pair) {
-            prescription.possible(times, grid.as_ref(), pair);
         }
-        let scheme = self.time.as_ref().map(|times| times.scheme).unwrap_or_default();
-        if adaptive && scheme != Scheme::Linear {
-            at("time").fault::<()>(
-                "adaptive steps need the scheme \"linear\", because their error estimate is derived for it",
-                "scheme = \"linear\"",
-                "omit `scheme`, or use spacing = \"log\" with `steps`",
-            );
+        let conditions =
+            self.conditions(grid, pair.as_ref(), programme, times.as_ref(), hardness.as_ref(), include);
+        if let Some(conditions) = &conditions {
+            for error in conditions.faults() {
+                checks.root().core::<()>(Err(error));
+            }
+            self.output.possible(&at("output"), conditions, motion.is_some());
         }
-        if let Some(pair) = &pair {
-            let mapped = hardness.as_ref().is_some_and(|hardness| hardness.map.is_some());
-            self.possible(checks, grid.as_ref(), pair, scheme, mapped || pair.hardness.is_finite());
+        if let (Some(pair), Some(grid)) = (&pair, &grid) {
+            pair.resolved(&at("body"), &self.body, grid, boundary);
         }
-        let fields = match (scheme, &pair) {
-            (_, None) => 0,
-            (Scheme::Direct, Some(pair)) => pair.plan.instants.len(),
-            (_, Some(pair)) => pair.branches(),
-        };
-        let extra = self.output.extra_fields(self.solver.plasticity);
-        self.domain.fits(&at("domain"), grid.as_ref(), fields, extra, scheme);
         let end = times.as_ref().map(TimeGrid::end);
         let stress = self.stress.as_ref().zip(grid.as_ref().zip(pair.as_ref())).zip(output.as_ref().zip(end));
         let stress = stress.and_then(|((stress, (grid, pair)), (output, end))| {
@@ -209,44 +185,69 @@ impl Document {
                 leakage.of_case(&at("leakage"), boundary, points, output, end)
             });
 
-        let (hardness, prescription, pair, times) = (hardness?, prescription?, pair?, times?);
-        let mut files: Vec<_> = samples.iter().flatten().filter_map(Sample::file).collect();
+        let (hardness, (_, histories), pair) = (hardness?, loading?, pair?);
+        let mut files: Vec<_> = samples().filter_map(Sample::file).collect();
         files.extend(temperatures.iter().flatten().filter_map(|read| read.file.clone()));
         files.extend(hardness.files);
-        files.extend(prescription.files);
+        files.extend(histories);
         let usual = pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 };
-        Some(Case {
+        let case = Case {
             title: self.title.clone(),
             name: String::new(),
             source: source.to_owned(),
-            grid: grid?,
-            boundary,
+            conditions: conditions?,
             surfaces: surfaces?,
             bodies: pair.bodies,
             layers: pair.layers,
-            waves: pair.waves,
             thickness: body::thickness(&self.body),
-            creep: pair.creep,
-            thermal: pair.thermal,
             temperatures: points.map(<[_]>::to_vec),
             materials: pair.reports,
             findings: pair.findings,
             files,
-            hardness: pair.hardness,
-            hardness_map: hardness.map,
-            loading: prescription.programme,
-            times,
-            include,
-            scheme,
-            plasticity: self.solver.plasticity,
-            solver: self.solver.options(),
             output: output?,
             stress,
             leakage,
             motion,
             usual_rows: swept.unwrap_or(usual),
             rows: swept.or(pair.plan.exact.then_some(pair.plan.instants.len())),
-            history: prescription.at.key,
+        };
+        let or = match case.conditions.scheme {
+            Scheme::Direct => {
+                " or steps, or scheme = \"linear\": the direct scheme keeps all pressure fields"
+            }
+            Scheme::Linear | Scheme::Constant => "",
+        };
+        self.domain.fits(&at("domain"), case.conditions.grid.cells(), case.memory_of_run(), or)?;
+        Some(case)
+    }
+
+    /// The simulation as far as the sections give it: without gap and motion.
+    fn conditions(
+        &self,
+        grid: Option<Grid>,
+        pair: Option<&Pair>,
+        programme: Option<&Programme>,
+        times: Option<&TimeGrid>,
+        hardness: Option<&Hardness>,
+        include: Vec<f64>,
+    ) -> Option<Simulation> {
+        let pair = pair?;
+        Some(Simulation {
+            boundary: self.domain.boundary,
+            kernel: pair.kernel(),
+            layers: pair.waves.clone(),
+            creep: pair.creep.clone(),
+            thermal: pair.thermal.clone(),
+            hardness: pair.hardness,
+            hardness_map: hardness?.map.clone(),
+            plasticity: self.solver.plasticity,
+            loading: programme?.clone(),
+            times: times?.clone(),
+            include,
+            scheme: self.time.as_ref().map(|times| times.scheme).unwrap_or_default(),
+            solver: self.solver.options(),
+            quantities: self.output.quantities(),
+            ..Simulation::new(grid?, Array2::default((0, 0)))
         })
     }
 
@@ -267,33 +268,6 @@ impl Document {
         (grid, line, parts)
     }
 
-    /// Refuses what steady states of motion do not have.
-    fn steady(&self, checks: &Checks<'_>) {
-        let refuse = |given: bool, key: &str, message: &str, expected: &str, help: &str| {
-            if given {
-                checks.at(key).fault::<()>(message, expected, help);
-            }
-        };
-        refuse(
-            self.time.is_some(),
-            "time",
-            "steady states of motion have no times, but the case has a [time]",
-            "[motion.steady] or [time]",
-            "leave [time] out",
-        );
-        for (key, given) in [("stress", self.stress.is_some()), ("leakage", self.leakage.is_some())] {
-            let message = format!("[{key}] is not computed of steady states of motion");
-            refuse(given, key, &message, "a motion in time", "leave the section out");
-        }
-        refuse(
-            self.output.times.is_some(),
-            "output.times",
-            "steady states of motion have no times",
-            "`every`",
-            "store the fields of every n-th velocity",
-        );
-    }
-
     /// The hardness of the cells over all bodies that give it.
     fn hardness(&self, checks: &Checks<'_>, grid: Option<&Grid>) -> Option<Hardness> {
         let of_body = |(n, body): (usize, &Body)| {
@@ -310,36 +284,5 @@ impl Document {
         let all: Vec<_> = self.body.iter().enumerate().flat_map(of_body).flatten().collect();
         let add = |hardness: Hardness, found: Option<_>| found.map(|(map, file)| hardness.and(map, file));
         all.into_iter().try_fold(Hardness::default(), add)
-    }
-
-    /// Refuses what is asked for and not solved for this pair; `capped` where there is a hardness.
-    fn possible(&self, checks: &Checks<'_>, grid: Option<&Grid>, pair: &Pair, scheme: Scheme, capped: bool) {
-        let deep = pair.layers.as_ref().is_none_or(|layers| layers.depth().is_none());
-        let free = self.domain.boundary == Boundary::Free;
-        let conditions = Conditions {
-            scheme,
-            up_to_a_constant: free && deep && grid.is_some_and(Grid::is_line),
-            waves: pair.waves.is_some(),
-            moves: self.motion.is_some(),
-        };
-        let plasticity = self.solver.plasticity;
-        self.solver.possible(&checks.at("solver"), capped);
-        self.output.possible(&checks.at("output"), plasticity, &conditions, capped);
-        if pair.waves.is_some() {
-            let fault = |section: &str, what: &str, expected: &str| {
-                let message = format!("{what}: this is not solved for layers that creep differently");
-                let help = "omit it, or give all layers and bodies the same relative creep";
-                checks.at(section).fault::<()>(message, expected, help);
-            };
-            if scheme != Scheme::Linear {
-                fault("time", "the scheme is not \"linear\"", "scheme = \"linear\"");
-            }
-            if self.motion.is_some() {
-                fault("motion", "the contact moves", "a contact that stays in its place");
-            }
-        }
-        if let Some(grid) = grid {
-            pair.resolved(&checks.at("body"), &self.body, grid, self.domain.boundary);
-        }
     }
 }

@@ -5,7 +5,7 @@ use asperity::material::{Body as Solid, Lateral};
 
 use super::hardness::HardnessFile;
 use super::keys::*;
-use super::material::Material;
+use super::material::{Material, Sample};
 
 /// Most layers of a body.
 const MOST: usize = 100;
@@ -84,7 +84,8 @@ pub struct Part<'a> {
     pub at: Place<'a>,
     /// How messages call it.
     pub name: String,
-    pub material: &'a Material,
+    /// Its material; `None` where that has a fault.
+    pub sample: Option<Sample>,
     pub poisson: Option<Number<Poisson>>,
     pub bulk_modulus: Option<Pressure<Positive>>,
     /// Cut-off of the pressure on it [Pa], at the surface.
@@ -92,7 +93,7 @@ pub struct Part<'a> {
 }
 
 /// The materials of all bodies, each from the surface down.
-pub fn parts<'a>(list: &Place<'a>, bodies: &'a [Body]) -> Vec<Part<'a>> {
+pub fn parts<'a>(list: &Place<'a>, bodies: &[Body]) -> Vec<Part<'a>> {
     bodies.iter().enumerate().flat_map(|(n, body)| body.parts(&list.item(n), n).unwrap_or_default()).collect()
 }
 
@@ -102,7 +103,7 @@ pub fn thickness(bodies: &[Body]) -> Option<f64> {
 }
 
 impl Body {
-    fn parts<'a>(&'a self, at: &Place<'a>, n: usize) -> Option<Vec<Part<'a>>> {
+    fn parts<'a>(&self, at: &Place<'a>, n: usize) -> Option<Vec<Part<'a>>> {
         let name = self.name.clone().unwrap_or_else(|| format!("body {}", n + 1));
         if self.layer.len() > MOST {
             let message = format!("the body has {} layers, but may have {MOST}", self.layer.len());
@@ -112,25 +113,19 @@ impl Body {
             let message = "belongs to a body without [[body.layer]]: each layer has its own";
             at.without(&["thickness"], message, "no such key", "delete the line");
         }
+        let part = |at: Place<'a>, name: String, material: &Material, poisson, bulk_modulus| {
+            let sample = material.sample(&at.key("material"));
+            Part { body: n, at, name, sample, poisson, bulk_modulus, hardness: None }
+        };
         let mut parts = Vec::new();
         for (k, layer) in self.layer.iter().enumerate() {
-            let Layer { poisson, bulk_modulus, ref material, .. } = *layer;
             let (at, name) = (at.key("layer").item(k), format!("{name}, layer {}", k + 1));
-            parts.push(Part { body: n, at, name, material, poisson, bulk_modulus, hardness: None });
+            parts.push(part(at, name, &layer.material, layer.poisson, layer.bulk_modulus));
         }
         match (self.base, &self.material) {
             (BodyBase::HalfSpace, Some(material)) => {
                 let name = if self.layer.is_empty() { name } else { format!("{name}, base") };
-                let Body { poisson, bulk_modulus, .. } = *self;
-                parts.push(Part {
-                    body: n,
-                    at: at.clone(),
-                    name,
-                    material,
-                    poisson,
-                    bulk_modulus,
-                    hardness: None,
-                });
+                parts.push(part(at.clone(), name, material, self.poisson, self.bulk_modulus));
             }
             (BodyBase::HalfSpace, None) => at.missing("material", "").unwrap_or_default(),
             (BodyBase::Rigid, _) => self.rigid(at),

@@ -30,17 +30,15 @@ impl Case {
     /// Solves the case on a coarse grid. `None` where that cannot be solved.
     pub fn cost(&self) -> Option<CostEstimate> {
         let parts = self.parts().ok()?;
-        let every = self.grid.cells()[0].max(self.grid.cells()[1]).div_ceil(match self.grid.is_line() {
+        let grid = &self.conditions.grid;
+        let every = grid.cells()[0].max(grid.cells()[1]).div_ceil(match grid.is_line() {
             true => CELLS_OF_LINE,
             false => CELLS,
         });
-        let coarse = Case {
-            grid: self.grid.with_cells(self.grid.cells().map(|n| n.div_ceil(every))).ok()?,
-            hardness_map: self.hardness_map.as_ref().map(|map| sampled(map, every)),
-            ..self.clone()
-        };
-        let parts: Option<Vec<Part>> =
-            parts.into_iter().map(|part| sample(part, &self.grid, every)).collect();
+        let mut coarse = self.clone();
+        coarse.conditions.grid = grid.with_cells(grid.cells().map(|n| n.div_ceil(every))).ok()?;
+        coarse.conditions.hardness_map = self.conditions.hardness_map.as_ref().map(|map| sampled(map, every));
+        let parts: Option<Vec<Part>> = parts.into_iter().map(|part| sample(part, grid, every)).collect();
         let parts = parts?;
         let simulation = coarse.simulation_of(&parts).ok()?;
         let mut found = CostEstimate { rows: 0, convolutions: 0 };
@@ -56,9 +54,9 @@ impl Case {
                 break;
             }
         }
-        let share = if drive.finished() { 1.0 } else { reached / self.times.end() };
+        let share = if drive.finished() { 1.0 } else { reached / self.conditions.times.end() };
         let found = found.completed(share, self.rows);
-        Some(match self.solver.method {
+        Some(match self.conditions.solver.method {
             Method::ProjectedCg => found,
             Method::PolonskyKeer => found.refined(every),
         })
@@ -84,13 +82,10 @@ impl CostEstimate {
 
 /// A part on the coarse grid.
 fn sample(part: Part, fine: &Grid, every: usize) -> Option<Part> {
-    let heights = match part {
-        Part::Shape { .. } => return Some(part),
-        Part::SelfAffine(surface) => surface.heights(fine).ok()?,
-        Part::Synthesis(surface) => surface.heights(fine).ok()?,
-        Part::Heights { heights, .. } => heights,
-    };
-    Some(Part::Heights { name: "heights".into(), heights: sampled(&heights, every) })
+    match part.heights(fine).ok()? {
+        None => Some(part),
+        Some(heights) => Some(Part::Heights { name: "heights".into(), heights: sampled(&heights, every) }),
+    }
 }
 
 /// One of so many values along each axis.

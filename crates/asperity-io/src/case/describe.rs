@@ -5,7 +5,6 @@ use asperity::layer::{Base, Interface, Layered, Stack};
 use asperity::material::{Body, Creep, Shift, VerticalShift};
 use asperity::quantities::Quantity;
 use asperity::sliding::Steady;
-use asperity::surface::Part;
 use asperity::{Axis, Course, History, Simulation};
 use serde::Serialize;
 
@@ -99,7 +98,7 @@ pub struct Description {
     pub retardation_times: Vec<f64>,
     /// Where the materials come from.
     pub materials: Vec<MaterialReport>,
-    /// What should be known before the numbers are believed.
+    /// Warnings about the numbers.
     pub warnings: Vec<String>,
     /// Lowest and highest temperature of the run \[K\], where it has any.
     pub temperature: Option<[f64; 2]>,
@@ -115,7 +114,7 @@ pub struct Description {
     /// Rows of the result: the state at 0+, one per step, one more per jump; absent where they are found as the run
     /// goes (adaptive steps, events).
     pub rows: Option<usize>,
-    /// About as many.
+    /// Expected number of rows.
     pub usual_rows: usize,
     /// Stages of the load.
     pub stages: usize,
@@ -143,7 +142,7 @@ pub struct Sine {
     pub frequency: f64,
 }
 
-/// How layers yield: more than the half-space of the material at the surface, or less.
+/// How layers yield, compared with a half-space of the material at the surface.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LayerReport {
     /// The layers of each body in words.
@@ -160,7 +159,7 @@ pub struct LayerReport {
     pub waves: [WaveReport; 2],
 }
 
-/// The half-space that yields as much as the bodies under a wave of pressure.
+/// The moduli of the half-space that a wave of pressure deflects as much as the bodies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WaveReport {
     /// Length of the wave \[m\].
@@ -191,40 +190,42 @@ const STORED: usize = 4;
 
 impl Case {
     /// The memory that a run takes at its peak \[bytes\]: what its plans say, and what storing takes.
-    fn memory_of_run(&self) -> u64 {
-        let mut quantities = self.output.quantities.clone();
+    pub(super) fn memory_of_run(&self) -> u64 {
+        let (conditions, cells) = (&self.conditions, self.conditions.grid.len());
+        let mut quantities = conditions.quantities.clone();
         if self.output.all_quantities {
             quantities.list = Quantity::at_rest().collect();
         }
-        let simulation = Simulation { quantities, ..self.with_gap(ndarray::Array2::default((0, 0))) };
+        let simulation = Simulation { quantities, ..conditions.clone() };
         let copies = if self.output.fields.is_empty() { KEPT } else { STORED };
-        let stress = self.stress.as_ref().map_or(0, |plan| plan.bytes(&self.grid, self.boundary));
+        let stress = self.stress.as_ref().map_or(0, |plan| plan.bytes(&conditions.grid, conditions.boundary));
         let own = match &self.motion {
             Some(motion) if self.axis() == Axis::Velocity => Steady::bytes(&simulation, motion.direction),
             _ => simulation.bytes(),
         };
-        let run = own + copies * 8 * self.grid.len() + stress;
+        let run = own + copies * 8 * cells + stress;
         // The run has given its memory back when the leakage is computed.
-        let leak = self.leakage.as_ref().map_or(0, |leak| leak.bytes(self.grid.len()) as usize);
+        let leak = self.leakage.as_ref().map_or(0, |leak| leak.bytes(cells) as usize);
         let rows = self.usual_rows.saturating_mul(ROW);
         (run.max(leak).saturating_add(rows).saturating_add(PROGRAM)) as u64
     }
 
     /// What the case will do.
     pub fn describe(&self) -> Description {
+        let Simulation { grid, boundary, hardness, hardness_map, .. } = &self.conditions;
         let stress = self.stress.as_ref().map(|plan| {
             let instants = plan.times.as_ref().map(Vec::len).or(self.stored_rows());
-            plan.describe(&self.grid, self.boundary, instants)
+            plan.describe(grid, *boundary, instants)
         });
         let stored_rows = self.stored_rows();
         let creep = self.reference_creep();
         let field_bytes: u64 = self.output.fields.iter().map(|field| field.bytes()).sum();
         Description {
             title: self.title.clone(),
-            cells: self.grid.cells()[..self.grid.dimensions()].to_vec(),
-            size: self.grid.extents().to_vec(),
-            spacing: self.grid.cell_sides().collect(),
-            boundary: choice::word(&self.boundary),
+            cells: grid.cells()[..grid.dimensions()].to_vec(),
+            size: grid.extents().to_vec(),
+            spacing: grid.cell_sides().collect(),
+            boundary: choice::word(boundary),
             surfaces: self.surfaces.iter().map(name).collect(),
             preparation: self.surfaces.iter().filter_map(preparation).collect(),
             bodies: self.bodies.iter().map(|body| body.name.clone()).collect(),
@@ -236,36 +237,36 @@ impl Case {
             materials: self.materials.clone(),
             warnings: self.findings.iter().map(|finding| finding.text.clone()).collect(),
             temperature: self.temperature_range(),
-            hardness: self.hardness.is_finite().then_some(self.hardness),
-            hardness_of_cells: self.hardness_map.as_ref().map(|map| {
+            hardness: hardness.is_finite().then_some(*hardness),
+            hardness_of_cells: hardness_map.as_ref().map(|map| {
                 let pick = |f: fn(f64, f64) -> f64| map.iter().copied().reduce(f).unwrap_or(f64::NAN);
-                [pick(f64::min), pick(f64::max)].map(|hardness| hardness.min(self.hardness))
+                [pick(f64::min), pick(f64::max)].map(|of_cell| of_cell.min(*hardness))
             }),
             sines: self.sines(),
-            end: self.times.end(),
+            end: self.conditions.times.end(),
             rows: self.rows,
             usual_rows: self.usual_rows,
-            stages: self.loading.stages.len(),
-            scheme: choice::word(&self.scheme),
+            stages: self.conditions.loading.stages.len(),
+            scheme: choice::word(&self.conditions.scheme),
             stored_rows,
             fields: self.output.fields.iter().map(|field| field.name()).collect(),
             memory_bytes: self.memory_of_run(),
             // initial_gap is always stored
             result_bytes: stored_rows
-                .map(|stored| (self.grid.len() as u64).saturating_mul(8 + stored as u64 * field_bytes)),
+                .map(|stored| (grid.len() as u64).saturating_mul(8 + stored as u64 * field_bytes)),
             stress,
         }
     }
 
     fn layer_report(&self, layers: &Layered, creep: &Creep) -> LayerReport {
-        let longest = self.grid.longest_side();
-        let shortest = 2.0 * self.grid.cell_sides().fold(0.0, f64::max);
+        let longest = self.conditions.grid.longest_side();
+        let shortest = 2.0 * self.conditions.grid.cell_sides().fold(0.0, f64::max);
         let wave = |length| self.wave_report(layers, creep, length);
         LayerReport {
             bodies: layers.stacks().iter().map(words_of).collect(),
-            separable: self.waves.is_none(),
-            misfit: self.waves.as_ref().map(|waves| waves.misfit()),
-            nodes: self.waves.as_ref().map(|waves| waves.nodes()),
+            separable: self.conditions.layers.is_none(),
+            misfit: self.conditions.layers.as_ref().map(|waves| waves.misfit()),
+            nodes: self.conditions.layers.as_ref().map(|waves| waves.nodes()),
             waves: [longest, shortest].map(wave),
         }
     }
@@ -277,7 +278,7 @@ impl Case {
 
     fn wave_report(&self, layers: &Layered, creep: &Creep, length: f64) -> WaveReport {
         let q = std::f64::consts::TAU / length;
-        let own = self.waves.as_ref().and_then(|waves| waves.creep(q).ok());
+        let own = self.conditions.layers.as_ref().and_then(|waves| waves.creep(q).ok());
         // C(q) of a half-space of unit contact modulus is 2/q.
         let of_wave = own.map(|own| own.scaled(0.5 * q));
         let of_wave = of_wave.unwrap_or_else(|| creep.scaled(0.5 * q * layers.symbol(q, 0.0)));
@@ -290,11 +291,11 @@ impl Case {
 
     /// C of the pair, of bodies whose temperature changes at their reference temperature.
     fn reference_creep(&self) -> Creep {
-        self.thermal.iter().fold(self.creep.clone(), |sum, body| sum.sum(&body.creep))
+        self.conditions.thermal.iter().fold(self.conditions.creep.clone(), |sum, body| sum.sum(&body.creep))
     }
 
     fn sines(&self) -> Vec<Sine> {
-        let stages = self.loading.stages.iter().enumerate();
+        let stages = self.conditions.loading.stages.iter().enumerate();
         let sine = |(stage, course): (usize, &asperity::Stage)| match course.course {
             Course::Given(History::Sine { frequency, .. }) => Some(Sine { stage, frequency }),
             _ => None,
@@ -312,7 +313,7 @@ impl Case {
             (Rows::Every(n), Some(rows)) => Some((1 + (rows - 1).div_ceil((*n).max(1))).min(rows)),
             (Rows::Every(_), None) => None,
             (Rows::At(times), rows) => {
-                let inner = times.iter().filter(|t| **t > 0.0 && **t < self.times.end()).count();
+                let inner = times.iter().filter(|t| **t > 0.0 && **t < self.conditions.times.end()).count();
                 Some(rows.map_or(inner + 2, |rows| rows.min(inner + 2)))
             }
         }
@@ -343,8 +344,6 @@ fn preparation(surface: &Surface) -> Option<Preparation> {
 fn name(surface: &Surface) -> String {
     match surface {
         Surface::File(file) => file.path.display().to_string(),
-        Surface::Part(Part::Shape { shape, .. }) => shape.name().to_owned(),
-        Surface::Part(Part::SelfAffine(_) | Part::Synthesis(_)) => "self-affine".to_owned(),
-        Surface::Part(Part::Heights { name, .. }) => name.clone(),
+        Surface::Part(part) => part.name().to_owned(),
     }
 }

@@ -90,37 +90,25 @@ impl Document {
     pub fn read(text: &Text<'_>) -> Read<Document> {
         let mut reader = Reader::new(text);
         reader.only(SECTIONS);
-        let title = reader.optional("title");
-        let domain = reader.required("domain");
-        let surface = reader.list("surface");
-        let body = reader.list("body");
-        let load = reader.required("load");
-        let motion = reader.optional("motion");
-        // Steady states of motion have no times.
-        let time = match text.has("motion.steady") {
-            true => reader.optional("time"),
-            false => reader.required("time"),
+        let document = Document {
+            title: reader.optional("title"),
+            domain: reader.required("domain").unwrap_or_default(),
+            surface: reader.list("surface"),
+            body: reader.list("body"),
+            load: reader.required("load").unwrap_or_default(),
+            motion: reader.optional("motion"),
+            // Steady states of motion have no times.
+            time: match text.has("motion.steady") {
+                true => reader.optional("time"),
+                false => reader.required("time"),
+            },
+            temperature: reader.optional("temperature"),
+            leakage: reader.optional("leakage"),
+            solver: reader.optional("solver").unwrap_or_default(),
+            output: reader.optional("output").unwrap_or_default(),
+            stress: reader.optional("stress"),
         };
-        let temperature = reader.optional("temperature");
-        let leakage = reader.optional("leakage");
-        let solver = reader.optional("solver").unwrap_or_default();
-        let output = reader.optional("output").unwrap_or_default();
-        let stress = reader.optional("stress");
-        reader.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
-        reader.finish(domain.zip(load)).map(|(domain, load)| Document {
-            title,
-            domain,
-            surface,
-            body,
-            load,
-            time,
-            temperature,
-            motion,
-            leakage,
-            solver,
-            output,
-            stress,
-        })
+        reader.finish(Some(document))
     }
 }
 

@@ -1,16 +1,19 @@
 //! `[domain]`: the grid, and whether the machine can hold the problem.
 
-use asperity::{Boundary, Grid, Scheme};
+use asperity::{Boundary, Grid};
 
 use super::keys::*;
 use super::list::wrong_number;
 use super::measured::Measured;
-use super::memory;
-use crate::resources::available_memory;
+use crate::Code;
+use crate::resources::check_memory;
+
+/// Bytes per cell of the smallest run: transform, solver, fields.
+const BYTES_PER_CELL: u64 = 200;
 
 /// A rectangle of equal cells; or a line of cells, with one value in `cells` and `size`: a line contact in plane strain, in which
 /// nothing changes along y.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
     /// Number of cells along x and y; any numbers, also not square and not powers of two. One number for a line contact.
@@ -27,7 +30,7 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// The grid. What the domain does not say is that of the measured surface, where there is exactly one; `files` are the
+    /// The grid. What the domain leaves out is taken from the measured surface, if there is exactly one; `files` are the
     /// measured surfaces, `None` for one whose keys are wrong.
     pub fn grid(&self, at: &Place<'_>, files: &[Option<&Measured>]) -> Option<Grid> {
         if let (Some(cells), Some(size)) = (&self.cells, &self.size)
@@ -38,18 +41,20 @@ impl Domain {
         let (cells, line) = (self.cells(), self.is_line());
         // Of a line, the length along y that its grid has.
         let size = self.size.map(|size| size.map(1.0, Length::get));
-        // A count that no machine can hold is refused by `fits`, with its numbers.
-        if cells.is_some_and(|cells| memory::estimate(cells, 0) > present()) {
-            return None;
+        // Before anything of that size is made.
+        if let Some([nx, ny]) = cells {
+            self.fits(
+                at,
+                [nx, ny],
+                (nx as u64).saturating_mul(ny as u64).saturating_mul(BYTES_PER_CELL),
+                "",
+            )?;
         }
         let (cells, size, line) = match (cells, size, files) {
             (Some(cells), Some(size), _) => (cells, size, line == Some(true)),
             (_, _, [one]) => {
                 let file = (*one)?;
-                let prepared = match file.prepared(cells) {
-                    Ok(prepared) => prepared,
-                    Err(reason) => return at.sibling(&file.key).fault(reason, "", ""),
-                };
+                let prepared = at.sibling(&file.key).data(file.prepared(cells), "a surface with heights")?;
                 let of_file = prepared.surface.grid();
                 if line.is_some_and(|line| line != of_file.is_line()) {
                     let given = if self.size.is_some() { "size" } else { "cells" };
@@ -90,34 +95,20 @@ impl Domain {
         if self.cells.is_some() { at.key("cells") } else { at.clone() }
     }
 
-    /// Refuses a problem that takes more memory than the machine has: its bodies remember `fields` fields, and the solver keeps
-    /// `extra` ones.
-    pub fn fits(&self, at: &Place<'_>, grid: Option<&Grid>, fields: usize, extra: usize, scheme: Scheme) {
-        let Some(cells) = self.cells().or(grid.map(Grid::cells)) else { return };
-        let (needed, present) = (memory::estimate(cells, fields.saturating_add(extra)), present());
-        if needed <= present {
-            return;
-        }
-        let [nx, ny] = cells;
+    /// Refuses a problem on these cells that takes more memory than the machine has.
+    pub fn fits(&self, at: &Place<'_>, [nx, ny]: [usize; 2], bytes: u64, or: &str) -> Option<()> {
         let count = if self.is_line() == Some(true) { nx.to_string() } else { format!("{nx} x {ny}") };
-        let (detail, help) = match (scheme, fields) {
-            (Scheme::Direct, _) => (
-                format!(" with the {fields} pressure fields that the direct scheme keeps"),
-                "take fewer cells or steps, or scheme = \"linear\"",
-            ),
-            (_, 0) => (String::new(), "take fewer cells"),
-            _ => (format!(" with {fields} retarded terms"), "take fewer cells"),
-        };
-        let [needed, present] = [needed, present].map(memory::words);
-        self.place_of_cells(at).fault::<()>(
-            format!("{count} cells{detail} need about {needed}, but this machine has {present} available"),
-            "a problem that fits into memory",
-            help,
-        );
+        match check_memory(&format!("{count} cells"), bytes) {
+            Ok(()) => Some(()),
+            Err(message) => {
+                let help = format!("take fewer cells{or}");
+                self.place_of_cells(at).refuse(
+                    Code::TooLarge,
+                    message,
+                    "a problem that fits into memory",
+                    &help,
+                )
+            }
+        }
     }
-}
-
-/// Memory that the run may take.
-fn present() -> u128 {
-    available_memory().into()
 }

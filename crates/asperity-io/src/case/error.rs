@@ -3,23 +3,27 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::Code;
+
 /// One fault of a case file.
 ///
 /// `message` is a sentence by itself; the other fields serve programs and renderers that point into the
 /// source (the `span` counts bytes of [`CaseErrors::source`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseError {
+    /// What kind of fault it is.
+    pub code: Code,
     /// Path of the key ("body\[0\].poisson"); empty for the file as a whole.
     pub key: String,
     /// Where in the source.
     pub span: Option<Range<usize>>,
-    /// Line of the source, counted from 1.
+    /// Line of the file, counted from 1: of the source without the lines that overrides added.
     pub line: Option<usize>,
-    /// The value as written, where there is one.
+    /// The value as written, if there is one.
     pub value: Option<String>,
     /// What was expected there.
     pub expected: String,
-    /// What to do about it, where more can be said.
+    /// What to do about it, if more can be said.
     pub help: Option<String>,
     /// The fault in one sentence.
     pub message: String,
@@ -65,8 +69,15 @@ impl std::error::Error for CaseErrors {}
 
 impl CaseErrors {
     /// Errors that concern no place in the text: `message`, and what to do.
-    pub(crate) fn without_place(name: &str, message: String, expected: &str, help: Option<String>) -> Self {
+    pub(crate) fn without_place(
+        code: Code,
+        name: &str,
+        message: String,
+        expected: &str,
+        help: Option<String>,
+    ) -> Self {
         let error = CaseError {
+            code,
             key: String::new(),
             span: None,
             line: None,

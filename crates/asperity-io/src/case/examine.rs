@@ -19,12 +19,7 @@ pub struct Examination {
     /// The inputs that a slip would hide in.
     pub inputs: Inputs,
     /// What was found.
-    #[serde(serialize_with = "as_list")]
     pub findings: Vec<Finding>,
-}
-
-fn as_list<S: serde::Serializer>(findings: &[Finding], serializer: S) -> Result<S::Ok, S::Error> {
-    crate::finding::list(findings).serialize(serializer)
 }
 
 /// Inputs in SI, and the contact that they lead one to expect.
@@ -109,7 +104,7 @@ impl Case {
 
     /// Whether the expected contact is too wide for a body on a free domain.
     fn thin(&self, expected: Option<&Expected>) -> Option<Finding> {
-        match (expected?.contact?, self.boundary) {
+        match (expected?.contact?, self.conditions.boundary) {
             (Contact::Round([_, radius]), Boundary::Free) => {
                 thin_body("The expected contact", radius, self.thickness?)
             }
@@ -132,7 +127,7 @@ impl Case {
             })
         };
         let mut inputs = Inputs {
-            surfaces: parts.iter().map(|part| surface(&self.grid, part)).collect(),
+            surfaces: parts.iter().map(|part| surface(&self.conditions.grid, part)).collect(),
             moduli: self.bodies.iter().filter_map(relaxed).collect(),
             ..Inputs::default()
         };
@@ -165,34 +160,26 @@ fn surface(grid: &asperity::Grid, part: &Part) -> SurfaceInput {
             let wave = |(i, j): (usize, usize)| shape.gap(grid.x(i) - x0, grid.y(j) - y0);
             Some(ndarray::Array2::from_shape_fn(grid.shape(), wave))
         }
-        Part::Shape { .. } => None,
-        Part::SelfAffine(surface) => surface.heights(grid).ok(),
-        Part::Synthesis(surface) => surface.heights(grid).ok(),
-        Part::Heights { heights, .. } => Some(heights.clone()),
+        part => part.heights(grid).ok().flatten(),
     };
     let rough = heights.and_then(|heights| Surface::new(*grid, heights).ok());
-    let (name, radius, slope) = match part {
-        Part::Shape { shape, .. } => {
-            let radius = match shape {
-                Shape::FlatPunch(Punch::Circle { radius }) if grid.is_line() => {
-                    Some([*radius, f64::INFINITY])
-                }
-                Shape::Sphere { radius } | Shape::FlatPunch(Punch::Circle { radius }) => Some([*radius; 2]),
-                Shape::Cylinder { radius } => Some([*radius, f64::INFINITY]),
-                Shape::Ellipsoid { radius_x, radius_y } => Some([*radius_x, *radius_y]),
-                _ => None,
-            };
-            let slope = match shape {
-                Shape::Cone { slope } | Shape::Wedge { slope } => Some(*slope),
-                _ => None,
-            };
-            (shape.name().to_owned(), radius, slope)
+    let (radius, slope) = match part {
+        Part::Shape { shape: Shape::FlatPunch(Punch::Circle { radius }), .. } if grid.is_line() => {
+            (Some([*radius, f64::INFINITY]), None)
         }
-        Part::SelfAffine(_) | Part::Synthesis(_) => ("self-affine".to_owned(), None, None),
-        Part::Heights { name, .. } => (name.clone(), None, None),
+        Part::Shape { shape, .. } => match shape {
+            Shape::Sphere { radius } | Shape::FlatPunch(Punch::Circle { radius }) => {
+                (Some([*radius; 2]), None)
+            }
+            Shape::Cylinder { radius } => (Some([*radius, f64::INFINITY]), None),
+            Shape::Ellipsoid { radius_x, radius_y } => (Some([*radius_x, *radius_y]), None),
+            Shape::Cone { slope } | Shape::Wedge { slope } => (None, Some(*slope)),
+            _ => (None, None),
+        },
+        _ => (None, None),
     };
     SurfaceInput {
-        name,
+        name: part.name().to_owned(),
         radius,
         slope,
         sq: rough.as_ref().and_then(|surface| HeightStatistics::of(surface).ok()).map(|heights| heights.sq),

@@ -4,14 +4,14 @@ use std::path::Path;
 
 use asperity::Grid;
 use asperity::surface::Part;
-use toml::Value;
+use toml::{Table, Value};
 
 use super::document;
-use super::error::CaseError;
-use super::given;
+use super::error::{CaseError, CaseErrors};
+use super::given::{self, Arrays};
 use super::place::Checks;
+use super::schema;
 use super::surface::Kind;
-use super::text::Text;
 use crate::preparation::Step;
 use crate::stress::{StressBody, StressPlan};
 
@@ -48,48 +48,40 @@ pub fn step(words: &str) -> Result<Step, String> {
     let words = words.trim();
     let end = words.find(|c: char| c.is_whitespace() || c == '=').unwrap_or(words.len());
     let (name, rest) = words.split_at(end);
-    let mut table = toml::Table::new();
-    table.insert("op".into(), Value::String(name.to_owned()));
     let rest = match (rest.strip_prefix('='), FIRST_KEYS.iter().find(|(step, _)| *step == name)) {
         (Some(value), Some((_, key))) => format!("{key}={value}"),
-        (Some(_), None) => {
-            // What is wrong with the name comes first.
-            return Err(match step(name) {
-                Err(error) if error.contains("must be one of") => error,
-                _ => format!("\"{words}\": write the keys of {name} by name, KEY=VALUE"),
-            });
+        (Some(_), None) if schema::choices("surface[0].process[0].op").iter().any(|known| known == name) => {
+            return Err(format!("\"{words}\": write the keys of {name} by name, KEY=VALUE"));
         }
+        // What is wrong with the name comes first.
+        (Some(_), None) => String::new(),
         (None, _) => rest.to_owned(),
     };
-    for (key, value) in keys(&rest)? {
-        table.insert(key, value);
-    }
-    let mut surface = toml::Table::new();
-    surface.insert("kind".into(), Value::String("file".into()));
-    surface.insert("path".into(), Value::String(String::new()));
-    surface.insert("process".into(), Value::Array(vec![Value::Table(table)]));
-    let document = written(vec![("surface", Value::Array(vec![Value::Table(surface)]))]);
+    let mut operation = Table::from_iter(keys(&rest)?);
+    operation.insert("op".into(), name.into());
+    let mut surface = Table::from_iter([("kind".into(), "file".into()), ("path".into(), "".into())]);
+    surface.insert("process".into(), Value::Array(vec![operation.into()]));
+    let document = Table::from_iter([("surface".into(), Value::Array(vec![surface.into()]))]);
 
     let place = "surface[0].process[0]";
-    let told = |errors: Vec<CaseError>| {
-        let error = errors.into_iter().next();
-        let mut message = error.as_ref().map_or_else(|| "not understood".into(), |e| e.message.clone());
-        message = message.replace(&format!("{place}."), "").replace(&format!("{place}: "), "");
-        message = message.replace(place, name);
-        match error.and_then(|e| e.help) {
-            Some(help) => format!("\"{words}\": {message}; {help}"),
-            None => format!("\"{words}\": {message}"),
-        }
-    };
-    let text = Text::parse(&document).map_err(told)?;
-    let surfaces = document::surfaces(&text).map_err(told)?;
-    let checks = Checks::new(&text, Path::new(""));
-    let process = surfaces.iter().find_map(|surface| match &surface.kind {
-        Kind::File(file) => file.process.as_ref()?.first(),
-        _ => None,
+    let read = given::from_keys(&document, &Arrays::new(), |text| {
+        let surfaces = document::surfaces(text)?;
+        let checks = Checks::new(text, Path::new(""));
+        let process = surfaces.iter().find_map(|surface| match &surface.kind {
+            Kind::File(file) => file.process.as_ref()?.first(),
+            _ => None,
+        });
+        let step = process.and_then(|operation| operation.step(&checks.at(place)));
+        step.ok_or_else(|| checks.into_errors())
     });
-    let step = process.and_then(|operation| operation.step(&checks.at(place)));
-    step.ok_or_else(|| told(checks.into_errors()))
+    read.map_err(|wrong| {
+        let Some(CaseError { message, help, .. }) = wrong.errors.into_iter().next() else {
+            return words.into();
+        };
+        let message = message.replace(&format!("{place}."), "").replace(&format!("{place}: "), "");
+        let help = help.map_or_else(String::new, |help| format!("; {help}"));
+        format!("\"{words}\": {}{help}", message.replace(place, name))
+    })
 }
 
 /// "KEY=VALUE KEY=VALUE"; a word without "=" belongs to the value before it ("size=50 um").
@@ -108,7 +100,7 @@ fn keys(text: &str) -> Result<Vec<(String, Value)>, String> {
     Ok(keys.into_iter().map(|(key, text)| (key, value(&text))).collect())
 }
 
-/// A value as a case file has it: a number, true, false, a list where there are commas, or else text.
+/// A value as a case file writes it: a number, true, false, a list if there are commas, otherwise text.
 pub(super) fn value(text: &str) -> Value {
     let text = text.trim().trim_start_matches('[').trim_end_matches(']');
     if text.contains(',') {
@@ -123,22 +115,6 @@ pub(super) fn value(text: &str) -> Value {
         "false" => Value::Boolean(false),
         _ => text.parse::<f64>().map_or_else(|_| Value::String(text.to_owned()), Value::Float),
     }
-}
-
-/// A document of these sections.
-fn written(sections: Vec<(&str, Value)>) -> String {
-    sections.into_iter().map(|(key, value)| (key.to_owned(), value)).collect::<toml::Table>().to_string()
-}
-
-/// What is wrong with a key that was given as words.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fault {
-    /// The key as the case file has it, without its table ("rms_gradient", "lay.ratio").
-    pub key: String,
-    /// What is wrong, with the key where the message begins with it taken off.
-    pub message: String,
-    /// What to do, where more can be said.
-    pub help: Option<String>,
 }
 
 /// Synthetic roughness from words: the keys of `[domain]` (`cells`, `size`) and of `kind = "self-affine"`, with
@@ -158,34 +134,27 @@ pub struct Fault {
 ///
 /// # Errors
 /// What is wrong with each key, missing ones included.
-pub fn roughness(keys: &[(&str, &str)]) -> Result<(Grid, Part), Vec<Fault>> {
-    let (mut domain, mut surface) = (toml::Table::new(), toml::Table::new());
-    surface.insert("kind".into(), Value::String("self-affine".into()));
+pub fn roughness(keys: &[(&str, &str)]) -> Result<(Grid, Part), Vec<CaseError>> {
+    let mut domain = Table::new();
+    let mut surface = Table::from_iter([("kind".into(), "self-affine".into())]);
     for (key, text) in keys {
-        let mut given = value(text);
+        let given = value(text);
         match key.split_once('.') {
             None if ["cells", "size"].contains(key) => {
                 // One number for a square.
-                if !given.is_array() {
-                    given = Value::Array(vec![given.clone(), given]);
-                }
-                domain.insert((*key).to_owned(), given);
+                let both = if given.is_array() { given } else { Value::Array(vec![given.clone(), given]) };
+                domain.insert((*key).to_owned(), both);
             }
             None => drop(surface.insert((*key).to_owned(), given)),
             Some((table, inner)) => {
-                let table =
-                    surface.entry(table.to_owned()).or_insert_with(|| Value::Table(toml::Table::new()));
-                if let Some(table) = table.as_table_mut() {
-                    table.insert(inner.to_owned(), given);
-                }
+                let table = surface.entry(table.to_owned()).or_insert_with(|| Table::new().into());
+                table.as_table_mut().map(|table| table.insert(inner.to_owned(), given));
             }
         }
     }
-    let document = toml::Table::from_iter([
-        ("domain".to_owned(), Value::Table(domain)),
-        ("surface".to_owned(), Value::Array(vec![Value::Table(surface)])),
-    ]);
-    given::surface(&document).map_err(|wrong| faults(wrong.errors))
+    let surfaces = Value::Array(vec![surface.into()]);
+    let document = Table::from_iter([("domain".into(), domain.into()), ("surface".into(), surfaces)]);
+    given::surface(&document).map_err(bare)
 }
 
 /// The stress below the surface from words: the keys of `[stress]` but `times`, for a body among these.
@@ -204,39 +173,46 @@ pub fn roughness(keys: &[(&str, &str)]) -> Result<(Grid, Part), Vec<Fault>> {
 ///
 /// # Errors
 /// What is wrong with each key.
-pub fn stress(keys: &[(&str, &str)], grid: &Grid, bodies: &[StressBody]) -> Result<StressPlan, Vec<Fault>> {
-    let mut table = toml::Table::new();
-    for (key, text) in keys {
-        let mut given = value(text);
+pub fn stress(
+    keys: &[(&str, &str)],
+    grid: &Grid,
+    bodies: &[StressBody],
+) -> Result<StressPlan, Vec<CaseError>> {
+    let value = |(key, text): &(&str, &str)| {
+        let given = value(text);
         let is_list = given.is_array() || *text == "auto" || !["depths", "components"].contains(key);
-        if !is_list {
-            given = Value::Array(vec![given]);
+        ((*key).to_owned(), if is_list { given } else { Value::Array(vec![given]) })
+    };
+    let table: Table = keys.iter().map(value).collect();
+    let document = Table::from_iter([("stress".into(), table.into())]);
+    let read = given::from_keys(&document, &Arrays::new(), |text| {
+        let section = document::stress(text)?;
+        let checks = Checks::new(text, Path::new(""));
+        match section.plan(&checks.at("stress"), grid, bodies) {
+            Some(plan) if !checks.any() => Ok(plan),
+            _ => Err(checks.into_errors()),
         }
-        table.insert((*key).to_owned(), given);
-    }
-    let document = written(vec![("stress", Value::Table(table))]);
-    let text = Text::parse(&document).map_err(faults)?;
-    let section = document::stress(&text).map_err(faults)?;
-    let checks = Checks::new(&text, Path::new(""));
-    match section.plan(&checks.at("stress"), grid, bodies) {
-        Some(plan) if !checks.any() => Ok(plan),
-        _ => Err(faults(checks.into_errors())),
-    }
+    });
+    read.map_err(bare)
 }
 
-fn faults(errors: Vec<CaseError>) -> Vec<Fault> {
+/// The errors with keys and messages that do not name the tables of a case, and without advice for a case file.
+fn bare(errors: CaseErrors) -> Vec<CaseError> {
     let bare = |text: &str| {
         let inside = ["surface[0].", "domain.", "surface[0]", "stress."];
         inside.iter().fold(text.to_owned(), |text, table| text.replace(table, ""))
     };
     let fault = |error: CaseError| {
         let message = bare(error.message.strip_prefix(&error.key).unwrap_or(&error.message));
-        let message = message.trim_start_matches([':', ' ']).to_owned();
-        // "add hurst = 0.8" is advice for a case file.
-        let help = error.help.filter(|help| !help.starts_with("add "));
-        Fault { key: bare(&error.key), message, help }
+        CaseError {
+            key: bare(&error.key),
+            message: message.trim_start_matches([':', ' ']).to_owned(),
+            // "add hurst = 0.8" is advice for a case file.
+            help: error.help.filter(|help| !help.starts_with("add ")),
+            ..error
+        }
     };
-    errors.into_iter().map(fault).collect()
+    errors.errors.into_iter().map(fault).collect()
 }
 
 #[cfg(test)]

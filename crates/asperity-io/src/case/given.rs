@@ -5,14 +5,10 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
-use asperity::kernel::{HalfSpace, Kernel};
-use asperity::layer::NonseparableLayers;
-use asperity::material::{Body, Creep};
 use asperity::surface::Part;
 use asperity::time::{Instant, Plan};
-use asperity::{Control, Grid, Scheme};
+use asperity::{Control, Grid};
 use ndarray::Array2;
 use toml::Table;
 
@@ -23,7 +19,8 @@ use super::place::Checks;
 use super::read::Reader;
 use super::shift::Shift;
 use super::text::Text;
-use super::{Case, CaseErrors, MaterialReport, assemble};
+use super::{Case, CaseErrors, Pair, assemble};
+use crate::Code;
 use crate::curve::{ShiftRequest, VerticalRequest};
 
 /// Arrays of shape (nx, ny) by their names.
@@ -61,25 +58,11 @@ impl Case {
     }
 }
 
-/// Bodies without a load.
-pub struct GivenBodies {
-    /// What they consist of: each half-space, layer and base.
-    pub bodies: Vec<Body>,
-    /// How well the material of each is known.
-    pub reports: Vec<MaterialReport>,
-    /// How the pair yields in space.
-    pub kernel: Arc<dyn Kernel>,
-    /// How its waves creep, where waves of different lengths creep differently.
-    pub waves: Option<Arc<NonseparableLayers>>,
-    /// Its contact creep compliance \[1/Pa\], at its temperature where that is constant.
-    pub creep: Creep,
-}
-
 /// The bodies of the keys `body` and, where it is given, `temperature`; fractional models are Prony sums over `window` \[s\].
 ///
 /// # Errors
 /// [`CaseErrors`] with what is wrong.
-pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<GivenBodies, CaseErrors> {
+pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<Pair, CaseErrors> {
     let instant = |[dt, time]: [f64; 2]| Instant {
         time,
         dt,
@@ -89,20 +72,9 @@ pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<GivenBodies, Cas
         stage: 0,
     };
     let plan = Plan { instants: window.into_iter().map(instant).collect(), exact: true };
-    let pair = from_keys(keys, &Arrays::new(), |text| {
+    from_keys(keys, &Arrays::new(), |text| {
         let (bodies, temperature) = document::bodies(text)?;
         assemble::bodies(text, &bodies, temperature.as_ref(), &plan)
-    })?;
-    let kernel: Arc<dyn Kernel> = match pair.layers {
-        Some(layers) => layers,
-        None => Arc::new(HalfSpace),
-    };
-    Ok(GivenBodies {
-        bodies: pair.bodies,
-        reports: pair.reports,
-        kernel,
-        waves: pair.waves,
-        creep: pair.creep,
     })
 }
 
@@ -115,7 +87,6 @@ pub fn surface(keys: &Table) -> Result<(Grid, Part), CaseErrors> {
         let (domain, surfaces) = document::roughness(text)?;
         let checks = Checks::new(text, Path::new(""));
         let grid = domain.grid(&checks.at("domain"), &[]);
-        domain.fits(&checks.at("domain"), grid.as_ref(), 0, 0, Scheme::Linear);
         let line = grid.as_ref().is_some_and(Grid::is_line);
         let place = checks.at("surface").item(0);
         let part = surfaces.first().and_then(|surface| surface.part(&place, grid.as_ref(), line));
@@ -141,14 +112,14 @@ pub fn shift(keys: Table) -> Result<(ShiftRequest, VerticalRequest), CaseErrors>
 }
 
 /// What `make` makes of these keys as a text.
-fn from_keys<T>(
+pub(super) fn from_keys<T>(
     keys: &Table,
     arrays: &Arrays,
     make: impl FnOnce(&Text<'_>) -> Result<T, Vec<CaseError>>,
 ) -> Result<T, CaseErrors> {
     let name = "case";
     let source = toml::to_string(keys).map_err(|error| {
-        CaseErrors::without_place(name, error.to_string(), "keys and values of a case file", None)
+        CaseErrors::without_place(Code::Data, name, error.to_string(), "keys and values of a case file", None)
     })?;
     let made = Text::parse(&source).and_then(|text| make(&Text { arrays: Some(arrays), ..text }));
     made.map_err(|errors| CaseErrors { name: name.to_owned(), source, errors })
@@ -185,7 +156,7 @@ mod tests {
         let mut keys = keys();
         keys["load"]["history"]["value"] = odd.into();
         let case = Case::given(&keys, &heights(), Path::new("")).unwrap();
-        assert_eq!(case.loading.stages[0].course.resolve(0.0).after(0.0).to_bits(), odd.to_bits());
+        assert_eq!(case.conditions.loading.stages[0].course.resolve(0.0).after(0.0).to_bits(), odd.to_bits());
         assert_eq!(case.gap().unwrap(), arr2(&[[0.0, f64::INFINITY], [1e-6, 0.0]]));
     }
 
@@ -199,7 +170,7 @@ mod tests {
             arrays
         };
         let case = Case::given(&keys, &with(arr2(&[[1e6, 2e6], [3e6, 4e6]])), Path::new("")).unwrap();
-        assert_eq!(case.hardness_map.unwrap()[[1, 0]], 3e6);
+        assert_eq!(case.conditions.hardness_map.unwrap()[[1, 0]], 3e6);
         let (key, message) = fault(&keys, &with(arr2(&[[1e6, 0.0], [3e6, 4e6]])));
         assert_eq!(key, "body[0].hardness_array");
         assert!(message.contains("(0, 1)"), "{message}");
@@ -217,7 +188,7 @@ mod tests {
         }
         .into();
         let case = Case::given(&keys, &heights(), Path::new("")).unwrap();
-        let stage = &case.loading.stages[0];
+        let stage = &case.conditions.loading.stages[0];
         assert_eq!(stage.times, Some(TimeGrid::List(vec![0.1, 0.7])));
         assert_eq!(stage.until, Some(Event::Approach(1e-6)));
         keys["load"]["stages"][0].as_table_mut().unwrap().insert("steps".into(), 3.into());

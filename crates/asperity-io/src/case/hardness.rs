@@ -5,6 +5,7 @@ use super::keys::*;
 use asperity::Grid;
 use ndarray::{Array2, Zip};
 
+use crate::Code;
 use crate::digest::md5;
 use crate::topography::{Format, ReadOptions, read};
 
@@ -47,24 +48,23 @@ impl HardnessFile {
         let name = full.display();
         let digest = match std::fs::read(&full) {
             Ok(bytes) => md5(&bytes),
-            Err(error) => return at.fault(format!("{name} cannot be read: {error}"), "a file", ""),
+            Err(error) => {
+                return at.refuse(Code::File, format!("{name} cannot be read: {error}"), "a file", "");
+            }
         };
         // The readers of heights read numbers of any kind, where the file does not call them heights.
         let options =
             ReadOptions { size: Some([1.0, 1.0]), height_unit: Some(1.0), ..ReadOptions::default() };
-        let numbers = match read(&full, &options) {
-            Ok(numbers) => numbers,
-            Err(error) => return at.fault(error, "an array of nx x ny numbers", ""),
-        };
+        let numbers = at.data(read(&full, &options), "an array of nx x ny numbers")?;
         if !matches!(numbers.format, Format::Npy | Format::Npz | Format::Text | Format::Csv) {
             let what = format!("{name} is a file of heights ({})", numbers.format);
-            return at.fault(what, "an NPY or NPZ file or a text matrix", "");
+            return at.refuse(Code::Data, what, "an NPY or NPZ file or a text matrix", "");
         }
         let grid = grid?;
         if numbers.heights.dim() != grid.shape() {
             let ((mx, my), [nx, ny]) = (numbers.heights.dim(), grid.cells());
             let what = format!("{name} holds {mx} x {my} numbers, but the domain has {nx} x {ny} cells");
-            return at.fault(what, "one number for each cell", "axis 0 of an array is x");
+            return at.refuse(Code::Data, what, "one number for each cell", "axis 0 of an array is x");
         }
         let unit = self.unit.map_or(1.0, Pressure::get);
         let map = numbers.heights.mapv(|number| number * unit);
@@ -81,7 +81,7 @@ pub fn of_array(at: &Place<'_>, name: &str, grid: Option<&Grid>) -> Option<Array
 fn positive(at: &Place<'_>, map: Array2<f64>, holder: &str) -> Option<Array2<f64>> {
     if let Some(((i, j), hardness)) = map.indexed_iter().find(|(_, h)| !(h.is_finite() && **h > 0.0)) {
         let what = format!("the hardness of cell ({i}, {j}) in {holder} is {hardness} Pa");
-        return at.fault(what, "finite and greater than 0 in every cell", "");
+        return at.refuse(Code::Data, what, "finite and greater than 0 in every cell", "");
     }
     Some(map)
 }

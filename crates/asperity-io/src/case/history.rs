@@ -2,9 +2,8 @@
 
 use asperity::Control;
 
-use super::history_file;
+use super::history_file::{self, Origin};
 use super::keys::*;
-use super::words::number;
 
 /// A value over time.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -88,67 +87,47 @@ pub enum From {
     Current,
 }
 
-/// A history in SI.
-pub struct Read<'c> {
-    pub history: asperity::History,
-    /// Where its largest value stands.
-    pub largest: Place<'c>,
-    /// The file that holds it, as written, and its MD5.
-    pub file: Option<(String, String)>,
-}
-
 impl History {
-    /// The history; a hold has none without an earlier value. `help` says what to do instead.
-    pub fn read<'c>(&self, at: &Place<'c>, kind: Kind, help: &str) -> Option<Read<'c>> {
+    /// The history in SI, and the file that holds it; a hold has none without an earlier value. `help` says what to do instead.
+    pub fn read(
+        &self,
+        at: &Place<'_>,
+        kind: Kind,
+        help: &str,
+    ) -> Option<(asperity::History, Option<Origin>)> {
         let value = |key: &str, value: &Prescribed| at.key(key).quantity(kind.resolve(value));
         let mut file = None;
-        let (history, largest) = match self {
+        let history = match self {
             History::Hold {} => return at.fault("there is no earlier value to hold", "another kind", help),
-            History::Step { value: step } => {
-                (asperity::History::Step { value: value("value", step)? }, at.key("value"))
-            }
+            History::Step { value: step } => asperity::History::Step { value: value("value", step)? },
             History::Ramp { value: top, duration, .. } => {
-                let value = value("value", top)?;
-                (asperity::History::Ramp { value, duration: duration.get() }, at.key("value"))
+                asperity::History::Ramp { value: value("value", top)?, duration: duration.get() }
             }
             History::Triangle { peak, rise, fall } => {
-                let (peak, [rise, fall]) = (value("peak", peak)?, [rise, fall].map(|time| time.get()));
-                (asperity::History::Triangle { peak, rise, fall }, at.key("peak"))
+                let [rise, fall] = [rise, fall].map(|time| time.get());
+                asperity::History::Triangle { peak: value("peak", peak)?, rise, fall }
             }
             History::Trapezoid { peak, rise, hold, fall } => {
-                let (peak, hold) = (value("peak", peak)?, hold.get());
                 let [rise, fall] = [rise, fall].map(|time| time.get());
-                (asperity::History::Trapezoid { peak, rise, hold, fall }, at.key("peak"))
+                asperity::History::Trapezoid { peak: value("peak", peak)?, rise, hold: hold.get(), fall }
             }
             History::Sine { mean, amplitude, frequency } => {
                 let (mean, amplitude) = (value("mean", mean), value("amplitude", amplitude));
-                let (mean, amplitude) = (mean?, amplitude?);
-                if kind.presses() && amplitude > mean {
-                    return at.key("amplitude").wrong(
-                        format!("at most the mean, {} {}", number(mean), kind.unit()),
-                        "the load would become negative; raise the mean or lower the amplitude",
-                    );
-                }
-                let frequency = frequency.get();
-                (asperity::History::Sine { mean, amplitude, frequency }, at.key("mean"))
+                asperity::History::Sine { mean: mean?, amplitude: amplitude?, frequency: frequency.get() }
             }
             History::Table { points } => table(&at.key("points"), points, kind)?,
             History::File { path } => {
                 let at = at.key("path");
                 let (points, read) = history_file::of_key(&at, path, "value", |value| kind.resolve(value))?;
                 file = Some(read);
-                (asperity::History::Table { points }, at)
+                asperity::History::Table { points }
             }
         };
-        Some(Read { history, largest, file })
+        Some((history, file))
     }
 }
 
-fn table<'c>(
-    at: &Place<'c>,
-    points: &[Two<Time, Prescribed>],
-    kind: Kind,
-) -> Option<(asperity::History, Place<'c>)> {
+fn table(at: &Place<'_>, points: &[Two<Time, Prescribed>], kind: Kind) -> Option<asperity::History> {
     // All of them are looked at, also after one that is wrong.
     let point = |(n, Two(time, value)): (usize, &Two<Time, Prescribed>)| match kind.resolve(value) {
         Ok(value) => Some((time.get(), value)),
@@ -157,13 +136,7 @@ fn table<'c>(
     let points: Vec<_> = points.iter().enumerate().map(point).collect();
     let points = points.into_iter().collect::<Option<Vec<_>>>()?;
     history_file::in_order(at, &points, "value")?;
-    let mut largest = (f64::NEG_INFINITY, at.clone());
-    for (n, (_, value)) in points.iter().enumerate() {
-        if *value > largest.0 {
-            largest = (*value, at.item(n).item(1));
-        }
-    }
-    Some((asperity::History::Table { points }, largest.1))
+    Some(asperity::History::Table { points })
 }
 
 /// What a prescribed value is.
@@ -202,7 +175,7 @@ impl Kind {
             Kind::Approach | Kind::Position => value.resolve::<dimension::Length, Finite>().map(|v| v.get()),
             Kind::Velocity => value.resolve::<dimension::Velocity, Finite>().map(|v| v.get()),
         };
-        si.map_err(|QuantityError { expected, help }| {
+        si.map_err(|QuantityError { code, expected, help }| {
             let help = match (self, help) {
                 (Kind::LoadPerLength, Some(help)) if help.contains("unit of a force;") => {
                     format!("{help}; the domain is a line of cells, so the load is per length along y")
@@ -215,20 +188,9 @@ impl Kind {
                 (kind, None) if kind.presses() => {
                     "there is no adhesion; to pull the bodies apart prescribe the approach".to_owned()
                 }
-                (_, help) => return QuantityError { expected, help },
+                (_, help) => return QuantityError { code, expected, help },
             };
-            QuantityError { expected, help: Some(help) }
+            QuantityError { code, expected, help: Some(help) }
         })
-    }
-
-    /// Its SI unit.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Kind::LoadPerLength => "N/m",
-            Kind::Load => "N",
-            Kind::Pressure => "Pa",
-            Kind::Approach | Kind::Position => "m",
-            Kind::Velocity => "m/s",
-        }
     }
 }

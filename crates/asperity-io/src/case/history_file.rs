@@ -6,13 +6,12 @@
 //! 10, 500                 or with units in the cells: 10 s; 0.5 N
 //! ```
 
-use std::io::Read;
-use std::path::Path;
-
 use super::place::Place;
 use super::words::number;
+use crate::digest::md5;
 use crate::quantity::range::NonNegative;
 use crate::quantity::{Prescribed, QuantityError, Time};
+use crate::resources::text;
 
 /// A file larger than this is no history.
 const MOST_BYTES: u64 = 64 << 20;
@@ -29,28 +28,10 @@ pub fn of_key(
     resolve: impl Fn(&Prescribed) -> Result<f64, QuantityError>,
 ) -> Option<(Vec<(f64, f64)>, Origin)> {
     let full = at.file(path)?;
-    let read = text(&full).and_then(|(text, digest)| Ok((parse(&text, resolve)?, digest)));
-    match read {
-        Ok((points, digest)) => Some((points, (path.to_owned(), digest))),
-        Err(reason) => {
-            let message = format!("{}: {reason}", full.display());
-            at.fault(message, &format!("a file of two columns, time and {value}"), "")
-        }
-    }
-}
-
-/// The text of the file and its MD5: another file has another one.
-fn text(path: &Path) -> Result<(String, String), String> {
-    let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
-    let mut bytes = Vec::new();
-    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-    if bytes.len() as u64 > MOST_BYTES {
-        return Err(format!("the file is larger than {} MB", MOST_BYTES >> 20));
-    }
-    let digest = crate::digest::md5(&bytes);
-    let text = String::from_utf8(bytes)
-        .map_err(|error| format!("the file is not UTF-8 text (byte {})", error.utf8_error().valid_up_to()))?;
-    Ok((text, digest))
+    let read = text(&full, MOST_BYTES).and_then(|text| Ok((parse(&text, resolve)?, md5(text.as_bytes()))));
+    let read = read.map_err(|reason| format!("{}: {reason}", full.display()));
+    let (points, digest) = at.data(read, &format!("a file of two columns, time and {value}"))?;
+    Some((points, (path.to_owned(), digest)))
 }
 
 /// Refuses points of a table that do not begin at 0 or run back in time.
@@ -98,7 +79,9 @@ fn parse(
             resolve(&Prescribed::Text(value)).map_err(|error| at(sentence("value", cells[1], &error)))?;
         let time = time.get();
         match points.last() {
-            None if time != 0.0 => return Err(at(format!("the first time is {time} s, but must be 0 s"))),
+            None if time != 0.0 => {
+                return Err(at(format!("the first time is {time} s; the history must begin at 0 s")));
+            }
             Some((before, _)) if time < *before => {
                 return Err(at(format!(
                     "the time {time} s comes after {before} s; list the points in order"
@@ -116,7 +99,7 @@ fn parse(
     }
 }
 
-/// The two columns: at semicolons, commas or tabs, where there are any, else at blanks.
+/// The two columns: separated by semicolons, commas or tabs if the line has any, otherwise by blanks.
 fn cells(line: &str) -> Option<[&str; 2]> {
     let separator = [';', ',', '\t'].into_iter().find(|separator| line.contains(*separator));
     let mut cells: Vec<&str> = match separator {

@@ -11,7 +11,7 @@ pub use crate::quantity::range::{
     Tolerance,
 };
 pub use crate::quantity::scalar::Scalar;
-pub(crate) use crate::quantity::scalar::{deserialize, schema};
+pub(crate) use crate::quantity::scalar::deserialize;
 pub use crate::quantity::{
     Angle, Compliance, Dimension, Expansion, Fluidity, Frequency, Label, Length, MolarEnergy, MolarMass,
     Number, Prescribed, Pressure, QuantityError, Signed, Temperature, TemperatureDifference, Time, Velocity,

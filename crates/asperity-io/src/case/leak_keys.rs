@@ -7,7 +7,7 @@ use super::{LeakageKeys, leak as checked};
 use crate::leakage::{Fluid, GasKind, Leak};
 
 impl Leak {
-    /// The keys that describe it, but for `times`.
+    /// The keys that describe it, without `times`.
     fn keys(&self) -> LeakageKeys {
         let mut keys = Map::new();
         let mut set = |key: &str, value: Value| drop(keys.insert(key.to_owned(), value));
@@ -41,7 +41,7 @@ impl Leak {
         serde_json::from_value(Value::Object(keys)).unwrap_or_default()
     }
 
-    /// The same with the keys that are `given` changed; `times` of them is not looked at. A liquid in place of a gas, or a gas
+    /// The same with the keys that are `given` changed; their `times` are ignored. A liquid in place of a gas, or a gas
     /// in place of a liquid, replaces all that was said of the fluid; the name of a gas replaces its viscosity and molar mass.
     ///
     /// # Errors
@@ -140,7 +140,7 @@ mod tests {
         assert!(missing.contains("inlet"), "{missing}");
         let gas = keys(r#"{"gas": "air", "inlet": "2 bar", "outlet": "1 bar"}"#);
         let gas = liquid.changed(gas, Boundary::Periodic).unwrap();
-        assert!(gas.fluid.unwrap().is_gas() && gas.direction == LeakDirection::Y);
+        assert!(matches!(gas.fluid, Some(Fluid::Gas { .. })) && gas.direction == LeakDirection::Y);
         let back = gas.changed(keys(r#"{"pressure_drop": 1, "viscosity": 2}"#), Boundary::Periodic).unwrap();
         assert_eq!(back.fluid, Some(Fluid::Liquid { pressure_drop: 1.0, viscosity: 2.0 }));
     }

@@ -131,85 +131,71 @@ fn checked(keys: &LeakageKeys, boundary: Boundary) -> Result<Leak, Fault> {
     })
 }
 
+/// The key that is missing beside another one.
+fn missing<T>(key: &str, beside: &str, help: &'static str) -> Result<T, Fault> {
+    Err(Fault::new(format!("leakage needs `{key}` beside `{beside}`"), "this key", help))
+}
+
+const TWO_PRESSURES: &str = "a gas takes absolute pressures: inlet and outlet";
+
 fn fluid(keys: &LeakageKeys) -> Result<Option<Fluid>, Fault> {
-    let missing = |key: &str, what: &str, expected, help| {
-        Err(Fault::new(format!("leakage needs `{key}` beside {what}"), expected, help))
-    };
-    match (keys.of_gas(), keys.pressure_drop, keys.viscosity) {
-        (None, None, None) => Ok(None),
-        (None, Some(drop), Some(viscosity)) => {
-            Ok(Some(Fluid::Liquid { pressure_drop: drop.get(), viscosity: viscosity.get() }))
-        }
-        (None, Some(_), None) => {
-            missing("viscosity", "`pressure_drop`", "a viscosity", "water has viscosity = \"1 mPa s\"")
-        }
-        (None, None, Some(_)) => missing(
-            "pressure_drop",
-            "`viscosity`",
-            "a pressure",
-            "add pressure_drop = \"...\" for a liquid; inlet, outlet and molar_mass for a gas",
-        ),
-        (Some(key), Some(_), _) => Err(Fault::new(
-            format!("leakage has `pressure_drop`, of a liquid, and `{key}`, of a gas"),
-            "one fluid",
-            "a gas takes absolute pressures: inlet and outlet",
-        )),
-        (Some(key), None, viscosity) => {
-            let (Some(inlet), Some(outlet)) = (keys.inlet, keys.outlet) else {
-                let key = format!("`{key}`");
-                let other = if keys.inlet.is_none() { "inlet" } else { "outlet" };
-                return missing(
-                    other,
-                    &key,
-                    "an absolute pressure",
-                    "a gas takes absolute pressures: inlet and outlet",
-                );
-            };
-            let (inlet, outlet) = (inlet.get(), outlet.get());
-            if inlet <= outlet {
-                return Err(Fault::new(
-                    format!(
-                        "the pressure of the inlet, {inlet} Pa, is not above that of the outlet, {outlet} Pa"
-                    ),
-                    "inlet above outlet",
-                    "exchange them: a flow in the other direction is as large",
-                ));
+    let Some(of_gas) = keys.of_gas() else {
+        return match (keys.pressure_drop, keys.viscosity) {
+            (None, None) => Ok(None),
+            (Some(drop), Some(viscosity)) => {
+                Ok(Some(Fluid::Liquid { pressure_drop: drop.get(), viscosity: viscosity.get() }))
             }
-            let kind = match (keys.gas, viscosity, keys.molar_mass) {
-                (Some(species), None, None) => GasKind::Known(species),
-                (None, Some(viscosity), Some(mass)) if mass.get() <= 1.0 => {
-                    GasKind::Other { viscosity: viscosity.get(), molar_mass: mass.get() }
-                }
-                (None, Some(_), Some(mass)) => {
-                    return Err(Fault::new(
-                        format!("the molar mass is {} kg/mol", mass.get()),
-                        "a molar mass of a gas, below 1 kg/mol",
-                        "write it with its unit: molar_mass = \"28.96 g/mol\"",
-                    ));
-                }
-                (Some(_), ..) => {
-                    return Err(Fault::new(
-                        "leakage has `gas`, which tells viscosity and molar mass, and one of them besides",
-                        "`gas`, or `viscosity` and `molar_mass`",
-                        "leave `gas` out to give both",
-                    ));
-                }
-                (None, ..) => {
-                    return missing(
-                        "gas",
-                        "`inlet`",
-                        "\"air\", \"nitrogen\", \"oxygen\", \"helium\" or \"hydrogen\"",
-                        "or give both viscosity and molar_mass",
-                    );
-                }
-            };
-            Ok(Some(Fluid::Gas {
-                kind,
-                temperature: keys.temperature.map(|temperature| temperature.get()),
-                inlet,
-                outlet,
-                rarefaction: keys.rarefaction.unwrap_or_default(),
-            }))
+            (Some(_), None) => missing("viscosity", "pressure_drop", "water has viscosity = \"1 mPa s\""),
+            (None, Some(_)) => {
+                let help = "add pressure_drop = \"...\" for a liquid; inlet, outlet and molar_mass for a gas";
+                missing("pressure_drop", "viscosity", help)
+            }
+        };
+    };
+    if keys.pressure_drop.is_some() {
+        let message = format!("leakage has `pressure_drop`, of a liquid, and `{of_gas}`, of a gas");
+        return Err(Fault::new(message, "one fluid", TWO_PRESSURES));
+    }
+    let (inlet, outlet) = match (keys.inlet, keys.outlet) {
+        (Some(inlet), Some(outlet)) => (inlet.get(), outlet.get()),
+        (None, _) => return missing("inlet", of_gas, TWO_PRESSURES),
+        (_, None) => return missing("outlet", of_gas, TWO_PRESSURES),
+    };
+    if inlet <= outlet {
+        let message =
+            format!("the pressure of the inlet, {inlet} Pa, is not above that of the outlet, {outlet} Pa");
+        let help = "exchange them: a flow in the other direction is as large";
+        return Err(Fault::new(message, "inlet above outlet", help));
+    }
+    Ok(Some(Fluid::Gas {
+        kind: kind_of_gas(keys)?,
+        temperature: keys.temperature.map(|temperature| temperature.get()),
+        inlet,
+        outlet,
+        rarefaction: keys.rarefaction.unwrap_or_default(),
+    }))
+}
+
+fn kind_of_gas(keys: &LeakageKeys) -> Result<GasKind, Fault> {
+    match (keys.gas, keys.viscosity, keys.molar_mass) {
+        (Some(species), None, None) => Ok(GasKind::Known(species)),
+        (None, Some(viscosity), Some(mass)) if mass.get() <= 1.0 => {
+            Ok(GasKind::Other { viscosity: viscosity.get(), molar_mass: mass.get() })
         }
+        (None, Some(_), Some(mass)) => Err(Fault::new(
+            format!("the molar mass is {} kg/mol", mass.get()),
+            "a molar mass of a gas, below 1 kg/mol",
+            "write it with its unit: molar_mass = \"28.96 g/mol\"",
+        )),
+        (Some(_), ..) => Err(Fault::new(
+            "leakage has `gas`, and also `viscosity` or `molar_mass`, which the gas determines",
+            "`gas`, or `viscosity` and `molar_mass`",
+            "leave `gas` out to give both",
+        )),
+        (None, ..) => missing(
+            "gas",
+            "inlet",
+            "gas = \"air\", \"nitrogen\", \"oxygen\", \"helium\" or \"hydrogen\"; or give both viscosity and molar_mass",
+        ),
     }
 }

@@ -57,8 +57,8 @@ impl<A> Axes<A> {
 pub fn wrong_number<T>(at: &Place<'_>, line: bool) -> Option<T> {
     match line {
         true => at.wrong(
-            "a list of one value, because the domain is a line of cells",
-            "give the value along x; a plane has two values in domain.cells and domain.size",
+            "a list of one value",
+            "the domain is a line of cells: give the value along x; a plane has two values in domain.cells and domain.size",
         ),
         false => at.wrong(
             "a list of two values, along x and y",

@@ -1,15 +1,14 @@
-//! `[load]`: what is prescribed over time, and whether bodies and times can follow it.
+//! `[load]`: what is prescribed over time.
 
-use asperity::{Control, Course, Event, Grid, Programme, TimeGrid};
+use asperity::{Control, Course, Event, Programme, TimeGrid};
 
 use super::history::{From, History, Kind};
+use super::history_file::Origin;
 use super::keys::*;
-use super::pair::Pair;
-use super::time::{Spacing, Steps, Times};
-use super::words::number;
+use super::time::{Spacing, Times};
 
 /// What presses the bodies together.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
     /// The prescribed quantity; with `history`.
@@ -82,29 +81,15 @@ pub enum Until {
     Pressure(Pressure<NonNegative>),
 }
 
-/// What is prescribed, and where in the case it stands.
-pub struct Prescription<'c> {
-    pub programme: Programme,
-    /// Of each stage: its history, and the largest value of that.
-    places: Vec<(Place<'c>, Place<'c>)>,
-    /// Path as written and MD5 of the files that hold histories.
-    pub files: Vec<(String, String)>,
-    /// Where the load is described.
-    pub at: Place<'c>,
-}
-
-/// A stage in SI, with the places of its history and its largest value, and the file that holds it.
-type Made<'c> = (asperity::Stage, (Place<'c>, Place<'c>), Option<(String, String)>);
-
 impl Load {
-    /// What is prescribed. On a `line` loads are per length. `first_step` is the first step of logarithmic steps to a time under a
-    /// course, where the case does not say it.
-    pub fn prescription<'c>(
+    /// What is prescribed, and the files that hold histories. On a `line` loads are per length. `first_step` is the first step of
+    /// logarithmic steps to a time under a course, where the case does not say it.
+    pub fn programme(
         &self,
-        at: &Place<'c>,
+        at: &Place<'_>,
         line: bool,
         first_step: &dyn Fn(f64, Option<&Course>) -> f64,
-    ) -> Option<Prescription<'c>> {
+    ) -> Option<(Programme, Vec<Origin>)> {
         let (at, made) = match &self.stages {
             Some(stages) => {
                 let why = "cannot be combined with `stages`; each stage has its own";
@@ -127,19 +112,14 @@ impl Load {
                     let help = "kind = \"hold\" is only possible in a stage; to apply a load from the start use kind = \"step\"";
                     history.read(&at, Kind::of(control, line), help)?;
                 }
-                (at.clone(), vec![of_history(&at, control, line, history)?])
+                let made = of_history(&at, control, line, history)?;
+                (at, vec![made])
             }
         };
-        let mut files = vec![];
-        let (stages, places) = (made.into_iter())
-            .map(|(stage, place, file)| {
-                files.extend(file);
-                (stage, place)
-            })
-            .unzip();
+        let (stages, files): (_, Vec<Option<Origin>>) = made.into_iter().unzip();
         let programme = Programme::new(stages);
         at.core(programme.validate())?;
-        Some(Prescription { programme, places, files, at })
+        Some((programme, files.into_iter().flatten().collect()))
     }
 
     /// Whether every stage has steps of its own.
@@ -150,13 +130,13 @@ impl Load {
 }
 
 impl Stage {
-    fn stage<'c>(
+    fn stage(
         &self,
-        at: &Place<'c>,
+        at: &Place<'_>,
         line: bool,
         last: bool,
         first_step: &dyn Fn(f64, Option<&Course>) -> f64,
-    ) -> Option<Made<'c>> {
+    ) -> Option<(asperity::Stage, Option<Origin>)> {
         if !last && self.duration.is_none() && self.until.is_none() {
             return at.fault(
                 "this stage never ends, so the stages after it never begin",
@@ -164,7 +144,7 @@ impl Stage {
                 "give it duration = \"10 s\", or until = { approach = \"2 um\" }, { load = \"0.1 N\" } or \"contact-lost\"",
             );
         }
-        let (stage, places, file) = of_history(&at.key("history"), self.control, line, &self.history)?;
+        let (stage, file) = of_history(&at.key("history"), self.control, line, &self.history)?;
         let until = match &self.until {
             None => None,
             Some(Until::ContactLost) => Some(Event::ContactLost),
@@ -178,121 +158,54 @@ impl Stage {
         let times = self.times(at, |end| first_step(end, Some(&stage.course)))?;
         let duration = self.duration.map(Time::get);
         let stage = asperity::Stage { duration, until, after_jump: self.after_jump, times, ..stage };
-        Some((stage, places, file))
+        Some((stage, file))
     }
 
     /// The instants of the stage, on its clock; the inner `None` where it has none of its own.
     fn times(&self, at: &Place<'_>, first_step: impl Fn(f64) -> f64) -> Option<Option<TimeGrid>> {
-        let Stage { steps, spacing, first, tolerance, .. } = *self;
-        let steps = Steps { end: "the duration of the stage", steps, spacing, first, tolerance };
+        let Stage { duration: end, steps, spacing, first, tolerance, .. } = *self;
+        let own = Times { end, steps, spacing, first, tolerance, ..Times::default() };
         if let Some(time) = &self.time {
             let at = at.key("time");
-            if !steps.none() || at.has("scheme") {
-                let message = "has all keys of the steps of a stage, and no `scheme`";
+            if !own.has_no_steps() || at.has("scheme") {
+                let message = "`time` replaces `steps`, `spacing`, `first` and `tolerance` of the stage, and takes no `scheme`";
                 return at.fault(message, "one of the two", "leave the others out");
             }
             return time.grid(&at, false, first_step).map(Some);
         }
-        if steps.none() {
+        if own.has_no_steps() {
             return Some(None);
         }
-        if steps.are_missing() {
-            return at.missing("steps", "");
-        }
-        let Some(duration) = self.duration else {
+        if end.is_none() && (steps.is_some() || spacing == Some(Spacing::Adaptive)) {
             return at.fault(
                 "steps of a stage need its `duration` (with `until`, the latest end)",
                 "a duration",
                 "add duration = \"10 s\", or leave the steps to [time]",
             );
-        };
-        steps.grid(at, duration.get(), first_step).map(Some)
+        }
+        own.grid(at, false, first_step).map(Some)
     }
 }
 
 /// A stage without an end.
-fn of_history<'c>(at: &Place<'c>, control: Control, line: bool, history: &History) -> Option<Made<'c>> {
+fn of_history(
+    at: &Place<'_>,
+    control: Control,
+    line: bool,
+    history: &History,
+) -> Option<(asperity::Stage, Option<Origin>)> {
     let kind = Kind::of(control, line);
-    let (course, largest, file) = match history {
-        History::Hold {} => (Course::Hold, at.clone(), None),
+    let (course, file) = match history {
+        History::Hold {} => (Course::Hold, None),
         History::Ramp { value, from: From::Current, duration } => {
-            let largest = at.key("value");
-            let value = largest.quantity(kind.resolve(value))?;
-            (Course::RampTo { value, duration: duration.get() }, largest, None)
+            let value = at.key("value").quantity(kind.resolve(value))?;
+            (Course::RampTo { value, duration: duration.get() }, None)
         }
         _ => {
-            let read = history.read(at, kind, "")?;
-            at.core(read.history.validate())?;
-            (Course::Given(read.history), read.largest, read.file)
+            let (history, file) = history.read(at, kind, "")?;
+            at.core(history.validate())?;
+            (Course::Given(history), file)
         }
     };
-    Some((asperity::Stage::new(control, course), (at.clone(), largest), file))
-}
-
-impl Prescription<'_> {
-    /// Refuses what the bodies cannot follow.
-    pub fn possible(&self, times: &TimeGrid, grid: Option<&Grid>, pair: &Pair) {
-        for (n, (stage, (history, largest))) in self.programme.stages.iter().zip(&self.places).enumerate() {
-            let end = stage.duration.unwrap_or(times.end()).min(times.end());
-            if let Some(grid) = grid {
-                bearable(largest, stage, end, grid, pair);
-            }
-            let unit = Kind::of(stage.control, grid.is_some_and(Grid::is_line)).unit();
-            jumps(history, stage, unit, n == 0, end, pair);
-        }
-    }
-}
-
-/// No solution exists above hardness times area.
-fn bearable(at: &Place<'_>, stage: &asperity::Stage, end: f64, grid: &Grid, pair: &Pair) -> Option<()> {
-    let limit = match stage.control {
-        Control::Load => pair.hardness * grid.area(),
-        Control::Pressure => pair.hardness,
-        Control::Approach => return None,
-    };
-    let largest = match &stage.course {
-        Course::Given(history) => history.range(end)[1],
-        Course::RampTo { value, .. } => *value,
-        Course::Hold => return None,
-    };
-    // Equality within rounding is the limit itself, which has a solution.
-    if largest <= limit * (1.0 + 1e-12) {
-        return None;
-    }
-    let unit = Kind::of(stage.control, grid.is_line()).unit();
-    let [reached, limit, hardness] = [largest, limit, pair.hardness].map(number);
-    let area = match stage.control {
-        Control::Load if grid.is_line() => format!(" times the length {} m", number(grid.area())),
-        Control::Load => format!(" times the area {} m^2", number(grid.area())),
-        _ => String::new(),
-    };
-    let message = format!(
-        "the history reaches {reached} {unit}, but the bodies can carry at most {limit} {unit}, the hardness \
-         {hardness} Pa{area}"
-    );
-    let help = "lower the load, raise the hardness or enlarge the domain";
-    at.fault(message, &format!("{limit} {unit} at most"), help)
-}
-
-/// Without instantaneous compliance there is no solution right after a jump.
-fn jumps(
-    at: &Place<'_>,
-    stage: &asperity::Stage,
-    unit: &str,
-    first: bool,
-    end: f64,
-    pair: &Pair,
-) -> Option<()> {
-    let (Course::Given(history), false) = (&stage.course, pair.instantaneous() > 0.0) else { return None };
-    // What a later stage starts from is known only as the run goes.
-    let instants = first.then_some(0.0).into_iter().chain(history.breaks(end));
-    let jump = instants.map(|t| (t, history.before(t), history.after(t))).find(|(_, b, a)| a != b);
-    let (t, before, after) = jump?;
-    let [t, before, after] = [t, before, after].map(number);
-    let message = format!(
-        "the history jumps from {before} to {after} {unit} at t = {t} s, but the bodies have no instantaneous \
-         compliance (Kelvin-Voigt), so there is no solution right after the jump"
-    );
-    let help = "use a ramp, or a material with an instantaneous modulus (zener, prony)";
-    at.fault(message, "a history without jumps", help)
+    Some((asperity::Stage::new(control, course), file))
 }

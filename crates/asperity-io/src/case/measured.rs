@@ -130,42 +130,35 @@ impl Measured {
                 ),
             });
         }
-        let ([mx, my], [nx, ny]) = (prepared.surface.grid().cells(), grid.cells());
-        let (size, domain) = (prepared.surface.grid().size(), grid.size());
+        let of_file = prepared.surface.grid();
+        let (what, along) = if line { ("profile", 1) } else { ("surface", 2) };
+        let numbers = |values: [String; 2], between: &str| values[..along].join(between);
+        let (size, domain) = (of_file.size(), grid.size());
         let agree = |axis: usize| (size[axis] - domain[axis]).abs() <= SAME * domain[axis];
         if !(agree(0) && agree(1)) {
-            let smaller = (0..2).all(|axis| domain[axis] <= size[axis] * (1.0 + SAME));
-            let crop = match smaller {
+            let [own, wanted] =
+                [size, domain].map(|size| numbers(size.map(|side| format!("{side:e} m")), " x "));
+            let is_larger = (0..2).all(|axis| domain[axis] <= size[axis] * (1.0 + SAME));
+            // Nobody knows what lies around a measured surface.
+            let crop = match is_larger && !line {
                 true => format!(
                     ", or keep a part of the surface: crop = {{ size = [{:e}, {:e}] }}",
                     domain[0], domain[1]
                 ),
-                // Nobody knows what lies around a measured surface.
                 false => String::new(),
             };
-            if line {
-                return Err(format!(
-                    "{name} is {:e} m long, but the domain {:e} m; leave domain.size out to take the length of the profile",
-                    size[0], domain[0]
-                ));
-            }
             return Err(format!(
-                "{name} measures {:e} m x {:e} m, but the domain {:e} m x {:e} m; leave domain.size out to take \
-                 the surface's{crop}",
-                size[0], size[1], domain[0], domain[1]
+                "{name} measures {own}, but the domain {wanted}; leave domain.size out to take that of the {what}{crop}"
             ));
         }
-        if [mx, my] != [nx, ny] && line {
+        if of_file.cells() != grid.cells() {
+            let counts = |grid: &Grid, between: &str| numbers(grid.cells().map(|n| n.to_string()), between);
             return Err(format!(
-                "{name} holds {mx} points, but the domain has {nx} cells; leave domain.cells out to take those of the profile, \
-                 set domain.cells = [{mx}], or add resample = \"bilinear\" (or \"band-limited\") to this surface"
-            ));
-        }
-        if [mx, my] != [nx, ny] {
-            return Err(format!(
-                "{name} holds {mx} x {my} points, but the domain has {nx} x {ny} cells; leave domain.cells out to take \
-                 the surface's, set domain.cells = [{mx}, {my}], or add resample = \"bilinear\" (or \"band-limited\") \
-                 to this surface",
+                "{name} holds {} points, but the domain has {} cells; leave domain.cells out to take those of the {what}, set \
+                 domain.cells = [{}], or add resample = \"bilinear\" (or \"band-limited\") to this surface",
+                counts(of_file, " x "),
+                counts(grid, " x "),
+                counts(of_file, ", "),
             ));
         }
         Ok(Part::Heights { name, heights: prepared.surface.heights().to_owned() })

@@ -30,8 +30,8 @@
 //!     steps = 1
 //! "#;
 //! let case = Case::parse(text, ".".as_ref(), &["load.history.value=8 N".into()])?;
-//! assert_eq!(case.grid.spacing(), [1e-3 / 32.0; 2]); // metres
-//! assert_eq!(case.loading.stages[0].course.resolve(0.0).after(0.0), 8.0); // newtons
+//! assert_eq!(case.conditions.grid.spacing(), [1e-3 / 32.0; 2]); // metres
+//! assert_eq!(case.conditions.loading.stages[0].course.resolve(0.0).after(0.0), 8.0); // newtons
 //!
 //! let errors = Case::parse(&text.replace("210 GPa", "210 mm"), ".".as_ref(), &[]).unwrap_err();
 //! assert_eq!(errors.errors[0].key, "body[0].material.young");
@@ -60,7 +60,6 @@ mod list;
 mod load;
 mod material;
 mod measured;
-mod memory;
 mod motion;
 mod output;
 mod overrides;
@@ -82,20 +81,16 @@ mod time;
 mod warmth;
 mod words;
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use asperity::finding::Finding;
-use asperity::kernel::{HalfSpace, Kernel};
-use asperity::layer::{Layered, NonseparableLayers};
-use asperity::material::{Body, Creep, ThermalCreep};
+use asperity::layer::Layered;
+use asperity::material::Body;
 use asperity::quantities::{Quantities, Quantity};
 use asperity::sliding::{MovingGap, SteadyMotion};
 use asperity::surface::{Part, undeformed_gap};
-use asperity::{
-    Axis, Boundary, Error, Grid, Plasticity, Programme, Scheme, Simulation, SolverOptions, TimeGrid,
-};
+use asperity::{Axis, Error, Scheme, Simulation};
 use ndarray::Array2;
 
 pub use cost::CostEstimate;
@@ -105,16 +100,18 @@ pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
 pub use given::Arrays;
 pub use leakage::{LeakageKeys, leak};
 pub use measured::Measured;
+pub use pair::Pair;
 pub use plan::{Motion, Output, Rows, Surface, Travel};
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
 pub use words::nearest;
 
+use crate::Code;
 use crate::leakage::Leak;
 use crate::stress::StressPlan;
 use document::Document;
-use output::Conditions;
 use overrides::Override;
+use place::{Checks, Place};
 use text::Text;
 
 /// A case file is text that a person writes; more is a mistake.
@@ -129,24 +126,16 @@ pub struct Case {
     pub name: String,
     /// Text of the file after the overrides.
     pub source: String,
-    /// The computational domain.
-    pub grid: Grid,
-    /// What surrounds it.
-    pub boundary: Boundary,
+    /// The simulation without its gap and motion; its quantities are those that the case names.
+    pub conditions: Simulation,
     /// The parts of the undeformed gap.
     pub surfaces: Vec<Surface>,
     /// What the deformable bodies, one or two, consist of: each half-space, layer and base.
     pub bodies: Vec<Body>,
     /// How the bodies yield in space, where they have layers; half-spaces otherwise.
     pub layers: Option<Arc<Layered>>,
-    /// How waves on the layers creep, where waves of different lengths creep differently.
-    pub waves: Option<Arc<NonseparableLayers>>,
     /// Thickness of the thinnest body that is taken as a half-space \[m\], where it is known.
     pub thickness: Option<f64>,
-    /// Contact creep compliance C(t) of the pair \[1/Pa\]; without the bodies of `thermal`.
-    pub creep: Creep,
-    /// Bodies whose temperature changes.
-    pub thermal: Vec<ThermalCreep>,
     /// Temperature of the run, where it has one: (time \[s\], temperature \[K\]), straight in between.
     pub temperatures: Option<Vec<(f64, f64)>>,
     /// Where the materials come from, and how well they are known.
@@ -155,22 +144,6 @@ pub struct Case {
     pub findings: Vec<Finding>,
     /// Files that hold numbers of the case (not surfaces), as it names them, and their MD5.
     pub files: Vec<(String, String)>,
-    /// Cut-off H of the pressure \[Pa\], the softer body's; infinite without.
-    pub hardness: f64,
-    /// Cut-off of the pressure in each cell \[Pa\], where a file gives it; the lesser of it and `hardness` holds.
-    pub hardness_map: Option<Array2<f64>>,
-    /// What is prescribed over time.
-    pub loading: Programme,
-    /// The instants of the solution.
-    pub times: TimeGrid,
-    /// Instants that are steps besides \[s\]: those of `output.times`, unless steps are adaptive.
-    pub include: Vec<f64>,
-    /// How the pressure goes over a step.
-    pub scheme: Scheme,
-    /// What flattening at the cut-off leaves behind.
-    pub plasticity: Plasticity,
-    /// How each step is solved.
-    pub solver: SolverOptions,
     /// What is stored, and where.
     pub output: Output,
     /// The stress below the surface, where it is asked for.
@@ -181,10 +154,8 @@ pub struct Case {
     pub motion: Option<Motion>,
     /// Rows of the result, where known beforehand.
     rows: Option<usize>,
-    /// About as many.
+    /// Expected number of rows.
     usual_rows: usize,
-    /// Path of the key that holds what is prescribed.
-    history: String,
 }
 
 impl Case {
@@ -194,8 +165,9 @@ impl Case {
     /// [`CaseErrors`] where the file cannot be read, or with what is wrong in it.
     pub fn read(path: &Path, overrides: &[String]) -> Result<Case, CaseErrors> {
         let name = path.display().to_string();
-        let text = file_text(path)
-            .map_err(|(reason, help)| CaseErrors::without_place(&name, reason, "a case file", Some(help)))?;
+        let text = file_text(path).map_err(|(reason, help)| {
+            CaseErrors::without_place(Code::File, &name, reason, "a case file", help)
+        })?;
         let dir = path.parent().unwrap_or(Path::new(""));
         let stem = path.file_stem().map_or("result".into(), |stem| stem.to_string_lossy());
         Case::from_text(&name, text, dir, format!("{stem}.zarr").into(), overrides)
@@ -217,7 +189,7 @@ impl Case {
         output: PathBuf,
         overrides: &[String],
     ) -> Result<Case, CaseErrors> {
-        let (source, set) = overridden(name, source, overrides)?;
+        let Overridden { text: source, keys, added } = overridden(name, source, overrides)?;
         let result = Text::parse(&source).and_then(|text| {
             let document = Document::read(&text)?;
             assemble::case(&text, &document, dir, output)
@@ -226,10 +198,11 @@ impl Case {
             Ok(case) => Ok(Case { name: name.to_owned(), ..case }),
             Err(mut errors) => {
                 for error in &mut errors {
-                    if set.iter().any(|key| is_inside(&error.key, key)) {
+                    if keys.iter().any(|key| is_inside(&error.key, key)) {
                         let help = error.help.take().map(|help| format!("; {help}")).unwrap_or_default();
                         error.help = Some(format!("set by an override{help}"));
                     }
+                    error.line = error.line.map(|line| line_of_file(line, &added));
                 }
                 Err(CaseErrors { name: name.to_owned(), source, errors })
             }
@@ -243,7 +216,9 @@ impl Case {
     pub fn parts(&self) -> Result<Vec<Part>, CaseErrors> {
         let part = |surface: &Surface| match surface {
             Surface::Part(part) => Ok(part.clone()),
-            Surface::File(file) => file.part(&self.grid).map_err(|reason| self.fault(&file.key, reason)),
+            Surface::File(file) => file.part(&self.conditions.grid).map_err(|reason| {
+                self.faults(&file.key, |place| place.data(Err(reason), "a surface of the domain"))
+            }),
         };
         self.surfaces.iter().map(part).collect()
     }
@@ -258,9 +233,7 @@ impl Case {
     }
 
     fn gap_of(&self, parts: &[Part]) -> Result<Array2<f64>, CaseErrors> {
-        undeformed_gap(&self.grid, parts).map_err(|error| {
-            CaseErrors::without_place(&self.name, format!("surface: {error}"), "a gap that can close", None)
-        })
+        undeformed_gap(&self.conditions.grid, parts).map_err(|error| self.refused("", error))
     }
 
     /// The simulation of the case, checked: the gap is built here.
@@ -276,46 +249,28 @@ impl Case {
     /// # Errors
     /// As [`simulation`](Self::simulation).
     pub fn simulation_of(&self, parts: &[Part]) -> Result<Simulation, CaseErrors> {
-        let gap = match &self.motion {
-            Some(motion) => self.moving_gap(parts, motion)?,
-            None => self.gap_of(parts)?,
+        let (gap, motion) = match &self.motion {
+            None => (self.gap_of(parts)?, None),
+            Some(motion) => {
+                let moving = self.moving(parts, motion)?;
+                (moving.at(0.0, motion.direction).0, motion.in_time(moving))
+            }
         };
-        let simulation = Simulation { motion: self.motion_of(parts)?, ..self.with_gap(gap) };
+        let simulation = Simulation { gap, motion, ..self.conditions.clone() };
         let simulation = Simulation { quantities: self.quantities(&simulation), ..simulation };
         match simulation.validate() {
             Ok(()) => Ok(simulation),
-            // Under a punch only a part of the domain bears.
-            Err(error @ Error::Infeasible { .. }) => Err(self.fault(&self.history, error.to_string())),
-            Err(error) => Err(CaseErrors::without_place(&self.name, error.to_string(), "", None)),
+            Err(error) => Err(self.refused("", error)),
         }
     }
 
     /// The gap of parts that may move.
     fn moving(&self, parts: &[Part], motion: &Motion) -> Result<MovingGap, CaseErrors> {
         let parts: Vec<(Part, bool)> = parts.iter().cloned().zip(motion.moves.iter().copied()).collect();
-        MovingGap::new(&self.grid, self.boundary, &parts)
-            .map_err(|error| self.fault("motion", error.to_string()))
-    }
-
-    /// The gap at the start of a motion.
-    fn moving_gap(&self, parts: &[Part], motion: &Motion) -> Result<Array2<f64>, CaseErrors> {
-        let gap = self.moving(parts, motion)?.at(0.0, motion.direction);
-        gap.map(|(gap, _)| gap).map_err(|error| self.fault("motion", error.to_string()))
-    }
-
-    /// The motion in time, where there is one.
-    fn motion_of(&self, parts: &[Part]) -> Result<Option<asperity::process::Motion>, CaseErrors> {
-        let Some((motion, Travel::Path(path))) = self.motion.as_ref().map(|motion| (motion, &motion.travel))
-        else {
-            return Ok(None);
-        };
-        Ok(Some(asperity::process::Motion {
-            path: path.clone(),
-            direction: motion.direction,
-            gap: self.moving(parts, motion)?,
-            cells_per_step: motion.cells_per_step,
-            shear_stress: motion.shear_stress,
-        }))
+        MovingGap::new(&self.conditions.grid, self.conditions.boundary, &parts).map_err(|error| {
+            let of_motion = error.parameter().is_empty();
+            self.refused(if of_motion { "motion" } else { "" }, error)
+        })
     }
 
     /// The steady states of motion that are asked for, with the slopes of their gap.
@@ -327,28 +282,21 @@ impl Case {
         parts: &[Part],
         simulation: &Simulation,
     ) -> Result<Option<SteadyMotion>, CaseErrors> {
-        let Some((motion, Travel::Steady(velocities))) =
-            self.motion.as_ref().map(|motion| (motion, &motion.travel))
-        else {
+        let Some(motion @ Motion { travel: Travel::Steady(velocities), .. }) = &self.motion else {
             return Ok(None);
         };
-        let (_, slopes) = self
-            .moving(parts, motion)?
-            .at(0.0, motion.direction)
-            .map_err(|error| self.fault("motion", error.to_string()))?;
+        let (_, slopes) = self.moving(parts, motion)?.at(0.0, motion.direction);
         let steady = SteadyMotion {
             direction: motion.direction,
             velocities: velocities.clone(),
             slopes,
             shear_stress: motion.shear_stress,
         };
-        match steady.validate(simulation) {
-            Ok(()) => Ok(Some(steady)),
-            Err(error) => Err(self.fault("motion", error.to_string())),
-        }
+        steady.validate(simulation).map_err(|error| self.refused("motion", error))?;
+        Ok(Some(steady))
     }
 
-    /// What the rows of its run follow one another in.
+    /// The axis along which the rows of its run are ordered.
     pub fn axis(&self) -> Axis {
         match self.motion.as_ref().map(|motion| &motion.travel) {
             Some(Travel::Steady(_)) => Axis::Velocity,
@@ -356,49 +304,15 @@ impl Case {
         }
     }
 
-    /// How the bodies yield in space.
-    pub fn kernel(&self) -> Arc<dyn Kernel> {
-        match &self.layers {
-            Some(layers) => layers.clone(),
-            None => Arc::new(HalfSpace),
-        }
-    }
-
-    /// The simulation with a gap, without the quantities that are asked for.
-    fn with_gap(&self, gap: Array2<f64>) -> Simulation {
-        Simulation {
-            boundary: self.boundary,
-            kernel: self.kernel(),
-            layers: self.waves.clone(),
-            creep: self.creep.clone(),
-            thermal: self.thermal.clone(),
-            hardness: self.hardness,
-            hardness_map: self.hardness_map.clone(),
-            loading: self.loading.clone(),
-            times: self.times.clone(),
-            include: self.include.clone(),
-            scheme: self.scheme,
-            plasticity: self.plasticity,
-            solver: self.solver,
-            ..Simulation::new(self.grid, gap)
-        }
-    }
-
     /// The quantities that are asked for, of this simulation.
     fn quantities(&self, simulation: &Simulation) -> Quantities {
         let steady = self.axis() == Axis::Velocity;
-        let mut wanted = self.output.quantities.clone();
+        let mut wanted = simulation.quantities.clone();
         if self.output.all_quantities {
-            let conditions = Conditions {
-                scheme: simulation.scheme,
-                up_to_a_constant: simulation.is_up_to_a_constant(),
-                waves: self.waves.is_some(),
-                moves: self.motion.is_some(),
-            };
             let possible = |quantity: &Quantity| {
                 let alone = Quantities { list: vec![*quantity], ..wanted.clone() };
                 // Steady motion has no history.
-                conditions.refuse(*quantity).is_none()
+                simulation.allows(*quantity).is_ok()
                     && !(steady && quantity.is_of_time())
                     && simulation.columns_of(&alone).is_ok()
             };
@@ -420,9 +334,19 @@ impl Case {
         wanted
     }
 
-    fn fault(&self, key: &str, reason: String) -> CaseErrors {
+    /// The error that the solver's own check gives, at the key that it names below `key`.
+    fn refused(&self, key: &str, error: Error) -> CaseErrors {
+        self.faults(key, |place| place.core(Err(error)))
+    }
+
+    /// The errors that `report` gives at a key of the case.
+    fn faults(&self, key: &str, report: impl FnOnce(&Place<'_>) -> Option<()>) -> CaseErrors {
         let errors = match Text::parse(&self.source) {
-            Ok(text) => vec![text.fault(text.of(key), &reason, "", "")],
+            Ok(text) => {
+                let checks = Checks::new(&text, Path::new(""));
+                report(&checks.at(key));
+                checks.into_errors()
+            }
             Err(errors) => errors, // cannot be: the source was read before
         };
         CaseErrors { name: self.name.clone(), source: self.source.clone(), errors }
@@ -434,54 +358,53 @@ fn is_inside(key: &str, outer: &str) -> bool {
     key.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
-/// The text with the overrides applied, and the keys that they set.
-fn overridden(name: &str, source: String, overrides: &[String]) -> Result<(String, Vec<String>), CaseErrors> {
-    if overrides.is_empty() {
-        return Ok((source, Vec::new()));
-    }
-    // What is no TOML is reported by the reader, with its place.
-    let Ok(mut document) = source.parse::<toml_edit::DocumentMut>() else { return Ok((source, Vec::new())) };
-    let mut keys = Vec::with_capacity(overrides.len());
-    for text in overrides {
-        let change = Override::parse(text).and_then(|change| change.apply(&mut document).map(|()| change));
-        match change {
-            Ok(change) => keys.push(change.key),
-            Err(reason) => {
-                let message = format!("cannot set {reason}");
-                return Err(CaseErrors::without_place(name, message, "KEY=VALUE", None));
-            }
-        }
-    }
-    Ok((document.to_string(), keys))
+/// A text with overrides applied.
+#[derive(Default)]
+struct Overridden {
+    text: String,
+    /// The keys that they set.
+    keys: Vec<String>,
+    /// For each override that added lines: the line after which they stand, and how many.
+    added: Vec<[usize; 2]>,
 }
 
-/// The text of the file; or what is wrong and what to do.
-fn file_text(path: &Path) -> Result<String, (String, String)> {
-    let file = crate::resources::open(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => {
-            ("there is no such file".to_owned(), "`asperity new TEMPLATE` writes a starter case".to_owned())
-        }
-        std::io::ErrorKind::IsADirectory if path.join("zarr.json").exists() => (
-            "it is a result, not a case file".to_owned(),
-            "asperity show and asperity report read it".to_owned(),
-        ),
-        std::io::ErrorKind::IsADirectory => (error.to_string(), "name a case file".to_owned()),
-        _ => (format!("the file cannot be read: {error}"), "check the path and its permissions".to_owned()),
-    })?;
-    let mut bytes = Vec::new();
-    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| {
-        (format!("the file cannot be read: {error}"), "check the path and its permissions".to_owned())
-    })?;
-    if bytes.len() as u64 > MOST_BYTES {
-        let reason = format!("the file is larger than {} MB, the limit for a case file", MOST_BYTES >> 20);
-        return Err((reason, "name a TOML case file".to_owned()));
+fn overridden(name: &str, source: String, overrides: &[String]) -> Result<Overridden, CaseErrors> {
+    let mut result = Overridden { text: source, ..Overridden::default() };
+    if overrides.is_empty() {
+        return Ok(result);
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let byte = error.utf8_error().valid_up_to();
-        let line = 1 + error.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count();
-        (
-            format!("the file is not UTF-8 text (line {line}, byte {byte})"),
-            "name a TOML case file, saved as UTF-8".to_owned(),
-        )
+    // What is no TOML is reported by the reader, with its place.
+    let Ok(mut document) = result.text.parse::<toml_edit::DocumentMut>() else { return Ok(result) };
+    for change in overrides {
+        let change = Override::parse(change).and_then(|change| change.apply(&mut document).map(|()| change));
+        let change = change.map_err(|reason| {
+            CaseErrors::without_place(Code::Syntax, name, format!("cannot set {reason}"), "KEY=VALUE", None)
+        })?;
+        let text = document.to_string();
+        let same = text.lines().zip(result.text.lines()).take_while(|(new, old)| new == old).count();
+        let more = text.lines().count().saturating_sub(result.text.lines().count());
+        result.added.push([same, more]);
+        result.keys.push(change.key);
+        result.text = text;
+    }
+    Ok(result)
+}
+
+/// The line of the file that a line of the text with overrides was, or that stands before it.
+fn line_of_file(line: usize, added: &[[usize; 2]]) -> usize {
+    added.iter().rev().fold(line, |line, [after, count]| line.saturating_sub(*count).max(line.min(*after)))
+}
+
+/// The text of a case file; or what is wrong and what to do.
+fn file_text(path: &Path) -> Result<String, (String, Option<String>)> {
+    crate::resources::text(path, MOST_BYTES).map_err(|reason| {
+        let help = if !path.exists() {
+            "`asperity new TEMPLATE` writes a starter case"
+        } else if path.join("zarr.json").exists() {
+            "this is a result; asperity show and asperity report read it"
+        } else {
+            "name a case file: TOML, saved as UTF-8"
+        };
+        (reason, Some(help.to_owned()))
     })
 }

@@ -15,6 +15,7 @@ use super::pair::Pair;
 use super::plan::{Motion as Moving, Travel};
 use super::surface::Surface;
 use super::words::number;
+use crate::Code;
 
 /// Velocities of a sweep, at most.
 const MOST: usize = 10_000;
@@ -167,7 +168,7 @@ impl Motion {
         let start = self.start.map_or(0.0, Time::get);
         // There is no earlier value in a history of these.
         let history = |key: &str, history: &History, kind| {
-            history.read(&at.key(key), kind, "").map(|read| read.history)
+            history.read(&at.key(key), kind, "").map(|(history, _)| history)
         };
         let travel = match (&self.velocity, &self.path) {
             (Some(velocity), _) => {
@@ -221,7 +222,7 @@ impl Motion {
     ) -> Option<()> {
         if self.start.is_some_and(|start| start.get() >= end) {
             at.key("start").fault::<()>(
-                "the motion starts when the run is over",
+                "the motion starts after the end of the run",
                 "a time before the end",
                 "",
             );
@@ -322,9 +323,18 @@ impl Steady {
         if list.is_empty() || list.len() > MOST {
             return at.wrong(format!("between 1 and {MOST} velocities"), "");
         }
+        if let Some(velocity) = list.iter().find(|velocity| !velocity.is_finite()) {
+            let message = format!("the range reaches a velocity of {velocity} m/s");
+            return at.refuse(
+                Code::OutOfRange,
+                message,
+                "finite velocities",
+                "bring its ends closer together",
+            );
+        }
         list.sort_by(f64::total_cmp);
         if let Some(pair) = list.windows(2).find(|pair| pair[0] == pair[1]) {
-            let message = format!("the velocity {} m/s stands twice", number(pair[0]));
+            let message = format!("the list has the velocity {} m/s twice", number(pair[0]));
             return at.fault(message, "each velocity once", "");
         }
         Some(list)
@@ -356,7 +366,7 @@ impl Moving {
 
     /// The times that count for the material in steady states: between that of a cell and that of the domain. `None` of a motion
     /// in time.
-    pub(super) fn times(&self, grid: &Grid) -> Option<TimeGrid> {
+    pub(super) fn times(&self, at: &Place<'_>, grid: &Grid) -> Option<TimeGrid> {
         let Travel::Steady(velocities) = &self.travel else { return None };
         let moving = velocities.iter().filter(|v| **v > 0.0);
         let (slowest, fastest) = moving.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));
@@ -366,6 +376,15 @@ impl Moving {
         let cell = grid.cell_sides().fold(f64::INFINITY, f64::min);
         let around = std::f64::consts::TAU;
         let [first, last] = [2.0 * cell / fastest / around, grid.longest_side() / slowest / around];
+        if !(first > 0.0 && last.is_finite()) {
+            let message = format!(
+                "the contact crosses a cell in {first:e} s at the largest velocity, and the domain in {last:e} s at the smallest one \
+                 above 0"
+            );
+            let help = "leave out velocities that no contact has";
+            let at = at.key("steady").key("velocities");
+            return at.refuse(Code::OutOfRange, message, "finite times above 0", help);
+        }
         Some(TimeGrid::List(vec![first.min(0.5 * last), last]))
     }
 

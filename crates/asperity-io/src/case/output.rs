@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 
 use asperity::quantities::{Quantities, Quantity};
-use asperity::{Method, Plasticity, Programme, Scheme, SolverOptions, TimeGrid};
+use asperity::{Method, Plasticity, Programme, Simulation, SolverOptions, TimeGrid};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde_json::{Value, json};
 
@@ -12,6 +12,7 @@ use super::keys::*;
 use super::plan::{Output, Rows};
 use super::time;
 use super::words::{nearest, number};
+use crate::Code;
 use crate::store::FieldKind;
 
 /// How each step is solved.
@@ -80,7 +81,7 @@ impl Scalar for Wanted {
                 Some(near) => format!("did you mean \"{near}\"?"),
                 None => format!("the quantities: {}", Quantity::ALL.map(Quantity::name).join(", ")),
             };
-            QuantityError { expected: Self::expected(), help: Some(help) }
+            QuantityError { code: Code::UnknownKind, expected: Self::expected(), help: Some(help) }
         })
     }
 }
@@ -118,48 +119,6 @@ struct Histogram {
     gap: Option<Length<Positive>>,
 }
 
-/// What a run does that decides which quantities its rows have.
-#[derive(Clone, Copy)]
-pub struct Conditions {
-    pub scheme: Scheme,
-    /// Whether displacements are known up to a constant.
-    pub up_to_a_constant: bool,
-    /// Whether layers creep differently.
-    pub waves: bool,
-    /// Whether the contact moves.
-    pub moves: bool,
-}
-
-impl Conditions {
-    /// Why the rows do not have a quantity, and what to do.
-    pub fn refuse(&self, quantity: Quantity) -> Option<(String, &'static str)> {
-        if quantity.is_of_motion() && !self.moves {
-            let why = "this quantity belongs to a contact in motion, but the case has no [motion]".to_owned();
-            return Some((why, "leave it out, or add [motion]: its rows have it"));
-        }
-        if quantity.is_of_time() && self.up_to_a_constant {
-            return Some((
-                format!(
-                    "\"{quantity}\" depends on displacements, which a line contact on a free domain knows up to a constant only"
-                ),
-                "leave it out, or take a periodic domain: domain.boundary = \"periodic\"",
-            ));
-        }
-        if quantity.is_energy() && self.scheme == Scheme::Direct {
-            let why = format!(
-                "{quantity} needs the springs and dashpots of the material, which scheme = \"direct\" does not use"
-            );
-            return Some((why, "set time.scheme to \"linear\" or \"constant\""));
-        }
-        if (quantity.is_energy() || quantity == Quantity::ContactStiffness) && self.waves {
-            let why =
-                format!("{quantity} is asked for: this is not solved for layers that creep differently");
-            return Some((why, "omit it, or give all layers and bodies the same relative creep"));
-        }
-        None
-    }
-}
-
 impl Solver {
     pub fn options(&self) -> SolverOptions {
         let default = SolverOptions::default();
@@ -167,17 +126,6 @@ impl Solver {
             method: self.method,
             tolerance: self.tolerance.map_or(default.tolerance, Number::get),
             max_iterations: self.max_iterations.map_or(default.max_iterations, Whole::count),
-        }
-    }
-
-    /// Refuses flattening that stays where nothing is flattened.
-    pub fn possible(&self, at: &Place<'_>, capped: bool) {
-        if self.plasticity == Plasticity::Accumulate && !capped {
-            at.key("plasticity").fault::<()>(
-                "plasticity = \"accumulate\" needs a hardness, but no body has one",
-                "\"cap\", or a hardness of a body",
-                "give a body its `hardness`",
-            );
         }
     }
 }
@@ -199,7 +147,6 @@ impl OutputKeys {
             path: self.path.as_ref().map_or(default_path, PathBuf::from),
             fields: self.fields.clone().unwrap_or_else(usual).into_iter().collect(),
             rows: self.rows(at, times?, programme)?,
-            quantities: self.quantities(),
             all_quantities: self.quantities.contains(&Wanted(None)),
             checkpoint: self.checkpoint.unwrap_or(true),
         })
@@ -241,7 +188,7 @@ impl OutputKeys {
     }
 
     /// The quantities that are named, each once, and their bins.
-    fn quantities(&self) -> Quantities {
+    pub fn quantities(&self) -> Quantities {
         let mut list: Vec<Quantity> = vec![];
         for (_, quantity) in self.named() {
             if !list.contains(&quantity) {
@@ -257,32 +204,23 @@ impl OutputKeys {
         quantities
     }
 
-    /// Refuses what the run does not have; `capped` where there is a hardness.
-    pub fn possible(&self, at: &Place<'_>, plasticity: Plasticity, conditions: &Conditions, capped: bool) {
+    /// Refuses what the rows of a run under these `conditions` do not have; whether the contact `moves`.
+    pub fn possible(&self, at: &Place<'_>, conditions: &Simulation, moves: bool) {
         let flattening = self.fields.iter().flatten().position(|field| *field == FieldKind::Flattening);
-        if let Some(n) = flattening.filter(|_| plasticity == Plasticity::Cap) {
+        if let Some(n) = flattening.filter(|_| conditions.plasticity == Plasticity::Cap) {
             let message = "there is no permanent flattening with plasticity = \"cap\"";
             let help = "set solver.plasticity = \"accumulate\"";
             at.key("fields").item(n).fault::<()>(message, "another field", help);
         }
         for (n, quantity) in self.named() {
-            if let Some((message, help)) = conditions.refuse(quantity) {
-                at.key("quantities").item(n).fault::<()>(message, "another quantity", help);
+            let at = at.key("quantities").item(n);
+            if quantity.is_of_motion() && !moves {
+                let message = "this quantity belongs to a contact in motion, but the case has no [motion]";
+                let help = "leave it out, or add [motion]: its rows have it";
+                at.fault::<()>(message, "another quantity", help);
+            } else {
+                at.core(conditions.allows(quantity));
             }
         }
-        at.core(self.quantities().validate(capped));
-    }
-
-    /// Fields that dents and quantities take besides, in units of 16 bytes per cell: the dented gap and its copy in a
-    /// checkpoint; the vectors of the contact stiffness; the forest of contact spots.
-    pub fn extra_fields(&self, plasticity: Plasticity) -> usize {
-        use Quantity::{ContactSpots, ContactStiffness, LargestSpot, MeanSpot, SpotHistogram};
-        let wants = |list: &[Quantity]| {
-            self.quantities.iter().any(|wanted| wanted.0.is_none_or(|quantity| list.contains(&quantity)))
-        };
-        let stiffness = wants(&[ContactStiffness]);
-        let spots = wants(&[ContactSpots, LargestSpot, MeanSpot, SpotHistogram]);
-        let dents = plasticity == Plasticity::Accumulate;
-        usize::from(dents) + 3 * usize::from(stiffness) + usize::from(spots)
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use asperity::finding::{self, Finding};
 use asperity::history::check_layers;
+use asperity::kernel::{HalfSpace, Kernel};
 use asperity::layer::{Layered, NonseparableLayers, Response, response};
 use asperity::material::{Body, Creep, ReducedTime, ThermalCreep, pair_hardness};
 use asperity::time::Plan;
@@ -16,15 +17,6 @@ use super::place::Place;
 use super::warmth::{Course, Warmth, at_temperature, warmth};
 use super::words::number;
 
-/// One body or layer, ready for the contact.
-struct Made {
-    body: Body,
-    creep: Creep,
-    clock: Option<ReducedTime>,
-    report: MaterialReport,
-    findings: Vec<Finding>,
-}
-
 /// The bodies, and what the pair of them is to the contact.
 pub struct Pair {
     /// What they consist of: each half-space, layer and base.
@@ -33,7 +25,7 @@ pub struct Pair {
     pub layers: Option<Arc<Layered>>,
     /// How their waves creep, where they creep differently.
     pub waves: Option<Arc<NonseparableLayers>>,
-    /// Contact creep compliance [1/Pa] of each body without layers, and its clock where its temperature changes.
+    /// Contact creep compliance [1/Pa] of each of `bodies`, and its clock where its temperature changes.
     pub creeps: Vec<(Creep, Option<ReducedTime>)>,
     /// Contact creep compliance of the bodies of constant temperature [1/Pa].
     pub creep: Creep,
@@ -68,10 +60,12 @@ impl Pair {
         self.creep.instantaneous + self.thermal.iter().map(|body| body.creep.instantaneous).sum::<f64>()
     }
 
-    /// Fields that the memory keeps.
-    pub fn branches(&self) -> usize {
-        let parts = std::iter::once(&self.creep).chain(self.thermal.iter().map(|body| &body.creep));
-        parts.map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum()
+    /// How the bodies yield in space.
+    pub fn kernel(&self) -> Arc<dyn Kernel> {
+        match &self.layers {
+            Some(layers) => layers.clone(),
+            None => Arc::new(HalfSpace),
+        }
     }
 }
 
@@ -80,27 +74,23 @@ pub fn pair(
     list: &Place<'_>,
     bodies: &[body::Body],
     parts: &[Part<'_>],
-    samples: &[Option<Sample>],
     course: &Course<'_>,
 ) -> Option<Pair> {
     if bodies.len() > 2 {
-        return list.item(2).wrong("one of at most two bodies", "a missing second body is rigid");
+        let help = "write a coating as [[body.layer]] of its body; a rigid body is left out";
+        return list.item(2).fault(
+            "a contact has one or two bodies, and this is the third",
+            "two bodies",
+            help,
+        );
     }
     let warmths: Vec<Option<Warmth>> = parts
         .iter()
-        .zip(samples)
-        .map(|(part, sample)| part.at.key("material").core(warmth(sample.as_ref()?, course)))
+        .map(|part| part.at.key("material").core(warmth(part.sample.as_ref()?, course)))
         .collect();
-    let clocks = warmths.iter().flatten().filter_map(Warmth::clock);
+    let clocks = warmths.iter().flatten().filter_map(|warmth| warmth.clock.as_ref());
     let end = course.end.unwrap_or(0.0);
     let plan = (course.plan)(&clocks.flat_map(|clock| clock.breaks(end)).collect::<Vec<f64>>());
-    let made: Vec<_> = parts
-        .iter()
-        .zip(samples)
-        .zip(warmths)
-        .map(|((part, sample), warmth)| made(part, sample.as_ref(), warmth, &plan, course))
-        .collect();
-    let made = made.into_iter().collect::<Option<Vec<Made>>>()?;
     let mut pair = Pair {
         bodies: Vec::new(),
         layers: None,
@@ -113,53 +103,26 @@ pub fn pair(
         findings: Vec::new(),
         plan,
     };
-    let layered = bodies.iter().any(|body| !body.layer.is_empty());
-    if layered {
-        let response = respond(list, bodies, parts, &made)?;
-        pair.layers = Some(Arc::new(response.kernel));
-        pair.waves = response.waves;
-        match made.first().and_then(|made| made.clock.clone()) {
-            Some(clock) => pair.thermal.push(ThermalCreep { creep: response.creep, clock }),
-            None => pair.creep = response.creep,
-        }
-    }
-    for made in made {
-        if !layered {
-            pair.creeps.push((made.creep, made.clock));
-        }
-        pair.bodies.push(made.body);
-        pair.findings.extend(made.findings);
-        pair.reports.push(made.report);
-    }
-    if !layered {
-        pair.sum();
-    }
+    // All of them are looked at, also after one that is wrong.
+    let added: Vec<_> =
+        parts.iter().zip(warmths).map(|(part, warmth)| pair.add(part, warmth, course)).collect();
+    added.into_iter().collect::<Option<()>>()?;
     pair.hardness = pair_hardness(&pair.bodies);
+    if bodies.iter().all(|body| body.layer.is_empty()) {
+        pair.sum();
+        return Some(pair);
+    }
+    let response = pair.respond(list, bodies, parts)?;
+    pair.layers = Some(Arc::new(response.kernel));
+    pair.waves = response.waves;
+    match pair.creeps.first().and_then(|(_, clock)| clock.clone()) {
+        Some(clock) => pair.thermal.push(ThermalCreep { creep: response.creep, clock }),
+        None => pair.creep = response.creep,
+    }
     Some(pair)
 }
 
-fn made(
-    part: &Part<'_>,
-    sample: Option<&Sample>,
-    warmth: Option<Warmth>,
-    plan: &Plan,
-    course: &Course<'_>,
-) -> Option<Made> {
-    let lateral = part.lateral()?;
-    let (sample, warmth, name) = (sample?, warmth?, part.name.clone());
-    let window = warmth.window(plan);
-    let place = part.at.key("material");
-    let (material, report, outside) =
-        at_temperature(&place, sample, warmth.constant(), window, course.beyond)?;
-    let mut findings = findings(&name, &report, window, outside);
-    findings.extend(finding::unlikely_temperature(&name, coldest(sample, course.temperatures)));
-    let report = MaterialReport { body: name.clone(), ..report };
-    let body = Body { name, material, lateral, hardness: part.hardness };
-    let creep = part.at.core(body.contact_creep())?;
-    Some(Made { body, creep, clock: warmth.clock().cloned(), report, findings })
-}
-
-/// The lowest temperature that a material with a shift is told \[K\]; infinite without a shift.
+/// The lowest temperature of a material with a shift \[K\]: that of its shift, its own or that of the run; infinite without a shift.
 fn coldest(sample: &Sample, course: Option<&[(f64, f64)]>) -> f64 {
     let Some(shift) = &sample.shift else { return f64::INFINITY };
     let course = course.unwrap_or_default().iter().map(|point| point.1);
@@ -190,34 +153,47 @@ fn findings(
     misfit.into_iter().chain(other).chain(beyond).chain(left_out).collect()
 }
 
-/// What the bodies are to the contact. `made` are the `parts`, in their order.
-fn respond(list: &Place<'_>, bodies: &[body::Body], parts: &[Part<'_>], made: &[Made]) -> Option<Response> {
-    let body = |(n, body): (usize, &body::Body)| {
-        let of_body = parts.iter().zip(made).filter(|(part, _)| part.body == n);
-        body.of(of_body.map(|(_, made)| made.body.clone()))
-    };
-    let all: Vec<_> = bodies.iter().enumerate().map(body).collect();
-    let found = match made.iter().position(|one| one.clock != made[0].clock) {
-        None => response(&all),
-        Some(n) => Err(Error::invalid(
-            format!("temperature shift of {}", parts[n].name),
-            format!("not that of {}", parts[0].name),
-            "the same law for all layers and bodies while the temperature changes: otherwise waves of different lengths creep \
-             differently, which is not solved yet. Give all of them the same `shift`, or hold the temperature constant",
-        )
-        .of(&parts[n].at.key)),
-    };
-    let layered = list.item(bodies.iter().position(|body| !body.layer.is_empty())?);
-    if let Ok(Response { waves: Some(_), .. }) = &found
-        && made.iter().any(|one| one.clock.is_some())
-    {
-        let message = "the temperature changes, and the layers creep differently: this is not solved";
-        let help = "hold the temperature constant, or give all layers the same relative creep";
-        return layered.fault(message, "layers of one relative creep", help);
+impl Pair {
+    /// Adds a body or layer, as warm as it is.
+    fn add(&mut self, part: &Part<'_>, warmth: Option<Warmth>, course: &Course<'_>) -> Option<()> {
+        let lateral = part.lateral()?;
+        let (sample, warmth, name) = (part.sample.as_ref()?, warmth?, part.name.clone());
+        let window = warmth.window(&self.plan);
+        let Warmth { constant, clock } = warmth;
+        let place = part.at.key("material");
+        let (material, report, outside) = at_temperature(&place, sample, constant, window, course.beyond)?;
+        let body = Body { name: name.clone(), material, lateral, hardness: part.hardness };
+        self.creeps.push((part.at.core(body.contact_creep())?, clock));
+        self.bodies.push(body);
+        self.findings.extend(findings(&name, &report, window, outside));
+        self.findings.extend(finding::unlikely_temperature(&name, coldest(sample, course.temperatures)));
+        self.reports.push(MaterialReport { body: name, ..report });
+        Some(())
     }
-    match &found {
-        Err(Error::Invalid { parameter, .. }) if !parameter.is_empty() => list.sibling(parameter).core(found),
-        _ => layered.core(found),
+
+    /// What bodies with layers are to the contact. Those of the pair are the `parts`, in their order.
+    fn respond(&self, list: &Place<'_>, bodies: &[body::Body], parts: &[Part<'_>]) -> Option<Response> {
+        let body = |(n, body): (usize, &body::Body)| {
+            let of_body = parts.iter().zip(&self.bodies).filter(|(part, _)| part.body == n);
+            body.of(of_body.map(|(_, body)| body.clone()))
+        };
+        let all: Vec<_> = bodies.iter().enumerate().map(body).collect();
+        let found = match self.creeps.iter().position(|(_, clock)| *clock != self.creeps[0].1) {
+            None => response(&all),
+            Some(n) => Err(Error::invalid(
+                format!("temperature shift of {}", parts[n].name),
+                format!("not that of {}", parts[0].name),
+                "the same law for all layers and bodies. While the temperature changes, waves of different lengths would creep \
+                 differently, which is not solved; give all of them the same `shift`, or hold the temperature constant",
+            )
+            .of(&parts[n].at.key)),
+        };
+        match &found {
+            Err(Error::Invalid { parameter, .. }) if !parameter.is_empty() => {
+                list.sibling(parameter).core(found)
+            }
+            _ => list.item(bodies.iter().position(|body| !body.layer.is_empty())?).core(found),
+        }
     }
 }
 

@@ -8,9 +8,11 @@ use asperity::{Error, Grid};
 use ndarray::Array2;
 
 use super::error::CaseError;
-use super::text::{MOST_ERRORS, Spot, Text, join};
+use super::text::{MOST_ERRORS, Spot, Text, in_order, join};
 use super::words;
 use crate::quantity::QuantityError;
+use crate::resources::{open, why};
+use crate::{Code, choice};
 
 /// The text of a case, and the faults found so far.
 pub struct Checks<'c> {
@@ -42,7 +44,7 @@ impl<'c> Checks<'c> {
     /// The faults in the order of their places.
     pub fn into_errors(self) -> Vec<CaseError> {
         let mut errors = self.errors.into_inner();
-        errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
+        in_order(&mut errors);
         errors
     }
 }
@@ -101,21 +103,26 @@ impl<'c> Place<'c> {
         None
     }
 
-    /// A sentence says best what is wrong. No `help` is an empty one.
+    /// Keys that do not go together: a sentence says best what is wrong. No `help` is an empty one.
     pub fn fault<T>(&self, message: impl Display, expected: &str, help: &str) -> Option<T> {
-        self.push(|text, spot| text.fault(spot, &message.to_string(), expected, help))
+        self.refuse(Code::Conflict, message, expected, help)
+    }
+
+    /// Any fault that a sentence says best.
+    pub fn refuse<T>(&self, code: Code, message: impl Display, expected: &str, help: &str) -> Option<T> {
+        self.push(|text, spot| text.fault(code, spot, &message.to_string(), expected, help))
     }
 
     /// The value is not what is expected.
     pub fn wrong<T>(&self, expected: impl Display, help: &str) -> Option<T> {
-        self.push(|text, spot| text.wrong(spot, &expected.to_string(), help))
+        self.push(|text, spot| text.wrong(Code::OutOfRange, spot, &expected.to_string(), help))
     }
 
-    /// A fault whose message names the key itself.
-    pub fn error<T>(&self, message: impl Display, expected: &str, help: &str) -> Option<T> {
+    /// Keys of the table that are needed, or do not go together; the message names the table itself.
+    pub fn error<T>(&self, code: Code, message: impl Display, expected: &str, help: &str) -> Option<T> {
         self.push(|text, spot| {
             let value = Some(text.value(&spot));
-            text.error(spot, value, expected, help, message.to_string())
+            text.error(code, spot, value, expected, help, message.to_string())
         })
     }
 
@@ -134,19 +141,40 @@ impl<'c> Place<'c> {
             Ok(value) => return Some(value),
             Err(error) => error,
         };
-        match &error {
-            Error::Invalid { parameter, expected, .. } if self.has(parameter) => {
-                self.key(parameter).fault(&error, expected, "")
-            }
-            Error::Invalid { expected, .. } => self.fault(&error, expected, ""),
-            _ => self.fault(&error, "", ""),
+        let expected = match &error {
+            Error::Invalid { expected, .. } => expected.split(". ").next().unwrap_or_default(),
+            _ => "",
+        };
+        let code = choice::parse(error.code()).unwrap_or(Code::OutOfRange);
+        self.given(error.parameter()).refuse(code, &error, expected, "")
+    }
+
+    /// The key with this path inside the table, or the innermost one on the way to it that the case gives.
+    fn given(&self, path: &str) -> Place<'c> {
+        // A single stage stands in [load] itself.
+        let path = match path.strip_prefix("load.stages[0]") {
+            Some(rest) if !self.has("load.stages") => format!("load{rest}"),
+            _ => path.to_owned(),
+        };
+        let ends = path.rmatch_indices(['.', '[']).map(|(end, _)| end);
+        let found = std::iter::once(path.len()).chain(ends).find(|end| self.has(&path[..*end]));
+        found.map_or_else(|| self.clone(), |end| self.key(&path[..end]))
+    }
+
+    /// What was read from the file that the key names.
+    pub fn data<T>(&self, result: Result<T, impl Display>, expected: &str) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(error) => self.refuse(Code::Data, error, expected, ""),
         }
     }
 
     pub fn quantity<T>(&self, result: Result<T, QuantityError>) -> Option<T> {
         match result {
             Ok(value) => Some(value),
-            Err(error) => self.wrong(error.expected, error.help.as_deref().unwrap_or_default()),
+            Err(QuantityError { code, expected, help }) => {
+                self.push(|text, spot| text.wrong(code, spot, &expected, help.as_deref().unwrap_or_default()))
+            }
         }
     }
 
@@ -163,11 +191,13 @@ impl<'c> Place<'c> {
         }
         let names: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
         let (path, names) = (&self.key, names.join(" or "));
-        let message = match given.is_empty() {
-            true => format!("{path} needs {names}"),
-            false => format!("{path} has {}, but needs only one of them", given.join(" and ")),
+        let (code, message) = match given.is_empty() {
+            true => (Code::MissingKey, format!("{path} needs {names}")),
+            false => {
+                (Code::Conflict, format!("{path} has {}, but needs only one of them", given.join(" and ")))
+            }
         };
-        self.push(|text, spot| text.error(spot, None, &names, "", message))
+        self.push(|text, spot| text.error(code, spot, None, &names, "", message))
     }
 
     /// Refuses keys of the table that something else excludes; `None` where one is given. `why` ends the message
@@ -183,14 +213,9 @@ impl<'c> Place<'c> {
     /// The path of an existing file, relative to the case file.
     pub fn file(&self, path: &str) -> Option<PathBuf> {
         let full = self.checks.dir.join(path);
-        let reason = match std::fs::metadata(&full) {
-            Ok(metadata) if metadata.is_file() => return Some(full),
-            Ok(_) => "is not a file".to_owned(),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => "does not exist".to_owned(),
-            Err(error) => format!("cannot be read: {error}"),
-        };
-        let message = format!("{} {reason}", full.display());
-        self.fault(message, "a file", "paths are relative to the directory of the case file")
+        let Err(error) = open(&full) else { return Some(full) };
+        let message = format!("{}: {}", full.display(), why(&error));
+        self.refuse(Code::File, message, "a file", "paths are relative to the directory of the case file")
     }
 
     /// The values, where each is larger than the one before.

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use asperity::quantities::Quantities;
-use asperity::sliding::{Direction, Path};
+use asperity::sliding::{Direction, MovingGap, Path};
+
 use asperity::surface::Part;
 
 use super::measured::Measured;
@@ -36,6 +36,20 @@ pub struct Motion {
     pub shear_stress: Option<f64>,
 }
 
+impl Motion {
+    /// The motion in time of this gap; `None` for steady states.
+    pub(super) fn in_time(&self, gap: MovingGap) -> Option<asperity::process::Motion> {
+        let Travel::Path(path) = &self.travel else { return None };
+        Some(asperity::process::Motion {
+            path: path.clone(),
+            direction: self.direction,
+            gap,
+            cells_per_step: self.cells_per_step,
+            shear_stress: self.shear_stress,
+        })
+    }
+}
+
 /// A motion in time, or steady states.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Travel {
@@ -54,8 +68,6 @@ pub struct Output {
     pub fields: BTreeSet<FieldKind>,
     /// The rows whose fields are stored.
     pub rows: Rows,
-    /// The quantities of each row; with `all_quantities` those that the case allows are added.
-    pub quantities: Quantities,
     /// Whether every quantity that the case allows is wanted.
     pub all_quantities: bool,
     /// Whether the run leaves what it needs to be resumed.
@@ -71,7 +83,7 @@ pub enum Rows {
     At(Vec<f64>),
 }
 
-/// Times that agree to this share are the same: "0.1 s" times 3 is not quite "0.3 s".
+/// Times that differ by less than this share are equal: "0.1 s" times 3 is not quite "0.3 s".
 const SAME: f64 = 1e-9;
 
 impl Rows {

@@ -1,5 +1,7 @@
 //! The steps that prepare a measured surface: `process = [...]`, and the same steps as keys of a `[[surface]]`.
 
+use std::collections::BTreeSet;
+
 use asperity::surface::process::{self, Axis, Band, Edge, Resampling};
 use asperity::surface::{self, Fill, Level};
 
@@ -7,13 +9,13 @@ use super::keys::*;
 use super::surface::File;
 use crate::preparation::{self, Step};
 
-/// More of a surface than this is not filled unless told: it would be invention, not measurement.
+/// Largest share of a surface that is filled by default; more would be invention, not measurement.
 const FILL_SHARE: f64 = 0.25;
 /// Share of the length over which Tukey's window rises and falls.
 const TUKEY_SHARE: f64 = 0.1;
 
 /// One processing step of a measured surface.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 #[schemars(tag = "op")]
 pub enum Operation {
@@ -63,7 +65,7 @@ pub enum Operation {
 }
 
 /// A circle to subtract from a profile.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Circle {
     /// Its radius; the one that fits best if not given.
@@ -72,7 +74,7 @@ pub struct Circle {
 }
 
 /// A rectangle to keep: `cells` (counts) or `size` (lengths) or `defined = true`.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Crop {
     /// Number of cells kept along x and y; this, `size` or `defined`.
@@ -93,7 +95,7 @@ pub struct Crop {
 }
 
 /// The wavelengths that are kept; give `longest`, `shortest` or both.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Filter {
     /// Longest wavelength kept (high-pass); without it all long waves and the mean are kept.
@@ -107,7 +109,7 @@ pub struct Filter {
 }
 
 /// A window along each axis, scaled to mean square 1.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Window {
     /// "hann" or "tukey"; "hann" if not given.
@@ -130,7 +132,7 @@ pub enum WindowShape {
 }
 
 /// Points far from the median of their neighbourhood.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Outliers {
     /// Robust standard deviations from the local median; 6 if not given.
@@ -146,23 +148,15 @@ pub struct Outliers {
 /// Without `process`: crop, flip, rotate, invert, level, outliers (and level again without them), fill, circle, filter,
 /// window, resample.
 pub fn steps(at: &Place<'_>, file: &File) -> Option<Vec<Step>> {
-    let Some(process) = &file.process else { return plain(at, file) };
-    let keys = [
-        "crop",
-        "flip",
-        "rotate",
-        "invert",
-        "level",
-        "outliers",
-        "fill",
-        "fill_share",
-        "circle",
-        "filter",
-        "window",
-        "resample",
-    ];
+    let operations = operations(file);
+    let Some(process) = &file.process else {
+        let given =
+            operations.iter().filter_map(|(key, operation)| Some(operation.as_ref()?.step(&at.key(key))));
+        return given.collect();
+    };
+    let keys: BTreeSet<&str> = operations.iter().map(|(key, _)| *key).chain(["fill_share"]).collect();
     let alone = at.without(
-        &keys,
+        &Vec::from_iter(keys),
         "cannot be combined with `process`, which lists all steps",
         "either `process` or single keys",
         "add it to `process` as a step, in the order wanted",
@@ -173,32 +167,24 @@ pub fn steps(at: &Place<'_>, file: &File) -> Option<Vec<Step>> {
     alone.and(steps.into_iter().collect())
 }
 
-fn plain(at: &Place<'_>, file: &File) -> Option<Vec<Step>> {
-    let crop = file.crop.as_ref().map(|crop| crop.step(&at.key("crop")));
-    let flip = file.flip.map(surface::Operation::Flip);
-    let rotate = file.rotate.map(|turns| surface::Operation::Rotate { quarter_turns: turns.get() });
-    let invert = (file.invert == Some(true)).then_some(surface::Operation::Invert);
-    let form = file.level.unwrap_or(Level::Plane);
-    let level = (form != Level::None).then_some(surface::Operation::Level(form));
-    let outliers = file.outliers.as_ref().map(Outliers::step);
-    // Spikes tilt the form; without them it is fitted anew.
-    let again = level.filter(|_| outliers.is_some());
-    let fill = surface::Operation::Fill {
-        method: file.fill.unwrap_or_default(),
-        largest_share: file.fill_share.map_or(FILL_SHARE, Number::get),
-    };
-    let operations = |list: Vec<Option<surface::Operation>>| {
-        list.into_iter().flatten().map(|operation| Some(Step::Operation(operation)))
-    };
-    let steps = (crop.into_iter())
-        .chain(operations(vec![flip, rotate, invert, level]))
-        .chain(outliers.map(Some))
-        .chain(operations(vec![again, Some(fill)]))
-        .chain(file.circle.as_ref().map(|circle| Some(circle.step())))
-        .chain(file.filter.as_ref().map(|filter| filter.step(&at.key("filter"))))
-        .chain(file.window.as_ref().map(|window| window.step(&at.key("window"))))
-        .chain(file.resample.map(|method| Some(Step::Resample { cells: None, method })));
-    steps.collect()
+/// The operations of the single keys, in their order.
+fn operations(file: &File) -> [(&'static str, Option<Operation>); 12] {
+    let level = || (file.level != Some(Level::None)).then_some(Operation::Level { form: file.level });
+    [
+        ("crop", file.crop.clone().map(Operation::Crop)),
+        ("flip", file.flip.map(|axis| Operation::Flip { axis })),
+        ("rotate", file.rotate.map(|turns| Operation::Rotate { quarter_turns: Some(turns) })),
+        ("invert", (file.invert == Some(true)).then_some(Operation::Invert {})),
+        ("level", level()),
+        ("outliers", file.outliers.clone().map(Operation::Outliers)),
+        // Spikes tilt the form; without them it is fitted anew.
+        ("level", file.outliers.as_ref().and_then(|_| level())),
+        ("fill", Some(Operation::Fill { method: file.fill, share: file.fill_share })),
+        ("circle", file.circle.clone().map(Operation::Circle)),
+        ("filter", file.filter.clone().map(Operation::Filter)),
+        ("window", file.window.clone().map(Operation::Window)),
+        ("resample", file.resample.map(|method| Operation::Resample { method: Some(method), cells: None })),
+    ]
 }
 
 impl Operation {
@@ -215,23 +201,19 @@ impl Operation {
                 surface::Operation::Rotate { quarter_turns: quarter_turns.map_or(1, Signed::get) }
             }
             Operation::Invert {} => surface::Operation::Invert,
+            Operation::Outliers(outliers) => surface::Operation::RemoveOutliers(outliers.or_default()),
             Operation::Resample { method, cells } => {
                 let cells = cells.map(|cells| cells.map(Whole::count));
                 return Some(Step::Resample { cells, method: method.unwrap_or_default() });
             }
             Operation::Crop(crop) => return crop.step(at),
-            Operation::Filter(filter) => return filter.step(at),
-            Operation::Window(window) => return window.step(at),
-            Operation::Outliers(outliers) => return Some(outliers.step()),
-            Operation::Circle(circle) => return Some(circle.step()),
+            Operation::Filter(filter) => surface::Operation::Filter(filter.band(at)?),
+            Operation::Window(window) => surface::Operation::Window(window.window(at)?),
+            Operation::Circle(circle) => {
+                return Some(Step::Circle { radius: circle.radius.map(Length::get) });
+            }
         };
         Some(Step::Operation(operation))
-    }
-}
-
-impl Circle {
-    fn step(&self) -> Step {
-        Step::Circle { radius: self.radius.map(Length::get) }
     }
 }
 
@@ -270,7 +252,7 @@ impl Crop {
 }
 
 impl Filter {
-    fn step(&self, at: &Place<'_>) -> Option<Step> {
+    fn band(&self, at: &Place<'_>) -> Option<Band> {
         let [longest, shortest] = [self.longest, self.shortest].map(|length| length.map(Length::get));
         if longest.or(shortest).is_none() {
             let help = "longest drops long waves (high-pass), shortest drops short ones (low-pass)";
@@ -282,31 +264,31 @@ impl Filter {
             let message = format!("longest is {longest:e} m, shorter than shortest, {shortest:e} m");
             return at.fault(message, "longest >= shortest", "exchange the two");
         }
-        let band = Band { longest, shortest, edge: self.edge.unwrap_or_default() };
-        Some(Step::Operation(surface::Operation::Filter(band)))
+        Some(Band { longest, shortest, edge: self.edge.unwrap_or_default() })
     }
 }
 
 impl Window {
-    fn step(&self, at: &Place<'_>) -> Option<Step> {
-        let window = match (self.shape, self.share.map(Number::get)) {
-            (WindowShape::Hann, None) => process::Window::Hann,
+    fn window(&self, at: &Place<'_>) -> Option<process::Window> {
+        match (self.shape, self.share.map(Number::get)) {
+            (WindowShape::Hann, None) => Some(process::Window::Hann),
             (WindowShape::Hann, Some(_)) => {
                 let help = "write shape = \"tukey\", or leave share out";
-                return at.fault("`share` belongs to Tukey's window", "no share", help);
+                at.fault("`share` belongs to Tukey's window", "no share", help)
             }
-            (WindowShape::Tukey, share) => process::Window::Tukey { share: share.unwrap_or(TUKEY_SHARE) },
-        };
-        Some(Step::Operation(surface::Operation::Window(window)))
+            (WindowShape::Tukey, share) => {
+                Some(process::Window::Tukey { share: share.unwrap_or(TUKEY_SHARE) })
+            }
+        }
     }
 }
 
 impl Outliers {
-    fn step(&self) -> Step {
+    fn or_default(&self) -> process::Outliers {
         let default = process::Outliers::default();
-        Step::Operation(surface::Operation::RemoveOutliers(process::Outliers {
+        process::Outliers {
             threshold: self.threshold.map_or(default.threshold, Number::get),
             radius: self.radius.map_or(default.radius, Whole::count),
-        }))
+        }
     }
 }

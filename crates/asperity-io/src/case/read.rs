@@ -9,8 +9,9 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 
 use super::error::CaseError;
-use super::text::{MOST_ERRORS, Text};
+use super::text::{MOST_ERRORS, Text, in_order};
 use super::words;
+use crate::Code;
 
 /// A union: where it stands (`[]` for each element of a list), the key that tags it, and keys that all members share.
 struct Union(&'static str, &'static str, &'static [&'static str]);
@@ -71,10 +72,13 @@ impl<'r, 't> Reader<'r, 't> {
     }
 
     /// What was read, where nothing is wrong.
-    pub fn finish<T>(self, read: Option<T>) -> Result<T, Vec<CaseError>> {
+    pub fn finish<T>(mut self, read: Option<T>) -> Result<T, Vec<CaseError>> {
         match read {
             Some(read) if self.errors.is_empty() => Ok(read),
-            _ => Err(self.errors),
+            _ => {
+                in_order(&mut self.errors);
+                Err(self.errors)
+            }
         }
     }
 
@@ -102,15 +106,10 @@ impl<'r, 't> Reader<'r, 't> {
         };
         let array = match value.get_ref() {
             DeValue::Array(array) if !array.is_empty() => array,
-            other => {
-                let spot = self.text.of(key);
-                self.errors.push(match other {
-                    DeValue::Array(_) => self.text.wrong(spot, "a list of one table at least", ""),
-                    _ => {
-                        let help = format!("begin each with a line [[{key}]]");
-                        self.text.wrong(spot, "a list of tables", &help)
-                    }
-                });
+            _ => {
+                let help = format!("begin each with a line [[{key}]]");
+                let expected = "a list of at least one table";
+                self.errors.push(self.text.wrong(Code::WrongType, self.text.of(key), expected, &help));
                 return Vec::new();
             }
         };
@@ -166,7 +165,7 @@ impl<'r, 't> Reader<'r, 't> {
             _ if self.text.at(&span).key == "motion.velocity" => return Ok(()),
             _ => {
                 let expected = format!("a table that begins with the key `{tag}`");
-                return Err(self.text.wrong(self.text.at(&span), &expected, "").into());
+                return Err(self.text.wrong(Code::WrongType, self.text.at(&span), &expected, "").into());
             }
         };
         let Some(name) = table.remove(*tag) else {
@@ -179,7 +178,10 @@ impl<'r, 't> Reader<'r, 't> {
         if *tag == "kind" && name == "array" && self.text.arrays.is_none() {
             let message = "\"array\" is for arrays that a Python program passes";
             let help = "in a case file use kind = \"file\"";
-            return Err(self.text.fault(self.text.at(&place), message, "another kind", help).into());
+            return Err(self
+                .text
+                .fault(Code::UnknownKind, self.text.at(&place), message, "another kind", help)
+                .into());
         }
         let (common, inner): (DeTable<'t>, DeTable<'t>) =
             std::mem::take(table).into_iter().partition(|(key, _)| shared.contains(&key.get_ref().as_ref()));

@@ -78,7 +78,7 @@ pub struct Distribution {
 }
 
 impl SelfAffine {
-    /// The part of the gap; checked against the grid where there is one.
+    /// The part of the gap; checked against the grid, if there is one.
     pub fn part(&self, at: &Place<'_>, grid: Option<&Grid>, line: bool) -> Option<Part> {
         if line && self.lay.is_some() {
             let message = "a profile has no lay: the domain is a line of cells";
@@ -129,7 +129,7 @@ impl Distribution {
     fn of_heights(&self, at: &Place<'_>) -> Option<HeightDistribution> {
         match (&self.path, self.skewness, self.kurtosis) {
             (None, None, None) => at.fault(
-                "says nothing",
+                "the table has no key",
                 "skewness, kurtosis or path",
                 "skewness and kurtosis set it, or path names a measured surface that has it",
             ),
@@ -143,10 +143,8 @@ impl Distribution {
                 // Mean and rms come from the roughness: neither unit nor size matters.
                 let options =
                     ReadOptions { size: Some([1.0, 1.0]), height_unit: Some(1.0), ..ReadOptions::default() };
-                let heights = match read(&full, &options) {
-                    Ok(surface) => at.core(level(surface.heights.view(), Level::Plane))?,
-                    Err(error) => return at.fault(error, "a surface with heights", ""),
-                };
+                let surface = at.data(read(&full, &options), "a surface with heights")?;
+                let heights = at.core(level(surface.heights.view(), Level::Plane))?;
                 Some(HeightDistribution::Samples(heights.into_iter().filter(|z| z.is_finite()).collect()))
             }
             (Some(_), ..) => at.fault(

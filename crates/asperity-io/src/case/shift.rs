@@ -62,7 +62,7 @@ enum Model {
     },
 }
 
-/// How the moduli of a material depend on temperature, besides its times: at T they are those at the reference temperature of
+/// How the moduli of a material depend on temperature, in addition to its times: at T they are those at the reference temperature of
 /// the shift over b_T. "density" (b_T = reference/T, as for a rubber), "free" (one factor for each sweep of a file), a table, or
 /// pairs [temperature, b_T] in order of temperature: 1 at the reference, ln b_T is linear in between.
 type Vertical = Form<VerticalWord, Vec<Two<Temperature, Number<Positive>>>, VerticalDensity>;
@@ -106,12 +106,8 @@ impl Shift {
                     None => material::Shift::Table { points: points.iter().flatten().map(point).collect() },
                     Some(path) => {
                         let at = at.key("path");
-                        match curve::read_shift_table(&at.file(path)?) {
-                            Ok(shift) => shift,
-                            Err(error) => {
-                                return at.fault(error, "a table of temperatures and shift factors", "");
-                            }
-                        }
+                        let read = curve::read_shift_table(&at.file(path)?);
+                        at.data(read, "a table of temperatures and shift factors")?
                     }
                 }
             }
@@ -130,7 +126,7 @@ pub fn dependence(at: &Place<'_>, shift: Option<&Shift>, of_fit: Option<Vertical
     };
     let vertical = match (shift.and_then(|shift| shift.vertical.as_ref()), of_fit) {
         (Some(_), Some(_)) => {
-            let message = "has `vertical`, and so has `shift`, but one of them is enough";
+            let message = "`vertical` is given here and in `shift`";
             return at.key("fit").fault(message, "one `vertical`", "leave one of them out");
         }
         (None, None) => VerticalRequest::None,

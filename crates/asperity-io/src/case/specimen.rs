@@ -8,6 +8,7 @@ use asperity::material::{Lateral, Material, Shift};
 use super::place::Checks;
 use super::text::Text;
 use super::{Case, CaseErrors, MaterialReport, document, file_text, overridden, warmth};
+use crate::Code;
 
 /// A material with its name and where it comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +22,7 @@ pub struct Specimen {
     pub lateral: Option<Lateral>,
     /// Where it comes from, and how well it is known.
     pub report: MaterialReport,
-    /// What should be known before the numbers are believed.
+    /// Warnings about the numbers.
     pub warnings: Vec<String>,
 }
 
@@ -50,9 +51,9 @@ pub fn specimens(
 ) -> Result<Vec<Specimen>, CaseErrors> {
     let name = path.display().to_string();
     let text = file_text(path).map_err(|(reason, help)| {
-        CaseErrors::without_place(&name, reason, "a case file, or a file with a material", Some(help))
+        CaseErrors::without_place(Code::File, &name, reason, "a case file, or a file with a material", help)
     })?;
-    let (source, _) = overridden(&name, text, overrides)?;
+    let source = overridden(&name, text, overrides)?.text;
     let alone = Text::parse(&source)
         .is_ok_and(|text| text.root.get("material").is_some() && text.root.get("domain").is_none());
     if !alone {

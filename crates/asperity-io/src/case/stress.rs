@@ -24,7 +24,7 @@ pub struct Stress {
     depths: Option<Form<Auto, Vec<Length<NonNegative>>, Row>>,
     /// The body whose stress is computed: its name, or its number counted from 0; the first if not given.
     #[schemars(example = &"PMMA")]
-    body: Option<Which>,
+    body: Option<Label>,
     /// Stress fields that are stored at each depth; none if not given (the largest values and the profile over depth are
     /// always stored).
     #[schemars(example = ("mises",))]
@@ -84,31 +84,6 @@ enum Progression {
     Uniform,
 }
 
-/// A body by its name or number.
-#[derive(Clone, Debug, PartialEq)]
-enum Which {
-    Name(String),
-    Number(usize),
-}
-
-impl Scalar for Which {
-    fn expected() -> String {
-        "the name of a body, or its number counted from 0".to_owned()
-    }
-
-    fn from_text(name: &str) -> Result<Self, QuantityError> {
-        Ok(Which::Name(name.to_owned()))
-    }
-
-    fn from_whole(number: i64) -> Result<Self, QuantityError> {
-        usize::try_from(number).map(Which::Number).map_err(|_| Self::error())
-    }
-}
-
-deserialize!(Which);
-
-schema!(Which, "NameOrNumber", { "anyOf": [{ "type": "string" }, { "type": "integer", "minimum": 0 }] });
-
 impl Stress {
     /// The stress that a case asks for; whether the contact `moves`.
     pub fn of_case(
@@ -158,10 +133,12 @@ impl Stress {
     /// What the section says by itself, for these bodies; times are left to the caller.
     pub fn plan(&self, at: &Place<'_>, grid: &Grid, bodies: &[StressBody]) -> Option<StressPlan> {
         let place = if self.body.is_some() { at.key("body") } else { at.clone() };
-        let found = match &self.body {
+        let found = match self.body.as_ref().map(Label::get) {
             None => bodies.first(),
-            Some(Which::Name(name)) => bodies.iter().find(|body| body.name == *name),
-            Some(Which::Number(n)) => bodies.get(*n),
+            Some(which) => {
+                let numbered = || which.parse().ok().and_then(|n: usize| bodies.get(n));
+                bodies.iter().find(|body| body.name == which).or_else(numbered)
+            }
         };
         let Some(body) = found else {
             let names: Vec<String> =

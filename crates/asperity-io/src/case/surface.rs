@@ -171,7 +171,7 @@ impl Surface {
         Some(Part::Shape { shape, center })
     }
 
-    /// Whether it is a single body in the middle of nothing.
+    /// Whether it is the shape of a single body: no wave, roughness or punch.
     pub fn is_single(&self) -> bool {
         use Kind::{Cone, Cylinder, Ellipsoid, Sphere, Wedge};
         matches!(self.kind, Sphere { .. } | Ellipsoid { .. } | Cylinder { .. } | Cone { .. } | Wedge { .. })

@@ -7,6 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::CaseError;
 use super::given::Arrays;
+use crate::Code;
 
 /// A case file's text, its TOML tree, and, where a program gives the case, the arrays beside it.
 pub struct Text<'t> {
@@ -41,7 +42,7 @@ impl<'t> Text<'t> {
             ""
         };
         let message = format!("this is not TOML: {}", found.replace('\n', ", "));
-        self.error(Spot { key: String::new(), span }, None, "TOML", help, message)
+        self.error(Code::Syntax, Spot { key: String::new(), span }, None, "TOML", help, message)
     }
 
     /// Line of the byte, from 1.
@@ -118,24 +119,27 @@ impl<'t> Text<'t> {
     }
 
     /// The value at the spot is not what is expected there.
-    pub fn wrong(&self, spot: Spot, expected: &str, help: &str) -> CaseError {
+    pub fn wrong(&self, code: Code, spot: Spot, expected: &str, help: &str) -> CaseError {
         let (key, value) = (&spot.key, self.value(&spot));
         let message = match value.contains('\n') {
             true => format!("{key} must be {expected}"),
             false => format!("{key} is {value}, but must be {expected}"),
         };
-        self.error(spot, Some(value), expected, help, message)
+        self.error(code, spot, Some(value), expected, help, message)
     }
 
     /// Something is wrong with the value at the spot that a sentence says best; the key is put before it.
-    pub fn fault(&self, spot: Spot, message: &str, expected: &str, help: &str) -> CaseError {
-        let (message, value) = (format!("{}: {message}", spot.key), self.value(&spot));
-        self.error(spot, Some(value), expected, help, message)
+    pub fn fault(&self, code: Code, spot: Spot, message: &str, expected: &str, help: &str) -> CaseError {
+        let value = self.value(&spot);
+        let message =
+            if spot.key.is_empty() { message.to_owned() } else { format!("{}: {message}", spot.key) };
+        self.error(code, spot, Some(value), expected, help, message)
     }
 
     /// The same with a message that names the key itself. No `help` is an empty one.
     pub fn error(
         &self,
+        code: Code,
         spot: Spot,
         value: Option<String>,
         expected: &str,
@@ -145,6 +149,7 @@ impl<'t> Text<'t> {
         let line = spot.span.as_ref().map(|span| self.line(span.start));
         let help = (!help.is_empty()).then(|| help.to_owned());
         CaseError {
+            code,
             key: spot.key,
             span: spot.span,
             line,
@@ -154,6 +159,11 @@ impl<'t> Text<'t> {
             message,
         }
     }
+}
+
+/// Sorts faults by their places.
+pub fn in_order(errors: &mut [CaseError]) {
+    errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
 }
 
 /// A case file with more faults than this has one cause.

@@ -14,31 +14,30 @@ const FIRST: f64 = 1e-3;
 pub const USUAL_STEPS: usize = 100;
 
 /// The times of the solution.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Instants")]
 pub struct Times {
     /// End of the run; with `steps`, spacing = "adaptive", or stages that have steps of their own.
     #[schemars(example = "500 s")]
-    end: Option<Time<Positive>>,
+    pub end: Option<Time<Positive>>,
     /// Number of steps from 0 to `end`; breaks and jumps of the history are additional steps.
     #[schemars(example = 100)]
-    steps: Option<Whole<1>>,
+    pub steps: Option<Whole<1>>,
     /// Spacing of the steps; "uniform" if not given.
-    spacing: Option<Spacing>,
+    pub spacing: Option<Spacing>,
     /// First time after 0 if the spacing is "log"; if not given, a tenth of the shortest retardation time (of fractional
     /// models and fitted curves: 1e-4 of the end), but not later than a uniform step or a twentieth of the first ramp of the
-    /// history. If the spacing is "adaptive", the
-    /// largest first step after 0 and after each break or jump; if not given, a thousandth of the end.
+    /// history. If the spacing is "adaptive", the largest first step after 0 and after each break or jump; if not given, a thousandth of the end.
     #[schemars(example = "0.1 s")]
-    first: Option<Time<Positive>>,
+    pub first: Option<Time<Positive>>,
     /// If the spacing is "adaptive": the largest error that the steps may leave, relative to the stress; 1e-3 if not
     /// given.
     #[schemars(example = 1e-3)]
-    tolerance: Option<Number<Positive>>,
+    pub tolerance: Option<Number<Positive>>,
     /// List of the times after 0, instead of `end` and `steps`.
     #[schemars(example = ("1 s", "10 s", "100 s"))]
-    times: Option<Vec<Time<Positive>>>,
+    pub times: Option<Vec<Time<Positive>>>,
     /// How the pressure varies over a step; "linear" if not given.
     #[serde(default)]
     pub scheme: Scheme,
@@ -72,7 +71,12 @@ pub fn steps(grid: &TimeGrid) -> usize {
 }
 
 impl Times {
-    /// The instants of the run; `own` where every stage of the load has its own.
+    /// Whether nothing says how long the steps are.
+    pub fn has_no_steps(&self) -> bool {
+        self.steps.is_none() && self.spacing.is_none() && self.first.is_none() && self.tolerance.is_none()
+    }
+
+    /// The instants of the run or stage whose keys are at `at`; `own` where every stage of the load has its own.
     pub fn grid(&self, at: &Place<'_>, own: bool, first_step: impl Fn(f64) -> f64) -> Option<TimeGrid> {
         if let Some(times) = &self.times {
             let keys = ["end", "steps", "first", "spacing", "tolerance"];
@@ -80,46 +84,22 @@ impl Times {
             let alone = at.without(&keys, why, "one of the two", "leave one of them out");
             let at = at.key("times");
             if times.is_empty() {
-                return at.wrong("a list of one time at least", "");
+                return at.wrong("a list of at least one time", "");
             }
             let times = at.increasing(times.iter().map(|time| time.get()));
             return alone.and(times).map(TimeGrid::List);
         }
-        let Times { steps, spacing, first, tolerance, .. } = *self;
-        let steps = Steps { end: "time.end", steps, spacing, first, tolerance };
-        let unspecified = own && steps.none();
+        let unspecified = own && self.has_no_steps();
         let end = self.end.or_else(|| at.missing("end", ""));
-        if steps.are_missing() && !unspecified {
+        if self.spacing != Some(Spacing::Adaptive) && self.steps.is_none() && !unspecified {
             return at.missing("steps", "");
         }
         let end = end?.get();
-        if unspecified { Some(TimeGrid::List(vec![end])) } else { steps.grid(at, end, first_step) }
-    }
-}
-
-/// Keys that say how long the steps are.
-#[derive(Clone, Copy)]
-pub struct Steps {
-    /// The key of the end.
-    pub end: &'static str,
-    pub steps: Option<Whole<1>>,
-    pub spacing: Option<Spacing>,
-    pub first: Option<Time<Positive>>,
-    pub tolerance: Option<Number<Positive>>,
-}
-
-impl Steps {
-    pub fn none(&self) -> bool {
-        self.steps.is_none() && self.spacing.is_none() && self.first.is_none() && self.tolerance.is_none()
+        if unspecified { Some(TimeGrid::List(vec![end])) } else { self.steps(at, end, first_step) }
     }
 
-    /// Whether their number is needed and not given.
-    pub fn are_missing(&self) -> bool {
-        self.spacing != Some(Spacing::Adaptive) && self.steps.is_none()
-    }
-
-    /// The grid to `end`, of the keys of the table at `at`.
-    pub fn grid(self, at: &Place<'_>, end: f64, first_step: impl Fn(f64) -> f64) -> Option<TimeGrid> {
+    /// The steps to `end`, of the keys of the table at `at`.
+    fn steps(&self, at: &Place<'_>, end: f64, first_step: impl Fn(f64) -> f64) -> Option<TimeGrid> {
         let spacing = self.spacing.unwrap_or(Spacing::Uniform);
         let first = self.first.map(Time::get);
         if spacing == Spacing::Adaptive {
@@ -152,8 +132,7 @@ impl Steps {
     fn before_end(&self, at: &Place<'_>, end: f64, steps: usize) -> Option<()> {
         match self.first.map(Time::get) {
             Some(first) if !(first < end || (steps == 1 && first <= end)) => {
-                let expected = format!("a time before {}, {} s", self.end, words::number(end));
-                at.key("first").wrong(expected, "")
+                at.key("first").wrong(format!("a time before the end, {} s", words::number(end)), "")
             }
             _ => Some(()),
         }

@@ -19,49 +19,39 @@ pub struct Course<'a> {
     pub beyond: f64,
 }
 
-/// How warm a body is.
-pub enum Warmth {
-    /// At a constant temperature.
-    Constant(TemperatureFactors),
-    Changing(ReducedTime),
+/// How warm a body is: at a constant temperature, or on a clock of its own.
+pub struct Warmth {
+    pub constant: Option<TemperatureFactors>,
+    pub clock: Option<ReducedTime>,
 }
 
 /// How warm a material is over the run.
 pub fn warmth(sample: &Sample, course: &Course<'_>) -> asperity::Result<Warmth> {
-    let Some(shift) = &sample.shift else { return Ok(Warmth::Constant(TemperatureFactors::NONE)) };
-    let factors = |temperature: f64| {
-        TemperatureFactors::at(shift, sample.vertical.as_ref(), temperature).map(Warmth::Constant)
-    };
+    let constant = |factors| Warmth { constant: Some(factors), clock: None };
+    let Some(shift) = &sample.shift else { return Ok(constant(TemperatureFactors::NONE)) };
+    let at =
+        |temperature: f64| TemperatureFactors::at(shift, sample.vertical.as_ref(), temperature).map(constant);
     match (sample.temperature, course.temperatures) {
-        (Some(own), _) => factors(own),
-        (None, Some([first, rest @ ..])) if rest.iter().all(|point| point.1 == first.1) => factors(first.1),
+        (Some(own), _) => at(own),
+        (None, Some([first, rest @ ..])) if rest.iter().all(|point| point.1 == first.1) => at(first.1),
         (None, Some(_)) if sample.vertical.is_some() => Err(TemperatureFactors::not_constant()),
-        (None, Some(points)) => Ok(Warmth::Changing(ReducedTime::new(shift.clone(), points)?)),
-        (None, None) => Ok(Warmth::Constant(TemperatureFactors::NONE)),
+        (None, Some(points)) => {
+            Ok(Warmth { constant: None, clock: Some(ReducedTime::new(shift.clone(), points)?) })
+        }
+        (None, None) => Ok(constant(TemperatureFactors::NONE)),
     }
 }
 
 impl Warmth {
-    pub fn clock(&self) -> Option<&ReducedTime> {
-        match self {
-            Warmth::Constant(_) => None,
-            Warmth::Changing(clock) => Some(clock),
-        }
-    }
-
-    pub fn constant(&self) -> Option<TemperatureFactors> {
-        match self {
-            Warmth::Constant(factors) => Some(*factors),
-            Warmth::Changing(_) => None,
-        }
-    }
-
     /// The shortest step and the end of the run, on the clock of the body [s].
     pub fn window(&self, plan: &Plan) -> Option<[f64; 2]> {
         let [shortest, end] = plan.window();
-        let window = match self {
-            Warmth::Constant(factors) => [shortest / factors.times, end / factors.times],
-            Warmth::Changing(clock) => {
+        let window = match &self.clock {
+            None => {
+                let factor = self.constant.map_or(1.0, |factors| factors.times);
+                [shortest / factor, end / factor]
+            }
+            Some(clock) => {
                 let steps = plan.instants.iter().filter(|instant| instant.dt > 0.0);
                 let lengths = steps.map(|i| clock.elapsed(i.time - i.dt, i.time));
                 [lengths.fold(f64::INFINITY, f64::min), clock.value(end)]
@@ -80,7 +70,7 @@ pub fn alone(
 ) -> Option<(Material, MaterialReport)> {
     let plan = |_: &[f64]| Plan { instants: Vec::new(), exact: true };
     let course = Course { end: None, plan: &plan, temperatures: None, beyond: 1.0 };
-    let factors = at.core(warmth(sample, &course))?.constant().unwrap_or(TemperatureFactors::NONE);
+    let factors = at.core(warmth(sample, &course))?.constant.unwrap_or(TemperatureFactors::NONE);
     let around = match &sample.model {
         Model::Fractional { time, .. } => Some([1e-4 * time, 1e4 * time]),
         _ => None,

@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::error::CaseError;
 use super::text::{Spot, Text, join};
 use super::{read, schema};
+use crate::{Code, choice};
 
 /// Keys of earlier versions: what became of them, and what to do.
 const RETIRED: &[(&str, &str)] =
@@ -26,6 +27,7 @@ pub fn translate(text: &Text<'_>, error: &toml::de::Error, section: Range<usize>
     if message.contains("`$__toml_private_datetime`") {
         let found = text.value(&spot);
         return text.fault(
+            Code::WrongType,
             spot,
             &format!("{found} is a date, and a case has none"),
             "another value",
@@ -51,13 +53,16 @@ pub fn translate(text: &Text<'_>, error: &toml::de::Error, section: Range<usize>
     }
     for prefix in ["invalid type: ", "invalid value: ", "invalid length "] {
         let rest = message.strip_prefix(prefix).and_then(|rest| rest.split_once(", expected "));
-        if let Some((_, expected)) = rest {
-            return text.wrong(spot, plain(expected), "");
+        if let Some((found, expected)) = rest {
+            let is_table = found == "sequence" && expected.starts_with("struct ");
+            let help = format!("write the header in single brackets: [{}]", spot.key);
+            return text.wrong(Code::WrongType, spot, plain(expected), if is_table { &help } else { "" });
         }
     }
-    // The quantities' own words: what was expected, then what is wrong with the value.
-    let (expected, help) = message.split_once('\n').unwrap_or((message, ""));
-    text.wrong(spot, expected, help)
+    // Scalars say what was expected, what is wrong with the value, and the code.
+    let mut lines = message.splitn(3, '\n');
+    let [expected, help, code] = [(); 3].map(|()| lines.next().unwrap_or_default());
+    text.wrong(choice::parse(code).unwrap_or(Code::OutOfRange), spot, expected, help)
 }
 
 /// A key that the table at its spot does not have.
@@ -71,14 +76,14 @@ pub fn unknown_key(text: &Text<'_>, spot: Spot, name: &str, known: &[&str]) -> C
     let names = known.join(", ");
     let expected = if known.is_empty() { "no key".to_owned() } else { format!("one of {names}") };
     if let Some((_, reason)) = RETIRED.iter().find(|retired| retired.0 == key) {
-        return text.error(spot, None, "no such key", "", format!("{key} {reason}"));
+        return text.error(Code::UnknownKey, spot, None, "no such key", "", format!("{key} {reason}"));
     }
     let help = match nearest(name, &known) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => "it has none".to_owned(),
         None => format!("its keys: {names}"),
     };
-    text.error(spot, None, &expected, &help, format!("{table} has no key `{name}`"))
+    text.error(Code::UnknownKey, spot, None, &expected, &help, format!("{table} has no key `{name}`"))
 }
 
 /// A value that is none of the words that its key takes.
@@ -93,9 +98,9 @@ pub fn wrong_choice(text: &Text<'_>, spot: Spot, found: Option<(&str, &[&str])>)
         [one] => one.clone(),
         _ => format!("one of {}", quoted.join(", ")),
     };
-    let Some((name, known)) = found else { return text.wrong(spot, &expected, "") };
+    let Some((name, known)) = found else { return text.wrong(Code::WrongType, spot, &expected, "") };
     let help = nearest(name, known).map(|near| format!("did you mean \"{near}\"?"));
-    text.wrong(spot, &expected, &help.unwrap_or_default())
+    text.wrong(Code::UnknownKind, spot, &expected, &help.unwrap_or_default())
 }
 
 /// A key that the table at `span` needs and does not have.
@@ -111,7 +116,7 @@ pub fn missing_key(text: &Text<'_>, span: &Range<usize>, name: &str) -> CaseErro
 pub fn missing(text: &Text<'_>, spot: Spot, name: &str) -> CaseError {
     let (expected, help) = wanted(&spot.key, name);
     let message = format!("{} is missing", spot.key);
-    text.error(spot, None, &expected, &help.unwrap_or_default(), message)
+    text.error(Code::MissingKey, spot, None, &expected, &help.unwrap_or_default(), message)
 }
 
 /// A section that the file needs and does not have.
@@ -123,7 +128,7 @@ pub fn missing_section(text: &Text<'_>, name: &str) -> CaseError {
     let help = schema::find(name).iter().find_map(description).unwrap_or_default();
     let spot = Spot { key: name.to_owned(), span: None };
     let message = format!("the section {header} is missing");
-    text.error(spot, None, &format!("a section {header}"), &help, message)
+    text.error(Code::MissingKey, spot, None, &format!("a section {header}"), &help, message)
 }
 
 /// What a key means and how it is written, from the schema.
@@ -162,6 +167,12 @@ pub fn nearest<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
     let near = known.iter().min_by_key(|known| distance(known))?;
     if distance(near) <= 1 + near.len().min(name.len()) / 4 {
         return Some(near);
+    }
+    let initials = |known: &&&str| {
+        known.contains('-') && known.split('-').filter_map(|word| word.chars().next()).eq(name.chars())
+    };
+    if let Some(known) = known.iter().find(initials) {
+        return Some(known);
     }
     let is_part =
         |known: &&&str| name.len() > 2 && known.starts_with(name) || name.len() > 3 && known.contains(name);
@@ -220,6 +231,7 @@ mod tests {
         assert_eq!(nearest("bulk", &known), Some("bulk_modulus"));
         assert_eq!(nearest("modulus", &known), Some("bulk_modulus"));
         assert_eq!(nearest("yield", &known), None);
+        assert_eq!(nearest("sls", &["zener", "standard-linear-solid"]), Some("standard-linear-solid"));
         assert_eq!(nearest(&"x".repeat(100_000), &known), None);
     }
 }

@@ -1,41 +1,88 @@
 //! A fitted material as a block of a case file.
 
 use std::fmt::Write;
+use std::path::Path;
 
-use asperity::material::{Creep, Relaxation, Shift, VerticalShift};
+use asperity::material::{Shift, VerticalShift};
 
 use super::{Curves, Fitted, Series};
 use crate::choice;
+
+/// How a case file writes a model with terms: its name, the quantity of its terms, the key of its constant, and their unit.
+pub(super) struct Model {
+    name: &'static str,
+    quantity: &'static str,
+    constant: &'static str,
+    unit: &'static str,
+}
+
+pub(super) const PRONY: Model =
+    Model { name: "prony", quantity: "modulus", constant: "equilibrium", unit: "Pa" };
+const CREEP: Model = Model { name: "creep", quantity: "compliance", constant: "instantaneous", unit: "1/Pa" };
+
+impl Model {
+    /// The keys of the model up to the end of its terms (value, time and a remark each); `remark` stands behind the constant.
+    pub(super) fn written(
+        &self,
+        measure: &str,
+        constant: f64,
+        remark: &str,
+        terms: impl Iterator<Item = ([f64; 2], String)>,
+    ) -> String {
+        let Model { name, quantity, constant: key, unit } = self;
+        let mut text = format!(
+            "material = {{ model = \"{name}\", {quantity} = \"{measure}\", {key} = \"{constant:e} {unit}\", terms = [{remark}"
+        );
+        for ([value, time], remark) in terms {
+            let _ =
+                write!(text, "\n  {{ {quantity} = \"{value:e} {unit}\", time = \"{time:e} s\" }},{remark}");
+        }
+        text + "\n]"
+    }
+}
+
+/// The name of a file, as a remark may hold it.
+pub(super) fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or("data".as_ref()).to_string_lossy();
+    name.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+}
 
 impl Fitted {
     /// `material = { ... }` in full precision, to stand under a `[[body]]` of a case file or in a file of its own,
     /// with remarks on where it comes from.
     pub fn to_toml(&self, curves: &Curves) -> String {
-        let mut text = String::new();
-        let name = curves.path.file_name().map_or("data".into(), |name| name.to_string_lossy().into_owned());
-        let name: String = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
         let [first, last] = self.window;
-        let _ = writeln!(
-            text,
-            "# Fitted to {} points of {name} ({}): {} terms, misfit {:.2} % rms and {:.2} % at most;\n\
-             # the data cover times from {first:.3e} s to {last:.3e} s. Behind each term: relative standard deviations.",
+        let mut text = format!(
+            "# Fitted to {} points of {} ({}): {} terms, misfit {:.2} % rms and {:.2} % at most;\n\
+             # the data cover times from {first:.3e} s to {last:.3e} s. Behind each term: relative standard deviations.\n",
             self.data.x.len(),
+            file_name(&curves.path),
             curves.kind.name(),
             self.terms(),
             100.0 * self.misfit.rms,
             100.0 * self.misfit.max,
         );
+        let (model, constant, terms, fluidity): (_, _, Vec<[f64; 2]>, _) = match &self.series {
+            Series::Relaxation(function) => {
+                let terms = function.terms.iter().map(|term| [term.modulus, term.relaxation_time]);
+                (PRONY, function.equilibrium, terms.collect(), 0.0)
+            }
+            Series::Creep(function) => {
+                let terms = function.terms.iter().map(|term| [term.compliance, term.retardation_time]);
+                (CREEP, function.instantaneous, terms.collect(), function.fluidity)
+            }
+        };
+        let remarks = (0..).map(|k| known(self.uncertainty.get(k)));
         let measure = choice::word(&self.material.measure());
-        match &self.series {
-            Series::Relaxation(relaxation) => prony(&mut text, measure, relaxation, &self.uncertainty),
-            Series::Creep(function) => creep(&mut text, measure, function, &self.uncertainty),
+        text += &model.written(measure, constant, "", terms.into_iter().zip(remarks));
+        if fluidity > 0.0 {
+            let _ = write!(text, ", fluidity = \"{fluidity:e} 1/(Pa s)\"");
         }
         if let Some(shift) = &self.shift {
             let vertical = self.vertical.as_ref().map_or(String::new(), vertical);
             let _ = write!(text, ", shift = {}{vertical} }}", law(shift));
         }
-        text.push_str(" }\n");
-        text
+        text + " }\n"
     }
 }
 
@@ -47,45 +94,6 @@ fn known(uncertainty: Option<&[f64; 2]>) -> String {
     };
     uncertainty
         .map_or(String::new(), |[weight, time]| format!("  # +- {}, +- {}", percent(*weight), percent(*time)))
-}
-
-fn prony(text: &mut String, measure: &str, relaxation: &Relaxation, uncertainty: &[[f64; 2]]) {
-    let _ = write!(
-        text,
-        "material = {{ model = \"prony\", modulus = \"{measure}\", equilibrium = \"{:e} Pa\", terms = [",
-        relaxation.equilibrium
-    );
-    for (k, term) in relaxation.terms.iter().enumerate() {
-        let _ = write!(
-            text,
-            "\n  {{ modulus = \"{:e} Pa\", time = \"{:e} s\" }},{}",
-            term.modulus,
-            term.relaxation_time,
-            known(uncertainty.get(k))
-        );
-    }
-    text.push_str("\n]");
-}
-
-fn creep(text: &mut String, measure: &str, creep: &Creep, uncertainty: &[[f64; 2]]) {
-    let _ = write!(
-        text,
-        "material = {{ model = \"creep\", compliance = \"{measure}\", instantaneous = \"{:e} 1/Pa\", terms = [",
-        creep.instantaneous
-    );
-    for (k, term) in creep.terms.iter().enumerate() {
-        let _ = write!(
-            text,
-            "\n  {{ compliance = \"{:e} 1/Pa\", time = \"{:e} s\" }},{}",
-            term.compliance,
-            term.retardation_time,
-            known(uncertainty.get(k))
-        );
-    }
-    text.push_str("\n]");
-    if creep.fluidity > 0.0 {
-        let _ = write!(text, ", fluidity = \"{:e} 1/(Pa s)\"", creep.fluidity);
-    }
 }
 
 /// A number with so many decimals at most, without the digits of a rounding error: "293.15", "-0.72".

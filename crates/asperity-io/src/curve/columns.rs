@@ -7,7 +7,8 @@ use asperity::material::Modulus;
 use super::Kind;
 use super::error::{Fault, Remedy, fault};
 use super::role::{self, Role, unnumbered};
-use super::table::Table;
+use super::sweeps::{DYNAMIC, Pair};
+use super::table::{Heading, Table};
 use super::units::{convert, taken, tidy};
 use crate::quantity::unit::Unit;
 use crate::quantity::{Dimension, dimension};
@@ -19,26 +20,13 @@ pub(super) struct Form {
     pub(super) name: &'static str,
     /// What its columns must hold, in their order where the file does not name them.
     pub(super) needed: &'static [Role],
-    /// Pairs of columns, of which it must hold one as well; the first that it holds is taken. Without names it is the first.
-    pub(super) pairs: &'static [[Role; 2]],
+    /// Pairs of columns: the file must hold one of these too. The first that it holds is taken; without names, the first of all.
+    pub(super) pairs: &'static [Pair],
     /// What it may hold besides.
     pub(super) optional: &'static [Role],
     /// What "t" means.
     pub(super) t: Role,
 }
-
-/// The columns from which storage and loss modulus follow.
-const DYNAMIC: [[Role; 2]; 9] = [
-    [Role::Storage, Role::Loss],
-    [Role::Storage, Role::TanDelta],
-    [Role::Storage, Role::Phase],
-    [Role::ComplexModulus, Role::TanDelta],
-    [Role::ComplexModulus, Role::Phase],
-    [Role::StorageCompliance, Role::LossCompliance],
-    [Role::ImaginaryViscosity, Role::RealViscosity],
-    [Role::ComplexViscosity, Role::TanDelta],
-    [Role::ComplexViscosity, Role::Phase],
-];
 
 impl From<Kind> for Form {
     fn from(kind: Kind) -> Self {
@@ -53,16 +41,15 @@ impl From<Kind> for Form {
 }
 
 impl Form {
+    fn pairs(&self) -> impl Iterator<Item = &'static [Role; 2]> + Clone + use<> {
+        self.pairs.iter().map(|(pair, _)| pair)
+    }
+
     /// All that its columns may hold, each once.
     fn roles(&self) -> Vec<Role> {
-        let mut roles: Vec<Role> = Vec::new();
-        let all = self.needed.iter().chain(self.pairs.iter().flatten()).chain(self.optional);
-        for role in all {
-            if !roles.contains(role) {
-                roles.push(*role);
-            }
-        }
-        roles
+        let all = self.needed.iter().chain(self.pairs().flatten()).chain(self.optional);
+        let place = |role: &Role| all.clone().position(|other| other == role);
+        all.clone().enumerate().filter(|(n, role)| place(role) == Some(*n)).map(|(_, role)| *role).collect()
     }
 }
 
@@ -75,14 +62,14 @@ pub enum Column {
     Number(usize),
 }
 
-/// What is said about the table; the rest is found from the header.
+/// What the caller says about the table; the rest is found from the header.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Columns {
     /// Where the quantities stand.
     pub columns: BTreeMap<Role, Column>,
-    /// Their units, which go before those of the header.
+    /// Their units, which replace those of the header.
     pub units: BTreeMap<Role, String>,
-    /// The sheet of a spreadsheet, by its name; the first with a curve where none is named.
+    /// The sheet of a spreadsheet, by its name; the first with a curve if the caller names none.
     pub sheet: Option<String>,
 }
 
@@ -96,7 +83,7 @@ pub struct Place {
     pub role: Role,
     /// Its number, from 1.
     pub column: usize,
-    /// Its header, empty where it has none.
+    /// Its header; empty if it has none.
     pub header: String,
     /// The unit in which its numbers are taken.
     pub unit: String,
@@ -108,14 +95,12 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
     let (kept, mut notes) = complete(table, &places)?;
     let (mut values, mut used) = (Values::new(), Vec::new());
     for (role, column) in places {
-        let name = table.names.get(column).map_or("", String::as_str);
-        let header_unit = table.units.get(column).map_or("", String::as_str);
-        let base = table.bases.get(column).copied().flatten();
+        let Heading { header, name, unit: own, base } = &table.headings[column];
         // "[log Pa]" under "log G'".
-        let header_unit = if base.is_some() { role::logarithm(header_unit).1 } else { header_unit };
+        let header_unit = if base.is_some() { role::logarithm(own).1 } else { own };
         let unit = match (said.units.get(&role), role) {
             (Some(unit), _) => tidy(role, name, unit.trim()),
-            // "tan(delta) [-]": a ratio whatever the brackets say, but for per cent and numbers.
+            // "tan(delta) [-]": a ratio, unless the brackets hold per cent or a number.
             (None, Role::TanDelta) if is_ratio(header_unit) => String::new(),
             (None, _) => tidy(role, name, header_unit),
         };
@@ -127,12 +112,10 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
         let numbers: Vec<f64> = kept.iter().map(|row| numbers[*row]).collect();
         let numbers = match base {
             Some(base) => {
-                notes.push(format!(
-                    "{} ({place}) holds logarithms, of base {}, as its name says",
-                    role.name(),
-                    if base == 10.0 { "10" } else { "e" }
-                ));
-                powers(base, &numbers).map_err(|why| fault(format!("{} ({place}) {why}", role.name())))?
+                let word = if *base == 10.0 { "10" } else { "e" };
+                let name = role.name();
+                notes.push(format!("{name} ({place}) holds logarithms, of base {word}, as its name says"));
+                powers(*base, &numbers).map_err(|why| fault(format!("{} ({place}) {why}", role.name())))?
             }
             None => numbers,
         };
@@ -147,9 +130,8 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
             notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));
         }
         values.insert(role, converted);
-        let header = table.headers.get(column).cloned().unwrap_or_default();
         let unit = if unit.is_empty() { taken(role).to_owned() } else { unit };
-        used.push(Place { role, column: column + 1, header, unit });
+        used.push(Place { role, column: column + 1, header: header.clone(), unit });
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();
     Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })
@@ -235,7 +217,7 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
     }
     for role in &possible {
         let taken = |n: &usize| places.values().any(|place| place == n);
-        let column = (0..table.names.len()).find(|n| means(table, *n, *role, form) && !taken(n));
+        let column = (0..table.headings.len()).find(|n| means(table, *n, *role, form) && !taken(n));
         if let (false, Some(column)) = (places.contains_key(role), column) {
             places.insert(*role, column);
         }
@@ -245,14 +227,14 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
             let shown: String = line.chars().take(60).collect();
             return Err(fault(format!(
                 "the line before the numbers, {shown:?}, does not name {} columns, and it may hold a unit",
-                table.columns
+                table.headings.len()
             ))
             .remedy(Remedy::Header));
         }
-        // No names: the columns in the order of the documentation.
-        let order = form.needed.iter().chain(form.pairs.first().into_iter().flatten());
+        // Without names, the columns are in the order of the documentation.
+        let order = form.needed.iter().chain(form.pairs().next().into_iter().flatten());
         for (n, role) in order.enumerate() {
-            if n < table.columns && !places.values().any(|place| *place == n) {
+            if n < table.headings.len() && !places.values().any(|place| *place == n) {
                 places.insert(*role, n);
             }
         }
@@ -272,7 +254,7 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
 /// # Errors
 /// Where a column was found by a heading that another one has too, with other numbers.
 fn once(table: &Table, places: &BTreeMap<Role, usize>, said: &Columns) -> Result<(), Fault> {
-    let header = |column: usize| unnumbered(table.headers.get(column).map_or("", String::as_str));
+    let header = |column: usize| unnumbered(&table.headings[column].header);
     let numbered = |role: &Role| matches!(said.columns.get(role), Some(Column::Number(_)));
     for (role, column) in places.iter().filter(|(role, _)| **role != Role::Set && !numbered(role)) {
         let differs =
@@ -281,8 +263,8 @@ fn once(table: &Table, places: &BTreeMap<Role, usize>, said: &Columns) -> Result
             let name = header(*column);
             other != column && !name.is_empty() && header(*other) == name
         };
-        let others: Vec<String> =
-            (0..table.columns).filter(alike).filter(differs).map(|other| (other + 1).to_string()).collect();
+        let others = (0..table.headings.len()).filter(alike).filter(differs);
+        let others: Vec<String> = others.map(|other| (other + 1).to_string()).collect();
         if !others.is_empty() {
             let (name, first, others) = (header(*column), column + 1, others.join(", "));
             return Err(fault(format!(
@@ -296,33 +278,33 @@ fn once(table: &Table, places: &BTreeMap<Role, usize>, said: &Columns) -> Result
     Ok(())
 }
 
-/// Keeps one pair of columns and drops those of all others: the pair with most columns that were said, the first of those
-/// that are there. What is missing, if there is none.
+/// Keeps one complete pair of columns and drops all others: the pair with most columns that the caller named, or else the first.
+/// Without a complete pair, returns what is missing.
 fn one_pair(places: &mut BTreeMap<Role, usize>, form: Form, said: &Columns) -> Option<Role> {
     let told = |pair: &[Role; 2]| pair.iter().filter(|role| said.columns.contains_key(role)).count();
-    let complete = form.pairs.iter().filter(|pair| pair.iter().all(|role| places.contains_key(role)));
+    let complete = form.pairs().filter(|pair| pair.iter().all(|role| places.contains_key(role)));
     let most = complete.clone().map(told).max();
     match complete.clone().find(|pair| Some(told(pair)) == most) {
         Some(pair) => {
-            places.retain(|role, _| pair.contains(role) || !form.pairs.iter().flatten().any(|r| r == role));
+            places.retain(|role, _| pair.contains(role) || !form.pairs().flatten().any(|r| r == role));
             None
         }
         // The other one of a pair that has one, else the first of all.
         None => {
             let half =
-                form.pairs.iter().find_map(|[a, b]| match (places.contains_key(a), places.contains_key(b)) {
+                form.pairs().find_map(|[a, b]| match (places.contains_key(a), places.contains_key(b)) {
                     (true, false) => Some(*b),
                     (false, true) => Some(*a),
                     _ => None,
                 });
-            half.or_else(|| form.pairs.first().map(|pair| pair[0]))
+            half.or_else(|| form.pairs().next().map(|pair| pair[0]))
         }
     }
 }
 
 /// Whether the name of a column says that it holds the role.
 fn means(table: &Table, column: usize, role: Role, form: Form) -> bool {
-    let name = table.names[column].trim();
+    let name = table.headings[column].name.trim();
     match role::bare(name).as_str() {
         "t" => time_or_temperature(table, column, form) == role,
         _ => role.is_called(name),
@@ -331,15 +313,13 @@ fn means(table: &Table, column: usize, role: Role, form: Form) -> bool {
 
 /// What a column called t or T holds: as its unit says; else T is a temperature where another column is a time.
 fn time_or_temperature(table: &Table, column: usize, form: Form) -> Role {
-    let unit = table.units.get(column).map_or("", String::as_str);
-    let another = || {
-        (0..table.names.len())
-            .any(|n| n != column && (table.names[n] == "t" || Role::Time.is_called(&table.names[n])))
-    };
+    let Heading { name, unit, .. } = &table.headings[column];
+    let is_time = |name: &str| name == "t" || Role::Time.is_called(name);
+    let mut others = table.headings.iter().enumerate().filter(|(n, _)| *n != column);
     match tidy(Role::Temperature, "", unit).as_str() {
         "K" | "°C" | "°F" => Role::Temperature,
         unit if Unit::parse(unit).is_ok_and(|unit| unit.powers == dimension::Time::POWERS) => Role::Time,
-        _ if table.names[column] == "T" && another() => Role::Temperature,
+        _ if name == "T" && others.any(|(_, other)| is_time(&other.name)) => Role::Temperature,
         _ => form.t,
     }
 }
@@ -354,8 +334,7 @@ pub(super) fn measure(used: &[Place], table: &Table) -> Result<Option<Modulus>, 
             place.role,
             Role::Time | Role::Frequency | Role::TanDelta | Role::Phase | Role::Temperature | Role::Set
         );
-        let name = table.names.get(place.column - 1).filter(|_| is_modulus)?;
-        role::measure_of(name)
+        role::measure_of(&table.headings[place.column - 1].name).filter(|_| is_modulus)
     };
     let of = |measure: Modulus| used.iter().find(|place| called(place) == Some(measure));
     if let (Some(young), Some(shear)) = (of(Modulus::Young), of(Modulus::Shear)) {
@@ -380,7 +359,7 @@ fn said(used: &[Place], table: &Table) -> Option<Modulus> {
     let place = moduli.iter().find_map(|role| used.iter().find(|place| place.role == *role));
     match place {
         Some(place) => {
-            let named = role::measure_of(table.names.get(place.column - 1)?);
+            let named = role::measure_of(&table.headings[place.column - 1].name);
             named.or_else(|| is_sheared(table).then_some(Modulus::Shear))
         }
         // Viscosities of rheometers are those of shear.
@@ -391,22 +370,29 @@ fn said(used: &[Place], table: &Table) -> Option<Modulus> {
 /// Whether other columns say that the test was one in shear: its strain, its stress, or a torque.
 fn is_sheared(table: &Table) -> bool {
     let words = ["shearstr", "torque", "scher", "schubspannung", "drehmoment"];
-    table.names.iter().any(|name| words.iter().any(|word| role::bare(name).starts_with(word)))
+    let names = table.headings.iter().map(|heading| role::bare(&heading.name));
+    names.into_iter().any(|name| words.iter().any(|word| name.starts_with(word)))
 }
 
 /// Whether the header names storage and loss modulus, or what stands in their place.
 pub(super) fn is_dynamic(table: &Table) -> bool {
-    let form = Form::from(Kind::Dma);
-    let has = |role: &Role| (0..table.names.len()).any(|n| means(table, n, *role, form));
-    form.pairs.iter().any(|pair| pair.iter().all(&has))
+    names_pair(table, Kind::Dma.into())
 }
 
 /// Whether the header names all that a file of this kind needs.
 pub(super) fn named(table: &Table, kind: Kind) -> bool {
     let form = Form::from(kind);
-    let has = |role: &Role| (0..table.names.len()).any(|n| means(table, n, *role, form));
-    let pair = form.pairs.is_empty() || form.pairs.iter().any(|pair| pair.iter().all(&has));
-    form.needed.iter().all(&has) && pair
+    form.needed.iter().all(|role| names(table, *role, form))
+        && (form.pairs.is_empty() || names_pair(table, form))
+}
+
+fn names_pair(table: &Table, form: Form) -> bool {
+    form.pairs().any(|pair| pair.iter().all(|role| names(table, *role, form)))
+}
+
+/// Whether a column is named as one of the role.
+fn names(table: &Table, role: Role, form: Form) -> bool {
+    (0..table.headings.len()).any(|column| means(table, column, role, form))
 }
 
 fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
@@ -414,12 +400,13 @@ fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
         fault(format!("{} must be {what}, but the columns are {}", role.name(), table.listed()))
     };
     match column {
-        Column::Number(n) if *n >= 1 && *n <= table.columns => Ok(n - 1),
+        Column::Number(n) if *n >= 1 && *n <= table.headings.len() => Ok(n - 1),
         Column::Number(n) => Err(wrong(format!("column {n}"))),
         Column::Name(name) => {
             let wanted = name.trim();
-            let same = |text: &String| text.trim() == wanted;
-            let found = table.headers.iter().position(same).or_else(|| table.names.iter().position(same));
+            let mut headings = table.headings.iter();
+            let whole = headings.clone().position(|heading| heading.header.trim() == wanted);
+            let found = whole.or_else(|| headings.position(|heading| heading.name.trim() == wanted));
             found.ok_or_else(|| wrong(format!("in the column {wanted:?}")))
         }
     }

@@ -9,7 +9,7 @@ use super::Role;
 pub struct CurveError {
     /// The file.
     pub path: PathBuf,
-    /// Line of the file (row of the sheet), from 1, where one is to blame.
+    /// Line of the file (row of the sheet) that is wrong, from 1.
     pub line: Option<usize>,
     /// What is wrong and what was expected.
     pub message: String,
@@ -17,7 +17,7 @@ pub struct CurveError {
     pub remedy: Option<Remedy>,
 }
 
-/// What to do about a file, which is said in the words of a case file, of the command or of Python.
+/// What to do about a file; its text is in the words of a case file, of the command or of Python.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remedy {
     /// Say what was measured.
@@ -39,90 +39,79 @@ pub enum Remedy {
 }
 
 impl Remedy {
+    /// In the words of a case file, of the command and of Python.
+    fn words(&self) -> [String; 3] {
+        match self {
+            Remedy::Kind => [
+                "say kind = \"relaxation\", \"creep\" or \"dma\"",
+                "give --kind relaxation, creep or dma",
+                "give kind=\"relaxation\", \"creep\" or \"dma\"",
+            ]
+            .map(str::to_owned),
+            Remedy::Column(role) => {
+                let name = role.name();
+                [
+                    format!("columns = {{ {name} = 1 }}"),
+                    format!("--column {name}=1"),
+                    format!("columns={{\"{name}\": 1}}"),
+                ]
+                .map(|example| format!("name it as in {example}, by number or header"))
+            }
+            Remedy::Unit(role) => {
+                let (name, unit) = (role.name(), role.example());
+                [
+                    format!("say units = {{ {name} = \"{unit}\" }}"),
+                    format!("give --unit '{name}={unit}'"),
+                    format!("say units={{\"{name}\": \"{unit}\"}}"),
+                ]
+                .map(|how| format!("name the unit in the header, as in \"{name} [{unit}]\", or {how}"))
+            }
+            Remedy::Header => [
+                "say columns = { ... } and units = { ... }",
+                "give --column and --unit",
+                "say columns={...} and units={...}",
+            ]
+            .map(|how| format!("name each column with its unit, as in \"modulus [MPa]\", or {how}")),
+            Remedy::Shift => [
+                ", as in shift = { model = \"wlf\", c1 = 8.86, c2 = \"101.6 K\", reference = \"20 °C\" }, or model = \"estimated\" or \
+                 \"table\"",
+                " with --wlf, --arrhenius, --shift-table or --estimate-shift",
+                ": shift=asperity.wlf(c1=..., c2=..., reference=...), or shift=\"estimated\" with reference=...",
+            ]
+            .map(|how| format!("state how times depend on temperature{how}")),
+            Remedy::KnownShift => [
+                "shift = { model = \"table\", path = \"factors.csv\" } gives factors, model = \"wlf\" or \"arrhenius\" constants",
+                "--shift-table FILE gives factors, --wlf or --arrhenius constants",
+                "shift=asperity.shift_table(...) gives factors, asperity.wlf(...) or arrhenius(...) constants",
+            ]
+            .map(str::to_owned),
+            Remedy::Moduli => [
+                "say fit = { moduli = \"storage\" } (or \"loss\")",
+                "give --fit storage (or loss)",
+                "say moduli=\"storage\" (or \"loss\")",
+            ]
+            .map(str::to_owned),
+            Remedy::Sheet(sheets) => ["sheet = \"...\"", "--sheet NAME", "sheet=\"...\""]
+                .map(|key| format!("say which with {key}: {sheets}")),
+        }
+    }
+
     /// As keys of a material in a case file.
     pub fn in_case(&self) -> String {
-        match self {
-            Remedy::Kind => "say kind = \"relaxation\", \"creep\" or \"dma\"".to_owned(),
-            Remedy::Column(role) => {
-                format!("name it as in columns = {{ {} = 1 }}, by number or header", role.name())
-            }
-            Remedy::Unit(role) => format!(
-                "name the unit in the header, as in \"{0} [{1}]\", or say units = {{ {0} = \"{1}\" }}",
-                role.name(),
-                role.example()
-            ),
-            Remedy::Header => {
-                "name each column with its unit, as in \"modulus [MPa]\", or say columns = { ... } and \
-                               units = { ... }"
-                    .to_owned()
-            }
-            Remedy::Shift => {
-                "state how times depend on temperature, as in shift = { model = \"wlf\", c1 = 8.86, c2 = \
-                              \"101.6 K\", reference = \"20 °C\" }, or model = \"estimated\" or \"table\""
-                    .to_owned()
-            }
-            Remedy::KnownShift => {
-                "shift = { model = \"table\", path = \"factors.csv\" } gives factors, model = \"wlf\" or \"arrhenius\" constants".to_owned()
-            }
-            Remedy::Moduli => "say fit = { moduli = \"storage\" } (or \"loss\")".to_owned(),
-            Remedy::Sheet(sheets) => format!("say which with sheet = \"...\": {sheets}"),
-        }
+        let [case, ..] = self.words();
+        case
     }
 
     /// As options of `asperity material fit` and `show`.
     pub fn in_command(&self) -> String {
-        match self {
-            Remedy::Kind => "give --kind relaxation, creep or dma".to_owned(),
-            Remedy::Column(role) => {
-                format!("name it as in --column {}=1, by number or header", role.name())
-            }
-            Remedy::Unit(role) => format!(
-                "name the unit in the header, as in \"{0} [{1}]\", or give --unit '{0}={1}'",
-                role.name(),
-                role.example()
-            ),
-            Remedy::Header => {
-                "name each column with its unit, as in \"modulus [MPa]\", or give --column and --unit"
-                    .to_owned()
-            }
-            Remedy::Shift => {
-                "state how times depend on temperature with --wlf, --arrhenius, --shift-table or \
-                              --estimate-shift"
-                    .to_owned()
-            }
-            Remedy::KnownShift => {
-                "--shift-table FILE gives factors, --wlf or --arrhenius constants".to_owned()
-            }
-            Remedy::Moduli => "give --fit storage (or loss)".to_owned(),
-            Remedy::Sheet(sheets) => format!("say which with --sheet NAME: {sheets}"),
-        }
+        let [_, command, _] = self.words();
+        command
     }
 
     /// As arguments of Python's `fit_file`.
     pub fn in_python(&self) -> String {
-        match self {
-            Remedy::Kind => "give kind=\"relaxation\", \"creep\" or \"dma\"".to_owned(),
-            Remedy::Column(role) => {
-                format!("name it as in columns={{\"{}\": 1}}, by number or header", role.name())
-            }
-            Remedy::Unit(role) => format!(
-                "name the unit in the header, as in \"{0} [{1}]\", or say units={{\"{0}\": \"{1}\"}}",
-                role.name(),
-                role.example()
-            ),
-            Remedy::Header => {
-                "name each column with its unit, as in \"modulus [MPa]\", or say columns={...} and units={...}"
-                    .to_owned()
-            }
-            Remedy::Shift => "state how times depend on temperature: shift=asperity.wlf(c1=..., c2=..., reference=...), \
-                              or shift=\"estimated\" with reference=..."
-                .to_owned(),
-            Remedy::KnownShift => {
-                "shift=asperity.shift_table(...) gives factors, asperity.wlf(...) or arrhenius(...) constants".to_owned()
-            }
-            Remedy::Moduli => "say moduli=\"storage\" (or \"loss\")".to_owned(),
-            Remedy::Sheet(sheets) => format!("say which with sheet=\"...\": {sheets}"),
-        }
+        let [.., python] = self.words();
+        python
     }
 }
 

@@ -8,12 +8,13 @@ use asperity::material::Shift;
 use super::bytes;
 use super::error::{CurveError, Fault, Remedy, fault};
 use super::role::{Role, bare};
-use super::table::{Table, split_unit};
+use super::table::{Heading, Table, split_unit};
 use super::units::tidy;
 use super::workbook::{Sheet, sheets};
 use crate::quantity::Temperature;
+use crate::topography::leading_number;
 
-/// What a file says of its shift.
+/// The shift that a file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeldShift {
     /// Its list of factors.
@@ -33,8 +34,8 @@ impl HeldShift {
 /// by which processes take longer than at the reference temperature, so that it falls with temperature.
 ///
 /// # Errors
-/// [`CurveError`]: no such columns, a unit that is none of a temperature, factors that rise with temperature, a temperature
-/// twice.
+/// [`CurveError`] if there are no such columns, the unit is not one of temperature, the factors rise with temperature, or a
+/// temperature occurs twice.
 pub fn read_shift_table(path: &Path) -> Result<Shift, CurveError> {
     let read = || -> Result<Shift, Fault> {
         let mut last = None;
@@ -49,7 +50,7 @@ pub fn read_shift_table(path: &Path) -> Result<Shift, CurveError> {
     read().map_err(|fault| fault.of(path))
 }
 
-/// What the sheets of a spreadsheet say of the shift.
+/// The shift that the sheets of a spreadsheet hold.
 pub(super) fn held(sheets: &[Sheet]) -> HeldShift {
     let mut found = HeldShift::default();
     for sheet in sheets {
@@ -96,12 +97,7 @@ fn labelled(cells: &[Vec<String>], labels: &[&str]) -> Option<(f64, String)> {
 
 /// "25.0 °C" or "13,5": a number, and what follows it.
 fn number(text: &str) -> Option<(f64, String)> {
-    let text = text.trim_start_matches([':', '=', ' ']);
-    let end = text
-        .find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+')))
-        .unwrap_or(text.len());
-    let value: f64 = text[..end].replacen(',', ".", 1).parse().ok()?;
-    Some((value, text[end..].trim().to_owned()))
+    leading_number(text.trim_start_matches([':', '=', ' '])).map(|(value, rest)| (value, rest.to_owned()))
 }
 
 /// The number of "C1 : 13.50" or of "C1" and "13.50" in another cell.
@@ -140,15 +136,14 @@ fn written(name: &str) -> Option<Written> {
 
 /// The column of factors, and how they are written.
 fn column_of_factors(table: &Table) -> Option<(usize, Written)> {
-    (0..table.columns).find_map(|n| {
-        let [name, header] = [table.names.get(n)?, table.headers.get(n)?];
-        let by_name = || match (written(name)?, table.bases.get(n).copied().flatten()) {
+    table.headings.iter().enumerate().find_map(|(n, heading)| {
+        let by_name = || match (written(&heading.name)?, heading.base) {
             (Written::Plain, Some(10.0)) => Some(Written::Log10),
             (Written::Plain, Some(_)) => Some(Written::Ln),
             (how, _) => Some(how),
         };
         // The brackets of "log10(aT)" hold no unit.
-        Some((n, written(header).or_else(by_name)?))
+        Some((n, written(&heading.header).or_else(by_name)?))
     })
 }
 
@@ -159,8 +154,10 @@ pub(super) fn told_by(table: &Table) -> bool {
 
 /// The factors of a table; temperatures without a unit are in `unit`, or kelvin.
 fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
-    let named = |names: &[&str]| table.names.iter().position(|name| names.contains(&bare(name).as_str()));
-    let temperature = named(&["t", "temp", "temperature", "temperatur"]);
+    let is_temperature = |heading: &Heading| {
+        ["t", "temp", "temperature", "temperatur"].contains(&bare(&heading.name).as_str())
+    };
+    let temperature = table.headings.iter().position(is_temperature);
     let factor = column_of_factors(table);
     let (Some(temperature), Some((column, how))) = (temperature, factor) else {
         return Err(fault(format!(
@@ -168,8 +165,7 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
             table.listed()
         )));
     };
-    let header = table.units.get(temperature).map_or("", String::as_str);
-    let unit = match tidy(Role::Temperature, "", header) {
+    let unit = match tidy(Role::Temperature, "", &table.headings[temperature].unit) {
         none if none.is_empty() => unit.unwrap_or_default().to_owned(),
         unit => unit,
     };
@@ -214,7 +210,7 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
 
 /// Refuses a table whose moduli shift too, by a column of b_T that holds more than b_T = 1.
 fn vertical_free(table: &Table) -> Result<(), Fault> {
-    for (n, name) in table.names.iter().enumerate() {
+    for (n, Heading { name, base, .. }) in table.headings.iter().enumerate() {
         let name_only = bare(name);
         let plain = ["log10", "log", "lg", "ln"].iter().find_map(|prefix| name_only.strip_prefix(prefix));
         if !["bt", "verticalshift", "verticalshiftfactor", "verticalfactor"]
@@ -222,7 +218,7 @@ fn vertical_free(table: &Table) -> Result<(), Fault> {
         {
             continue;
         }
-        let logarithmic = plain.is_some() || table.bases.get(n).is_some_and(Option::is_some);
+        let logarithmic = plain.is_some() || base.is_some();
         let same = if logarithmic { 0.0 } else { 1.0 };
         if table.numbers(n).is_ok_and(|factors| factors.iter().all(|factor| (factor - same).abs() < SAME)) {
             continue;

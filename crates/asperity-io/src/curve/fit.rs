@@ -286,7 +286,7 @@ impl Request {
         }
     }
 
-    /// The reference temperature of the shift \[K\], where there is one.
+    /// The reference temperature of the shift \[K\]; `None` without a shift.
     fn reference(&self, curves: &Curves) -> Option<f64> {
         match &self.shift {
             ShiftRequest::Given(shift) => shift.reference(),
@@ -298,7 +298,7 @@ impl Request {
     /// The points inside the window.
     fn inside(&self, data: MasterCurve, lines: Vec<usize>) -> Result<(MasterCurve, Vec<usize>), Fault> {
         let Some([first, last]) = self.window else { return Ok((data, lines)) };
-        // Ends as written fall on points as written, whatever the rounding of their units.
+        // A point at the end of the window is inside it, even if the conversion of units rounds one of the two.
         let inside = |x: &f64| *x >= first * (1.0 - 1e-9) && *x <= last * (1.0 + 1e-9);
         let kept: Vec<usize> = (0..data.x.len()).filter(|n| inside(&data.x[*n])).collect();
         if kept.len() < 2 {
@@ -319,7 +319,7 @@ fn celsius(sweep: &Sweep) -> Option<String> {
     sweep.temperature.map(|kelvin| format!("{:.1} °C", kelvin - 273.15))
 }
 
-/// The curve at the reference temperature, and the lines of its points where it is one sweep.
+/// The curve at the reference temperature, and the lines of its points if it is one sweep.
 fn master(curves: &Curves, shift: Option<&Shift>) -> Result<(MasterCurve, Vec<usize>), Fault> {
     if let ([sweep], None) | ([sweep @ Sweep { temperature: None, .. }], _) =
         (curves.sweeps.as_slice(), shift)

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use asperity::indentation::{IndentationFit, Interval};
 use asperity::material::Modulus;
 
+use super::block::{PRONY, file_name};
 use super::bytes;
 use super::columns::{self, Columns, Form};
 use super::error::{CurveError, fault};
@@ -110,12 +111,11 @@ impl MaterialOf {
 /// `poisson = ...` and `material = { ... }` in full precision, to stand under a `[[body]]` of a case file, with intervals
 /// behind the terms.
 pub fn indentation_block(record: &Indentation, fit: &IndentationFit, of: MaterialOf) -> String {
-    let name = record.path.file_name().map_or("record".into(), |name| name.to_string_lossy().into_owned());
-    let name: String = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
     let [step, length] = fit.window;
     let mut text = format!(
-        "# From the indentation {name}: {} rows, misfit {:.2} % rms of the largest value; steps from {step:.3e} s, {length:.3e} s in \
+        "# From the indentation {}: {} rows, misfit {:.2} % rms of the largest value; steps from {step:.3e} s, {length:.3e} s in \
          all.\n# Behind each line: 95 % intervals.\n",
+        file_name(&record.path),
         fit.rows.len(),
         100.0 * fit.relative_rms,
     );
@@ -136,22 +136,10 @@ pub fn indentation_block(record: &Indentation, fit: &IndentationFit, of: Materia
         return text;
     }
     let known = format!("  # equilibrium {}", interval(equilibrium, "Pa"));
-    let _ = write!(
-        text,
-        "material = {{ model = \"prony\", modulus = \"{measure}\", equilibrium = \"{:e} Pa\", terms = [{known}",
-        equilibrium.value
-    );
-    for [modulus, time] in &fit.terms {
+    let terms = fit.terms.iter().map(|[modulus, time]| {
         let modulus = of.of(*modulus);
-        let _ = write!(
-            text,
-            "\n  {{ modulus = \"{:e} Pa\", time = \"{:e} s\" }},  # {}, {}",
-            modulus.value,
-            time.value,
-            interval(modulus, "Pa"),
-            interval(*time, "s")
-        );
-    }
-    text.push_str("\n] }\n");
-    text
+        let remark = format!("  # {}, {}", interval(modulus, "Pa"), interval(*time, "s"));
+        ([modulus.value, time.value], remark)
+    });
+    text + &PRONY.written(measure, equilibrium.value, &known, terms) + " }\n"
 }

@@ -5,9 +5,8 @@
 //!      --Request::fit--> master curve --> Prony series with its misfit
 //! ```
 //!
-//! Separator and decimal mark are found from the file; which column is what, from its header or as told; a unit
-//! stands in the header or is told. A spreadsheet may hold shift factors as well. What does not fit is refused with the
-//! line.
+//! Separator and decimal mark are found from the file. The meaning and the unit of each column come from its header or from the
+//! caller. A spreadsheet may hold shift factors as well. An error names the line that does not fit.
 //!
 //! ```
 //! use asperity_io::curve::{Columns, Curves, Kind, Request};
@@ -102,7 +101,7 @@ pub struct Sweep {
 }
 
 /// What a file holds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
     /// The file.
     pub path: PathBuf,
@@ -141,10 +140,10 @@ impl Curves {
         Curves::parse(path, &bytes(path)?, kind, columns)
     }
 
-    /// What a file (or the sheet of it) holds, as its header tells.
+    /// What a file, or a sheet of it, holds according to its header.
     ///
     /// # Errors
-    /// [`CurveError`] where the file cannot be read, holds no table, or its header does not tell.
+    /// [`CurveError`] if the file cannot be read, holds no table, or its header does not say what was measured.
     pub fn kind_of(path: &Path, sheet: Option<&str>) -> Result<Kind, CurveError> {
         let kind = |bytes: Vec<u8>| -> Result<Kind, Fault> {
             let (mut tables, mut refused) = (Vec::new(), None);
@@ -184,7 +183,6 @@ impl Curves {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(path: &Path, bytes: &[u8], kind: Kind, columns: &Columns) -> Result<Curves, CurveError> {
-        let digest = crate::digest::md5(bytes);
         let parse = || -> Result<Curves, Fault> {
             let sheets = workbook::sheets(bytes, columns.sheet.as_deref())?;
             let held = match sheets.as_slice() {
@@ -198,9 +196,10 @@ impl Curves {
                 columns::values(&table, kind.into(), columns)?;
             notes.extend(also);
             let measure = columns::measure(&used, &table)?;
-            let unused = (1..=table.columns).filter(|n| !used.iter().any(|place| place.column == *n));
-            let unused =
-                unused.filter_map(|n| table.headers.get(n - 1).filter(|name| !name.is_empty()).cloned());
+            let is_used = |column: usize| used.iter().any(|place| place.column == column);
+            let headers = (1..).zip(&table.headings).filter(|(n, _)| !is_used(*n));
+            let unused = headers.map(|(_, heading)| heading.header.clone()).filter(|name| !name.is_empty());
+            let unused = unused.collect();
             let (sweeps, repeated) = sweeps::sweeps(kind, &values, &lines)?;
             notes.extend(repeated);
             Ok(Curves {
@@ -210,32 +209,19 @@ impl Curves {
                 sweeps,
                 left_out,
                 sheet,
-                unused: unused.collect(),
+                unused,
                 columns: used,
                 held,
                 notes,
-                digest: String::new(),
+                digest: crate::digest::md5(bytes),
             })
         };
-        let curves = parse().map_err(|fault| fault.of(path))?;
-        Ok(Curves { digest, ..curves })
+        parse().map_err(|fault| fault.of(path))
     }
 
     /// Curves that no file holds; `name` is what messages call them.
     pub fn of(name: &str, kind: Kind, sweeps: Vec<Sweep>) -> Curves {
-        Curves {
-            path: PathBuf::from(name),
-            kind,
-            measure: None,
-            sweeps,
-            left_out: 0,
-            sheet: None,
-            columns: Vec::new(),
-            unused: Vec::new(),
-            held: HeldShift::default(),
-            notes: Vec::new(),
-            digest: String::new(),
-        }
+        Curves { path: PathBuf::from(name), kind, sweeps, ..Curves::default() }
     }
 
     /// Number of points.

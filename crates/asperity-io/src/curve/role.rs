@@ -94,28 +94,8 @@ pub(super) fn unnumbered(header: &str) -> String {
 /// What a name calls the modulus or compliance: E and D are Young's, G and J shear.
 pub(super) fn measure_of(name: &str) -> Option<Modulus> {
     /// What may follow the symbol.
-    const REST: [&str; 20] = [
-        "1",
-        "2",
-        "",
-        "'",
-        "''",
-        "*",
-        "t",
-        "r",
-        "rel",
-        "relax",
-        "stor",
-        "storage",
-        "loss",
-        "creep",
-        "complex",
-        "prime",
-        "doubleprime",
-        "star",
-        "modul",
-        "modulus",
-    ];
+    const REST: &str =
+        "1 2 ' '' * t r rel relax stor storage loss creep complex prime doubleprime star modul modulus";
     let name = bare(name);
     if name.contains("shear") || name.contains("schub") {
         return Some(Modulus::Shear);
@@ -135,7 +115,7 @@ pub(super) fn measure_of(name: &str) -> Option<Modulus> {
         _ => None,
     };
     let (symbol, rest) = (name.chars().next()?, name.get(1..).unwrap_or_default());
-    if REST.contains(&rest) {
+    if rest.is_empty() || REST.split(' ').any(|known| known == rest) {
         return of(symbol);
     }
     // "Relaxation modulus E(t)"

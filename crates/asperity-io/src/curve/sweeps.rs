@@ -10,11 +10,11 @@ use super::columns::Values;
 use super::error::{Fault, Remedy, fault};
 use super::{Kind, Role, Sweep};
 
-/// Temperatures closer than this belong to one sweep \[K\]: chambers hold no better.
+/// Temperatures closer than this belong to one sweep \[K\]: no chamber holds a temperature better.
 pub(super) const SAME_TEMPERATURE: f64 = 1.0;
 /// Temperatures of one sweep spread by no more \[K\].
 const SPREAD: f64 = 3.0;
-/// More sweeps than anybody measures.
+/// Largest number of sweeps; a file with more is another kind of table.
 const MOST_SWEEPS: usize = 1000;
 
 /// The rows by temperature, the coldest first; each sweep in the order of the file, or the reverse where that goes down;
@@ -121,47 +121,42 @@ fn once(kind: Kind, sweeps: Vec<Sweep>) -> Result<(Vec<Sweep>, Option<String>), 
     Ok((single, note))
 }
 
+/// Two columns, and storage and loss modulus from a value of each and the angular frequency.
+pub(super) type Pair = ([Role; 2], fn(f64, f64, f64) -> (f64, f64));
+
+/// The pairs from which storage and loss modulus follow.
+pub(super) const DYNAMIC: [Pair; 9] = [
+    ([Role::Storage, Role::Loss], |storage, loss, _| (storage, loss)),
+    ([Role::Storage, Role::TanDelta], |storage, tan, _| (storage, storage * tan)),
+    ([Role::Storage, Role::Phase], |storage, delta, _| (storage, storage * libm::tan(delta))),
+    ([Role::ComplexModulus, Role::TanDelta], |size, tan, _| parts(size, tan)),
+    ([Role::ComplexModulus, Role::Phase], |size, delta, _| parts(size, libm::tan(delta))),
+    ([Role::StorageCompliance, Role::LossCompliance], |real, imaginary, _| {
+        let squares = real * real + imaginary * imaginary;
+        (real / squares, imaginary / squares)
+    }),
+    ([Role::ImaginaryViscosity, Role::RealViscosity], |imaginary, real, omega| {
+        (imaginary * omega, real * omega)
+    }),
+    ([Role::ComplexViscosity, Role::TanDelta], |size, tan, omega| parts(size * omega, tan)),
+    ([Role::ComplexViscosity, Role::Phase], |size, delta, omega| parts(size * omega, libm::tan(delta))),
+];
+
+/// Real and imaginary part of a complex number, from its absolute value and the tangent of its angle.
+fn parts(size: f64, tan: f64) -> (f64, f64) {
+    let real = size / (1.0 + tan * tan).sqrt();
+    (real, real * tan)
+}
+
 /// Storage and loss modulus.
 fn dynamic(values: &Values) -> Vec<Vec<f64>> {
-    let get = |role: Role| values.get(&role);
-    let both = |a: &[f64], b: &[f64], f: &dyn Fn(f64, f64) -> (f64, f64)| -> Vec<Vec<f64>> {
-        let (storage, loss): (Vec<f64>, Vec<f64>) = a.iter().zip(b).map(|(a, b)| f(*a, *b)).unzip();
-        vec![storage, loss]
-    };
     let none = Vec::new();
-    let omega = get(Role::Frequency).unwrap_or(&none);
-    // tan delta, of the phase angle where that is given.
-    let tangent: Option<Vec<f64>> = get(Role::TanDelta)
-        .cloned()
-        .or_else(|| get(Role::Phase).map(|angles| angles.iter().map(|angle| libm::tan(*angle)).collect()));
-    let parts = |size: f64, tan: f64| {
-        let real = size / (1.0 + tan * tan).sqrt();
-        (real, real * tan)
-    };
-    if let (Some(storage), Some(loss)) = (get(Role::Storage), get(Role::Loss)) {
-        return vec![storage.clone(), loss.clone()];
-    }
-    if let (Some(storage), Some(tan)) = (get(Role::Storage), &tangent) {
-        return both(storage, tan, &|storage, tan| (storage, storage * tan));
-    }
-    if let (Some(size), Some(tan)) = (get(Role::ComplexModulus), &tangent) {
-        return both(size, tan, &parts);
-    }
-    if let (Some(real), Some(imaginary)) = (get(Role::StorageCompliance), get(Role::LossCompliance)) {
-        return both(real, imaginary, &|real, imaginary| {
-            let squares = real * real + imaginary * imaginary;
-            (real / squares, imaginary / squares)
-        });
-    }
-    if let (Some(real), Some(imaginary)) = (get(Role::RealViscosity), get(Role::ImaginaryViscosity)) {
-        let times = |viscosity: &[f64]| viscosity.iter().zip(omega).map(|(v, w)| v * w).collect::<Vec<f64>>();
-        return vec![times(imaginary), times(real)];
-    }
-    if let (Some(size), Some(tan)) = (get(Role::ComplexViscosity), &tangent) {
-        let sizes: Vec<f64> = size.iter().zip(omega).map(|(v, w)| v * w).collect();
-        return both(&sizes, tan, &parts);
-    }
-    vec![none.clone(), none]
+    let of = |role: &Role| values.get(role).unwrap_or(&none);
+    let held = DYNAMIC.iter().find(|(pair, _)| pair.iter().all(|role| values.contains_key(role)));
+    let Some(([first, second], moduli)) = held else { return vec![vec![], vec![]] };
+    let points = of(first).iter().zip(of(second)).zip(of(&Role::Frequency));
+    let (storage, loss) = points.map(|((a, b), omega)| moduli(*a, *b, *omega)).unzip();
+    vec![storage, loss]
 }
 
 /// The rows of each set, in the order of the file.

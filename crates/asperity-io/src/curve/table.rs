@@ -16,22 +16,27 @@ use crate::topography::{dialect, is_numbers, to_text};
 /// Columns of a file and its rows of cells.
 #[derive(Debug)]
 pub(super) struct Table {
-    /// Name of each column, without its unit; empty where the file names none.
-    pub names: Vec<String>,
-    /// Header cell of each column as it is written.
-    pub headers: Vec<String>,
-    /// Unit of each column as it is written; empty where the file names none.
-    pub units: Vec<String>,
-    /// The base where a column holds logarithms.
-    pub bases: Vec<Option<f64>>,
+    /// One for each column.
+    pub headings: Vec<Heading>,
     /// The line before the numbers, where it does not name the columns.
     pub unread: Option<String>,
-    /// Number of columns.
-    pub columns: usize,
     pub rows: Vec<Row>,
     text: String,
     pub separator: Option<char>,
     pub decimal_comma: bool,
+}
+
+/// What the header says of a column.
+#[derive(Debug)]
+pub(super) struct Heading {
+    /// The cell as it is written; empty if the file names no columns.
+    pub header: String,
+    /// The name without its unit.
+    pub name: String,
+    /// The unit as it is written; empty if the file names none.
+    pub unit: String,
+    /// The base if the column holds logarithms.
+    pub base: Option<f64>,
 }
 
 /// A line of numbers: its cells are cut out when they are asked for.
@@ -77,14 +82,14 @@ impl Table {
     /// From text whose separator and decimal mark are known.
     pub(super) fn split(text: String, separator: Option<char>, decimal_comma: bool) -> Result<Table, Fault> {
         let lines: Vec<&str> = text.lines().map(trim).collect();
-        // "NaN" stands where a number would; dashes may be anything.
+        // "NaN" counts as a number; dashes may be anything.
         let number = |cell: &str| parse_number(cell, decimal_comma).is_some() || is_undefined(cell);
         let numbers = |line: &str| cells(line, separator).iter().filter(|cell| number(cell)).count();
         let first = first_row(&lines, separator, &numbers).ok_or_else(|| {
             fault("there is no line with two numbers; a curve is a text table with one point per line")
         })?;
         let cells_of_first = cells(lines[first], separator);
-        // An empty last cell is one of a column that has a name, or a separator ends the line.
+        // An empty last cell belongs to a column that has a name; otherwise a separator ends the line.
         let unnamed = || {
             let above = lines[..first].iter().rev().find(|line| !is_blank(line, separator));
             let named =
@@ -160,15 +165,16 @@ impl Table {
             let start = line.as_ptr() as usize - text.as_ptr() as usize;
             rows.push(Row { line: n + 1, span: start..start + line.len() });
         }
-        let logarithms: Vec<(Option<f64>, &str)> =
-            headers.iter().map(|header| role::logarithm(header)).collect();
-        let bases = logarithms.iter().map(|(base, _)| *base).collect();
-        let split = logarithms.iter().map(|(_, name)| split_unit(name));
-        let (names, own): (Vec<String>, Vec<String>) =
-            split.map(|(name, unit)| (name.to_owned(), unit.to_owned())).unzip();
-        let units = units.unwrap_or(own);
+        let mut units = units.into_iter().flatten();
+        let heading = |header: String| {
+            let (base, quantity) = role::logarithm(&header);
+            let (name, own) = split_unit(quantity);
+            let (name, unit) = (name.to_owned(), units.next().unwrap_or_else(|| own.to_owned()));
+            Heading { header, name, unit, base }
+        };
+        let headings = headers.into_iter().map(heading).collect();
         drop(lines);
-        Ok(Table { names, headers, units, bases, unread, columns, rows, text, separator, decimal_comma })
+        Ok(Table { headings, unread, rows, text, separator, decimal_comma })
     }
 
     /// The numbers of a column.
@@ -219,9 +225,9 @@ impl Table {
 
     /// `, "f [Hz]"`, or nothing where the column has no name.
     pub(super) fn quoted(&self, column: usize) -> String {
-        match self.headers.get(column).map(String::as_str) {
-            None | Some("") => String::new(),
-            Some(header) => format!(", {header:?}"),
+        match self.headings[column].header.as_str() {
+            "" => String::new(),
+            header => format!(", {header:?}"),
         }
     }
 
@@ -233,12 +239,11 @@ impl Table {
 
     /// All columns, for messages: `1 "f [Hz]", 2 "E' [MPa]"`.
     pub(super) fn listed(&self) -> String {
-        let name = |n: usize| match self.headers.get(n).map(String::as_str) {
-            None | Some("") => (n + 1).to_string(),
-            Some(header) => format!("{} {header:?}", n + 1),
+        let name = |(n, heading): (usize, &Heading)| match heading.header.as_str() {
+            "" => (n + 1).to_string(),
+            header => format!("{} {header:?}", n + 1),
         };
-        let shown: Vec<String> = (0..self.columns.min(20)).map(name).collect();
-        shown.join(", ")
+        self.headings.iter().enumerate().take(20).map(name).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -252,7 +257,7 @@ fn trim(line: &str) -> &str {
 }
 
 /// The first line of the table: with two numbers at least, and with as many cells as the next such line (exports begin with
-/// lines of other numbers); where there is no such pair, the first line with two numbers.
+/// lines of other numbers); without such a pair, the first line with two numbers.
 fn first_row(lines: &[&str], separator: Option<char>, numbers: &dyn Fn(&str) -> usize) -> Option<usize> {
     let width = |line: &str| cells(line, separator).len();
     let rows: Vec<usize> =
@@ -289,7 +294,7 @@ fn names_column(cell: &str) -> bool {
     !is_missing(cell) && (is_called() || (!unit.is_empty() && is_unit(unit)) || wide::tells_value(cell))
 }
 
-/// What is said of a line between the points that is not the heading again.
+/// The error for a line between the points that does not repeat the heading.
 fn another_heading(line: &str) -> Fault {
     let shown: String = line.chars().take(60).collect();
     fault(format!(
@@ -299,10 +304,10 @@ fn another_heading(line: &str) -> Fault {
     ))
 }
 
-/// What is said of numbers whose comma nothing tells.
+/// The error for numbers whose comma is ambiguous.
 pub(super) fn doubtful(cell: &str) -> Fault {
     fault(format!(
-        "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and nothing in the file tells which; write \
+        "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and the file does not show which; write \
          them with a decimal point, or without commas"
     ))
 }
@@ -329,7 +334,7 @@ fn parse_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     number.ok().filter(|value: &f64| value.is_finite())
 }
 
-/// Whether a cell is a word for a number that is none.
+/// Whether a cell is a word for an undefined number.
 fn is_undefined(cell: &str) -> bool {
     let cell = cell.trim_matches('"');
     ["nan", "na", "n/a", "#n/a", "#nv"].iter().any(|word| cell.eq_ignore_ascii_case(word))
@@ -579,9 +584,16 @@ mod tests {
             "time [s], E, MPa\n0.5,2\n1.5,1\n",
         ] {
             let table = Table::parse(text.as_bytes()).unwrap();
-            assert_eq!(table.units, ["s", "MPa"], "{text}");
-            assert_eq!(table.names[1], "E", "{text}");
+            assert_eq!((names(&table)[1], units(&table)), ("E", vec!["s", "MPa"]), "{text}");
         }
+    }
+
+    fn names(table: &Table) -> Vec<&str> {
+        table.headings.iter().map(|heading| heading.name.as_str()).collect()
+    }
+
+    fn units(table: &Table) -> Vec<&str> {
+        table.headings.iter().map(|heading| heading.unit.as_str()).collect()
     }
 
     #[test]
@@ -601,20 +613,16 @@ mod tests {
             "sample A\nt;E;\n[s];[MPa];\n0,5;2;\n1,5;1;\n",
         ] {
             let table = Table::parse(text.as_bytes()).unwrap();
-            assert_eq!(
-                (table.names.as_slice(), table.units.as_slice()),
-                (["t".to_owned(), "E".to_owned()].as_slice(), ["s".to_owned(), "MPa".to_owned()].as_slice()),
-                "{text}"
-            );
+            assert_eq!((names(&table), units(&table)), (vec!["t", "E"], vec!["s", "MPa"]), "{text}");
             assert_eq!(table.numbers(0).unwrap(), [0.5, 1.5], "{text}");
             assert_eq!(table.numbers(1).unwrap(), [2.0, 1.0], "{text}");
         }
         let table = Table::parse(b"0.5 2\n1.5 1\n").unwrap();
-        assert_eq!(table.names, ["", ""]);
+        assert_eq!(names(&table), ["", ""]);
         // Other numbers before each heading.
         let block = "Interval and points:\t1\t7\t9\nt\tE\ns\tMPa\n\n0.5\t2\n1.5\t1\n\n";
         let table = Table::parse(block.repeat(2).as_bytes()).unwrap();
-        assert_eq!((table.names[0].as_str(), table.units[1].as_str()), ("t", "MPa"));
+        assert_eq!((names(&table)[0], units(&table)[1]), ("t", "MPa"));
         assert_eq!(table.numbers(0).unwrap(), [0.5, 1.5, 0.5, 1.5]);
     }
 
@@ -625,20 +633,23 @@ mod tests {
             ("Zeit;Kraft;\ns;N;\n0,5;2;\n1,5;1;\n", ["Zeit", "Kraft"], ["s", "N"]),
         ] {
             let table = Table::parse(text.as_bytes()).unwrap();
-            assert_eq!(table.names, names, "{text}");
-            assert_eq!(table.units, units, "{text}");
+            assert_eq!(
+                (self::names(&table), self::units(&table)),
+                (names.to_vec(), units.to_vec()),
+                "{text}"
+            );
         }
         let tabs = Table::parse(b"\tt\tE\n\ts\tMPa\nA\t0.5\t2\nA\t1.5\t1\n").unwrap();
-        assert_eq!((tabs.names[1].as_str(), tabs.units[2].as_str()), ("t", "MPa"));
+        assert_eq!((names(&tabs)[1], units(&tabs)[2]), ("t", "MPa"));
         let five = "f,E',E'',T,Set\nHz,MPa,MPa,C,-\n1,2,3,4,0\n2,3,4,4,0\n";
-        assert_eq!(Table::parse(five.as_bytes()).unwrap().names, ["f", "E'", "E''", "T", "Set"]);
+        assert_eq!(names(&Table::parse(five.as_bytes()).unwrap()), ["f", "E'", "E''", "T", "Set"]);
     }
 
     #[test]
     fn columns_of_text_stand_beside_the_numbers() {
         let table = Table::parse(b"sample,f [Hz],tan(delta)\nA1,1,0.5\nA1,2,0.6\n").unwrap();
-        assert_eq!(table.names, ["sample", "f", "tan(delta)"]);
-        assert_eq!(table.units, ["", "Hz", ""]);
+        assert_eq!(names(&table), ["sample", "f", "tan(delta)"]);
+        assert_eq!(units(&table), ["", "Hz", ""]);
         assert_eq!(table.numbers(2).unwrap(), [0.5, 0.6]);
         assert_eq!(table.numbers(0).unwrap_err().line, Some(2));
     }
@@ -689,6 +700,9 @@ mod tests {
         let table =
             Table::parse(b"Curve Values:\n Index   t   M'\n        [s]  [MPa]\n 0  0.5  2\n 1  1.5  1\n")
                 .unwrap();
-        assert_eq!((table.names.join(" "), table.units.join(" ")), ("Index t M'".into(), " s MPa".into()));
+        assert_eq!(
+            (names(&table).join(" "), units(&table).join(" ")),
+            ("Index t M'".into(), " s MPa".into())
+        );
     }
 }

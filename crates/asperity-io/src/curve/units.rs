@@ -119,7 +119,7 @@ fn degrees(unit: &str, numbers: &[f64]) -> Result<f64, String> {
     }
 }
 
-/// rad/s of one unit: cycles and radians are told apart, never guessed.
+/// rad/s of one unit: the unit must say whether it counts cycles or radians.
 fn frequency(unit: &str) -> Result<f64, String> {
     let radians = unit.contains("rad");
     if !radians && !unit.contains("Hz") {
@@ -144,6 +144,7 @@ fn frequency(unit: &str) -> Result<f64, String> {
 /// [`QuantityError`] for another dimension, or a unit that does not tell cycles from radians.
 pub fn angular_frequency(text: &str) -> Result<f64, QuantityError> {
     let expected = || QuantityError {
+        code: crate::Code::WrongUnit,
         expected: "a frequency greater than 0, such as \"0.1 Hz\" or \"2 rad/s\"".to_owned(),
         help: None,
     };

@@ -59,7 +59,7 @@ impl VerticalRequest {
     }
 }
 
-/// Curves at the reference temperature along the ordinate.
+/// Curves whose values are those at the reference temperature.
 pub(super) struct Corrected {
     pub curves: Curves,
     pub vertical: VerticalShift,
@@ -75,7 +75,7 @@ pub(super) fn of_values(kind: Kind, factor: f64) -> f64 {
     }
 }
 
-/// The curves by a vertical shift that is known before them; `None` where none is.
+/// The curves corrected by a vertical shift that does not depend on them; `None` if there is no such shift.
 pub(super) fn corrected(
     curves: &Curves,
     request: &VerticalRequest,
@@ -85,8 +85,8 @@ pub(super) fn corrected(
     known.map(|vertical| scaled(curves, vertical, &[])).transpose()
 }
 
-/// The curves by factors that let neighbours continue each other, at the distances of the shift; `factors` are those of the shift with
-/// their standard deviations \[decades\].
+/// The curves corrected by one factor for each sweep, estimated so that neighbouring sweeps continue each other after the shift.
+/// `factors` are those of the shift with their standard deviations \[decades\].
 pub(super) fn free(curves: &Curves, shift: Option<&Shift>, factors: &[[f64; 3]]) -> Result<Corrected, Fault> {
     let Some(shift) = shift.filter(|_| curves.sweeps.len() > 1) else {
         return Err(fault("vertical shifts that are free need sweeps at two temperatures or more"));

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use super::error::{Fault, fault};
 use super::role::{Role, unnumbered};
-use super::table::{MOST_ROWS, Row, Table, cells, is_missing, split_unit};
+use super::table::{Heading, MOST_ROWS, Row, Table, cells, is_missing, split_unit};
 
 /// The columns that belong together, and the value that they were measured at.
 struct Block {
@@ -41,7 +41,7 @@ impl Value {
 /// The table with its sweeps below each other; as it is where they are already.
 ///
 /// # Errors
-/// Where columns are repeated and nothing tells the temperatures.
+/// If columns are repeated and no temperatures are given for them.
 pub(super) fn long(table: Table) -> Result<Table, Fault> {
     if let Some(blocks) = repeated(&table)? {
         let headers = blocks[0].columns.iter().map(|column| header(&table, *column, None)).collect();
@@ -55,11 +55,11 @@ pub(super) fn long(table: Table) -> Result<Table, Fault> {
 
 /// The blocks of a table whose columns are repeated, with the temperature above each.
 fn repeated(table: &Table) -> Result<Option<Vec<Block>>, Fault> {
-    let columns = table.columns;
-    let plain: Vec<String> = table.headers.iter().map(|header| unnumbered(header)).collect();
+    let columns = table.headings.len();
+    let plain: Vec<String> = table.headings.iter().map(|heading| unnumbered(&heading.header)).collect();
     let name = |column: usize| plain.get(column).map_or("", String::as_str);
     let repeats = |period: usize| {
-        // The last block may lack the empty column that parts the blocks.
+        // The last block may lack the empty column that separates the blocks.
         let whole = columns.is_multiple_of(period)
             || (columns + 1).is_multiple_of(period) && name(period - 1).is_empty();
         let named = (0..period).filter(|column| !name(*column).is_empty()).count() >= 2;
@@ -70,7 +70,7 @@ fn repeated(table: &Table) -> Result<Option<Vec<Block>>, Fault> {
     let own: Vec<usize> = (0..period).filter(|column| !name(*column).is_empty()).collect();
     let of = |block: usize| own.iter().map(|column| block * period + column).collect();
     let is_temperature = |name: &str| name == "T" || Role::Temperature.is_called(name);
-    if own.iter().any(|column| is_temperature(&table.names[*column])) {
+    if own.iter().any(|column| is_temperature(&table.headings[*column].name)) {
         return Ok(Some((0..count).map(|block| Block { columns: of(block), value: None }).collect()));
     }
     let temperatures = |line: &str| -> Option<Vec<Block>> {
@@ -85,7 +85,7 @@ fn repeated(table: &Table) -> Result<Option<Vec<Block>>, Fault> {
     let found = table.above().rev().find_map(temperatures);
     found.map(Some).ok_or_else(|| {
         fault(format!(
-            "columns 1 to {period} are repeated {count} times, and no line above tells the temperatures; write one above each block, as \
+            "columns 1 to {period} are repeated {count} times, and no line above names their temperatures; write one above each block, as \
              in \"20 °C\", or put the sweeps below each other with a column of temperatures"
         ))
     })
@@ -93,8 +93,8 @@ fn repeated(table: &Table) -> Result<Option<Vec<Block>>, Fault> {
 
 /// The headers and blocks of a table whose columns are named with the value that they were measured at.
 fn by_name(table: &Table) -> Option<(Vec<String>, Vec<Block>)> {
-    let values: Vec<Option<Value>> = table.headers.iter().map(|header| value_in(header)).collect();
-    let shared: Vec<usize> = (0..table.columns).filter(|column| values[*column].is_none()).collect();
+    let values: Vec<Option<Value>> = table.headings.iter().map(|heading| value_in(&heading.header)).collect();
+    let shared: Vec<usize> = (0..values.len()).filter(|column| values[*column].is_none()).collect();
     let (mut blocks, mut names): (Vec<Block>, Vec<Vec<String>>) = (Vec::new(), Vec::new());
     for (column, value) in values.iter().enumerate() {
         let Some(value) = value else { continue };
@@ -126,7 +126,7 @@ fn by_name(table: &Table) -> Option<(Vec<String>, Vec<Block>)> {
 
 /// The header of a column with its unit, without the value in it.
 fn header(table: &Table, column: usize, value: Option<&Value>) -> String {
-    let whole = table.headers.get(column).map_or("", String::as_str);
+    let Heading { header: whole, unit, .. } = &table.headings[column];
     let text = match value {
         None => whole.to_owned(),
         Some(value) => {
@@ -141,9 +141,9 @@ fn header(table: &Table, column: usize, value: Option<&Value>) -> String {
         }
     };
     // The unit of a line of its own.
-    match table.units.get(column).filter(|unit| !unit.is_empty() && split_unit(whole).1.is_empty()) {
-        Some(unit) => format!("{text} [{unit}]"),
-        None => text,
+    match !unit.is_empty() && split_unit(whole).1.is_empty() {
+        true => format!("{text} [{unit}]"),
+        false => text,
     }
 }
 
@@ -246,8 +246,10 @@ mod tests {
     /// Names, units, all numbers by columns, and the lines of the points.
     fn found(text: &str) -> (Vec<String>, Vec<String>, Vec<Vec<f64>>, Vec<usize>) {
         let table = read(text).unwrap();
-        let columns = (0..table.columns).map(|column| table.numbers(column).unwrap()).collect();
-        (table.names.clone(), table.units.clone(), columns, table.rows.iter().map(|row| row.line).collect())
+        let columns = (0..table.headings.len()).map(|column| table.numbers(column).unwrap()).collect();
+        let lines = table.rows.iter().map(|row| row.line).collect();
+        let (names, units) = table.headings.into_iter().map(|heading| (heading.name, heading.unit)).unzip();
+        (names, units, columns, lines)
     }
 
     #[test]

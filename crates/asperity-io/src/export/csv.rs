@@ -9,25 +9,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::contents::{Contents, Data, Map, TIME, Variable};
-use super::error::{ExportError, Result, WriteError};
+use super::error::{ExportError, Result};
 use crate::output::{Output, PartialFile};
 
 pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Result<Vec<PathBuf>> {
-    let maps: Vec<_> = contents
-        .variables
-        .iter()
-        .filter(|variable| matches!(variable.data, Data::Field(_)))
-        .flat_map(|variable| (0..contents.instants.len()).map(move |n| (variable, n)))
-        .map(|(variable, n)| {
-            let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let name = format!("{stem}_{}_{:04}.csv", variable.name, contents.instants[n]);
-            (variable, n, path.with_file_name(name))
-        })
-        .collect();
-    let beside = |name: &str| {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        path.with_file_name(format!("{stem}_{name}.csv"))
-    };
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let beside = |name: &str| path.with_file_name(format!("{stem}_{name}.csv"));
     // More than the coordinates of the dimension.
     let lists = |(n, (name, _)): (usize, &(&'static str, usize))| {
         let numbers =
@@ -39,7 +26,7 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
     let tables: Vec<_> = contents.variables.iter().filter(table).map(|v| (v, beside(v.name))).collect();
     // All are written before the first gets its name.
     let mut made = Vec::new();
-    let mut make = |path: &Path, fill: &dyn Fn(&mut Output<'_>) -> Result<(), WriteError>| {
+    let mut make = |path: &Path, fill: &dyn Fn(&mut Output<'_>) -> Result<()>| {
         let partial = PartialFile::filled(path, force, fill).map_err(|error| error.at(path))?;
         made.push((partial, path.to_owned()));
         Ok::<(), ExportError>(())
@@ -51,23 +38,26 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
     for (variable, path) in &tables {
         make(path, &|file| by_two(contents, variable, file))?;
     }
-    for (variable, n, path) in &maps {
+    for variable in contents.variables.iter().filter(|variable| variable.is_field()) {
         let heading = named(variable);
-        make(path, &|file| match contents.map(&variable.data, *n)? {
-            Some(Map::Real(map)) => matrix(contents, file, &heading, |i, j| number(map[(i, j)])),
-            Some(Map::Byte(map)) => matrix(contents, file, &heading, |i, j| map[(i, j)].to_string()),
-            None => Ok(()),
-        })?;
+        for (n, instant) in contents.instants.iter().enumerate() {
+            make(&beside(&format!("{}_{instant:04}", variable.name)), &|file| match contents
+                .map(variable, n)?
+            {
+                Map::Real(map) => matrix(contents, file, &heading, |i, j| number(map[(i, j)])),
+                Map::Byte(map) => matrix(contents, file, &heading, |i, j| map[(i, j)].to_string()),
+            })?;
+        }
     }
     let finish = |(partial, path): (PartialFile, PathBuf)| match partial.finish() {
         Ok(()) => Ok(path),
-        Err(error) => Err(WriteError::Io(error).at(&path)),
+        Err(error) => Err(ExportError::from(error).at(&path)),
     };
     made.into_iter().map(finish).collect()
 }
 
 /// The numbers over one dimension; tensors over it with a column for each entry.
-fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output<'_>) -> Result<(), WriteError> {
+fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output<'_>) -> Result<()> {
     let is_of = |v: &&Variable| {
         v.dimensions == [dimension] || v.dimensions.first() == Some(&dimension) && v.dimensions.len() == 3
     };
@@ -96,7 +86,7 @@ fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output<'_>) -> R
 }
 
 /// The numbers of a variable over two dimensions.
-fn by_two(contents: &Contents<'_>, variable: &Variable, file: &mut Output<'_>) -> Result<(), WriteError> {
+fn by_two(contents: &Contents<'_>, variable: &Variable, file: &mut Output<'_>) -> Result<()> {
     let Data::Reals(numbers) = &variable.data else { return Ok(()) };
     let [rows, columns] = [0, 1].map(|axis| contents.dimensions[variable.dimensions[axis]]);
     let coordinate = |(name, length): (&str, usize)| {
@@ -129,7 +119,7 @@ fn matrix(
     file: &mut Output<'_>,
     heading: &str,
     cell: impl Fn(usize, usize) -> String,
-) -> Result<(), WriteError> {
+) -> Result<()> {
     let grid = &contents.reader().header().grid;
     let [nx, ny] = grid.cells();
     if grid.is_line() {
@@ -144,7 +134,7 @@ fn matrix(
     Ok(())
 }
 
-fn line(file: &mut Output<'_>, cells: impl Iterator<Item = String>) -> Result<(), WriteError> {
+fn line(file: &mut Output<'_>, cells: impl Iterator<Item = String>) -> Result<()> {
     for (n, cell) in cells.enumerate() {
         let comma = if n > 0 { "," } else { "" };
         write!(file, "{comma}{cell}")?;

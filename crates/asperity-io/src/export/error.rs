@@ -63,53 +63,37 @@ impl From<asperity::Error> for ExportError {
 /// Result of an export.
 pub type Result<T, E = ExportError> = std::result::Result<T, E>;
 
-/// What a writer of one format says; the caller adds the path.
-pub(super) enum WriteError {
-    Io(io::Error),
-    Other(ExportError),
-}
-
-impl From<io::Error> for WriteError {
-    fn from(error: io::Error) -> Self {
-        WriteError::Io(error)
+/// An error of a file whose path [`at`](ExportError::at) adds.
+impl From<io::Error> for ExportError {
+    fn from(source: io::Error) -> Self {
+        ExportError::Io { path: PathBuf::new(), action: "write", source }
     }
 }
 
-impl From<rust_hdf5::Hdf5Error> for WriteError {
+impl From<rust_hdf5::Hdf5Error> for ExportError {
     fn from(error: rust_hdf5::Hdf5Error) -> Self {
         match error {
-            rust_hdf5::Hdf5Error::Io(error) => WriteError::Io(error),
-            other => WriteError::Io(io::Error::other(other)),
+            rust_hdf5::Hdf5Error::Io(error) => error.into(),
+            other => io::Error::other(other).into(),
         }
     }
 }
 
-impl From<StoreError> for WriteError {
-    fn from(error: StoreError) -> Self {
-        WriteError::Other(error.into())
-    }
-}
-
-impl From<ExportError> for WriteError {
-    fn from(error: ExportError) -> Self {
-        WriteError::Other(error)
-    }
-}
-
-impl WriteError {
+impl ExportError {
+    /// The error with the path of the output, if it names no path yet.
     pub(super) fn at(self, path: &Path) -> ExportError {
+        let (path, found) = (path.to_owned(), crate::output::no_file(path));
         match self {
-            WriteError::Io(source) => {
-                let path = path.to_owned();
-                match (source.kind(), crate::output::no_file(&path)) {
-                    (ErrorKind::AlreadyExists, _) => ExportError::Exists { path },
-                    (ErrorKind::IsADirectory | ErrorKind::InvalidInput, Some(found)) => {
-                        ExportError::Foreign { path, found: found.into() }
+            ExportError::Io { path: known, source, .. } if known.as_os_str().is_empty() => {
+                match source.kind() {
+                    ErrorKind::AlreadyExists => ExportError::Exists { path },
+                    ErrorKind::IsADirectory | ErrorKind::InvalidInput if found.is_some() => {
+                        ExportError::Foreign { path, found: found.unwrap_or_default().into() }
                     }
                     _ => ExportError::Io { path, action: "write", source },
                 }
             }
-            WriteError::Other(error) => error,
+            other => other,
         }
     }
 }

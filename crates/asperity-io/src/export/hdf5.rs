@@ -1,18 +1,16 @@
 //! HDF5, with dimension scales: h5py and MATLAB open it, and NetCDF-4 readers (xarray) find its dimensions.
 //!
-//! Data sets are in one piece and maps go to the file one after the other: memory holds one of them, whatever their
-//! number.
+//! Data sets are contiguous, and maps are written one after the other: memory holds one of them.
 
 use std::path::Path;
 
 use rust_hdf5::{H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
 
-use super::contents::{Attribute, Contents, Data, Map, Variable};
-use super::error::WriteError;
-use crate::store::FieldKind;
+use super::contents::{Attribute, Contents, Data, DataType, Map, Variable};
+use super::error::Result;
 
 /// Fills the file at `path`, which is made anew.
-pub(super) fn write(contents: &Contents<'_>, path: &Path) -> Result<(), WriteError> {
+pub(super) fn write(contents: &Contents<'_>, path: &Path) -> Result<()> {
     // Nobody else knows the path yet; and some network file systems have no locks.
     let file = H5File::options().no_locking().create(path)?;
     for (name, attribute) in &contents.attributes {
@@ -27,7 +25,7 @@ pub(super) fn write(contents: &Contents<'_>, path: &Path) -> Result<(), WriteErr
         let data_set = create(&file, contents, variable)?;
         data_set.new_attr::<VarLenUnicode>().create("units")?.write_string(variable.units)?;
         data_set.new_attr::<VarLenUnicode>().create("long_name")?.write_string(variable.long_name)?;
-        write_data(contents, &variable.data, &data_set)?;
+        write_data(contents, variable, &data_set)?;
         data_sets.push((variable, data_set));
     }
     // The dimensions are the variables of their names.
@@ -64,30 +62,24 @@ fn create(file: &H5File, contents: &Contents<'_>, variable: &Variable) -> Result
     let shape = variable.shape(contents);
     match &variable.data {
         Data::Counts(_) => file.new_dataset::<i64>().shape(shape).create(variable.name),
-        Data::Field(FieldKind::Contact) => file.new_dataset::<u8>().shape(shape).create(variable.name),
+        Data::Maps(DataType::UInt8) => file.new_dataset::<u8>().shape(shape).create(variable.name),
         _ => file.new_dataset::<f64>().shape(shape).create(variable.name),
     }
 }
 
-fn write_data(contents: &Contents<'_>, data: &Data, data_set: &H5Dataset) -> Result<(), WriteError> {
+fn write_data(contents: &Contents<'_>, variable: &Variable, data_set: &H5Dataset) -> Result<()> {
     if data_set.total_elements() == 0 {
         return Ok(()); // no instant is exported: a data set without numbers takes no write
     }
-    match data {
+    match &variable.data {
         Data::Reals(reals) => data_set.write_raw(reals)?,
         Data::Counts(counts) => data_set.write_raw(counts)?,
-        data => {
-            // Axes before those of a map.
-            let lead = match data {
-                Data::Field(_) => 1,
-                Data::Stress(_) => 2,
-                _ => 0,
-            };
-            for n in 0..contents.maps(data) {
-                match contents.map(data, n)? {
-                    Some(Map::Real(map)) => write_map(data_set, lead, n, map.as_slice().unwrap_or_default())?,
-                    Some(Map::Byte(map)) => write_map(data_set, lead, n, map.as_slice().unwrap_or_default())?,
-                    None => {}
+        Data::Maps(_) => {
+            for n in 0..contents.lead(variable).iter().product() {
+                let place = contents.place(variable, n);
+                match contents.map(variable, n)? {
+                    Map::Real(map) => write_map(data_set, &place, map.as_slice().unwrap_or_default())?,
+                    Map::Byte(map) => write_map(data_set, &place, map.as_slice().unwrap_or_default())?,
                 }
             }
         }
@@ -95,14 +87,11 @@ fn write_data(contents: &Contents<'_>, data: &Data, data_set: &H5Dataset) -> Res
     Ok(())
 }
 
-/// Writes the `n`th map of a data set: all of it, or its part at index `n` of its first `lead` axes.
-fn write_map<T: H5Type>(data_set: &H5Dataset, lead: usize, n: usize, map: &[T]) -> Result<(), Hdf5Error> {
-    let mut starts = vec![0; data_set.ndims()];
-    let mut counts = data_set.shape();
-    let depths = if lead == 2 { counts[1] } else { 1 };
-    for (axis, index) in [n / depths, n % depths].into_iter().enumerate().take(lead) {
-        starts[axis] = index;
-        counts[axis] = 1;
-    }
+/// Writes one map of a data set: its part at `place` along its first axes.
+fn write_map<T: H5Type>(data_set: &H5Dataset, place: &[usize], map: &[T]) -> Result<(), Hdf5Error> {
+    let shape = data_set.shape();
+    let (mut starts, mut counts) = (vec![0; shape.len()], vec![1; place.len()]);
+    starts[..place.len()].copy_from_slice(place);
+    counts.extend(&shape[place.len()..]);
     data_set.write_slice(&starts, &counts, map)
 }

@@ -14,6 +14,7 @@
 mod contents;
 mod csv;
 mod error;
+mod frame;
 mod hdf5;
 mod netcdf;
 mod npz;
@@ -25,13 +26,16 @@ use std::path::{Path, PathBuf};
 pub use error::{ExportError, Result};
 pub use volume::volume;
 
+use serde::Deserialize;
+
+use crate::choice;
 use crate::output::{self, PartialFile};
 use crate::store::{At, FieldKind, Leaks, Reader, StoreError};
 use contents::Contents;
-use error::WriteError;
 
 /// A format of an export.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Format {
     /// Classic NetCDF with 64-bit offsets, or the 64-bit data form where a map exceeds 4 GiB.
     NetCdf,
@@ -62,42 +66,32 @@ impl Format {
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Format::NetCdf => "netcdf",
-            Format::Hdf5 => "hdf5",
-            Format::Npz => "npz",
-            Format::Vtk => "vtk",
-            Format::Csv => "csv",
-        }
+        choice::word(&self)
     }
 
     /// The format of that name.
     pub fn from_name(name: &str) -> Option<Format> {
-        Format::ALL.into_iter().find(|format| format.name() == name)
+        choice::parse(name)
     }
 
     /// What of the stress and the leakage of a result it does not hold, as a sentence; `None` where it holds all.
     pub fn left_out(self, reader: &Reader) -> Option<String> {
+        const VOLUME: &str = "the stress below the surface (asperity stress RESULT -o VOLUME.vtr writes it)";
         let fields: Vec<_> =
             reader.stress().iter().flat_map(|set| set.fields()).map(|field| field.1.name).collect();
         let pressure = reader.leaks().is_some_and(Leaks::has_pressure);
-        let mut absent = vec![];
-        if self == Format::Vtk && reader.stress().is_some() {
-            absent.push(
-                "the stress below the surface (asperity stress RESULT -o VOLUME.vtr writes it)".to_owned(),
-            );
-        } else if self == Format::Csv && !fields.is_empty() {
-            absent.push(format!("the stress fields {}", fields.join(", ")));
-        }
-        match self {
-            Format::Vtk if reader.leaks().is_some() => absent.push("the leakage".into()),
-            Format::Csv if pressure => absent.push("the field fluid_pressure".into()),
-            _ => {}
-        }
-        let sentence = |absent: Vec<String>| {
-            format!("{} does not hold {}; netcdf, hdf5 and npz do", self.name(), absent.join(" and "))
+        let absent = match self {
+            Format::Vtk => {
+                [reader.stress().map(|_| VOLUME.to_owned()), reader.leaks().map(|_| "the leakage".to_owned())]
+            }
+            Format::Csv => [
+                (!fields.is_empty()).then(|| format!("the stress fields {}", fields.join(", "))),
+                pressure.then(|| "the field fluid_pressure".to_owned()),
+            ],
+            _ => [None, None],
         };
-        (!absent.is_empty()).then(|| sentence(absent))
+        let absent = absent.into_iter().flatten().reduce(|first, second| format!("{first} and {second}"))?;
+        Some(format!("{} does not hold {absent}; netcdf, hdf5 and npz do", self.name()))
     }
 
     /// The usual ending of its files.
@@ -164,7 +158,7 @@ pub fn export(reader: &Reader, format: Format, path: &Path, options: &Options) -
     Ok(vec![path.to_owned()])
 }
 
-fn hdf5(contents: &Contents<'_>, path: &Path, force: bool) -> Result<(), WriteError> {
+fn hdf5(contents: &Contents<'_>, path: &Path, force: bool) -> Result<()> {
     let partial = PartialFile::new(path, force)?;
     hdf5::write(contents, partial.place())?;
     Ok(partial.finish()?)

@@ -6,61 +6,45 @@
 
 use std::io::Write;
 
-use super::contents::{Contents, Data, FIELD_TIME, Map, Variable};
-use super::error::WriteError;
-use crate::classic::{ATTRIBUTE, Attribute, DIMENSION, Header, Type, VARIABLE, padded};
+use super::contents::{Contents, Data, DataType, FIELD_TIME, Map, Variable};
+use super::error::Result;
+use crate::classic::{self, Attribute, Type, padded};
 use crate::output::Output;
 
 /// Largest slab of CDF-2.
 const LARGEST: u64 = (1 << 32) - 4;
 
-/// A variable with its type and the bytes of one slab: the whole of it, or one record.
-struct Slab<'a> {
-    variable: &'a Variable,
-    kind: Type,
-    record: bool,
-    bytes: u64,
-}
+/// A variable of the result, and how it is written.
+type Slab<'a> = (&'a Variable, classic::Variable<'a>);
 
-pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<(), WriteError> {
+pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<()> {
     let slabs: Vec<Slab<'_>> = contents.variables.iter().map(|v| slab(contents, v)).collect();
-    let wide = slabs.iter().any(|slab| slab.bytes > LARGEST);
-    write_slabs(contents, &slabs, wide, file)
+    let wide = slabs.iter().any(|(_, slab)| slab.bytes > LARGEST);
+    write_slabs(contents, slabs, wide, file)
 }
 
 fn write_slabs(
     contents: &Contents<'_>,
-    slabs: &[Slab<'_>],
+    slabs: Vec<Slab<'_>>,
     wide: bool,
     file: &mut impl Write,
-) -> Result<(), WriteError> {
-    // The header's length does not depend on the offsets in it.
-    let zeros = vec![0; slabs.len()];
-    let mut end = header(contents, slabs, wide, &zeros).len() as u64;
-    let mut begins = zeros;
-    for record in [false, true] {
-        for (slab, begin) in slabs.iter().zip(&mut begins).filter(|(slab, _)| slab.record == record) {
-            *begin = end;
-            end += padded(slab.bytes);
-        }
-    }
-    file.write_all(&header(contents, slabs, wide, &begins))?;
-    for slab in slabs.iter().filter(|slab| !slab.record) {
-        write_slab(contents, slab, 0, file)?;
-    }
-    for n in 0..contents.instants.len() {
-        for slab in slabs.iter().filter(|slab| slab.record) {
-            write_slab(contents, slab, n, file)?;
-        }
-    }
-    Ok(())
+) -> Result<()> {
+    let mut dimensions = contents.dimensions.clone();
+    dimensions[FIELD_TIME].1 = 0; // along the records
+    let (variables, slabs): (Vec<_>, Vec<_>) = slabs.into_iter().unzip();
+    let records = contents.instants.len();
+    file.write_all(&classic::header(records, wide, &dimensions, &contents.attributes, &slabs))?;
+    let written = |record| variables.iter().zip(&slabs).filter(move |(_, slab)| slab.record == record);
+    written(false).try_for_each(|(variable, slab)| write_slab(contents, variable, slab, 0, file))?;
+    (0..records).try_for_each(|n| {
+        written(true).try_for_each(|(variable, slab)| write_slab(contents, variable, slab, n, file))
+    })
 }
 
 fn slab<'a>(contents: &Contents<'_>, variable: &'a Variable) -> Slab<'a> {
     let kind = match &variable.data {
-        Data::Reals(_) | Data::InitialGap => Type::Double,
-        Data::Field(crate::store::FieldKind::Contact) => Type::Byte,
-        Data::Field(_) | Data::Stress(_) | Data::FluidPressure => Type::Double,
+        Data::Maps(DataType::UInt8) => Type::Byte,
+        Data::Reals(_) | Data::Maps(_) => Type::Double,
         // Counts beyond 2^31 are exact as doubles up to 2^53.
         Data::Counts(counts) if counts.iter().all(|n| i32::try_from(*n).is_ok()) => Type::Int,
         Data::Counts(_) => Type::Double,
@@ -68,25 +52,27 @@ fn slab<'a>(contents: &Contents<'_>, variable: &'a Variable) -> Slab<'a> {
     let record = variable.dimensions.first() == Some(&FIELD_TIME);
     let lengths = variable.shape(contents).into_iter().skip(usize::from(record));
     let bytes = lengths.fold(kind.size(), |bytes, n| bytes.saturating_mul(n as u64));
-    Slab { variable, kind, record, bytes }
+    let texts = [("units", variable.units), ("long_name", variable.long_name)];
+    let attributes = texts.map(|(name, text)| (name, Attribute::Text(text.to_owned()))).to_vec();
+    let dimensions = variable.dimensions.clone();
+    (variable, classic::Variable { name: variable.name, dimensions, attributes, kind, bytes, record })
 }
 
 fn write_slab(
     contents: &Contents<'_>,
-    slab: &Slab<'_>,
+    variable: &Variable,
+    slab: &classic::Variable<'_>,
     n: usize,
     file: &mut impl Write,
-) -> Result<(), WriteError> {
+) -> Result<()> {
     let instants = contents.instants.len().max(1);
     let part = |length: usize| match slab.record {
         true => n * (length / instants)..(n + 1) * (length / instants),
         false => 0..length,
     };
-    match &slab.variable.data {
+    match &variable.data {
         Data::Reals(reals) => {
-            for x in &reals[part(reals.len())] {
-                file.write_all(&x.to_be_bytes())?;
-            }
+            reals[part(reals.len())].iter().try_for_each(|x| file.write_all(&x.to_be_bytes()))?;
         }
         Data::Counts(counts) => {
             for count in &counts[part(counts.len())] {
@@ -96,54 +82,17 @@ fn write_slab(
                 }
             }
         }
-        data => {
-            let maps = contents.maps_of_instant(data);
-            for n in n * maps..(n + 1) * maps {
-                match contents.map(data, n)? {
-                    Some(Map::Real(map)) => {
-                        for x in &map {
-                            file.write_all(&x.to_be_bytes())?;
-                        }
-                    }
-                    Some(Map::Byte(map)) => {
-                        for cell in &map {
-                            file.write_all(&[*cell])?;
-                        }
-                    }
-                    None => {}
+        Data::Maps(_) => {
+            for n in part(contents.lead(variable).iter().product()) {
+                match contents.map(variable, n)? {
+                    Map::Real(map) => map.iter().try_for_each(|x| file.write_all(&x.to_be_bytes()))?,
+                    Map::Byte(map) => file.write_all(map.as_slice().unwrap_or_default())?,
                 }
             }
         }
     }
     let padding = (padded(slab.bytes) - slab.bytes) as usize;
     Ok(file.write_all(&[0; 4][..padding])?)
-}
-
-fn header(contents: &Contents<'_>, slabs: &[Slab<'_>], wide: bool, begins: &[u64]) -> Vec<u8> {
-    let mut header = Header::new(contents.instants.len() as u64, wide);
-    header.list(DIMENSION, contents.dimensions.len());
-    for (index, (name, length)) in contents.dimensions.iter().enumerate() {
-        header.text(name);
-        header.size(if index == FIELD_TIME { 0 } else { *length as u64 }); // 0: along the records
-    }
-    header.list(ATTRIBUTE, contents.attributes.len());
-    for (name, attribute) in &contents.attributes {
-        header.attribute(name, attribute);
-    }
-    header.list(VARIABLE, slabs.len());
-    for (slab, begin) in slabs.iter().zip(begins) {
-        let variable = slab.variable;
-        header.text(variable.name);
-        header.size(variable.dimensions.len() as u64);
-        variable.dimensions.iter().for_each(|d| header.size(*d as u64));
-        header.list(ATTRIBUTE, 2);
-        header.attribute("units", &Attribute::Text(variable.units.into()));
-        header.attribute("long_name", &Attribute::Text(variable.long_name.into()));
-        header.tag(slab.kind as u32);
-        header.size(padded(slab.bytes));
-        header.bytes.extend(begin.to_be_bytes());
-    }
-    header.bytes
 }
 
 #[cfg(test)]
@@ -174,7 +123,7 @@ mod tests {
         for step in 0..3 {
             let pressure = Array2::from_shape_fn((5, 3), |(i, j)| (step * 15 + i * 3 + j) as f64 / 3.0);
             let contact = Array2::from_elem((5, 3), step as u8);
-            let fields = [Field::Pressure(pressure.view()), Field::Contact(contact.view())];
+            let fields = [Field::Real(FieldKind::Pressure, pressure.view()), Field::Contact(contact.view())];
             writer
                 .append(&Row { coordinate: Coordinate::Time(step as f64), ..Row::default() }, &fields)
                 .unwrap();
@@ -183,7 +132,7 @@ mod tests {
         let contents = Contents::new(&reader, &header.fields, vec![0, 1, 2]).ok().unwrap();
         let slabs: Vec<Slab<'_>> = contents.variables.iter().map(|v| slab(&contents, v)).collect();
         let mut bytes = Vec::new();
-        assert!(write_slabs(&contents, &slabs, true, &mut bytes).is_ok());
+        assert!(write_slabs(&contents, slabs, true, &mut bytes).is_ok());
         assert_eq!(&bytes[..4], b"CDF\x05");
         let file = NcFile::from_bytes(&bytes).unwrap();
         let pressure = file.read_variable::<f64>("pressure").unwrap();

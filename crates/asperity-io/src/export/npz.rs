@@ -5,12 +5,12 @@
 
 use serde_json::{Value, json};
 
-use super::contents::{Contents, Data, Map};
-use super::error::WriteError;
+use super::contents::{Contents, Data, DataType, Map};
+use super::error::Result;
 use crate::npz::Npz;
 use crate::output::Output;
 
-pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<(), WriteError> {
+pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<()> {
     let mut npz = Npz::new(file);
     if let Err(error) = members(contents, &mut npz) {
         npz.abandon();
@@ -20,11 +20,11 @@ pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<()
     Ok(())
 }
 
-fn members(contents: &Contents<'_>, npz: &mut Npz<&mut Output<'_>>) -> Result<(), WriteError> {
+fn members(contents: &Contents<'_>, npz: &mut Npz<&mut Output<'_>>) -> Result<()> {
     for variable in &contents.variables {
         let kind = match variable.data {
             Data::Counts(_) => "<i8",
-            Data::Field(crate::store::FieldKind::Contact) => "|u1",
+            Data::Maps(DataType::UInt8) => "|u1",
             _ => "<f8",
         };
         npz.begin(variable.name, kind, &variable.shape(contents))?;
@@ -34,12 +34,11 @@ fn members(contents: &Contents<'_>, npz: &mut Npz<&mut Output<'_>>) -> Result<()
                 let bytes: Vec<u8> = counts.iter().flat_map(|n| n.to_le_bytes()).collect();
                 npz.put(&bytes)?;
             }
-            data => {
-                for n in 0..contents.maps(data) {
-                    match contents.map(data, n)? {
-                        Some(Map::Real(map)) => npz.put_reals(map)?,
-                        Some(Map::Byte(map)) => npz.put(map.as_slice().unwrap_or_default())?,
-                        None => {}
+            Data::Maps(_) => {
+                for n in 0..contents.lead(variable).iter().product() {
+                    match contents.map(variable, n)? {
+                        Map::Real(map) => npz.put_reals(map)?,
+                        Map::Byte(map) => npz.put(map.as_slice().unwrap_or_default())?,
                     }
                 }
             }

@@ -8,12 +8,13 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use asperity::Grid;
-use asperity::stress::{StressQuantity, automatic_depths, contact_box};
+use asperity::stress::StressQuantity;
 
-use super::error::{ExportError, Result, WriteError};
-use crate::output::{self, Output};
-use crate::store::{At, FieldKind, Reader};
-use crate::stress::{Depths, Pressures, StressPlan};
+use super::error::{ExportError, Result};
+use super::frame::{END, Frame};
+use crate::output;
+use crate::store::{At, Reader};
+use crate::stress::{Pressures, StressPlan, boundary, depths};
 
 /// Most slices of an image whose depths are not equally far apart.
 const SLICES: usize = 32;
@@ -47,29 +48,47 @@ pub fn volume(
             return Err(ExportError::Limit { format: "VTK", what, hint: "name it NAME.vti or NAME.vtr" });
         }
     };
-    let grid = reader.header().grid;
-    let boundary = crate::stress::boundary(reader);
-    let mut stress = plan.poisson.transforms(grid, boundary)?;
-    Pressures::new(reader, &plan.poisson)?.give(reader.index(at)?, &mut stress)?;
-    let depths = match &plan.depths {
-        Depths::List(list) => list.clone(),
-        Depths::Auto => {
-            let pressure = reader.field(FieldKind::Pressure, at)?;
-            automatic_depths(&grid, boundary, contact_box(&grid, pressure.as_slice().unwrap_or_default()))
+    let (grid, index) = (reader.header().grid, reader.index(at)?);
+    let mut stress = plan.poisson.transforms(grid, boundary(reader))?;
+    Pressures::new(reader, &plan.poisson)?.give(index, &mut stress)?;
+    let depths = depths(reader, plan, &[index])?;
+    let depths = if form == Form::Image { even(&depths, &grid) } else { depths };
+    let lines = lines(&grid, &depths);
+    let extent = lines.each_ref().map(|line| format!("0 {}", line.len() - 1)).join(" ");
+    let mut frame = match form {
+        Form::Image => {
+            let origin = lines.each_ref().map(|line| format!("{:e}", line[0])).join(" ");
+            let [dx, dy] = grid.spacing();
+            let (deepest, count) = (-lines[2][0], depths.len());
+            let step = if count > 1 { (deepest - depths[0]) / (count - 1) as f64 } else { dx };
+            let attributes = format!(" Origin=\"{origin}\" Spacing=\"{dx:e} {dy:e} {step:e}\"");
+            Frame::new("ImageData", &extent, &attributes)
+        }
+        Form::Rectilinear => Frame::new("RectilinearGrid", &extent, ""),
+    };
+    let coordinates = match form {
+        Form::Image => vec![],
+        Form::Rectilinear => {
+            let arrays = ["x", "y", "z"].into_iter().zip(&lines);
+            let arrays = arrays.map(|(name, line)| ("Float64", name.to_owned(), "m", 8 * line.len() as u64));
+            frame.section("Coordinates", arrays)
         }
     };
-    let depths = if form == Form::Image { even(&depths, &grid) } else { depths };
-    let header = header(&grid, &depths, quantities, form);
+    let slice = 4 * grid.len() as u64;
+    let bytes = slice * depths.len() as u64;
+    let arrays =
+        quantities.iter().map(|quantity| ("Float32", format!("stress_{}", quantity.name()), "Pa", bytes));
+    let fields = frame.section("PointData", arrays);
+    let text = frame.text();
+    let start = text.len() as u64;
     let written = output::write(path, force, |file| {
-        file.write_all(header.text.as_bytes())?;
-        let start = header.text.len() as u64;
-        for (offset, line) in &header.lines {
-            write_array(file, start + offset, line)?;
+        file.write_all(text.as_bytes())?;
+        for line in lines.iter().take(coordinates.len()) {
+            file.write_all(&(8 * line.len() as u64).to_le_bytes())?;
+            line.iter().try_for_each(|x| file.write_all(&x.to_le_bytes()))?;
         }
-        let slice = 4 * grid.len() as u64;
-        for (n, _) in quantities.iter().enumerate() {
-            let bytes = slice * depths.len() as u64;
-            file.seek(SeekFrom::Start(start + header.first + n as u64 * (8 + bytes)))?;
+        for offset in &fields {
+            file.seek(SeekFrom::Start(start + offset))?;
             file.write_all(&bytes.to_le_bytes())?;
         }
         let mut six = std::array::from_fn(|_| Vec::new());
@@ -77,22 +96,21 @@ pub fn volume(
         for (n, depth) in depths.iter().enumerate() {
             stress.at(*depth, &mut six).map_err(ExportError::from)?;
             // The deepest slice comes first: z rises.
-            let place = (depths.len() - 1 - n) as u64 * slice;
-            for (k, quantity) in quantities.iter().enumerate() {
+            let place = 8 + (depths.len() - 1 - n) as u64 * slice;
+            for (offset, quantity) in fields.iter().zip(quantities) {
                 quantity.field_into(&six, &mut field);
                 // z points up in the file, into the body in a result.
                 if matches!(quantity, StressQuantity::Xz | StressQuantity::Yz) {
                     field.iter_mut().for_each(|stress| *stress = -*stress);
                 }
-                let array = start + header.first + k as u64 * (8 + slice * depths.len() as u64) + 8;
-                file.seek(SeekFrom::Start(array + place))?;
+                file.seek(SeekFrom::Start(start + offset + place))?;
                 file.write_all(&x_fastest(&field, grid.cells()))?;
             }
         }
         file.seek(SeekFrom::End(0))?;
-        Ok(write!(file, "\n  </AppendedData>\n</VTKFile>\n")?)
+        Ok(file.write_all(END.as_bytes())?)
     });
-    written.map_err(|error: WriteError| error.at(path))?;
+    written.map_err(|error: ExportError| error.at(path))?;
     Ok(vec![path.to_owned()])
 }
 
@@ -110,73 +128,13 @@ fn even(depths: &[f64], grid: &Grid) -> Vec<f64> {
     (0..=slabs).map(|n| last * n as f64 / slabs as f64).collect()
 }
 
-/// The text before the appended data, and where they begin.
-struct Header {
-    text: String,
-    /// The coordinates of a rectilinear grid, at their offsets in the appended data.
-    lines: Vec<(u64, Vec<f64>)>,
-    /// Offset of the first quantity.
-    first: u64,
-}
-
-fn header(grid: &Grid, depths: &[f64], quantities: &[StressQuantity], form: Form) -> Header {
-    let ([nx, ny], [dx, dy], nz) = (grid.cells(), grid.spacing(), depths.len());
+/// The coordinates along x, y and z; z rises.
+fn lines(grid: &Grid, depths: &[f64]) -> [Vec<f64>; 3] {
+    let [nx, ny] = grid.cells();
     // A line contact is a plane of x and z at y = 0.
-    let y0 = if grid.is_line() { 0.0 } else { grid.y(0) };
-    let extent = format!("0 {} 0 {} 0 {}", nx - 1, ny - 1, nz - 1);
-    let deepest = depths.last().copied().unwrap_or(0.0);
-    let mut text = "<?xml version=\"1.0\"?>\n".to_owned();
-    let mut lines = vec![];
-    let mut first = 0;
-    let kind = if form == Form::Image { "ImageData" } else { "RectilinearGrid" };
-    text += &format!(
-        "<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-    );
-    match form {
-        Form::Image => {
-            let step = if nz > 1 { (deepest - depths[0]) / (nz - 1) as f64 } else { dx };
-            let origin = format!("{:e} {y0:e} {:e}", 0.5 * dx, -deepest);
-            text += &format!(
-                "  <ImageData WholeExtent=\"{extent}\" Origin=\"{origin}\" Spacing=\"{dx:e} {dy:e} {step:e}\">\n"
-            );
-        }
-        Form::Rectilinear => text += &format!("  <RectilinearGrid WholeExtent=\"{extent}\">\n"),
-    }
-    text += &format!("    <Piece Extent=\"{extent}\">\n");
-    if form == Form::Rectilinear {
-        text += "      <Coordinates>\n";
-        let x = (0..nx).map(|i| grid.x(i)).collect::<Vec<f64>>();
-        let y = (0..ny).map(|j| if grid.is_line() { y0 } else { grid.y(j) }).collect();
-        let z = depths.iter().rev().map(|depth| -depth).collect();
-        for (name, line) in [("x", x), ("y", y), ("z", z)] {
-            text += &format!(
-                "        <DataArray type=\"Float64\" Name=\"{name}\" format=\"appended\" offset=\"{first}\"/>\n"
-            );
-            let bytes = 8 + 8 * line.len() as u64;
-            lines.push((first, line));
-            first += bytes;
-        }
-        text += "      </Coordinates>\n";
-    }
-    text += "      <PointData>\n";
-    let bytes = 8 + 4 * (grid.len() * nz) as u64;
-    for (n, quantity) in quantities.iter().enumerate() {
-        let offset = first + n as u64 * bytes;
-        text += &format!(
-            "        <DataArray type=\"Float32\" Name=\"stress_{}\" format=\"appended\" offset=\"{offset}\">\n          \
-             <InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">Pa</InformationKey>\n        \
-             </DataArray>\n",
-            quantity.name()
-        );
-    }
-    text += &format!("      </PointData>\n    </Piece>\n  </{kind}>\n  <AppendedData encoding=\"raw\">\n_");
-    Header { text, lines, first }
-}
-
-fn write_array(file: &mut Output<'_>, at: u64, numbers: &[f64]) -> Result<(), WriteError> {
-    file.seek(SeekFrom::Start(at))?;
-    file.write_all(&(8 * numbers.len() as u64).to_le_bytes())?;
-    Ok(numbers.iter().try_for_each(|x| file.write_all(&x.to_le_bytes()))?)
+    let y = |j| if grid.is_line() { 0.0 } else { grid.y(j) };
+    let z = depths.iter().rev().map(|depth| -depth);
+    [(0..nx).map(|i| grid.x(i)).collect(), (0..ny).map(y).collect(), z.collect()]
 }
 
 /// A field with x fastest, as VTK has it.

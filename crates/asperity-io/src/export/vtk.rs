@@ -3,14 +3,15 @@
 //! Fields are cell data, x fastest, little-endian, appended raw. What is not finite (the gap where a punch
 //! cannot touch) becomes NaN, which ParaView leaves out of its colour range. Where two instants have
 //! the same time (before and after a jump), the earlier is given the next smaller number: ParaView
-//! takes files of equal time for parts of one state.
+//! takes files of equal time as parts of one state.
 
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::contents::{Contents, Data, Map, Variable};
-use super::error::{ExportError, Result, WriteError};
+use super::contents::{Contents, Data, DataType, Map, Variable};
+use super::error::{ExportError, Result};
+use super::frame::{END, Frame};
 use crate::output::{Output, PartialDirectory, PartialFile};
 
 pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Result<Vec<PathBuf>> {
@@ -24,21 +25,18 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
         .map_err(|error| error.at(path))?;
     check_directory(&directory, force)?;
     images(contents, &directory).map_err(|error| error.at(&directory))?;
-    list.finish().map_err(|error| WriteError::Io(error).at(path))?;
+    list.finish().map_err(|error| ExportError::from(error).at(path))?;
     Ok(vec![path.to_owned(), directory])
 }
 
 /// Makes the directory of the images.
-fn images(contents: &Contents<'_>, directory: &Path) -> Result<(), WriteError> {
+fn images(contents: &Contents<'_>, directory: &Path) -> Result<()> {
     let partial = PartialDirectory::new(directory)?;
-    let of = |kind: fn(&Data) -> bool| -> Vec<&Variable> {
-        contents.variables.iter().filter(|variable| kind(&variable.data)).collect()
-    };
-    let fields = of(|data| matches!(data, Data::Field(_)));
+    let fields: Vec<_> = contents.variables.iter().filter(|variable| variable.is_field()).collect();
     for n in 0..contents.instants.len() {
         image(contents, &partial.place().join(state_name(n)), &fields, n)?;
     }
-    let gap = of(|data| matches!(data, Data::InitialGap));
+    let gap: Vec<_> = contents.variables.iter().filter(|variable| variable.name == "initial_gap").collect();
     image(contents, &partial.place().join("initial_gap.vti"), &gap, 0)?;
     Ok(partial.finish()?)
 }
@@ -58,9 +56,9 @@ fn check_directory(directory: &Path, force: bool) -> Result<()> {
     if !force {
         return Err(ExportError::Exists { path: directory.to_owned() });
     }
-    let entries = fs::read_dir(directory).map_err(|error| WriteError::Io(error).at(directory))?;
+    let entries = fs::read_dir(directory).map_err(|error| ExportError::from(error).at(directory))?;
     for entry in entries {
-        let name = entry.map_err(|error| WriteError::Io(error).at(directory))?.file_name();
+        let name = entry.map_err(|error| ExportError::from(error).at(directory))?.file_name();
         let ours = name.to_str().is_some_and(|name| {
             name == "initial_gap.vti" || name.starts_with("state_") && name.ends_with(".vti")
         });
@@ -71,7 +69,7 @@ fn check_directory(directory: &Path, force: bool) -> Result<()> {
     Ok(())
 }
 
-fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output<'_>) -> Result<(), WriteError> {
+fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output<'_>) -> Result<()> {
     writeln!(file, r#"<?xml version="1.0"?>"#)?;
     writeln!(file, r#"<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">"#)?;
     writeln!(file, "  <Collection>")?;
@@ -89,65 +87,37 @@ fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output<'_>) -
     Ok(writeln!(file, "  </Collection>\n</VTKFile>")?)
 }
 
-fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize) -> Result<(), WriteError> {
+fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize) -> Result<()> {
     let grid = &contents.reader().header().grid;
+    let ([nx, ny], [dx, dy]) = (grid.cells(), grid.spacing());
+    // A line of cells has no extent along y.
+    let (my, dy) = if grid.is_line() { (0, dx) } else { (ny, dy) };
+    let attributes = format!(" Origin=\"0 0 0\" Spacing=\"{dx:e} {dy:e} {dx:e}\"");
+    let mut frame = Frame::new("ImageData", &format!("0 {nx} 0 {my} 0 0"), &attributes);
+    let cells = (nx * ny) as u64;
+    let arrays = variables.iter().map(|variable| match variable.data {
+        Data::Maps(DataType::UInt8) => ("UInt8", variable.name.to_owned(), variable.units, cells),
+        _ => ("Float64", variable.name.to_owned(), variable.units, 8 * cells),
+    });
+    frame.section("CellData", arrays);
     crate::output::write(path, false, |file| {
-        let [nx, ny] = grid.cells();
-        let [dx, dy] = grid.spacing();
-        let cells = (nx * ny) as u64;
-        writeln!(file, r#"<?xml version="1.0"?>"#)?;
-        writeln!(
-            file,
-            r#"<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#
-        )?;
-        // A line of cells has no extent along y.
-        let (my, dy) = if grid.is_line() { (0, dx) } else { (ny, dy) };
-        let extent = format!("0 {nx} 0 {my} 0 0");
-        writeln!(
-            file,
-            r#"  <ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing="{dx:e} {dy:e} {dx:e}">"#
-        )?;
-        writeln!(file, r#"    <Piece Extent="{extent}">"#)?;
-        writeln!(file, "      <CellData>")?;
-        let mut offset = 0;
+        file.write_all(frame.text().as_bytes())?;
         for variable in variables {
-            let (kind, size) = match variable.data {
-                Data::Field(crate::store::FieldKind::Contact) => ("UInt8", 1),
-                _ => ("Float64", 8),
-            };
-            let (name, units) = (variable.name, variable.units);
-            writeln!(
-                file,
-                r#"        <DataArray type="{kind}" Name="{name}" format="appended" offset="{offset}">"#
-            )?;
-            writeln!(
-                file,
-                r#"          <InformationKey name="UNITS_LABEL" location="vtkDataArray">{units}</InformationKey>"#
-            )?;
-            writeln!(file, "        </DataArray>")?;
-            offset += 8 + size * cells;
-        }
-        writeln!(file, "      </CellData>\n    </Piece>\n  </ImageData>")?;
-        write!(file, "  <AppendedData encoding=\"raw\">\n_")?;
-        for variable in variables {
-            match contents.map(&variable.data, n)? {
-                Some(Map::Real(map)) => {
+            match contents.map(variable, n)? {
+                Map::Real(map) => {
                     file.write_all(&(8 * cells).to_le_bytes())?;
                     for x in map.t() {
                         let x = if x.is_finite() { *x } else { f64::NAN };
                         file.write_all(&x.to_le_bytes())?;
                     }
                 }
-                Some(Map::Byte(map)) => {
+                Map::Byte(map) => {
                     file.write_all(&cells.to_le_bytes())?;
-                    for cell in map.t() {
-                        file.write_all(&[*cell])?;
-                    }
+                    map.t().iter().try_for_each(|cell| file.write_all(&[*cell]))?;
                 }
-                None => {}
             }
         }
-        Ok(write!(file, "\n  </AppendedData>\n</VTKFile>\n")?)
+        Ok(file.write_all(END.as_bytes())?)
     })
 }
 

@@ -106,11 +106,6 @@ impl Fluid {
             Fluid::Gas { inlet, outlet, .. } => inlet - outlet,
         }
     }
-
-    /// Whether it is a gas, whose leak is a mass per time.
-    pub fn is_gas(&self) -> bool {
-        matches!(self, Fluid::Gas { .. })
-    }
 }
 
 /// The leak of one state.
@@ -118,7 +113,7 @@ impl Fluid {
 pub struct Leakage {
     /// Whether inlet and outlet are connected.
     pub percolates: bool,
-    /// Gap of the parallel plates that leak as much of a liquid \[m\].
+    /// Hydraulic gap \[m\]: parallel plates at this distance have the same leak rate of a liquid.
     pub hydraulic_gap: f64,
     /// Gap of the critical constriction \[m\]; NaN where the seal is tight.
     pub critical_gap: f64,
@@ -134,9 +129,9 @@ pub struct Leakage {
     pub trapped_volume: f64,
     /// Share of the cells that are open.
     pub open_fraction: f64,
-    /// Effective conductance \[m^3\], where both directions were asked for.
+    /// Effective conductance \[m^3\]; `None` unless both directions were asked for.
     pub conductance: Option<[[f64; 2]; 2]>,
-    /// Leak \[m^3/s; gas kg/s\], where there is a fluid.
+    /// Leak rate \[m^3/s; gas kg/s\]; `None` without a fluid.
     pub leak_rate: Option<f64>,
     /// Leak of a gas \[Pa m^3/s at 0 degC\].
     pub leak_rate_standard: Option<f64>,
@@ -146,14 +141,14 @@ pub struct Leakage {
     pub leak_estimate_medium: Option<f64>,
     /// Mean free path over critical gap, of a gas.
     pub knudsen: Option<f64>,
-    /// Pressure of the fluid \[Pa\], without one from 1 at the inlet to 0 at the outlet; NaN where there is none.
+    /// Pressure of the fluid \[Pa\]; without a fluid, from 1 at the inlet to 0 at the outlet. NaN in closed cells and pockets.
     pub pressure: Array2<f64>,
     /// What each cell is connected to.
     pub cells: Array2<CellKind>,
 }
 
 impl Leakage {
-    /// What the diagnostics look at of a map of the gap of which nothing else is known: the cells across the constriction.
+    /// What the diagnostics can judge without a result: the cells across the constriction.
     pub fn alone(&self) -> LeakState {
         LeakState {
             row: None,
@@ -194,9 +189,29 @@ impl Leak {
         let critical = passages.constriction.map_or(0.0, |constriction| constriction.gap);
         let medium = effective_medium(&opening).cbrt();
         let place = passages.constriction.map_or([f64::NAN; 2], |c| [grid.x(c.cell[0]), grid.y(c.cell[1])]);
-        let mut leakage = Leakage {
+        let hydraulic_gap = flow.hydraulic_gap();
+        let (pressure, rates) = match self.fluid {
+            None => (flow.pressure, [None; 5]),
+            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
+                let of = |t: f64| leak_rate(t, &opening, pressure_drop, viscosity).map(Some);
+                let rates = [flow.transmissivity, critical.powi(3), medium.powi(3)].map(of);
+                let [rate, junction, medium] = rates;
+                (flow.pressure * pressure_drop, [rate?, None, junction?, medium?, None])
+            }
+            Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
+                drop(flow);
+                let gas = self.gas(kind, temperature, time)?;
+                let ends = [inlet, outlet];
+                let flow = gas_flow(&opening, &passages, &gas, rarefaction, ends, &options)?;
+                let of = |gap: f64| plate(&gas, rarefaction, gap, opening.size(), ends);
+                let (rate, standard) = (flow.leak_rate, standard(flow.leak_rate, &gas));
+                (flow.pressure, [rate, standard, of(critical)?, of(medium)?, flow.knudsen].map(Some))
+            }
+        };
+        let [leak_rate, leak_rate_standard, leak_estimate_junction, leak_estimate_medium, knudsen] = rates;
+        Ok(Leakage {
             percolates: passages.percolates(),
-            hydraulic_gap: flow.hydraulic_gap(),
+            hydraulic_gap,
             critical_gap: if passages.percolates() { critical } else { f64::NAN },
             critical: place,
             critical_width: passages.constriction.and_then(|constriction| constriction.width),
@@ -208,39 +223,14 @@ impl Leak {
                 LeakDirection::Both => Some(conductance(&opening, &options)?),
                 _ => None,
             },
-            leak_rate: None,
-            leak_rate_standard: None,
-            leak_estimate_junction: None,
-            leak_estimate_medium: None,
-            knudsen: None,
+            leak_rate,
+            leak_rate_standard,
+            leak_estimate_junction,
+            leak_estimate_medium,
+            knudsen,
             cells: passages.map(&opening),
-            pressure: Array2::zeros((0, 0)),
-        };
-        match self.fluid {
-            None => leakage.pressure = flow.pressure,
-            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
-                let of = |t: f64| leak_rate(t, &opening, pressure_drop, viscosity);
-                leakage.leak_rate = Some(of(flow.transmissivity)?);
-                leakage.leak_estimate_junction = Some(of(critical.powi(3))?);
-                leakage.leak_estimate_medium = Some(of(medium.powi(3))?);
-                leakage.pressure = flow.pressure;
-                leakage.pressure.mapv_inplace(|p| p * pressure_drop);
-            }
-            Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
-                drop(flow);
-                let gas = self.gas(kind, temperature, time)?;
-                let ends = [inlet, outlet];
-                let flow = gas_flow(&opening, &passages, &gas, rarefaction, ends, &options)?;
-                let of = |gap: f64| plate(&gas, rarefaction, gap, opening.size(), ends);
-                leakage.leak_rate = Some(flow.leak_rate);
-                leakage.leak_rate_standard = Some(standard(flow.leak_rate, &gas));
-                leakage.leak_estimate_junction = Some(of(critical)?);
-                leakage.leak_estimate_medium = Some(of(medium)?);
-                leakage.knudsen = Some(flow.knudsen);
-                leakage.pressure = flow.pressure;
-            }
-        }
-        Ok(leakage)
+            pressure,
+        })
     }
 
     fn gas(&self, kind: GasKind, temperature: Option<f64>, time: f64) -> Result<Gas> {

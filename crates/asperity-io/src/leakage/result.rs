@@ -7,7 +7,7 @@ use asperity::finding::{Finding, LeakDiagnostics, LeakState};
 use serde_json::Value;
 use thiserror::Error;
 
-use super::{Fluid, Leak, LeakDirection, words};
+use super::{Fluid, Leak, words};
 use crate::instants;
 use crate::readable::quantity;
 use crate::store::{At, FieldKind, LeakTable, LeakWriter, Reader, StoreError};
@@ -26,7 +26,7 @@ pub enum LeakError {
         /// Time of the fields \[s\].
         time: f64,
     },
-    /// Somebody asked to stop.
+    /// The user asked to stop.
     #[error("interrupted")]
     Interrupted,
 }
@@ -38,7 +38,7 @@ pub struct LeakHistory {
     pub leak: Leak,
     /// The numbers.
     pub table: LeakTable,
-    /// What was found against them.
+    /// The findings about them.
     pub findings: Vec<Finding>,
 }
 
@@ -73,15 +73,15 @@ impl LeakHistory {
     }
 }
 
-/// The leakage that was asked for last, or else that which the case of a result asks for; `None` where neither.
+/// The settings of the stored leakage, or else those of the case of the result; `None` without both.
 pub fn settings(reader: &Reader) -> Option<Leak> {
     let last = reader.leaks().map(|leaks| leaks.settings.clone());
     let of_case = || reader.header().setup.get("leakage").cloned();
     serde_json::from_value(last.or_else(of_case)?).ok()
 }
 
-/// Computes the leakage at the times asked for and stores it in the result at `path`, in place of an earlier one. `observe` is
-/// told the number of times done and of all.
+/// Computes the leakage at the times asked for and stores it in the result at `path`, in place of an earlier one. `observe`
+/// gets the number of times done and of all times.
 ///
 /// # Errors
 /// [`LeakError`]; the result is then as it was.
@@ -131,8 +131,7 @@ fn evaluate(
     let tolerance = reader.header().setup.get("solver_tolerance").and_then(Value::as_f64).unwrap_or(1e-6);
     let initial = reader.initial_gap()?;
     let mut diagnostics = LeakDiagnostics::default();
-    let mut table =
-        LeakTable::new(leak.fluid.as_ref().map(Fluid::is_gas), leak.direction == LeakDirection::Both);
+    let mut table = LeakTable::default();
     for (done, index) in instants.iter().copied().enumerate() {
         if interrupt.load(Ordering::Relaxed) {
             return Err(LeakError::Interrupted);

@@ -1,4 +1,4 @@
-//! Leakage in words: what is asked for, how much leaks, when it is tight.
+//! Leakage in words: the settings, the leak rate, and the times at which the seal is tight.
 
 use super::{Fluid, GasKind, Leak, LeakDirection, ROOM};
 use crate::choice;
@@ -60,7 +60,8 @@ pub fn rate(leak_rate: f64, standard: Option<f64>) -> String {
     }
 }
 
-/// When the seal is tight, in a sentence without its full stop; empty where it leaks at all times.
+/// When the seal is tight, in a sentence without its full stop; empty if it leaks at all times. Between two of the times nothing is
+/// known, so the sentence names both.
 pub fn tight(times: &[f64], percolates: &[f64]) -> String {
     let is_tight: Vec<bool> = percolates.iter().map(|open| *open == 0.0).collect();
     if is_tight.iter().all(|tight| !tight) {
@@ -69,22 +70,12 @@ pub fn tight(times: &[f64], percolates: &[f64]) -> String {
     if is_tight.iter().all(|tight| *tight) {
         return if times.len() > 1 { "tight at all times".into() } else { "tight".into() };
     }
-    let mut spans = vec![];
-    let mut n = 0;
-    while n < is_tight.len() {
-        let end = n + is_tight[n..].iter().take_while(|tight| **tight == is_tight[n]).count();
-        if is_tight[n] {
-            let [first, last] = [n, end - 1].map(|n| quantity(times[n], "s"));
-            spans.push(match (n, end == is_tight.len()) {
-                (_, true) => format!("from t = {first} on"),
-                (0, false) => format!("up to t = {last}"),
-                _ if first == last => format!("at t = {first}"),
-                _ => format!("from t = {first} to {last}"),
-            });
-        }
-        n = end;
-    }
-    format!("tight {}", spans.join(" and "))
+    let changes = (1..is_tight.len()).filter(|n| is_tight[*n] != is_tight[n - 1]).map(|n| {
+        let [before, after] = [times[n - 1], times[n]].map(|time| quantity(time, "s"));
+        format!("{} between t = {before} and {after}", if is_tight[n] { "closes" } else { "opens" })
+    });
+    let start = is_tight[0].then(|| format!("tight at t = {}", quantity(times[0], "s")));
+    start.into_iter().chain(changes).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
@@ -92,12 +83,18 @@ mod tests {
     use super::tight;
 
     #[test]
-    fn spans_without_a_leak_are_named() {
+    fn times_between_which_the_seal_closes_are_named() {
         let times = [0.0, 1.0, 2.0, 3.0, 4.0];
         assert_eq!(tight(&times, &[1.0; 5]), "");
         assert_eq!(tight(&times, &[0.0; 5]), "tight at all times");
-        assert_eq!(tight(&times, &[1.0, 1.0, 0.0, 0.0, 0.0]), "tight from t = 2 s on");
-        assert_eq!(tight(&times, &[0.0, 1.0, 0.0, 1.0, 1.0]), "tight up to t = 0 s and at t = 2 s");
-        assert_eq!(tight(&times, &[1.0, 0.0, 0.0, 1.0, 1.0]), "tight from t = 1 s to 2 s");
+        assert_eq!(tight(&times, &[1.0, 1.0, 0.0, 0.0, 0.0]), "closes between t = 1 s and 2 s");
+        assert_eq!(
+            tight(&times, &[0.0, 1.0, 0.0, 1.0, 1.0]),
+            "tight at t = 0 s, opens between t = 0 s and 1 s, closes between t = 1 s and 2 s, opens between t = 2 s and 3 s"
+        );
+        assert_eq!(
+            tight(&times, &[1.0, 0.0, 0.0, 1.0, 1.0]),
+            "closes between t = 0 s and 1 s, opens between t = 2 s and 3 s"
+        );
     }
 }

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use super::QuantityError;
 use super::scalar::{Scalar, deserialize, schema};
+use crate::Code;
 
 /// An angle \[rad\].
 ///
@@ -26,7 +27,7 @@ impl Angle {
     }
 
     fn new(radians: f64) -> Result<Self, QuantityError> {
-        if radians.is_finite() { Ok(Angle(radians)) } else { Err(Angle::error()) }
+        if radians.is_finite() { Ok(Angle(radians)) } else { Err(Angle::out_of_range()) }
     }
 }
 
@@ -40,6 +41,7 @@ impl FromStr for Angle {
         let known = UNITS.iter().find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, *factor)));
         let (number, factor) = known.unwrap_or((text, 1.0));
         let number = number.trim_end().parse::<f64>().map_err(|_| QuantityError {
+            code: Code::WrongUnit,
             expected: EXPECTED.into(),
             help: Some(format!("{text:?} is not a number with one of the units deg, rad, mrad")),
         })?;

@@ -24,6 +24,8 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::str::FromStr;
 
+use crate::Code;
+
 pub use angle::Angle;
 use decimal::Decimal;
 use range::{Finite, Range};
@@ -123,6 +125,8 @@ dimensions! {
 /// Why a text or a number is not the quantity that is wanted there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuantityError {
+    /// What kind of fault it is.
+    pub code: Code,
     /// What is accepted, with an example ("a length such as "0.5 mm"").
     pub expected: String,
     /// What is wrong with the value, where more can be said.
@@ -149,7 +153,9 @@ impl<D: Dimension, R: Range> Quantity<D, R> {
     pub fn new(value: f64) -> Result<Self, QuantityError> {
         match R::contains(value) {
             true => Ok(Quantity { value, kind: PhantomData }),
-            false => Err(Self::error(value.is_nan().then(|| "nan is not a number".to_owned()))),
+            false => {
+                Err(Self::error(Code::OutOfRange, value.is_nan().then(|| "nan is not a number".to_owned())))
+            }
         }
     }
 
@@ -168,8 +174,8 @@ impl<D: Dimension, R: Range> Quantity<D, R> {
         }
     }
 
-    fn error(help: Option<String>) -> QuantityError {
-        QuantityError { expected: Self::expected(), help }
+    fn error(code: Code, help: Option<String>) -> QuantityError {
+        QuantityError { code, expected: Self::expected(), help }
     }
 }
 
@@ -185,33 +191,38 @@ impl<D: Dimension, R: Range> FromStr for Quantity<D, R> {
     fn from_str(text: &str) -> Result<Self, QuantityError> {
         let text = text.trim();
         let (number, rest) = Decimal::split(text).ok_or_else(|| {
-            Self::error(Some(match text {
+            let help = match text {
                 "" => "the text is empty".to_owned(),
                 _ => format!("{text:?} does not begin with a number"),
-            }))
+            };
+            Self::error(Code::WrongType, Some(help))
         })?;
         if rest.starts_with(',') {
-            return Err(Self::error(Some("write the decimal point as \".\"".into())));
+            return Err(Self::error(Code::WrongType, Some("write the decimal point as \".\"".into())));
         }
-        let unit = Unit::parse(rest).map_err(|reason| Self::error(Some(help::<D>(&reason))))?;
+        let wrong_unit = |reason: String| {
+            let meant = D::UNITS.split(", ").find(|unit| unit.eq_ignore_ascii_case(rest.trim()));
+            let help = match meant {
+                Some(unit) => format!("{reason}; did you mean \"{unit}\"?"),
+                None => format!("{reason}; units of {}: {}", bare(D::NAME), D::UNITS),
+            };
+            Self::error(Code::WrongUnit, Some(help))
+        };
+        let unit = Unit::parse(rest).map_err(wrong_unit)?;
         // A bare number is SI.
         if !rest.is_empty() && unit.powers != D::POWERS {
             let reason = match dimension::name(unit.powers) {
                 Some(other) => format!("\"{}\" is the unit of {other}", rest.trim()),
                 None => format!("\"{}\" is not a unit of {}", rest.trim(), bare(D::NAME)),
             };
-            return Err(Self::error(Some(help::<D>(&reason))));
+            return Err(wrong_unit(reason));
         }
         let value = number.scaled(unit.exponent) * unit.numerator / unit.denominator;
         if value.is_infinite() && !number.infinite() {
-            return Err(Self::error(Some(format!("{text} is too large a number"))));
+            return Err(Self::error(Code::OutOfRange, Some(format!("{text} is too large a number"))));
         }
         Self::new(value)
     }
-}
-
-fn help<D: Dimension>(reason: &str) -> String {
-    format!("{reason}; units of {}: {}", bare(D::NAME), D::UNITS)
 }
 
 /// "length" of "a length".
@@ -267,6 +278,8 @@ mod tests {
         );
         let text = message::<dimension::Length, Finite>("5 mpa");
         assert!(text.contains("\"mpa\" is not a known unit; units of length: nm, um, mm, m"), "{text}");
+        let text = message::<dimension::Pressure, Finite>("2 Mpa");
+        assert!(text.ends_with("did you mean \"MPa\"?"), "{text}");
         let text = message::<dimension::Length, Finite>("5 m^2");
         assert!(text.contains("\"m^2\" is not a unit of length"), "{text}");
         let text = message::<dimension::Number, Finite>("5 m");

@@ -6,6 +6,7 @@ use std::marker::PhantomData;
 use serde::de::{Deserializer, Error, Visitor};
 
 use super::QuantityError;
+use crate::Code;
 
 /// A type that serde reads from a text or a number.
 pub trait Scalar: Sized {
@@ -24,8 +25,14 @@ pub trait Scalar: Sized {
         Self::from_number(value as f64)
     }
 
+    /// A value of another type, or none of the words.
     fn error() -> QuantityError {
-        QuantityError { expected: Self::expected(), help: None }
+        QuantityError { code: Code::WrongType, expected: Self::expected(), help: None }
+    }
+
+    /// A number outside the range.
+    fn out_of_range() -> QuantityError {
+        QuantityError { code: Code::OutOfRange, ..Self::error() }
     }
 }
 
@@ -44,20 +51,25 @@ impl<T: Scalar> Visitor<'_> for ScalarVisitor<T> {
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<T, E> {
-        T::from_text(text).map_err(E::custom)
+        T::from_text(text).map_err(custom)
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<T, E> {
-        T::from_number(value).map_err(E::custom)
+        T::from_number(value).map_err(custom)
     }
 
     fn visit_i64<E: Error>(self, value: i64) -> Result<T, E> {
-        T::from_whole(value).map_err(E::custom)
+        T::from_whole(value).map_err(custom)
     }
 
     fn visit_u64<E: Error>(self, value: u64) -> Result<T, E> {
         self.visit_i64(i64::try_from(value).unwrap_or(i64::MAX))
     }
+}
+
+/// The error as serde carries it: its lines are what was expected, what is wrong with the value, and the code.
+fn custom<E: Error>(QuantityError { code, expected, help }: QuantityError) -> E {
+    E::custom(format_args!("{expected}\n{}\n{code}", help.unwrap_or_default()))
 }
 
 /// serde's `Deserialize` of scalars.

@@ -130,7 +130,7 @@ impl<const LEAST: u64> Scalar for Whole<LEAST> {
 
     fn from_whole(value: i64) -> Result<Self, QuantityError> {
         let value = u64::try_from(value).ok().filter(|value| *value >= LEAST);
-        value.map(Whole).ok_or_else(Self::error)
+        value.map(Whole).ok_or_else(Self::out_of_range)
     }
 }
 
@@ -155,7 +155,7 @@ impl Scalar for Signed {
     }
 
     fn from_whole(value: i64) -> Result<Self, QuantityError> {
-        i32::try_from(value).map(Signed).map_err(|_| Self::error())
+        i32::try_from(value).map(Signed).map_err(|_| Self::out_of_range())
     }
 }
 
@@ -184,7 +184,7 @@ impl Scalar for Label {
     }
 
     fn from_whole(value: i64) -> Result<Self, QuantityError> {
-        u64::try_from(value).map(|value| Label(value.to_string())).map_err(|_| Self::error())
+        u64::try_from(value).map(|value| Label(value.to_string())).map_err(|_| Self::out_of_range())
     }
 }
 

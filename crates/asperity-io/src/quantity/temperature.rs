@@ -7,6 +7,7 @@ use std::str::FromStr;
 
 use super::scalar::{Scalar, deserialize, schema};
 use super::{Quantity, QuantityError, dimension};
+use crate::Code;
 
 /// An absolute temperature \[K\].
 ///
@@ -36,7 +37,7 @@ impl Temperature {
     pub fn from_kelvin(kelvin: f64) -> Result<Self, QuantityError> {
         match kelvin.is_finite() && kelvin > 0.0 {
             true => Ok(Temperature(kelvin)),
-            false => Err(error(None)),
+            false => Err(error(Code::OutOfRange, None)),
         }
     }
 
@@ -52,7 +53,10 @@ impl Temperature {
             _ if CELSIUS.contains(&unit) => Temperature::from_kelvin(celsius(value)),
             // 32 °F is 0 °C.
             _ if FAHRENHEIT.contains(&unit) => Temperature::from_kelvin(celsius((value - 32.0) / 1.8)),
-            _ => Err(error(Some(format!("\"{unit}\" is not a unit of temperature; units: K, °C, °F")))),
+            _ => Err(error(
+                Code::WrongUnit,
+                Some(format!("\"{unit}\" is not a unit of temperature; units: K, °C, °F")),
+            )),
         }
     }
 
@@ -70,8 +74,8 @@ fn celsius(value: f64) -> f64 {
     if (tidy - kelvin).abs() <= 1e-12 * kelvin.abs() { tidy } else { kelvin }
 }
 
-fn error(help: Option<String>) -> QuantityError {
-    QuantityError { expected: EXPECTED.to_owned(), help }
+fn error(code: Code, help: Option<String>) -> QuantityError {
+    QuantityError { code, expected: EXPECTED.to_owned(), help }
 }
 
 impl FromStr for Temperature {
@@ -81,18 +85,23 @@ impl FromStr for Temperature {
         let text = text.trim();
         for unit in CELSIUS.into_iter().chain(FAHRENHEIT) {
             let Some(number) = text.strip_suffix(unit) else { continue };
-            let value: f64 =
-                number.trim().parse().map_err(|_| error(Some(format!("{number:?} is not a number"))))?;
+            let wrong = |_| error(Code::WrongType, Some(format!("{number:?} is not a number")));
+            let value: f64 = number.trim().parse().map_err(wrong)?;
             return Temperature::from_unit(value, unit);
         }
         if text.ends_with(['C', 'F']) {
-            return Err(error(Some(
-                "write degrees Celsius as \"°C\" or \"degC\", Fahrenheit as \"°F\", or kelvin as \"K\""
-                    .into(),
-            )));
+            return Err(error(
+                Code::WrongUnit,
+                Some(
+                    "write degrees Celsius as \"°C\" or \"degC\", Fahrenheit as \"°F\", or kelvin as \"K\""
+                        .into(),
+                ),
+            ));
         }
         let kelvin = text.parse::<Quantity<dimension::TemperatureDifference>>();
-        kelvin.map_err(|found| error(found.help)).and_then(|kelvin| Temperature::from_kelvin(kelvin.get()))
+        kelvin
+            .map_err(|found| error(found.code, found.help))
+            .and_then(|kelvin| Temperature::from_kelvin(kelvin.get()))
     }
 }
 

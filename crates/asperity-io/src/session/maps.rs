@@ -66,12 +66,12 @@ impl<'a> Maps<'a> {
         }
         let pressure = if has_moved { self.pressure.view() } else { step.pressure() };
         let all = [
-            (FieldKind::Pressure, Field::Pressure(pressure)),
-            (FieldKind::Gap, Field::Gap(self.gap.view())),
-            (FieldKind::Displacement, Field::Displacement(self.displacement.view())),
-            (FieldKind::Contact, Field::Contact(self.contact.view())),
-            (FieldKind::Flattening, Field::Flattening(self.flattening.view())),
+            Field::Real(FieldKind::Pressure, pressure),
+            Field::Real(FieldKind::Gap, self.gap.view()),
+            Field::Real(FieldKind::Displacement, self.displacement.view()),
+            Field::Contact(self.contact.view()),
+            Field::Real(FieldKind::Flattening, self.flattening.view()),
         ];
-        all.into_iter().filter_map(|(kind, field)| keeps(kind).then_some(field)).collect()
+        all.into_iter().filter(|field| keeps(field.kind())).collect()
     }
 }

@@ -4,7 +4,6 @@
 //! numbers wherever it is started.
 
 mod maps;
-mod memory;
 mod record;
 mod setup;
 
@@ -29,7 +28,7 @@ use record::{Earlier, Record};
 use setup::header;
 pub use setup::setup;
 
-pub use memory::peak_memory_bytes;
+pub use crate::resources::peak_memory_bytes;
 
 /// How a case is run.
 #[derive(Clone, Debug, Default)]
@@ -215,7 +214,7 @@ fn run_inside(
         done: 0,
         resumed: drive.done(),
         total: drive.rows_expected(),
-        end: case.times.end(),
+        end: case.conditions.times.end(),
         finished: false,
         stress: None,
     };
@@ -317,7 +316,7 @@ fn check_disk(case: &Case, path: &Path) -> Result<(), StoreError> {
     let fields = description.result_bytes.map(|fields| fields.saturating_add(stress));
     let (Some(fields), Some(free)) = (fields, free_disk(path)) else { return Ok(()) };
     // The numbers of rows are not compressed.
-    let columns = 8 * (SCALARS.len() + case.output.quantities.list.len()) as u64;
+    let columns = 8 * (SCALARS.len() + case.conditions.quantities.list.len()) as u64;
     let rows = (description.usual_rows as u64).saturating_mul(columns);
     let needed = fields.saturating_add(rows);
     let error = StoreError::NoSpace { path: path.to_owned(), needed, free };

@@ -73,7 +73,7 @@ impl Record<'_> {
             Some(drive) => self.diagnostics.findings(drive.simulation()),
             None => self.diagnostics.known().to_vec(),
         };
-        let of_stress = self.stress.iter().flat_map(|below| below.findings(&self.case.grid));
+        let of_stress = self.stress.iter().flat_map(|below| below.findings(&self.case.conditions.grid));
         self.case.findings.iter().cloned().chain(of_run).chain(of_stress).collect()
     }
 
@@ -93,7 +93,7 @@ impl Record<'_> {
         }
     }
 
-    /// Ends a run whose step could not be stored; that this cannot be stored either is no news.
+    /// Ends a run whose step could not be stored. If the end cannot be stored either, the first error is reported.
     pub(super) fn stop_storing(self, drive: &dyn Drive, source: StoreError) -> RunError {
         let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
         let summary = match self.end(Some(drive), outcome) {

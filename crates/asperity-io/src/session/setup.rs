@@ -41,9 +41,9 @@ pub fn setup(case: &Case) -> Map<String, Value> {
         Value::Object(map) => map,
         _ => Map::new(),
     };
-    setup.insert("contact_creep_compliance".into(), creep(&case.creep));
-    if !case.thermal.is_empty() {
-        let parts: Vec<Value> = case.thermal.iter().map(|body| creep(&body.creep)).collect();
+    setup.insert("contact_creep_compliance".into(), creep(&case.conditions.creep));
+    if !case.conditions.thermal.is_empty() {
+        let parts: Vec<Value> = case.conditions.thermal.iter().map(|body| creep(&body.creep)).collect();
         setup.insert("contact_creep_compliance_over_reduced_time".into(), json!(parts));
     }
     if let Some(points) = &case.temperatures {
@@ -55,7 +55,7 @@ pub fn setup(case: &Case) -> Map<String, Value> {
         setup.insert("md5_of_files".into(), json!(files));
     }
     if let Some(layers) = &case.layers {
-        let misfit = case.waves.as_ref().map(|waves| waves.misfit());
+        let misfit = case.conditions.layers.as_ref().map(|waves| waves.misfit());
         setup.insert("layer_separable".into(), json!(misfit.is_none()));
         setup.insert("layer_misfit".into(), json!(misfit.unwrap_or(0.0)));
         setup.insert("layer_rigid_base".into(), json!(layers.depth().is_some()));
@@ -69,7 +69,7 @@ pub fn setup(case: &Case) -> Map<String, Value> {
             json!({ "steady": steady, "direction": [x, y], "rolls": motion.rolls, "shear_stress": shear }),
         );
     }
-    let ratio = |body| StressBody::of(body, !case.thermal.is_empty()).poisson;
+    let ratio = |body| StressBody::of(body, !case.conditions.thermal.is_empty()).poisson;
     let ratios: Vec<Option<Ratio>> = case.bodies.iter().map(ratio).collect();
     if ratios.iter().flatten().any(|ratio| ratio.constant().is_none()) {
         let creep = |ratio: &Option<Ratio>| match ratio {
@@ -78,7 +78,7 @@ pub fn setup(case: &Case) -> Map<String, Value> {
         };
         setup.insert(stress::POISSON_CREEP.into(), ratios.iter().map(creep).collect());
     }
-    setup.insert("solver_tolerance".into(), json!(case.solver.tolerance));
+    setup.insert("solver_tolerance".into(), json!(case.conditions.solver.tolerance));
     if let Some(plan) = &case.stress {
         setup.insert(stress::SETUP.into(), serde_json::to_value(plan).unwrap_or_default());
     }

@@ -2,21 +2,23 @@
 //!
 //! `checkpoint/state.bin`: eight bytes of magic, the length of a JSON header (u64), the header
 //! `{rows, numbers: [{name, count}], fields: [{name, shape}]}`, then the numbers as little-endian doubles, then the
-//! CRC-32 of all before it. Form 1 had its numbers without names and is not read. It lies in a group of its own, so that the directory stays a sound
-//! Zarr hierarchy.
+//! CRC-32 of all before it. Form 1 had its numbers without names and is not read. The file lies in a group of its own, so that the
+//! directory stays a valid Zarr hierarchy.
 
 use std::fs::{self, File};
-use std::io::{BufReader, Read, Write};
+use std::io::{BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 use asperity::step::Checkpoint;
-use flate2::Crc;
+use flate2::{CrcReader, CrcWriter};
 use ndarray::Array2;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
-use super::document::write_bare_group;
+use super::document;
 use super::error::{Result, StoreError, io};
 use super::header::Header;
+use super::replace::Way;
 use super::sync;
 
 /// Directory of the checkpoint in a result.
@@ -32,6 +34,7 @@ const MAGIC: &[u8; 7] = b"ASPCHK\0";
 /// Number of the form, after the magic.
 const FORM: u8 = 2;
 const LONGEST_HEADER: u64 = 1 << 20;
+const BUFFER: usize = 1 << 18;
 
 #[derive(Serialize, Deserialize)]
 struct Contents {
@@ -72,8 +75,9 @@ pub(super) fn write(root: &Path, checkpoint: &Checkpoint, is_synced: bool) -> Re
 pub(super) fn directory(root: &Path) -> Result<PathBuf> {
     let directory = root.join(DIRECTORY);
     if !directory.is_dir() {
-        fs::create_dir(&directory).map_err(io("make", &directory))?;
-        write_bare_group(&directory, "state from which the run goes on")?;
+        let attributes = json!({"long_name": "state from which the run goes on"});
+        let group = json!({"zarr_format": 3, "node_type": "group", "attributes": attributes});
+        document::write(&directory, &group, Way::Safe)?;
     }
     Ok(directory)
 }
@@ -86,46 +90,40 @@ fn write_file(path: &Path, checkpoint: &Checkpoint, is_synced: bool) -> std::io:
         fields: fields.map(|(name, f)| FieldShape { name: name.clone(), shape: f.dim() }).collect(),
     };
     let header = serde_json::to_vec(&contents)?;
-    let mut file = Summed { inner: File::create(path)?, crc: Crc::new(), bytes: Vec::new() };
-    file.put(MAGIC)?;
-    file.put(&[FORM])?;
-    file.put(&(header.len() as u64).to_le_bytes())?;
-    file.put(&header)?;
-    for (_, numbers) in &checkpoint.numbers {
-        file.put_numbers(numbers)?;
+    let mut file = BufWriter::with_capacity(BUFFER, CrcWriter::new(File::create(path)?));
+    file.write_all(MAGIC)?;
+    file.write_all(&[FORM])?;
+    file.write_all(&(header.len() as u64).to_le_bytes())?;
+    file.write_all(&header)?;
+    let numbers = checkpoint.numbers.iter().flat_map(|(_, numbers)| numbers.iter());
+    for number in numbers.chain(checkpoint.fields.iter().flat_map(|(_, field)| field.iter())) {
+        file.write_all(&number.to_le_bytes())?;
     }
-    for (_, field) in &checkpoint.fields {
-        let field = field.as_standard_layout();
-        file.put_numbers(field.as_slice().unwrap_or_default())?;
-    }
-    let sum = file.crc.sum();
-    file.put(&sum.to_le_bytes())?;
-    if is_synced { file.inner.sync_data() } else { Ok(()) }
+    file.flush()?;
+    let sum = file.get_ref().crc().sum();
+    file.write_all(&sum.to_le_bytes())?;
+    file.flush()?;
+    if is_synced { file.get_ref().get_ref().sync_data() } else { Ok(()) }
 }
 
-/// The checkpoint of the result at `root` of that header, which holds so many rows, or `None` where none was written.
+/// The checkpoint of the result at `root`, whose header and number of rows are given; `None` if none was written.
 pub(super) fn read(root: &Path, header: &Header, rows: usize) -> Result<Option<Checkpoint<'static>>> {
-    let path = root.join(DIRECTORY).join(FILE);
+    let path = path(root);
     let file = match crate::resources::open(&path) {
         Ok(file) => file,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(StoreError::Io { path, action: "read", source }),
     };
     let length = file.metadata().map_err(io("read", &path))?.len();
-    let checkpoint = read_file(file, length).map_err(|error| match error {
-        Unreadable::System(source) => StoreError::Io { path: path.clone(), action: "read", source },
-        Unreadable::Damaged(what) => damaged(&path, what),
-        Unreadable::Former => {
-            StoreError::FormerCheckpoint { path: path.clone(), version: header.version.clone(), rows }
-        }
-    })?;
-    Ok(Some(checkpoint))
+    let former =
+        || StoreError::FormerCheckpoint { path: path.clone(), version: header.version.clone(), rows };
+    read_file(&path, file, length, former).map(Some)
 }
 
 /// The error of a checkpoint that cannot be used.
-pub(super) fn damaged(path: &Path, what: String) -> StoreError {
+pub(super) fn damaged(path: &Path, what: &str) -> StoreError {
     let hint = "remove it, then --resume starts from the beginning";
-    StoreError::Corrupt { path: path.to_owned(), what, hint }
+    StoreError::Corrupt { path: path.to_owned(), what: what.to_owned(), hint }
 }
 
 /// The file of the checkpoint.
@@ -133,42 +131,25 @@ pub(super) fn path(root: &Path) -> PathBuf {
     root.join(DIRECTORY).join(FILE)
 }
 
-/// Removes the checkpoint; nothing happens where there is none.
-pub(super) fn remove(root: &Path) -> Result<()> {
-    let directory = root.join(DIRECTORY);
-    match fs::remove_dir_all(&directory) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(io("remove", &directory)(error)),
-        _ => Ok(()),
-    }
-}
-
-enum Unreadable {
-    System(std::io::Error),
-    Damaged(String),
-    /// Of a form before [`FORM`].
-    Former,
-}
-
-impl From<std::io::Error> for Unreadable {
-    fn from(error: std::io::Error) -> Self {
-        match error.kind() {
-            std::io::ErrorKind::UnexpectedEof => Unreadable::Damaged("it ends too early".into()),
-            _ => Unreadable::System(error),
-        }
-    }
-}
-
-fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable> {
-    let damaged = |what: &str| Unreadable::Damaged(what.to_owned());
-    let mut file = BufReader::with_capacity(1 << 18, file);
-    let mut crc = Crc::new();
+/// Reads a checkpoint of this form; the error of an earlier one is `former`.
+fn read_file(
+    path: &Path,
+    file: File,
+    length: u64,
+    former: impl Fn() -> StoreError,
+) -> Result<Checkpoint<'static>> {
+    let damaged = |what: &str| damaged(path, what);
+    let unreadable = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::UnexpectedEof => damaged("it ends too early"),
+        _ => io("read", path)(error),
+    };
+    let mut file = CrcReader::new(BufReader::with_capacity(BUFFER, file));
     let mut prefix = [0; 16];
-    file.read_exact(&mut prefix)?;
-    crc.update(&prefix);
+    file.read_exact(&mut prefix).map_err(unreadable)?;
     let (magic, size) = prefix.split_at(8);
     match magic.split_last() {
         Some((&FORM, magic)) if magic == MAGIC => {}
-        Some((form, magic)) if magic == MAGIC && (1..FORM).contains(form) => return Err(Unreadable::Former),
+        Some((form, magic)) if magic == MAGIC && (1..FORM).contains(form) => return Err(former()),
         _ => return Err(damaged("it does not begin as a checkpoint of this version")),
     }
     let size = size.try_into().map_or(u64::MAX, u64::from_le_bytes);
@@ -176,10 +157,9 @@ fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable>
         return Err(damaged("its header is too long"));
     }
     let mut header = vec![0; size as usize];
-    file.read_exact(&mut header)?;
-    crc.update(&header);
-    let contents: Contents = serde_json::from_slice(&header)
-        .map_err(|error| Unreadable::Damaged(format!("its header: {error}")))?;
+    file.read_exact(&mut header).map_err(unreadable)?;
+    let contents: Contents =
+        serde_json::from_slice(&header).map_err(|error| damaged(&format!("its header: {error}")))?;
     // The length of the file has to be that of the header's numbers before memory is asked for.
     let cells = contents.fields.iter().map(|field| field.shape.0.checked_mul(field.shape.1));
     let mut counts = contents.numbers.iter().map(|numbers| Some(numbers.count)).chain(cells);
@@ -188,10 +168,9 @@ fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable>
     if expected != Some(length) {
         return Err(damaged("its length is not that of its contents"));
     }
-    let mut read = |count: usize| -> Result<Vec<f64>, Unreadable> {
+    let mut read = |count: usize| -> Result<Vec<f64>> {
         let mut bytes = vec![0; 8 * count];
-        file.read_exact(&mut bytes)?;
-        crc.update(&bytes);
+        file.read_exact(&mut bytes).map_err(unreadable)?;
         Ok(bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect())
     };
     let mut numbers = Vec::with_capacity(contents.numbers.len());
@@ -201,40 +180,13 @@ fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable>
     let mut fields = Vec::with_capacity(contents.fields.len());
     for FieldShape { name, shape } in contents.fields {
         let field = Array2::from_shape_vec(shape, read(shape.0 * shape.1)?);
-        let field = field.map_err(|error| Unreadable::Damaged(error.to_string()))?;
+        let field = field.map_err(|error| damaged(&error.to_string()))?;
         fields.push((name, field.into()));
     }
-    let mut sum = [0; 4];
-    file.read_exact(&mut sum)?;
-    if u32::from_le_bytes(sum) != crc.sum() {
+    let (found, mut stated) = (file.crc().sum(), [0; 4]);
+    file.read_exact(&mut stated).map_err(unreadable)?;
+    if u32::from_le_bytes(stated) != found {
         return Err(damaged("its checksum is wrong"));
     }
     Ok(Checkpoint { step: contents.rows, numbers, fields })
-}
-
-/// A file that sums what is written to it.
-struct Summed {
-    inner: File,
-    crc: Crc,
-    bytes: Vec<u8>,
-}
-
-impl Summed {
-    fn put(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-        self.crc.update(bytes);
-        self.inner.write_all(bytes)
-    }
-
-    fn put_numbers(&mut self, numbers: &[f64]) -> std::io::Result<()> {
-        let mut bytes = std::mem::take(&mut self.bytes);
-        for part in numbers.chunks(1 << 15) {
-            bytes.resize(8 * part.len(), 0);
-            for (bytes, number) in bytes.chunks_exact_mut(8).zip(part) {
-                bytes.copy_from_slice(&number.to_le_bytes());
-            }
-            self.put(&bytes)?;
-        }
-        self.bytes = bytes;
-        Ok(())
-    }
 }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::codec::{Codec, Number};
 use super::error::{Result, StoreError, corrupt, io};
-use super::layout::ArraySpec;
+use super::layout::{ArraySpec, DataType};
 use crate::resources;
 
 /// The chunks of one array.
@@ -17,12 +17,14 @@ pub(super) struct Chunks {
     root: PathBuf,
     /// Cells of a chunk along each dimension.
     chunk: Vec<usize>,
+    data_type: DataType,
     codec: Codec,
 }
 
 impl Chunks {
     pub(super) fn new(root: &Path, spec: &ArraySpec) -> Self {
-        Chunks { root: root.join(spec.name), chunk: spec.chunk.clone(), codec: Codec::of(spec) }
+        let (root, chunk) = (root.join(spec.name()), spec.chunk());
+        Chunks { root, chunk, data_type: spec.data_type, codec: Codec::of(spec) }
     }
 
     /// The file of a chunk: `c/1/0` of the array.
@@ -30,10 +32,18 @@ impl Chunks {
         index.iter().fold(self.root.join("c"), |path, n| path.join(n.to_string()))
     }
 
-    /// Writes one chunk, and makes its directory.
-    pub(super) fn write<T: Number>(&self, index: &[u64], cells: &[T]) -> Result<()> {
-        self.make_directory(index)?;
-        self.put(index, cells)
+    /// Writes the numbers of an array of one chunk, and makes its directory.
+    pub(super) fn write_whole(&self, numbers: &[f64]) -> Result<()> {
+        let index = vec![0; self.chunk.len()];
+        let bytes = numbers.iter().flat_map(|number| self.data_type.to_bytes(*number)).collect();
+        self.make_directory(&index)?;
+        self.put(&index, self.codec.encode_bytes(bytes, 0))
+    }
+
+    /// Reads the numbers of an array of one chunk.
+    pub(super) fn read_whole(&self) -> Result<Vec<f64>> {
+        let bytes = self.decoded(&vec![0; self.chunk.len()])?;
+        Ok(bytes.as_chunks().0.iter().map(|bytes| self.data_type.number(*bytes)).collect())
     }
 
     fn make_directory(&self, index: &[u64]) -> Result<()> {
@@ -42,15 +52,9 @@ impl Chunks {
         fs::create_dir_all(directory).map_err(io("make", directory))
     }
 
-    fn put<T: Number>(&self, index: &[u64], cells: &[T]) -> Result<()> {
+    fn put(&self, index: &[u64], encoded: std::io::Result<Vec<u8>>) -> Result<()> {
         let path = self.path(index);
-        let written = self.codec.encode(cells).and_then(|bytes| fs::write(&path, bytes));
-        written.map_err(io("write", &path))
-    }
-
-    /// Reads one chunk; a missing or damaged one is an error.
-    pub(super) fn read<T: Number>(&self, index: &[u64]) -> Result<Vec<T>> {
-        self.decoded(index).map(|bytes| T::from_bytes(&bytes))
+        encoded.and_then(|bytes| fs::write(&path, bytes)).map_err(io("write", &path))
     }
 
     /// Compares a chunk with its checksum and its length; in results of form 1, with the checksum of its compression.
@@ -58,7 +62,7 @@ impl Chunks {
         self.decoded(index).map(drop)
     }
 
-    /// The bytes of the numbers of a chunk.
+    /// The bytes of the numbers of a chunk; a missing or damaged one is an error.
     fn decoded(&self, index: &[u64]) -> Result<Vec<u8>> {
         let bytes = self.bytes(index)?;
         self.codec.decode(bytes).map_err(|what| corrupt(&self.path(index), what))
@@ -71,7 +75,7 @@ impl Chunks {
         resources::read(&path).map_err(io("read", &path))
     }
 
-    /// Checks that a chunk is there and no larger than its numbers can be, before memory is asked for.
+    /// Checks that a chunk exists and is not larger than its numbers can be, before memory is allocated.
     fn find(&self, index: &[u64]) -> Result<()> {
         let path = self.path(index);
         let length = match fs::metadata(&path) {
@@ -105,17 +109,10 @@ impl Chunks {
             // Chunks at the far edges are padded to full size with a value that deflates.
             let mut cells = vec![first; side_x * side_y];
             for (row, cells) in part.rows().into_iter().zip(cells.chunks_mut(side_y)) {
-                for (value, cell) in row.iter().zip(cells) {
-                    *cell = *value;
-                }
+                cells.iter_mut().zip(row).for_each(|(cell, value)| *cell = *value);
             }
-            self.put(&block.index, &cells)
+            self.put(&block.index, self.codec.encode(&cells))
         })
-    }
-
-    /// The files of a map.
-    pub(super) fn paths(&self, lead: &[u64], shape: (usize, usize)) -> Vec<PathBuf> {
-        self.blocks(lead, shape).0.iter().map(|block| self.path(&block.index)).collect()
     }
 
     /// Compares all chunks of a map with their checksums.
@@ -130,21 +127,19 @@ impl Chunks {
         let mut map = Array2::<T>::default(shape);
         // A few chunks at a time, so that little more than the map itself is held.
         for batch in blocks.chunks(4 * rayon::current_num_threads()) {
-            let parts: Vec<Vec<T>> =
-                batch.par_iter().map(|block| self.read(&block.index)).collect::<Result<_>>()?;
+            let read = |block: &Block| self.decoded(&block.index).map(|bytes| T::from_bytes(&bytes));
+            let parts: Vec<Vec<T>> = batch.par_iter().map(read).collect::<Result<_>>()?;
             for (block, cells) in batch.iter().zip(parts) {
                 let mut part = map.slice_mut(s![block.x.clone(), block.y.clone()]);
                 for (mut row, cells) in part.rows_mut().into_iter().zip(cells.chunks(side_y)) {
-                    for (value, cell) in row.iter_mut().zip(cells) {
-                        *value = *cell;
-                    }
+                    row.iter_mut().zip(cells).for_each(|(value, cell)| *value = *cell);
                 }
             }
         }
         Ok(map)
     }
 
-    /// The chunks that cover a map, and the sides of a chunk. An array with one dimension after those of `lead` holds a line.
+    /// The chunks that cover a map, and the sides of a chunk. After the dimensions of `lead`, the maps of a line have one dimension.
     fn blocks(&self, lead: &[u64], (nx, ny): (usize, usize)) -> (Vec<Block>, [usize; 2]) {
         let own = self.chunk.get(lead.len()..).unwrap_or_default();
         let (line, sides) = match *own {

@@ -5,10 +5,10 @@ use std::io::{Read, Write};
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 
-use super::layout::{ArraySpec, LEVEL};
+use super::layout::{ArraySpec, LEVEL, Storage};
 
-/// A number that is stored.
-pub(super) trait Number: Copy + Default + PartialEq + Send + Sync {
+/// A number of a map.
+pub(crate) trait Number: Copy + Default + PartialEq + Send + Sync {
     /// The bytes of numbers, one after the other.
     fn to_bytes(numbers: &[Self]) -> Vec<u8>;
     /// The inverse of [`to_bytes`](Self::to_bytes).
@@ -29,7 +29,7 @@ macro_rules! number {
     )* };
 }
 
-number!(f64 i64 u8);
+number!(f64 u8);
 
 /// How the chunks of an array are encoded.
 pub(super) struct Codec {
@@ -41,8 +41,8 @@ pub(super) struct Codec {
 
 impl Codec {
     pub(super) fn of(spec: &ArraySpec) -> Codec {
-        let length = spec.chunk.iter().product::<usize>() * spec.data_type.width();
-        Codec { length, compressed: spec.compressed, summed: spec.summed }
+        let length = spec.chunk().iter().product::<usize>() * spec.data_type.width();
+        Codec { length, compressed: spec.storage == Storage::Maps, summed: spec.summed }
     }
 
     /// The file of a chunk is no longer than this \[bytes\].
@@ -50,14 +50,18 @@ impl Codec {
         (self.length + self.length / 4 + 1024) as u64
     }
 
-    /// The file of a chunk with these numbers.
+    /// The file of a chunk of a map with these numbers.
     pub(super) fn encode<T: Number>(&self, numbers: &[T]) -> std::io::Result<Vec<u8>> {
-        let mut bytes = T::to_bytes(numbers);
+        // Numbers that differ from cell to cell do not deflate: they are only wrapped, which is thirty times as fast.
+        // Repeated ones (no pressure, pressure at the hardness, no contact) do.
+        let repeated = numbers.windows(2).filter(|pair| pair[0] == pair[1]).count();
+        let level = if repeated >= numbers.len() / 8 { LEVEL } else { 0 };
+        self.encode_bytes(T::to_bytes(numbers), level)
+    }
+
+    /// The file of a chunk with the bytes of its numbers, deflated with `level` where the array is compressed.
+    pub(super) fn encode_bytes(&self, mut bytes: Vec<u8>, level: u8) -> std::io::Result<Vec<u8>> {
         if self.compressed {
-            // Numbers that differ from cell to cell do not deflate: they are only wrapped, which is thirty times as fast.
-            // Repeated ones (no pressure, pressure at the hardness, no contact) do.
-            let repeated = numbers.windows(2).filter(|pair| pair[0] == pair[1]).count();
-            let level = if repeated >= numbers.len() / 8 { LEVEL } else { 0 };
             let mut gzip = GzEncoder::new(Vec::new(), flate2::Compression::new(level.into()));
             gzip.write_all(&bytes)?;
             bytes = gzip.finish()?;
@@ -68,7 +72,7 @@ impl Codec {
         Ok(bytes)
     }
 
-    /// The bytes of the numbers in the file of a chunk. Memory is taken for the numbers that it should hold, not for more.
+    /// The bytes of the numbers in the file of a chunk. No more memory is allocated than its numbers need.
     ///
     /// # Errors
     /// What is wrong with the file.

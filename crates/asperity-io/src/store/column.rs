@@ -1,4 +1,4 @@
-//! A per-step array that grows by one row at a time, of one number or one per bin.
+//! A per-step array that grows by one row at a time, of one number or of several.
 //!
 //! Its chunks are not compressed: row n is the eight bytes of each of its numbers at their place in its chunk, and is
 //! written there. A number becomes visible when the group's document counts it (see [`super::document`]).
@@ -7,12 +7,10 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use asperity::step::Row;
-
 use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::error::{Result, corrupt, io};
-use super::layout::{ArraySpec, Entry, Stored};
+use super::layout::{ArraySpec, DataType};
 
 /// The writing end of a per-step array.
 pub(super) struct Column {
@@ -20,6 +18,7 @@ pub(super) struct Column {
     layout: Layout,
     open: Option<(u64, PathBuf, File)>,
     name: &'static str,
+    data_type: DataType,
     /// Rows that readers see, and their checksum.
     rows: usize,
     sum: u32,
@@ -39,8 +38,8 @@ struct Layout {
 
 impl Layout {
     fn of(spec: &ArraySpec) -> Self {
-        let rows = spec.chunk.first().copied().unwrap_or(1).max(1);
-        Layout { rows, width: spec.chunk[1..].iter().product(), wide: spec.chunk.len() > 1 }
+        let chunk = spec.chunk();
+        Layout { rows: chunk[0], width: chunk[1..].iter().product(), wide: chunk.len() > 1 }
     }
 
     fn bytes(self) -> u64 {
@@ -56,9 +55,21 @@ impl Layout {
 impl Column {
     /// After the first `rows` rows, whose checksum is in `sums`.
     pub(super) fn new(root: &Path, spec: &ArraySpec, rows: usize, sums: &Sums) -> Self {
-        let (chunks, layout) = (Chunks::new(root, spec), Layout::of(spec));
-        let sum = sums.get(spec.name).copied().unwrap_or(0);
-        Column { chunks, layout, open: None, name: spec.name, rows, sum, later: Vec::new() }
+        Column {
+            chunks: Chunks::new(root, spec),
+            layout: Layout::of(spec),
+            open: None,
+            name: spec.name(),
+            data_type: spec.data_type,
+            rows,
+            sum: sums.get(spec.name()).copied().unwrap_or(0),
+            later: Vec::new(),
+        }
+    }
+
+    /// Numbers of a row.
+    pub(super) fn width(&self) -> usize {
+        self.layout.width
     }
 
     /// The checksum of the first `rows` rows, set in `sums`.
@@ -74,18 +85,9 @@ impl Column {
         self.rows += new;
     }
 
-    /// The file that is written now.
-    pub(super) fn file(&self) -> Option<(&Path, &File)> {
-        self.open.as_ref().map(|(_, path, file)| (path.as_path(), file))
-    }
-
-    /// Writes number `index`.
-    pub(super) fn put(&mut self, index: usize, bytes: [u8; 8]) -> Result<()> {
-        self.put_row(index, &bytes)
-    }
-
     /// Writes row `index`, all of its numbers.
-    pub(super) fn put_row(&mut self, index: usize, bytes: &[u8]) -> Result<()> {
+    pub(super) fn put(&mut self, index: usize, numbers: &[f64]) -> Result<()> {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|number| self.data_type.to_bytes(*number)).collect();
         let layout = self.layout;
         let chunk = (index / layout.rows) as u64;
         if self.open.as_ref().is_none_or(|(open, ..)| *open != chunk) {
@@ -95,24 +97,18 @@ impl Column {
             let file = OpenOptions::new().write(true).create(true).truncate(false).open(&path);
             let file = file.map_err(io("open", &path))?;
             file.set_len(layout.bytes()).map_err(io("write", &path))?;
-            // Where files are synchronised one by one, it is those that are open then.
-            if cfg!(not(target_os = "linux"))
-                && let Some((_, path, file)) = &self.open
-            {
-                file.sync_data().map_err(io("write", path))?;
-            }
             self.open = Some((chunk, path, file));
         }
         if let Some((_, path, file)) = &mut self.open {
             let offset = 8 * (index % layout.rows * layout.width) as u64;
             file.seek(SeekFrom::Start(offset))
-                .and_then(|_| file.write_all(bytes))
+                .and_then(|_| file.write_all(&bytes))
                 .map_err(io("write", path))?;
         }
         // A row that could not be committed may be written again.
         self.later.truncate(index.saturating_sub(self.rows));
         let before = self.later.last().copied().unwrap_or(self.sum);
-        self.later.push(crc32c::crc32c_append(before, bytes));
+        self.later.push(crc32c::crc32c_append(before, &bytes));
         Ok(())
     }
 }
@@ -122,38 +118,31 @@ pub(super) fn sum(numbers: &[[u8; 8]]) -> u32 {
     crc32c::crc32c(numbers.as_flattened())
 }
 
-/// All rows of a per-step array, `length` in number, as the bytes of their numbers; compared with their checksum where
-/// `sums` has one.
-pub(super) fn read(root: &Path, spec: &ArraySpec, length: usize, sums: &Sums) -> Result<Vec<[u8; 8]>> {
-    let numbers = read_unchecked(root, spec, length)?;
-    match sums.get(spec.name) {
+/// All rows of a per-step array as the bytes of their numbers; compared with their checksum where `sums` has one.
+pub(super) fn read(root: &Path, spec: &ArraySpec, sums: &Sums) -> Result<Vec<[u8; 8]>> {
+    let numbers = read_unchecked(root, spec)?;
+    match sums.get(spec.name()) {
         Some(stored) if *stored != sum(&numbers) => {
-            Err(corrupt(&root.join(spec.name), "its rows do not have the checksum in zarr.json"))
+            Err(corrupt(&root.join(spec.name()), "its rows do not have the checksum in zarr.json"))
         }
         _ => Ok(numbers),
     }
 }
 
-fn read_unchecked(root: &Path, spec: &ArraySpec, length: usize) -> Result<Vec<[u8; 8]>> {
+fn read_unchecked(root: &Path, spec: &ArraySpec) -> Result<Vec<[u8; 8]>> {
     let chunks = Chunks::new(root, spec);
-    let layout = Layout::of(spec);
+    let (layout, length) = (Layout::of(spec), spec.dimensions[0].1);
     let mut numbers = Vec::new();
     // A length beyond what the files hold ends at the first missing chunk, not at the memory's end.
     for chunk in 0..length.div_ceil(layout.rows) {
         let index = layout.index(chunk as u64);
-        let path = chunks.path(&index);
         let bytes = chunks.bytes(&index)?;
         if bytes.len() as u64 != layout.bytes() {
-            return Err(corrupt(&path, format_args!("{} bytes instead of {}", bytes.len(), layout.bytes())));
+            let what = format_args!("{} bytes instead of {}", bytes.len(), layout.bytes());
+            return Err(corrupt(&chunks.path(&index), what));
         }
         let wanted = layout.width * layout.rows.min(length - chunk * layout.rows);
-        let (entries, _) = bytes.as_chunks::<8>();
-        numbers.extend_from_slice(&entries[..wanted.min(entries.len())]);
+        numbers.extend(bytes.as_chunks::<8>().0.iter().take(wanted));
     }
     Ok(numbers)
-}
-
-/// The scalars of a whole column set into their rows.
-pub(super) fn fill(rows: &mut [Row], entry: Entry, numbers: &[[u8; 8]]) -> Option<()> {
-    rows.iter_mut().zip(numbers).try_for_each(|(row, bytes)| entry.set(row, *bytes))
 }

@@ -1,4 +1,4 @@
-//! How a result comes to be at its path: built beside it, then renamed, never half-made.
+//! A new result is built beside its path and then renamed, so that no unfinished one is ever seen.
 
 use std::fs::{self, File};
 use std::io::ErrorKind;
@@ -12,15 +12,14 @@ use super::chunks::Chunks;
 use super::document::{self, Document};
 use super::error::{Result, StoreError, input, io};
 use super::field_kind::FieldKind;
-use super::header::Header;
-use super::layout::{self, ArraySpec, SCALARS, bins, coordinates};
+use super::layout::{BINS, SCALARS, coordinates};
 use super::leak;
 use super::leftovers;
 use super::replace;
 use super::stress;
 use super::writer::lock;
 
-/// Lets `build` fill a new directory, which then appears at `path`; returns its lock. A complete result that was there is put by
+/// Lets `build` fill a new directory, which then appears at `path`; returns its lock. A complete result that was there is kept
 /// until the new one is complete.
 pub(super) fn publish(
     path: &Path,
@@ -33,7 +32,7 @@ pub(super) fn publish(
     leftovers::sweep(path);
     let old = vacate(path, force)?;
     let partial = make_beside(path, "partial")?;
-    // Held from here on: others see that somebody is at work.
+    // Held from here on: other processes see that this one is at work.
     let built = lock(&partial).and_then(|held| {
         build(&partial)?;
         match &old {
@@ -48,7 +47,7 @@ pub(super) fn publish(
     built.map_err(|error| {
         let _ = fs::remove_dir_all(&partial);
         match error {
-            // Said of the path that the user knows.
+            // The error names the path that the user knows.
             StoreError::Io { path: file, action, source } => {
                 let file = file.strip_prefix(&partial).map_or(file.clone(), |part| path.join(part));
                 StoreError::Io { path: file, action, source }
@@ -106,17 +105,14 @@ fn vacate(path: &Path, force: bool) -> Result<Option<Option<File>>> {
         Ok(metadata) => metadata,
     };
     let foreign = |found: &str| StoreError::Foreign { path: path.to_owned(), found: found.to_owned() };
-    if metadata.is_symlink() {
-        return Err(foreign("is a link"));
-    }
-    if metadata.is_dir() && !document::is_result(path) {
-        return Err(foreign("is a directory, but not a result of asperity"));
-    }
-    if !metadata.is_dir() {
-        return Err(foreign("is a file"));
-    }
-    if !force {
-        return Err(StoreError::Exists { path: path.to_owned() });
+    match metadata.file_type() {
+        kind if kind.is_symlink() => return Err(foreign("is a link")),
+        kind if !kind.is_dir() => return Err(foreign("is a file")),
+        _ if !document::is_result(path) => {
+            return Err(foreign("is a directory, but not a result of asperity"));
+        }
+        _ if !force => return Err(StoreError::Exists { path: path.to_owned() }),
+        _ => {}
     }
     for entry in fs::read_dir(path).map_err(io("read", path))? {
         let name = entry.map_err(io("read", path))?.file_name();
@@ -129,7 +125,7 @@ fn vacate(path: &Path, force: bool) -> Result<Option<Option<File>>> {
 
 /// Whether a result has an entry of that name.
 pub(super) fn is_part(name: &str) -> bool {
-    document::owns(name)
+    name == document::NAME
         || leak::owns(name)
         || name == checkpoint::DIRECTORY
         || stress::names().any(|known| known == name)
@@ -137,27 +133,20 @@ pub(super) fn is_part(name: &str) -> bool {
         || SCALARS.iter().any(|scalar| scalar.name == name)
         || FieldKind::from_name(name).is_some()
         || Quantity::from_name(name).is_some()
-        || Quantity::ALL
-            .into_iter()
-            .filter_map(bins)
-            .any(|bins| [bins.middles.name, bins.edges.name].contains(&name))
+        || BINS.iter().flat_map(|(_, series)| series).any(|series| series.name == name)
 }
 
 /// A new directory beside `path`.
 fn make_beside(path: &Path, role: &str) -> Result<PathBuf> {
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     for directory in names_beside(path, role)? {
-        match fs::create_dir(&directory) {
+        match fs::create_dir(&directory).map_err(|error| (error.kind(), error)) {
             Ok(()) => return Ok(directory),
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-            Err(source) => {
-                let parent =
-                    directory.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-                let (path, action) = match source.kind() {
-                    ErrorKind::NotFound | ErrorKind::NotADirectory => (parent, "write into"),
-                    _ => (path, "make"),
-                };
-                return Err(StoreError::Io { path: path.to_owned(), action, source });
+            Err((ErrorKind::AlreadyExists, _)) => {}
+            Err((ErrorKind::NotFound | ErrorKind::NotADirectory, error)) => {
+                return Err(io("write into", parent)(error));
             }
+            Err((_, error)) => return Err(io("make", path)(error)),
         }
     }
     Err(StoreError::Busy { path: path.to_owned() })
@@ -171,39 +160,22 @@ fn free_name(path: &Path, role: &str) -> Result<PathBuf> {
 
 /// Names beside `path` for what this process works on: `.NAME.ROLE-PID`, `.NAME.ROLE-PID-1`, ...
 fn names_beside(path: &Path, role: &str) -> Result<impl Iterator<Item = PathBuf>> {
-    let Some(name) = path.file_name() else {
+    if path.file_name().is_none() {
         return Err(input("path of the result", path.display(), "the path of a directory to be made"));
-    };
-    let mut base = std::ffi::OsString::from(".");
-    base.push(name);
-    base.push(format!(".{role}-{}", std::process::id()));
-    let path = path.to_owned();
-    Ok((0..100).map(move |n| {
-        let mut name = base.clone();
-        if n > 0 {
-            name.push(format!("-{n}"));
-        }
-        path.with_file_name(name)
-    }))
-}
-
-/// The files of what does not change over time.
-pub(super) fn constants(root: &Path, header: &Header, form: u64) -> Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    let is_constant = |spec: &ArraySpec| {
-        !(layout::is_of_rows(spec.dimensions[0]) || layout::is_of_maps(spec.dimensions[0]))
-    };
-    for spec in layout::arrays(header, 0, 0).into_iter().filter(is_constant) {
-        let chunks = Chunks::new(root, &spec.clone().of_form(form));
-        match spec.name {
-            "initial_gap" => files.extend(chunks.paths(&[], header.grid.shape())),
-            _ => files.push(chunks.path(&[0])),
-        }
     }
-    Ok(files)
+    let (path, role) = (path.to_owned(), format!(".{role}-{}", std::process::id()));
+    Ok((0..100).map(move |n| beside(&path, ".", &if n > 0 { format!("{role}-{n}") } else { role.clone() })))
 }
 
-/// Writes what does not change over time: the coordinates x and y, those of the histograms, and the undeformed gap.
+/// The path of a file beside `path`, whose name has more before and after the name of that.
+pub(super) fn beside(path: &Path, before: &str, after: &str) -> PathBuf {
+    let mut name = std::ffi::OsString::from(before);
+    name.push(path.file_name().unwrap_or_default());
+    name.push(after);
+    path.with_file_name(name)
+}
+
+/// Writes what does not change over time: the coordinates x and y, the coordinates of the histograms, and the undeformed gap.
 pub(super) fn write_constants(
     root: &Path,
     document: &Document,
@@ -214,19 +186,14 @@ pub(super) fn write_constants(
     let lines: Vec<_> =
         document.header.quantities.iter().flat_map(|column| coordinates(column, grid)).collect();
     for spec in document.arrays() {
-        let centres: Vec<f64> = match spec.name {
-            "x" => (0..nx).map(|i| grid.x(i)).collect(),
-            "y" => (0..ny).map(|j| grid.y(j)).collect(),
-            "initial_gap" => {
-                Chunks::new(root, &spec).write_map(&[], initial_gap)?;
-                continue;
-            }
-            name => match lines.iter().find(|(series, _)| series.name == name) {
-                Some((_, numbers)) => numbers.clone(),
-                None => continue,
-            },
-        };
-        Chunks::new(root, &spec).write(&[0], &centres)?;
+        let chunks = Chunks::new(root, &spec);
+        let line = || lines.iter().find(|(series, _)| series.name == spec.name());
+        match spec.name() {
+            "x" => chunks.write_whole(&(0..nx).map(|i| grid.x(i)).collect::<Vec<_>>())?,
+            "y" => chunks.write_whole(&(0..ny).map(|j| grid.y(j)).collect::<Vec<_>>())?,
+            "initial_gap" => chunks.write_map(&[], initial_gap)?,
+            _ => line().map_or(Ok(()), |(_, numbers)| chunks.write_whole(numbers))?,
+        }
     }
     Ok(())
 }

@@ -14,7 +14,7 @@ use super::checkpoint;
 use super::checksum;
 use super::error::{Result, StoreError, corrupt, io};
 use super::header::{self, Header, Progress};
-use super::layout::{self, ArraySpec, LEVEL};
+use super::layout::{self, ArraySpec};
 use super::leak::Leaks;
 use super::replace::{Way, replace};
 use super::stress::StressSet;
@@ -27,7 +27,7 @@ pub(super) const NAME: &str = "zarr.json";
 /// hierarchy looks.
 pub(super) const PARTIAL: &str = "zarr.json.partial";
 pub(super) const GROUP_PARTIAL: &str = "x/group.json.partial";
-/// Documents larger than this are not read (a result's has tens of kilobytes and its case file).
+/// Larger documents are not read: that of a result has tens of kilobytes and the case file.
 const LARGEST: u64 = 64 << 20;
 
 /// What the group's document says.
@@ -54,7 +54,7 @@ impl Pages {
     pub(super) fn new(document: &Document) -> Self {
         let arrays = document.arrays();
         let metadata: Map<_, _> =
-            arrays.iter().map(|array| (array.name.to_owned(), array.document(LEVEL))).collect();
+            arrays.iter().map(|array| (array.name().to_owned(), array.document())).collect();
         let mut attributes = header::attributes(&document.header, document.form);
         header::put_progress(&mut attributes, &document.progress);
         attributes.extend(document.stress_attribute());
@@ -70,12 +70,6 @@ impl Pages {
         Pages { group, guarded }
     }
 
-    /// Names of the arrays.
-    pub(super) fn names(&self) -> Vec<String> {
-        let arrays = self.group["consolidated_metadata"]["metadata"].as_object();
-        arrays.into_iter().flatten().map(|(name, _)| name.clone()).collect()
-    }
-
     /// Replaces the group's document: from now on readers see `progress`.
     pub(super) fn commit(&mut self, root: &Path, progress: &Progress, way: Way) -> Result<()> {
         if let Some(attributes) = self.group["attributes"].as_object_mut() {
@@ -84,14 +78,9 @@ impl Pages {
         }
         if let Some(arrays) = self.group["consolidated_metadata"]["metadata"].as_object_mut() {
             for array in arrays.values_mut() {
-                match array["dimension_names"][0].as_str() {
-                    Some(dimension) if layout::is_of_rows(dimension) => {
-                        array["shape"][0] = json!(progress.rows)
-                    }
-                    Some(dimension) if layout::is_of_maps(dimension) => {
-                        array["shape"][0] = json!(progress.maps)
-                    }
-                    _ => {}
+                let dimension = array["dimension_names"][0].as_str().unwrap_or_default();
+                if let Some(length) = progress.length_of(dimension) {
+                    array["shape"][0] = json!(length);
                 }
             }
         }
@@ -104,29 +93,25 @@ impl Pages {
         let directory = checkpoint::directory(root)?;
         let (path, partial) = (directory.join(checkpoint::GROUP), directory.join(checkpoint::GROUP_PARTIAL));
         replace(&path, &partial, self.group.to_string().as_bytes(), Way::Safe)?;
-        sync::files(root, &[path])
+        sync::file(&path)?;
+        sync::directory(&directory);
+        Ok(())
     }
 
     /// Brings the arrays' own documents up to what was committed.
     pub(super) fn write_arrays(&self, root: &Path, way: Way) -> Result<()> {
-        for (name, array) in self.group["consolidated_metadata"]["metadata"].as_object().into_iter().flatten()
-        {
-            let directory = root.join(name);
-            fs::create_dir_all(&directory).map_err(io("make", &directory))?;
-            let text = array.to_string();
-            replace(&directory.join(NAME), &directory.join(PARTIAL), text.as_bytes(), way)?;
-        }
-        Ok(())
+        let arrays = self.group["consolidated_metadata"]["metadata"].as_object();
+        arrays.into_iter().flatten().try_for_each(|(name, array)| write(&root.join(name), array, way))
     }
 }
 
 impl Document {
     /// All arrays of the result.
     pub(super) fn arrays(&self) -> Vec<ArraySpec> {
-        let (cells, Progress { rows, maps, .. }) = (self.header.grid.cells(), &self.progress);
+        let (grid, Progress { rows, maps, .. }) = (&self.header.grid, &self.progress);
         let mut arrays = layout::arrays(&self.header, *rows, *maps);
-        arrays.extend(self.stress.iter().flat_map(|set| set.arrays(cells, *maps)));
-        arrays.extend(self.leaks.iter().flat_map(|leaks| leaks.arrays(&self.header.grid)));
+        arrays.extend(self.stress.iter().flat_map(|set| set.arrays(grid, *maps)));
+        arrays.extend(self.leaks.iter().flat_map(|leaks| leaks.arrays(grid)));
         arrays.into_iter().map(|array| array.of_form(self.form)).collect()
     }
 
@@ -164,8 +149,8 @@ impl Document {
         let leaks = Leaks::of(attributes, metadata);
         let document = Document { form, header, progress, stress, leaks };
         for array in document.arrays() {
-            if metadata.get(array.name).is_none_or(|stored| !same_form(stored, &array.document(LEVEL))) {
-                let what = format!("the array `{}` is missing or not of the form of a result", array.name);
+            if metadata.get(array.name()).is_none_or(|stored| !same_form(stored, &array.document())) {
+                let what = format!("the array `{}` is missing or not of the form of a result", array.name());
                 return Err(corrupt(&file, what));
             }
         }
@@ -174,24 +159,17 @@ impl Document {
     }
 }
 
-/// Whether the directory is marked as a result, of whatever version.
+/// Whether the directory is marked as a result, of any version.
 pub(super) fn is_result(root: &Path) -> bool {
     read_json(root).is_ok_and(|(_, document)| {
         document.get("attributes").and_then(Value::as_object).is_some_and(header::is_marked)
     })
 }
 
-/// Names that a result has in its directory besides its arrays.
-pub(super) fn owns(name: &str) -> bool {
-    name == NAME
-}
-
-/// A group without arrays, as `zarr.json` of `directory`.
-pub(super) fn write_bare_group(directory: &Path, long_name: &str) -> Result<()> {
-    let document = json!({
-        "zarr_format": 3, "node_type": "group", "attributes": {"long_name": long_name},
-    });
-    replace(&directory.join(NAME), &directory.join(PARTIAL), document.to_string().as_bytes(), Way::Safe)
+/// Writes `zarr.json` of an array or a group within the result, and makes its directory.
+pub(super) fn write(directory: &Path, document: &Value, way: Way) -> Result<()> {
+    fs::create_dir_all(directory).map_err(io("make", directory))?;
+    replace(&directory.join(NAME), &directory.join(PARTIAL), document.to_string().as_bytes(), way)
 }
 
 /// Replaces the arrays of a result that `old` names by new ones, whose chunks are written, and changes its attributes. Returns
@@ -204,9 +182,7 @@ pub(super) fn exchange_arrays(
 ) -> Result<Vec<String>> {
     let (file, mut group) = read_json(root)?;
     for array in new {
-        let directory = root.join(array.name);
-        let text = array.document(LEVEL).to_string();
-        replace(&directory.join(NAME), &directory.join(PARTIAL), text.as_bytes(), Way::Safe)?;
+        write(&root.join(array.name()), &array.document(), Way::Safe)?;
     }
     let missing = || corrupt(&file, "the consolidated metadata are missing");
     let metadata = group.pointer_mut("/consolidated_metadata/metadata").and_then(Value::as_object_mut);
@@ -214,8 +190,8 @@ pub(super) fn exchange_arrays(
     let mut gone: Vec<String> = metadata.keys().filter(|name| old(name)).cloned().collect();
     gone.iter().for_each(|name| drop(metadata.shift_remove(name)));
     for array in new {
-        metadata.insert(array.name.to_owned(), array.document(LEVEL));
-        gone.retain(|name| name != array.name);
+        metadata.insert(array.name().to_owned(), array.document());
+        gone.retain(|name| name != array.name());
     }
     change(group["attributes"].as_object_mut().ok_or_else(|| corrupt(&file, "the attributes are missing"))?);
     replace(&root.join(NAME), &root.join(GROUP_PARTIAL), group.to_string().as_bytes(), Way::Safe)?;
@@ -240,14 +216,14 @@ pub(super) fn read_json(root: &Path) -> Result<(PathBuf, Value)> {
     }
     let bytes = resources::read(&file).map_err(io("read", &file))?;
     let document = serde_json::from_slice(&bytes).or_else(|error| {
-        // A loss of power may leave less than the text that was written last.
+        // After a loss of power the text may be incomplete.
         let copy = resources::read(&root.join(checkpoint::DIRECTORY).join(checkpoint::GROUP));
         copy.ok().and_then(|bytes| serde_json::from_slice(&bytes).ok()).ok_or(error)
     });
     Ok((file.clone(), document.map_err(|error| corrupt(&file, error))?))
 }
 
-/// Same array but for its attributes.
+/// Whether two documents are of the same array, apart from its attributes.
 fn same_form(stored: &Value, expected: &Value) -> bool {
     let (Some(stored), Some(expected)) = (stored.as_object(), expected.as_object()) else { return false };
     expected.iter().all(|(key, value)| key == "attributes" || stored.get(key) == Some(value))

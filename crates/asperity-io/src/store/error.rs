@@ -11,13 +11,13 @@ use crate::readable::bytes;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StoreError {
-    /// The output is there already and may not be replaced.
+    /// The output exists already and must not be replaced.
     #[error("{} exists already; choose another output, replace it with --force or continue it with --resume", .path.display())]
     Exists {
         /// The output asked for.
         path: PathBuf,
     },
-    /// The output is there and is not (only) a result, so that it is never removed.
+    /// The output exists, but is not a result or holds other files too: it is never removed.
     #[error("{} {found}; it is not overwritten; choose another output or move it away", .path.display())]
     Foreign {
         /// The output asked for.
@@ -65,7 +65,7 @@ pub enum StoreError {
         /// What to do.
         hint: &'static str,
     },
-    /// The checkpoint is of a form that this version does not go on from.
+    /// This version cannot resume from a checkpoint of this form.
     #[error("{} is a checkpoint of an earlier asperity ({version}), which this version cannot go on from; the rows stored ({rows}) are \
              kept: resume with the earlier version, or run the case again with --force", .path.display())]
     FormerCheckpoint {
@@ -76,7 +76,7 @@ pub enum StoreError {
         /// Rows stored.
         rows: usize,
     },
-    /// A run cannot go on from this result: it belongs to another case.
+    /// The run cannot resume this result: it belongs to another case.
     #[error("{} belongs to another case: {what} is {stored}, now {given}; restore the case, or start again with another output or --force", .path.display())]
     Mismatch {
         /// The result.

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::layout::DataType;
 use crate::choice;
 
 /// A field on the grid that a result may keep over time.
@@ -50,9 +51,13 @@ impl FieldKind {
         }
     }
 
+    pub(super) fn data_type(self) -> DataType {
+        if self == FieldKind::Contact { DataType::UInt8 } else { DataType::Float64 }
+    }
+
     /// Bytes per cell.
     pub(crate) fn bytes(self) -> u64 {
-        if self == FieldKind::Contact { 1 } else { 8 }
+        self.data_type().width() as u64
     }
 
     /// What it is, for axes and legends.

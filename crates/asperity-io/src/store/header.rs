@@ -6,11 +6,12 @@ use std::path::Path;
 use asperity::finding::Finding;
 use asperity::quantities::{Column, Quantity};
 use asperity::{Axis, Grid};
+use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::error::{Result, StoreError, corrupt};
 use super::field_kind::FieldKind;
-use crate::finding;
+use crate::{choice, finding};
 
 /// Value of the attribute `format`: marks the directories that this store may replace.
 const FORMAT: &str = "asperity-result";
@@ -78,9 +79,11 @@ impl Header {
 }
 
 /// How far a run has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Status {
     /// Under way, or killed: see [`Reader::is_being_written`](super::Reader::is_being_written).
+    #[default]
     Running,
     /// All rows are there.
     Complete,
@@ -108,16 +111,9 @@ pub struct Work {
 }
 
 impl Status {
-    const ALL: [Status; 4] = [Status::Running, Status::Complete, Status::Interrupted, Status::Failed];
-
     /// The word in the attribute `status`.
     pub fn as_str(self) -> &'static str {
-        match self {
-            Status::Running => "running",
-            Status::Complete => "complete",
-            Status::Interrupted => "interrupted",
-            Status::Failed => "failed",
-        }
+        choice::word(&self)
     }
 }
 
@@ -131,7 +127,7 @@ impl std::fmt::Display for Status {
 pub(super) type Sums = BTreeMap<String, u32>;
 
 /// How much of a run is stored.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Progress {
     pub(super) status: Status,
     pub(super) work: Work,
@@ -145,18 +141,22 @@ pub(super) struct Progress {
     pub(super) sums: Sums,
 }
 
-impl Default for Progress {
-    fn default() -> Self {
-        let (work, sums) = (Work::default(), Sums::new());
-        Progress { status: Status::Running, work, rows: 0, maps: 0, findings: vec![], sums }
+impl Progress {
+    /// The length that a dimension has now, if it grows with the run.
+    pub(super) fn length_of(&self, dimension: &str) -> Option<usize> {
+        match dimension {
+            "time" | "velocity" => Some(self.rows),
+            "field_time" | "field_velocity" => Some(self.maps),
+            _ => None,
+        }
     }
 }
 
-/// Attributes of the group. Flat, of numbers and text only (but for the findings), so that xarray can pass them on to
-/// NetCDF.
+/// Attributes of the group: numbers and text only, apart from the findings, so that xarray can pass them on to NetCDF.
 pub(super) fn attributes(header: &Header, form: u64) -> Map<String, Value> {
     let (cells, size) = (header.grid.cells(), header.grid.extents());
     let fields: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
+    let setup = |key: &str| header.setup.get(key);
     let mut map = Map::new();
     let mut put = |key: &str, value: Value| map.insert(key.to_owned(), value);
     put("title", json!(header.title));
@@ -166,7 +166,7 @@ pub(super) fn attributes(header: &Header, form: u64) -> Map<String, Value> {
     put("case", json!(header.case_text));
     put("setup", json!(Value::Object(header.setup.clone()).to_string()));
     if let (Some(separable), Some(misfit)) =
-        (header.setup.get("layer_separable").and_then(Value::as_bool), header.setup.get("layer_misfit"))
+        (setup("layer_separable").and_then(Value::as_bool), setup("layer_misfit"))
     {
         put("layer_separable", json!(u8::from(separable)));
         put("layer_misfit", misfit.clone());
@@ -247,8 +247,7 @@ pub(super) fn parse(
         Some(text) => quantities(text).ok_or_else(|| missing("quantities"))?,
     };
     let setup = serde_json::from_str(text("setup")?).map_err(|_| missing("setup"))?;
-    let word = text("status")?;
-    let status = Status::ALL.into_iter().find(|s| s.as_str() == word).ok_or_else(|| missing("status"))?;
+    let status = choice::parse(text("status")?).ok_or_else(|| missing("status"))?;
     let header = Header {
         title: text("title")?.to_owned(),
         case_text: text("case")?.to_owned(),

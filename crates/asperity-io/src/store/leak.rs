@@ -25,7 +25,7 @@ use serde_json::{Map, Value, json};
 use super::chunks::Chunks;
 use super::document;
 use super::error::Result;
-use super::layout::{ArraySpec, DataType, Series, side};
+use super::layout::{ArraySpec, DataType, Series, Storage, cells};
 use super::reader::Reader;
 use super::writer::{lock, remove};
 use crate::finding;
@@ -36,63 +36,87 @@ const CODES: [&str; 3] = [LEAK_BELOW_GAP_ERROR, CONSTRICTION_UNRESOLVED, FLUID_P
 /// Attribute of the group that holds what was asked for, as JSON text.
 const ATTRIBUTE: &str = "leakage";
 
-/// Names, units and meanings of the numbers; those of a gas have the unit in `gas_units`.
+/// The leak of one stored time, as the numbers of the arrays follow from it.
+struct State<'a> {
+    time: f64,
+    step: usize,
+    leak: &'a Leakage,
+    resolved: bool,
+}
+
+/// A number of each leak: name, units (of a liquid and of a gas) and meaning; it is stored where `of` gives one.
 struct Number {
     name: &'static str,
-    units: &'static str,
-    gas_units: &'static str,
+    units: [&'static str; 2],
     long_name: &'static str,
     data_type: DataType,
+    of: fn(&State) -> Option<f64>,
 }
 
-const fn number(name: &'static str, units: &'static str, long_name: &'static str) -> Number {
-    Number { name, units, gas_units: units, long_name, data_type: DataType::Float64 }
+const fn number(
+    name: &'static str,
+    units: &'static str,
+    long_name: &'static str,
+    of: fn(&State) -> Option<f64>,
+) -> Number {
+    Number { name, units: [units; 2], long_name, data_type: DataType::Float64, of }
 }
 
-const fn rate(name: &'static str, long_name: &'static str) -> Number {
-    Number { name, units: "m3/s", gas_units: "kg/s", long_name, data_type: DataType::Float64 }
+const fn rate(name: &'static str, long_name: &'static str, of: fn(&State) -> Option<f64>) -> Number {
+    Number { units: ["m3/s", "kg/s"], ..number(name, "", long_name, of) }
 }
 
-const fn count(name: &'static str, long_name: &'static str) -> Number {
-    Number { name, units: "1", gas_units: "1", long_name, data_type: DataType::Int64 }
+const fn count(name: &'static str, long_name: &'static str, of: fn(&State) -> Option<f64>) -> Number {
+    Number { data_type: DataType::Int64, ..number(name, "1", long_name, of) }
 }
 
-const NUMBERS: [Number; 17] = [
-    number("leak_time", "s", "time of the leak"),
-    count("leak_step", "row of the leak"),
-    rate("leak_rate", "leak rate"),
-    number("leak_rate_standard", "Pa m3/s", "leak rate at 0 degC"),
-    rate("leak_estimate_junction", "leak rate of plates at the critical gap"),
-    rate("leak_estimate_medium", "leak rate of the effective medium"),
-    number("hydraulic_gap", "m", "gap of plates that leak as much"),
-    number("critical_gap", "m", "gap at the critical constriction"),
-    number("critical_x", "m", "x of the critical constriction"),
-    number("critical_y", "m", "y of the critical constriction"),
-    count("percolates", "whether inlet and outlet are connected"),
-    count("leak_resolved", "whether gap, grid and fluid pressure carry the leak"),
-    number("open_fraction", "1", "share of the cells that are open"),
-    number("trapped_area", "m2", "open area connected to neither inlet nor outlet"),
-    number("trapped_volume", "m3", "volume of it"),
-    number("knudsen_number", "1", "mean free path over critical gap"),
-    number("conductance", "m3", "effective conductance"),
+const NUMBERS: [Number; 16] = [
+    number("leak_time", "s", "time of the leak", |at| Some(at.time)),
+    count("leak_step", "row of the leak", |at| Some(at.step as f64)),
+    rate("leak_rate", "leak rate", |at| at.leak.leak_rate),
+    number("leak_rate_standard", "Pa m3/s", "leak rate at 0 degC", |at| at.leak.leak_rate_standard),
+    rate("leak_estimate_junction", "leak rate of plates at the critical gap", |at| {
+        at.leak.leak_estimate_junction
+    }),
+    rate("leak_estimate_medium", "leak rate of the effective medium", |at| at.leak.leak_estimate_medium),
+    number("hydraulic_gap", "m", "gap of plates that leak as much", |at| Some(at.leak.hydraulic_gap)),
+    number("critical_gap", "m", "gap at the critical constriction", |at| Some(at.leak.critical_gap)),
+    number("critical_x", "m", "x of the critical constriction", |at| Some(at.leak.critical[0])),
+    number("critical_y", "m", "y of the critical constriction", |at| Some(at.leak.critical[1])),
+    count("percolates", "whether inlet and outlet are connected", |at| Some(flag(at.leak.percolates))),
+    count("leak_resolved", "whether gap, grid and fluid pressure carry the leak", |at| {
+        Some(flag(at.resolved))
+    }),
+    number("open_fraction", "1", "share of the cells that are open", |at| Some(at.leak.open_fraction)),
+    number("trapped_area", "m2", "open area connected to neither inlet nor outlet", |at| {
+        Some(at.leak.trapped_area)
+    }),
+    number("trapped_volume", "m3", "volume of it", |at| Some(at.leak.trapped_volume)),
+    number("knudsen_number", "1", "mean free path over critical gap", |at| at.leak.knudsen),
 ];
+
+fn flag(flag: bool) -> f64 {
+    f64::from(u8::from(flag))
+}
 
 /// What a leak of a gas, or of a liquid, may have one number of.
 pub fn leak_series(gas: bool) -> impl Iterator<Item = Series> {
-    let own = NUMBERS.iter().filter(|number| number.name != "conductance");
-    own.map(move |number| Series {
-        name: number.name,
-        units: if gas { number.gas_units } else { number.units },
-        long_name: number.long_name,
-    })
+    NUMBERS.iter().map(move |number| number.series(gas))
 }
 
+/// The effective conductance: xx, xy, yx, yy of each leak.
+const CONDUCTANCE: Series = Series::new("conductance", "m3", "effective conductance");
 /// The pressure of the fluid.
-const PRESSURE: &str = "fluid_pressure";
+const PRESSURE: Series = Series::new("fluid_pressure", "Pa", "pressure of the fluid");
+
+/// The names of all arrays, in their order.
+fn names() -> impl Iterator<Item = &'static str> {
+    NUMBERS.iter().map(|number| number.name).chain([CONDUCTANCE.name, PRESSURE.name])
+}
 
 /// Whether a result may have an array of that name.
 pub(super) fn owns(name: &str) -> bool {
-    name == PRESSURE || NUMBERS.iter().any(|number| number.name == name)
+    names().any(|known| known == name)
 }
 
 /// What a result holds about leaks.
@@ -113,11 +137,10 @@ impl Leaks {
     pub(super) fn of(attributes: &Map<String, Value>, metadata: &Map<String, Value>) -> Option<Leaks> {
         let rows = metadata.get("leak_time")?.pointer("/shape/0")?.as_u64()?;
         let settings = attributes.get(ATTRIBUTE).and_then(Value::as_str);
-        let all = NUMBERS.iter().map(|number| number.name).chain([PRESSURE]);
         Some(Leaks {
             rows: usize::try_from(rows).ok()?,
             settings: settings.and_then(|text| serde_json::from_str(text).ok()).unwrap_or_default(),
-            names: all.filter(|name| metadata.contains_key(*name)).collect(),
+            names: names().filter(|name| metadata.contains_key(*name)).collect(),
             gas: metadata.contains_key("leak_rate_standard"),
         })
     }
@@ -129,7 +152,7 @@ impl Leaks {
 
     /// Whether the pressure of the fluid is stored.
     pub fn has_pressure(&self) -> bool {
-        self.names.contains(&PRESSURE)
+        self.names.contains(&PRESSURE.name)
     }
 
     /// The attribute of the group that says what was asked for.
@@ -142,44 +165,26 @@ impl Leaks {
     }
 }
 
-fn spec(name: &'static str, rows: usize, grid: &Grid, gas: bool) -> ArraySpec {
-    let [nx, ny] = grid.cells();
-    if name == PRESSURE {
-        let attributes = json!({"units": "Pa", "long_name": "pressure of the fluid"});
-        return ArraySpec {
-            name,
-            data_type: DataType::Float64,
-            dimensions: &["leak_time", "x", "y"],
-            shape: vec![rows, nx, ny],
-            chunk: vec![1, side(nx), side(ny)],
-            compressed: true,
-            summed: true,
-            attributes,
-        };
-    }
-    let known = NUMBERS.iter().find(|number| number.name == name).unwrap_or(&NUMBERS[0]);
-    let tensor = name == "conductance";
-    ArraySpec {
-        name,
-        data_type: known.data_type,
-        dimensions: if tensor {
-            &["leak_time", "flow_direction", "gradient_direction"]
-        } else {
-            &["leak_time"]
-        },
-        shape: if tensor { vec![rows, 2, 2] } else { vec![rows] },
-        chunk: if tensor { vec![rows.max(1), 2, 2] } else { vec![rows.max(1)] },
-        compressed: false,
-        summed: true,
-        attributes: json!({
-            "units": if gas { known.gas_units } else { known.units },
-            "long_name": known.long_name,
-        }),
+impl Number {
+    fn series(&self, gas: bool) -> Series {
+        Series::new(self.name, self.units[usize::from(gas)], self.long_name)
     }
 }
 
+fn spec(name: &'static str, rows: usize, grid: &Grid, gas: bool) -> ArraySpec {
+    let leaks = ("leak_time", rows);
+    if let Some(number) = NUMBERS.iter().find(|number| number.name == name) {
+        return ArraySpec::new(number.series(gas), Storage::Whole, &[leaks]).of_type(number.data_type);
+    }
+    if name == PRESSURE.name {
+        return ArraySpec::new(PRESSURE, Storage::Maps, &[&[leaks], cells(grid).as_slice()].concat());
+    }
+    let tensor = [leaks, ("flow_direction", 2), ("gradient_direction", 2)];
+    ArraySpec::new(CONDUCTANCE, Storage::Whole, &tensor)
+}
+
 /// Leaks over time, by name.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LeakTable {
     /// One column per array.
     columns: Vec<(&'static str, Vec<f64>)>,
@@ -187,25 +192,13 @@ pub struct LeakTable {
 }
 
 impl LeakTable {
-    /// An empty table, of a liquid or a gas, or without a fluid; with the effective conductance or without.
-    pub fn new(gas: Option<bool>, both: bool) -> LeakTable {
-        let wanted = |name: &str| match name {
-            "leak_rate" | "leak_estimate_junction" | "leak_estimate_medium" => gas.is_some(),
-            "leak_rate_standard" | "knudsen_number" => gas == Some(true),
-            "conductance" => both,
-            _ => true,
-        };
-        let names = NUMBERS.iter().map(|number| number.name).filter(|name| wanted(name));
-        LeakTable { columns: names.map(|name| (name, vec![])).collect(), gas: gas == Some(true) }
-    }
-
     /// The leaks that a result holds.
     ///
     /// # Errors
     /// [`StoreError::Corrupt`](super::StoreError::Corrupt) where a file is damaged.
     pub fn of(reader: &Reader) -> Result<Option<LeakTable>> {
         let Some(leaks) = reader.leaks() else { return Ok(None) };
-        let names = leaks.names.iter().filter(|name| **name != PRESSURE);
+        let names = leaks.names.iter().filter(|name| **name != PRESSURE.name);
         let columns = names.map(|name| Ok((*name, reader.leak(name)?))).collect::<Result<_>>()?;
         Ok(Some(LeakTable { columns, gas: leaks.gas }))
     }
@@ -215,32 +208,20 @@ impl LeakTable {
         CODES.contains(&code)
     }
 
-    /// Adds the leak at a time.
+    /// Adds the leak at a time. The first one decides which numbers are kept: those of its fluid and direction.
     pub fn push(&mut self, time: f64, step: usize, leak: &Leakage, resolved: bool) {
-        let flag = |flag: bool| f64::from(u8::from(flag));
+        let state = State { time, step, leak, resolved };
+        if self.columns.is_empty() {
+            let stored = NUMBERS.iter().filter(|number| (number.of)(&state).is_some());
+            let names = stored.map(|number| number.name).chain(leak.conductance.map(|_| CONDUCTANCE.name));
+            self.columns = names.map(|name| (name, vec![])).collect();
+            self.gas = leak.leak_rate_standard.is_some();
+        }
         for (name, column) in &mut self.columns {
-            column.push(match *name {
-                "leak_time" => time,
-                "leak_step" => step as f64,
-                "leak_rate" => leak.leak_rate.unwrap_or(f64::NAN),
-                "leak_rate_standard" => leak.leak_rate_standard.unwrap_or(f64::NAN),
-                "leak_estimate_junction" => leak.leak_estimate_junction.unwrap_or(f64::NAN),
-                "leak_estimate_medium" => leak.leak_estimate_medium.unwrap_or(f64::NAN),
-                "hydraulic_gap" => leak.hydraulic_gap,
-                "critical_gap" => leak.critical_gap,
-                "critical_x" => leak.critical[0],
-                "critical_y" => leak.critical[1],
-                "percolates" => flag(leak.percolates),
-                "leak_resolved" => flag(resolved),
-                "open_fraction" => leak.open_fraction,
-                "trapped_area" => leak.trapped_area,
-                "trapped_volume" => leak.trapped_volume,
-                "knudsen_number" => leak.knudsen.unwrap_or(f64::NAN),
-                _ => {
-                    column.extend(leak.conductance.unwrap_or([[f64::NAN; 2]; 2]).as_flattened());
-                    continue;
-                }
-            });
+            match NUMBERS.iter().find(|number| number.name == *name) {
+                Some(number) => column.push((number.of)(&state).unwrap_or(f64::NAN)),
+                None => column.extend(leak.conductance.unwrap_or([[f64::NAN; 2]; 2]).as_flattened()),
+            }
         }
     }
 
@@ -251,7 +232,7 @@ impl LeakTable {
 
     /// Times.
     pub fn len(&self) -> usize {
-        self.columns[0].1.len()
+        self.columns.first().map_or(0, |(_, times)| times.len())
     }
 
     /// Whether it has no row.
@@ -277,7 +258,7 @@ pub struct LeakWriter {
 }
 
 impl LeakWriter {
-    /// Takes the result at `root` for writing. The leaks that it has stay until [`finish`](Self::finish), but for their fields.
+    /// Takes the result at `root` for writing. The leaks that it has stay until [`finish`](Self::finish), except their fields.
     ///
     /// # Errors
     /// [`StoreError::Busy`](super::StoreError::Busy) where a run is writing it, [`StoreError::Io`](super::StoreError::Io).
@@ -292,8 +273,12 @@ impl LeakWriter {
     /// # Errors
     /// [`StoreError::Io`](super::StoreError::Io) where the system refuses.
     pub fn put_pressure(&self, index: usize, pressure: ArrayView2<'_, f64>) -> Result<()> {
-        let spec = spec(PRESSURE, index + 1, &self.grid, false).of_form(self.form);
-        Chunks::new(&self.root, &spec).write_map(&[index as u64], pressure)
+        Chunks::new(&self.root, &self.spec(PRESSURE.name, index + 1, false))
+            .write_map(&[index as u64], pressure)
+    }
+
+    fn spec(&self, name: &'static str, rows: usize, gas: bool) -> ArraySpec {
+        spec(name, rows, &self.grid, gas).of_form(self.form)
     }
 
     /// Writes the numbers and makes all of it visible.
@@ -304,20 +289,11 @@ impl LeakWriter {
         let rows = table.len();
         let mut specs = vec![];
         for (name, numbers) in &table.columns {
-            let spec = spec(name, rows, &self.grid, table.gas).of_form(self.form);
-            let chunks = Chunks::new(&self.root, &spec);
-            let index = vec![0; spec.shape.len()];
-            match spec.data_type {
-                DataType::Int64 => {
-                    chunks.write(&index, &numbers.iter().map(|x| *x as i64).collect::<Vec<_>>())?;
-                }
-                _ => chunks.write(&index, numbers)?,
-            }
+            let spec = self.spec(name, rows, table.gas);
+            Chunks::new(&self.root, &spec).write_whole(numbers)?;
             specs.push(spec);
         }
-        if self.field {
-            specs.push(spec(PRESSURE, rows, &self.grid, table.gas).of_form(self.form));
-        }
+        specs.extend(self.field.then(|| self.spec(PRESSURE.name, rows, table.gas)));
         let add_findings = |attributes: &mut Map<String, Value>| {
             let earlier = attributes.get("findings").map(finding::from_list).unwrap_or_default();
             let kept = earlier.into_iter().filter(|finding| !CODES.contains(&finding.code.as_ref()));
@@ -326,9 +302,6 @@ impl LeakWriter {
             attributes.insert(ATTRIBUTE.into(), json!(settings.to_string()));
         };
         let dropped = document::exchange_arrays(&self.root, owns, &specs, add_findings)?;
-        for name in dropped {
-            remove(&self.root.join(name))?;
-        }
-        Ok(())
+        dropped.into_iter().try_for_each(|name| remove(&self.root.join(name)))
     }
 }

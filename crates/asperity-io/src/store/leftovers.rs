@@ -1,4 +1,4 @@
-//! Removing results: what a replaced one leaves, and what killed processes left.
+//! Removing results that were replaced, and what killed processes left.
 //!
 //! Only files that a result has by its own list of arrays are removed, each under the name that the store gives it.
 //! Anything else stays where it is, in a directory that its user can see.
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::checkpoint;
-use super::create::is_part;
+use super::create::{beside, is_part};
 use super::document::{GROUP_PARTIAL, NAME, PARTIAL};
 use super::header::Status;
 use super::reader::Reader;
@@ -19,10 +19,7 @@ const YOUNG: Duration = Duration::from_secs(10);
 
 /// Where a complete result is kept that a run at `path` replaces, until that run is complete.
 fn replaced(path: &Path) -> PathBuf {
-    let mut name = std::ffi::OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(".replaced");
-    path.with_file_name(name)
+    beside(path, ".", ".replaced")
 }
 
 /// The complete result that is kept until the one at `path` is complete, where there is one.
@@ -47,18 +44,15 @@ pub(super) fn remove_kept(path: &Path) {
     }
 }
 
-/// Removes the files of the replaced result at `aside`. Where others are left, it is renamed so that its user finds
-/// them, and told.
+/// Removes the files of the replaced result at `aside`. If other files are left, the directory gets a name that its user can find,
+/// with a warning.
 pub(super) fn remove(aside: &Path, path: &Path) {
     remove_own(aside);
     if fs::symlink_metadata(aside).is_err() {
         return;
     }
-    let names = (0..1000).map(|n| {
-        let mut name = path.file_name().unwrap_or_default().to_owned();
-        name.push(if n == 0 { ".old".to_owned() } else { format!(".old-{n}") });
-        path.with_file_name(name)
-    });
+    let old = |n| if n == 0 { ".old".to_owned() } else { format!(".old-{n}") };
+    let names = (0..1000).map(|n| beside(path, "", &old(n)));
     let mut free = names.filter(|name| fs::symlink_metadata(name).is_err());
     let kept = free.next().filter(|name| fs::rename(aside, name).is_ok()).unwrap_or(aside.to_owned());
     tracing::warn!(
@@ -80,9 +74,9 @@ pub(super) fn sweep(path: &Path) {
             let directory = entry.path();
             let age = entry.metadata().and_then(|data| data.modified()).map(|at| at.elapsed());
             let is_old = matches!(age, Ok(Ok(age)) if age >= YOUNG);
-            // Whoever is at work on it holds its lock.
+            // A process that works on it holds its lock.
             if is_old && let Ok(Some(_held)) = lock(&directory) {
-                // Killed after the old result was put aside, before the new one took its place.
+                // The process was killed after it had moved the old result and before the new one took its place.
                 if found.to_str().is_some_and(|name| name.starts_with(&prefixes[1])) && !path.exists() {
                     let _ = fs::rename(&directory, path);
                     continue;

@@ -44,7 +44,7 @@
 //! };
 //! let mut writer = Writer::create(&path, &header, Array2::zeros((4, 3)).view(), false)?;
 //! let row = Row { coordinate: Coordinate::Time(0.0), load: 12.0, ..Row::default() };
-//! writer.append(&row, &[Field::Pressure(Array2::from_elem((4, 3), 1e6).view())])?;
+//! writer.append(&row, &[Field::Real(FieldKind::Pressure, Array2::from_elem((4, 3), 1e6).view())])?;
 //! writer.finish(&Outcome::new(Status::Complete))?;
 //!
 //! let reader = Reader::open(&path)?;
@@ -78,6 +78,7 @@ pub use asperity::step::{Checkpoint, Row};
 pub use error::{Result, StoreError};
 pub use field_kind::FieldKind;
 pub use header::{Header, Status, Work};
+pub(crate) use layout::{ArraySpec, DataType, Storage};
 pub use layout::{SCALARS, Scalar, Series, coordinates};
 pub use leak::{LeakTable, LeakWriter, Leaks, leak_series};
 pub use reader::{At, Reader};

@@ -10,12 +10,13 @@ use ndarray::Array2;
 use serde_json::{Map, Value};
 
 use super::chunks::Chunks;
+use super::codec::Number;
 use super::column;
 use super::document::Document;
 use super::error::{Result, StoreError, corrupt};
 use super::field_kind::FieldKind;
 use super::header::{self, Header, Status, Work};
-use super::layout::{ArraySpec, DataType, Entry, SCALARS, Series};
+use super::layout::{ArraySpec, SCALARS, Series, Storage};
 use super::leak::Leaks;
 use super::leftovers;
 
@@ -29,7 +30,7 @@ pub struct Reader {
 }
 
 /// Which of the stored instants of a field.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum At {
     /// Number of the instant, from 0.
     Index(usize),
@@ -37,6 +38,7 @@ pub enum At {
     /// jump) the later.
     Time(f64),
     /// The last one.
+    #[default]
     Last,
 }
 
@@ -50,13 +52,10 @@ impl Reader {
         let document = Document::read(path)?;
         let mut reader =
             Reader { root: path.to_owned(), document, field_times: Vec::new(), field_steps: Vec::new() };
-        let maps = reader.document.progress.maps;
-        let times = reader.column("field_time", maps)?;
-        let steps = reader.column("field_step", maps)?;
-        reader.field_times = times.into_iter().map(f64::from_le_bytes).collect();
-        let rows = reader.document.progress.rows;
-        let step = |bytes| usize::try_from(i64::from_le_bytes(bytes)).ok().filter(|step| *step < rows);
-        let steps: Option<Vec<usize>> = steps.into_iter().map(step).collect();
+        reader.field_times = reader.numbers("field_time")?;
+        let rows = reader.len();
+        let step = |step: f64| (0.0..rows as f64).contains(&step).then_some(step as usize);
+        let steps: Option<Vec<usize>> = reader.numbers("field_step")?.into_iter().map(step).collect();
         reader.field_steps =
             steps.ok_or_else(|| corrupt(&path.join("field_step"), "a number in it is not that of a row"))?;
         Ok(reader)
@@ -85,7 +84,7 @@ impl Reader {
         attributes
     }
 
-    /// What the run found about itself, as far as it has come.
+    /// The findings of the run so far.
     pub fn findings(&self) -> &[Finding] {
         &self.document.progress.findings
     }
@@ -102,7 +101,7 @@ impl Reader {
         matches!(shared, Ok(Err(std::fs::TryLockError::WouldBlock)))
     }
 
-    /// Where the complete result is that this one replaces, which is kept until this one is complete.
+    /// The complete result that this one replaces; it is kept until this one is complete.
     pub fn replaces(&self) -> Option<PathBuf> {
         leftovers::kept(&self.root).filter(|_| self.status() != Status::Complete)
     }
@@ -113,12 +112,19 @@ impl Reader {
         self.status() == Status::Complete && asked && self.leaks().is_none()
     }
 
-    /// How a run that stopped early goes on: empty, unless a case file is stored from which `run --resume` can continue.
-    pub fn continuation(&self) -> &'static str {
-        match self.header().case_text.is_empty() {
-            true => "",
-            false => "; continue with asperity run --resume",
-        }
+    /// How far it is, in words: "complete"; "interrupted; continue with asperity run --resume".
+    pub fn state(&self) -> String {
+        let state = match self.status() {
+            Status::Complete if self.lacks_leakage() => "without its leakage",
+            Status::Complete => return "complete".to_owned(),
+            Status::Running if self.is_being_written() => return "running".to_owned(),
+            Status::Running => "incomplete: its run was killed",
+            Status::Interrupted => "incomplete: its run was interrupted",
+            Status::Failed => return "incomplete: its run failed".to_owned(),
+        };
+        // Without a stored case file no run can continue it.
+        let is_of_case = !self.header().case_text.is_empty();
+        format!("{state}{}", if is_of_case { "; continue with asperity run --resume" } else { "" })
     }
 
     /// Rows.
@@ -138,13 +144,15 @@ impl Reader {
     pub fn rows(&self) -> Result<Vec<Row>> {
         let mut rows = Vec::new();
         for scalar in SCALARS {
-            let numbers = self.column(scalar.name, self.len())?;
+            let numbers = self.numbers(scalar.name)?;
+            if scalar.is_count() && numbers.iter().any(|count| *count < 0.0) {
+                return Err(corrupt(&self.root.join(scalar.name), "a count in it is negative"));
+            }
             // The length is trusted once the files have shown to hold it.
             rows.resize(numbers.len(), Row { coordinate: self.header().axis().at(0.0), ..Row::default() });
-            column::fill(&mut rows, scalar.entry, &numbers)
-                .ok_or_else(|| corrupt(&self.root.join(scalar.name), "a count in it is negative"))?;
+            rows.iter_mut().zip(numbers).for_each(|(row, number)| scalar.set(row, number));
         }
-        // What a loss of power did not let reach the disk reads as zeros.
+        // Bytes that did not reach the disk before a loss of power read as zeros.
         let coordinate = |row: &Row| row.coordinate.value();
         if let Some(n) = rows.windows(2).position(|pair| coordinate(&pair[1]) < coordinate(&pair[0])) {
             let (name, what) = (self.header().stored("time"), self.header().axis().plural());
@@ -178,8 +186,7 @@ impl Reader {
             };
             return Err(self.missing(format!("histogram `{quantity}`"), instead));
         };
-        let numbers = self.column(quantity.name(), self.len())?;
-        let numbers: Vec<f64> = numbers.into_iter().map(f64::from_le_bytes).collect();
+        let numbers = self.numbers(quantity.name())?;
         let shape = (numbers.len() / column.width(), column.width());
         let rows = Array2::from_shape_vec(shape, numbers)
             .map_err(|error| corrupt(&self.root.join(quantity.name()), error))?;
@@ -198,18 +205,7 @@ impl Reader {
             let names: Vec<_> = known.iter().map(|series| series.name).collect();
             return Err(self.missing(format!("series `{name}`"), format!("it holds {}", names.join(", "))));
         }
-        let entry = SCALARS
-            .iter()
-            .find(|scalar| self.header().stored(scalar.name) == name)
-            .map(|scalar| scalar.entry);
-        let numbers = self.column(name, self.len())?;
-        Ok(numbers
-            .into_iter()
-            .map(|bytes| match entry {
-                Some(Entry::Count(_)) => i64::from_le_bytes(bytes) as f64,
-                _ => f64::from_le_bytes(bytes),
-            })
-            .collect())
+        self.numbers(name)
     }
 
     /// Times of the stored fields \[s\].
@@ -234,14 +230,9 @@ impl Reader {
             At::Time(time) if !self.is_within(time)? => None,
             At::Time(time) => {
                 let distance = |t: &f64| (t - time).abs();
-                let mut candidates = times.iter().enumerate().filter(|(_, t)| distance(t).is_finite());
-                let first = candidates.next();
-                let nearest = first.map(|first| {
-                    candidates.fold(
-                        first,
-                        |best, next| if distance(next.1) <= distance(best.1) { next } else { best },
-                    )
-                });
+                let candidates = times.iter().enumerate().filter(|(_, t)| distance(t).is_finite());
+                // The last of several at the same distance.
+                let nearest = candidates.rev().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
                 nearest.map(|(index, _)| index)
             }
         };
@@ -256,10 +247,8 @@ impl Reader {
             let instead = match times[..] {
                 [] => "no field is stored yet".to_owned(),
                 [first, .., last] => {
-                    format!(
-                        "it holds fields at {} {several} from {first} {unit} to {last} {unit}",
-                        times.len()
-                    )
+                    let count = times.len();
+                    format!("it holds fields at {count} {several} from {first} {unit} to {last} {unit}")
                 }
                 [only] => format!("it holds fields at {only} {unit}"),
             };
@@ -269,7 +258,7 @@ impl Reader {
 
     /// Whether a time is one of the run, from 0 to its last row.
     fn is_within(&self, time: f64) -> Result<bool> {
-        /// Times that are written with 12 digits are those of rows.
+        /// A time that is written with 12 digits is inside too.
         const DIGITS: f64 = 1e-12;
         let rows = self.series("time")?;
         let end = rows.iter().chain(&self.field_times).copied().fold(0.0, f64::max);
@@ -286,8 +275,7 @@ impl Reader {
         if kind == FieldKind::Contact {
             return Ok(self.contact(at)?.mapv(f64::from));
         }
-        let (chunks, index) = self.field_chunks(kind, at)?;
-        chunks.read_map(&[index], self.header().grid.shape())
+        self.field_map(kind, at)
     }
 
     /// The contact state at a stored instant: 0 out of contact, 1 in contact, 2 at the hardness.
@@ -295,18 +283,17 @@ impl Reader {
     /// # Errors
     /// As of [`field`](Self::field).
     pub fn contact(&self, at: At) -> Result<Array2<u8>> {
-        let (chunks, index) = self.field_chunks(FieldKind::Contact, at)?;
-        chunks.read_map(&[index], self.header().grid.shape())
+        self.field_map(FieldKind::Contact, at)
     }
 
-    /// The field that tells contact: the states where they were kept, else the pressure, else the gap.
+    /// The field that shows the contact: the states if they were kept, else the pressure, else the gap.
     pub fn contact_kind(&self) -> Option<FieldKind> {
         let kept = &self.header().fields;
         [FieldKind::Contact, FieldKind::Pressure, FieldKind::Gap].into_iter().find(|kind| kept.contains(kind))
     }
 
-    /// The contact states at a stored instant (0 open, 1 in contact, 2 at the hardness), from whatever field tells them. (The gap
-    /// of a cell in contact is zero to rounding, and below zero at the hardness.)
+    /// The contact states at a stored instant (0 open, 1 in contact, 2 at the hardness), from the field of
+    /// [`contact_kind`](Self::contact_kind). The gap of a cell in contact is zero to rounding, and below zero at the hardness.
     ///
     /// # Errors
     /// As of [`field`](Self::field).
@@ -336,22 +323,11 @@ impl Reader {
     /// # Errors
     /// [`StoreError::Missing`] where it is not stored, [`StoreError::Corrupt`] where a file is missing or damaged.
     pub fn leak(&self, name: &str) -> Result<Vec<f64>> {
-        let Some(leaks) = self.leaks().filter(|leaks| leaks.names.contains(&name)) else {
-            return Err(match self.leaks() {
-                Some(_) => self.missing(format!("leakage `{name}`"), "its leakage lacks this number".into()),
-                None => self.no_leaks(),
-            });
-        };
-        let spec = self.spec(name)?;
-        let index = vec![0; spec.shape.len()];
-        let numbers = leaks.rows * spec.shape[1..].iter().product::<usize>();
-        let chunks = Chunks::new(&self.root, &spec);
-        let mut values: Vec<f64> = match spec.data_type {
-            DataType::Int64 => chunks.read::<i64>(&index)?.into_iter().map(|count| count as f64).collect(),
-            _ => chunks.read(&index)?,
-        };
-        values.truncate(numbers);
-        Ok(values)
+        match self.leaks() {
+            Some(leaks) if leaks.names.contains(&name) => self.numbers(name),
+            Some(_) => Err(self.missing(format!("leakage `{name}`"), "its leakage lacks this number".into())),
+            None => Err(self.no_leaks()),
+        }
     }
 
     /// Pressure of the fluid \[Pa\] of leak number `index` (shape of the grid).
@@ -363,8 +339,7 @@ impl Reader {
             let how = "set leakage.field = true in the case, or store it by `asperity leak RESULT --field`";
             return Err(self.missing(format!("fluid pressure {index}"), how.into()));
         }
-        Chunks::new(&self.root, &self.spec("fluid_pressure")?)
-            .read_map(&[index as u64], self.header().grid.shape())
+        self.map("fluid_pressure", &[index as u64])
     }
 
     /// The undeformed gap \[m\].
@@ -372,12 +347,45 @@ impl Reader {
     /// # Errors
     /// [`StoreError::Corrupt`] where a file is missing or damaged, [`StoreError::Io`] where the system refuses.
     pub fn initial_gap(&self) -> Result<Array2<f64>> {
-        Chunks::new(&self.root, &self.spec("initial_gap")?).read_map(&[], self.header().grid.shape())
+        self.map("initial_gap", &[])
     }
 
-    /// All rows of a per-step array.
-    pub(super) fn column(&self, name: &str, length: usize) -> Result<Vec<[u8; 8]>> {
-        column::read(&self.root, &self.spec(name)?, length, &self.document.progress.sums)
+    /// All arrays of the result.
+    pub(crate) fn arrays(&self) -> Vec<ArraySpec> {
+        self.document.arrays()
+    }
+
+    /// The numbers of an array that holds no maps.
+    pub(crate) fn numbers(&self, name: &str) -> Result<Vec<f64>> {
+        let spec = self.spec(name)?;
+        if spec.storage == Storage::Rows {
+            let rows = self.column(&spec)?;
+            return Ok(rows.into_iter().map(|bytes| spec.data_type.number(bytes)).collect());
+        }
+        let mut numbers = Chunks::new(&self.root, &spec).read_whole()?;
+        numbers.truncate(spec.shape().iter().product());
+        Ok(numbers)
+    }
+
+    /// All rows of a per-step array, as the bytes of their numbers.
+    pub(super) fn column(&self, spec: &ArraySpec) -> Result<Vec<[u8; 8]>> {
+        column::read(&self.root, spec, &self.document.progress.sums)
+    }
+
+    /// A map at an index of the dimensions before x.
+    pub(crate) fn map<T: Number>(&self, name: &str, index: &[u64]) -> Result<Array2<T>> {
+        Chunks::new(&self.root, &self.spec(name)?).read_map(index, self.header().grid.shape())
+    }
+
+    /// Compares a map at an index with its checksums.
+    pub(super) fn verify_map(&self, name: &str, index: &[u64]) -> Result<()> {
+        Chunks::new(&self.root, &self.spec(name)?).verify_map(index, self.header().grid.shape())
+    }
+
+    /// Whether the map at an index is stored: the stress may be computed at some of the instants only.
+    pub(crate) fn has_map(&self, name: &str, index: &[u64]) -> bool {
+        let of_stress = self.document.stress.as_ref().filter(|_| name.starts_with("stress_"));
+        of_stress.is_none_or(|set| set.instants.contains(&(index[0] as usize)))
     }
 
     pub(super) fn document(&self) -> &Document {
@@ -388,12 +396,11 @@ impl Reader {
         self.document
     }
 
-    fn field_chunks(&self, kind: FieldKind, at: At) -> Result<(Chunks, u64)> {
+    fn field_map<T: Number>(&self, kind: FieldKind, at: At) -> Result<Array2<T>> {
         if !self.header().fields.contains(&kind) {
             return Err(self.no_field(kind));
         }
-        let index = self.index(at)? as u64;
-        Ok((Chunks::new(&self.root, &self.spec(kind.name())?), index))
+        self.map(kind.name(), &[self.index(at)? as u64])
     }
 
     /// The error of a result that has no row yet.
@@ -404,10 +411,9 @@ impl Reader {
     /// The error of a field that was not kept.
     pub fn no_field(&self, kind: FieldKind) -> StoreError {
         let names: Vec<_> = self.header().fields.iter().map(|kind| kind.name()).collect();
-        let available = if names.is_empty() {
-            String::new()
-        } else {
-            format!("it holds the fields {}; ", names.join(", "))
+        let available = match &names[..] {
+            [] => String::new(),
+            names => format!("it holds the fields {}; ", names.join(", ")),
         };
         let how = format!("{available}name it in output.fields of the case, and run that again");
         self.missing(format!("field `{kind}`"), how)
@@ -420,19 +426,17 @@ impl Reader {
 
     /// The error of a result whose case asked for no quantities.
     pub fn no_quantities(&self) -> StoreError {
-        self.missing(
-            "quantities".into(),
-            "name some in output.quantities of the case, and run that again".into(),
-        )
+        let how = "name some in output.quantities of the case, and run that again";
+        self.missing("quantities".into(), how.into())
     }
 
-    pub(super) fn spec(&self, name: &str) -> Result<ArraySpec> {
+    fn spec(&self, name: &str) -> Result<ArraySpec> {
         let name = match name {
             "time" => self.header().stored("time"),
             "field_time" => self.header().stored("field_time"),
             name => name,
         };
-        let spec = self.document.arrays().into_iter().find(|spec| spec.name == name);
+        let spec = self.arrays().into_iter().find(|spec| spec.name() == name);
         spec.ok_or_else(|| self.missing(format!("array `{name}`"), "it is no array of a result".into()))
     }
 

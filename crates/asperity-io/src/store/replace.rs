@@ -37,7 +37,7 @@ pub(super) fn replace(path: &Path, partial: &Path, text: &[u8], way: Way) -> Res
     })
 }
 
-/// A new file, never one that somebody may be reading.
+/// Writes a new file: another process may be reading an old one.
 fn write_new(path: &Path, text: &[u8]) -> io::Result<()> {
     let create = || OpenOptions::new().write(true).create_new(true).open(path);
     let mut file = match create() {

@@ -8,12 +8,11 @@ use ndarray::ArrayView2;
 
 use super::checkpoint;
 use super::checksum::Sums;
-use super::chunks::Chunks;
 use super::column;
 use super::document::{Document, Pages};
 use super::error::{Result, StoreError, io};
-use super::header::{Header, Status};
-use super::layout::ArraySpec;
+use super::header::{Header, Progress, Status};
+use super::layout::{ArraySpec, Storage};
 use super::reader::Reader;
 use super::replace::Way;
 use super::stress;
@@ -50,23 +49,19 @@ impl Writer {
         let rows = checkpoint.as_ref().map_or(0, |checkpoint| checkpoint.step);
         if rows > reader.len() {
             let what = format!("it is of row {rows}, but {} rows are stored", reader.len());
-            return Err(checkpoint::damaged(&checkpoint::path(path), what));
+            return Err(checkpoint::damaged(&checkpoint::path(path), &what));
         }
         let all = reader.rows()?;
         let maps = reader.field_steps().iter().take_while(|step| **step < rows).count();
         for kind in &reader.header().fields {
-            let chunks = Chunks::new(path, &reader.spec(kind.name())?);
-            for map in 0..maps {
-                chunks.verify_map(&[map as u64], reader.header().grid.shape())?;
-            }
+            (0..maps).try_for_each(|map| reader.verify_map(kind.name(), &[map as u64]))?;
         }
-        let sums = kept_sums(&reader, rows, maps)?;
 
+        let stored = &reader.document().progress;
+        let (stored_maps, mut progress) = (stored.maps, Progress { rows, maps, ..stored.clone() });
+        progress.sums = kept_sums(&reader, &progress)?;
         // Stress and leaks are computed again at the end of the run.
-        let Document { form, header: mut kept, mut progress, .. } = reader.into_document();
-        let stored_maps = std::mem::replace(&mut progress.maps, maps);
-        progress.rows = rows;
-        progress.sums = sums;
+        let Document { form, header: mut kept, .. } = reader.into_document();
         progress.status = Status::Running;
         progress.work.message = None;
         progress.work.iterations = all[..rows].iter().map(|row| row.iterations as u64).sum();
@@ -77,8 +72,9 @@ impl Writer {
         kept.rows_expected = header.rows_expected;
         let document = Document { form, header: kept, progress, stress: None, leaks: None };
         let mut pages = Pages::new(&document);
-        pages.commit(path, &document.progress, Way::Safe)?;
+        // First: the documents of the arrays never count more than that of the group.
         pages.write_arrays(path, Way::Safe)?;
+        pages.commit(path, &document.progress, Way::Safe)?;
         stress::clear(path)?;
         // Maps after the last one counted may have been written, the last of them by half.
         for kind in &document.header.fields {
@@ -114,20 +110,20 @@ fn refuse_links(directory: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The checksums of the first rows and fields. All rows of each array are compared with their own first.
-fn kept_sums(reader: &Reader, rows: usize, maps: usize) -> Result<Sums> {
+/// The checksums of the rows and fields that are kept. All rows of each array are compared with their own first.
+fn kept_sums(reader: &Reader, kept: &Progress) -> Result<Sums> {
     let mut sums = Sums::new();
     if reader.document().form < 2 {
         return Ok(sums);
     }
-    let arrays = reader.document().arrays();
-    let is_kept = |array: &&ArraySpec| array.grows() && !stress::names().any(|name| name == array.name);
-    for array in arrays.iter().filter(is_kept) {
-        let of_rows = super::layout::is_of_rows(array.dimensions[0]);
-        let (kept, all) = if of_rows { (rows, reader.len()) } else { (maps, reader.field_times().len()) };
-        let width: usize = array.chunk[1..].iter().product();
-        let numbers = reader.column(array.name, all)?;
-        sums.insert(array.name.to_owned(), column::sum(&numbers[..kept * width]));
+    let is_kept = |array: &ArraySpec| {
+        array.storage == Storage::Rows && !stress::names().any(|name| name == array.name())
+    };
+    for array in reader.document().arrays().into_iter().filter(is_kept) {
+        let rows = kept.length_of(array.dimensions[0].0).unwrap_or(0);
+        let width: usize = array.shape()[1..].iter().product();
+        let numbers = reader.column(&array)?;
+        sums.insert(array.name().to_owned(), column::sum(&numbers[..rows * width]));
     }
     Ok(sums)
 }
@@ -162,19 +158,16 @@ fn compare(path: &Path, stored: &Header, given: &Header) -> Result<()> {
         };
         return mismatch("the grid", name(stored), name(given));
     }
+    let listed = |names: Vec<&str>| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
     if stored.fields != given.fields {
-        let names = |header: &Header| {
-            let names: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
-            if names.is_empty() { "none".to_owned() } else { names.join(", ") }
-        };
-        return mismatch("the list of fields", names(stored), names(given));
+        let [stored, given] =
+            [stored, given].map(|header| listed(header.fields.iter().map(|kind| kind.name()).collect()));
+        return mismatch("the list of fields", stored, given);
     }
     if stored.quantities != given.quantities {
-        let names = |header: &Header| {
-            let names: Vec<_> = header.quantities.iter().map(|column| column.quantity.name()).collect();
-            if names.is_empty() { "none".to_owned() } else { names.join(", ") }
-        };
-        return mismatch("the list of quantities or their bins", names(stored), names(given));
+        let names = |header: &Header| header.quantities.iter().map(|column| column.quantity.name()).collect();
+        let [stored, given] = [stored, given].map(|header| listed(names(header)));
+        return mismatch("the list of quantities or their bins", stored, given);
     }
     let keys = stored.setup.keys().chain(given.setup.keys());
     for key in keys {

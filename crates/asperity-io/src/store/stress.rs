@@ -1,36 +1,38 @@
-//! The arrays of the stress below the surface. They are added to a result once its pressures are stored, and over `field_time`:
-//! instants at which the stress was not computed are NaN.
+//! The arrays of the stress below the surface. They are added to a result once its pressures are stored. Their dimension is
+//! `field_time`; instants at which the stress was not computed are NaN.
 
 use std::path::{Path, PathBuf};
 
+use asperity::Grid;
 use asperity::stress::{Rolling, StressQuantity};
 use ndarray::{Array2, ArrayView2};
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::column::Column;
 use super::document::{Document, Pages};
 use super::error::{Result, corrupt};
-use super::layout::{ArraySpec, Series};
+use super::layout::{ArraySpec, Series, Storage, cells};
 use super::reader::{At, Reader};
 use super::replace::Way;
 use super::writer::{Writer, lock, remove};
-use crate::choice;
 use crate::stress::Ratio;
 
-/// What was computed of the stress: which body, where, when.
-#[derive(Clone, Debug, PartialEq)]
+/// The computed stress: which body, where and when.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StressSet {
     /// Name of the body.
     pub body: String,
     /// Its Poisson's ratio.
     pub poisson: Ratio,
     /// Whether it is that of a line contact: nothing changes along y.
+    #[serde(default)]
     pub line: bool,
     /// Depths \[m\], rising.
     pub depths: Vec<f64>,
     /// Fields that are stored at each depth.
+    #[serde(rename = "components")]
     pub quantities: Vec<StressQuantity>,
     /// The stressed volume is that above this von Mises stress \[Pa\].
     pub threshold: Option<f64>,
@@ -45,36 +47,32 @@ pub struct StressSet {
 /// What to do where a result holds no stress.
 const COMPUTES: &str = "`asperity stress RESULT` computes the stress";
 
-const fn series(name: &'static str, units: &'static str, long_name: &'static str) -> Series {
-    Series { name, units, long_name }
-}
-
 const MAXIMA: [Series; 12] = [
-    series("max_mises", "Pa", "largest von Mises stress"),
-    series("max_mises_depth", "m", "depth of the largest von Mises stress"),
-    series("max_mises_x", "m", "x of the largest von Mises stress"),
-    series("max_mises_y", "m", "y of the largest von Mises stress"),
-    series("max_tresca", "Pa", "largest shear stress (Tresca)"),
-    series("max_tresca_depth", "m", "depth of the largest shear stress"),
-    series("max_tresca_x", "m", "x of the largest shear stress"),
-    series("max_tresca_y", "m", "y of the largest shear stress"),
-    series("max_tension", "Pa", "largest principal stress"),
-    series("max_tension_depth", "m", "depth of the largest principal stress"),
-    series("max_tension_x", "m", "x of the largest principal stress"),
-    series("max_tension_y", "m", "y of the largest principal stress"),
+    Series::new("max_mises", "Pa", "largest von Mises stress"),
+    Series::new("max_mises_depth", "m", "depth of the largest von Mises stress"),
+    Series::new("max_mises_x", "m", "x of the largest von Mises stress"),
+    Series::new("max_mises_y", "m", "y of the largest von Mises stress"),
+    Series::new("max_tresca", "Pa", "largest shear stress (Tresca)"),
+    Series::new("max_tresca_depth", "m", "depth of the largest shear stress"),
+    Series::new("max_tresca_x", "m", "x of the largest shear stress"),
+    Series::new("max_tresca_y", "m", "y of the largest shear stress"),
+    Series::new("max_tension", "Pa", "largest principal stress"),
+    Series::new("max_tension_depth", "m", "depth of the largest principal stress"),
+    Series::new("max_tension_x", "m", "x of the largest principal stress"),
+    Series::new("max_tension_y", "m", "y of the largest principal stress"),
 ];
-const VOLUME: Series = series("stressed_volume", "m3", "volume above the threshold");
+const VOLUME: Series = Series::new("stressed_volume", "m3", "volume above the threshold");
 const SHEAR: [Series; 2] = [
-    series("orthogonal_shear", "Pa", "largest range of the orthogonal shear stress"),
-    series("orthogonal_shear_depth", "m", "depth of the largest range of the orthogonal shear stress"),
+    Series::new("orthogonal_shear", "Pa", "largest range of the orthogonal shear stress"),
+    Series::new("orthogonal_shear_depth", "m", "depth of the largest range of the orthogonal shear stress"),
 ];
 const PROFILES: [Series; 3] = [
-    series("mises_by_depth", "Pa", "largest von Mises stress by depth"),
-    series("tresca_by_depth", "Pa", "largest shear stress (Tresca) by depth"),
-    series("tension_by_depth", "Pa", "largest principal stress by depth"),
+    Series::new("mises_by_depth", "Pa", "largest von Mises stress by depth"),
+    Series::new("tresca_by_depth", "Pa", "largest shear stress (Tresca) by depth"),
+    Series::new("tension_by_depth", "Pa", "largest principal stress by depth"),
 ];
 const SHEAR_PROFILE: Series =
-    series("orthogonal_shear_by_depth", "Pa", "range of the orthogonal shear stress by depth");
+    Series::new("orthogonal_shear_by_depth", "Pa", "range of the orthogonal shear stress by depth");
 const DEPTH: &str = "depth";
 
 /// Names of the stress fields in a result.
@@ -118,7 +116,7 @@ impl StressSet {
 
     fn volume(&self) -> Series {
         match self.line {
-            true => series(VOLUME.name, "m2", "area of the section above the threshold"),
+            true => Series::new(VOLUME.name, "m2", "area of the section above the threshold"),
             false => VOLUME,
         }
     }
@@ -132,73 +130,38 @@ impl StressSet {
 
     /// The stored fields: their names in the result.
     pub fn fields(&self) -> Vec<(StressQuantity, Series)> {
-        let series = |quantity: &StressQuantity| series(field_name(*quantity), "Pa", quantity.long_name());
-        self.quantities.iter().map(|quantity| (*quantity, series(quantity))).collect()
+        let field = |quantity: &StressQuantity| {
+            (*quantity, Series::new(field_name(*quantity), "Pa", quantity.long_name()))
+        };
+        self.quantities.iter().map(field).collect()
     }
 
     /// The arrays of a result with `maps` instants of fields.
-    pub(super) fn arrays(&self, [nx, ny]: [usize; 2], maps: usize) -> Vec<ArraySpec> {
-        let depths = self.depths.len();
-        let mut arrays = vec![ArraySpec::coordinate_of(
-            &series(DEPTH, "m", "depth below the surface"),
-            &["depth"],
-            depths,
-        )];
-        arrays.extend(self.scalars().iter().map(|series| ArraySpec::of_instants(series, maps)));
-        let profile =
-            |series: &Series| ArraySpec::profile_of(series, &["field_time", "depth"], [maps, depths]);
-        arrays.extend(self.profiles().iter().map(profile));
-        let volume = |(_, series): &(_, Series)| {
-            let plane =
-                || ArraySpec::volume_of(series, &["field_time", "depth", "x", "y"], &[maps, depths, nx, ny]);
-            let line = || ArraySpec::volume_of(series, &["field_time", "depth", "x"], &[maps, depths, nx]);
-            if self.line { line() } else { plane() }
-        };
-        arrays.extend(self.fields().iter().map(volume));
+    pub(super) fn arrays(&self, grid: &Grid, maps: usize) -> Vec<ArraySpec> {
+        let (map, depth) = (("field_time", maps), (DEPTH, self.depths.len()));
+        let depths = Series::new(DEPTH, "m", "depth below the surface");
+        let mut arrays = vec![ArraySpec::new(depths, Storage::Whole, &[depth])];
+        let rows = |series, over: &[_]| ArraySpec::new(series, Storage::Rows, over);
+        arrays.extend(self.scalars().into_iter().map(|series| rows(series, &[map])));
+        arrays.extend(self.profiles().into_iter().map(|series| rows(series, &[map, depth])));
+        let over = [&[map, depth], cells(grid).as_slice()].concat();
+        arrays.extend(
+            self.fields().into_iter().map(|(_, series)| ArraySpec::new(series, Storage::Maps, &over)),
+        );
         arrays
     }
 
     /// As the text of an attribute.
     pub(super) fn to_text(&self) -> String {
-        json!({
-            "body": self.body,
-            "poisson": self.poisson,
-            "line": self.line,
-            "depths": self.depths,
-            "components": self.quantities.iter().map(|quantity| quantity.name()).collect::<Vec<_>>(),
-            "threshold": self.threshold,
-            "yield_stress": self.yield_stress,
-            "rolling": self.rolling.as_ref().map(choice::word),
-            "instants": self.instants,
-        })
-        .to_string()
+        serde_json::to_string(self).unwrap_or_default()
     }
 
     /// The inverse of [`to_text`](Self::to_text), for a result with `maps` instants; `None` where it is malformed.
     pub(super) fn parse(text: &str, maps: usize) -> Option<StressSet> {
-        let object: Value = serde_json::from_str(text).ok()?;
-        let list = |key: &str| object.get(key).and_then(Value::as_array);
-        let number = |key: &str| object.get(key).and_then(Value::as_f64);
-        let depths: Vec<f64> = list("depths")?.iter().map(Value::as_f64).collect::<Option<_>>()?;
-        let quantity = |name: &Value| StressQuantity::from_name(name.as_str()?);
-        let instant = |n: &Value| usize::try_from(n.as_u64()?).ok().filter(|n| *n < maps);
-        let instants: Vec<usize> = list("instants")?.iter().map(instant).collect::<Option<_>>()?;
-        let rising =
-            depths.windows(2).all(|two| two[0] < two[1]) && instants.windows(2).all(|two| two[0] < two[1]);
-        if depths.is_empty() || !rising {
-            return None;
-        }
-        Some(StressSet {
-            body: object.get("body")?.as_str()?.to_owned(),
-            poisson: serde_json::from_value(object.get("poisson")?.clone()).ok()?,
-            line: object.get("line").and_then(Value::as_bool).unwrap_or_default(),
-            depths,
-            quantities: list("components")?.iter().map(quantity).collect::<Option<_>>()?,
-            threshold: number("threshold"),
-            yield_stress: number("yield_stress"),
-            rolling: object.get("rolling").and_then(Value::as_str).and_then(choice::parse),
-            instants,
-        })
+        let set: StressSet = serde_json::from_str(text).ok()?;
+        let rising = set.depths.is_sorted_by(|a, b| a < b) && set.instants.is_sorted_by(|a, b| a < b);
+        let stored = set.instants.iter().all(|instant| *instant < maps);
+        (rising && stored && !set.depths.is_empty()).then_some(set)
     }
 }
 
@@ -208,9 +171,8 @@ pub struct StressWriter {
     set: StressSet,
     specs: Vec<ArraySpec>,
     fields: Vec<(StressQuantity, Chunks)>,
-    /// Scalars and profiles of each stored instant.
-    scalars: Vec<Vec<f64>>,
-    profiles: Vec<Vec<Vec<f64>>>,
+    /// The rows of the scalars and profiles, each for every stored instant.
+    rows: Vec<Vec<Vec<f64>>>,
 }
 
 impl StressWriter {
@@ -221,18 +183,19 @@ impl StressWriter {
     pub fn new(root: &Path, set: &StressSet, maps: usize) -> Result<StressWriter> {
         let reader = Reader::open(root)?;
         let form = reader.document().form;
-        let specs = set.arrays(reader.header().grid.cells(), maps);
+        let specs = set.arrays(&reader.header().grid, maps);
         let specs: Vec<ArraySpec> = specs.into_iter().map(|spec| spec.of_form(form)).collect();
         let chunks = |(quantity, series): &(StressQuantity, Series)| {
-            let spec = specs.iter().find(|spec| spec.name == series.name);
+            let spec = specs.iter().find(|spec| spec.name() == series.name);
             let spec = spec
                 .ok_or_else(|| reader.missing(format!("array `{}`", series.name), "it is damaged".into()))?;
             Ok((*quantity, Chunks::new(root, spec)))
         };
         Ok(StressWriter {
             fields: set.fields().iter().map(chunks).collect::<Result<_>>()?,
-            scalars: vec![vec![f64::NAN; set.scalars().len()]; maps],
-            profiles: vec![vec![vec![f64::NAN; set.depths.len()]; set.profiles().len()]; maps],
+            rows: rows_of(&specs)
+                .map(|spec| vec![vec![f64::NAN; spec.shape()[1..].iter().product()]; maps])
+                .collect(),
             root: root.to_owned(),
             set: set.clone(),
             specs,
@@ -258,36 +221,28 @@ impl StressWriter {
 
     /// Sets the numbers of an instant: those of [`StressSet::scalars`] and [`StressSet::profiles`], in their order.
     pub fn instant(&mut self, map: usize, scalars: &[f64], profiles: &[Vec<f64>]) {
-        self.scalars[map] = scalars.to_vec();
-        self.profiles[map] = profiles.to_vec();
+        let rows = scalars.iter().map(|number| vec![*number]).chain(profiles.iter().cloned());
+        self.rows.iter_mut().zip(rows).for_each(|(array, row)| array[map] = row);
     }
 
     /// Writes all numbers; returns the checksums of the per-step arrays.
     fn finish(&self) -> Result<Sums> {
         let mut sums = Sums::new();
-        let bytes = |numbers: &[f64]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
-        let find = |name: &str| self.specs.iter().find(|spec| spec.name == name);
-        if let Some(spec) = find(DEPTH) {
-            Chunks::new(&self.root, spec).write(&[0], &self.set.depths)?;
+        for spec in self.specs.iter().filter(|spec| spec.storage == Storage::Whole) {
+            Chunks::new(&self.root, spec).write_whole(&self.set.depths)?;
         }
-        for (n, series) in self.set.scalars().iter().enumerate() {
-            let Some(spec) = find(series.name) else { continue };
+        for (spec, rows) in rows_of(&self.specs).zip(&self.rows) {
             let mut column = Column::new(&self.root, spec, 0, &Sums::new());
-            for (map, numbers) in self.scalars.iter().enumerate() {
-                column.put_row(map, &bytes(&numbers[n..=n]))?;
-            }
-            column.sum(self.scalars.len(), &mut sums);
-        }
-        for (n, series) in self.set.profiles().iter().enumerate() {
-            let Some(spec) = find(series.name) else { continue };
-            let mut column = Column::new(&self.root, spec, 0, &Sums::new());
-            for (map, profiles) in self.profiles.iter().enumerate() {
-                column.put_row(map, &bytes(&profiles[n]))?;
-            }
-            column.sum(self.profiles.len(), &mut sums);
+            rows.iter().enumerate().try_for_each(|(map, row)| column.put(map, row))?;
+            column.sum(rows.len(), &mut sums);
         }
         Ok(sums)
     }
+}
+
+/// The arrays of the scalars and profiles.
+fn rows_of(specs: &[ArraySpec]) -> impl Iterator<Item = &ArraySpec> {
+    specs.iter().filter(|spec| spec.storage == Storage::Rows)
 }
 
 impl Writer {
@@ -323,7 +278,7 @@ impl Writer {
     }
 }
 
-/// Removes all arrays of the stress; those of no document are seen by nobody.
+/// Removes all arrays of the stress. No reader sees an array that no document names.
 pub(super) fn clear(root: &Path) -> Result<()> {
     names().try_for_each(|name| remove(&root.join(name)))
 }
@@ -337,7 +292,7 @@ pub(super) fn publish(root: &Path, document: &Document) -> Result<Pages> {
 }
 
 impl Reader {
-    /// What was computed of the stress below the surface; `None` where nothing was.
+    /// The stress below the surface that was computed; `None` if it was not.
     pub fn stress(&self) -> Option<&StressSet> {
         self.document().stress.as_ref()
     }
@@ -372,8 +327,7 @@ impl Reader {
             };
             return Err(self.missing(format!("`{name}`"), instead));
         }
-        let numbers = self.column(name, self.field_times().len())?;
-        Ok(numbers.into_iter().map(f64::from_le_bytes).collect())
+        self.numbers(name)
     }
 
     /// A stress field \[Pa\] of a stored instant at the depth of number `depth`, shape of the grid; NaN where it was not computed.
@@ -396,11 +350,9 @@ impl Reader {
                 self.missing(format!("stress field `{}` of depth number {depth}", quantity.name()), instead)
             );
         };
-        let shape = self.header().grid.shape();
         if !set.instants.contains(&index) {
-            return Ok(Array2::from_elem(shape, f64::NAN));
+            return Ok(Array2::from_elem(self.header().grid.shape(), f64::NAN));
         }
-        let chunks = Chunks::new(self.path(), &self.spec(field_name(quantity))?);
-        chunks.read_map(&[index as u64, depth as u64], shape)
+        self.map(field_name(quantity), &[index as u64, depth as u64])
     }
 }

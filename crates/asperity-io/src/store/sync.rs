@@ -1,51 +1,53 @@
-//! Bringing files to the medium, so that a loss of power leaves them.
+//! Bringing files to the medium, so that they survive a loss of power.
 //!
-//! A file is there after a loss of power when its contents and the entry in its directory are on the medium.
+//! A file survives a loss of power when its contents and the entry in its directory are on the medium.
 
-use std::collections::BTreeSet;
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::time::SystemTime;
 
-use super::document::NAME;
 use super::error::{Result, io};
 
-/// Brings all that was written to the file system of `root` to the medium; `false` where the system cannot do that. A
-/// thousand chunks take one commit of its journal, where one after the other they take one each.
+/// Brings what was written to the result at `root` since an instant to the medium. Where the system can do that for a whole file
+/// system, a thousand chunks take one commit of its journal instead of one each.
 #[cfg(target_os = "linux")]
-pub(super) fn file_system(root: &Path) -> Result<bool> {
+pub(super) fn result(root: &Path, _since: SystemTime) -> Result<()> {
     let directory = File::open(root).map_err(io("write", root))?;
-    rustix::fs::syncfs(directory).map_err(|error| io("write", root)(error.into()))?;
-    Ok(true)
+    rustix::fs::syncfs(directory).map_err(|error| io("write", root)(error.into()))
 }
 
 #[cfg(not(target_os = "linux"))]
-pub(super) fn file_system(_: &Path) -> Result<bool> {
-    Ok(false)
+pub(super) fn result(root: &Path, since: SystemTime) -> Result<()> {
+    result_by_files(root, since)
 }
 
-/// Brings files below `root`, and the entries of the directories down to them, to the medium.
-pub(super) fn files(root: &Path, paths: &[PathBuf]) -> Result<()> {
-    let mut directories = BTreeSet::new();
-    for path in paths {
-        let file = File::open(path).map_err(io("write", path))?;
-        file.sync_data().map_err(io("write", path))?;
-        directories.extend(path.ancestors().skip(1).take_while(|directory| *directory != root));
-    }
-    directories.into_iter().for_each(directory);
-    Ok(())
-}
-
-/// Brings the documents of these arrays to the medium.
-pub(super) fn documents(root: &Path, arrays: &[String]) -> Result<()> {
-    files(root, &arrays.iter().map(|name| root.join(name).join(NAME)).collect::<Vec<_>>())
-}
-
-/// Brings the document of the group, the entries of its directory and its own entry to the medium.
-pub(super) fn document(root: &Path) -> Result<()> {
-    files(root, &[root.join(NAME)])?;
-    directory(root);
+/// The same file by file.
+#[cfg(any(test, not(target_os = "linux")))]
+pub(super) fn result_by_files(root: &Path, since: SystemTime) -> Result<()> {
+    files(root, since)?;
     root.parent().into_iter().for_each(directory);
     Ok(())
+}
+
+#[cfg(any(test, not(target_os = "linux")))]
+fn files(path: &Path, since: SystemTime) -> Result<()> {
+    for entry in std::fs::read_dir(path).map_err(io("read", path))? {
+        let entry = entry.map_err(io("read", path))?;
+        let (place, kind) = (entry.path(), entry.file_type().map_err(io("read", path))?);
+        if kind.is_dir() {
+            files(&place, since)?;
+        } else if std::fs::metadata(&place).and_then(|file| file.modified()).is_ok_and(|at| at >= since) {
+            file(&place)?;
+        }
+    }
+    directory(path);
+    Ok(())
+}
+
+/// Brings a file to the medium.
+pub(super) fn file(path: &Path) -> Result<()> {
+    // Some systems synchronise only files that are open for writing.
+    File::options().write(true).open(path).and_then(|file| file.sync_data()).map_err(io("write", path))
 }
 
 /// Brings the entries of a directory to the medium, where the system can do that.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use asperity::step::Row;
+use ndarray::Dimension;
 use serde_json::Value;
 
 use super::checkpoint;
@@ -10,7 +11,8 @@ use super::chunks::Chunks;
 use super::document::{NAME, read_json};
 use super::error::{Result, StoreError, corrupt};
 use super::field_kind::FieldKind;
-use super::layout::{self, ArraySpec};
+use super::header::Status;
+use super::layout::{ArraySpec, Storage};
 use super::reader::{At, Reader};
 
 /// What was found in a result.
@@ -54,24 +56,14 @@ pub fn verify(path: &Path) -> Result<Verification> {
     let (_, group) = read_json(path)?;
     for array in reader.document().arrays() {
         found.arrays += 1;
-        found.note(documents_agree(path, &group, &array))?;
-        if array.grows() {
-            let rows = if layout::is_of_rows(array.dimensions[0]) {
-                reader.len()
-            } else {
-                reader.field_times().len()
-            };
-            found.chunks += rows.div_ceil(array.chunk[0].max(1)) as u64;
-            found.note(reader.column(array.name, rows).map(drop))?;
+        found.note(documents_agree(&reader, &group, &array))?;
+        if array.storage == Storage::Rows {
+            found.chunks += array.dimensions[0].1.div_ceil(array.chunk()[0]) as u64;
+            found.note(reader.column(&array).map(drop))?;
             continue;
         }
         let chunks = Chunks::new(path, &array);
-        for index in indices(&array) {
-            // The stress may be stored for some of the instants only.
-            let of_stress = reader.stress().filter(|_| array.name.starts_with("stress_"));
-            if of_stress.is_some_and(|set| !set.instants.contains(&(index[0] as usize))) {
-                continue;
-            }
+        for index in indices(&array).filter(|index| reader.has_map(array.name(), index)) {
             found.chunks += 1;
             found.note(chunks.verify(&index))?;
         }
@@ -107,24 +99,28 @@ impl Verification {
     }
 }
 
-/// Compares the document of an array with what the group's document says of it. Their numbers of rows may differ after a kill.
-fn documents_agree(root: &Path, group: &Value, array: &ArraySpec) -> Result<()> {
-    let path = root.join(array.name).join(NAME);
-    let Ok((_, mut own)) = read_json(&root.join(array.name)) else {
+/// Compares the document of an array with what the group's document says of it. Until the run is complete, it may count fewer
+/// rows.
+fn documents_agree(reader: &Reader, group: &Value, array: &ArraySpec) -> Result<()> {
+    let root = reader.path();
+    let path = root.join(array.name()).join(NAME);
+    let Ok((_, mut own)) = read_json(&root.join(array.name())) else {
         return Err(corrupt(&path, "it is missing or no document of an array"));
     };
-    let of_group = &group["consolidated_metadata"]["metadata"][array.name];
-    let along = array.dimensions[0];
-    if (layout::is_of_rows(along) || layout::is_of_maps(along))
+    let of_group = &group["consolidated_metadata"]["metadata"][array.name()];
+    let grows = reader.document().progress.length_of(array.dimensions[0].0).is_some();
+    if grows
+        && reader.status() != Status::Complete
         && let Some(length) = own.pointer_mut("/shape/0")
+        && length.as_u64() <= of_group["shape"][0].as_u64()
     {
         *length = of_group["shape"][0].clone();
     }
     if own != *of_group {
         return Err(corrupt(&path, format_args!("it is not what {NAME} of the result says of the array")));
     }
-    if of_group["attributes"]["units"] != array.attributes["units"] {
-        let what = format!("it says another unit of `{}` than was written", array.name);
+    if of_group["attributes"]["units"] != array.series.units {
+        let what = format!("it says another unit of `{}` than was written", array.name());
         return Err(corrupt(&root.join(NAME), what));
     }
     Ok(())
@@ -172,33 +168,22 @@ fn is_of_its_row(reader: &Reader, index: usize, row: &Row) -> Result<()> {
 
 /// The indices of the chunks of an array, the last one fastest.
 fn indices(array: &ArraySpec) -> impl Iterator<Item = Vec<u64>> + use<> {
-    let counts: Vec<u64> =
-        array.shape.iter().zip(&array.chunk).map(|(cells, side)| cells.div_ceil(*side) as u64).collect();
-    (0..counts.iter().product()).map(move |mut rest: u64| {
-        let mut index: Vec<u64> = counts
-            .iter()
-            .rev()
-            .map(|count| {
-                let digit = rest % count;
-                rest /= count;
-                digit
-            })
-            .collect();
-        index.reverse();
-        index
-    })
+    let counts = array.shape().into_iter().zip(array.chunk()).map(|(cells, side)| cells.div_ceil(side));
+    let counts: Vec<usize> = counts.collect();
+    let index = |place: ndarray::IxDyn| place.slice().iter().map(|n| *n as u64).collect();
+    ndarray::indices(counts).into_iter().map(index)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::layout::{ArraySpec, Series};
+    use super::super::layout::Series;
     use super::*;
 
     #[test]
     fn every_chunk_has_one_index() {
-        let series = Series { name: "pressure", units: "Pa", long_name: "" };
-        let mut array = ArraySpec::coordinate_of(&series, &["field_time", "x", "y"], 1);
-        (array.shape, array.chunk) = (vec![2, 300, 250], vec![1, 150, 250]);
+        let series = Series::new("pressure", "Pa", "");
+        let dimensions = [("field_time", 2), ("x", 300), ("y", 250)];
+        let array = ArraySpec::new(series, Storage::Maps, &dimensions);
         let all: Vec<_> = indices(&array).collect();
         assert_eq!(all, [[0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0]]);
     }

@@ -2,7 +2,7 @@
 
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use asperity::finding::Finding;
 use asperity::step::{Checkpoint, Row};
@@ -17,7 +17,7 @@ use super::document::{Document, Pages};
 use super::error::{Result, StoreError, input, io};
 use super::field_kind::FieldKind;
 use super::header::{Header, Progress, SCHEMA, Status, Work};
-use super::layout::{Entry, SCALARS, Stored};
+use super::layout::SCALARS;
 use super::leftovers;
 use super::replace::Way;
 use super::stress::{self, StressSet};
@@ -30,41 +30,32 @@ const LAG: Duration = Duration::from_secs(1);
 /// Least time between two synchronisations with the medium. One takes a tenth of a second for the
 /// fields that a run of 1024 x 1024 cells stores in that time.
 const SYNC_PAUSE: Duration = Duration::from_secs(5);
+/// File systems may round the times of files by so much.
+const CLOCK: Duration = Duration::from_secs(2);
 /// A checkpoint is due when the time since the last is this many times what its writing took.
 const CHECKPOINT_SHARE: u32 = 100;
 
 /// A field of one step, to be kept.
 #[derive(Clone, Copy, Debug)]
 pub enum Field<'a> {
-    /// Pressure \[Pa\].
-    Pressure(ArrayView2<'a, f64>),
-    /// Gap \[m\].
-    Gap(ArrayView2<'a, f64>),
-    /// Normal displacement \[m\].
-    Displacement(ArrayView2<'a, f64>),
-    /// 0 out of contact, 1 in contact, 2 at the hardness.
+    /// A field of this kind, in its unit.
+    Real(FieldKind, ArrayView2<'a, f64>),
+    /// The contact state: 0 out of contact, 1 in contact, 2 at the hardness.
     Contact(ArrayView2<'a, u8>),
-    /// Permanent flattening \[m\].
-    Flattening(ArrayView2<'a, f64>),
 }
 
 impl Field<'_> {
     /// Its kind.
     pub fn kind(&self) -> FieldKind {
         match self {
-            Field::Pressure(_) => FieldKind::Pressure,
-            Field::Gap(_) => FieldKind::Gap,
-            Field::Displacement(_) => FieldKind::Displacement,
+            Field::Real(kind, _) => *kind,
             Field::Contact(_) => FieldKind::Contact,
-            Field::Flattening(_) => FieldKind::Flattening,
         }
     }
 
     fn dim(&self) -> (usize, usize) {
         match self {
-            Field::Pressure(map) | Field::Gap(map) | Field::Displacement(map) | Field::Flattening(map) => {
-                map.dim()
-            }
+            Field::Real(_, map) => map.dim(),
             Field::Contact(map) => map.dim(),
         }
     }
@@ -104,11 +95,10 @@ pub struct Writer {
     header: Header,
     progress: Progress,
     pages: Pages,
-    columns: Vec<(Entry, Column)>,
-    /// The quantities asked for, and how many numbers of a row each has.
-    quantities: Vec<(usize, Column)>,
-    field_time: Column,
-    field_step: Column,
+    /// The [`SCALARS`] and the quantities that were asked for.
+    per_row: Vec<Column>,
+    /// `field_time` and `field_step`.
+    per_map: [Column; 2],
     fields: Vec<(FieldKind, Chunks)>,
     /// The coordinate of the last row.
     last: f64,
@@ -121,8 +111,8 @@ pub struct Writer {
     documents_written: Instant,
     documents_behind: bool,
     checkpoint: Option<(Instant, Duration)>,
-    /// What has not been brought to the medium.
-    unsynced: Unsynced,
+    /// When the result was brought to the medium last, by the clock of this process and by that of the files.
+    synchronised: (Instant, SystemTime),
     /// The directory that is written: another one may take its path.
     directory: Option<Identity>,
     _lock: Option<File>,
@@ -188,21 +178,20 @@ impl Writer {
         let header = document.header.clone();
         let spec = |name: &'static str| {
             let name = header.stored(name);
-            specs.iter().find(|spec| spec.name == name).ok_or_else(|| input("array", name, "one of a result"))
+            specs
+                .iter()
+                .find(|spec| spec.name() == name)
+                .ok_or_else(|| input("array", name, "one of a result"))
         };
         let Progress { rows, maps, sums, .. } = &document.progress;
-        let per_row = |name: &'static str| Ok(Column::new(root, spec(name)?, *rows, sums));
-        let per_map = |name: &'static str| Ok(Column::new(root, spec(name)?, *maps, sums));
-        let columns = SCALARS.iter().map(|s| Ok((s.entry, per_row(s.name)?)));
-        let quantities = document.header.quantities.iter();
-        let quantities = quantities.map(|q| Ok((q.width(), per_row(q.quantity.name())?)));
+        let column = |name: &'static str, rows| Ok(Column::new(root, spec(name)?, rows, sums));
+        let quantities = document.header.quantities.iter().map(|column| column.quantity.name());
+        let per_row = SCALARS.iter().map(|scalar| scalar.name).chain(quantities);
         let fields = document.header.fields.iter();
         let fields = fields.map(|kind| Ok((*kind, Chunks::new(root, spec(kind.name())?))));
         Ok(Writer {
-            columns: columns.collect::<Result<_>>()?,
-            quantities: quantities.collect::<Result<_>>()?,
-            field_time: per_map("field_time")?,
-            field_step: per_map("field_step")?,
+            per_row: per_row.map(|name| column(name, *rows)).collect::<Result<_>>()?,
+            per_map: [column("field_time", *maps)?, column("field_step", *maps)?],
             fields: fields.collect::<Result<_>>()?,
             root: root.to_owned(),
             last,
@@ -215,7 +204,7 @@ impl Writer {
             documents_behind: false,
             // The first one is not brought to the medium: it may not replace one that is.
             checkpoint: (*rows > 0).then(|| (Instant::now(), Duration::ZERO)),
-            unsynced: Unsynced::new(*maps),
+            synchronised: (Instant::now(), SystemTime::UNIX_EPOCH),
             pages: Pages::new(&document),
             form: document.form,
             header: document.header,
@@ -276,18 +265,15 @@ impl Writer {
     }
 
     /// Appends a step with the quantities of the header: their numbers one after the other, as
-    /// [`Step::quantities`](asperity::step::Step::quantities) lends them.
+    /// [`Step::quantities`](asperity::step::Step::quantities) gives them.
     ///
     /// # Errors
     /// As [`append`](Self::append); [`StoreError::Input`] where there are more or fewer numbers.
     pub fn append_with(&mut self, row: &Row, quantities: &[f64], fields: &[Field<'_>]) -> Result<()> {
-        let wanted: usize = self.quantities.iter().map(|(width, _)| width).sum();
+        let wanted: usize = self.per_row.iter().skip(SCALARS.len()).map(Column::width).sum();
         if quantities.len() != wanted {
-            return Err(input(
-                "numbers of the quantities",
-                quantities.len(),
-                format!("{wanted}, those of the header"),
-            ));
+            let expected = format!("{wanted}, those of the header");
+            return Err(input("numbers of the quantities", quantities.len(), expected));
         }
         let at = row.coordinate.value();
         self.check_order("row", at, self.last)?;
@@ -298,14 +284,12 @@ impl Writer {
         }
         let Progress { rows, maps, .. } = self.progress;
         let maps = maps + self.staged;
-        for (entry, column) in &mut self.columns {
-            column.put(rows, entry.to_bytes(row))?;
-        }
-        let mut rest = quantities;
-        for (width, column) in &mut self.quantities {
-            let (own, after) = rest.split_at(*width);
-            let bytes: Vec<u8> = own.iter().flat_map(|x| x.to_le_bytes()).collect();
-            column.put_row(rows, &bytes)?;
+        let numbers: Vec<f64> =
+            SCALARS.iter().map(|scalar| scalar.of(row)).chain(quantities.iter().copied()).collect();
+        let mut rest = numbers.as_slice();
+        for column in &mut self.per_row {
+            let (own, after) = rest.split_at(column.width());
+            column.put(rows, own)?;
             rest = after;
         }
         let mut progress = self.progress.clone();
@@ -320,17 +304,14 @@ impl Writer {
         progress.work.wall_s = self.wall();
         if self.form > 1 {
             let (rows, maps, sums) = (progress.rows, progress.maps, &mut progress.sums);
-            self.columns.iter().for_each(|(_, column)| column.sum(rows, sums));
-            self.quantities.iter().for_each(|(_, column)| column.sum(rows, sums));
-            [&self.field_time, &self.field_step].into_iter().for_each(|column| column.sum(maps, sums));
+            self.per_row.iter().for_each(|column| column.sum(rows, sums));
+            self.per_map.iter().for_each(|column| column.sum(maps, sums));
         }
         let way = if self.committed.elapsed() < QUICK { Way::Quick } else { Way::Safe };
         self.pages.commit(&self.root, &progress, way)?;
         self.committed = Instant::now();
-        let (rows, maps) = (progress.rows, progress.maps);
-        self.columns.iter_mut().for_each(|(_, column)| column.commit(rows));
-        self.quantities.iter_mut().for_each(|(_, column)| column.commit(rows));
-        [&mut self.field_time, &mut self.field_step].into_iter().for_each(|column| column.commit(maps));
+        self.per_row.iter_mut().for_each(|column| column.commit(progress.rows));
+        self.per_map.iter_mut().for_each(|column| column.commit(progress.maps));
         self.progress = progress;
         self.staged = 0;
         self.last = at;
@@ -367,17 +348,12 @@ impl Writer {
                 continue;
             };
             match field {
-                Field::Pressure(map)
-                | Field::Gap(map)
-                | Field::Displacement(map)
-                | Field::Flattening(map) => {
-                    chunks.write_map(&index, *map)?;
-                }
                 Field::Contact(map) => chunks.write_map(&index, *map)?,
+                Field::Real(_, map) => chunks.write_map(&index, *map)?,
             }
         }
-        self.field_time.put(map, time.to_le_bytes())?;
-        self.field_step.put(map, (self.progress.rows as i64).to_le_bytes())
+        let numbers = [time, self.progress.rows as f64];
+        self.per_map.iter_mut().zip(numbers).try_for_each(|(column, number)| column.put(map, &[number]))
     }
 
     /// Sets the stress below the surface that readers see; `sums` are the checksums of its per-step arrays.
@@ -393,17 +369,17 @@ impl Writer {
         Ok(())
     }
 
-    /// What the run has found about itself so far.
+    /// The findings of the run so far.
     pub fn findings(&self) -> &[Finding] {
         &self.progress.findings
     }
 
-    /// Sets what the run has found about itself; readers see it with the next row, [`note`](Self::note) or end.
+    /// Sets the findings of the run; readers see them with the next row, [`note`](Self::note) or end.
     pub fn set_findings(&mut self, findings: Vec<Finding>) {
         self.progress.findings = findings;
     }
 
-    /// Sets what the run has found about itself, for readers to see at once.
+    /// Sets the findings of the run, which readers see at once.
     ///
     /// # Errors
     /// [`StoreError::Io`] where the system refuses.
@@ -431,7 +407,7 @@ impl Writer {
         }
         self.check_place()?;
         let start = Instant::now();
-        let is_synced = self.unsynced.since.elapsed() >= SYNC_PAUSE;
+        let is_synced = self.synchronised.0.elapsed() >= SYNC_PAUSE;
         if is_synced {
             self.synchronise()?;
             // First, so that no checkpoint is of more rows than the copy.
@@ -444,30 +420,10 @@ impl Writer {
 
     /// Brings rows, fields and documents to the medium.
     fn synchronise(&mut self) -> Result<()> {
-        if !sync::file_system(&self.root)? {
-            self.synchronise_files()?;
-        }
-        self.unsynced = Unsynced { constants: true, ..Unsynced::new(self.progress.maps) };
+        let started = SystemTime::now();
+        sync::result(&self.root, self.synchronised.1)?;
+        self.synchronised = (Instant::now(), started.checked_sub(CLOCK).unwrap_or(SystemTime::UNIX_EPOCH));
         Ok(())
-    }
-
-    /// The same file by file.
-    fn synchronise_files(&self) -> Result<()> {
-        let columns = self.columns.iter().map(|(_, column)| column);
-        let columns = columns.chain(self.quantities.iter().map(|(_, column)| column));
-        for (path, file) in columns.chain([&self.field_time, &self.field_step]).filter_map(Column::file) {
-            file.sync_data().map_err(io("write", path))?;
-        }
-        for (_, chunks) in &self.fields {
-            for map in self.unsynced.maps..self.progress.maps {
-                sync::files(&self.root, &chunks.paths(&[map as u64], self.header.grid.shape()))?;
-            }
-        }
-        if !self.unsynced.constants {
-            sync::documents(&self.root, &self.pages.names())?;
-            sync::files(&self.root, &create::constants(&self.root, &self.header, self.form)?)?;
-        }
-        sync::document(&self.root)
     }
 
     /// Ends the result. Where the run is complete its checkpoint is removed, and so is the complete result that it replaces;
@@ -484,14 +440,14 @@ impl Writer {
         work.peak_memory_bytes = work.peak_memory_bytes.max(outcome.peak_memory_bytes);
         work.threads = outcome.threads.or(work.threads);
         work.wall_s = wall;
-        self.pages.commit(&self.root, &self.progress, Way::Safe)?;
+        // The documents of the arrays first: those of a complete result do not lag behind.
         self.flush_documents(Way::Safe)?;
-        if self.unsynced.since.elapsed() >= SYNC_PAUSE {
-            self.unsynced.constants = false; // the arrays' own documents are new
+        self.pages.commit(&self.root, &self.progress, Way::Safe)?;
+        if self.synchronised.0.elapsed() >= SYNC_PAUSE {
             self.synchronise()?;
         }
         if outcome.status == Status::Complete {
-            checkpoint::remove(&self.root)?;
+            remove(&self.root.join(checkpoint::DIRECTORY))?;
             leftovers::remove_kept(&self.root);
         } else if let Some(kept) = leftovers::kept(&self.root) {
             tracing::warn!("the complete result that this one replaces is kept in {}", kept.display());
@@ -507,6 +463,9 @@ impl Writer {
         let header = &self.header;
         for field in fields {
             check_shape(&format!("shape of the {}", field.kind()), field.dim(), header)?;
+            if matches!(field, Field::Real(FieldKind::Contact, _)) {
+                return Err(input("contact state", "a field of real numbers", "a `Field::Contact`"));
+            }
         }
         let same = fields.len() == self.fields.len()
             && self.fields.iter().all(|(kind, _)| fields.iter().any(|field| field.kind() == *kind));
@@ -532,24 +491,9 @@ impl Writer {
 impl Drop for Writer {
     fn drop(&mut self) {
         if self.documents_behind && self.check_place().is_ok() {
-            // Nobody is left to tell; readers of the group's document miss nothing.
+            // An error cannot be reported any more; readers of the group's document miss nothing.
             let _ = self.flush_documents(Way::Quick);
         }
-    }
-}
-
-/// What a loss of power may take.
-struct Unsynced {
-    since: Instant,
-    /// First of the maps.
-    maps: usize,
-    /// Whether what is written once is on the medium: the gap, the coordinates, the documents of the arrays.
-    constants: bool,
-}
-
-impl Unsynced {
-    fn new(maps: usize) -> Self {
-        Unsynced { since: Instant::now(), maps, constants: false }
     }
 }
 
@@ -609,16 +553,14 @@ mod tests {
         let mut writer = Writer::create(&path, &header, map.view(), false).unwrap();
         let copy = path.join(checkpoint::DIRECTORY).join(checkpoint::GROUP);
         for rows in 1..=2 {
-            writer.append(&Row::default(), &[Field::Pressure(map.view())]).unwrap();
+            writer.append(&Row::default(), &[Field::Real(FieldKind::Pressure, map.view())]).unwrap();
             writer.checkpoint(&Checkpoint { step: rows, numbers: vec![], fields: vec![] }).unwrap();
             assert_eq!(copy.exists(), rows == 2);
             assert!(!writer.checkpoint_due());
-            writer.unsynced.since = Instant::now().checked_sub(SYNC_PAUSE).unwrap();
+            writer.synchronised.0 = Instant::now().checked_sub(SYNC_PAUSE).unwrap();
         }
         assert_eq!(fs::read(copy).unwrap(), fs::read(path.join("zarr.json")).unwrap());
-        assert_eq!((writer.unsynced.maps, writer.unsynced.constants), (2, true));
         // Systems that synchronise file by file find all of them.
-        writer.unsynced = Unsynced::new(0);
-        writer.synchronise_files().unwrap();
+        sync::result_by_files(&path, SystemTime::UNIX_EPOCH).unwrap();
     }
 }

@@ -1,4 +1,4 @@
-//! What was found below the surface, at each of the times.
+//! The stress below the surface at each of the times.
 
 use asperity::finding::Finding;
 use asperity::stress::{Extreme, Survey};
@@ -26,14 +26,14 @@ pub struct Instant {
     pub profiles: Vec<Vec<f64>>,
 }
 
-/// What was found below the surface.
+/// The stress below the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Below {
     /// What was computed.
     pub set: StressSet,
     /// What was found at each of the times.
     pub instants: Vec<Instant>,
-    /// Time \[s\] and load \[N\] of the row with the largest pressure, where none of the times comes near it.
+    /// Time \[s\] and load \[N\] of the row with the largest pressure, if all computed times are far from it.
     pub missed: Option<[f64; 2]>,
 }
 
@@ -68,7 +68,7 @@ pub(super) fn missed(reader: &Reader, rows: impl Iterator<Item = usize>) -> Resu
 }
 
 impl Below {
-    /// What a result holds; `None` where nothing was computed.
+    /// The stress that a result holds; `None` if none was computed.
     ///
     /// # Errors
     /// [`crate::store::StoreError`] where the result is damaged.
@@ -94,13 +94,13 @@ impl Below {
         Ok(Some(Below { instants, set: set.clone(), missed }))
     }
 
-    /// A number of an instant, by its name in the result; NaN where there is none.
+    /// A number of an instant, by its name in the result; NaN if it is not stored.
     pub fn number(&self, instant: &Instant, name: &str) -> f64 {
         let place = self.set.scalars().iter().position(|series| series.name == name);
         place.and_then(|n| instant.scalars.get(n)).copied().unwrap_or(f64::NAN)
     }
 
-    /// A profile of an instant, by its name in the result; empty where there is none.
+    /// A profile of an instant, by its name in the result; empty if it is not stored.
     pub fn profile<'a>(&self, instant: &'a Instant, name: &str) -> &'a [f64] {
         let place = self.set.profiles().iter().position(|series| series.name == name);
         place.and_then(|n| instant.profiles.get(n)).map(Vec::as_slice).unwrap_or_default()

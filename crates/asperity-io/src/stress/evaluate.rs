@@ -47,8 +47,8 @@ pub const LAYERED: &str = "the stress below the surface is not computed for bodi
 /// Why there is no range of a shear stress along y in plane strain.
 pub const ROLLS_ALONG_LINE: &str = "a line contact rolls along x: nothing changes along y";
 
-/// Computes the stress of a result that `writer` holds, and stores it there in place of one that is stored. `observe` is told
-/// the number of times done and of all. Nothing of the stress is stored where it ends early.
+/// Computes the stress of a result that `writer` holds, and stores it there, in place of an earlier one. `observe` gets the
+/// number of times done and of all times. If the computation ends early, no stress is stored.
 ///
 /// # Errors
 /// [`StressError::Store`] where there are no pressures or the system refuses; [`StressError::Solve`] for depths that the grid
@@ -98,6 +98,24 @@ pub(crate) fn boundary(reader: &Reader) -> Boundary {
     word.and_then(choice::parse).unwrap_or_default()
 }
 
+/// The depths of the plan for these stored instants \[m\]; automatic ones follow from the largest contact.
+pub(crate) fn depths(
+    reader: &Reader,
+    plan: &StressPlan,
+    instants: &[usize],
+) -> Result<Vec<f64>, StressError> {
+    let Depths::List(list) = &plan.depths else {
+        let grid = &reader.header().grid;
+        let mut largest = 0.0;
+        for index in instants {
+            let pressure = reader.field(FieldKind::Pressure, At::Index(*index))?;
+            largest = f64::max(largest, contact_box(grid, pressure.as_slice().unwrap_or_default()));
+        }
+        return Ok(automatic_depths(grid, boundary(reader), largest));
+    };
+    Ok(list.clone())
+}
+
 /// What will be stored: the depths and the instants of the plan for this result.
 fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StressError> {
     refuse_layers(reader)?;
@@ -109,18 +127,7 @@ fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StressError> {
         return Err(reader.no_field(FieldKind::Pressure).into());
     }
     let instants = instants::stored(reader, plan.times.as_deref())?;
-    let depths = match &plan.depths {
-        Depths::List(list) => list.clone(),
-        Depths::Auto => {
-            let grid = &reader.header().grid;
-            let mut largest = 0.0;
-            for index in &instants {
-                let pressure = reader.field(FieldKind::Pressure, At::Index(*index))?;
-                largest = f64::max(largest, contact_box(grid, pressure.as_slice().unwrap_or_default()));
-            }
-            automatic_depths(grid, boundary(reader), largest)
-        }
-    };
+    let depths = depths(reader, plan, &instants)?;
     Ok(StressSet {
         body: plan.body.clone(),
         poisson: plan.poisson.clone(),

@@ -14,8 +14,8 @@ mod section;
 mod yielding;
 
 pub use below::{Below, Instant};
-pub(crate) use evaluate::boundary;
 pub use evaluate::{LAYERED, ROLLS_ALONG_LINE, StressError, evaluate, of_result, refuse_layers};
+pub(crate) use evaluate::{boundary, depths};
 pub use plan::{Depths, StressBody, StressDescription, StressPlan, bodies_of};
 pub(crate) use plan::{POISSON_CREEP, SETUP};
 pub(crate) use pressures::Pressures;

@@ -108,7 +108,7 @@ pub struct StressDescription {
 }
 
 impl StressPlan {
-    /// The plan for a body with nothing asked for but the largest values and the profile.
+    /// The plan for a body that asks only for the largest values and the profile.
     pub fn new(body: &str, poisson: impl Into<Ratio>) -> StressPlan {
         StressPlan {
             body: body.to_owned(),
@@ -143,7 +143,7 @@ impl StressPlan {
         reader.stress().map(|set| StressPlan::of(set, reader)).or_else(of_case)
     }
 
-    /// The plan for a result of which nothing else is said: [`known`](Self::known), or the largest values of the first body.
+    /// The plan for a result if the caller says nothing: [`known`](Self::known), or the largest values of the first body.
     ///
     /// # Errors
     /// [`StressError::Refused`] where the bodies have layers, or the result does not say their Poisson's ratio.

@@ -32,12 +32,11 @@ pub struct Section {
     pub along_x: Array2<f64>,
     /// The same in the plane x = const, shape (y, depth) \[Pa\]; of a line there is none.
     pub along_y: Option<Array2<f64>>,
-    /// von Mises stress above, at and below the depth of the place: depths \[m\], and maps of shape (x, y) \[Pa\]; none of a line.
+    /// von Mises stress above, at and below the depth of the place: depths \[m\], and maps of shape (x, y) \[Pa\]; empty for a line.
     pub maps: Vec<(f64, Array2<f64>)>,
 }
 
-/// What was found at the stored instant `at`: what the result holds, or, where the stress was computed otherwise or not there,
-/// what `plan` gives now.
+/// The stress at the stored instant `at`: the stored one if it was computed by the same plan, otherwise it is computed by `plan`.
 ///
 /// # Errors
 /// [`StressError`] where the result holds no such pressure.

@@ -13,8 +13,7 @@ use super::{Problem, Reader, Request};
 
 const SIGNATURE: &[u8] = b"AliconaImaging\0\r\n";
 
-pub(super) const AL3D: Reader =
-    Reader { name: "al3d", aliases: &[], sniff: |bytes| bytes.starts_with(SIGNATURE), read, write: None };
+pub(super) const AL3D: Reader = Reader::new("al3d", |bytes| bytes.starts_with(SIGNATURE), read);
 
 /// Reads the depth image.
 fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
@@ -43,7 +42,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
         if undefined { f64::NAN } else { v }
     };
     let stride = nx.saturating_mul(4).checked_next_multiple_of(8).unwrap_or(u64::MAX);
-    let layout = Layout { points: [nx, ny], kind: Kind::F32, order: Order::Little, stride };
+    let layout = Layout { stride, ..Layout::dense([nx, ny], Kind::F32, Order::Little) };
     let heights = layout.map(image, "the depth image", height)?;
     let lateral = Lateral::Metres([nx as f64 * pixel[0].abs(), ny as f64 * pixel[1].abs()]);
     let tags = tags.into_iter().filter(|(key, _)| key != "TagCount");

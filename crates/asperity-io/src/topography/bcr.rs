@@ -4,6 +4,7 @@
 //! 16-bit integers times `bit2nm` (bcrstm) or binary32 (bcrf), in `zunit`, which is nm where it is not given, as
 //! `xunit` and `yunit` are. The greatest number of the type marks an undefined point.
 
+use super::cursor::utf16;
 use super::entries::Entries;
 use super::finish::{Lateral, Measured, unit_of};
 use super::grid::Layout;
@@ -12,27 +13,19 @@ use super::unit::LoneA;
 use super::{Problem, Reader, Request};
 
 pub(super) const BCR: Reader =
-    Reader { name: "bcr", aliases: &["bcrf"], sniff: |bytes| characters(bytes).is_some(), read, write: None };
+    Reader::new("bcr", |bytes| characters(bytes).is_some(), read).also_called(&["bcrf"]);
 
 const START: &str = "fileformat = bcr";
 const LEAST_HEADER: usize = 2048;
 
-/// Width and order of the characters of the header.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Characters {
-    Bytes,
-    Wide(Order),
-}
-
-fn characters(bytes: &[u8]) -> Option<Characters> {
-    let wide = |bytes: &[u8], unit: fn(u16) -> [u8; 2]| {
-        bytes.starts_with(&START.encode_utf16().flat_map(unit).collect::<Vec<u8>>())
-    };
+/// How the characters of the header are written: bytes, or UTF-16 of an order.
+fn characters(bytes: &[u8]) -> Option<Option<Order>> {
+    let starts =
+        |bytes: &[u8], order| bytes.get(..2 * START.len()).is_some_and(|start| utf16(start, order) == START);
     match bytes {
-        _ if bytes.starts_with(START.as_bytes()) => Some(Characters::Bytes),
-        [0xff, 0xfe, rest @ ..] if wide(rest, u16::to_le_bytes) => Some(Characters::Wide(Order::Little)),
-        [0xfe, 0xff, rest @ ..] if wide(rest, u16::to_be_bytes) => Some(Characters::Wide(Order::Big)),
-        _ if wide(bytes, u16::to_le_bytes) => Some(Characters::Wide(Order::Little)),
+        _ if bytes.starts_with(START.as_bytes()) => Some(None),
+        [0xfe, 0xff, rest @ ..] if starts(rest, Order::Big) => Some(Some(Order::Big)),
+        [0xff, 0xfe, rest @ ..] | rest if starts(rest, Order::Little) => Some(Some(Order::Little)),
         _ => None,
     }
 }
@@ -41,16 +34,12 @@ fn characters(bytes: &[u8]) -> Option<Characters> {
 fn read(bytes: &[u8], _: &Request) -> Result<Measured, Problem> {
     let characters = characters(bytes)
         .ok_or_else(|| Problem::malformed("the start of the file", "something else", START))?;
-    let width = if characters == Characters::Bytes { 1 } else { 2 };
+    let width = if characters.is_some() { 2 } else { 1 };
     let header = |length: usize| {
         let bytes = bytes.get(..length * width).unwrap_or(bytes);
         match characters {
-            Characters::Bytes => bytes.iter().map(|b| char::from(*b)).collect::<String>(),
-            Characters::Wide(order) => {
-                let unit = if order == Order::Little { u16::from_le_bytes } else { u16::from_be_bytes };
-                let units = bytes.as_chunks::<2>().0.iter().map(|b| unit(*b));
-                char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
-            }
+            Some(order) => utf16(bytes, order),
+            None => bytes.iter().map(|b| char::from(*b)).collect(),
         }
     };
     let length = entries(&header(LEAST_HEADER)).get("headersize").and_then(|n| n.parse().ok());

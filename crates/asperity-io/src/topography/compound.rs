@@ -7,7 +7,7 @@ pub(crate) fn is_compound(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")
 }
 
-/// The stream of this name at the top of a compound document, where there is one.
+/// The stream of this name at the top level of a compound document; `None` if there is none.
 ///
 /// # Errors
 /// What is damaged.

@@ -73,6 +73,13 @@ impl<'a> Cursor<'a> {
     number!(f64, f64, "IEEE 754 binary64.");
 }
 
+/// The text in UTF-16 of this byte order.
+pub(super) fn utf16(bytes: &[u8], order: Order) -> String {
+    let unit = if order == Order::Little { u16::from_le_bytes } else { u16::from_be_bytes };
+    let units: Vec<u16> = bytes.as_chunks().0.iter().map(|bytes| unit(*bytes)).collect();
+    String::from_utf16_lossy(&units)
+}
+
 /// A text up to its first zero, without surrounding blanks, in UTF-8 or Latin-1.
 pub(super) fn text(bytes: &[u8]) -> String {
     let bytes = bytes.split(|b| *b == 0).next().unwrap_or_default();

@@ -1,6 +1,6 @@
 //! Why a file cannot be read or written as a topography, and what to do about it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -27,9 +27,9 @@ pub enum Problem {
     /// The file takes more memory than there is.
     #[error("{0}; crop or thin it out first")]
     TooLarge(String),
-    /// The content belongs to none of the formats.
+    /// The content is in no known format.
     #[error(
-        "the content is none of the known formats ({}); export it from the instrument's software as x3p, sdf or text",
+        "the content is in none of the known formats ({}); export it from the instrument's software as x3p, sdf or text",
         format::list(Format::ALL.iter().copied())
     )]
     Unrecognised,
@@ -51,7 +51,7 @@ pub enum Problem {
         /// What it holds instead.
         detail: String,
     },
-    /// The file states no unit of the heights, or none of length.
+    /// The file states no unit of the heights, or a unit that is not a length.
     #[error(
         "the {format} file holds no unit of length for its heights{detail}; give it (`height_unit`, --height-unit U)"
     )]
@@ -117,6 +117,20 @@ pub enum Problem {
     },
 }
 
+impl TopographyError {
+    /// A problem with the file at `path`.
+    pub(super) fn at(path: &Path) -> impl Fn(Problem) -> TopographyError {
+        move |problem| TopographyError { path: Some(path.to_owned()), problem }
+    }
+}
+
+/// A problem with bytes that come from no file.
+impl From<Problem> for TopographyError {
+    fn from(problem: Problem) -> Self {
+        TopographyError { path: None, problem }
+    }
+}
+
 impl Problem {
     /// `what` is `value`, but must be `expected`.
     pub(super) fn malformed(
@@ -135,6 +149,15 @@ impl Problem {
     /// `what` needs `needed` bytes of `available`.
     pub(super) fn truncated(what: impl Into<String>, needed: u64, available: u64) -> Self {
         Problem::Truncated { what: what.into(), needed, available }
+    }
+
+    /// # Errors
+    /// Where fewer bytes of the file are left than `what` needs.
+    pub(super) fn check_length(what: &str, needed: u64, available: usize) -> Result<(), Problem> {
+        match needed <= available as u64 {
+            true => Ok(()),
+            false => Err(Problem::truncated(what, needed, available as u64)),
+        }
     }
 
     /// `what` is not read here; do `instead`.

@@ -1,11 +1,11 @@
-//! From what a file says to metres: the one place where size and unit are settled, and never guessed.
+//! From the units of a file to metres: size and unit are decided only here, and never guessed.
 
 use ndarray::Array2;
 
 use super::unit::{LoneA, metres};
 use super::{Format, Problem, ReadOptions, Topography, grid};
 
-/// What a reader found.
+/// The result of a reader.
 #[derive(Debug)]
 pub(super) struct Measured {
     /// The format, where the content tells it better than the signature.
@@ -29,9 +29,9 @@ pub(super) struct Measured {
 pub(super) enum Unit {
     /// Metres per unit.
     Metres(f64),
-    /// The file does not say.
+    /// The file does not state it.
     Unstated,
-    /// The file says something that is no length ("V").
+    /// The file states a unit that is not a length ("V").
     Other(String),
 }
 
@@ -42,7 +42,7 @@ pub(super) enum Lateral {
     Metres([f64; 2]),
     /// In a unit that the file does not state.
     Bare([f64; 2]),
-    /// Not in the file; the text says what it holds instead.
+    /// Not in the file; the text describes what it holds instead.
     Unstated(String),
 }
 
@@ -61,7 +61,7 @@ impl Measured {
         }
     }
 
-    /// With what else the file says; empty values say nothing.
+    /// Adds further metadata; empty values are left out.
     pub(super) fn with<K: Into<String>>(mut self, metadata: impl IntoIterator<Item = (K, String)>) -> Self {
         let entries = metadata.into_iter().filter(|(_, value)| !value.is_empty());
         self.metadata.extend(entries.map(|(key, value)| (key.into(), value)));
@@ -82,7 +82,7 @@ impl Lateral {
     }
 }
 
-/// Settles size and unit.
+/// Decides size and unit.
 pub(super) fn finish(
     format: Format,
     measured: Measured,
@@ -94,15 +94,13 @@ pub(super) fn finish(
     let height_unit = match (options.height_unit, &unit) {
         (Some(metres), _) => metres,
         (None, Unit::Metres(metres)) => *metres,
-        (None, Unit::Unstated) => {
-            return Err(Problem::MissingHeightUnit { format, detail: String::new() });
-        }
-        (None, Unit::Other(label)) => {
+        (None, unit) => {
             let channel = channel.map_or(String::new(), |c| format!(" in channel {c:?}"));
-            return Err(Problem::MissingHeightUnit {
-                format,
-                detail: format!("{channel} (it says {label:?})"),
-            });
+            let detail = match unit {
+                Unit::Other(label) => format!("{channel} (it says {label:?})"),
+                _ => String::new(),
+            };
+            return Err(Problem::MissingHeightUnit { format, detail });
         }
     };
     let size = match (options.size, lateral) {
@@ -117,16 +115,14 @@ pub(super) fn finish(
         }
         (None, Lateral::Unstated(detail)) => return Err(Problem::MissingSize { format, detail }),
     };
-    for length in size {
-        if !(length.is_finite() && length > 0.0) {
-            return Err(Problem::malformed(
-                "the physical size",
-                format!("{:e} m x {:e} m", size[0], size[1]),
-                "positive and finite; give the lengths along x and y (`size`, --size A,B)",
-            ));
-        }
+    if !size.into_iter().all(is_positive) {
+        return Err(Problem::malformed(
+            "the physical size",
+            format!("{:e} m x {:e} m", size[0], size[1]),
+            "positive and finite; give the lengths along x and y (`size`, --size A,B)",
+        ));
     }
-    // Infinite heights can only come from scaling absurd numbers: undefined, like every other value that is none.
+    // Infinite heights can only come from scaling absurd numbers: they are undefined.
     let clean = |h: f64| if h.is_finite() { h } else { f64::NAN };
     if height_unit != 1.0 {
         grid::replace(&mut heights, |h| clean(h * height_unit));
@@ -137,21 +133,21 @@ pub(super) fn finish(
 }
 
 fn check_options(options: &ReadOptions) -> Result<(), Problem> {
-    let positive = |v: f64| v.is_finite() && v > 0.0;
-    if let Some(size) = options.size
-        && !size.iter().all(|l| positive(*l))
-    {
-        let value = format!("{} m x {} m", size[0], size[1]);
-        return Err(Problem::Option { what: "size", value, expected: "two lengths greater than 0 m".into() });
-    }
-    match options.height_unit {
-        Some(unit) if !positive(unit) => Err(Problem::Option {
-            what: "height_unit",
-            value: unit.to_string(),
-            expected: "metres per unit, greater than 0".into(),
-        }),
+    let wrong = |what, value, expected: &str| Err(Problem::Option { what, value, expected: expected.into() });
+    match (options.size, options.height_unit) {
+        (Some(size), _) if !size.into_iter().all(is_positive) => {
+            wrong("size", format!("{} m x {} m", size[0], size[1]), "two lengths greater than 0 m")
+        }
+        (_, Some(unit)) if !is_positive(unit) => {
+            wrong("height_unit", unit.to_string(), "metres per unit, greater than 0")
+        }
         _ => Ok(()),
     }
+}
+
+/// Whether a length is greater than 0 and finite.
+pub(super) fn is_positive(length: f64) -> bool {
+    length.is_finite() && length > 0.0
 }
 
 /// The unit with this label; no label is no unit.

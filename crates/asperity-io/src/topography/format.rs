@@ -19,6 +19,25 @@ pub(super) struct Reader {
     pub write: Option<Write>,
 }
 
+impl Reader {
+    /// Of a format that is only read.
+    pub(super) const fn new(
+        name: &'static str,
+        sniff: fn(&[u8]) -> bool,
+        read: fn(&[u8], &Request) -> Result<Measured, Problem>,
+    ) -> Reader {
+        Reader { name, aliases: &[], sniff, read, write: None }
+    }
+
+    pub(super) const fn also_called(self, aliases: &'static [&'static str]) -> Reader {
+        Reader { aliases, ..self }
+    }
+
+    pub(super) const fn written_by(self, write: Write) -> Reader {
+        Reader { write: Some(write), ..self }
+    }
+}
+
 /// Writes a surface as the bytes of a file.
 pub(super) type Write = fn(&Topography) -> Result<Vec<u8>, Problem>;
 
@@ -90,7 +109,7 @@ pub(super) fn list(formats: impl Iterator<Item = Format>) -> String {
     formats.map(Format::name).collect::<Vec<_>>().join(", ")
 }
 
-/// The format of a file with this content (looking into gzip), or `None` where it is none of the known.
+/// The format of a file with this content, also of one packed by gzip; `None` for an unknown format.
 pub fn detect(bytes: &[u8]) -> Option<Format> {
     let sniff = |bytes: &[u8]| Format::ALL.iter().copied().find(|format| (format.reader().sniff)(bytes));
     if unpack::is_gzip(bytes) {

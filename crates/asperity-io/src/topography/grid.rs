@@ -35,12 +35,20 @@ pub(super) struct Layout {
     pub order: Order,
     /// Bytes from the start of a line to that of the next.
     pub stride: u64,
+    /// Whether the lines are in the order of falling y.
+    pub from_bottom: bool,
 }
 
 impl Layout {
     /// Lines (x runs fastest) without padding between them.
     pub(super) fn dense(points: [u64; 2], kind: Kind, order: Order) -> Self {
-        Layout { points, kind, order, stride: points[0].saturating_mul(kind.width() as u64) }
+        let stride = points[0].saturating_mul(kind.width() as u64);
+        Layout { points, kind, order, stride, from_bottom: false }
+    }
+
+    /// The same with lines in the order of falling y.
+    pub(super) fn from_bottom(self) -> Self {
+        Layout { from_bottom: true, ..self }
     }
 
     /// The map with axis 0 = x, each number replaced by `value` of it. The padding of the last line may be missing.
@@ -53,17 +61,7 @@ impl Layout {
         what: &str,
         value: impl Fn(f64) -> f64 + Sync,
     ) -> Result<Array2<f64>, Problem> {
-        self.read(bytes, what, false, &|line| line.iter_mut().for_each(|v| *v = value(*v)))
-    }
-
-    /// The map of a file whose lines are in the order of falling y; otherwise as [`map`](Self::map).
-    pub(super) fn map_from_bottom(
-        self,
-        bytes: &[u8],
-        what: &str,
-        value: impl Fn(f64) -> f64 + Sync,
-    ) -> Result<Array2<f64>, Problem> {
-        self.read(bytes, what, true, &|line| line.iter_mut().for_each(|v| *v = value(*v)))
+        self.read(bytes, what, &|line| line.iter_mut().for_each(|v| *v = value(*v)))
     }
 
     /// `values` replaces the numbers of a part of a line.
@@ -71,21 +69,21 @@ impl Layout {
         self,
         bytes: &[u8],
         what: &str,
-        from_bottom: bool,
         values: &(dyn Fn(&mut [f64]) + Sync),
     ) -> Result<Array2<f64>, Problem> {
         let [nx, ny] = self.points;
         points(nx, ny)?;
         let line = nx.saturating_mul(self.kind.width() as u64);
         let needed = self.stride.saturating_mul(ny - 1).saturating_add(line);
-        if self.stride < line || (bytes.len() as u64) < needed {
+        if self.stride < line {
             return Err(Problem::truncated(what, needed.max(line), bytes.len() as u64));
         }
+        Problem::check_length(what, needed, bytes.len())?;
         // In range: checked against the length of `bytes`.
         let (nx, ny, stride) = (nx as usize, ny as usize, self.stride as usize);
         let width = self.kind.width();
         Ok(transposed(nx, ny, &|y, columns, out| {
-            let y = if from_bottom { ny - 1 - y } else { y };
+            let y = if self.from_bottom { ny - 1 - y } else { y };
             let line = &bytes[y * stride..][columns.start * width..columns.end * width];
             decode_into(out, line, self.kind, self.order);
             values(out);
@@ -105,6 +103,15 @@ pub(super) fn from_lines(nx: usize, lines: &[&[f64]], value: impl Fn(f64) -> f64
 /// Replaces every value.
 pub(super) fn replace(map: &mut Array2<f64>, value: impl Fn(f64) -> f64 + Sync + Send) {
     if map.len() < FEW { map.mapv_inplace(value) } else { map.par_mapv_inplace(value) }
+}
+
+/// Marks the points as undefined whose number in the mask is `masked`.
+pub(super) fn undefine(map: &mut Array2<f64>, mask: &Array2<f64>, masked: impl Fn(f64) -> bool) {
+    map.zip_mut_with(mask, |value, mask| {
+        if masked(*mask) {
+            *value = f64::NAN;
+        }
+    });
 }
 
 /// Writes the values of line y between two columns.
@@ -172,14 +179,14 @@ mod tests {
         for (order, bytes) in
             [(Order::Little, numbers(i16::to_le_bytes)), (Order::Big, numbers(i16::to_be_bytes))]
         {
-            let layout = Layout { points: [3, 40], kind: Kind::I16, order, stride: 8 };
+            let layout = Layout { stride: 8, ..Layout::dense([3, 40], Kind::I16, order) };
             let map = layout.map(&bytes, "the map", |v| -v).unwrap();
             assert!(map.indexed_iter().all(|((x, y), v)| *v == -((10 * y + x) as f64)));
             let error = layout.map(&bytes[1..], "the map", |v| v).unwrap_err();
             assert!(matches!(error, Problem::Truncated { needed: 318, available: 317, .. }), "{error}");
         }
         let layout = Layout::dense([2, 3], Kind::U8, Order::Little);
-        let map = layout.map_from_bottom(&[4, 5, 2, 3, 0, 1], "the map", |v| v).unwrap();
+        let map = layout.from_bottom().map(&[4, 5, 2, 3, 0, 1], "the map", |v| v).unwrap();
         assert!(map.indexed_iter().all(|((x, y), v)| *v == (2 * y + x) as f64), "{map}");
         let absurd = Layout::dense([u64::MAX, 1], Kind::F64, Order::Big);
         assert!(absurd.map(&[], "the map", |v| v).is_err());

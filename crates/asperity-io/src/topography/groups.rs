@@ -6,8 +6,8 @@
 //!
 //! S(g) = 1 + d(g) + sum of S over the links to groups in g.
 //!
-//! A group below itself has no finite tree. Such a file is refused, as is one whose tree is deeper or larger than any
-//! that holds measured heights.
+//! A group below itself has no finite tree: such a file is refused. So is a file whose tree is deeper or larger than that of
+//! any measured surface.
 
 use std::collections::HashMap;
 use std::sync::Arc;

@@ -12,8 +12,7 @@ use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::{Problem, Reader, Request};
 
-pub(super) const GSF: Reader =
-    Reader { name: "gsf", aliases: &[], sniff: |bytes| bytes.starts_with(SIGNATURE), read, write: None };
+pub(super) const GSF: Reader = Reader::new("gsf", |bytes| bytes.starts_with(SIGNATURE), read);
 
 const SIGNATURE: &[u8] = b"Gwyddion Simple Field 1.0\n";
 

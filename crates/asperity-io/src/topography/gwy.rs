@@ -12,18 +12,13 @@ use ndarray::Array2;
 
 use super::cursor::{Cursor, text};
 use super::finish::{Lateral, Measured, Unit, unit_of};
-use super::grid::Layout;
+use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::{Problem, Reader, Request, write};
 
-pub(super) const GWY: Reader = Reader {
-    name: "gwy",
-    aliases: &[],
-    sniff: |bytes| bytes.starts_with(SIGNATURE),
-    read,
-    write: Some(write::gwy::encode),
-};
+pub(super) const GWY: Reader =
+    Reader::new("gwy", |bytes| bytes.starts_with(SIGNATURE), read).written_by(write::gwy::encode);
 
 const SIGNATURE: &[u8] = b"GWYP";
 /// Objects lie in objects: Gwyddion nests some five deep.
@@ -59,11 +54,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
             let expected = format!("{:?} as that of the heights", heights.dim());
             return Err(Problem::malformed("the shape of the mask", format!("{:?}", mask.dim()), expected));
         }
-        heights.zip_mut_with(&mask, |h, masked| {
-            if *masked > 0.5 {
-                *h = f64::NAN;
-            }
-        });
+        grid::undefine(&mut heights, &mask, |masked| masked > 0.5);
     }
     let length = |key: &str| match data.get(key) {
         Some(Value::Double(length)) if length.is_finite() && *length != 0.0 => Some(length.abs()),
@@ -110,11 +101,8 @@ struct Object<'a> {
 impl<'a> Object<'a> {
     fn parse(cursor: &mut Cursor<'a>, depth: usize) -> Result<Self, Problem> {
         if depth > DEEPEST {
-            return Err(Problem::malformed(
-                "the depth of nested objects",
-                depth,
-                format!("at most {DEEPEST}"),
-            ));
+            let expected = format!("at most {DEEPEST}");
+            return Err(Problem::malformed("the depth of nested objects", depth, expected));
         }
         let kind = string(cursor)?;
         let length = cursor.u32("the length of an object")?;
@@ -173,37 +161,23 @@ impl<'a> Value<'a> {
             b's' => Value::Text(string(c)?),
             b'o' => Value::Object(Object::parse(c, depth + 1)?),
             b'D' => Value::Doubles(array(c, 8)?),
-            b'b' | b'c' => skip(c.bytes(1, &what())?),
-            b'q' => skip(c.bytes(8, &what())?),
-            b'C' => skip(array(c, 1)?),
-            b'I' => skip(array(c, 4)?),
-            b'Q' => skip(array(c, 8)?),
-            b'S' => {
+            b'b' | b'c' => c.bytes(1, &what()).map(|_| Value::Skipped)?,
+            b'q' => c.bytes(8, &what()).map(|_| Value::Skipped)?,
+            b'C' => array(c, 1).map(|_| Value::Skipped)?,
+            b'I' => array(c, 4).map(|_| Value::Skipped)?,
+            b'Q' => array(c, 8).map(|_| Value::Skipped)?,
+            b'S' | b'O' => {
                 for _ in 0..c.u32(&what())? {
-                    string(c)?;
-                }
-                Value::Skipped
-            }
-            b'O' => {
-                for _ in 0..c.u32(&what())? {
-                    Object::parse(c, depth + 1)?;
+                    if kind == b'S' { string(c).map(drop)? } else { Object::parse(c, depth + 1).map(drop)? }
                 }
                 Value::Skipped
             }
             other => {
-                let kind = char::from(other);
-                return Err(Problem::malformed(
-                    format!("the type of {}", what()),
-                    kind,
-                    "one of bciqdsoCIQDSO",
-                ));
+                let (what, kind) = (format!("the type of {}", what()), char::from(other));
+                return Err(Problem::malformed(what, kind, "one of bciqdsoCIQDSO"));
             }
         })
     }
-}
-
-fn skip<'a>(_: &[u8]) -> Value<'a> {
-    Value::Skipped
 }
 
 /// A string that ends with a zero.

@@ -16,7 +16,7 @@ use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::{Problem, Reader, Request};
 
-pub(super) const IBW: Reader = Reader { name: "ibw", aliases: &[], sniff: is_ibw, read, write: None };
+pub(super) const IBW: Reader = Reader::new("ibw", is_ibw, read);
 
 const HEADER: u64 = 64;
 const WAVE_HEADER: u64 = 320;
@@ -52,17 +52,15 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     for length in &mut lengths {
         *length = u64::from(c.u32(H)?);
     }
-    let [wave, formula, note, unit, dim_units @ .., _, _, _, _, _] = lengths;
-    let label_lengths = [lengths[8], lengths[9], lengths[10], lengths[11]];
+    let [wave, formula, note, ..] = lengths;
 
-    let mut c = Cursor::at(bytes, 80, order, H)?;
-    let code = c.u16(H)?;
-    let mut c = Cursor::at(bytes, 92, order, H)?;
-    let name = c.text(LABEL as u64, H)?;
-    let mut c = Cursor::at(bytes, 132, order, H)?;
+    let at = |offset| Cursor::at(bytes, offset, order, H);
+    let code = at(80)?.u16(H)?;
+    let name = at(92)?.text(LABEL as u64, H)?;
+    let mut c = at(132)?;
     let points = [c.u32(H)?, c.u32(H)?, c.u32(H)?, c.u32(H)?].map(u64::from);
     let spacing = [c.f64(H)?, c.f64(H)?];
-    let mut c = Cursor::at(bytes, 212, order, H)?;
+    let mut c = at(212)?;
     let short_units = [c.text(4, H)?, c.text(4, H)?, c.text(4, H)?];
     let kind = kind(code)?;
 
@@ -70,22 +68,15 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let mut c = Cursor::at(bytes, HEADER + wave, order, "the end of the Igor wave")?;
     c.bytes(formula, "the formula")?;
     let note = note_entries(c.bytes(note, "the note")?);
-    let mut units = [c.text(unit, "the unit of the data")?, String::new(), String::new()];
-    for (i, length) in dim_units.iter().take(4).enumerate() {
-        let text = c.text(*length, "the unit of a dimension")?;
-        if i < 2 {
-            units[i + 1] = text;
-        }
-    }
+    // The units of the data and of the dimensions; long ones replace the short ones of the header.
+    let long = lengths[3..8].iter().map(|length| c.text(*length, "a unit of the Igor wave"));
+    let long = long.collect::<Result<Vec<_>, _>>()?.into_iter();
+    let either = |(long, short): (String, String)| if long.is_empty() { short } else { long };
+    let units: Vec<String> = long.zip(short_units).map(either).collect();
     let mut labels = Vec::new();
-    for length in label_lengths {
-        let block = c.bytes(length, "the labels of a dimension")?;
+    for length in &lengths[8..12] {
+        let block = c.bytes(*length, "the labels of a dimension")?;
         labels.push(block.as_chunks::<LABEL>().0.iter().skip(1).map(|l| text(l)).collect::<Vec<_>>());
-    }
-    for (long, short) in units.iter_mut().zip(short_units) {
-        if long.is_empty() {
-            *long = short;
-        }
     }
 
     let [nx, ny, layers, more] = points;
@@ -102,10 +93,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     check_channels(usize::try_from(layers).unwrap_or(usize::MAX))?;
     let layer = grid::points(nx, ny)? as u64 * kind.width() as u64;
     let data = Cursor::at(bytes, HEADER + WAVE_HEADER, order, "the Igor wave")?.rest();
-    let available = data.len() as u64;
-    if layer.saturating_mul(layers) > available {
-        return Err(Problem::truncated("the Igor wave", layer.saturating_mul(layers), available));
-    }
+    Problem::check_length("the Igor wave", layer.saturating_mul(layers), data.len())?;
     let label = |i: usize| labels[2].get(i).filter(|l| !l.is_empty());
     let names: Vec<String> = (0..layers as usize)
         .map(|i| label(i).cloned().unwrap_or_else(|| format!("no name ({})", i + 1)))
@@ -118,7 +106,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
 
     let start = index * layer as usize;
     let layout = Layout::dense([nx, ny], kind, order);
-    let heights = layout.map_from_bottom(&data[start..], "a layer of the Igor wave", |h| h)?;
+    let heights = layout.from_bottom().map(&data[start..], "a layer of the Igor wave", |h| h)?;
     let size = [nx as f64 * spacing[0].abs(), ny as f64 * spacing[1].abs()];
     let lateral = Lateral::of(size, [&units[1], &units[2]].map(|u| unit_of(u, LoneA::Ampere)));
     let measured = Measured::new(heights, unit(index), lateral).of_channel(names, index);

@@ -15,20 +15,15 @@ use super::grid::Layout;
 use super::sample::{Kind, Order};
 use super::{Problem, Reader, Request};
 
-pub(super) const METROPRO: Reader = Reader {
-    name: "metropro",
-    aliases: &["dat"],
-    sniff: |bytes| header_length(bytes).is_some(),
-    read,
-    write: None,
-};
+pub(super) const METROPRO: Reader =
+    Reader::new("metropro", |bytes| header_length(bytes).is_some(), read).also_called(&["dat"]);
 
-/// The least phase that is none.
+/// Phases from this number on are undefined.
 const UNDEFINED: f64 = 2_147_483_640.0;
 /// Name of the only channel.
 const NAME: &str = "Default";
 
-/// Length of the header that the signature says, where it is one.
+/// Length of the header by the signature; `None` for another file.
 fn header_length(bytes: &[u8]) -> Option<u32> {
     match bytes {
         [0x88, 0x1b, 0x03, 0x6f | 0x70, ..] => Some(834),
@@ -46,11 +41,8 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let at = |offset: u64| Cursor::at(bytes, offset, Order::Big, H);
     let header = at(6)?.u32(H)?;
     if header != expected {
-        return Err(Problem::malformed(
-            "the length of the MetroPro header",
-            header,
-            format!("{expected} bytes"),
-        ));
+        let expected = format!("{expected} bytes");
+        return Err(Problem::malformed("the length of the MetroPro header", header, expected));
     }
     let date = at(12)?.text(30, H)?;
     let intensities = at(60)?.u32(H)?;

@@ -17,7 +17,7 @@ use std::io::Read;
 use flate2::read::ZlibDecoder;
 
 use super::compound::{self, is_compound};
-use super::cursor::Cursor;
+use super::cursor::{Cursor, utf16};
 use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
@@ -26,12 +26,12 @@ use super::unpack::{most_unpacked, read_bounded};
 use super::{Problem, Reader, Request, foreign};
 
 // Other documents of this kind are refused by the reader.
-pub(super) const MNT: Reader = Reader { name: "mnt", aliases: &[], sniff: is_compound, read, write: None };
+pub(super) const MNT: Reader = Reader::new("mnt", is_compound, read);
 
 const CONTENTS: &str = "ScopedContents";
 /// Tag of the part that an entry extends.
 const BASE: u16 = 0xffff;
-const MEASURED: u8 = 9;
+const MEASURED: f64 = 9.0;
 
 mod class {
     pub(super) const SURFACE: u32 = 9012;
@@ -92,14 +92,8 @@ impl<'a> Node<'a> {
     }
 
     fn at(self, path: &[u16]) -> Result<Option<Node<'a>>, Problem> {
-        let mut node = self;
-        for tag in path {
-            match node.find(*tag)? {
-                Some(inner) => node = inner,
-                None => return Ok(None),
-            }
-        }
-        Ok(Some(node))
+        let step = |node: Option<Node<'a>>, tag: &u16| node.map_or(Ok(None), |node| node.find(*tag));
+        path.iter().try_fold(Some(self), step)
     }
 
     fn class(self) -> Result<Option<u32>, Problem> {
@@ -117,9 +111,7 @@ impl<'a> Node<'a> {
 
     /// A mark (4) and UTF-16.
     fn text(self) -> Option<String> {
-        let characters = self.0.strip_prefix(&[4])?.as_chunks::<2>().0.iter().map(|b| u16::from_le_bytes(*b));
-        let text: String =
-            char::decode_utf16(characters).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+        let text = utf16(self.0.strip_prefix(&[4])?, Order::Little);
         Some(text.trim_matches(['\0', ' ']).to_owned())
     }
 }
@@ -144,13 +136,8 @@ impl Scale {
         })?;
         let unit = text(0x2)?;
         let display_unit = Some(text(0x3)?).filter(|u| !u.is_empty()).unwrap_or_else(|| unit.clone());
-        Ok(Scale {
-            step,
-            unit,
-            display_unit,
-            ratio: number(0x4)?.unwrap_or(1.0),
-            origin: number(0x5)?.unwrap_or(0.0),
-        })
+        let (ratio, origin) = (number(0x4)?.unwrap_or(1.0), number(0x5)?.unwrap_or(0.0));
+        Ok(Scale { step, unit, display_unit, ratio, origin })
     }
 
     /// Metres per count, and the origin in metres.
@@ -234,14 +221,9 @@ impl<'a> Surface<'a> {
             // With a border of one point.
             let points = self.points.map(|n| n + 2);
             let bytes = blocks(mask, points[0].saturating_mul(points[1]), MASK)?;
-            let layout =
-                Layout { points: self.points, kind: Kind::U8, order: Order::Little, stride: points[0] };
+            let layout = Layout { kind: Kind::U8, stride: points[0], ..layout };
             let first = bytes.get(points[0] as usize + 1..).unwrap_or_default();
-            heights.zip_mut_with(&layout.map(first, MASK, |m| m)?, |h, m| {
-                if *m != f64::from(MEASURED) {
-                    *h = f64::NAN;
-                }
-            });
+            grid::undefine(&mut heights, &layout.map(first, MASK, |m| m)?, |m| m != MEASURED);
         }
         let [nx, ny] = self.points.map(|n| n as f64);
         let size = [nx * x.step.abs(), ny * y.step.abs()];
@@ -293,8 +275,6 @@ fn blocks(array: Node, count: u64, what: &str) -> Result<Vec<u8>, Problem> {
         }
         whole.extend(block);
     }
-    match whole.len() as u64 == length {
-        true => Ok(whole),
-        false => Err(Problem::truncated(what, length, whole.len() as u64)),
-    }
+    Problem::check_length(what, length, whole.len())?;
+    Ok(whole)
 }

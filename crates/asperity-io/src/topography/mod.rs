@@ -55,7 +55,7 @@ use crate::resources;
 use finish::finish;
 use format::{Reader, formats};
 use request::Request;
-pub(crate) use text::{dialect, is_numbers, to_text};
+pub(crate) use text::{dialect, is_numbers, leading_number, to_text};
 
 formats! {
     /// A file format.
@@ -137,7 +137,7 @@ impl Topography {
         self.heights.iter().filter(|h| h.is_nan()).count()
     }
 
-    /// What was done to the heights since they were measured or made, where the file or [`record`](Self::record) says.
+    /// The steps by which the heights were changed since they were measured or made, from the file and [`record`](Self::record).
     pub fn history(&self) -> impl Iterator<Item = &str> {
         let entries = self.metadata.iter().filter(|(key, _)| key.eq_ignore_ascii_case(HISTORY));
         entries
@@ -164,7 +164,7 @@ impl Topography {
         }
     }
 
-    /// The history as one line, where there is one.
+    /// The history as one line; `None` without a history.
     fn history_line(&self) -> Option<String> {
         // A line break would end the entry in a text file.
         let steps: Vec<String> = self.history().map(|step| step.replace(['\n', '\r'], " ")).collect();
@@ -176,7 +176,7 @@ impl Topography {
 const HISTORY: &str = "History";
 const BETWEEN_STEPS: &str = "; ";
 
-/// What the caller knows and the file may not say.
+/// What the caller knows about a file.
 ///
 /// The defaults take everything from the file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -199,17 +199,16 @@ pub struct ReadOptions {
 /// [`TopographyError`] with the path: no access, an unknown, broken or truncated file, no such channel, or a size or
 /// unit that neither the file nor `options` state.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Topography, TopographyError> {
-    let in_file = |problem| TopographyError { path: Some(path.to_owned()), problem };
-    let bytes = bytes_of(path, options).map_err(in_file)?;
-    parse(&bytes, options).map_err(in_file)
+    let bytes = bytes_of(path, options).map_err(TopographyError::at(path))?;
+    parse(&bytes, options).map_err(TopographyError::at(path))
 }
 
-/// Bytes that tell the format of a file.
+/// Bytes at the start of a file that are enough to find its format.
 const HEAD: u64 = 1 << 20;
 /// Memory that reading takes, per byte of the file: the file, its numbers, and their copy on the grid.
 const MEMORY_PER_BYTE: u64 = 3;
 
-/// The bytes of a file. A large one is read whole only where its head is that of a known format and the memory is there.
+/// The bytes of a file. A large file is read whole only if its start is that of a known format and there is enough memory.
 fn bytes_of(path: &Path, options: &ReadOptions) -> Result<Vec<u8>, Problem> {
     let mut file = resources::open(path)?;
     let length = file.metadata()?.len();
@@ -218,13 +217,13 @@ fn bytes_of(path: &Path, options: &ReadOptions) -> Result<Vec<u8>, Problem> {
     if (bytes.len() as u64) < HEAD {
         return Ok(bytes);
     }
-    if options.format.is_none() && detect(&bytes).is_none() && !foreign::told_by_end(&bytes) {
+    if options.format.is_none() && detect(&bytes).is_none() && !foreign::is_known_by_end(&bytes) {
         return Err(foreign::unread(&bytes));
     }
     resources::check_memory("the contents of the file", length.saturating_mul(MEMORY_PER_BYTE))
         .map_err(Problem::TooLarge)?;
     bytes.reserve_exact(usize::try_from(length.saturating_sub(HEAD)).unwrap_or(0));
-    // No further than the length above, should the file grow meanwhile.
+    // The file may grow meanwhile: no more is read than the length above.
     file.take(length.saturating_sub(HEAD)).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
@@ -246,7 +245,7 @@ fn bytes_of(path: &Path, options: &ReadOptions) -> Result<Vec<u8>, Problem> {
 /// # Errors
 /// As [`read`], without a path.
 pub fn read_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Topography, TopographyError> {
-    parse(bytes, options).map_err(|problem| TopographyError { path: None, problem })
+    Ok(parse(bytes, options)?)
 }
 
 fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Problem> {

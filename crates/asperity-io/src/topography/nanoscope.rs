@@ -9,7 +9,7 @@
 //! height = n Z S / 2^(8 B),   B: `Bytes/pixel`
 //! ```
 //!
-//! From version 9.2 every number takes 4 bytes, whatever B says. Files before version 4.3 have other scales and are
+//! From version 9.2 on every number takes 4 bytes; B is ignored. Files before version 4.3 have other scales and are
 //! refused. (Digital Instruments, "Nanoscope command reference manual", and the readers of Gwyddion and
 //! SurfaceTopography.)
 
@@ -22,8 +22,7 @@ use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
 use super::{Problem, Reader, Request};
 
-pub(super) const NANOSCOPE: Reader =
-    Reader { name: "di", aliases: &["spm", "nanoscope"], sniff: is_nanoscope, read, write: None };
+pub(super) const NANOSCOPE: Reader = Reader::new("di", is_nanoscope, read).also_called(&["spm", "nanoscope"]);
 
 /// First words of a file; "?" in place of "\\" says that the numbers are written as text.
 const STARTS: [&str; 3] = ["*file list", "*force file list", "*ec file list"];
@@ -73,7 +72,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let what = format!("the image {:?}", names[index]);
     let data = Cursor::at(bytes, offset, Order::Little, &what)?.rest();
     let layout = Layout::dense(plane.points, plane.kind, Order::Little);
-    let heights = layout.map_from_bottom(data, &what, |n| n * scale)?;
+    let heights = layout.from_bottom().map(data, &what, |n| n * scale)?;
     let measured = Measured::new(heights, unit, plane.lateral).of_channel(names, index);
     Ok(measured.with(header.metadata(image)))
 }
@@ -248,26 +247,22 @@ fn size(image: &Entries) -> Result<[f64; 3], Problem> {
 
 /// How many of the second unit are one of the first: "mV" and "V" differ by a prefix.
 fn ratio(unit: &str, other: &str) -> Option<f64> {
-    let (unit, other) = (unit.trim(), other.trim());
-    if unit == other {
-        return Some(1.0);
+    const PREFIXES: [(&[char], f64); 5] = [
+        (&['k'], 1e3),
+        (&['m'], 1e-3),
+        (&['u', '\u{b5}', '\u{3bc}', '~'], 1e-6),
+        (&['n'], 1e-9),
+        (&['p'], 1e-12),
+    ];
+    // A unit without a prefix, or with each that it may have.
+    fn readings_of(unit: &str) -> impl Iterator<Item = (f64, &str)> {
+        let prefixed =
+            PREFIXES.iter().filter_map(move |(prefix, factor)| Some((*factor, unit.strip_prefix(*prefix)?)));
+        std::iter::once((1.0, unit)).chain(prefixed.filter(|(_, base)| !base.is_empty()))
     }
-    let parts = |unit: &str| -> Option<(f64, String)> {
-        let first = unit.chars().next()?;
-        let factor = match first {
-            'k' => 1e3,
-            'm' => 1e-3,
-            'u' | '\u{b5}' | '\u{3bc}' | '~' => 1e-6,
-            'n' => 1e-9,
-            'p' => 1e-12,
-            _ => return None,
-        };
-        Some((factor, unit[first.len_utf8()..].to_owned()))
-    };
-    let prefixed = |a: &str, b: &str| parts(a).filter(|(_, base)| base == b).map(|(factor, _)| factor);
-    prefixed(unit, other).or_else(|| prefixed(other, unit).map(f64::recip)).or_else(|| {
-        let ((f, a), (g, b)) = (parts(unit)?, parts(other)?);
-        (a == b && !a.is_empty()).then_some(f / g)
+    let (unit, other) = (unit.trim(), other.trim());
+    readings_of(unit).find_map(|(factor, base)| {
+        readings_of(other).find(|(_, of_other)| base == *of_other).map(|(of_other, _)| factor / of_other)
     })
 }
 

@@ -21,15 +21,12 @@ use super::{Format, Problem, Reader, Request, foreign, grid, groups, write};
 const DEFAULT_FILL: f64 = 9.969_209_968_386_869e36;
 
 // NetCDF-4 is HDF5; reading tells which.
-pub(super) const NETCDF: Reader = Reader {
-    name: "nc",
-    aliases: &["netcdf"],
-    sniff: |bytes| matches!(bytes, [b'C', b'D', b'F', 1 | 2 | 5, ..]),
-    read,
-    write: Some(write::netcdf::encode),
-};
+pub(super) const NETCDF: Reader =
+    Reader::new("nc", |bytes| matches!(bytes, [b'C', b'D', b'F', 1 | 2 | 5, ..]), read)
+        .also_called(&["netcdf"])
+        .written_by(write::netcdf::encode);
 
-pub(super) const HDF5: Reader = Reader { name: "h5", aliases: &["hdf5"], sniff: is_hdf5, read, write: None };
+pub(super) const HDF5: Reader = Reader::new("h5", is_hdf5, read).also_called(&["hdf5"]);
 
 fn is_hdf5(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x89HDF\r\n\x1a\n")
@@ -74,11 +71,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
         && mask.shape() == shape
     {
         let mask = two_dimensional(file.read_variable_as_f64(&sibling(name, "mask")), "mask")?;
-        heights.zip_mut_with(&mask, |h, masked| {
-            if *masked != 0.0 {
-                *h = f64::NAN;
-            }
-        });
+        grid::undefine(&mut heights, &mask, |masked| masked != 0.0);
     }
     let dimension = |axis: usize| variable.dimensions().get(axis).map_or("", |d| d.name.as_str());
     let y_first =
@@ -122,7 +115,7 @@ fn maps(file: &NcFile) -> Result<Vec<(String, &NcVariable)>, Problem> {
     Ok(maps)
 }
 
-/// Bytes of a number of this type, 0 where it is none.
+/// Bytes of a number of this type; 0 for another type.
 fn width(kind: &NcType) -> u64 {
     match kind {
         NcType::Byte | NcType::UByte => 1,
@@ -185,7 +178,7 @@ fn text(value: &NcAttrValue) -> Option<String> {
     }
 }
 
-/// The size, and the label of the unit where both axes have the same.
+/// The size, and the label of its unit if both axes have the same unit.
 fn lateral(lengths: [Option<(f64, Option<String>)>; 2]) -> (Lateral, Option<String>) {
     let [Some((x, x_label)), Some((y, y_label))] = lengths else {
         return (Lateral::Unstated(String::new()), None);

@@ -19,7 +19,7 @@ use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::{Problem, Reader, Request};
 
-pub(super) const NID: Reader = Reader { name: "nid", aliases: &["ezd"], sniff: is_nid, read, write: None };
+pub(super) const NID: Reader = Reader::new("nid", is_nid, read).also_called(&["ezd"]);
 
 const START: &[u8] = b"[DataSet]";
 /// Headers have some 30 kB.
@@ -46,7 +46,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let names: Vec<String> = sets.iter().map(Set::name).collect();
     let unit = |i: usize| match sets[i].lateral() {
         Lateral::Metres(_) => sets[i].unit("Dim2Unit"),
-        // A curve over a voltage or a force is no map, whatever its values are.
+        // A curve over a voltage or a force is not a map, even if its values are lengths.
         _ => Unit::Unstated,
     };
     let index = request.choose_heights(&names, unit)?;
@@ -58,8 +58,9 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let signed = matches!(set.kind, Kind::I8 | Kind::I16 | Kind::I32);
     let (step, least) = (range / 2f64.powi(bits), if signed { least + range / 2.0 } else { least });
     let data = Cursor::at(data, set.offset, set.order, &what)?.rest();
-    let heights =
-        Layout::dense(set.points, set.kind, set.order).map_from_bottom(data, &what, |n| least + step * n)?;
+    let heights = Layout::dense(set.points, set.kind, set.order)
+        .from_bottom()
+        .map(data, &what, |n| least + step * n)?;
     let info = sections.iter().find(|s| s.title == "DataSet-Info");
     let metadata = info.into_iter().chain([set.section]).cloned().flatten();
     let metadata = metadata.filter(|(key, _)| !key.starts_with("--"));
@@ -85,11 +86,8 @@ fn header(bytes: &[u8]) -> Result<(Vec<Entries>, &[u8]), Problem> {
             section.push(key, value);
         }
     }
-    Err(Problem::truncated(
-        "the header of the Nanosurf file, up to \"#!\",",
-        bytes.len() as u64 + 2,
-        bytes.len() as u64,
-    ))
+    let length = bytes.len() as u64;
+    Err(Problem::truncated("the header of the Nanosurf file, up to \"#!\",", length + 2, length))
 }
 
 /// The data sets in their order.

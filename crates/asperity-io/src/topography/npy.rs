@@ -7,6 +7,7 @@
 
 use ndarray::Array2;
 
+use super::cursor::Cursor;
 use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order, decode};
@@ -14,16 +15,11 @@ use super::unit::LoneA;
 use super::unpack::{Archive, holds_member};
 use super::{HISTORY, Problem, Reader, Request, write};
 
-pub(super) const NPY: Reader =
-    Reader { name: "npy", aliases: &[], sniff: |bytes| bytes.starts_with(SIGNATURE), read, write: None };
+pub(super) const NPY: Reader = Reader::new("npy", |bytes| bytes.starts_with(SIGNATURE), read);
 
-pub(super) const NPZ: Reader = Reader {
-    name: "npz",
-    aliases: &[],
-    sniff: |bytes| holds_member(bytes, |name| name.ends_with(".npy")),
-    read: read_archive,
-    write: Some(write::npz::encode),
-};
+pub(super) const NPZ: Reader =
+    Reader::new("npz", |bytes| holds_member(bytes, |name| name.ends_with(".npy")), read_archive)
+        .written_by(write::npz::encode);
 
 const SIGNATURE: &[u8] = b"\x93NUMPY";
 
@@ -33,7 +29,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     Ok(Measured::new(heights, Unit::Unstated, Lateral::Unstated(String::new())))
 }
 
-/// Reads the channel asked for of an NPZ file: each two-dimensional array is one.
+/// Reads the channel asked for from an NPZ file: each two-dimensional array is a channel.
 fn read_archive(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let mut archive = Archive::open(bytes)?;
     let (mut names, mut size, mut unit, mut metadata) = (Vec::new(), None, None, Vec::new());
@@ -79,42 +75,30 @@ struct Npy<'a> {
 
 impl<'a> Npy<'a> {
     fn parse(bytes: &'a [u8]) -> Result<Self, Problem> {
-        let truncated = || Problem::truncated("the NPY header", 12, bytes.len() as u64);
+        const HEADER: &str = "the NPY header";
         let rest = bytes
             .strip_prefix(SIGNATURE)
             .ok_or_else(|| Problem::malformed("the signature", "something else", "\\x93NUMPY"))?;
-        let (&[major, _minor], rest) = rest.split_first_chunk::<2>().ok_or_else(truncated)?;
-        let (length, rest) = if major == 1 {
-            let (length, rest) = rest.split_first_chunk::<2>().ok_or_else(truncated)?;
-            (usize::from(u16::from_le_bytes(*length)), rest)
-        } else {
-            let (length, rest) = rest.split_first_chunk::<4>().ok_or_else(truncated)?;
-            (u32::from_le_bytes(*length) as usize, rest)
-        };
-        let (header, data) = rest
-            .split_at_checked(length)
-            .ok_or_else(|| Problem::truncated("the NPY header", length as u64, rest.len() as u64))?;
-        let header = std::str::from_utf8(header)
-            .map_err(|_| Problem::malformed("the NPY header", "not text", "a Python dictionary"))?;
+        let mut c = Cursor::new(rest, Order::Little);
+        let [major, _minor] = [c.u8(HEADER)?, c.u8(HEADER)?];
+        let length = if major == 1 { u64::from(c.u16(HEADER)?) } else { u64::from(c.u32(HEADER)?) };
+        let header = std::str::from_utf8(c.bytes(length, HEADER)?)
+            .map_err(|_| Problem::malformed(HEADER, "not text", "a Python dictionary"))?;
         let field = |key: &str| {
             // Keys are quoted by ' or "; no value contains one of them as text.
             let at = header.find(&format!("'{key}'")).or_else(|| header.find(&format!("\"{key}\"")));
             at.and_then(|at| header[at + key.len() + 2..].trim_start().strip_prefix(':'))
                 .map(str::trim_start)
                 .ok_or_else(|| {
-                    Problem::malformed("the NPY header", header, format!("a dictionary with the key {key:?}"))
+                    Problem::malformed(HEADER, header, format!("a dictionary with the key {key:?}"))
                 })
         };
         let descr = field("descr")?;
-        let descr = match descr.chars().next() {
-            Some(quote @ ('\'' | '"')) => descr[1..].split(quote).next().unwrap_or_default(),
-            _ => {
-                return Err(Problem::unsupported(
-                    "an NPY file of records (a structured type)",
-                    "save one field of it as an array of its own",
-                ));
-            }
-        };
+        let quoted = descr.strip_prefix(['\'', '"']).ok_or_else(|| {
+            let instead = "save one field of it as an array of its own";
+            Problem::unsupported("an NPY file of records (a structured type)", instead)
+        })?;
+        let descr = quoted.split(['\'', '"']).next().unwrap_or_default();
         let fortran_order = match field("fortran_order")? {
             value if value.starts_with("False") => false,
             value if value.starts_with("True") => true,
@@ -123,27 +107,22 @@ impl<'a> Npy<'a> {
             }
         };
         let tuple = field("shape")?;
+        let numbers = |inner: &str| {
+            let numbers = inner.split(',').map(str::trim).filter(|n| !n.is_empty());
+            numbers.map(|n| n.trim_end_matches('L').parse().ok()).collect::<Option<Vec<u64>>>()
+        };
         let inner = tuple.strip_prefix('(').and_then(|t| t.split_once(')')).map(|(inner, _)| inner);
-        let shape = inner
-            .map(|t| {
-                t.split(',').map(str::trim).filter(|n| !n.is_empty()).map(|n| n.trim_end_matches('L').parse())
-            })
-            .and_then(|numbers| numbers.collect::<Result<Vec<u64>, _>>().ok())
-            .ok_or_else(|| {
-                Problem::malformed("'shape' in the NPY header", tuple, "a tuple of whole numbers")
-            })?;
-        Ok(Npy { descr, fortran_order, shape, data })
+        let shape = inner.and_then(numbers).ok_or_else(|| {
+            Problem::malformed("'shape' in the NPY header", tuple, "a tuple of whole numbers")
+        })?;
+        Ok(Npy { descr, fortran_order, shape, data: c.rest() })
     }
 
     /// Type and order of the numbers, or `None` where they are no real numbers.
     fn kind(&self) -> Option<(Kind, Order)> {
-        let (order, name) = match self.descr.as_bytes().first()? {
-            b'<' => (Order::Little, &self.descr[1..]),
-            b'>' => (Order::Big, &self.descr[1..]),
-            // "|": one byte; "=": of the machine that wrote it, which is little-endian.
-            b'|' | b'=' => (Order::Little, &self.descr[1..]),
-            _ => (Order::Little, self.descr),
-        };
+        // "|": one byte; "=": of the machine that wrote it, which is little-endian.
+        let order = if self.descr.starts_with('>') { Order::Big } else { Order::Little };
+        let name = self.descr.trim_start_matches(['<', '>', '|', '=']);
         let kind = match name {
             "f2" => Kind::F16,
             "f4" => Kind::F32,
@@ -195,21 +174,13 @@ impl<'a> Npy<'a> {
 
     /// The text of an array of one string ('<U2': UCS-4, '|S2': bytes).
     fn text(&self) -> Option<String> {
+        let wide = |number: fn([u8; 4]) -> u32| {
+            let characters = self.data.as_chunks::<4>().0.iter();
+            characters.filter_map(|bytes| char::from_u32(number(*bytes))).collect()
+        };
         let text: String = match self.descr.get(..2)? {
-            "<U" => self
-                .data
-                .as_chunks::<4>()
-                .0
-                .iter()
-                .filter_map(|c| char::from_u32(u32::from_le_bytes(*c)))
-                .collect(),
-            ">U" => self
-                .data
-                .as_chunks::<4>()
-                .0
-                .iter()
-                .filter_map(|c| char::from_u32(u32::from_be_bytes(*c)))
-                .collect(),
+            "<U" => wide(u32::from_le_bytes),
+            ">U" => wide(u32::from_be_bytes),
             "|S" => String::from_utf8_lossy(self.data).into_owned(),
             _ => return None,
         };

@@ -11,7 +11,7 @@ use super::finish::{Lateral, Measured, Unit};
 use super::sample::{Kind, Order, decode};
 use super::{Problem, Reader, Request, cursor, grid};
 
-pub(super) const OPD: Reader = Reader { name: "opd", aliases: &[], sniff: is_opd, read, write: None };
+pub(super) const OPD: Reader = Reader::new("opd", is_opd, read);
 
 /// Names of the arrays that hold heights; others ("Image", "SecArr_0") hold intensities.
 const HEIGHTS: [&str; 5] = ["RAW_DATA", "RAW DATA", "Raw", "OPD", "SAMPLE_DATA"];
@@ -89,7 +89,7 @@ fn blocks(bytes: &[u8]) -> Result<Vec<Block<'_>>, Problem> {
 }
 
 impl Block<'_> {
-    /// The number in a block. Some files declare a type that the length belies: the length decides.
+    /// The number in a block. In some files the declared type does not fit the length: then the length decides.
     fn number(&self) -> Option<f64> {
         let mut c = Cursor::new(self.content, Order::Little);
         let value = match (self.kind, self.content.len()) {

@@ -12,7 +12,7 @@ use super::sample::{Kind, Order};
 use super::{Problem, Reader, Request};
 
 // The least certain sign: there is no signature.
-pub(super) const PLU: Reader = Reader { name: "plu", aliases: &["apx"], sniff: is_plu, read, write: None };
+pub(super) const PLU: Reader = Reader::new("plu", is_plu, read).also_called(&["apx"]);
 
 const UNDEFINED: f64 = 1_000_001.0;
 const UM: f64 = 1e-6;

@@ -36,9 +36,9 @@ pub struct Profile {
 /// # Errors
 /// [`TopographyError`] with the path: positions that do not increase, too few points, or no unit.
 pub fn read_profile(path: &Path, options: &ReadOptions) -> Result<Option<Profile>, TopographyError> {
-    let in_file = |problem| TopographyError { path: Some(path.to_owned()), problem };
-    let bytes = super::bytes_of(path, options).map_err(in_file)?;
-    let unpacked = unpack::gunzip(&bytes).map_err(in_file)?;
+    let in_file = TopographyError::at(path);
+    let bytes = super::bytes_of(path, options).map_err(&in_file)?;
+    let unpacked = unpack::gunzip(&bytes).map_err(&in_file)?;
     let bytes = unpacked.as_deref().unwrap_or(&bytes);
     if !is_profile(bytes) {
         return Ok(None);
@@ -61,7 +61,7 @@ pub fn read_profile(path: &Path, options: &ReadOptions) -> Result<Option<Profile
 /// # Errors
 /// As [`read_profile`], without a path.
 pub fn profile_of(bytes: &[u8], options: &ReadOptions) -> Result<Profile, TopographyError> {
-    profile(bytes, options).map_err(|problem| TopographyError { path: None, problem })
+    Ok(profile(bytes, options)?)
 }
 
 fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Problem> {
@@ -70,18 +70,13 @@ fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Problem> {
     if count < 2 {
         return Err(Problem::malformed("the number of points of the profile", count, "2 at least"));
     }
-    let stated = match columns.unit {
-        Unit::Metres(metres) => Some(metres),
-        Unit::Unstated => None,
-        Unit::Other(ref label) if options.height_unit.is_none() => {
-            let detail = format!(" (it says {label:?})");
-            return Err(Problem::MissingHeightUnit { format: Format::Text, detail });
-        }
-        Unit::Other(_) => None,
+    let (stated, detail) = match columns.unit {
+        Unit::Metres(metres) => (Some(metres), String::new()),
+        Unit::Unstated => (None, String::new()),
+        Unit::Other(label) => (None, format!(" (it says {label:?})")),
     };
-    let Some(height_unit) = options.height_unit.or(stated) else {
-        return Err(Problem::MissingHeightUnit { format: Format::Text, detail: String::new() });
-    };
+    let missing = || Problem::MissingHeightUnit { format: Format::Text, detail };
+    let height_unit = options.height_unit.or(stated).ok_or_else(missing)?;
     let (mut x, mut z) = (columns.positions, columns.heights);
     let mut history = vec![];
     if x[0] > x[count - 1] {
@@ -124,8 +119,9 @@ fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Problem> {
         let heights = Array2::from_shape_vec((count, 1), heights).unwrap_or_default();
         Surface::new(grid, heights)
     });
-    let told = |error: asperity::Error| Problem::malformed("the profile", error, "a line of positive length");
-    Ok(Profile { surface: made.map_err(told)?, history, metadata: columns.metadata })
+    let wrong =
+        |error: asperity::Error| Problem::malformed("the profile", error, "a line of positive length");
+    Ok(Profile { surface: made.map_err(wrong)?, history, metadata: columns.metadata })
 }
 
 /// Heights at evenly spaced places, straight between the points; undefined where a neighbour is.

@@ -1,9 +1,9 @@
-//! What is asked of a reader: a format, and the channel.
+//! What the caller asks for: a format and a channel.
 
 use super::finish::Unit;
 use super::{Format, Problem};
 
-/// What is asked of a reader.
+/// What the caller asks for.
 pub(super) struct Request<'a> {
     /// The format that it reads, for messages.
     pub format: Format,

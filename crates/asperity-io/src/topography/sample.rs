@@ -7,20 +7,55 @@ use super::Problem;
 /// Maps with fewer points are not worth the threads.
 pub(super) const FEW: usize = 1 << 15;
 
-/// Type of a binary number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    U8,
-    I8,
-    U16,
-    I16,
-    U32,
-    I32,
-    U64,
-    I64,
-    F16,
-    F32,
-    F64,
+/// Makes the enum of the types of numbers, and what decodes them, from a list of types that Rust knows.
+macro_rules! kinds {
+    ($($kind:ident: $number:ty;)*) => {
+        /// Type of a binary number.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(super) enum Kind {
+            $($kind,)*
+            F16,
+        }
+
+        impl Kind {
+            /// Bytes of one number.
+            pub(super) fn width(self) -> usize {
+                match self {
+                    $(Kind::$kind => size_of::<$number>(),)*
+                    Kind::F16 => 2,
+                }
+            }
+        }
+
+        /// The numbers of `bytes`, as many as there is room for.
+        pub(super) fn decode_into(numbers: &mut [f64], bytes: &[u8], kind: Kind, order: Order) {
+            match (kind, order) {
+                $(
+                    (Kind::$kind, Order::Little) => {
+                        each(numbers, bytes, |bytes| <$number>::from_le_bytes(bytes) as f64);
+                    }
+                    (Kind::$kind, Order::Big) => {
+                        each(numbers, bytes, |bytes| <$number>::from_be_bytes(bytes) as f64);
+                    }
+                )*
+                (Kind::F16, Order::Little) => each(numbers, bytes, |bytes| half(u16::from_le_bytes(bytes))),
+                (Kind::F16, Order::Big) => each(numbers, bytes, |bytes| half(u16::from_be_bytes(bytes))),
+            }
+        }
+    };
+}
+
+kinds! {
+    U8: u8;
+    I8: i8;
+    U16: u16;
+    I16: i16;
+    U32: u32;
+    I32: i32;
+    U64: u64;
+    I64: i64;
+    F32: f32;
+    F64: f64;
 }
 
 /// Order of the bytes.
@@ -28,18 +63,6 @@ pub(super) enum Kind {
 pub(super) enum Order {
     Little,
     Big,
-}
-
-impl Kind {
-    /// Bytes of one number.
-    pub(super) fn width(self) -> usize {
-        match self {
-            Kind::U8 | Kind::I8 => 1,
-            Kind::U16 | Kind::I16 | Kind::F16 => 2,
-            Kind::U32 | Kind::I32 | Kind::F32 => 4,
-            Kind::U64 | Kind::I64 | Kind::F64 => 8,
-        }
-    }
 }
 
 /// The first `count` numbers of `bytes`.
@@ -54,10 +77,7 @@ pub(super) fn decode(
     what: &str,
 ) -> Result<Vec<f64>, Problem> {
     let needed = (count as u64).saturating_mul(kind.width() as u64);
-    let available = bytes.len() as u64;
-    if available < needed {
-        return Err(Problem::truncated(what, needed, available));
-    }
+    Problem::check_length(what, needed, bytes.len())?;
     let mut numbers = vec![0.0; count];
     let parts = bytes[..needed as usize].par_chunks(FEW * kind.width());
     numbers
@@ -65,32 +85,6 @@ pub(super) fn decode(
         .zip(parts)
         .for_each(|(numbers, bytes)| decode_into(numbers, bytes, kind, order));
     Ok(numbers)
-}
-
-/// The numbers of `bytes`, as many as there is room for.
-pub(super) fn decode_into(numbers: &mut [f64], bytes: &[u8], kind: Kind, order: Order) {
-    match (kind, order) {
-        (Kind::U8, _) => each(numbers, bytes, |[b]: [u8; 1]| f64::from(b)),
-        (Kind::I8, _) => each(numbers, bytes, |[b]: [u8; 1]| f64::from(b as i8)),
-        (Kind::U16, Order::Little) => each(numbers, bytes, |b| f64::from(u16::from_le_bytes(b))),
-        (Kind::U16, Order::Big) => each(numbers, bytes, |b| f64::from(u16::from_be_bytes(b))),
-        (Kind::I16, Order::Little) => each(numbers, bytes, |b| f64::from(i16::from_le_bytes(b))),
-        (Kind::I16, Order::Big) => each(numbers, bytes, |b| f64::from(i16::from_be_bytes(b))),
-        (Kind::F16, Order::Little) => each(numbers, bytes, |b| half(u16::from_le_bytes(b))),
-        (Kind::F16, Order::Big) => each(numbers, bytes, |b| half(u16::from_be_bytes(b))),
-        (Kind::U32, Order::Little) => each(numbers, bytes, |b| f64::from(u32::from_le_bytes(b))),
-        (Kind::U32, Order::Big) => each(numbers, bytes, |b| f64::from(u32::from_be_bytes(b))),
-        (Kind::I32, Order::Little) => each(numbers, bytes, |b| f64::from(i32::from_le_bytes(b))),
-        (Kind::I32, Order::Big) => each(numbers, bytes, |b| f64::from(i32::from_be_bytes(b))),
-        (Kind::F32, Order::Little) => each(numbers, bytes, |b| f64::from(f32::from_le_bytes(b))),
-        (Kind::F32, Order::Big) => each(numbers, bytes, |b| f64::from(f32::from_be_bytes(b))),
-        (Kind::U64, Order::Little) => each(numbers, bytes, |b| u64::from_le_bytes(b) as f64),
-        (Kind::U64, Order::Big) => each(numbers, bytes, |b| u64::from_be_bytes(b) as f64),
-        (Kind::I64, Order::Little) => each(numbers, bytes, |b| i64::from_le_bytes(b) as f64),
-        (Kind::I64, Order::Big) => each(numbers, bytes, |b| i64::from_be_bytes(b) as f64),
-        (Kind::F64, Order::Little) => each(numbers, bytes, f64::from_le_bytes),
-        (Kind::F64, Order::Big) => each(numbers, bytes, f64::from_be_bytes),
-    }
 }
 
 /// Every number as `decode` reads its bytes.

@@ -15,8 +15,7 @@ use super::sample::{Kind, Order};
 use super::text::numbers;
 use super::{Problem, Reader, Request, write};
 
-pub(super) const SDF: Reader =
-    Reader { name: "sdf", aliases: &[], sniff: is_sdf, read, write: Some(write::sdf::encode) };
+pub(super) const SDF: Reader = Reader::new("sdf", is_sdf, read).written_by(write::sdf::encode);
 
 /// Whether the bytes are an SDF file.
 fn is_sdf(bytes: &[u8]) -> bool {

@@ -21,13 +21,11 @@ use super::unit::LoneA;
 use super::unpack::{most_unpacked, read_bounded};
 use super::{Problem, Reader, Request};
 
-pub(super) const SUR: Reader = Reader {
-    name: "sur",
-    aliases: &[],
-    sniff: |bytes| bytes.starts_with(b"DIGITAL SURF") || bytes.starts_with(b"DSCOMPRESSED"),
+pub(super) const SUR: Reader = Reader::new(
+    "sur",
+    |bytes| bytes.starts_with(b"DIGITAL SURF") || bytes.starts_with(b"DSCOMPRESSED"),
     read,
-    write: None,
-};
+);
 
 /// Kinds of objects whose first object, or every one, is a surface.
 mod studiable {
@@ -56,7 +54,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
             studiable::INTENSITY_SURFACE | studiable::RGB_SURFACE | studiable::RGB_INTENSITY_SURFACE
         )
         // Gwyddion writes surfaces as profiles of many lines.
-        || (first.kind == studiable::PROFILE && first.lines > 1);
+        || (first.kind == studiable::PROFILE && first.points[1] > 1);
     if !has_surface {
         let detail = format!("its objects are of the kind {}, not surfaces", first.kind);
         return Err(request.no_heights(detail));
@@ -83,17 +81,17 @@ struct Object<'a> {
     channels: u16,
     kind: i16,
     name: String,
-    special_points: bool,
-    absolute: bool,
+    /// The number of points that were not measured; NaN if all were.
+    undefined: f64,
     bits: i16,
-    least: i32,
-    points: u32,
-    lines: u32,
+    /// Along x and y.
+    points: [u64; 2],
     values_per_point: u32,
-    spacing: [f32; 3],
+    spacing: [f64; 3],
     unit: [String; 3],
     inversion: i16,
-    offset: f32,
+    /// Of the heights; 0 on a relative axis.
+    offset: f64,
     metadata: Vec<(&'static str, String)>,
     data: Data<'a>,
 }
@@ -112,11 +110,8 @@ impl<'a> Object<'a> {
             "DIGITAL SURF" => false,
             "DSCOMPRESSED" => true,
             _ => {
-                return Err(Problem::malformed(
-                    "the signature of a SUR object",
-                    signature,
-                    "\"DIGITAL SURF\"",
-                ));
+                let expected = "\"DIGITAL SURF\"";
+                return Err(Problem::malformed("the signature of a SUR object", signature, expected));
             }
         };
         let _format = c.i16(H)?;
@@ -133,8 +128,8 @@ impl<'a> Object<'a> {
         let values_per_point = c.u32(H)?;
         let bits = c.i16(H)?;
         let [least, _most] = [c.i32(H)?, c.i32(H)?];
-        let [points, lines, _total] = [c.u32(H)?, c.u32(H)?, c.u32(H)?];
-        let spacing = [c.f32(H)?, c.f32(H)?, c.f32(H)?];
+        let [points, lines, _total] = [c.u32(H)?, c.u32(H)?, c.u32(H)?].map(u64::from);
+        let spacing = [c.f32(H)?, c.f32(H)?, c.f32(H)?].map(f64::from);
         let _axis_names = c.bytes(3 * 16, H)?;
         let unit = [c.text(16, H)?, c.text(16, H)?, c.text(16, H)?];
         let _length_units_and_ratios = c.bytes(3 * 16 + 3 * 4, H)?;
@@ -149,7 +144,7 @@ impl<'a> Object<'a> {
         let _obsolete = c.bytes(6, H)?;
         let [comment_length, private_length] = [c.u16(H)?, c.u16(H)?];
         let _client_zone = c.bytes(128, H)?;
-        let [_offset_x, _offset_y, offset] = [c.f32(H)?, c.f32(H)?, c.f32(H)?];
+        let [_offset_x, _offset_y, offset] = [c.f32(H)?, c.f32(H)?, c.f32(H)?].map(f64::from);
         let _time_axis = c.bytes(4 + 4 + 13 + 13, H)?;
         let comment = c.text(u64::from(comment_length), "the SUR comment")?;
         let _private = c.bytes(u64::from(private_length), "the private zone of the SUR object")?;
@@ -165,7 +160,7 @@ impl<'a> Object<'a> {
             }
             Data::Packed(streams)
         } else {
-            let points = grid::points(u64::from(points), u64::from(lines))? as u64;
+            let points = grid::points(points, lines)? as u64;
             let width = u64::from(bits.unsigned_abs()) / 8;
             let length = points.saturating_mul(width).saturating_mul(u64::from(values_per_point.max(1)));
             Data::Plain(c.bytes(length, "the points of the SUR object")?)
@@ -174,29 +169,29 @@ impl<'a> Object<'a> {
             true => format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}"),
             false => String::new(),
         };
-        let metadata = vec![("operator", operator), ("comment", comment), ("date", date)];
+        let mut metadata = vec![("operator", operator), ("comment", comment), ("date", date)];
+        if offset != 0.0 {
+            metadata.push(("z offset", format!("{offset} {}", unit[2])));
+        }
         Ok(Object {
             objects,
             channels,
             kind,
             name,
-            special_points,
-            absolute,
+            undefined: if special_points { f64::from(least) - 2.0 } else { f64::NAN },
             bits,
-            least,
-            points,
-            lines,
+            points: [points, lines],
             values_per_point,
             spacing,
             unit,
             inversion,
-            offset,
+            offset: if absolute { offset } else { 0.0 },
             metadata,
             data,
         })
     }
 
-    fn measured(mut self, names: Vec<String>, index: usize) -> Result<Measured, Problem> {
+    fn measured(self, names: Vec<String>, index: usize) -> Result<Measured, Problem> {
         if self.values_per_point > 1 {
             let what = format!("a SUR object with {} values per point", self.values_per_point);
             return Err(Problem::unsupported(what, "export the surface alone from MountainsMap"));
@@ -210,22 +205,16 @@ impl<'a> Object<'a> {
         let bytes = match &self.data {
             Data::Plain(bytes) => *bytes,
             Data::Packed(streams) => {
-                let points = grid::points(self.points.into(), self.lines.into())?;
+                let points = grid::points(self.points[0], self.points[1])?;
                 unpacked = unpack(streams, points as u64 * kind.width() as u64)?;
                 unpacked.as_slice()
             }
         };
-        let [dx, dy, dz] = self.spacing.map(f64::from);
-        let offset = f64::from(self.offset);
-        if offset != 0.0 {
-            self.metadata.push(("z offset", format!("{offset} {}", self.unit[2])));
-        }
-        let offset = if self.absolute { offset } else { 0.0 };
+        let [dx, dy, dz] = self.spacing;
         // 1: heights inverted; 2: and mirrored left-right; 3: and upside down.
         let sign = if matches!(self.inversion, 1..=3) { -1.0 } else { 1.0 };
-        let undefined = if self.special_points { f64::from(self.least) - 2.0 } else { f64::NAN };
-        let height = |v: f64| if v == undefined { f64::NAN } else { sign * v * dz + offset };
-        let layout = Layout::dense([self.points.into(), self.lines.into()], kind, Order::Little);
+        let height = |v: f64| if v == self.undefined { f64::NAN } else { sign * v * dz + self.offset };
+        let layout = Layout::dense(self.points, kind, Order::Little);
         let mut heights = layout.map(bytes, "the points of the SUR object", height)?;
         if let 2 | 3 = self.inversion {
             heights.invert_axis(Axis(usize::from(self.inversion == 3)));

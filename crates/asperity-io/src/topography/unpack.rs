@@ -1,4 +1,4 @@
-//! Packed files: gzip and zip, with a bound on what a small file may swell to.
+//! Packed files, gzip and zip, with a bound on the unpacked size of a small file.
 
 use std::io::{Cursor, Read};
 
@@ -7,7 +7,7 @@ use zip::ZipArchive;
 
 use super::Problem;
 
-/// Most bytes that `packed` bytes may unpack to.
+/// Largest number of bytes that `packed` bytes may unpack to.
 ///
 /// Deflate reaches 1032 : 1 on a file of equal bytes, measured heights hardly 20 : 1. The ratio bounds what a
 /// hostile file can ask for; the constant lets maps of 4096 x 4096 equal heights pass.
@@ -22,7 +22,7 @@ pub(super) fn read_bounded(
     likely: u64,
     what: &str,
 ) -> Result<Vec<u8>, Problem> {
-    // Not more than has some reason: the rest grows as the bytes come.
+    // The stated length may be wrong: the vector grows as the bytes come.
     let mut bytes = Vec::with_capacity(usize::try_from(likely.min(most)).unwrap_or(0));
     source.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| {
         Problem::malformed(format!("the packed stream of {what}"), e, "a whole, undamaged stream")
@@ -59,7 +59,7 @@ pub(super) fn gunzip(bytes: &[u8]) -> Result<Option<Vec<u8>>, Problem> {
 /// The first `most` unpacked bytes, as far as they can be unpacked.
 pub(super) fn gunzip_prefix(bytes: &[u8], most: u64) -> Vec<u8> {
     let mut prefix = Vec::new();
-    // A damaged stream is answered when the file is read; what came before the damage tells the format.
+    // A damaged stream is reported when the file is read; the bytes before the damage are enough to find the format.
     let _ = MultiGzDecoder::new(bytes).take(most).read_to_end(&mut prefix);
     prefix
 }

@@ -15,13 +15,9 @@ use super::unpack::{Archive, holds_member};
 use super::{HISTORY, Problem, Reader, Request, write};
 use crate::xml::{Malformed, Piece, walk};
 
-pub(super) const X3P: Reader = Reader {
-    name: "x3p",
-    aliases: &[],
-    sniff: |bytes| holds_member(bytes, |name| name == "main.xml"),
-    read,
-    write: Some(write::x3p::encode),
-};
+pub(super) const X3P: Reader =
+    Reader::new("x3p", |bytes| holds_member(bytes, |name| name == "main.xml"), read)
+        .written_by(write::x3p::encode);
 
 /// Elements nest five deep in the standard's schema.
 const DEEPEST: usize = 32;
@@ -135,21 +131,12 @@ impl Main {
         };
         let content = archive.member(link)?;
         let needed = all as u64 * kind.width() as u64;
-        if (content.len() as u64) < needed {
-            return Err(Problem::truncated(format!("the points in {link:?}"), needed, content.len() as u64));
-        }
+        Problem::check_length(&format!("the points in {link:?}"), needed, content.len())?;
         let bytes = &content[range.start * kind.width()..range.end * kind.width()];
         let mut heights = Layout::dense([nx, ny], kind, Order::Little).map(bytes, "the points", height)?;
         if let Some(link) = self.elements.get("Record3/DataLink/ValidPointsLink") {
             let mask = archive.member(link)?;
-            let needed = all.div_ceil(8);
-            if mask.len() < needed {
-                return Err(Problem::truncated(
-                    format!("the mask in {link:?}"),
-                    needed as u64,
-                    mask.len() as u64,
-                ));
-            }
+            Problem::check_length(&format!("the mask in {link:?}"), all.div_ceil(8) as u64, mask.len())?;
             // One bit per point, the least significant first; 1 = valid.
             for ((x, y), height) in heights.indexed_iter_mut() {
                 let point = range.start + y * nx as usize + x;

@@ -18,3 +18,4 @@ mod topography_hostile;
 mod topography_instruments;
 mod topography_round_trip;
 mod topography_text;
+mod wording;

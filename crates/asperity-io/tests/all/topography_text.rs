@@ -271,3 +271,15 @@ fn files_of_many_blocks_or_remarks_are_refused_in_time() {
         assert!(with(&text, Some([1.0, 1.0]), Some(1.0)).is_err());
     }
 }
+
+#[test]
+fn an_infinite_height_is_no_empty_cell() {
+    for word in ["inf", "-inf", "Infinity", "1.#INF"] {
+        let error = read(&format!("# Width: 3 um\n# Height: 2 um\n# Value units: nm\n1 2 3\n4 {word} 6\n"))
+            .unwrap_err();
+        assert!(
+            matches!(&error.problem, Problem::Malformed { what, value, .. } if what == "line 5" && value.contains(word)),
+            "{error}"
+        );
+    }
+}

@@ -18,8 +18,9 @@ pub enum Colours {
 /// Where bodies do not touch, in a map of the pressure; and where they do, in one of the gap.
 pub(crate) const OPEN: [u8; 3] = [240, 240, 238];
 
-/// A colour map that stands for the usual one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A colour map to be used instead of the usual one; its name is a [`choice`](asperity_io::choice).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Palette {
     /// Dark violet to yellow.
     Viridis,
@@ -40,37 +41,6 @@ pub enum Palette {
 }
 
 impl Palette {
-    /// Every colour map.
-    pub const ALL: [Palette; 8] = [
-        Palette::Viridis,
-        Palette::Cividis,
-        Palette::Inferno,
-        Palette::Magma,
-        Palette::Plasma,
-        Palette::Turbo,
-        Palette::Grey,
-        Palette::RedBlue,
-    ];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Palette::Viridis => "viridis",
-            Palette::Cividis => "cividis",
-            Palette::Inferno => "inferno",
-            Palette::Magma => "magma",
-            Palette::Plasma => "plasma",
-            Palette::Turbo => "turbo",
-            Palette::Grey => "grey",
-            Palette::RedBlue => "red-blue",
-        }
-    }
-
-    /// The colour map of that name.
-    pub fn from_name(name: &str) -> Option<Palette> {
-        Palette::ALL.into_iter().find(|palette| palette.name() == name)
-    }
-
     /// The colour beside it, of what is left out: light, and none of its own.
     pub(super) fn aside(self) -> [u8; 3] {
         match self {
@@ -82,23 +52,20 @@ impl Palette {
     /// The colour at a share of the range, 0 to 1: red, green, blue.
     pub fn at(self, share: f64) -> [u8; 3] {
         let share = share.clamp(0.0, 1.0);
-        let gradient = match self {
-            Palette::Viridis => colorous::VIRIDIS,
-            Palette::Cividis => colorous::CIVIDIS,
-            Palette::Inferno => colorous::INFERNO,
-            Palette::Magma => colorous::MAGMA,
-            Palette::Plasma => colorous::PLASMA,
-            Palette::Turbo => colorous::TURBO,
+        let (gradient, share) = match self {
+            Palette::Viridis => (colorous::VIRIDIS, share),
+            Palette::Cividis => (colorous::CIVIDIS, share),
+            Palette::Inferno => (colorous::INFERNO, share),
+            Palette::Magma => (colorous::MAGMA, share),
+            Palette::Plasma => (colorous::PLASMA, share),
+            Palette::Turbo => (colorous::TURBO, share),
             // The greys start with white, and the scale from red to blue with its warm end; here high is light or warm.
-            Palette::Grey => return rgb(colorous::GREYS.eval_continuous(1.0 - share)),
-            Palette::RedBlue => return rgb(colorous::RED_BLUE.eval_continuous(1.0 - share)),
+            Palette::Grey => (colorous::GREYS, 1.0 - share),
+            Palette::RedBlue => (colorous::RED_BLUE, 1.0 - share),
         };
-        rgb(gradient.eval_continuous(share))
+        let colour = gradient.eval_continuous(share);
+        [colour.r, colour.g, colour.b]
     }
-}
-
-fn rgb(colour: colorous::Color) -> [u8; 3] {
-    [colour.r, colour.g, colour.b]
 }
 
 impl Colours {
@@ -138,6 +105,8 @@ impl Colours {
 
 #[cfg(test)]
 mod tests {
+    use asperity_io::choice;
+
     use super::*;
 
     fn light([r, g, b]: [u8; 3]) -> u32 {
@@ -160,12 +129,12 @@ mod tests {
 
     #[test]
     fn colour_maps_have_names_and_rise_in_lightness() {
-        for palette in Palette::ALL {
-            assert_eq!(Palette::from_name(palette.name()), Some(palette));
+        for name in choice::words::<Palette>() {
+            let palette: Palette = choice::parse(name).unwrap();
             let rises = light(palette.at(1.0)) > light(palette.at(0.0)) + 200;
             assert!(rises || matches!(palette, Palette::Turbo | Palette::RedBlue), "{palette:?}");
         }
-        assert_eq!(Palette::from_name("jet"), None);
+        assert_eq!(choice::parse("red-blue"), Some(Palette::RedBlue));
     }
 
     #[test]

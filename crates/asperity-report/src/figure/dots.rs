@@ -6,8 +6,7 @@ use tiny_skia::{
 };
 
 use super::drawing::{BOXES, Colour, Drawing, INK, Mark, Paint, Pen, Pixels, Shape, boxes};
-use super::font::{self, Step};
-use super::outline;
+use super::font;
 
 /// White paper of so many dots, of `scale` dots to a point, with the drawing; `None` where the paper has no area.
 pub(super) fn draw(drawing: &Drawing, [width, height]: [u32; 2], scale: f64) -> Option<Pixels> {
@@ -23,13 +22,13 @@ fn marks(paper: &mut Pixmap, list: &[Mark], scale: Transform, mask: Option<&Mask
     for mark in list {
         match mark {
             Mark::Shape(shape, paint) => {
-                if let Some(path) = path_of(shape) {
+                if let Some(path) = shape.outline() {
                     draw_shape(paper, &path, paint, scale, mask);
                 }
             }
             Mark::Text { at, size, anchor, upward, text } => {
                 draw_text(paper, text, [*size, anchor.start(text, *size)], *at, *upward, scale, mask);
-                if let Some(path) = boxes(text, *at, *size, *anchor, *upward).and_then(|b| path_of(&b)) {
+                if let Some(path) = boxes(text, *at, *size, *anchor, *upward).and_then(|b| b.outline()) {
                     draw_shape(paper, &path, &Paint::outline(BOXES), scale, mask);
                 }
             }
@@ -37,7 +36,7 @@ fn marks(paper: &mut Pixmap, list: &[Mark], scale: Transform, mask: Option<&Mask
                 draw_image(paper, pixels, [*corner, *size], *smooth, scale, mask);
             }
             Mark::Clipped { corner, size, marks: inside } => {
-                let frame = path_of(&Shape::Rect { corner: *corner, size: *size, round: 0.0 });
+                let frame = Shape::Rect { corner: *corner, size: *size, round: 0.0 }.outline();
                 let mask = frame.zip(Mask::new(paper.width(), paper.height())).map(|(frame, mut mask)| {
                     mask.fill_path(&frame, FillRule::Winding, true, scale);
                     mask
@@ -48,23 +47,6 @@ fn marks(paper: &mut Pixmap, list: &[Mark], scale: Transform, mask: Option<&Mask
             }
         }
     }
-}
-
-/// The outline of a shape; `None` where it has no step.
-fn path_of(shape: &Shape) -> Option<Path> {
-    let mut path = PathBuilder::new();
-    for step in shape.outline() {
-        match step {
-            outline::Step::Move([x, y]) => path.move_to(x as f32, y as f32),
-            outline::Step::Line([x, y]) => path.line_to(x as f32, y as f32),
-            outline::Step::Cubic(points) => {
-                let [[x1, y1], [x2, y2], [x, y]] = points.map(|point| point.map(|v| v as f32));
-                path.cubic_to(x1, y1, x2, y2, x, y);
-            }
-            outline::Step::Close => path.close(),
-        }
-    }
-    path.finish()
 }
 
 fn brush(colour: Colour, opacity: f64) -> Brush<'static> {
@@ -107,30 +89,7 @@ fn draw_text(
             let [x, y] = if upward { [x - up, y - along] } else { [x + along, y - up] };
             [x as f32, y as f32]
         };
-        let mut open = false;
-        for step in font::outline(glyph) {
-            match step {
-                Step::Move(at) => {
-                    if open {
-                        path.close();
-                    }
-                    open = true;
-                    let [x, y] = to(at);
-                    path.move_to(x, y);
-                }
-                Step::Line(at) => {
-                    let [x, y] = to(at);
-                    path.line_to(x, y);
-                }
-                Step::Curve(control, at) => {
-                    let ([x1, y1], [x, y]) = (to(control), to(at));
-                    path.quad_to(x1, y1, x, y);
-                }
-            }
-        }
-        if open {
-            path.close();
-        }
+        font::outline(&mut path, glyph, &to);
         right += size * advance;
     }
     if let Some(path) = path.finish() {

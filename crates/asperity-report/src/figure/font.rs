@@ -4,6 +4,8 @@
 
 use std::sync::OnceLock;
 
+use tiny_skia::PathBuilder;
+
 /// Latin, Greek and the signs of mathematics.
 pub(super) static DATA: &[u8] = include_bytes!("../../fonts/DejaVuSans.ttf");
 
@@ -62,31 +64,20 @@ pub(super) fn advance(glyph: u16) -> f64 {
     units.map_or(MISSING, |units| f64::from(units) / EM)
 }
 
-/// A step of an outline, in units of the design, y upwards.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Step {
-    Move([f64; 2]),
-    Line([f64; 2]),
-    /// A parabola with this control point to this end.
-    Curve([f64; 2], [f64; 2]),
-}
-
-/// The closed outlines of a glyph.
-pub(super) fn outline(glyph: u16) -> Vec<Step> {
-    let mut steps = vec![];
+/// Adds the closed outlines of a glyph to a path; `to` places points in units of the design, y upwards, on the paper.
+pub(super) fn outline(path: &mut PathBuilder, glyph: u16, to: &impl Fn([f64; 2]) -> [f32; 2]) {
     // A typeface whose tables cannot be read has no outlines; the tests read all of ours.
-    let _ = add(&mut steps, glyph, [0.0; 2], DEEPEST);
-    steps
+    let _ = add(path, glyph, to, DEEPEST);
 }
 
-fn add(steps: &mut Vec<Step>, glyph: u16, at: [f64; 2], depth: usize) -> Option<()> {
+fn add(path: &mut PathBuilder, glyph: u16, to: &dyn Fn([f64; 2]) -> [f32; 2], depth: usize) -> Option<()> {
     let data = description(glyph)?;
     if data.is_empty() {
         return Some(());
     }
     let contours = i16_at(data, 0)?;
     if contours >= 0 {
-        return simple(steps, data, usize::from(contours.unsigned_abs()), at);
+        return simple(path, data, usize::from(contours.unsigned_abs()), to);
     }
     // Parts with an offset each.
     let (mut place, words, more) = (10, 1, 32);
@@ -100,7 +91,8 @@ fn add(steps: &mut Vec<Step>, glyph: u16, at: [f64; 2], depth: usize) -> Option<
             0 => [0, 1].map(|i| data.get(place + 4 + i).map(|byte| f64::from(*byte as i8))),
             _ => [0, 1].map(|i| i16_at(data, place + 4 + 2 * i).map(f64::from)),
         };
-        add(steps, part, [at[0] + offset[0]?, at[1] + offset[1]?], depth - 1)?;
+        let [right, up] = [offset[0]?, offset[1]?];
+        add(path, part, &|[x, y]| to([x + right, y + up]), depth - 1)?;
         if flags & more == 0 {
             return Some(());
         }
@@ -109,7 +101,12 @@ fn add(steps: &mut Vec<Step>, glyph: u16, at: [f64; 2], depth: usize) -> Option<
 }
 
 /// Contours of points on and off the curve: last points, instructions, flags with repeats, then x and y as differences.
-fn simple(steps: &mut Vec<Step>, data: &[u8], contours: usize, at: [f64; 2]) -> Option<()> {
+fn simple(
+    path: &mut PathBuilder,
+    data: &[u8],
+    contours: usize,
+    to: &dyn Fn([f64; 2]) -> [f32; 2],
+) -> Option<()> {
     let lasts =
         (0..contours).map(|n| u16_at(data, 10 + 2 * n).map(usize::from)).collect::<Option<Vec<_>>>()?;
     let count = lasts.last()? + 1;
@@ -122,10 +119,10 @@ fn simple(steps: &mut Vec<Step>, data: &[u8], contours: usize, at: [f64; 2]) -> 
         flags.extend(std::iter::repeat_n(flag, 1 + repeats));
         place += if flag & 8 == 0 { 1 } else { 2 };
     }
-    let mut points = vec![at; count];
+    let mut points = vec![[0.0; 2]; count];
     for axis in [0, 1] {
         let (short, same) = (2u8 << axis, 16u8 << axis);
-        let mut value = at[axis];
+        let mut value = 0.0;
         for (point, flag) in points.iter_mut().zip(&flags) {
             if flag & short != 0 {
                 let step = f64::from(*data.get(place)?);
@@ -141,33 +138,42 @@ fn simple(steps: &mut Vec<Step>, data: &[u8], contours: usize, at: [f64; 2]) -> 
     let mut first = 0;
     for last in lasts {
         let on: Vec<bool> = flags.get(first..=last)?.iter().map(|flag| flag & 1 == 1).collect();
-        contour(steps, points.get(first..=last)?, &on);
+        contour(path, points.get(first..=last)?, &on, to);
         first = last + 1;
     }
     Some(())
 }
 
 /// Between two points off the curve lies one on it, in the middle.
-fn contour(steps: &mut Vec<Step>, points: &[[f64; 2]], on: &[bool]) {
+fn contour(path: &mut PathBuilder, points: &[[f64; 2]], on: &[bool], to: &dyn Fn([f64; 2]) -> [f32; 2]) {
     let n = points.len();
     let middle = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|i| 0.5 * (a[i] + b[i]));
+    let curve = |path: &mut PathBuilder, control: [f64; 2], end: [f64; 2]| {
+        let ([x1, y1], [x, y]) = (to(control), to(end));
+        path.quad_to(x1, y1, x, y);
+    };
     let start = on.iter().position(|on| *on);
     let begin = start.map_or_else(|| middle(points[n - 1], points[0]), |start| points[start]);
     let from = start.map_or(0, |start| start + 1);
-    steps.push(Step::Move(begin));
+    let [x, y] = to(begin);
+    path.move_to(x, y);
     let mut control = None;
     for k in (from..n).chain(0..from) {
         match (control, on[k]) {
-            (None, true) => steps.push(Step::Line(points[k])),
-            (Some(c), true) => steps.push(Step::Curve(c, points[k])),
-            (Some(c), false) => steps.push(Step::Curve(c, middle(c, points[k]))),
+            (None, true) => {
+                let [x, y] = to(points[k]);
+                path.line_to(x, y);
+            }
+            (Some(c), true) => curve(path, c, points[k]),
+            (Some(c), false) => curve(path, c, middle(c, points[k])),
             (None, false) => {}
         }
         control = (!on[k]).then_some(points[k]);
     }
     if let Some(c) = control {
-        steps.push(Step::Curve(c, begin));
+        curve(path, c, begin);
     }
+    path.close();
 }
 
 /// The tables of the file that are read.
@@ -230,7 +236,9 @@ mod tests {
         assert_eq!(glyph('漢'), None);
         assert_eq!(glyph('😀'), None);
         // The box lies inside of the width that it is given.
-        assert!(outline(LACKING).is_empty() && advance(LACKING) > BOX[2]);
+        let mut path = PathBuilder::new();
+        outline(&mut path, LACKING, &|_| [0.0; 2]);
+        assert!(path.is_empty() && advance(LACKING) > BOX[2]);
     }
 
     #[test]
@@ -244,16 +252,13 @@ mod tests {
         let mut drawn = 0;
         for glyph in 0..701 {
             let data = description(glyph).unwrap();
-            let mut found = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-            for step in outline(glyph) {
-                // The box is that of all points, control points of round letters lie on it too.
-                for [x, y] in match step {
-                    Step::Move(to) | Step::Line(to) => [to, to],
-                    Step::Curve(control, to) => [control, to],
-                } {
-                    found = [found[0].min(x), found[1].min(y), found[2].max(x), found[3].max(y)];
-                }
-            }
+            let mut path = PathBuilder::new();
+            outline(&mut path, glyph, &|point| point.map(|v| v as f32));
+            // The bounds are those of all points, as in the file; control points of round letters lie on its box too.
+            let path = path.finish();
+            let found = path.map(|path| path.bounds());
+            let found = found.map(|b| [b.left(), b.top(), b.right(), b.bottom()].map(f64::from));
+            let found = found.unwrap_or_default();
             if !data.is_empty() {
                 let told = [2, 4, 6, 8].map(|at| f64::from(i16_at(data, at).unwrap()));
                 // Boxes of composed glyphs are off by up to two units of the design, a thousandth of an em.

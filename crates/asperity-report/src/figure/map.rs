@@ -12,6 +12,9 @@ use super::raster::{self, BLANK};
 use super::scale::ColourScale;
 use super::{Place, SMALL, TEXT};
 
+/// A state of a cell: its name and its colour.
+pub type State = (&'static str, [u8; 3]);
+
 /// What the values of a map are.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
@@ -23,11 +26,9 @@ pub enum Values {
         unit: String,
         /// The colours.
         colours: Colours,
-        /// Values at the ends of the colour bar; `None` for the least and the greatest.
-        range: Option<[f64; 2]>,
     },
-    /// States 0, 1, 2 ..., each with its name and colour.
-    States(Vec<(String, [u8; 3])>),
+    /// States 0, 1, 2 ...
+    States(&'static [State]),
 }
 
 /// A panel of a map.
@@ -39,6 +40,8 @@ pub struct Map {
     pub values: Array2<f64>,
     /// What they are.
     pub meaning: Values,
+    /// Values at the ends of the colour bar of a quantity; `None` for the least and the greatest.
+    pub range: Option<[f64; 2]>,
     /// Lengths of the area along x and y \[m\].
     pub size: [f64; 2],
     /// What its axes are.
@@ -83,18 +86,13 @@ impl Map {
         values: ArrayView2<f64>,
         size: [f64; 2],
     ) -> Map {
-        let meaning = Values::Quantity { label: label.into(), unit: unit.into(), colours, range: None };
-        Map {
-            title: title.into(),
-            values: raster::means(values, raster::block(values)),
-            meaning,
-            size,
-            axes: Axes::Area,
-            marks: vec![],
-            line: None,
-            palette: None,
-            log: false,
-        }
+        let meaning = Values::Quantity { label: label.into(), unit: unit.into(), colours };
+        Map::of(title.into(), raster::means(values, raster::block(values)), meaning, size)
+    }
+
+    fn of(title: String, values: Array2<f64>, meaning: Values, size: [f64; 2]) -> Map {
+        let (axes, marks) = (Axes::Area, vec![]);
+        Map { title, values, meaning, range: None, size, axes, marks, line: None, palette: None, log: false }
     }
 
     /// The same map of something over lags in both directions.
@@ -115,21 +113,12 @@ impl Map {
     /// A map of states.
     pub fn states(
         title: impl Into<String>,
-        names: Vec<(String, [u8; 3])>,
+        states: &'static [State],
         values: ArrayView2<f64>,
         size: [f64; 2],
     ) -> Map {
-        Map {
-            title: title.into(),
-            values: raster::states(values, raster::block(values)),
-            meaning: Values::States(names),
-            size,
-            axes: Axes::Area,
-            marks: vec![],
-            line: None,
-            palette: None,
-            log: false,
-        }
+        let values = raster::states(values, raster::block(values));
+        Map::of(title.into(), values, Values::States(states), size)
     }
 
     /// The same map with a circle around a place x, y \[m\].
@@ -144,17 +133,14 @@ impl Map {
     }
 
     /// The same map with these values at the ends of its colours.
-    pub fn between(mut self, ends: [f64; 2]) -> Map {
-        if let Values::Quantity { range, .. } = &mut self.meaning {
-            *range = Some(ends);
-        }
-        self
+    pub fn between(self, ends: [f64; 2]) -> Map {
+        Map { range: Some(ends), ..self }
     }
 
     /// How its values become colours; `None` for states.
     pub(super) fn scale(&self) -> Option<ColourScale> {
-        let Values::Quantity { colours, range, .. } = &self.meaning else { return None };
-        Some(ColourScale::of(&self.values, *colours, self.palette, *range, self.log))
+        let Values::Quantity { colours, .. } = self.meaning else { return None };
+        Some(ColourScale::of(&self.values, colours, self.palette, self.range, self.log))
     }
 
     /// The values at the ends of its colours; `None` for states, for the pressure where nothing touches and the gap where everything does.
@@ -165,18 +151,16 @@ impl Map {
     /// Whether it is a map of the pressure where nothing touches, or of the gap where everything does, with no ends of its colours
     /// given.
     pub(super) fn shows_nothing(&self) -> bool {
-        let own = match self.meaning {
-            Values::Quantity { colours, range: None, .. } => colours.leave_out_zero(),
-            _ => false,
-        };
-        own && !self.values.iter().any(|value| *value > 0.0 || (*value < 0.0 && !self.log))
+        let Values::Quantity { colours, .. } = self.meaning else { return false };
+        let is_open = colours.leave_out_zero() && self.range.is_none();
+        is_open && !self.values.iter().any(|value| *value > 0.0 || (*value < 0.0 && !self.log))
     }
 
     pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {
         let layout = Layout::of(self, place);
         let [left, top, right, bottom] = layout.area;
         let [w, h] = [right - left, bottom - top];
-        let states = match &self.meaning {
+        let states = match self.meaning {
             Values::States(states) => Some(states),
             Values::Quantity { .. } => None,
         };
@@ -226,19 +210,16 @@ impl Map {
 
     /// A map of two values at most that takes the same room on the paper.
     pub(super) fn thumbnail(&self) -> Map {
-        let mut meaning = self.meaning.clone();
-        let mut values = vec![0.0];
-        if let (Values::Quantity { range, .. }, Some(ends), Some(scale)) =
-            (&mut meaning, self.ends(), self.scale())
-        {
-            let beyond = scale.beyond(&self.values);
-            values = vec![beyond[0].unwrap_or(ends[0]), beyond[1].unwrap_or(ends[1])];
-            *range = Some(ends);
+        let mut small = Map::of(self.title.clone(), Array2::zeros((1, 1)), self.meaning.clone(), self.size);
+        if let (Some(ends), Some(scale)) = (self.ends(), self.scale()) {
+            let [low, high] = scale.beyond(&self.values);
+            small.values = ndarray::array![[low.unwrap_or(ends[0])], [high.unwrap_or(ends[1])]];
+            small.range = Some(ends);
+        } else {
+            small.range = self.range;
         }
-        let values = Array2::from_shape_vec((values.len(), 1), values).unwrap_or_default();
-        let (title, marks) = (self.title.clone(), self.marks.clone());
-        let Map { size, axes, line, palette, log, .. } = *self;
-        Map { title, values, meaning, size, axes, marks, line, palette, log }
+        let Map { axes, line, palette, log, .. } = *self;
+        Map { axes, line, palette, log, marks: self.marks.clone(), ..small }
     }
 
     /// Left, top, right and bottom of the frame \[points\].
@@ -281,7 +262,7 @@ impl Map {
     }
 
     /// Names of the states that occur, with their colours, above the map.
-    fn names(&self, drawing: &mut Drawing, states: &[(String, [u8; 3])], [left, top]: [f64; 2]) {
+    fn names(&self, drawing: &mut Drawing, states: &[State], [left, top]: [f64; 2]) {
         let mut x = left;
         let occurs = |state: usize| self.values.iter().any(|value| *value == state as f64);
         for (_, (name, colour)) in states.iter().enumerate().filter(|(state, _)| occurs(*state)) {

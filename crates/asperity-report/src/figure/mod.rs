@@ -35,9 +35,9 @@ pub(crate) use colours::OPEN;
 pub use colours::{Colours, Palette};
 pub(crate) use curves::COLOURS;
 pub use curves::{Beside, Curves, Key};
-pub use map::{Axes, Map, UNDEFINED, Values};
+pub use map::{Axes, Map, State, UNDEFINED, Values};
 pub(crate) use raster::{block, means, states};
-pub(crate) use scale::robust;
+pub(crate) use scale::{extent, robust};
 pub use series::{Series, Style};
 pub(crate) use words::typeset;
 pub(crate) use write::PANELS;
@@ -143,6 +143,16 @@ impl Figure {
     /// The same figure with so many panels in a row.
     pub fn columns(self, columns: usize) -> Figure {
         Figure { columns: columns.max(1), ..self }
+    }
+
+    /// The same figure with these panels too.
+    pub fn with_all(self, panels: impl IntoIterator<Item: Into<Panel>>) -> Figure {
+        panels.into_iter().fold(self, Figure::with)
+    }
+
+    /// The same figure with panels of this width and height \[points\].
+    pub fn panel_size(self, panel: [f64; 2]) -> Figure {
+        Figure { panel, ..self }
     }
 
     /// The same figure with sentences below the panels.

@@ -7,10 +7,10 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use pdf_writer::types::{CidFontType, FontFlags, LineJoinStyle, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
+use tiny_skia::{Path, PathSegment};
 
 use super::drawing::{Anchor, BOXES, Colour, Drawing, INK, Mark, Paint, Pixels, Shape, boxes, rgb};
 use super::font;
-use super::outline::Step;
 
 /// The typeface's name in the file and in its resources.
 const TYPEFACE: Name = Name(b"DejaVuSans");
@@ -120,15 +120,14 @@ fn fill(content: &mut Content, colour: Colour) {
 }
 
 fn outline(content: &mut Content, shape: &Shape) {
-    for step in shape.outline() {
-        match step {
-            Step::Move([x, y]) => content.move_to(x as f32, y as f32),
-            Step::Line([x, y]) => content.line_to(x as f32, y as f32),
-            Step::Cubic(points) => {
-                let [[x1, y1], [x2, y2], [x, y]] = points.map(|point| point.map(|v| v as f32));
-                content.cubic_to(x1, y1, x2, y2, x, y)
-            }
-            Step::Close => content.close_path(),
+    for segment in shape.outline().iter().flat_map(Path::segments) {
+        match segment {
+            PathSegment::MoveTo(at) => content.move_to(at.x, at.y),
+            PathSegment::LineTo(at) => content.line_to(at.x, at.y),
+            PathSegment::CubicTo(a, b, to) => content.cubic_to(a.x, a.y, b.x, b.y, to.x, to.y),
+            PathSegment::Close => content.close_path(),
+            // No shape has a parabola.
+            PathSegment::QuadTo(..) => content,
         };
     }
 }

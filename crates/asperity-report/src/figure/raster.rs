@@ -3,6 +3,7 @@
 use ndarray::{Array2, ArrayView2, s};
 
 use super::drawing::Pixels;
+use super::map::State;
 
 /// Most cells of a side that a figure holds: a hand's breadth at 300 dots per inch.
 const FINEST: usize = 1024;
@@ -46,7 +47,7 @@ fn blocks(values: ArrayView2<f64>, block: usize, one: impl Fn(ArrayView2<f64>) -
 }
 
 /// States in the colours of their numbers.
-pub(super) fn state_picture(values: &Array2<f64>, states: &[(String, [u8; 3])]) -> Pixels {
+pub(super) fn state_picture(values: &Array2<f64>, states: &[State]) -> Pixels {
     let colour =
         |v: f64| states.get(v as usize).filter(|_| v.is_finite()).map_or(BLANK, |(_, colour)| *colour);
     coloured(values, colour)
@@ -87,7 +88,7 @@ mod tests {
 
     #[test]
     fn x_goes_right_and_y_goes_up() {
-        let names = [[1, 1, 1], [2, 2, 2], [3, 3, 3]].map(|c| (String::new(), c));
+        let names = [[1, 1, 1], [2, 2, 2], [3, 3, 3]].map(|c| ("", c));
         let values = ndarray::array![[0.0, 1.0], [2.0, f64::NAN], [7.0, 0.0]];
         let pixels = state_picture(&values, &names);
         assert_eq!(pixels.size, [3, 2]);

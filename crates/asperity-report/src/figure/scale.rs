@@ -140,7 +140,7 @@ pub(crate) fn robust(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     }
     let low = *finite.select_nth_unstable_by(few, f64::total_cmp).1;
     let high = *finite.select_nth_unstable_by(last - few, f64::total_cmp).1;
-    let whole = extent(finite.into_iter());
+    let whole = extent(finite);
     (high > low && whole[1] - whole[0] > 1.5 * (high - low)).then_some([low, high])
 }
 
@@ -158,8 +158,8 @@ fn decades(values: &Array2<f64>) -> [f64; 2] {
 }
 
 /// Least and greatest of the finite values.
-fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let finite = values.filter(|v| v.is_finite());
+pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let finite = values.into_iter().filter(|v| v.is_finite());
     finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 

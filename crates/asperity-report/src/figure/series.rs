@@ -56,13 +56,24 @@ pub struct Series {
 
 impl Series {
     /// A series of places and values.
-    pub fn new(
+    pub fn new(name: impl Into<String>, style: Style, x: impl AsRef<[f64]>, y: impl AsRef<[f64]>) -> Series {
+        let [x, y] = [x.as_ref(), y.as_ref()].map(<[f64]>::to_vec);
+        Series { name: name.into(), x, y, style, colour: None, mark: None }
+    }
+
+    /// A series of points (place, value).
+    pub fn through(
         name: impl Into<String>,
         style: Style,
-        x: impl Into<Vec<f64>>,
-        y: impl Into<Vec<f64>>,
+        points: impl IntoIterator<Item = [f64; 2]>,
     ) -> Series {
-        Series { name: name.into(), x: x.into(), y: y.into(), style, colour: None, mark: None }
+        let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().map(|[x, y]| (x, y)).unzip();
+        Series::new(name, style, x, y)
+    }
+
+    /// A series of the values of a function at places.
+    pub fn of(name: impl Into<String>, style: Style, x: &[f64], f: impl Fn(f64) -> f64) -> Series {
+        Series::through(name, style, x.iter().map(|x| [*x, f(*x)]))
     }
 
     /// The same with each value held until the next place: steps.
@@ -72,8 +83,7 @@ impl Series {
             steps.extend(steps.last().map(|last| [x, last[1]]));
             steps.push([x, y]);
         }
-        let (x, y) = steps.into_iter().map(|[x, y]| (x, y)).unzip();
-        Series { x, y, ..self }
+        Series { colour: self.colour, mark: self.mark, ..Series::through(self.name, self.style, steps) }
     }
 
     /// The same in a colour of its own, "#rrggbb".

@@ -1,5 +1,6 @@
 //! Facts of whole figures.
 
+use asperity_io::output::WriteError;
 use ndarray::Array2;
 use roxmltree::Document;
 
@@ -264,14 +265,14 @@ fn a_figure_replaces_nothing_unless_told() {
     let path = directory.path().join("figure.svg");
     figure().write(&path, false).unwrap();
     let first = std::fs::read(&path).unwrap();
-    assert!(matches!(curve_figure().write(&path, false), Err(FigureError::Exists { .. })));
+    assert!(matches!(curve_figure().write(&path, false), Err(FigureError::Write(WriteError::Exists { .. }))));
     assert_eq!(std::fs::read(&path).unwrap(), first);
     curve_figure().write(&path, true).unwrap();
     assert_ne!(std::fs::read(&path).unwrap(), first);
     assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
     assert!(matches!(figure().write(&directory.path().join("a.jpg"), true), Err(FigureError::Ending { .. })));
     let nowhere = directory.path().join("none").join("a.png");
-    assert!(matches!(figure().write(&nowhere, true), Err(FigureError::Io { .. })));
+    assert!(matches!(figure().write(&nowhere, true), Err(FigureError::Write(WriteError::Io { .. }))));
 }
 
 #[test]
@@ -290,7 +291,7 @@ fn curve_figure() -> Figure {
 
 #[test]
 fn curves_end_where_the_map_over_time_below_them_ends() {
-    let states = Values::States(vec![("open".to_owned(), [0; 3])]);
+    let states = Values::States(&[("open", [0; 3])]);
     for map in [map().over_time(0.0), Map { meaning: states, ..map().over_time(0.0) }] {
         let figure = Figure::new("").columns(1).with(curve()).with(map);
         let places = figure.places();

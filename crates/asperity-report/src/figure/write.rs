@@ -1,7 +1,8 @@
 //! Figures as files.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
+
+use asperity_io::output::{self, WriteError};
 
 use super::{Figure, Pixels, dots, font, pdf, raster};
 
@@ -33,20 +34,9 @@ pub enum FigureError {
         /// The path.
         path: PathBuf,
     },
-    /// There is something at the path.
-    #[error("{} already exists; choose another file or use --force", path.display())]
-    Exists {
-        /// The path.
-        path: PathBuf,
-    },
-    /// The system refuses.
-    #[error("cannot write {}: {source}", path.display())]
-    Io {
-        /// The path.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
     /// The panels do not fit on the paper asked for.
     #[error(
         "{:.0} mm x {:.0} mm are too small for this figure; {:.0} mm x {:.0} mm are enough",
@@ -95,8 +85,7 @@ impl Figure {
     ///
     /// # Errors
     /// [`FigureError::Ending`] for an unknown ending; [`FigureError::Panels`] and [`FigureError::Title`] where there are too many
-    /// panels or letters; [`FigureError::Exists`] where there is a file already and
-    /// `force` does not allow to replace it; [`FigureError::Io`] where the system refuses.
+    /// panels or letters; [`FigureError::Write`] where there is a file already and `force` is not given, or the system refuses.
     pub fn write(&self, path: &Path, force: bool) -> Result<(), FigureError> {
         let form = Form::of(path)?;
         self.check()?;
@@ -105,11 +94,7 @@ impl Figure {
             Form::Png => self.to_png(300.0)?,
             Form::Pdf => self.to_pdf()?,
         };
-        let failed = |source: std::io::Error| match source.kind() {
-            std::io::ErrorKind::AlreadyExists => FigureError::Exists { path: path.to_owned() },
-            _ => FigureError::Io { path: path.to_owned(), source },
-        };
-        asperity_io::output::write(path, force, |file| file.write_all(&data)).map_err(failed)
+        Ok(output::write_all(path, force, &data)?)
     }
 
     /// Refuses what would take much time and memory to draw.

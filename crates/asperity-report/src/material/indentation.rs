@@ -16,8 +16,8 @@ pub fn indentation(title: &str, record: &Indentation, fit: &IndentationFit) -> F
         Given::Depth => ("load", "N", &loads),
         Given::Load => ("depth", "m", &depths),
     };
-    let points = |x: &[f64], y: &[f64]| Series::new("measured", Style::Points, x.to_vec(), y.to_vec());
-    let line = |x: &[f64], y: &[f64]| Series::new("model", Style::Line, x.to_vec(), y.to_vec());
+    let points = |x: &[f64], y: &[f64]| Series::new("measured", Style::Points, x, y);
+    let line = |x: &[f64], y: &[f64]| Series::new("model", Style::Line, x, y);
     let over_time = Curves::new("Over time", Axis::linear("time", "s"), Axis::linear(name, unit))
         .with(points(&times, measured))
         .with(line(&times, &fit.predicted));
@@ -31,7 +31,7 @@ pub fn indentation(title: &str, record: &Indentation, fit: &IndentationFit) -> F
     let distance: Vec<f64> =
         fit.predicted.iter().zip(measured).map(|(model, measured)| model - measured).collect();
     let apart = Curves::new("Model less measurement", Axis::linear("time", "s"), Axis::linear(name, unit))
-        .with(Series::new("", Style::Points, times.clone(), distance));
+        .with(Series::new("", Style::Points, &times, distance));
     let caption = format!(
         "{}; misfit {:.2} % rms of the largest {name}; Durbin-Watson {:.2}.",
         counted(fit.terms.len(), "term"),

@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use asperity::material::{Creep, MasterCurve, Relaxation, Shift};
+use asperity::material::{MasterCurve, Shift};
 use asperity_io::curve::{Curves as Measured, Fitted, Kind, Sweep};
 use asperity_io::readable::counted;
 
 use super::decades;
-use super::shift::{self, Factors, shift_factors, vertical_shift_factors};
-use crate::figure::{Axis, Curves, Figure, Key, Palette, Series, Style};
+use super::shift::{self, Factors, celsius, shift_factors, vertical_shift_factors};
+use crate::figure::{Axis, Curves, Figure, Key, Palette, Series, Style, extent};
 
 /// Measured curves in the colours of their temperatures, from the coldest (dark) to the warmest (bright).
 pub fn isotherms(title: &str, measured: &Measured) -> Figure {
@@ -34,8 +34,7 @@ pub fn isotherms(title: &str, measured: &Measured) -> Figure {
                 _ => PLAIN.to_owned(),
             };
             for style in [Style::Line, Style::Points] {
-                let series = Series::new("", style, places.clone(), values.clone());
-                panel = panel.with(series.in_colour(colour.clone()));
+                panel = panel.with(Series::new("", style, &places, &values).in_colour(&colour));
             }
         }
         panel.key.clone_from(&key);
@@ -50,20 +49,15 @@ pub fn isotherms(title: &str, measured: &Measured) -> Figure {
         counted(measured.sweeps.len(), "sweep"),
         counted(measured.points(), "point")
     );
-    panels.fold(Figure::new(title), |figure, panel| figure.with(panel)).caption(caption)
+    Figure::new(title).with_all(panels).caption(caption)
 }
 
 /// Colour of points without a temperature.
 const PLAIN: &str = "#0072b2";
 
-fn celsius(kelvin: f64) -> f64 {
-    kelvin - 273.15
-}
-
 /// The colour bar of several temperatures \[K\]; `None` of one, or none.
 fn key(temperatures: impl Iterator<Item = f64>) -> Option<Key> {
-    let none = [f64::INFINITY, f64::NEG_INFINITY];
-    let ends = temperatures.map(celsius).fold(none, |[low, high], t| [low.min(t), high.max(t)]);
+    let ends = extent(temperatures.map(celsius));
     let (label, unit) = ("temperature".to_owned(), "°C".to_owned());
     (ends[0] < ends[1]).then_some(Key { label, unit, palette: Palette::Plasma, ends })
 }
@@ -97,19 +91,17 @@ fn shifted(measured: &Measured, fitted: &Fitted) -> Option<Shifted> {
 /// [`asperity::Error`] where a creep function has no relaxation function.
 pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Result<Figure> {
     let relaxation = fitted.material.relaxation()?;
+    let time = || Axis::log("time", "s");
     let (x, curves): (Axis, Vec<(&str, &str, Function<'_>)>) = match measured.kind {
-        Kind::Relaxation => {
-            (Axis::log("time", "s"), vec![("relaxation modulus", "Pa", Function::Relaxation(&relaxation))])
+        Kind::Relaxation => (time(), vec![("relaxation modulus", "Pa", Box::new(|t| relaxation.value(t)))]),
+        Kind::Creep => {
+            (time(), vec![("creep compliance", "1/Pa", Box::new(|t| fitted.material.creep().value(t)))])
         }
-        Kind::Creep => (
-            Axis::log("time", "s"),
-            vec![("creep compliance", "1/Pa", Function::Creep(fitted.material.creep()))],
-        ),
         Kind::Dma => (
             Axis::log("angular frequency", "rad/s"),
             vec![
-                ("storage", "Pa", Function::Storage(&relaxation)),
-                ("loss", "Pa", Function::Loss(&relaxation)),
+                ("storage", "Pa", Box::new(|w| relaxation.complex(w).0)),
+                ("loss", "Pa", Box::new(|w| relaxation.complex(w).1)),
             ],
         ),
     };
@@ -118,15 +110,13 @@ pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Resul
         _ => Axis::log("modulus", "Pa"),
     };
     let MasterCurve { x: places, curves: values } = &fitted.data;
-    let positive = places.iter().copied().filter(|x| *x > 0.0);
-    let ends = [positive.clone().fold(f64::INFINITY, f64::min), positive.fold(0.0, f64::max)];
-    let fine = decades(ends);
+    let fine = decades(extent(places.iter().copied().filter(|x| *x > 0.0)));
     let dynamic = measured.kind == Kind::Dma;
     let hertz = |panel: Curves| if dynamic { panel.beside("Hz", 1.0 / TAU) } else { panel };
     let sweeps = shifted(measured, fitted);
     let reference = fitted.shift.as_ref().and_then(Shift::reference);
     let title_of = match (&sweeps, reference) {
-        (Some(_), Some(kelvin)) => format!("Master curve at {} and fit", shift::celsius(kelvin)),
+        (Some(_), Some(kelvin)) => format!("Master curve at {} and fit", shift::shown(kelvin)),
         (Some(_), None) => "Master curve and fit".to_owned(),
         (None, _) => "Data and fit".to_owned(),
     };
@@ -134,8 +124,7 @@ pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Resul
     if let Some((sweeps, key)) = &sweeps {
         for (reduced, values, colour) in sweeps {
             for values in values {
-                let points = Series::new("", Style::Points, reduced.clone(), values.clone());
-                panel = panel.with(points.in_colour(colour.clone()));
+                panel = panel.with(Series::new("", Style::Points, reduced, values).in_colour(colour));
             }
         }
         panel.key = Some(key.clone());
@@ -143,22 +132,20 @@ pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Resul
     let left = fitted.other().map(|(column, _)| column);
     let mut distance = hertz(Curves::new("Distance", x, Axis::linear("fit / data - 1", "")));
     for (n, ((name, _, function), values)) in curves.iter().zip(values).enumerate() {
-        let at = |xs: &[f64]| xs.iter().map(|x| function.value(*x)).collect::<Vec<f64>>();
         let left_out = left.is_some_and(|column| column == *name);
         // Data and distance of a curve in one colour; its fit in black over the data, the second one dashed.
         let colour = ["#0072b2", "#d55e00"][n.min(1)];
         if sweeps.is_none() {
-            let points = Series::new(format!("{name}, data"), Style::Points, places.clone(), values.clone());
+            let points = Series::new(format!("{name}, data"), Style::Points, places, values);
             panel = panel.with(points.in_colour(colour));
         }
         let word = if left_out { "follows from the fit" } else { "fit" };
         let style = if n == 0 { Style::Line } else { Style::Dashed };
-        let line = Series::new(format!("{name}, {word}"), style, fine.clone(), at(&fine));
+        let line = Series::of(format!("{name}, {word}"), style, &fine, function);
         panel = panel.with(line.in_colour("#222222"));
         if !left_out {
-            let apart: Vec<f64> = at(places).iter().zip(values).map(|(fit, data)| fit / data - 1.0).collect();
-            let points = Series::new(*name, Style::Points, places.clone(), apart).in_colour(colour);
-            distance = distance.with(points);
+            let apart = places.iter().zip(values).map(|(x, data)| [*x, function(*x) / data - 1.0]);
+            distance = distance.with(Series::through(*name, Style::Points, apart).in_colour(colour));
         }
     }
     let columns: Vec<String> = fitted
@@ -174,34 +161,15 @@ pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Resul
         100.0 * fitted.noise
     );
     let figure = Figure::new(title).with(panel).with(distance);
-    let factors = fitted.shift.as_ref().and_then(|law| {
-        shift_factors(&[Factors {
-            name: "",
-            law,
-            found: &fitted.factors,
-            temperatures: &fitted.temperatures,
-        }])
-    });
+    let (found, temperatures) = (&fitted.factors, &fitted.temperatures);
+    let factors = fitted
+        .shift
+        .as_ref()
+        .and_then(|law| shift_factors(&[Factors { name: "", law, found, temperatures }]));
     let vertical =
         fitted.vertical.as_ref().and_then(|law| vertical_shift_factors(law, &fitted.vertical_factors));
-    Ok(factors.into_iter().chain(vertical).fold(figure, |figure, panel| figure.with(panel)).caption(caption))
+    Ok(figure.with_all(factors).with_all(vertical).caption(caption))
 }
 
 /// What a kind of measurement shows of a material.
-enum Function<'a> {
-    Relaxation(&'a Relaxation),
-    Creep(&'a Creep),
-    Storage(&'a Relaxation),
-    Loss(&'a Relaxation),
-}
-
-impl Function<'_> {
-    fn value(&self, x: f64) -> f64 {
-        match self {
-            Function::Relaxation(relaxation) => relaxation.value(x),
-            Function::Creep(creep) => creep.value(x),
-            Function::Storage(relaxation) => relaxation.complex(x).0,
-            Function::Loss(relaxation) => relaxation.complex(x).1,
-        }
-    }
-}
+type Function<'a> = Box<dyn Fn(f64) -> f64 + 'a>;

@@ -49,28 +49,19 @@ pub fn functions(title: &str, materials: &[(&str, &Material)], window: [f64; 2])
         .or_say("elastic: the loss factor is 0");
     for (name, material) in materials {
         let relaxation = material.relaxation()?;
-        let of = |f: &dyn Fn(f64) -> f64, xs: &[f64]| xs.iter().map(|x| f(*x)).collect::<Vec<f64>>();
-        let line = |name: String, xs: &[f64], f: &dyn Fn(f64) -> f64| {
-            Series::new(name, Style::Line, xs.to_vec(), of(f, xs))
-        };
-        relaxing = relaxing.with(line((*name).into(), &times, &|t| relaxation.value(t)));
-        creeping = creeping.with(line((*name).into(), &times, &|t| material.creep().value(t)));
         let storage = |w: f64| relaxation.complex(w).0;
         let loss = |w: f64| relaxation.complex(w).1;
-        dynamic = dynamic.with(line(format!("{name}, storage"), &frequencies, &storage));
-        dynamic = dynamic.with(Series::new(
-            format!("{name}, loss"),
-            Style::Dashed,
-            frequencies.clone(),
-            of(&loss, &frequencies),
-        ));
-        factor = factor.with(line((*name).into(), &frequencies, &|w| loss(w) / storage(w)));
+        relaxing = relaxing.with(Series::of(*name, Style::Line, &times, |t| relaxation.value(t)));
+        creeping = creeping.with(Series::of(*name, Style::Line, &times, |t| material.creep().value(t)));
+        dynamic = dynamic
+            .with(Series::of(format!("{name}, storage"), Style::Line, &frequencies, storage))
+            .with(Series::of(format!("{name}, loss"), Style::Dashed, &frequencies, loss));
+        factor = factor.with(Series::of(*name, Style::Line, &frequencies, |w| loss(w) / storage(w)));
     }
     Ok(Figure::new(title).with(relaxing).with(creeping).with(dynamic).with(factor))
 }
 
-/// q C(q) of bodies of layers and the contact modulus 2/(q C) of the half-space that yields as much, over the length of the
-/// wave.
+/// q C(q) of bodies of layers, and the contact modulus 2/(q C) of the equivalent half-space, over the wavelength.
 pub fn layers(title: &str, waves: &[WaveReport]) -> Figure {
     let lengths: Vec<f64> = waves.iter().map(|wave| wave.length).collect();
     let relaxed: Vec<f64> = waves.iter().map(|wave| wave.relaxed_modulus).collect();
@@ -79,8 +70,8 @@ pub fn layers(title: &str, waves: &[WaveReport]) -> Figure {
     let creeps = at_once.iter().zip(&relaxed).any(|(at_once, relaxed)| at_once != relaxed);
     let panel = |title: &str, axis: Axis, of: fn(f64) -> f64| {
         let line = |name: &str, moduli: &[f64]| {
-            let values: Vec<f64> = moduli.iter().map(|modulus| of(*modulus)).collect();
-            Series::new(name, Style::Line, lengths.clone(), values)
+            let points = lengths.iter().zip(moduli).map(|(length, modulus)| [*length, of(*modulus)]);
+            Series::through(name, Style::Line, points)
         };
         let panel = Curves::new(title, Axis::log("length of the wave", "m"), axis);
         match creeps {
@@ -90,7 +81,7 @@ pub fn layers(title: &str, waves: &[WaveReport]) -> Figure {
     };
     Figure::new(title)
         .with(panel("Response of the layers", Axis::log("q C(q)", "1/Pa"), |modulus| 2.0 / modulus))
-        .with(panel("Half-space that yields as much", Axis::log("contact modulus", "Pa"), |modulus| modulus))
+        .with(panel("Equivalent half-space", Axis::log("contact modulus", "Pa"), |modulus| modulus))
 }
 
 /// Places from one end to the other, evenly on a logarithmic scale.

@@ -2,7 +2,7 @@
 
 use asperity::material::{Shift, VerticalShift};
 
-use crate::figure::{Axis, Curves, Series, Style};
+use crate::figure::{Axis, COLOURS, Curves, INK, Series, Style, extent};
 
 /// The shift of a material.
 #[derive(Clone, Copy, Debug)]
@@ -17,9 +17,14 @@ pub struct Factors<'a> {
     pub temperatures: &'a [f64],
 }
 
+/// A temperature in °C.
+pub(super) fn celsius(kelvin: f64) -> f64 {
+    kelvin - 273.15
+}
+
 /// "20.0 °C" of a temperature \[K\].
-pub(super) fn celsius(kelvin: f64) -> String {
-    format!("{:.1} °C", kelvin - 273.15)
+pub(super) fn shown(kelvin: f64) -> String {
+    format!("{:.1} °C", celsius(kelvin))
 }
 
 /// How far a law without a measurement is drawn from its reference temperature \[K\].
@@ -31,94 +36,111 @@ pub fn shift_factors(all: &[Factors]) -> Option<Curves> {
     let axis = Axis::log("shift factor a_T", "");
     let references: Vec<Option<f64>> = all.iter().map(|factors| factors.law.reference()).collect();
     let one = references.first().copied().flatten().filter(|one| references.iter().all(|r| *r == Some(*one)));
-    let title = one
-        .map_or("Shift factors".to_owned(), |kelvin| format!("Shift factors, reference {}", celsius(kelvin)));
+    let title = one.map_or("Shift factors".into(), |at| format!("Shift factors, reference {}", shown(at)));
     let mut panel = Curves::new(title, Axis::linear("temperature [°C]", ""), axis);
     for (n, factors) in all.iter().enumerate() {
-        let colour = ["#0072b2", "#d55e00", "#009e73", "#cc79a7"][n % 4];
         // Several references stand in the legend.
         let own = factors.law.reference().filter(|_| one.is_none());
-        let about = own.map_or(String::new(), |kelvin| format!(" about {}", celsius(kelvin)));
-        let named = |what: &str| match factors.name {
-            "" => format!("{what}{about}"),
-            name => format!("{name}: {what}{about}"),
+        let about = own.map_or(String::new(), |kelvin| format!(" about {}", shown(kelvin)));
+        let named = |what: &str| match (factors.name, what) {
+            (_, "") => String::new(),
+            ("", what) => format!("{what}{about}"),
+            (name, what) => format!("{name}: {what}{about}"),
         };
-        let points: Vec<(f64, f64)> = match factors.law {
+        let power = |decades: f64| 10f64.powf(decades);
+        let of_sweep = |[kelvin, decades, deviation]: &[f64; 3]| {
+            let ends = [decades - deviation, decades + deviation].map(power);
+            Point { kelvin: *kelvin, factor: power(*decades), ends: (*deviation > 0.0).then_some(ends) }
+        };
+        let given = |(kelvin, ln): &(f64, f64)| Point { kelvin: *kelvin, factor: ln.exp(), ends: None };
+        let (points, word): (Vec<Point>, &str) = match factors.law {
             _ if !factors.found.is_empty() => {
-                factors.found.iter().map(|[kelvin, decades, _]| (*kelvin, 10f64.powf(*decades))).collect()
+                (factors.found.iter().map(of_sweep).collect(), "from the sweeps")
             }
-            Shift::Table { points } => points.iter().map(|(kelvin, ln)| (*kelvin, ln.exp())).collect(),
-            Shift::Wlf { .. } | Shift::Arrhenius { .. } => vec![],
+            Shift::Table { points } => (points.iter().map(given).collect(), "given"),
+            Shift::Wlf { .. } | Shift::Arrhenius { .. } => (vec![], ""),
         };
-        let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|(kelvin, a)| (kelvin - 273.15, *a)).unzip();
-        let law = line(factors).map(|(x, y)| {
-            let word = match factors.law {
-                Shift::Wlf { .. } => "WLF",
-                Shift::Arrhenius { .. } => "Arrhenius",
-                Shift::Table { .. } => "",
-            };
-            let name = if word.is_empty() { String::new() } else { named(word) };
-            Series::new(name, Style::Line, x, y).in_colour(if points.is_empty() { colour } else { "#222222" })
-        });
-        panel = law.into_iter().fold(panel, |panel, line| panel.with(line));
-        panel = factors.found.iter().fold(panel, |panel, [kelvin, decades, deviation]| {
-            let ends = [decades - deviation, decades + deviation].map(|decades| 10f64.powf(decades));
-            let bar = Series::new("", Style::Line, vec![kelvin - 273.15; 2], ends.to_vec());
-            if *deviation > 0.0 { panel.with(bar.in_colour(colour)) } else { panel }
-        });
-        if !x.is_empty() {
-            let word = if factors.found.is_empty() { "given" } else { "from the sweeps" };
-            panel = panel.with(Series::new(named(word), Style::Points, x, y).in_colour(colour));
-        }
+        let name = match factors.law {
+            Shift::Wlf { .. } => "WLF",
+            Shift::Arrhenius { .. } => "Arrhenius",
+            Shift::Table { .. } => "",
+        };
+        let law = over(drawn(factors), &|kelvin| factors.law.factor(kelvin).ok());
+        panel = with_law(panel, (named(name), law), (named(word), points), COLOURS[n % 4]);
     }
     (!panel.series.is_empty()).then_some(panel)
+}
+
+/// A factor at a temperature \[K\], and where its bar of a standard deviation ends.
+struct Point {
+    kelvin: f64,
+    factor: f64,
+    ends: Option<[f64; 2]>,
+}
+
+/// The panel with a law as a line, black where there are points, and with points and their bars in a colour.
+fn with_law(
+    mut panel: Curves,
+    (name, law): (String, Vec<[f64; 2]>),
+    (word, points): (String, Vec<Point>),
+    colour: &str,
+) -> Curves {
+    if !law.is_empty() {
+        let own = if points.is_empty() { colour } else { INK };
+        panel = panel.with(Series::through(name, Style::Line, law).in_colour(own));
+    }
+    for point in &points {
+        if let Some(ends) = point.ends {
+            let bar = Series::new("", Style::Line, [celsius(point.kelvin); 2], ends);
+            panel = panel.with(bar.in_colour(colour));
+        }
+    }
+    if points.is_empty() {
+        return panel;
+    }
+    let points = points.iter().map(|point| [celsius(point.kelvin), point.factor]);
+    panel.with(Series::through(word, Style::Points, points).in_colour(colour))
 }
 
 /// The panel of vertical shift factors b_T: those of the sweeps (temperature \[K\], b_T, relative standard deviation) as points with
 /// bars of a standard deviation, the law as a line. `None` of fewer than two sweeps.
 pub fn vertical_shift_factors(law: &VerticalShift, found: &[[f64; 3]]) -> Option<Curves> {
-    let (low, high) = (found.first()?[0], found.last()?[0]);
-    if low >= high {
+    let ends = [found.first()?[0], found.last()?[0]];
+    if ends[0] >= ends[1] {
         return None;
     }
-    let axes = [Axis::linear("temperature [°C]", ""), Axis::linear("vertical shift factor b_T", "")];
-    let [x, y] = axes;
-    let places = (0..=200).map(|k| low + (high - low) * f64::from(k) / 200.0);
-    let known = places.filter_map(|kelvin| Some((kelvin - 273.15, law.factor(kelvin).ok()?)));
-    let (line_x, line_y): (Vec<f64>, Vec<f64>) = known.unzip();
-    let (name, points) = match law {
+    let (x, y) = (Axis::linear("temperature [°C]", ""), Axis::linear("vertical shift factor b_T", ""));
+    let (name, word) = match law {
         VerticalShift::Density { .. } => ("density times temperature", "at the sweeps"),
         VerticalShift::Table { .. } => ("", "from the sweeps"),
     };
-    let panel = Curves::new("Moduli are divided by b_T", x, y)
-        .with(Series::new(name, Style::Line, line_x, line_y).in_colour("#222222"));
-    let panel =
-        found.iter().filter(|[.., share]| *share > 0.0).fold(panel, |panel, [kelvin, factor, share]| {
-            let ends = vec![factor * (1.0 - share), factor * (1.0 + share)];
-            panel.with(Series::new("", Style::Line, vec![kelvin - 273.15; 2], ends).in_colour("#0072b2"))
-        });
-    let (x, y): (Vec<f64>, Vec<f64>) =
-        found.iter().map(|[kelvin, factor, _]| (kelvin - 273.15, *factor)).unzip();
-    Some(panel.with(Series::new(points, Style::Points, x, y).in_colour("#0072b2")))
+    let point = |[kelvin, factor, share]: &[f64; 3]| {
+        let ends = [factor * (1.0 - share), factor * (1.0 + share)];
+        Point { kelvin: *kelvin, factor: *factor, ends: (*share > 0.0).then_some(ends) }
+    };
+    let line = over(Some(ends), &|kelvin| law.factor(kelvin).ok());
+    let points = found.iter().map(point).collect();
+    let panel = Curves::new("Moduli are divided by b_T", x, y);
+    Some(with_law(panel, (name.into(), line), (word.into(), points), COLOURS[0]))
 }
 
-/// The law over the temperatures measured, or about its reference; a list from its first to its last temperature.
-fn line(factors: &Factors) -> Option<(Vec<f64>, Vec<f64>)> {
-    let measured = |fold: fn(f64, f64) -> f64| factors.temperatures.iter().copied().reduce(fold);
-    let about = match factors.law {
+/// A law \[°C, factor\] over temperatures \[K\], where it holds.
+fn over(ends: Option<[f64; 2]>, law: &dyn Fn(f64) -> Option<f64>) -> Vec<[f64; 2]> {
+    let Some([low, high]) = ends else { return vec![] };
+    let places = (0..=200).map(|k| low + (high - low) * f64::from(k) / 200.0);
+    places.filter_map(|kelvin| Some([celsius(kelvin), law(kelvin)?])).collect()
+}
+
+/// The temperatures over which a law is drawn: those measured, or some about its reference; those of a list.
+fn drawn(factors: &Factors) -> Option<[f64; 2]> {
+    let measured = extent(factors.temperatures.iter().copied());
+    Some(match factors.law {
+        Shift::Table { points } => [points.first()?.0, points.last()?.0],
+        _ if measured[0] < measured[1] => measured,
         // The law ends at T_r - c2.
         Shift::Wlf { c2, reference, .. } => [reference - (0.6 * c2).min(AROUND), reference + AROUND],
         Shift::Arrhenius { reference, .. } => [(reference - AROUND).max(1.0), reference + AROUND],
-        Shift::Table { points } => [points.first()?.0, points.last()?.0],
-    };
-    let [low, high] = match (measured(f64::min), measured(f64::max), factors.law) {
-        (Some(low), Some(high), Shift::Wlf { .. } | Shift::Arrhenius { .. }) if low < high => [low, high],
-        _ => about,
-    };
-    let places = (0..=200).map(|k| low + (high - low) * f64::from(k) / 200.0);
-    let known = places.filter_map(|kelvin| Some((kelvin - 273.15, factors.law.factor(kelvin).ok()?)));
-    let (x, y): (Vec<f64>, Vec<f64>) = known.unzip();
-    (!x.is_empty()).then_some((x, y))
+    })
 }
 
 #[cfg(test)]

@@ -12,21 +12,15 @@ use flate2::write::ZlibEncoder;
 use ndarray::ArrayView2;
 use std::io::Write;
 
+use crate::figure::extent;
+
 const UNDEFINED: u16 = u16::MAX;
 const HIGHEST: f64 = 65534.0;
 
-/// Least and greatest of the finite values; `None` where there is none.
-pub(super) fn range(values: ArrayView2<f64>) -> Option<[f64; 2]> {
-    let finite = values.iter().copied().filter(|v| v.is_finite());
-    finite.fold(None, |range, v| match range {
-        None => Some([v, v]),
-        Some([low, high]) => Some([f64::min(low, v), f64::max(high, v)]),
-    })
-}
-
 /// A map of finite and undefined values.
 pub(super) fn packed(values: ArrayView2<f64>) -> Vec<u8> {
-    let [min, max] = range(values).unwrap_or([0.0, 0.0]);
+    let ends = extent(values.iter().copied());
+    let [min, max] = if ends[0] <= ends[1] { ends } else { [0.0; 2] };
     let step = (max - min) / HIGHEST;
     let (nx, ny) = values.dim();
     let mut planes = vec![0; 2 * nx * ny];
@@ -67,7 +61,7 @@ mod tests {
         let bytes = packed(values.view());
         let number = |at: usize| f64::from_le_bytes(bytes[at..at + 8].try_into().unwrap());
         let [min, max] = [number(0), number(8)];
-        assert_eq!([min, max], range(values.view()).unwrap());
+        assert_eq!([min, max], extent(values.iter().copied()));
         assert_eq!(bytes[16..24], [5, 0, 0, 0, 7, 0, 0, 0]);
         let mut planes = Vec::new();
         flate2::read::ZlibDecoder::new(&bytes[24..]).read_to_end(&mut planes).unwrap();
@@ -87,7 +81,6 @@ mod tests {
 
     #[test]
     fn maps_without_range_or_values_pack() {
-        assert_eq!(range(ndarray::Array2::from_elem((2, 2), f64::NAN).view()), None);
         for value in [0.0, 3.0, f64::NAN] {
             assert!(packed(ndarray::Array2::from_elem((3, 2), value).view()).len() > 24);
         }

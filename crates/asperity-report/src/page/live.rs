@@ -36,29 +36,21 @@ impl Live {
     /// [`StoreError`] where the result is damaged, has no row yet or not this map.
     pub fn answer(&self, path: &str) -> Result<Option<Answer>, StoreError> {
         let reader = Reader::open(&self.path)?;
-        let answer = |content_type, content| Ok(Some(Answer { content_type, content }));
-        match path {
+        let svg = |picture: Option<String>| ("image/svg+xml", picture.map(String::into_bytes));
+        let (content_type, content) = match path {
             "/" => {
-                let state = state_of(&reader, true)?;
-                answer("text/html; charset=utf-8", filled_page(&reader, &state, "").into_bytes())
+                let page = filled_page(&reader, &state_of(&reader, true)?, "");
+                ("text/html; charset=utf-8", Some(page.into_bytes()))
             }
-            "/state" => answer("application/json", state_of(&reader, false)?.to_string().into_bytes()),
-            "/stress.svg" => match stress::picture(&reader)? {
-                Some(picture) => answer("image/svg+xml", picture.into_bytes()),
-                None => Ok(None),
-            },
-            "/leak.svg" => match super::leak_map(&reader) {
-                Some(picture) => answer("image/svg+xml", picture.into_bytes()),
-                None => Ok(None),
-            },
-            path => match path.strip_prefix("/map/") {
-                Some(name) => match map(&reader, name)? {
-                    Some(bytes) => answer("application/octet-stream", bytes),
-                    None => Ok(None),
-                },
-                None => Ok(None),
-            },
-        }
+            "/state" => ("application/json", Some(state_of(&reader, false)?.to_string().into_bytes())),
+            "/stress.svg" => svg(stress::picture(&reader)?),
+            "/leak.svg" => svg(super::leak_map(&reader)),
+            path => {
+                let map = path.strip_prefix("/map/").map(|name| map(&reader, name)).transpose()?;
+                ("application/octet-stream", map.flatten())
+            }
+        };
+        Ok(content.map(|content| Answer { content_type, content }))
     }
 }
 

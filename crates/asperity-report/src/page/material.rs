@@ -5,13 +5,14 @@ use std::f64::consts::TAU;
 use asperity_io::store::Reader;
 use serde_json::{Value, json};
 
+use crate::figure::extent;
 use crate::result::{creep, creep_over_reduced_time};
 
 /// Points to a decade of time.
 const FINE: i32 = 12;
 
-/// C(t), E*(t), E', E'' and tan delta, of bodies whose temperature changes at the reference of their shift, from a decade below the shortest time to one above the longest; `Null` for
-/// an elastic pair or where the result does not say.
+/// C(t), E*(t), E', E'' and tan delta, from a decade below the shortest time to a decade above the longest; for bodies whose
+/// temperature changes at the reference temperature of their shift. `Null` for an elastic pair or where the result does not say.
 pub(super) fn curves(reader: &Reader) -> Value {
     let reduced = creep_over_reduced_time(reader);
     let parts = creep(reader).into_iter().chain(reduced.iter().cloned());
@@ -20,7 +21,7 @@ pub(super) fn curves(reader: &Reader) -> Value {
     if creep.fluidity > 0.0 && creep.instantaneous > 0.0 {
         times.push(creep.instantaneous / creep.fluidity);
     }
-    let ends = times.iter().fold([f64::INFINITY, 0.0], |[a, b]: [f64; 2], t| [a.min(*t), b.max(*t)]);
+    let ends = extent(times.iter().copied());
     if times.is_empty() || ends[0] <= 0.0 {
         return Value::Null;
     }
@@ -28,12 +29,8 @@ pub(super) fn curves(reader: &Reader) -> Value {
     let time: Vec<f64> =
         (first * FINE..=last * FINE).map(|n| 10f64.powf(f64::from(n) / f64::from(FINE))).collect();
     let omega: Vec<f64> = time.iter().rev().map(|t| TAU / t).collect();
-    let complex = omega.iter().map(|w| {
-        let (stored, lost) = creep.modulus(*w);
-        [stored, lost, lost / stored]
-    });
-    let complex: Vec<[f64; 3]> = complex.collect();
-    let column = |k: usize| complex.iter().map(|row| row[k]).collect::<Vec<f64>>();
+    let complex: Vec<(f64, f64)> = omega.iter().map(|w| creep.modulus(*w)).collect();
+    let column = |of: fn(&(f64, f64)) -> f64| complex.iter().map(of).collect::<Vec<f64>>();
     let relaxation = creep.to_relaxation().ok();
     let modulus = relaxation.map(|e| time.iter().map(|t| e.value(*t)).collect::<Vec<f64>>());
     let decades = modulus.as_ref().map(|e| match (e.first(), e.last()) {
@@ -47,8 +44,8 @@ pub(super) fn curves(reader: &Reader) -> Value {
         "relaxation": modulus,
         "decades": decades,
         "frequency": omega.iter().map(|w| w / TAU).collect::<Vec<f64>>(),
-        "storage": column(0),
-        "loss": column(1),
-        "tangent": column(2),
+        "storage": column(|(stored, _)| *stored),
+        "loss": column(|(_, lost)| *lost),
+        "tangent": column(|(stored, lost)| lost / stored),
     })
 }

@@ -14,9 +14,9 @@ mod surface;
 
 pub use live::{Answer, Live};
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use asperity_io::output::{self, WriteError};
 use asperity_io::store::{Reader, StoreError};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -64,35 +64,22 @@ pub enum ReportError {
     /// The result is damaged or has no row yet.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// There is a file already.
-    #[error("{} already exists; choose another file or use --force", .0.display())]
-    Exists(PathBuf),
-    /// The system refuses.
-    #[error("cannot write {}: {source}", path.display())]
-    Io {
-        /// The path.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 /// Writes the report of a result to `path`. The file appears whole or not at all.
 ///
 /// # Errors
-/// [`ReportError::Store`] where the result has no row yet or is damaged; [`ReportError::Exists`] where there is a
-/// file and `force` does not allow to replace it; [`ReportError::Io`] where the system refuses.
+/// [`ReportError::Store`] where the result has no row yet or is damaged; [`ReportError::Write`] where there is a file already and
+/// `force` is not given, or the system refuses.
 pub fn write(reader: &Reader, path: &Path, options: &Options) -> Result<(), ReportError> {
+    // What cannot be replaced is reported before the work.
     if !options.force && path.exists() {
-        return Err(ReportError::Exists(path.to_owned()));
+        return Err(WriteError::Exists { path: path.to_owned() }.into());
     }
-    let page = page(reader, options)?;
-    asperity_io::output::write(path, options.force, |file| file.write_all(page.as_bytes())).map_err(
-        |source| match source.kind() {
-            std::io::ErrorKind::AlreadyExists => ReportError::Exists(path.to_owned()),
-            _ => ReportError::Io { path: path.to_owned(), source },
-        },
-    )
+    Ok(output::write_all(path, options.force, page(reader, options)?.as_bytes())?)
 }
 
 /// The report of a result as HTML.

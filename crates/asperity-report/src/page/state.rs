@@ -5,7 +5,7 @@ use asperity::cycles::Cycle;
 use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
 use asperity_io::readable::quantity;
-use asperity_io::store::{FieldKind, Reader, Status, StoreError};
+use asperity_io::store::{FieldKind, Reader, StoreError};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
@@ -179,16 +179,11 @@ fn lut(colours: Colours) -> String {
 }
 
 fn status(reader: &Reader) -> String {
-    let rows = reader.len();
+    let (rows, state) = (reader.len(), reader.state());
+    if state == "complete" {
+        return format!("complete, {rows} rows");
+    }
     let of = reader.header().rows_expected.map_or(String::new(), |total| format!(" of {total}"));
-    let state = match reader.status() {
-        Status::Complete if reader.lacks_leakage() => format!("without its leakage{}", reader.continuation()),
-        Status::Complete => return format!("complete, {rows} rows"),
-        Status::Running if reader.is_being_written() => "running".to_owned(),
-        Status::Running => format!("incomplete: its run was killed{}", reader.continuation()),
-        Status::Interrupted => format!("incomplete: its run was interrupted{}", reader.continuation()),
-        Status::Failed => "incomplete: its run failed".to_owned(),
-    };
     let why = reader.work().message.as_ref().map_or(String::new(), |message| format!(": {message}"));
     format!("{rows}{of} rows; {state}{why}")
 }

@@ -15,7 +15,7 @@ pub(super) fn curves(reader: &Reader) -> Result<Value, StoreError> {
     };
     Ok(json!({
         "facts": facts(&below),
-        "time": below.instants.iter().map(|instant| json!(instant.time)).collect::<Value>(),
+        "time": below.instants.iter().map(|instant| instant.time).collect::<Vec<f64>>(),
         "mises": over("max_mises"),
         "tresca": over("max_tresca"),
         "tension": over("max_tension"),

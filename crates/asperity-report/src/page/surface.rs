@@ -10,6 +10,7 @@ use ndarray::Array2;
 use serde_json::{Value, json};
 
 use crate::result::boundary;
+use crate::surface::roughness;
 
 /// Roughness below this share of the gap's range is rounding.
 const SMOOTH: f64 = 1e-9;
@@ -60,11 +61,12 @@ pub(super) fn surface(reader: &Reader) -> Result<Option<(Array2<f64>, Value)>, S
             ""
         }
     );
+    let (wave_number, power) = spectrum.as_ref().map(roughness).unzip();
     let value = json!({
         "note": note,
         "statistics": lines,
-        "wave_number": spectrum.as_ref().map(|s| &s.wave_number),
-        "power": spectrum.as_ref().map(|s| &s.power),
+        "wave_number": wave_number,
+        "power": power,
     });
     Ok(Some((heights, value)))
 }

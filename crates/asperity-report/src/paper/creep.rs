@@ -16,19 +16,16 @@ pub(super) fn pmma() -> Result<Reproduction> {
     let relaxation = Relaxation::absolute(EQUILIBRIUM, &TERMS)?;
     let material = Material::prony(Modulus::Young, relaxation.clone())?;
     let time: Vec<f64> = (0..=400).map(|n| f64::from(n) * END / 400.0).collect();
-    let exact: Vec<f64> = time.iter().map(|t| material.creep().value(*t)).collect();
     let solved = volterra(&relaxation);
+    let exact = |t: f64| material.creep().value(t);
     let every = STEPS / 40;
-    let points: Vec<(f64, f64)> =
-        solved.iter().enumerate().step_by(every).map(|(n, d)| (n as f64 * END / STEPS as f64, *d)).collect();
-    let largest =
-        points.iter().map(|(t, d)| (d / material.creep().value(*t) - 1.0).abs()).fold(0.0, f64::max);
-    let (at, value): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+    let points: Vec<[f64; 2]> =
+        solved.iter().enumerate().step_by(every).map(|(n, d)| [n as f64 * END / STEPS as f64, *d]).collect();
+    let largest = points.iter().map(|[t, d]| (d / exact(*t) - 1.0).abs()).fold(0.0, f64::max);
     let panel = Curves::new("", Axis::linear("time", "s"), Axis::linear("creep compliance", "1/Pa"))
-        .with(Series::new("exact conversion", Style::Line, time, exact))
-        .with(Series::new("convolution solved in steps", Style::Points, at, value));
-    let mut figure = Figure::new("").with(panel);
-    figure.panel = [345.0, 240.0];
+        .with(Series::of("exact conversion", Style::Line, &time, exact))
+        .with(Series::through("convolution solved in steps", Style::Points, points));
+    let figure = Figure::new("").with(panel).panel_size([345.0, 240.0]);
     let differences = vec![Difference::new("Largest difference of the compliance", largest, "it")];
     let more = "Uniaxial creep compliance that belongs to the relaxation modulus of eq. 23.";
     Ok(Reproduction::new(3, "creep compliance of PMMA", figure, differences, more))

@@ -22,6 +22,7 @@ use asperity_io::session::{RunError, RunOptions, run};
 use asperity_io::store::{Reader, StoreError};
 
 use crate::figure::Figure;
+use crate::result::PlotError;
 
 /// The figures that there are.
 pub const FIGURES: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
@@ -71,6 +72,9 @@ pub enum PaperError {
     /// A result cannot be read.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// A figure of a result cannot be drawn.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
     /// A closed form refused its numbers.
     #[error(transparent)]
     Reference(#[from] asperity::Error),

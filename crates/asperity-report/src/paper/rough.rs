@@ -8,7 +8,6 @@ use asperity_examples::paper::FIGURES_5_TO_8 as CASE;
 use asperity_io::case::Case;
 use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader};
-use asperity_io::stress::StressError;
 
 use super::{Difference, Options, Reproduction, Result};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
@@ -46,10 +45,10 @@ pub(super) fn figures(options: &Options, run: bool) -> Result<Vec<Reproduction>>
 
 /// Figure 5.
 fn geometry(case: &Case, reader: &Reader) -> Result<Reproduction> {
-    let drawn = figure(reader, Plot::InitialGap, &Show::default()).map_err(plot_error)?;
+    let drawn = figure(reader, Plot::InitialGap, &Show::default())?;
     let gap = reader.initial_gap()?;
     // What is left of the gap without the sphere is the roughness, upside down.
-    let grid = &case.grid;
+    let grid = &case.conditions.grid;
     let [lx, ly] = grid.size();
     let sphere = |(i, j): (usize, usize)| (grid.x(i) - 0.5 * lx).powi(2) + (grid.y(j) - 0.5 * ly).powi(2);
     let rough = ndarray::Array2::from_shape_fn(gap.dim(), |at| gap[at] - sphere(at) / (2.0 * RADIUS));
@@ -65,7 +64,7 @@ fn geometry(case: &Case, reader: &Reader) -> Result<Reproduction> {
 
 /// Figures 6 and 7.
 fn contact(ours: &Reader, theirs: &Reader, number: u8, at: At) -> Result<Reproduction> {
-    let drawn = figure(ours, Plot::Contact, &Show { at, ..Show::default() }).map_err(plot_error)?;
+    let drawn = figure(ours, Plot::Contact, &Show { at, ..Show::default() })?;
     let [a, b] = [ours.field(FieldKind::Contact, at)?, theirs.field(FieldKind::Contact, at)?];
     let cells = a.iter().filter(|state| **state > 0.0).count().max(1) as f64;
     let apart = a.iter().zip(&b).filter(|(a, b)| (**a > 0.0) != (**b > 0.0)).count() as f64;
@@ -82,7 +81,7 @@ fn contact(ours: &Reader, theirs: &Reader, number: u8, at: At) -> Result<Reprodu
 /// Figure 8.
 fn evolution(case: &Case, ours: &Reader, theirs: &Reader) -> Result<Reproduction> {
     let time = ours.series("time")?;
-    let ends = [case.creep.value(0.0), case.creep.long_time()];
+    let ends = [case.conditions.creep.value(0.0), case.conditions.creep.long_time()];
     let [fresh, relaxed] = [elastic(case, ours, ends[0])?, elastic(case, ours, ends[1])?];
     let mut figure = Figure::new("");
     let mut differences = Vec::new();
@@ -90,20 +89,19 @@ fn evolution(case: &Case, ours: &Reader, theirs: &Reader) -> Result<Reproduction
     for (label, name, unit, column) in quantities {
         let [a, b] = [ours.series(name)?, theirs.series(name)?];
         let apart = a.iter().zip(&b).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
-        let every: Vec<usize> = (0..time.len()).step_by(5).collect();
-        let pick = |values: &[f64]| every.iter().map(|n| values[*n]).collect::<Vec<_>>();
+        let every = (0..time.len()).step_by(5).map(|n| [time[n], b[n]]);
         // Two level lines; what lies between is left out.
         let [low, high] = [fresh[column], relaxed[column]];
-        let level = Series::new(
-            "elastic, C(0) and C(∞)",
-            Style::Dashed,
-            vec![0.0, 500.0, f64::NAN, 0.0, 500.0],
-            vec![low, low, f64::NAN, high, high],
-        );
+        let ends = [0.0, 500.0, f64::NAN, 0.0, 500.0];
         let panel = Curves::new("", Axis::linear("time", "s"), Axis::linear(label, unit))
-            .with(Series::new("computed", Style::Line, time.clone(), a.clone()))
-            .with(Series::new("SC17's method", Style::Points, pick(&time), pick(&b)))
-            .with(level);
+            .with(Series::new("computed", Style::Line, &time, &a))
+            .with(Series::through("SC17's method", Style::Points, every))
+            .with(Series::new(
+                "elastic, C(0) and C(∞)",
+                Style::Dashed,
+                ends,
+                [low, low, f64::NAN, high, high],
+            ));
         figure = figure.with(panel);
         differences.push(Difference::new(
             format!("Largest difference of the {label} from SC17's method"),
@@ -131,36 +129,13 @@ fn evolution(case: &Case, ours: &Reader, theirs: &Reader) -> Result<Reproduction
 /// Keer's method.
 fn elastic(case: &Case, reader: &Reader, compliance: f64) -> Result<[f64; 2]> {
     let simulation = Simulation {
-        boundary: case.boundary,
+        boundary: case.conditions.boundary,
         creep: Creep::elastic(compliance),
-        hardness: case.hardness,
-        solver: SolverOptions { method: Method::PolonskyKeer, ..case.solver },
-        ..Simulation::new(case.grid, reader.initial_gap()?)
+        hardness: case.conditions.hardness,
+        solver: SolverOptions { method: Method::PolonskyKeer, ..case.conditions.solver },
+        ..Simulation::new(case.conditions.grid, reader.initial_gap()?)
     };
     let mut contact = Elastic::new(simulation, [(Control::Load, 0.5)])?;
     let row = contact.advance()?.map(|step| step.row()).unwrap_or_default();
     Ok([row.contact_area, row.approach])
-}
-
-/// A plot of a result that was just written can fail as the store does, not by its line.
-fn plot_error(error: crate::result::PlotError) -> super::PaperError {
-    match error {
-        crate::result::PlotError::Store(error) => error.into(),
-        crate::result::PlotError::Flow(error) => error.into(),
-        crate::result::PlotError::Outside { at, length, .. } => {
-            asperity::Error::invalid("line", at, format!("0 to {length}")).into()
-        }
-        crate::result::PlotError::Stress(StressError::Store(error)) => error.into(),
-        crate::result::PlotError::Stress(StressError::Solve(error)) => error.into(),
-        error @ (crate::result::PlotError::Stress(
-            StressError::Refused { .. } | StressError::NoContact { .. },
-        )
-        | crate::result::PlotError::OnLine { .. }
-        | crate::result::PlotError::AtRest { .. }
-        | crate::result::PlotError::Window { .. }
-        | crate::result::PlotError::Many { .. }
-        | crate::result::PlotError::Figure(_)) => {
-            asperity::Error::invalid("figure", error, "one of the paper's").into()
-        }
-    }
 }

@@ -74,20 +74,15 @@ pub(super) fn zener_step(options: &Options) -> Result<Reproduction> {
             }
         }
         let points: Vec<_> = computed.iter().step_by(3).filter(|[r, _]| *r < 1.4 * a0).collect();
-        panel = panel.with(Series::new(
-            format!("t = {}", quantity(*t, "s")),
-            Style::Points,
-            points.iter().map(|[r, _]| r / a0).collect::<Vec<_>>(),
-            points.iter().map(|[_, p]| p / p0).collect::<Vec<_>>(),
-        ));
+        let name = format!("t = {}", quantity(*t, "s"));
+        panel =
+            panel.with(Series::through(name, Style::Points, points.iter().map(|[r, p]| [r / a0, p / p0])));
         let fine: Vec<f64> = (0..=140).map(|k| f64::from(k) * 0.01).collect();
-        let exact = fine.iter().map(|r| equation_21(radius, load, shear, shear, time, r * a0, *t) / p0);
+        let exact = |r: f64| equation_21(radius, load, shear, shear, time, r * a0, *t) / p0;
         let name = if n == 0 { "eq. 21, corrected" } else { "" };
-        let exact: Vec<f64> = exact.collect();
-        panel = panel.with(Series::new(name, Style::Reference, fine, exact));
+        panel = panel.with(Series::of(name, Style::Reference, &fine, exact));
     }
-    let mut figure = Figure::new("").with(panel);
-    figure.panel = [345.0, 260.0];
+    let figure = Figure::new("").with(panel).panel_size([345.0, 260.0]);
     let differences = vec![Difference::new(
         "Largest difference of the pressure, a cell away from the border",
         largest,
@@ -119,24 +114,12 @@ pub(super) fn capped(options: &Options) -> Result<Reproduction> {
             }
         }
         let title = if limit.is_finite() { format!("limit {name} MPa") } else { "no limit".into() };
-        let points: Vec<_> = computed.iter().step_by(3).collect();
-        panel = panel.with(Series::new(
-            title,
-            Style::Points,
-            points.iter().map(|[r, _]| *r).collect::<Vec<_>>(),
-            points.iter().map(|[_, p]| *p).collect::<Vec<_>>(),
-        ));
+        panel = panel.with(Series::through(title, Style::Points, computed.iter().copied().step_by(3)));
         let fine: Vec<f64> = (0..=240).map(|k| f64::from(k) * 0.25e-6).collect();
-        let values: Vec<f64> = fine.iter().map(|r| exact.pressure(*r)).collect();
-        panel = panel.with(Series::new(
-            if n == 0 { "axisymmetric solution" } else { "" },
-            Style::Reference,
-            fine,
-            values,
-        ));
+        let name = if n == 0 { "axisymmetric solution" } else { "" };
+        panel = panel.with(Series::of(name, Style::Reference, &fine, |r| exact.pressure(r)));
     }
-    let mut figure = Figure::new("").with(panel);
-    figure.panel = [345.0, 260.0];
+    let figure = Figure::new("").with(panel).panel_size([345.0, 260.0]);
     let differences = vec![Difference::new(
         "Largest difference of the pressure, a cell away from the border",
         largest,
@@ -150,7 +133,7 @@ pub(super) fn capped(options: &Options) -> Result<Reproduction> {
 pub(super) fn triangle(options: &Options) -> Result<Reproduction> {
     let (case, reader) = options.run("fig4-pmma-triangle", FIGURE_4, &[])?;
     let history = History::Triangle { peak: 5.0, rise: 30.0, fall: 30.0 };
-    let ting = Ting::new(1e-3, &case.creep, &history, 60.0)?;
+    let ting = Ting::new(1e-3, &case.conditions.creep, &history, 60.0)?;
     let time = reader.series("time")?;
     let [load, depth] = [reader.series("load")?, reader.series("approach")?];
     let mut exact = Vec::with_capacity(time.len());
@@ -162,17 +145,11 @@ pub(super) fn triangle(options: &Options) -> Result<Reproduction> {
     let last = time.len() - 1;
     let apart = |n: usize| (depth[n] - exact[n]).abs() / deepest;
     let largest = (0..last).map(apart).fold(0.0, f64::max);
-    let every: Vec<usize> = (0..=last).step_by(4).collect();
+    let every = (0..=last).step_by(4).map(|n| [depth[n], load[n]]);
     let panel = Curves::new("", Axis::linear("depth", "m"), Axis::linear("load", "N"))
-        .with(Series::new(
-            "computed",
-            Style::Points,
-            every.iter().map(|n| depth[*n]).collect::<Vec<_>>(),
-            every.iter().map(|n| load[*n]).collect::<Vec<_>>(),
-        ))
-        .with(Series::new("Ting (1966)", Style::Reference, exact, load));
-    let mut figure = Figure::new("").with(panel);
-    figure.panel = [345.0, 260.0];
+        .with(Series::through("computed", Style::Points, every))
+        .with(Series::new("Ting (1966)", Style::Reference, exact, &load));
+    let figure = Figure::new("").with(panel).panel_size([345.0, 260.0]);
     let differences = vec![Difference::new("Largest difference of the depth", largest, "the largest depth")];
     let more = "Sphere of 1 mm: the paper does not name its radius.";
     Ok(Reproduction::new(4, "load over depth, triangular load on PMMA", figure, differences, more))

@@ -66,9 +66,7 @@ impl Common {
             }
             match panel {
                 Panel::Map(map) => {
-                    if let Values::Quantity { range, .. } = &mut map.meaning {
-                        *range = range_of(shared.up).or(*range);
-                    }
+                    map.range = range_of(shared.up).or(map.range);
                 }
                 Panel::Curves(curves) => {
                     curves.names_above |= shared.names_above;

@@ -5,7 +5,7 @@ use asperity_io::readable::{counted, quantity};
 use asperity_io::store::{FieldKind, Reader};
 
 use super::{Options, PlotError, boundary, caption};
-use crate::figure::{Axis, Curves, Figure, Series, Style};
+use crate::figure::{Axis, Curves, Figure, Series, Style, extent};
 use crate::histogram;
 
 const BINS: usize = 60;
@@ -41,8 +41,7 @@ pub(super) fn histogram(reader: &Reader, options: &Options) -> Result<Figure, Pl
 /// The share of values per unit, over bins from zero to the greatest; of `all` cells, or where zero is far from all of them, from
 /// the least.
 fn density([title, label, unit]: [&str; 3], values: &[f64], all: bool, none: &str) -> Curves {
-    let ends = [f64::INFINITY, f64::NEG_INFINITY];
-    let [least, high] = values.iter().fold(ends, |[a, b], value| [a.min(*value), b.max(*value)]);
+    let [least, high] = extent(values.iter().copied());
     let low = if all || least > 0.5 * high { least } else { least.min(0.0) };
     let panel = Curves::new(title, Axis::linear(label, unit), Axis::linear("density", format!("1/{unit}")));
     // Differences of the last digits are no distribution.
@@ -81,9 +80,7 @@ pub(super) fn spots(reader: &Reader, options: &Options) -> Result<Figure, PlotEr
         quantity(largest, units),
         caption(reader, reader.index(options.at)?)?
     );
-    let mut figure = Figure::new("").with(panel).caption(sizes);
-    figure.panel = [345.0, 260.0];
-    Ok(figure)
+    Ok(Figure::new("").with(panel).panel_size([345.0, 260.0]).caption(sizes))
 }
 
 #[cfg(test)]

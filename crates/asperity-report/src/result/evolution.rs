@@ -8,7 +8,7 @@ use asperity_io::store::{Reader, StoreError};
 
 use super::rows::Rows;
 use super::{Options, PlotError, nameless};
-use crate::figure::{Axis, Curves, Figure};
+use crate::figure::{Axis, Curves, Figure, extent};
 
 pub(super) fn load_displacement(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let kept = shown(reader, options)?;
@@ -71,7 +71,7 @@ fn rows_of(times: &[f64], [start, end]: [f64; 2], rounding: f64) -> RangeInclusi
 /// Rows from the last but one to the last peak of a course that has three of them or more. A peak is higher than the lowest value
 /// on both sides, back to the next higher one, by a tenth of the range.
 fn between_peaks(course: &[f64]) -> Option<RangeInclusive<usize>> {
-    let ends = course.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
+    let ends = extent(course.iter().copied());
     // A held load differs from row to row by rounding errors.
     let moves = ends[1] - ends[0] > 1e-6 * ends[0].abs().max(ends[1].abs());
     let least = if moves { 0.1 * (ends[1] - ends[0]) } else { f64::INFINITY };
@@ -101,7 +101,7 @@ pub(super) fn work(reader: &Reader, options: &Options) -> Result<Figure, PlotErr
     let kept = shown(reader, options)?;
     let panels = super::panels::of_work(reader)?;
     let curves = panels.iter().map(|panel| panel.points(reader, &kept));
-    Ok(curves.collect::<Result<Vec<_>, _>>()?.into_iter().fold(Figure::new(""), Figure::with))
+    Ok(Figure::new("").with_all(curves.collect::<Result<Vec<_>, _>>()?))
 }
 
 /// Numbers of the rows in the window.

@@ -4,11 +4,11 @@ use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use ndarray::Array2;
 
 use super::{Options, PlotError, caption, line, look, no_contact};
-use crate::figure::{Colours, Figure, Map, OPEN, Panel};
+use crate::figure::{Colours, Figure, Map, OPEN, State};
 
 /// Names and colours of the contact states.
-pub(super) const CONTACT_STATES: [(&str, [u8; 3]); 3] =
-    [("open", OPEN), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
+pub(super) const CONTACT_STATES: &[State] =
+    &[("open", OPEN), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
 
 /// The state of a cell whose pressure is the hardness.
 const AT_HARDNESS: u8 = 2;
@@ -65,9 +65,8 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, Pl
 fn states(reader: &Reader, at: At) -> Result<Figure, PlotError> {
     let states = reader.contact_states(at)?;
     let index = reader.index(at)?;
-    let names = CONTACT_STATES.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
     let title = no_contact(reader, index)?;
-    let map = Map::states(title, names, states.mapv(f64::from).view(), reader.header().grid.size());
+    let map = Map::states(title, CONTACT_STATES, states.mapv(f64::from).view(), reader.header().grid.size());
     Ok(single(map, caption(reader, index)?))
 }
 
@@ -82,6 +81,5 @@ pub(super) fn initial_gap(reader: &Reader, _: &Options) -> Result<Figure, PlotEr
 }
 
 fn single(map: Map, caption: String) -> Figure {
-    let figure = Figure { panel: [345.0, 280.0], panels: vec![Panel::Map(map)], ..Figure::new("") };
-    figure.caption(caption)
+    Figure::new("").with(map).panel_size([345.0, 280.0]).caption(caption)
 }

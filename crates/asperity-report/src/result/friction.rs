@@ -12,7 +12,8 @@ use super::{Options, PlotError, boundary, creep, nameless};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
 pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
-    if !reader.scalars().iter().any(|series| series.name == "friction_coefficient") {
+    let has = |name: &str| reader.scalars().iter().any(|series| series.name == name);
+    if !has("friction_coefficient") {
         return Err(PlotError::AtRest { path: reader.path().to_owned() });
     }
     let x = times(reader)?;
@@ -20,9 +21,8 @@ pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, Plo
     let axis = || rows.axis(options.log);
     let grid = &reader.header().grid;
     let line = |name: &str, series: &str| -> Result<Series, StoreError> {
-        Ok(Series::new(name, Style::Line, x.clone(), reader.series(series)?))
+        Ok(Series::new(name, Style::Line, &x, reader.series(series)?))
     };
-    let has = |name: &str| reader.scalars().iter().any(|series| series.name == name);
     let total = has("friction_coefficient_total");
     let theory = persson(reader)?;
     let bulk = match (total, &theory) {
@@ -47,8 +47,7 @@ pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, Plo
         .with(line(if theory.is_some() { "computed" } else { "" }, "contact_fraction")?);
     if let Some(theory) = theory {
         let curve = |of: fn(&PerssonFriction) -> f64| {
-            let y: Vec<f64> = theory.iter().map(of).collect();
-            Series::new("Persson's theory", Style::Dashed, x.clone(), y)
+            Series::new("Persson's theory", Style::Dashed, &x, theory.iter().map(of).collect::<Vec<f64>>())
         };
         coefficient = coefficient.with(curve(|at| at.friction_coefficient));
         area = area.with(curve(|at| at.contact_fraction));

@@ -6,7 +6,7 @@ use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader};
 
 use super::{Options, PlotError, Rows};
-use crate::figure::{Axis, Curves, Figure, Map, Series, Style};
+use crate::figure::{Axis, Curves, Figure, Map, Series, Style, extent};
 use crate::leak::{heading, maps, words};
 
 /// The leaks of a result as they are stored, over time.
@@ -26,12 +26,8 @@ fn curves(reader: &Reader, log: Option<bool>) -> Result<Vec<Curves>, PlotError> 
     let line = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
         // A tight seal has no place on a logarithmic axis.
         let positive = |v: f64| if v > 0.0 { v } else { f64::NAN };
-        Ok(Series::new(
-            name,
-            style,
-            time.clone(),
-            reader.leak(column)?.into_iter().map(positive).collect::<Vec<_>>(),
-        ))
+        let values: Vec<f64> = reader.leak(column)?.into_iter().map(positive).collect();
+        Ok(Series::new(name, style, &time, values))
     };
     let mut all = vec![];
     let gas = reader.leak("leak_rate_standard").is_ok();
@@ -75,7 +71,7 @@ const FEW: usize = 4;
 /// The panel over whole decades, with a vertical line at each time from which on the seal is tight after it has leaked.
 fn sealing(mut panel: Curves, time: &[f64], percolates: &[f64]) -> Curves {
     let values = panel.series.iter().flat_map(|series| series.y.iter().copied()).filter(|y| *y > 0.0);
-    let [low, high] = values.fold([f64::INFINITY, 0.0], |[a, b], y| [f64::min(a, y), f64::max(b, y)]);
+    let [low, high] = extent(values);
     let ends = [10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil())];
     panel.y = panel.y.between(ends[0], ends[1]);
     if percolates.iter().filter(|open| **open > 0.0).count() <= FEW {
@@ -86,41 +82,36 @@ fn sealing(mut panel: Curves, time: &[f64], percolates: &[f64]) -> Curves {
     let moments = (1..time.len()).filter(|n| percolates[n - 1] > 0.0 && percolates[*n] == 0.0);
     moments.enumerate().fold(panel, |panel, (k, n)| {
         let name = if k == 0 { "tight from here" } else { "" };
-        panel.with(Series::new(name, Style::Reference, vec![time[n]; 2], ends.to_vec()))
+        panel.with(Series::new(name, Style::Reference, [time[n]; 2], ends))
     })
 }
 
 /// Leak rate and gaps over time, and the flow at an instant.
 pub(super) fn over_time(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
-    let mut figure = Figure::new("");
     let window = Rows::within(reader, options)?.axis(options.log).range;
-    for mut panel in curves(reader, options.log)? {
+    let mut curves = curves(reader, options.log)?;
+    for panel in &mut curves {
         panel.x.range = window.or(panel.x.range);
-        figure = figure.with(panel);
     }
-    // The last state of a seal that has become tight shows no flow.
-    let instant = if options.at == At::Last { last_leak(reader) } else { options.at };
-    let (maps, mut caption) = at(reader, instant)?;
-    if reader.index(instant)? != reader.index(options.at)? {
-        caption += " The maps are of the last stored time at which it leaks.";
-    }
-    for map in maps {
-        figure = figure.with(map);
-    }
-    figure.panel = [300.0, 240.0];
-    Ok(figure.caption(caption))
+    let (maps, caption) = flow(reader, options.at, "The maps are of")?;
+    Ok(Figure::new("").with_all(curves).with_all(maps).panel_size([300.0, 240.0]).caption(caption))
 }
 
 /// The flow alone, for pages: at the last instant at which the seal leaks.
 pub(crate) fn last_map(reader: &Reader) -> Result<Figure, PlotError> {
-    let instant = last_leak(reader);
+    let (maps, caption) = flow(reader, At::Last, "This is")?;
+    Ok(Figure::new("").with_all(maps).panel_size([300.0, 260.0]).caption(caption))
+}
+
+/// The maps at an instant and their caption. The last state of a seal that has become tight shows no flow: in its place stands the
+/// last one at which it leaks, and the caption says so.
+fn flow(reader: &Reader, wanted: At, shown: &str) -> Result<(Vec<Map>, String), PlotError> {
+    let instant = if wanted == At::Last { last_leak(reader) } else { wanted };
     let (maps, mut caption) = at(reader, instant)?;
-    if reader.index(instant)? != reader.index(At::Last)? {
-        caption += " This is the last stored time at which it leaks.";
+    if reader.index(instant)? != reader.index(wanted)? {
+        caption += &format!(" {shown} the last stored time at which it leaks.");
     }
-    let mut figure = maps.into_iter().fold(Figure::new(""), |figure, map| figure.with(map)).caption(caption);
-    figure.panel = [300.0, 260.0];
-    Ok(figure)
+    Ok((maps, caption))
 }
 
 /// The maps at an instant, computed as the stored leaks were.

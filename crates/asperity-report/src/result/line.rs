@@ -5,8 +5,10 @@ use ndarray::Array2;
 
 use super::fields::CONTACT_STATES;
 use super::{caption, look, nameless, no_contact};
-use crate::figure::{Axis, COLOURS, Curves, Figure, INK, Map, Series, Style, means, states};
+use crate::figure::{Axis, COLOURS, Curves, Figure, INK, Map, Series, Style, extent, means, states};
 
+/// Width and height of a panel \[points\].
+pub(super) const PANEL: [f64; 2] = [430.0, 180.0];
 /// Rows of a picture over time, and most columns.
 const ROWS: usize = 256;
 const COLUMNS: usize = 1024;
@@ -21,8 +23,7 @@ pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, 
         true => of_velocities(reader, kind, index)?,
         false => curve(reader, kind, At::Index(index))?,
     };
-    let mut figure = Figure::new("").columns(1).with(panel);
-    figure.panel = [430.0, 180.0];
+    let mut figure = Figure::new("").columns(1).panel_size(PANEL).with(panel);
     let mut words = caption(reader, index)?;
     if kind == FieldKind::Gap && one(reader, kind, At::Index(index))?.iter().any(|gap| *gap < 0.0) {
         words += super::fields::OVERLAP;
@@ -57,9 +58,7 @@ fn of_velocities(reader: &Reader, kind: FieldKind, index: usize) -> Result<Curve
 pub(super) fn initial_gap(reader: &Reader) -> Result<Figure, StoreError> {
     let panel = Curves::new("", Axis::linear("x", "m"), Axis::linear("undeformed gap", "m"));
     let gap = reader.initial_gap()?.into_raw_vec_and_offset().0;
-    let mut figure = Figure::new("").with(nameless(panel, &places(reader), gap));
-    figure.panel = [430.0, 180.0];
-    Ok(figure)
+    Ok(Figure::new("").panel_size(PANEL).with(nameless(panel, &places(reader), gap)))
 }
 
 /// Both surfaces in the contact, the deformed one and the other, which stays as it is: z = -u and z = h0 - w, so that their
@@ -70,13 +69,12 @@ pub(super) fn surfaces(reader: &Reader, index: usize, gap: &Array2<f64>) -> Resu
     let other: Vec<f64> = before.iter().map(|h0| h0 - approach).collect();
     let deformed: Vec<f64> = other.iter().zip(gap).map(|(z, h)| z - h).collect();
     // Far from the contact the other body rises out of sight: twice the depth of the contact shows what happens.
-    let lowest = deformed.iter().copied().filter(|z| z.is_finite()).fold(f64::INFINITY, f64::min);
-    let highest = deformed.iter().copied().filter(|z| z.is_finite()).fold(f64::NEG_INFINITY, f64::max);
+    let [lowest, highest] = extent(deformed.iter().copied());
     let top = highest + (highest - lowest).max(f64::MIN_POSITIVE);
     let seen = other.into_iter().map(|z| if z <= top { z } else { f64::NAN }).collect::<Vec<_>>();
     let x = places(reader);
     Ok(Curves::new("", Axis::linear("x", "m"), Axis::linear("height", "m"))
-        .with(Series::new("deformed surface", Style::Line, x.clone(), deformed))
+        .with(Series::new("deformed surface", Style::Line, &x, deformed))
         .with(Series::new("other surface", Style::Dashed, x, seen)))
 }
 
@@ -97,7 +95,7 @@ fn along(reader: &Reader) -> Axis {
 fn axis(reader: &Reader, kind: FieldKind) -> Axis {
     match kind {
         FieldKind::Contact => {
-            let names = CONTACT_STATES.map(|(name, _)| name);
+            let names: Vec<&str> = CONTACT_STATES.iter().map(|(name, _)| *name).collect();
             let is_capped = reader
                 .header()
                 .setup
@@ -139,10 +137,7 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
     }
     let size = [reader.header().grid.size()[0], last - first];
     let map = match look(kind) {
-        (_, None) => {
-            let names = CONTACT_STATES.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
-            Map::states("", names, picture.view(), size)
-        }
+        (_, None) => Map::states("", CONTACT_STATES, picture.view(), size),
         (label, Some(colours)) => Map::new("", [label, kind.units()], colours, picture.view(), size),
     };
     Ok(Some(map.over_time(first)))

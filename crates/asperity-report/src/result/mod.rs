@@ -47,10 +47,10 @@ pub(crate) use temperature::at_rows as temperature_at_rows;
 pub use temperature::temperatures;
 pub use together::together;
 
-use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series, Values};
+use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series};
 
 /// What a figure shows of a result.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
     /// The instant of maps, profiles and distributions.
     pub at: At,
@@ -88,19 +88,9 @@ pub enum Line {
     AlongY(Option<f64>),
 }
 
-impl Default for Options {
+impl Default for Line {
     fn default() -> Self {
-        Options {
-            at: At::Last,
-            line: Line::AlongX(None),
-            log: None,
-            title: None,
-            window: [None, None],
-            limits: None,
-            palette: None,
-            log_values: false,
-            size: None,
-        }
+        Line::AlongX(None)
     }
 }
 
@@ -241,13 +231,12 @@ fn colour(panel: &mut Panel, plot: Plot, options: &Options) {
     match panel {
         Panel::Map(map) => {
             map.palette = options.palette;
-            let Values::Quantity { range, .. } = &mut map.meaning else { return };
             // Colours that are white in the middle have zero there, unless limits say otherwise.
             let own = match options.palette {
-                Some(Palette::RedBlue) => range.map(|ends| Colours::Diverging.ends(ends)),
-                _ => *range,
+                Some(Palette::RedBlue) => map.range.map(|ends| Colours::Diverging.ends(ends)),
+                _ => map.range,
             };
-            *range = options.limits.or(own);
+            map.range = options.limits.or(own);
             map.log |= options.log_values;
         }
         Panel::Curves(curves) if plot.unit() == Some(curves.y.unit.as_str()) && plot != Plot::Stress => {

@@ -1,6 +1,6 @@
 //! Panels of curves over the rows: which numbers share one, and what it is called. Figures and pages draw the same.
 
-use asperity::quantities::{ROW_COLUMNS, RowFigure};
+use asperity::quantities::{Panel, ROW_COLUMNS, RowFigure};
 use asperity_io::store::{Reader, StoreError};
 
 use super::rows::Rows;
@@ -29,27 +29,30 @@ pub(crate) fn values(reader: &Reader, name: &str) -> Result<Vec<f64>, StoreError
     Ok(rows.map(|(load, area)| load / area).collect())
 }
 
+/// Adds a line to the panel of its title, or to a new one.
+fn add(panels: &mut Vec<RowPanel>, shown: Panel, name: &'static str, states: &'static [&'static str]) {
+    let Panel { title, label, legend, .. } = shown;
+    match panels.iter_mut().find(|panel| panel.title == title) {
+        Some(panel) => panel.lines.push((legend, name)),
+        None => panels.push(RowPanel { title, label, lines: vec![(legend, name)], states }),
+    }
+}
+
 /// The panels of every row that a figure shows, by the place of the panel.
 fn of_columns(reader: &Reader, is_of: impl Fn(RowFigure) -> Option<u8>) -> Result<Vec<RowPanel>, StoreError> {
-    let mut panels: Vec<(u8, RowPanel)> = vec![];
+    let mut shown: Vec<(u8, Panel, &'static str)> = vec![];
     for column in ROW_COLUMNS {
         let Some((figure, panel)) = column.panel_on(reader.header().grid.is_line()) else { continue };
         let Some(place) = is_of(figure) else { continue };
         let is_zero = || Ok(reader.series(column.name)?.iter().all(|value| *value <= 0.0));
-        if column.is_shown_where_positive() && is_zero()? {
-            continue;
-        }
-        let line = (panel.legend, column.name);
-        match panels.iter_mut().find(|(_, other)| other.title == panel.title) {
-            Some((_, panel)) => panel.lines.push(line),
-            None => {
-                let (title, label, states) = (panel.title, panel.label, &[][..]);
-                panels.push((place, RowPanel { title, label, lines: vec![line], states }));
-            }
+        if !column.is_shown_where_positive() || !is_zero()? {
+            shown.push((place, panel, column.name));
         }
     }
-    panels.sort_by_key(|(place, _)| *place);
-    Ok(panels.into_iter().map(|(_, panel)| panel).collect())
+    shown.sort_by_key(|(place, ..)| *place);
+    let mut panels = vec![];
+    shown.into_iter().for_each(|(_, panel, name)| add(&mut panels, panel, name, &[]));
+    Ok(panels)
 }
 
 /// How the contact evolves.
@@ -75,14 +78,8 @@ pub(crate) fn of_quantities(reader: &Reader) -> Result<Vec<RowPanel>, StoreError
     let mut panels: Vec<RowPanel> = vec![];
     let grid = &reader.header().grid;
     for column in &reader.header().quantities {
-        let Some(panel) = column.quantity.panel_on(grid) else { continue };
-        let line = (panel.legend, column.quantity.name());
-        match panels.iter_mut().find(|other| other.title == panel.title) {
-            Some(panel) => panel.lines.push(line),
-            None => {
-                let (title, label, states) = (panel.title, panel.label, column.quantity.states());
-                panels.push(RowPanel { title, label, lines: vec![line], states });
-            }
+        if let Some(panel) = column.quantity.panel_on(grid) {
+            add(&mut panels, panel, column.quantity.name(), column.quantity.states());
         }
     }
     // Numbers that every row has, beside the quantities of their panel.
@@ -117,7 +114,7 @@ impl RowPanel {
         let time = reader.series("time")?;
         let mut curves = Curves::new(self.title, rows.axis(log), up);
         for (name, series) in &self.lines {
-            let line = Series::new(*name, Style::Line, time.clone(), values(reader, series)?);
+            let line = Series::new(*name, Style::Line, &time, values(reader, series)?);
             curves = curves.with(if steps { line.stepped() } else { line });
         }
         Ok(curves)
@@ -129,12 +126,11 @@ impl RowPanel {
             "number" => Axis::linear(self.label, "").counting(),
             label => Axis::log(label, ""),
         };
-        let row: Vec<f64> = kept.iter().map(|row| *row as f64).collect();
         let mut curves = Curves::new(self.title, Axis::linear("row", "").counting(), up);
         for (name, series) in &self.lines {
             let values = values(reader, series)?;
-            let picked: Vec<f64> = kept.iter().filter_map(|row| values.get(*row).copied()).collect();
-            curves = curves.with(Series::new(*name, Style::Points, row.clone(), picked));
+            let points = kept.iter().filter_map(|row| Some([*row as f64, *values.get(*row)?]));
+            curves = curves.with(Series::through(*name, Style::Points, points));
         }
         Ok(curves)
     }
@@ -144,7 +140,7 @@ impl RowPanel {
 pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let figure = over_rows(reader, options, &of_evolution(reader)?)?;
     let temperature = temperature::panel(reader, Rows::within(reader, options)?, options.log)?;
-    Ok(temperature.into_iter().fold(figure, Figure::with))
+    Ok(figure.with_all(temperature))
 }
 
 /// The figure of the quantities that were asked for.
@@ -161,5 +157,5 @@ fn over_rows(reader: &Reader, options: &Options, panels: &[RowPanel]) -> Result<
     super::evolution::times(reader)?;
     let rows = Rows::within(reader, options)?;
     let curves = panels.iter().map(|panel| panel.curves(reader, rows, options.log));
-    Ok(curves.collect::<Result<Vec<_>, _>>()?.into_iter().fold(Figure::new(""), Figure::with))
+    Ok(Figure::new("").with_all(curves.collect::<Result<Vec<_>, _>>()?))
 }

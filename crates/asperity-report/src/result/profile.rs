@@ -2,7 +2,7 @@
 
 use asperity_io::readable::quantity;
 use asperity_io::store::{FieldKind, Reader};
-use ndarray::{ArrayView1, ArrayView2, Axis as Side};
+use ndarray::{Array2, Axis as Side};
 
 use super::{Line, Options, PlotError, caption, nameless, no_contact};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
@@ -22,33 +22,30 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
     let row = ((at / length * cells as f64) as usize).min(cells - 1);
     let place: Vec<f64> =
         (0..grid.cells()[along]).map(|i| (i as f64 + 0.5) * grid.spacing()[along]).collect();
-    let axis = || Axis::linear(name[0].to_string(), "m");
-
     let kept = &reader.header().fields;
-    let mut figure = Figure::new("").columns(1);
-    figure.panel = [430.0, 180.0];
+    let mut figure = Figure::new("").columns(1).panel_size(super::line::PANEL);
     let title = no_contact(reader, index)?;
+    let panel = |quantity: &str, unit: &str| {
+        Curves::new(title.as_str(), Axis::linear(name[0].to_string(), "m"), Axis::linear(quantity, unit))
+    };
+    let of = |values: &Array2<f64>| values.index_axis(Side(1 - along), row).to_vec();
     if kept.contains(&FieldKind::Pressure) {
-        let pressure = reader.field(FieldKind::Pressure, options.at)?;
-        let panel = Curves::new(title.as_str(), axis(), Axis::linear("pressure", "Pa"));
-        figure = figure.with(nameless(panel, &place, line(pressure.view(), along, row).to_vec()));
+        let pressure = of(&reader.field(FieldKind::Pressure, options.at)?);
+        figure = figure.with(nameless(panel("pressure", "Pa"), &place, pressure));
     }
     if kept.contains(&FieldKind::Gap) {
         let gap = super::fields::gap(reader, options.at)?;
-        let before = reader.initial_gap()?;
-        let start = line(before.view(), along, row).to_vec();
-        let panel = Curves::new(title.as_str(), axis(), Axis::linear("gap", "m"))
-            .with(Series::new("now", Style::Line, place.clone(), line(gap.view(), along, row).to_vec()))
-            .with(Series::new("undeformed", Style::Dashed, place.clone(), start));
+        let panel = panel("gap", "m")
+            .with(Series::new("now", Style::Line, &place, of(&gap)))
+            .with(Series::new("undeformed", Style::Dashed, &place, of(&reader.initial_gap()?)));
         figure = figure.with(panel);
         if grid.is_line() {
             figure = figure.with(super::line::surfaces(reader, index, &gap)?);
         }
     }
     if kept.contains(&FieldKind::Displacement) {
-        let displacement = reader.field(FieldKind::Displacement, options.at)?;
-        let panel = Curves::new(title.as_str(), axis(), Axis::linear("displacement", "m"));
-        figure = figure.with(nameless(panel, &place, line(displacement.view(), along, row).to_vec()));
+        let displacement = of(&reader.field(FieldKind::Displacement, options.at)?);
+        figure = figure.with(nameless(panel("displacement", "m"), &place, displacement));
     }
     if figure.panels.is_empty() {
         return Err(reader.no_field(FieldKind::Pressure).into());
@@ -64,8 +61,4 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
         quantity(exact, "m"),
         caption(reader, index)?
     )))
-}
-
-fn line(values: ArrayView2<f64>, along: usize, row: usize) -> ArrayView1<f64> {
-    values.index_axis_move(Side(1 - along), row)
 }

@@ -6,7 +6,7 @@ use asperity_io::stress::{Below, Instant, Section, StressError, StressPlan, belo
 use ndarray::{Array2, s};
 
 use super::{Options, PlotError, caption, moment};
-use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, Values};
+use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style};
 
 /// A section is this many times as wide as deep, unless the domain ends before.
 const WIDE: f64 = 3.0;
@@ -60,11 +60,8 @@ pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Fig
     let length = |value: f64| quantity(value, "m");
     let size = reader.header().grid.size();
     let mises = |title: String, values: &Array2<f64>, size: [f64; 2]| {
-        let mut map = Map::new(title, ["von Mises stress", "Pa"], Colours::Heat, values.view(), size);
-        if let Values::Quantity { range, .. } = &mut map.meaning {
-            *range = Some([0.0, found.largest]);
-        }
-        map
+        Map::new(title, ["von Mises stress", "Pa"], Colours::Heat, values.view(), size)
+            .between([0.0, found.largest])
     };
     let cut = |values: &Array2<f64>, along: &'static str, place: f64, size: f64, title: String| {
         let cells = values.dim().0;
@@ -96,22 +93,17 @@ pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Fig
     if let Some(along_y) = &found.along_y {
         figure = figure.with(cut(along_y, "y", y, size[1], format!("Section x = {}", length(x))));
     }
-    for (depth, map) in &found.maps {
-        figure = figure.with(mises(format!("Depth {}", length(*depth)), map, size));
-    }
+    let maps = found.maps.iter();
+    figure = figure.with_all(maps.map(|(depth, map)| mises(format!("Depth {}", length(*depth)), map, size)));
     figure = figure.with(profile(below, instant, &found));
     if !shows_tension(below, instant, &found) {
-        let largest = highest(below.profile(instant, "tension_by_depth"));
-        figure.caption += &format!(
-            " The largest principal stress is not drawn: it is {} at most.",
-            quantity(largest, "Pa")
-        );
+        let largest = quantity(highest(below.profile(instant, "tension_by_depth")), "Pa");
+        figure.caption += &format!(" The largest principal stress is not drawn: it is {largest} at most.");
     }
-    if below.set.line {
-        figure.columns = 1;
-    }
-    figure.panel = if below.set.line { [430.0, 260.0] } else { [300.0, 230.0] };
-    Ok(figure)
+    Ok(match below.set.line {
+        true => figure.columns(1).panel_size([430.0, 260.0]),
+        false => figure.panel_size([300.0, 230.0]),
+    })
 }
 
 fn title(reader: &Reader, instant: &Instant) -> String {
@@ -142,21 +134,15 @@ fn profile(below: &Below, instant: &Instant, found: &Section) -> Curves {
     let up = Axis::linear("stress", "Pa").between(least, 1.4 * found.largest);
     let mut panel = Curves::new("Largest at each depth", Axis::linear("depth", "m"), up);
     for (name, key) in lines {
-        panel =
-            panel.with(Series::new(name, Style::Line, depths.clone(), below.profile(instant, key).to_vec()));
+        panel = panel.with(Series::new(name, Style::Line, depths, below.profile(instant, key)));
     }
     let shear = below.profile(instant, "orthogonal_shear_by_depth");
     if !shear.is_empty() {
-        panel = panel.with(Series::new(
-            "range of xz shear (rolling)",
-            Style::Dashed,
-            depths.clone(),
-            shear.to_vec(),
-        ));
+        panel = panel.with(Series::new("range of xz shear (rolling)", Style::Dashed, depths, shear));
     }
     if let Some(limit) = below.set.yield_stress.filter(|limit| *limit < 1.4 * found.largest) {
-        let ends = vec![0.0, depths.last().copied().unwrap_or(found.reach)];
-        panel = panel.with(Series::new("yield stress", Style::Reference, ends, vec![limit; 2]));
+        let ends = [0.0, depths.last().copied().unwrap_or(found.reach)];
+        panel = panel.with(Series::new("yield stress", Style::Reference, ends, [limit; 2]));
     }
-    panel.with(Series::new("largest von Mises", Style::Points, vec![found.place[0]], vec![found.largest]))
+    panel.with(Series::new("largest von Mises", Style::Points, [found.place[0]], [found.largest]))
 }

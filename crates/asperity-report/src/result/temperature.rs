@@ -55,9 +55,9 @@ pub(crate) fn at_rows(reader: &Reader) -> Result<Option<Vec<f64>>, StoreError> {
 pub(super) fn panel(reader: &Reader, rows: Rows, log: Option<bool>) -> Result<Option<Curves>, StoreError> {
     let Some(course) = course(reader) else { return Ok(None) };
     let points = through(&course, &reader.series("time")?);
-    let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().map(|[time, kelvin]| (time, kelvin - ZERO)).unzip();
+    let points = points.into_iter().map(|[time, kelvin]| [time, kelvin - ZERO]);
     let panel = Curves::new("Temperature", rows.axis(log), Axis::linear("temperature [°C]", ""));
-    Ok(Some(panel.with(Series::new("", Style::Line, x, y))))
+    Ok(Some(panel.with(Series::through("", Style::Line, points))))
 }
 
 /// The course at these times and at its own points up to the last of them.

@@ -95,10 +95,10 @@ fn alike(whole: &mut Figure) -> &'static str {
     }
     for panel in &mut whole.panels {
         if let Panel::Map(map) = panel
-            && let Values::Quantity { label, range, .. } = &mut map.meaning
+            && let Values::Quantity { label, .. } = &map.meaning
         {
             let same = all.iter().filter(|(other, _)| other == label).map(|(_, ends)| *ends);
-            *range = same.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
+            map.range = same.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
         }
     }
     " The maps have the same colours."

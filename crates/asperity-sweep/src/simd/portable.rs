@@ -14,18 +14,20 @@ pub(super) struct PortableF64x8([f64; 8]);
 #[derive(Clone, Copy)]
 pub(super) struct PortableMask([bool; 8]);
 
-macro_rules! arithmetic {
-    ($($trait:ident $method:ident),+) => {$(
-        impl $trait for PortableF64x8 {
+macro_rules! both {
+    ($($trait:ident $method:ident $type:ident),+) => {$(
+        impl $trait for $type {
             type Output = Self;
+
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                PortableF64x8(std::array::from_fn(|i| self.0[i].$method(other.0[i])))
+                $type(std::array::from_fn(|i| self.0[i].$method(other.0[i])))
             }
         }
     )+};
 }
-arithmetic!(Add add, Sub sub, Mul mul, Div div);
+both!(Add add PortableF64x8, Sub sub PortableF64x8, Mul mul PortableF64x8, Div div PortableF64x8);
+both!(BitAnd bitand PortableMask, BitOr bitor PortableMask);
 
 impl F64x8 for PortableF64x8 {
     type Mask = PortableMask;
@@ -84,22 +86,6 @@ impl Mask for PortableMask {
     #[inline(always)]
     fn bits(self) -> u8 {
         self.0.iter().rev().fold(0, |bits, on| bits << 1 | u8::from(*on))
-    }
-}
-
-impl BitAnd for PortableMask {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        PortableMask(std::array::from_fn(|i| self.0[i] & other.0[i]))
-    }
-}
-
-impl BitOr for PortableMask {
-    type Output = Self;
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        PortableMask(std::array::from_fn(|i| self.0[i] | other.0[i]))
     }
 }
 

@@ -74,22 +74,15 @@ fn coarser(grid: &Grid) -> Option<Grid> {
     halves.then(|| grid.with_cells([nx / 2, ny / 2]).ok()).flatten()
 }
 
-/// Mean of 2 x 2 cells; infinite ones do not count, unless all four are.
+/// Mean of 2 x 2 cells, two of a line; infinite ones do not count, unless all are.
 fn averaged(fine: &Grid, gap: &[f64]) -> Vec<f64> {
-    if fine.is_line() {
-        let mean = |two: &[f64]| match (two[0].is_finite(), two[1].is_finite()) {
-            (true, true) => 0.5 * (two[0] + two[1]),
-            _ => two[0].min(two[1]),
-        };
-        return gap.chunks_exact(2).map(mean).collect();
-    }
-    let [nx, ny] = fine.cells();
-    let mut coarse = vec![0.0; nx / 2 * (ny / 2)];
-    coarse.par_chunks_mut(ny / 2).zip(gap.par_chunks(2 * ny)).for_each(|(row, two)| {
+    let ny = fine.cells()[1];
+    let across = if fine.is_line() { 1 } else { 2 };
+    let mut coarse = vec![0.0; fine.len() / (2 * across)];
+    coarse.par_chunks_mut(ny / across).zip(gap.par_chunks(2 * ny)).for_each(|(row, two)| {
         let (first, second) = two.split_at(ny);
-        for ((h, a), b) in row.iter_mut().zip(first.chunks_exact(2)).zip(second.chunks_exact(2)) {
-            let four = [a[0], a[1], b[0], b[1]];
-            let finite = four.iter().filter(|h| h.is_finite());
+        for ((h, a), b) in row.iter_mut().zip(first.chunks_exact(across)).zip(second.chunks_exact(across)) {
+            let finite = a.iter().chain(b).filter(|h| h.is_finite());
             let (sum, cells) = finite.fold((0.0, 0.0), |(sum, cells), h| (sum + h, cells + 1.0));
             *h = if cells > 0.0 { sum / cells } else { f64::INFINITY };
         }
@@ -99,14 +92,11 @@ fn averaged(fine: &Grid, gap: &[f64]) -> Vec<f64> {
 
 /// Each cell has the pressure of the coarse one around it.
 fn prolong(coarse: &Grid, from: &[f64], to: &mut [f64]) {
-    if coarse.is_line() {
-        to.chunks_exact_mut(2).zip(from).for_each(|(two, p)| two.fill(*p));
-        return;
-    }
     let ny = coarse.cells()[1];
-    to.par_chunks_mut(2 * ny).enumerate().for_each(|(i, to)| {
+    let across = if coarse.is_line() { 1 } else { 2 };
+    to.par_chunks_mut(across * ny).enumerate().for_each(|(i, to)| {
         let from = &from[i / 2 * ny..][..ny];
-        to.chunks_exact_mut(2).zip(from).for_each(|(two, p)| two.fill(*p));
+        to.chunks_exact_mut(across).zip(from).for_each(|(cells, p)| cells.fill(*p));
     });
 }
 

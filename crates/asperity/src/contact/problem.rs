@@ -90,7 +90,7 @@ impl Problem<'_> {
         }
         let max = extent.largest_sum * operator.grid().cell_area();
         if load > max * (1.0 + SAME_LOAD) || extent.touchable == 0.0 {
-            return Err(Error::Infeasible { load, max });
+            return Err(Error::Infeasible { parameter: String::new(), load, max });
         }
         if load < max * (1.0 - SAME_LOAD) {
             return Ok(None);

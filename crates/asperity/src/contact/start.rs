@@ -82,6 +82,7 @@ pub(super) fn make_feasible(
         }
     }
     set_sum(&mut state.pressure, touchable, hardness, target).ok_or_else(|| Error::Infeasible {
+        parameter: String::new(),
         load: target * cell_area,
         max: problem.extent().largest_sum * cell_area,
     })

@@ -42,7 +42,7 @@ pub struct March {
     recorder: Recorder,
     /// Rows done.
     done: usize,
-    /// The row that the state belongs to: its number, its instant, the estimated error of its step.
+    /// The row that the state belongs to: its number, its instant, its estimated error.
     row: Option<(usize, Instant, Option<f64>)>,
 }
 
@@ -83,8 +83,9 @@ impl March {
     }
 
     fn accept(&mut self, attempt: &Summary) -> Result<()> {
-        self.row = Some((self.done, attempt.instant, attempt.error));
+        self.row = Some((self.done, attempt.instant, None));
         self.stepper.accept()?;
+        self.row = Some((self.done, attempt.instant, self.stepper.time_error()));
         let mut recorder = std::mem::take(&mut self.recorder);
         if !recorder.is_empty() {
             self.last().iter().for_each(|step| step.record(&mut recorder));

@@ -7,6 +7,7 @@
 use ndarray::ArrayView2;
 
 use super::words::{digits, rows};
+use super::worst::extend;
 use super::{FEW_CONTACT_CELLS, Finding, SPOTS_UNRESOLVED};
 use crate::grid::{Boundary, Grid};
 use crate::quantities::contact_edges;
@@ -75,14 +76,11 @@ impl Resolution {
         if contact.cells > self.largest.cells {
             self.largest = contact;
         }
-        let extend = |rows: &mut Option<[usize; 2]>| {
-            *rows = Some(rows.map_or([index; 2], |[first, _]| [first, index]));
-        };
         if contact.width() < ACROSS {
-            extend(&mut self.narrow);
+            extend(&mut self.narrow, index);
         }
         if contact.cells < contact.fewest() {
-            extend(&mut self.few);
+            extend(&mut self.few, index);
         }
     }
 

@@ -8,6 +8,7 @@ use super::expected::{ROOM, radius};
 use super::motion::Slides;
 use super::strain::Strain;
 use super::thin::Widest;
+use super::worst::{Worst, extend};
 use super::{
     CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN, STEPS_TOO_LONG, domain, material,
     strain, surface, thin, time,
@@ -74,9 +75,8 @@ pub struct Diagnostics {
     /// The finding for a held approach with cells at the hardness, and whether there were such cells.
     held: Option<Finding>,
     capped: bool,
-    /// Whether the error of steps of given length is estimated, the largest one, and the rows in which it is too large.
-    estimated: bool,
-    coarse: Option<(f64, [usize; 2])>,
+    /// The rows in which the error of the time steps is too large.
+    coarse: Worst,
     /// Thickness of a body on a free domain, and its contacts.
     thickness: Option<f64>,
     widest: Widest,
@@ -105,8 +105,7 @@ impl Diagnostics {
             held: time::held_at_hardness(simulation)
                 .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
             capped: false,
-            estimated: simulation.layers.is_some() && !simulation.is_adaptive(),
-            coarse: None,
+            coarse: Worst::default(),
             thickness: known.thickness.filter(|_| free),
             widest: Widest::default(),
             earlier_balance: None,
@@ -117,7 +116,7 @@ impl Diagnostics {
     /// The same for steady states of motion, whose rows have velocities in place of times.
     #[must_use]
     pub fn of_sweep(mut self, streaming: Streaming) -> Self {
-        let cell = self.grid.cell_sides().fold(0.0, f64::max);
+        let cell = self.grid.longest_cell();
         self.strain.sweep(streaming, cell);
         self
     }
@@ -164,7 +163,7 @@ impl Diagnostics {
         compliance: f64,
     ) {
         if self.free && row.contact_area > 0.0 && domain::touches_border(&self.grid, pressure) {
-            self.border = Some(self.border.map_or([index; 2], |[first, _]| [first, index]));
+            extend(&mut self.border, index);
             let needed = ROOM
                 * self.radius.map_or(0.0, |radius| match control {
                     Control::Approach => (radius * row.approach.max(0.0)).sqrt(),
@@ -184,9 +183,8 @@ impl Diagnostics {
 
     fn take(&mut self, index: usize, row: &Row, contact: Counted) {
         self.deepest = self.deepest.max(row.approach);
-        if let Some(error) = row.time_error.filter(|error| self.estimated && *error > time::COARSE) {
-            let (most, first) = self.coarse.map_or((0.0, index), |(most, [first, _])| (most, first));
-            self.coarse = Some((error.max(most), [first, index]));
+        if let Some(error) = row.time_error {
+            self.coarse.above(index, error, time::COARSE);
         }
         self.resolution.see(index, contact);
         self.strain.see(index, row, contact);
@@ -215,17 +213,19 @@ impl Diagnostics {
         }
         found.extend(self.resolution.findings());
         found.extend(self.strain.findings());
-        if !found.iter().any(|finding| finding.code == LARGE_STRAIN) {
+        let lacks = |found: &[Finding], code: &str| found.iter().all(|finding| finding.code != code);
+        if lacks(&found, LARGE_STRAIN) {
             found.extend(simulation.kernel.depth().and_then(|depth| strain::compressed(self.deepest, depth)));
         }
-        if !found.iter().any(|finding| finding.code == LARGE_SLOPE) {
+        if lacks(&found, LARGE_SLOPE) {
             found.extend(surface::near(&self.grid, &simulation.gap, self.deepest));
         }
-        if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
+        if let Some(coarse) = time::coarse(&self.coarse) {
+            // What was expected before the run is known now.
+            found.retain(|finding| finding.code != STEPS_TOO_LONG);
+            found.push(coarse);
+        } else if lacks(&found, STEPS_TOO_LONG) {
             found.extend(self.held.clone().filter(|_| self.capped));
-        }
-        if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
-            found.extend(self.coarse.map(|(error, at)| time::coarse(error, at)));
         }
         found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
         found.extend(self.slides.finding());

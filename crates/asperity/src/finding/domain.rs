@@ -50,7 +50,7 @@ pub(super) fn at_border(grid: &Grid, confined: bool, needed: Option<f64>, contac
             format!("Take a domain of at least {needed} (domain.size), or less load.")
         }
         None if confined => "Take a larger domain (domain.size), or less load.".to_owned(),
-        None => "If the surface goes on beyond the domain, take boundary = \"periodic\".".to_owned(),
+        None => "If the surface continues beyond the domain, use boundary = \"periodic\".".to_owned(),
     };
     let limit = needed.filter(|needed| confined && *needed > side).unwrap_or(f64::NAN);
     Finding::warning(
@@ -117,8 +117,8 @@ pub(super) fn unconfined(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
         widening,
         CONFINED,
         "The gap is no wider at the border of the free domain than inside it: the surface ends there like a punch, and \
-         the pressure rises towards the border. For a part of a larger surface take boundary = \"periodic\"; for a body \
-         that ends there this is right.",
+         the pressure rises towards the border. For a part of a larger surface use boundary = \"periodic\". For a body \
+         that ends there this is correct.",
     ))
 }
 
@@ -135,9 +135,9 @@ pub(super) fn not_periodic(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
         jump,
         inside,
         format!(
-            "The gap does not go on across the border of the periodic domain along {name}: it jumps by {}, {} times as \
-             much as from cell to cell inside, and its slope changes by {}. The jump acts as an edge. Take boundary = \
-             \"free\" for a single body; level a measured surface and give it a window, or take whole waves.",
+            "The gap is not continuous across the border of the periodic domain along {name}: it jumps by {}, {} times as much \
+             as between neighbouring cells inside, and its slope changes by {}. The jump acts like an edge. Use boundary = \
+             \"free\" for a single body. Level a measured surface and apply a window to it. Let the domain hold whole waves.",
             si(jump, "m"),
             digits(jump / inside.max(ROUNDING * range)),
             digits(slope)

@@ -14,6 +14,8 @@
 
 use std::f64::consts::PI;
 
+use ndarray::Array2;
+
 use super::words::si;
 use super::{Finding, contact, domain, strain, surface};
 use crate::contact::Prescribed;
@@ -70,10 +72,7 @@ impl Expected {
         let cases = stages.iter().filter_map(|stage| largest(simulation, stage));
         // The formulas are those of the half-space.
         let form = match simulation.kernel.is_half_space() {
-            true if grid.is_line() => {
-                line_form(parts, || surface::slope(grid, &simulation.gap, f64::INFINITY))
-            }
-            true => form(parts, || surface::slope(grid, &simulation.gap, f64::INFINITY)),
+            true => form(grid, &simulation.gap, parts),
             false => None,
         };
         let compliance = [simulation.instantaneous(), simulation.compliance(simulation.times.end())];
@@ -131,7 +130,7 @@ impl Expected {
             found.push(domain::at_border(grid, true, Some(ROOM * radius), &words));
         }
         if radius > 0.0 {
-            let cell = grid.cell_sides().fold(0.0, f64::max);
+            let cell = grid.longest_cell();
             found.extend(contact::expected(2.0 * radius / cell, grid.is_line()));
         }
         found.extend(strain::expected(self.width.unwrap_or(0.0), self.strain.unwrap_or(0.0)));
@@ -185,80 +184,56 @@ fn largest(simulation: &Simulation, stage: &Stage) -> Option<(Prescribed, Option
     (most > 0.0).then_some((largest, stage.until))
 }
 
-/// Radii \[m\] of the sum of the paraboloids along x and y; `None` if there are none. Cylinders are included.
-fn radii(parts: &[Part]) -> Option<[f64; 2]> {
-    let curvature = parts.iter().fold([0.0; 2], |[x, y], part| match part {
-        Part::Shape { shape: Shape::Sphere { radius }, .. } => [x + 1.0 / radius, y + 1.0 / radius],
-        Part::Shape { shape: Shape::Ellipsoid { radius_x, radius_y }, .. } => {
-            [x + 1.0 / radius_x, y + 1.0 / radius_y]
-        }
-        Part::Shape { shape: Shape::Cylinder { radius }, .. } => [x + 1.0 / radius, y],
+/// The shapes among the parts.
+fn shapes(parts: &[Part]) -> impl Iterator<Item = &Shape> {
+    parts.iter().filter_map(|part| match part {
+        Part::Shape { shape, .. } => Some(shape),
+        _ => None,
+    })
+}
+
+/// Mean radius of the sum of the paraboloids and cylinders \[m\]; for a line contact, the radius of their section. `None` if an
+/// axis is not curved.
+pub(super) fn radius(grid: &Grid, parts: &[Part]) -> Option<f64> {
+    let [x, y] = shapes(parts).fold([0.0; 2], |[x, y], shape| match shape {
+        Shape::Sphere { radius } => [x + 1.0 / radius, y + 1.0 / radius],
+        Shape::Ellipsoid { radius_x, radius_y } => [x + 1.0 / radius_x, y + 1.0 / radius_y],
+        Shape::Cylinder { radius } => [x + 1.0 / radius, y],
         _ => [x, y],
     });
-    (curvature[0] > 0.0 && curvature[1] > 0.0).then(|| curvature.map(f64::recip))
-}
-
-/// Radius of the sum of the paraboloids \[m\]; for a line contact, of their sections.
-pub(super) fn radius(grid: &Grid, parts: &[Part]) -> Option<f64> {
-    if grid.is_line() { line_radius(parts) } else { mean_radius(parts) }
-}
-
-fn mean_radius(parts: &[Part]) -> Option<f64> {
-    radii(parts).map(|[x, y]| (x * y).sqrt())
-}
-
-/// The shape that determines the contact; if there is none, the slope of the gap.
-fn form(parts: &[Part], slope: impl FnOnce() -> f64) -> Option<Form> {
-    let punch = parts.iter().find_map(|part| match part {
-        Part::Shape { shape: Shape::FlatPunch(Punch::Circle { radius }), .. } => Some(*radius),
-        Part::Shape { shape: Shape::FlatPunch(Punch::Rectangle { size: [a, b] }), .. } => {
-            Some((a * b / PI).sqrt())
-        }
-        _ => None,
-    });
-    let cone = parts.iter().find_map(|part| match part {
-        Part::Shape { shape: Shape::Cone { slope }, .. } => Some(*slope),
-        _ => None,
-    });
-    match (mean_radius(parts), cone, punch) {
-        (Some(radius), None, None) => Some(Form::Paraboloid { radius }),
-        (None, Some(slope), None) => Some(Form::Cone { slope }),
-        (None, None, Some(radius)) => parts[1..].is_empty().then_some(Form::Punch { radius }),
-        (None, None, None) => Some(slope()).filter(|slope| *slope > 0.0).map(|slope| Form::Rough { slope }),
-        _ => None,
+    match grid.is_line() {
+        true => (x > 0.0).then(|| 1.0 / x),
+        false => (x > 0.0 && y > 0.0).then(|| (1.0 / x * (1.0 / y)).sqrt()),
     }
 }
 
-/// The same for a line contact: only the section of a shape matters.
-fn line_form(parts: &[Part], slope: impl FnOnce() -> f64) -> Option<Form> {
-    let wedge = parts.iter().find_map(|part| match part {
-        Part::Shape { shape: Shape::Cone { slope } | Shape::Wedge { slope }, .. } => Some(*slope),
+/// The shape that determines the contact; if there is none, the slope of the gap. For a line contact only the section of a shape
+/// matters.
+fn form(grid: &Grid, gap: &Array2<f64>, parts: &[Part]) -> Option<Form> {
+    let line = grid.is_line();
+    let punch = shapes(parts).find_map(|shape| match shape {
+        Shape::FlatPunch(Punch::Circle { radius }) => Some(*radius),
+        Shape::FlatPunch(Punch::Rectangle { size: [a, _] }) if line => Some(0.5 * a),
+        Shape::FlatPunch(Punch::Rectangle { size: [a, b] }) => Some((a * b / PI).sqrt()),
         _ => None,
     });
-    let punch = parts.iter().find_map(|part| match part {
-        Part::Shape { shape: Shape::FlatPunch(Punch::Circle { radius }), .. } => Some(*radius),
-        Part::Shape { shape: Shape::FlatPunch(Punch::Rectangle { size }), .. } => Some(0.5 * size[0]),
+    let cone = shapes(parts).find_map(|shape| match shape {
+        Shape::Cone { slope } => Some(*slope),
+        Shape::Wedge { slope } if line => Some(*slope),
         _ => None,
     });
-    match (line_radius(parts), wedge, punch) {
-        (Some(radius), None, None) => Some(Form::Cylinder { radius }),
-        (None, Some(slope), None) => Some(Form::Wedge { slope }),
-        (None, None, Some(radius)) => parts[1..].is_empty().then_some(Form::Punch { radius }),
-        (None, None, None) => Some(slope()).filter(|slope| *slope > 0.0).map(|slope| Form::Rough { slope }),
-        _ => None,
-    }
-}
-
-/// Radius of the sum of the shapes along x \[m\].
-fn line_radius(parts: &[Part]) -> Option<f64> {
-    let curvature = parts.iter().fold(0.0, |sum, part| match part {
-        Part::Shape { shape: Shape::Sphere { radius } | Shape::Cylinder { radius }, .. } => {
-            sum + 1.0 / radius
+    Some(match (radius(grid, parts), cone, punch) {
+        (Some(radius), None, None) if line => Form::Cylinder { radius },
+        (Some(radius), None, None) => Form::Paraboloid { radius },
+        (None, Some(slope), None) if line => Form::Wedge { slope },
+        (None, Some(slope), None) => Form::Cone { slope },
+        (None, None, Some(radius)) if parts.len() == 1 => Form::Punch { radius },
+        (None, None, None) => {
+            let slope = surface::slope(grid, gap, f64::INFINITY);
+            return (slope > 0.0).then_some(Form::Rough { slope });
         }
-        Part::Shape { shape: Shape::Ellipsoid { radius_x, .. }, .. } => sum + 1.0 / radius_x,
-        _ => sum,
-    });
-    (curvature > 0.0).then(|| 1.0 / curvature)
+        _ => return None,
+    })
 }
 
 /// Distance from the middle of the shapes to the nearest border \[m\].

@@ -1,7 +1,8 @@
 //! Unreliable leaks: gaps below the error of the solver, constrictions of a few cells, fluid pressures that would move the
 //! bodies.
 
-use super::words::{digits, rows, si};
+use super::words::{digits, si};
+use super::worst::Worst;
 use super::{CONSTRICTION_UNRESOLVED, FLUID_PRESSURE_LARGE, Finding, LEAK_BELOW_GAP_ERROR};
 
 /// Smallest ratio of the critical gap to its error: the leak is proportional to the third power of the gap, so an error of 1/30
@@ -27,105 +28,59 @@ pub struct LeakState {
     pub contact_pressure: f64,
 }
 
-/// The worst value of some rows.
-#[derive(Clone, Copy, Debug)]
-struct Worst {
-    value: f64,
-    limit: f64,
-    rows: Option<[usize; 2]>,
-}
-
-impl Worst {
-    /// The rows in brackets, if there are any.
-    fn place(&self) -> String {
-        self.rows.map_or(String::new(), |at| format!(" ({})", rows(at)))
-    }
-
-    /// A warning about this value.
-    fn warning(&self, code: &'static str, text: String) -> Finding {
-        let finding = Finding::warning(code, self.value, self.limit, text);
-        match self.rows {
-            Some(at) => finding.at(at),
-            None => finding,
-        }
-    }
-}
-
 /// The diagnostics of the leaks of one run.
 #[derive(Clone, Debug, Default)]
 pub struct LeakDiagnostics {
-    below_error: Option<Worst>,
-    narrow: Option<Worst>,
-    pressure: Option<Worst>,
+    below_error: Worst,
+    narrow: Worst,
+    pressure: Worst,
 }
 
 impl LeakDiagnostics {
     /// Checks a leak; true if there is no finding against it. A tight seal has no constriction to check.
     pub fn see(&mut self, state: &LeakState) -> bool {
-        let mut resolved = true;
-        // Adds a value relative to its limit; the worst one is kept.
-        let mut note = |worst: &mut Option<Worst>, value: f64, limit: f64, worse: bool| {
-            resolved = false;
-            let first = worst.and_then(|worst| worst.rows).map(|rows| rows[0]).or(state.row);
-            let (value, limit) = match *worst {
-                Some(old) if !worse => (old.value, old.limit),
-                _ => (value, limit),
-            };
-            *worst = Some(Worst { value, limit, rows: first.zip(state.row).map(|(a, b)| [a, b]) });
-        };
+        let mut unresolved = false;
         if let Some((gap, width)) = state.constriction {
-            let limit = ABOVE_ERROR * state.gap_error;
-            if gap < limit {
-                let worse = self.below_error.is_none_or(|old| gap / limit < old.value / old.limit);
-                note(&mut self.below_error, gap, limit, worse);
-            }
-            if let Some(width) = width.map(|cells| cells as f64).filter(|width| *width < ACROSS) {
-                let worse = self.narrow.is_none_or(|old| width < old.value);
-                note(&mut self.narrow, width, ACROSS, worse);
-            }
+            unresolved |= self.below_error.below(state.row, gap, ABOVE_ERROR * state.gap_error);
+            unresolved |= width.is_some_and(|cells| self.narrow.below(state.row, cells as f64, ACROSS));
         }
-        if let Some(drop) = state.pressure_drop {
-            let limit = PRESSURE_SHARE * state.contact_pressure;
-            if drop > limit && state.contact_pressure > 0.0 {
-                let worse = self.pressure.is_none_or(|old| drop / limit > old.value / old.limit);
-                note(&mut self.pressure, drop, limit, worse);
-            }
+        if let Some(drop) = state.pressure_drop.filter(|_| state.contact_pressure > 0.0) {
+            unresolved |= self.pressure.above(state.row, drop, PRESSURE_SHARE * state.contact_pressure);
         }
-        resolved
+        !unresolved
     }
 
     /// The findings.
     pub fn findings(&self) -> Vec<Finding> {
-        let below = self.below_error.map(|worst| {
-            let text = format!(
-                "The gap at the critical constriction is {}{}, less than 30 times the error of the gap, {}: the leak there is an \
-                 estimate of its order at best. Lower solver.tolerance, which costs iterations only, and refine the grid.",
+        let below = self.below_error.warning(LEAK_BELOW_GAP_ERROR, |worst| {
+            format!(
+                "The gap at the critical constriction is {}{}, less than 30 times the error of the gap, {}. The leak there is \
+                 only an estimate of the order of magnitude. Lower solver.tolerance, which costs only iterations, and refine \
+                 the grid.",
                 si(worst.value, "m"),
                 worst.place(),
                 si(worst.limit / ABOVE_ERROR, "m")
-            );
-            worst.warning(LEAK_BELOW_GAP_ERROR, text)
+            )
         });
-        let narrow = self.narrow.map(|worst| {
-            let text = format!(
-                "The critical constriction is {} {} wide{}, less than {}: the leak depends on the grid. Refine it \
-                 (domain.cells), or leave short waves out.",
+        let narrow = self.narrow.warning(CONSTRICTION_UNRESOLVED, |worst| {
+            format!(
+                "The critical constriction is {} {} wide{}, less than {}, so the leak depends on the grid. Refine the grid \
+                 (domain.cells), or leave out short waves.",
                 digits(worst.value),
                 if worst.value == 1.0 { "cell" } else { "cells" },
                 worst.place(),
                 worst.limit
-            );
-            worst.warning(CONSTRICTION_UNRESOLVED, text)
+            )
         });
-        let pressure = self.pressure.map(|worst| {
-            let text = format!(
-                "The fluid's pressure drops by {}{}, more than a tenth of the mean pressure in the contact, {}: it would push the \
-                 bodies apart, which is not computed, so the leak is too small. Take a smaller drop, or more load.",
+        let pressure = self.pressure.warning(FLUID_PRESSURE_LARGE, |worst| {
+            format!(
+                "The fluid pressure drops by {}{}, more than a tenth of the mean pressure in the contact, {}. Such a pressure would \
+                 push the bodies apart, which is not computed, so the leak is too small. Use a smaller pressure drop or a larger \
+                 load.",
                 si(worst.value, "Pa"),
                 worst.place(),
                 si(worst.limit / PRESSURE_SHARE, "Pa")
-            );
-            worst.warning(FLUID_PRESSURE_LARGE, text)
+            )
         });
         [below, narrow, pressure].into_iter().flatten().collect()
     }

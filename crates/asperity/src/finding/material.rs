@@ -56,8 +56,8 @@ pub fn misfit(name: &str, rms: f64, largest: f64, scatter: f64) -> Option<Findin
     let limit = MISFIT.max(SCATTER * scatter);
     (rms.is_nan() || rms > limit).then(|| {
         let text = format!(
-            "The material of {name} follows its data to {} % rms and {} % at most: contact area and approach are off by \
-             shares of that. Fit a narrower window, give more terms, or look at the data (asperity material fit --plot).",
+            "The material of {name} deviates from its data by {} % rms and {} % at most: contact area and approach have errors \
+             of that order. Fit a narrower window, use more terms, or look at the data (asperity material fit --plot).",
             digits(100.0 * rms),
             digits(100.0 * largest)
         );
@@ -69,8 +69,9 @@ pub fn misfit(name: &str, rms: f64, largest: f64, scatter: f64) -> Option<Findin
 pub fn contradiction(name: &str, column: &str, rms: f64) -> Option<Finding> {
     (rms.is_nan() || rms > MISFIT).then(|| {
         let text = format!(
-            "The material of {name} is fitted to one of the measured moduli, and its {column} modulus is off by {} % rms: \
-             the two contradict each other (Kramers-Kronig). What depends on the {column} modulus is uncertain by that.",
+            "The material of {name} is fitted to one of the measured moduli, and its {column} modulus deviates from the data by \
+             {} % rms: the two measured moduli contradict each other (Kramers-Kronig). Results that depend on the {column} \
+             modulus are uncertain by that much.",
             digits(100.0 * rms)
         );
         Finding::warning(MATERIAL_MISFIT, rms, MISFIT, text)
@@ -90,7 +91,7 @@ pub fn points_left_out(name: &str, left_out: usize, of: usize) -> Option<Finding
 /// A run that needs the material of `name` from the first to the last time \[s\], but the data cover only `window` \[s\]; `words`
 /// describe the data.
 pub fn beyond_data(name: &str, [first, last]: [f64; 2], window: [f64; 2], words: &str) -> Finding {
-    let text = format!("{name}: {words}. Measure these times too, or take the run as an estimate there.");
+    let text = format!("{name}: {words}. Measure these times too, or regard the run as an estimate there.");
     // The end that is exceeded by more decades.
     let (short, long) = (window[0] / first, last / window[1]);
     let (value, limit) = if short > long { (first, window[0]) } else { (last, window[1]) };

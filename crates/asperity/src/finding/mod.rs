@@ -36,6 +36,7 @@ mod surface;
 mod thin;
 mod time;
 mod words;
+mod worst;
 
 use std::borrow::Cow;
 
@@ -52,6 +53,7 @@ pub use thin::thin_body;
 
 /// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Severity {
     /// Useful information; the numbers are valid.
     Note,
@@ -77,6 +79,7 @@ impl std::fmt::Display for Severity {
 
 /// A report about a run that the user should know before relying on its numbers.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Finding {
     /// One of [`CODES`].
     pub code: Cow<'static, str>,
@@ -112,10 +115,10 @@ impl Finding {
         Finding { severity: Severity::Note, ..self }
     }
 
-    /// The same finding, for these rows.
+    /// The same finding, for these rows; `None` if it concerns the case.
     #[must_use]
-    pub fn at(self, rows: [usize; 2]) -> Self {
-        Finding { rows: Some(rows), ..self }
+    pub fn at(self, rows: impl Into<Option<[usize; 2]>>) -> Self {
+        Finding { rows: rows.into(), ..self }
     }
 
     /// Whether it is a warning.
@@ -130,99 +133,76 @@ impl std::fmt::Display for Finding {
     }
 }
 
-/// All codes. The meaning of a code does not change.
-pub const CODES: [&str; 29] = [
-    CONTACT_AT_BORDER,
-    GAP_NOT_PERIODIC,
-    ROUGH_ON_FREE_DOMAIN,
-    SHORTEST_WAVE_UNRESOLVED,
-    SPOTS_UNRESOLVED,
-    FEW_CONTACT_CELLS,
-    LARGE_SLOPE,
-    LARGE_STRAIN,
-    ENERGY_BALANCE,
-    STEPS_TOO_LONG,
-    ALIASED_HISTORY,
-    MATERIAL_MISFIT,
-    BEYOND_MATERIAL_DATA,
-    POINTS_LEFT_OUT,
-    HURST_OUT_OF_RANGE,
-    HURST_UNCERTAIN,
-    OUTLIERS,
-    UNLIKELY_UNIT,
-    STRESS_UNRESOLVED,
-    STRESS_AT_DEEPEST,
-    STRESS_TIMES_MISS_PEAK,
-    YIELD_EXCEEDED,
-    LEAK_BELOW_GAP_ERROR,
-    CONSTRICTION_UNRESOLVED,
-    FLUID_PRESSURE_LARGE,
-    THIN_BODY,
-    FRICTION_UNCERTAIN,
-    FRICTION_ZERO,
-    OWN_TRACK,
-];
+/// Declares the codes, each with its meaning, and the list of all of them.
+macro_rules! codes {
+    ($($(#[$meaning:meta])* $name:ident = $code:literal;)*) => {
+        $($(#[$meaning])* pub const $name: &str = $code;)*
 
-/// Contact, or the expected contact, reaches the border of a free domain.
-pub const CONTACT_AT_BORDER: &str = "contact-at-border";
-/// The gap of a periodic domain is not continuous across its border.
-pub const GAP_NOT_PERIODIC: &str = "gap-not-periodic";
-/// Only the end of the free domain confines the contact.
-pub const ROUGH_ON_FREE_DOMAIN: &str = "rough-on-free-domain";
-/// Waves shorter than four cells.
-pub const SHORTEST_WAVE_UNRESOLVED: &str = "shortest-wave-unresolved";
-/// Contact spots narrower than four cells.
-pub const SPOTS_UNRESOLVED: &str = "spots-unresolved";
-/// A contact of only a few cells.
-pub const FEW_CONTACT_CELLS: &str = "few-contact-cells";
-/// Slopes beyond linear theory.
-pub const LARGE_SLOPE: &str = "large-slope";
-/// Deformations beyond linear theory.
-pub const LARGE_STRAIN: &str = "large-strain";
-/// The work of the load differs from the energy stored and dissipated.
-pub const ENERGY_BALANCE: &str = "energy-balance";
-/// Too few steps while history and material change.
-pub const STEPS_TOO_LONG: &str = "steps-too-long";
-/// Too few steps per period.
-pub const ALIASED_HISTORY: &str = "aliased-history";
-/// The material does not fit the measured data.
-pub const MATERIAL_MISFIT: &str = "material-misfit";
-/// The run needs the material at times that were not measured.
-pub const BEYOND_MATERIAL_DATA: &str = "beyond-material-data";
-/// Measured points without a number.
-pub const POINTS_LEFT_OUT: &str = "points-left-out";
-/// A Hurst exponent outside of (0, 1].
-pub const HURST_OUT_OF_RANGE: &str = "hurst-out-of-range";
-/// A Hurst exponent that is determined by window, levelling or band.
-pub const HURST_UNCERTAIN: &str = "hurst-uncertain";
-/// Heights far from all others.
-pub const OUTLIERS: &str = "outliers";
-/// A number that suggests a wrong unit.
-pub const UNLIKELY_UNIT: &str = "unlikely-unit";
-/// The largest stress below the surface lies less than two cells deep.
-pub const STRESS_UNRESOLVED: &str = "stress-unresolved";
-/// The largest stress lies at the deepest of the given depths.
-pub const STRESS_AT_DEEPEST: &str = "stress-at-deepest";
-/// The largest pressure of a run is not among the times at which the stress is computed.
-pub const STRESS_TIMES_MISS_PEAK: &str = "stress-times-miss-peak";
-/// The von Mises stress below the surface exceeds the yield stress.
-pub const YIELD_EXCEEDED: &str = "yield-exceeded";
-/// A half-space that is too thin for the contact or the waves.
-pub const THIN_BODY: &str = "thin-body";
+        /// All codes. The meaning of a code does not change.
+        pub const CODES: &[&str] = &[$($name),*];
+    };
+}
 
-/// Two estimates of the friction force differ.
-pub const FRICTION_UNCERTAIN: &str = "friction-uncertain";
-/// No viscoelastic body moves.
-pub const FRICTION_ZERO: &str = "friction-zero";
-/// A single body on a periodic domain runs over its own track.
-pub const OWN_TRACK: &str = "own-track";
-
-/// The gap at the critical constriction of a leak is less than 30 times the error of the gap.
-pub const LEAK_BELOW_GAP_ERROR: &str = "leak-below-gap-error";
-/// The critical constriction of a leak is less than four cells wide.
-pub const CONSTRICTION_UNRESOLVED: &str = "constriction-unresolved";
-/// The pressure drop of the fluid is more than a tenth of the mean pressure in the contact.
-pub const FLUID_PRESSURE_LARGE: &str = "fluid-pressure-large";
+codes! {
+    /// Contact, or the expected contact, reaches the border of a free domain.
+    CONTACT_AT_BORDER = "contact-at-border";
+    /// The gap of a periodic domain is not continuous across its border.
+    GAP_NOT_PERIODIC = "gap-not-periodic";
+    /// Only the end of the free domain confines the contact.
+    ROUGH_ON_FREE_DOMAIN = "rough-on-free-domain";
+    /// Waves shorter than four cells.
+    SHORTEST_WAVE_UNRESOLVED = "shortest-wave-unresolved";
+    /// Contact spots narrower than four cells.
+    SPOTS_UNRESOLVED = "spots-unresolved";
+    /// A contact of only a few cells.
+    FEW_CONTACT_CELLS = "few-contact-cells";
+    /// Slopes beyond linear theory.
+    LARGE_SLOPE = "large-slope";
+    /// Deformations beyond linear theory.
+    LARGE_STRAIN = "large-strain";
+    /// The work of the load differs from the energy stored and dissipated.
+    ENERGY_BALANCE = "energy-balance";
+    /// Too few steps while history and material change.
+    STEPS_TOO_LONG = "steps-too-long";
+    /// Too few steps per period.
+    ALIASED_HISTORY = "aliased-history";
+    /// The material does not fit the measured data.
+    MATERIAL_MISFIT = "material-misfit";
+    /// The run needs the material at times that were not measured.
+    BEYOND_MATERIAL_DATA = "beyond-material-data";
+    /// Measured points without a number.
+    POINTS_LEFT_OUT = "points-left-out";
+    /// A Hurst exponent outside of (0, 1].
+    HURST_OUT_OF_RANGE = "hurst-out-of-range";
+    /// A Hurst exponent that is determined by window, levelling or band.
+    HURST_UNCERTAIN = "hurst-uncertain";
+    /// Heights far from all others.
+    OUTLIERS = "outliers";
+    /// A number that suggests a wrong unit.
+    UNLIKELY_UNIT = "unlikely-unit";
+    /// The largest stress below the surface lies less than two cells deep.
+    STRESS_UNRESOLVED = "stress-unresolved";
+    /// The largest stress lies at the deepest of the given depths.
+    STRESS_AT_DEEPEST = "stress-at-deepest";
+    /// The largest pressure of a run is not among the times at which the stress is computed.
+    STRESS_TIMES_MISS_PEAK = "stress-times-miss-peak";
+    /// The von Mises stress below the surface exceeds the yield stress.
+    YIELD_EXCEEDED = "yield-exceeded";
+    /// The gap at the critical constriction of a leak is less than 30 times the error of the gap.
+    LEAK_BELOW_GAP_ERROR = "leak-below-gap-error";
+    /// The critical constriction of a leak is less than four cells wide.
+    CONSTRICTION_UNRESOLVED = "constriction-unresolved";
+    /// The pressure drop of the fluid is more than a tenth of the mean pressure in the contact.
+    FLUID_PRESSURE_LARGE = "fluid-pressure-large";
+    /// A half-space that is too thin for the contact or the waves.
+    THIN_BODY = "thin-body";
+    /// The friction force is uncertain.
+    FRICTION_UNCERTAIN = "friction-uncertain";
+    /// No viscoelastic body moves.
+    FRICTION_ZERO = "friction-zero";
+    /// A single body on a periodic domain runs over its own track.
+    OWN_TRACK = "own-track";
+}
 
 #[cfg(test)]
 mod tests;

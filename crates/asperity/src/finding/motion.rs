@@ -42,9 +42,9 @@ impl Slides {
         let at = [found.first()?.0, found.last()?.0];
         let worst = found.iter().map(|row| row.2).fold(0.0, f64::max);
         let text = format!(
-            "Two estimates of the friction force differ by up to {} of it ({}), more than {UNCERTAIN}: the cells do not resolve the \
-             edges of the contact. Refine the grid (domain.cells), or leave short waves out; a motion in time also takes shorter \
-             steps (cells_per_step).",
+            "The friction force is uncertain by up to {} of it ({}), more than {UNCERTAIN}: the cells do not resolve the edges of the \
+             contact, or the time steps are long for the material. Refine the grid (domain.cells), leave short waves out, or take \
+             shorter steps (motion.cells_per_step).",
             digits(worst),
             rows(at)
         );
@@ -69,9 +69,9 @@ pub fn own_track(
     let worst = velocities.iter().map(|v| reaches(*v)).fold(0.0, f64::max);
     (worst > 0.0).then(|| {
         let text = format!(
-            "The material comes round on the periodic domain of {} before it has forgotten the contact: its memory reaches {} of the \
-             domain, and the body moves on its own track. For a single body take boundary = \"free\" (a steady state needs no track), \
-             or a longer domain; for one of many bodies in a row this is right.",
+            "On the periodic domain of {} the material returns to the contact before it has recovered: within its retardation time it \
+             moves by {} of the length of the domain, so the body runs over its own track. For a single body use boundary = \
+             \"free\" (a steady state needs no track) or a longer domain. For one of many bodies in a row this is correct.",
             si(length, "m"),
             digits(worst)
         );
@@ -81,7 +81,7 @@ pub fn own_track(
 
 /// A motion in which no viscoelastic body moves through the contact.
 pub fn friction_zero() -> Finding {
-    let text = "Nothing that remembers moves through the contact, so the friction of the bulk is zero at any velocity: the bodies \
-                are elastic, or the viscoelastic one stands still in the frame of the contact (motion.over, motion.kind).";
+    let text = "No viscoelastic body moves through the contact, so the bulk friction is zero at any velocity: the bodies are \
+                elastic, or the viscoelastic body is at rest relative to the contact (motion.over, motion.kind).";
     Finding::warning(FRICTION_ZERO, 0.0, f64::NAN, text).as_note()
 }

@@ -8,10 +8,12 @@
 //! pressure is infinite, and depends on the size of the cells. On layers the compliance of a contact of radius a is q K(q)/2
 //! times that of the half-space of the top layer, q = 1/a, and its strain has the same factor.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::contact::Counted;
-use super::words::{digits, rows, si};
+use super::words::{digits, si};
+use super::worst::Worst;
 use super::{Finding, LARGE_STRAIN, UNLIKELY_UNIT};
 use crate::kernel::Kernel;
 use crate::layer::NonseparableLayers;
@@ -27,31 +29,6 @@ const HARDEST: f64 = 0.2;
 /// Approach over thickness of layers on a rigid base.
 const SQUEEZED: f64 = 0.2;
 
-/// The largest value over the rows, and the rows beyond its limit.
-#[derive(Clone, Copy, Debug)]
-struct Peak {
-    limit: f64,
-    value: f64,
-    rows: Option<[usize; 2]>,
-}
-
-impl Peak {
-    fn new(limit: f64) -> Self {
-        Peak { limit, value: 0.0, rows: None }
-    }
-
-    fn see(&mut self, index: usize, value: f64) {
-        self.value = self.value.max(value);
-        if value > self.limit {
-            self.rows = Some(self.rows.map_or([index; 2], |[first, _]| [first, index]));
-        }
-    }
-
-    fn excess(&self) -> f64 {
-        self.value / self.limit
-    }
-}
-
 /// The strains of the rows.
 pub(super) struct Strain {
     bodies: Vec<Branches>,
@@ -63,8 +40,8 @@ pub(super) struct Strain {
     time: f64,
     /// Radius of the shapes \[m\], if known.
     radius: Option<f64>,
-    width: Peak,
-    pressure: Peak,
+    width: Worst,
+    pressure: Worst,
 }
 
 impl Strain {
@@ -77,8 +54,8 @@ impl Strain {
             waves: simulation.layers.clone(),
             time: 0.0,
             radius,
-            width: Peak::new(WIDEST),
-            pressure: Peak::new(HARDEST),
+            width: Worst::default(),
+            pressure: Worst::default(),
         }
     }
 
@@ -90,7 +67,7 @@ impl Strain {
     pub(super) fn see(&mut self, index: usize, row: &Row, contact: Counted) {
         let start = std::mem::replace(&mut self.time, row.coordinate.value());
         // Largest over mean pressure of Hertz's contact.
-        let hertz = if contact.line { 4.0 / std::f64::consts::PI } else { 1.5 };
+        let hertz = if contact.line { 4.0 / PI } else { 1.5 };
         let of_hertz = if row.contact_area > 0.0 { hertz * row.load / row.contact_area } else { 0.0 };
         let pressure = row.max_pressure.min(of_hertz) * self.share(row, contact);
         let of_wave = self.waves.as_ref().filter(|_| contact.is_compact() && row.contact_area > 0.0);
@@ -98,7 +75,7 @@ impl Strain {
         let strain: f64 = match &self.sweep {
             Some((streaming, cell)) if row.contact_area > 0.0 => {
                 let width = contact.width().min(contact.cells) * cell;
-                pressure * streaming.at(row.coordinate.value() * std::f64::consts::PI / width).norm()
+                pressure * streaming.at(row.coordinate.value() * PI / width).norm()
             }
             Some(_) => 0.0,
             None if creep.is_some() => {
@@ -112,19 +89,15 @@ impl Strain {
                 .map(|body| body.strain([start, row.coordinate.value()], pressure))
                 .sum(),
         };
-        self.pressure.see(index, strain);
-        if contact.line {
-            let half = 0.5 * row.contact_area;
-            self.width
-                .see(index, self.radius.filter(|_| contact.is_compact()).map_or(0.0, |radius| half / radius));
-        } else if row.contact_area > 0.0 && row.approach > 0.0 {
-            let width = match (contact.is_compact(), self.radius) {
-                (true, _) => row.approach / (row.contact_area / std::f64::consts::PI).sqrt(),
-                (false, Some(radius)) => (row.approach / radius).sqrt(),
-                (false, None) => 0.0,
-            };
-            self.width.see(index, width);
-        }
+        self.pressure.above(index, strain, HARDEST);
+        let width = match (contact.is_compact(), self.radius) {
+            (true, Some(radius)) if contact.line => 0.5 * row.contact_area / radius,
+            _ if contact.line || row.contact_area <= 0.0 || row.approach <= 0.0 => 0.0,
+            (true, _) => row.approach / (row.contact_area / PI).sqrt(),
+            (false, Some(radius)) => (row.approach / radius).sqrt(),
+            (false, None) => 0.0,
+        };
+        self.width.above(index, width, WIDEST);
     }
 
     /// Compliance of a compact contact on layers over that on the half-space of the top layer.
@@ -137,15 +110,16 @@ impl Strain {
     }
 
     pub(super) fn findings(&self) -> Vec<Finding> {
-        let of = |peak: &Peak, what: fn(f64) -> String| {
-            peak.rows.map(|at| {
-                large(peak.value, peak.limit, &format!("{} ({})", what(peak.value), rows(at))).at(at)
+        let large = |worst: &Worst, what: fn(f64) -> String| {
+            worst.warning(LARGE_STRAIN, |worst| {
+                large(&format!("{}{}", what(worst.value), worst.place()), worst.limit)
             })
         };
-        let [width, pressure] = [of(&self.width, wide), of(&self.pressure, hard)];
-        let worst = if self.width.excess() >= self.pressure.excess() { width } else { pressure };
-        let deep =
-            self.width.rows.filter(|_| self.width.value > 1.0).map(|at| too_deep(self.width.value).at(at));
+        let worst = match self.width.excess >= self.pressure.excess {
+            true => large(&self.width, wide),
+            false => large(&self.pressure, hard),
+        };
+        let deep = (self.width.value > 1.0).then(|| too_deep(self.width.value).at(self.width.rows));
         worst.into_iter().chain(deep).collect()
     }
 }
@@ -154,7 +128,7 @@ impl Strain {
 fn wave_of(row: &Row, contact: Counted) -> f64 {
     match contact.line {
         true => 2.0 / row.contact_area,
-        false => (std::f64::consts::PI / row.contact_area).sqrt(),
+        false => (PI / row.contact_area).sqrt(),
     }
 }
 
@@ -167,12 +141,11 @@ fn hard(value: f64) -> String {
     format!("The contact pressure is {} of the contact modulus", digits(value))
 }
 
-fn large(value: f64, limit: f64, what: &str) -> Finding {
-    let text = format!(
-        "{what}, more than {limit}: the strains are no longer small, and linear theory is an estimate only. Check the \
-         units of load, modulus and radius; if they are right, expect errors of this order."
-    );
-    Finding::warning(LARGE_STRAIN, value, limit, text)
+fn large(what: &str, limit: f64) -> String {
+    format!(
+        "{what}, more than {limit}: the strains are no longer small, and linear theory is only an estimate. Check the \
+         units of load, modulus and radius. If they are right, expect errors of this order."
+    )
 }
 
 fn too_deep(value: f64) -> Finding {
@@ -186,16 +159,16 @@ fn too_deep(value: f64) -> Finding {
 
 /// The findings for contact radius over radius and pressure over modulus.
 pub(super) fn expected(width: f64, pressure: f64) -> Vec<Finding> {
-    let mut found = vec![];
-    if width > 1.0 {
-        found.push(too_deep(width));
-    }
-    if width > WIDEST && width / WIDEST >= pressure / HARDEST {
-        found.push(large(width, WIDEST, &format!("Expected: {}", wide(width))));
-    } else if pressure > HARDEST {
-        found.push(large(pressure, HARDEST, &format!("Expected: {}", hard(pressure))));
-    }
-    found
+    let large = |what: String, value: f64, limit: f64| {
+        Finding::warning(LARGE_STRAIN, value, limit, large(&format!("Expected: {what}"), limit))
+    };
+    let deep = (width > 1.0).then(|| too_deep(width));
+    let worst = if width > WIDEST && width / WIDEST >= pressure / HARDEST {
+        Some(large(wide(width), width, WIDEST))
+    } else {
+        (pressure > HARDEST).then(|| large(hard(pressure), pressure, HARDEST))
+    };
+    deep.into_iter().chain(worst).collect()
 }
 
 /// ∫ C(t - s) dp(s) of one creep function, p constant in each step.

@@ -81,7 +81,7 @@ fn of_shape(grid: &Grid, shape: &Shape) -> Vec<Finding> {
 }
 
 fn of_spectrum(grid: &Grid, surface: &SelfAffine) -> Vec<Finding> {
-    let cell = grid.cell_sides().fold(0.0, f64::max);
+    let cell = grid.longest_cell();
     let slope = match surface.roughness {
         Roughness::RmsGradient(gradient) => steep("self-affine surface", gradient),
         // Known once the surface is made: see `of_given_height`.
@@ -194,8 +194,8 @@ fn unresolved(name: &str, cells: f64) -> Option<Finding> {
 pub(super) fn steep(name: &str, slope: f64) -> Option<Finding> {
     (slope > STEEPEST).then(|| {
         let text = format!(
-            "The rms slope of the {name} is {}: the theory takes slopes as small, and beyond {STEEPEST} its pressures and \
-             areas are estimates only.",
+            "The rms slope of the {name} is {}: the theory assumes small slopes, and beyond {STEEPEST} its pressures and \
+             areas are only estimates.",
             digits(slope)
         );
         Finding::warning(LARGE_SLOPE, slope, STEEPEST, text)
@@ -225,7 +225,7 @@ pub(super) fn slope(grid: &Grid, gap: &Array2<f64>, deepest: f64) -> f64 {
 
 /// The slope of the surfaces where they come close, for the largest approach of a run \[m\].
 pub(super) fn near(grid: &Grid, gap: &Array2<f64>, deepest: f64) -> Option<Finding> {
-    steep("gap, where the bodies come near each other,", slope(grid, gap, deepest))
+    steep("gap, where the bodies are close to each other,", slope(grid, gap, deepest))
 }
 
 /// The reliability of a Hurst exponent fitted to a spectrum.
@@ -251,9 +251,11 @@ pub fn hurst(fit: &SelfAffineFit) -> Option<Finding> {
     let stray = fit.misfit.max(fit.stray);
     let (value, limit, why) = match (stray > MISFIT, fit.hurst > END) {
         (true, _) => {
-            (stray, MISFIT, format!("the spectrum strays from the fit by {} in ln C", digits(stray)))
+            (stray, MISFIT, format!("the spectrum deviates from the fit by {} in ln C", digits(stray)))
         }
-        (_, true) => (fit.hurst, END, "near 1 levelling and window decide as much as the surface".to_owned()),
+        (_, true) => {
+            (fit.hurst, END, "near 1 it depends on levelling and window as much as on the surface".to_owned())
+        }
         _ => return None,
     };
     let what = format!("The Hurst exponent of the fit, {}, is uncertain: {why}.", digits(fit.hurst));

@@ -5,6 +5,7 @@
 //! approach), and under waves longer than 1.5 d by more than 2 % (docs/layers.md).
 
 use super::words::{digits, rows, si};
+use super::worst::Worst;
 use super::{Finding, THIN_BODY};
 use crate::grid::Grid;
 
@@ -45,23 +46,17 @@ pub(super) fn long_waves(grid: &Grid, thickness: f64) -> Option<Finding> {
     })
 }
 
-/// The largest contact of a run, and the rows whose contact is too wide.
+/// The contacts of a run that are too wide for the thickness of the body.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Widest {
-    radius: f64,
-    rows: Option<[usize; 2]>,
-}
+pub(super) struct Widest(Worst);
 
 impl Widest {
-    pub(super) fn see(&mut self, index: usize, radius: f64, thickness: f64) {
-        self.radius = self.radius.max(radius);
-        if radius > WIDEST * thickness {
-            self.rows = Some(self.rows.map_or([index; 2], |[first, _]| [first, index]));
-        }
+    pub(super) fn see(&mut self, row: usize, radius: f64, thickness: f64) {
+        self.0.above(row, radius, WIDEST * thickness);
     }
 
     pub(super) fn finding(&self, thickness: f64) -> Option<Finding> {
-        let at = self.rows?;
-        Some(thin_body(&format!("In {} the contact", rows(at)), self.radius, thickness)?.at(at))
+        let at = self.0.rows?;
+        Some(thin_body(&format!("In {} the contact", rows(at)), self.0.value, thickness)?.at(at))
     }
 }

@@ -8,6 +8,7 @@
 //! different load. Adaptive steps need no check.
 
 use super::words::{digits, rows, si};
+use super::worst::Worst;
 use super::{ALIASED_HISTORY, Finding, STEPS_TOO_LONG};
 use crate::load::{Control, Course, History, Stage};
 use crate::simulation::Simulation;
@@ -23,8 +24,8 @@ const PER_RISE: usize = 4;
 const DRIFT: f64 = 0.5;
 /// Changes by less than this fraction of the largest value are scatter of a measured history.
 const SMALL: f64 = 0.05;
-/// Largest estimated error of a step of given length, if it is estimated.
-pub(super) const COARSE: f64 = 0.02;
+/// Largest estimated error of the stress.
+pub(super) const COARSE: f64 = 0.05;
 /// Relaxation times with less than this fraction of the modulus are ignored.
 const SHARE: f64 = 0.05;
 /// A material relaxes during a change of the load if one of its times is within this factor of the steps and of the change's
@@ -36,7 +37,7 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     let plan = simulation.plan();
     let mut found = vec![];
     let mut long: Option<Piece> = None;
-    let energies = simulation.quantities.list.iter().any(|quantity| quantity.is_energy());
+    let energies = simulation.quantities.has_energy();
     for (n, stage) in simulation.loading.stages.iter().enumerate() {
         if stage.times.as_ref().unwrap_or(&simulation.times).is_adaptive() {
             continue;
@@ -61,15 +62,17 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     found
 }
 
-/// The finding for steps whose estimated error is too large in these rows, for layers that creep differently.
-pub(super) fn coarse(error: f64, at: [usize; 2]) -> Finding {
-    let text = format!(
-        "The layers creep differently, and the steps are long for that ({}): pressures are off by {} % or so, load or approach by \
-         less. Take more steps there, or spacing = \"adaptive\".",
-        rows(at),
-        digits(100.0 * error)
-    );
-    Finding::warning(STEPS_TOO_LONG, error, COARSE, text).at(at)
+/// The finding for steps whose estimated error is too large.
+pub(super) fn coarse(error: &Worst) -> Option<Finding> {
+    error.warning(STEPS_TOO_LONG, |error| {
+        format!(
+            "The time steps are too long for the history and the material{}: load or approach and the largest pressure may be off by \
+             up to {} %. Take more steps there, or use spacing = \"adaptive\". If the steps are adaptive already, use a smaller \
+             tolerance; if the contact moves, fewer cells_per_step.",
+            error.place(),
+            digits(100.0 * error.value)
+        )
+    })
 }
 
 /// The finding for too few steps while an approach is held with cells at the hardness.
@@ -124,8 +127,7 @@ fn drifting(simulation: &Simulation, plan: &Plan, instants: &[Instant], first: u
             digits(factor),
             rows([row; 2])
         );
-        let finding = Finding::warning(STEPS_TOO_LONG, factor, libm::exp(DRIFT), text);
-        if plan.exact { finding.at([row; 2]) } else { finding }
+        Finding::warning(STEPS_TOO_LONG, factor, libm::exp(DRIFT), text).at(plan.exact.then_some([row; 2]))
     })
 }
 
@@ -205,8 +207,8 @@ fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
 /// Whether the material relaxes within the times of a part, in the reduced time of each body.
 fn relaxes(simulation: &Simulation, plan: &Plan, course: &Piece) -> bool {
     let end = plan.instants[course.last].time;
-    let clocks = simulation.thermal.iter().map(|body| (&body.creep, Some(&body.clock)));
-    std::iter::once((&simulation.creep, None)).chain(clocks).any(|(creep, clock)| {
+    let thermal = simulation.thermal.iter().map(|body| (&body.creep, Some(&body.clock)));
+    std::iter::once((&simulation.creep, None)).chain(thermal).any(|(creep, clock)| {
         let factor = clock.map_or(1.0, |clock| clock.elapsed(end - course.length, end) / course.length);
         let times = course.shortest * factor / NEAR..NEAR * factor * course.length;
         let Ok(relaxation) = creep.to_relaxation() else { return false };
@@ -234,8 +236,8 @@ fn too_long(plan: &Plan, course: &Piece) -> Finding {
         course.least
     );
     let finding = Finding::warning(STEPS_TOO_LONG, course.steps as f64, course.least as f64, text);
-    let finding = if course.least == PER_RISE { finding.as_note() } else { finding };
-    if plan.exact { finding.at(at) } else { finding }
+    let finding = finding.at(plan.exact.then_some(at));
+    if course.least == PER_RISE { finding.as_note() } else { finding }
 }
 
 /// A sine with few steps to a period.
@@ -250,8 +252,8 @@ fn aliased(simulation: &Simulation, n: usize, stage: &Stage, instants: &[Instant
     let needed = (PER_PERIOD * frequency * lasts * (1.0 - 1e-9)).ceil();
     let of = if simulation.loading.stages.len() > 1 { format!(" of stage {}", n + 1) } else { String::new() };
     let text = format!(
-        "The sine{of} of {} has {} steps to a period, less than {PER_PERIOD}: the rows show another load than the one \
-         given. Take at least {needed} steps of equal length.",
+        "The sine{of} of {} has {} steps per period, less than {PER_PERIOD}: the rows represent a different load. Use at \
+         least {needed} steps of equal length.",
         si(frequency, "Hz"),
         digits(steps)
     );

@@ -1,5 +1,7 @@
 //! Numbers in the texts of findings.
 
+use crate::error::significant;
+
 /// Three digits and a prefix: `si(2.5e-5, "m")` is "25 µm". Powers of a unit have no prefix.
 pub(super) fn si(value: f64, unit: &str) -> String {
     const PREFIXES: [(&str, i32); 8] =
@@ -16,14 +18,7 @@ pub(super) fn si(value: f64, unit: &str) -> String {
 
 /// Three digits, without zeros at the end: 0.123, 12.3, 123, 1.2e7.
 pub(super) fn digits(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    match rounded.abs() {
-        1e-4..1e6 => format!("{rounded}"),
-        _ => format!("{rounded:e}"),
-    }
+    significant(value, 3)
 }
 
 /// "row 3" or "rows 3 to 7".

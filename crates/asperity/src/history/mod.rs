@@ -60,8 +60,15 @@ pub(crate) trait History: Send {
     /// Keeps the state just solved as the third one, besides both ends of the step.
     fn keep_as_third(&mut self, _ends: &Ends<'_>) {}
 
-    /// Estimated error of the stress at the end of the step just solved, relative; `None` where it is not estimated.
+    /// Estimated error of the stress that the step just solved adds, relative: what adaptive steps are chosen by. `None` where it is not
+    /// estimated.
     fn error(&mut self, _step: &Interval, _ends: &Ends<'_>) -> Option<f64> {
+        None
+    }
+
+    /// Estimated error of the stress at the end of the step just closed, relative, with what the steps before left; `None` where it is
+    /// not known.
+    fn time_error(&self) -> Option<f64> {
         None
     }
 
@@ -119,9 +126,16 @@ pub(crate) struct Ends<'a> {
     /// h0 + g, and h0.
     pub(crate) gap: &'a [f64],
     pub(crate) rigid: &'a [f64],
+    /// h0 at the start of the step.
+    pub(crate) rigid_before: &'a [f64],
 }
 
 impl Ends<'_> {
+    /// w of both \[m\].
+    pub(crate) fn approaches(&self) -> [f64; 2] {
+        [self.before.approach, self.now.approach]
+    }
+
     /// How far the bodies approach \[m\].
     pub(crate) fn advance(&self) -> f64 {
         self.now.approach - self.before.approach
@@ -133,6 +147,19 @@ impl Ends<'_> {
 pub(crate) struct ThirdState {
     pub(crate) at: f64,
     pub(crate) step: f64,
+}
+
+/// The state that is solved first where the states before the step are of no use, or `is_known` is false: a third one besides both
+/// ends. Adaptive steps are solved at their full length first and taken at half of it, so that the next try is shorter; steps of a
+/// given length the other way round.
+fn third_state(step: &Interval, is_known: bool) -> Option<ThirdState> {
+    if step.instant.jump || step.length() == 0.0 || step.is_smooth && is_known {
+        return None;
+    }
+    Some(match step.is_adaptive {
+        true => ThirdState { at: 1.0, step: 0.5 },
+        false => ThirdState { at: 0.5, step: 1.0 },
+    })
 }
 
 /// What a step did to the energy of the bodies, per area of a cell.
@@ -165,7 +192,7 @@ pub(crate) fn of(simulation: &Simulation) -> Result<Box<dyn History>> {
         (Scheme::Direct, _) => Box::new(HereditarySum::new(&simulation.creep, &simulation.thermal)),
         (Scheme::Constant, _) => Box::new(ConstantPressure::new(simulation)),
         (Scheme::Linear, Some(layers)) => Box::new(Spectral::new(simulation, layers)?),
-        (Scheme::Linear, None) => Box::new(Relaxation::new(simulation, simulation.is_adaptive())?),
+        (Scheme::Linear, None) => Box::new(Relaxation::new(simulation)?),
     })
 }
 
@@ -178,7 +205,8 @@ pub(crate) fn bytes(simulation: &Simulation) -> usize {
     let fields = match simulation.scheme {
         Scheme::Direct => simulation.plan().instants.len(),
         _ if terms == 0 => 0,
-        _ => terms + 1 + usize::from(simulation.is_adaptive()),
+        Scheme::Constant => terms + 1,
+        Scheme::Linear => terms + 2,
     };
     let waves = simulation
         .layers

@@ -40,13 +40,20 @@ const TOUCH: f64 = 6.0;
 const TAIL: f64 = 0.015;
 
 /// A possible material of the record.
-struct Draw {
+pub(super) struct Draw {
     /// ln of its weight.
     weight: f64,
-    equilibrium: f64,
+    pub(super) equilibrium: f64,
     /// (E_i, τ_i), times increasing.
     terms: Vec<[f64; 2]>,
-    touch: f64,
+    pub(super) touch: f64,
+}
+
+impl Draw {
+    /// E*(0).
+    pub(super) fn instantaneous(&self) -> f64 {
+        self.equilibrium + self.terms.iter().map(|term| term[0]).sum::<f64>()
+    }
 }
 
 /// All possible materials of the record.
@@ -105,19 +112,6 @@ impl Average {
         shares
     }
 
-    pub(super) fn instantaneous(&self, value: f64) -> Interval {
-        let sum = |draw: &Draw| draw.equilibrium + draw.terms.iter().map(|term| term[0]).sum::<f64>();
-        self.interval(value, |draw| Some(sum(draw)))
-    }
-
-    pub(super) fn equilibrium(&self, value: f64) -> Interval {
-        self.interval(value, |draw| Some(draw.equilibrium))
-    }
-
-    pub(super) fn touch(&self, value: f64) -> Interval {
-        self.interval(value, |draw| Some(draw.touch))
-    }
-
     /// The modulus (part 0) or time (part 1) of a term of the best fit. If a draw has more terms, its largest ones are used.
     pub(super) fn term(&self, value: f64, k: usize, part: usize) -> Interval {
         let numbers = self.numbers();
@@ -128,7 +122,7 @@ impl Average {
     }
 
     /// The interval of a property of the draws, around the value of the best fit.
-    fn interval(&self, value: f64, of: impl Fn(&Draw) -> Option<f64>) -> Interval {
+    pub(super) fn interval(&self, value: f64, of: impl Fn(&Draw) -> Option<f64>) -> Interval {
         let values = |fluid: bool| -> Vec<(f64, f64)> {
             let alike = self.draws.iter().filter(|draw| (draw.equilibrium == 0.0) == fluid);
             alike.filter_map(|draw| Some((of(draw)?, draw.weight.exp()))).collect()

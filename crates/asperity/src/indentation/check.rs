@@ -1,7 +1,7 @@
 //! Checks of the record and of the options.
 
 use super::{IndentationOptions, IndentationRecord};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, increasing, require};
 use crate::material::LongTime;
 
 /// Smallest number of rows.
@@ -19,36 +19,45 @@ pub(super) fn options(options: &IndentationOptions) -> Result<()> {
         let terms = options.terms.unwrap_or_default();
         return Err(Error::invalid("number of terms", terms, format!("at most {MOST_TERMS}")));
     }
-    if !(20..=10_000).contains(&options.springs) {
-        return Err(Error::invalid("number of springs", options.springs, "between 20 and 10000"));
-    }
-    if !(options.limit > 0.0 && options.limit.is_finite()) {
-        return Err(Error::invalid("largest misfit", options.limit, "finite and greater than 0"));
-    }
-    if options.terms == Some(0) && options.long_time == LongTime::Fluid {
-        return Err(Error::invalid("number of terms", 0, "at least 1 for a fluid"));
-    }
+    require(
+        (20..=10_000).contains(&options.springs),
+        "number of springs",
+        options.springs,
+        "between 20 and 10000",
+    )?;
+
+    require(
+        options.limit > 0.0 && options.limit.is_finite(),
+        "largest misfit",
+        options.limit,
+        "finite and greater than 0",
+    )?;
+
+    require(
+        options.terms != Some(0) || options.long_time != LongTime::Fluid,
+        "number of terms",
+        0,
+        "at least 1 for a fluid",
+    )?;
     Ok(())
 }
 
 pub(super) fn record(record: &IndentationRecord) -> Result<()> {
     let n = record.times.len();
     for (name, column) in [("loads", record.loads), ("depths", record.depths)] {
-        if column.len() != n {
-            return Err(Error::invalid(
-                format!("number of {name}"),
-                column.len(),
-                format!("{n}, that of the times"),
-            ));
-        }
+        require(
+            column.len() == n,
+            format!("number of {name}"),
+            column.len(),
+            format!("{n}, that of the times"),
+        )?;
     }
-    if !(FEWEST..=MOST).contains(&n) {
-        return Err(Error::invalid(
-            "number of rows of the record",
-            n,
-            format!("between {FEWEST} and {MOST}"),
-        ));
-    }
+    require(
+        (FEWEST..=MOST).contains(&n),
+        "number of rows of the record",
+        n,
+        format!("between {FEWEST} and {MOST}"),
+    )?;
     let columns = [("time", "s", record.times), ("load", "N", record.loads), ("depth", "m", record.depths)];
     for (name, unit, column) in columns {
         if let Some((row, value)) =
@@ -61,22 +70,19 @@ pub(super) fn record(record: &IndentationRecord) -> Result<()> {
             ));
         }
     }
-    if let Some(row) = record.times.windows(2).position(|pair| pair[1] <= pair[0]) {
-        return Err(Error::invalid(
-            format!("time of row {}", row + 2),
-            format!("{} s", record.times[row + 1]),
-            format!("later than the row before, {} s", record.times[row]),
-        ));
-    }
+    increasing(
+        record.times.iter().copied(),
+        |row| format!("time of row {}", row + 1),
+        |time| format!("{time} s"),
+    )?;
     let largest = |column: &[f64]| column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     for (name, unit, column) in [("load", "N", record.loads), ("depth", "m", record.depths)] {
-        if largest(column) < 1.0 / LARGEST {
-            return Err(Error::invalid(
-                format!("largest {name}"),
-                format!("{} {unit}", largest(column)),
-                "greater than 0: pressing is positive (turn the sign of the column)",
-            ));
-        }
+        require(
+            largest(column) >= 1.0 / LARGEST,
+            format!("largest {name}"),
+            format!("{} {unit}", largest(column)),
+            "greater than 0: pressing is positive (turn the sign of the column)",
+        )?;
     }
     let most = largest(record.loads);
     if let Some((row, load)) = record.loads.iter().enumerate().find(|(_, load)| **load < -PULL * most) {
@@ -90,12 +96,11 @@ pub(super) fn record(record: &IndentationRecord) -> Result<()> {
         ));
     }
     let pressed = record.loads.iter().filter(|load| **load > 0.02 * most).count();
-    if pressed < FEWEST {
-        return Err(Error::invalid(
-            "number of rows in contact",
-            pressed,
-            format!("at least {FEWEST} with more than 2 % of the largest load"),
-        ));
-    }
+    require(
+        pressed >= FEWEST,
+        "number of rows in contact",
+        pressed,
+        format!("at least {FEWEST} with more than 2 % of the largest load"),
+    )?;
     Ok(())
 }

@@ -5,7 +5,8 @@ use rayon::prelude::*;
 
 use super::model::Model;
 use super::parameters::Parameters;
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
+use crate::material::dot;
 
 /// Steps of the central differences, in logarithms: the model's own steps are 1e-5 of its values.
 const STEP: f64 = 1e-2;
@@ -35,13 +36,12 @@ impl Solution {
 
 /// Minimises the residuals from `start`.
 pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> Result<Solution> {
-    if model.compared() < 2 * parameters.len() + 2 {
-        return Err(Error::invalid(
-            "number of rows of the record",
-            format!("{} with load", model.compared()),
-            format!("at least {} for {} terms", 2 * parameters.len() + 2, parameters.terms),
-        ));
-    }
+    require(
+        model.compared() >= 2 * parameters.len() + 2,
+        "number of rows of the record",
+        format!("{} with load", model.compared()),
+        format!("at least {} for {} terms", 2 * parameters.len() + 2, parameters.terms),
+    )?;
     let mut at = start;
     let mut residuals = model.residuals(parameters, &at)?;
     let mut columns = slopes(model, parameters, &at, &residuals)?;
@@ -91,11 +91,7 @@ pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> 
 /// Columns of dr/dx by one-sided differences, for the search.
 fn slopes(model: &Model, parameters: &Parameters, at: &[f64], residuals: &[f64]) -> Result<Vec<Vec<f64>>> {
     let column = |k: usize| {
-        let moved = |by: f64| {
-            let mut there = at.to_vec();
-            there[k] += by;
-            model.residuals(parameters, &there).map(|there| (there, by))
-        };
+        let moved = |by: f64| moved(model, parameters, at, k, by).map(|there| (there, by));
         let (there, by) = moved(SIDESTEP).or_else(|_| moved(-SIDESTEP))?;
         Ok(there.iter().zip(residuals).map(|(there, here)| (there - here) / by).collect())
     };
@@ -104,23 +100,24 @@ fn slopes(model: &Model, parameters: &Parameters, at: &[f64], residuals: &[f64])
 
 /// Columns of dr/dx by central differences; one-sided if the model fails on one side.
 fn jacobian(model: &Model, parameters: &Parameters, at: &[f64]) -> Result<Vec<Vec<f64>>> {
-    let moved = |k: usize, by: f64| {
-        let mut there = at.to_vec();
-        there[k] += by;
-        model.residuals(parameters, &there)
+    let column = |k: usize| {
+        let moved = |by: f64| moved(model, parameters, at, k, by);
+        let (ends, length) = match (moved(STEP), moved(-STEP)) {
+            (Ok(up), Ok(down)) => ((up, down), 2.0 * STEP),
+            (Ok(up), Err(_)) => ((up, moved(0.0)?), STEP),
+            (Err(_), Ok(down)) => ((moved(0.0)?, down), STEP),
+            (Err(error), Err(_)) => return Err(error),
+        };
+        Ok(ends.0.iter().zip(&ends.1).map(|(up, down)| (up - down) / length).collect())
     };
-    (0..at.len())
-        .into_par_iter()
-        .map(|k| {
-            let (ends, length) = match (moved(k, STEP), moved(k, -STEP)) {
-                (Ok(up), Ok(down)) => ((up, down), 2.0 * STEP),
-                (Ok(up), Err(_)) => ((up, model.residuals(parameters, at)?), STEP),
-                (Err(_), Ok(down)) => ((model.residuals(parameters, at)?, down), STEP),
-                (Err(error), Err(_)) => return Err(error),
-            };
-            Ok(ends.0.iter().zip(&ends.1).map(|(up, down)| (up - down) / length).collect())
-        })
-        .collect()
+    (0..at.len()).into_par_iter().map(column).collect()
+}
+
+/// The residuals with parameter `k` changed by `by`.
+fn moved(model: &Model, parameters: &Parameters, at: &[f64], k: usize, by: f64) -> Result<Vec<f64>> {
+    let mut there = at.to_vec();
+    there[k] += by;
+    model.residuals(parameters, &there)
 }
 
 /// J'J and J'r.
@@ -180,10 +177,6 @@ pub(super) fn invert(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
             .map(|(i, row)| (0..n).map(|j| row[n + j] / (scale[i] * scale[j])).collect())
             .collect(),
     )
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn squares(r: &[f64]) -> f64 {

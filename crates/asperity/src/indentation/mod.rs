@@ -38,7 +38,7 @@ mod start;
 #[cfg(test)]
 mod tests;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::layer::Interface;
 use crate::material::{LongTime, Relaxation, RelaxationTerm};
 use crate::reference::MdrProfile;
@@ -234,40 +234,35 @@ pub fn fit_indentation(
     let apart = predicted.iter().zip(model.measured()).map(|(model, measured)| model - measured);
     let apart = model.of_compared(&apart.collect::<Vec<f64>>());
     let rms = (apart.iter().map(|x| x * x).sum::<f64>() / apart.len() as f64).sqrt();
-    require_fit(rms / model.scale(), options.limit)?;
+    require_fit(rms / model.scale, options.limit)?;
     if options.terms.is_some() {
         require_known(&parameters, &best)?;
     }
     let average = Average::new(&model, &parameters, &best, options)?;
 
     let relaxation = parameters.relaxation(&best.at);
-    let instantaneous = average.instantaneous(relaxation.instantaneous());
-    let mut equilibrium = average.equilibrium(relaxation.equilibrium);
+    let instantaneous = average.interval(relaxation.instantaneous(), |draw| Some(draw.instantaneous()));
+    let mut equilibrium = average.interval(relaxation.equilibrium, |draw| Some(draw.equilibrium));
     equilibrium.determined |= equilibrium.high <= NEGLIGIBLE * instantaneous.value;
     let term = |(k, term): (usize, &RelaxationTerm)| {
         [average.term(term.modulus, k, 0), average.term(term.relaxation_time, k, 1)]
     };
-    let depth = |x: f64| model.depth_scale() * x;
     let touch = match parameters.touch {
-        true => average.touch(best.at[parameters.len() - 1]),
+        true => average.interval(best.at[parameters.len() - 1], |draw| Some(draw.touch)),
         false => Interval::new(0.0, [0.0, 0.0]),
     };
+    let [value, low, high] = [touch.value, touch.low, touch.high].map(|x| model.depth_scale() * x);
     let mut fit = IndentationFit {
         terms: relaxation.terms.iter().enumerate().map(term).collect(),
         relaxation,
         equilibrium,
         instantaneous,
-        touch: Interval {
-            value: depth(touch.value),
-            low: depth(touch.low),
-            high: depth(touch.high),
-            determined: true,
-        },
+        touch: Interval { value, low, high, determined: true },
         given,
         predicted,
         rows,
         rms,
-        relative_rms: rms / model.scale(),
+        relative_rms: rms / model.scale,
         durbin_watson: spectrum::durbin_watson(&best.residuals),
         numbers: average.numbers(),
         window: model.window(),
@@ -279,17 +274,15 @@ pub fn fit_indentation(
 }
 
 fn require_fit(relative_rms: f64, limit: f64) -> Result<()> {
-    if relative_rms <= limit {
-        return Ok(());
-    }
-    Err(Error::invalid(
+    require(
+        relative_rms <= limit,
         "misfit of the record",
         format!("{:.1} % of the largest value (rms)", 100.0 * relative_rms),
         format!(
             "at most {:.1} %: check radius, units and the depth of first touch, and whether the body is as thick as assumed",
             100.0 * limit
         ),
-    ))
+    )
 }
 
 /// Refuses more terms than the record determines.

@@ -14,7 +14,7 @@ use super::check::LARGEST;
 use super::noise;
 use super::parameters::Parameters;
 use super::{Given, IndentationOptions, SampleLayer};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, require};
 use crate::material::Relaxation;
 use crate::reference::{LayerContact, Mdr, MdrProfile, MdrTarget, SpringProfile};
 
@@ -39,12 +39,12 @@ pub(super) struct Model {
     pub(super) times: Vec<f64>,
     pub(super) loads: Vec<f64>,
     pub(super) depths: Vec<f64>,
-    given: Given,
-    fit_touch: bool,
+    pub(super) given: Given,
+    pub(super) fit_touch: bool,
     springs: usize,
     reach: f64,
     /// Largest measured value of the predicted channel.
-    scale: f64,
+    pub(super) scale: f64,
     /// Rows where model and measurement are compared.
     compared: Vec<bool>,
     /// Variance of the noise at each row: of the fitted channel, and of the given one.
@@ -68,10 +68,7 @@ impl Model {
         given: Given,
         options: &IndentationOptions,
     ) -> Result<Self> {
-        match profile {
-            MdrProfile::Sphere { radius } => positive("radius of the sphere", radius, "m")?,
-            MdrProfile::Cone { slope } => positive("slope of the cone", slope, "")?,
-        };
+        profile.validate()?;
         if let MdrProfile::Sphere { radius } = profile
             && let Some(depth) = depths.iter().find(|depth| **depth > radius)
         {
@@ -99,13 +96,12 @@ impl Model {
                 None => profile.reach(largest(&depths)),
                 Some((_, springs)) => springs.reach(largest(&depths)),
             };
-        if !(1.0 / LARGEST..=LARGEST).contains(&reach) {
-            return Err(Error::invalid(
-                "radius of the largest contact",
-                format!("{reach:e} m"),
-                "one that can be measured (check the units of depth, radius and slope)",
-            ));
-        }
+        require(
+            (1.0 / LARGEST..=LARGEST).contains(&reach),
+            "radius of the largest contact",
+            format!("{reach:e} m"),
+            "one that can be measured (check the units of depth, radius and slope)",
+        )?;
         let scale = match given {
             Given::Depth => largest(&loads),
             Given::Load => largest(&depths),
@@ -138,18 +134,6 @@ impl Model {
             fitted_noise,
             given_noise,
         })
-    }
-
-    pub(super) fn given(&self) -> Given {
-        self.given
-    }
-
-    pub(super) fn fits_touch(&self) -> bool {
-        self.fit_touch
-    }
-
-    pub(super) fn scale(&self) -> f64 {
-        self.scale
     }
 
     pub(super) fn depth_scale(&self) -> f64 {
@@ -188,11 +172,7 @@ impl Model {
         if let Some((layer, _)) = &self.layer {
             return (layer.load(depth), 2.0 * layer.stiffness(layer.radius(depth)));
         }
-        let a = self.profile.reach(depth);
-        match self.profile {
-            MdrProfile::Sphere { .. } => (4.0 / 3.0 * depth * a, 2.0 * a),
-            MdrProfile::Cone { .. } => (depth * a, 2.0 * a),
-        }
+        (self.profile.unit_load(depth), 2.0 * self.profile.reach(depth))
     }
 
     /// Model minus measurement at each row where they are compared, over the largest measured value, and weighted: rows with more

@@ -43,7 +43,7 @@ fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<(Solution
         if best.as_ref().is_some_and(known) {
             break;
         }
-        let parameters = Parameters { solid: *solid, terms, touch: model.fits_touch() };
+        let parameters = Parameters { solid: *solid, terms, touch: model.fit_touch };
         let found = start::start(model, &parameters).and_then(|start| solve(model, &parameters, start));
         match found {
             Err(error) => refused = Some(error),

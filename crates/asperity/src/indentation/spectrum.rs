@@ -14,12 +14,12 @@
 
 use rayon::prelude::*;
 
-use super::least_squares::{Solution, dot};
+use super::least_squares::Solution;
 use super::model::Model;
 use super::parameters::Parameters;
 use super::{noise, select::MODEL_ERROR};
 use crate::error::Result;
-use crate::material::{Relaxation, RelaxationTerm};
+use crate::material::{Relaxation, RelaxationTerm, dot};
 
 /// Times of the grid per decade.
 const PER_DECADE: f64 = 10.0;

@@ -2,11 +2,11 @@
 //! depth are linear in the weights (theory of Lee and Radok, see [`super`]).
 
 use super::Given;
-use super::least_squares::{dot, invert};
+use super::least_squares::invert;
 use super::model::Model;
 use super::parameters::Parameters;
 use crate::error::{Error, Result};
-use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
+use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm, dot};
 
 /// Times of the grid per decade.
 const PER_DECADE: f64 = 4.0;
@@ -17,7 +17,7 @@ const SHRINKS: f64 = 0.95;
 pub(super) fn start(model: &Model, parameters: &Parameters) -> Result<Vec<f64>> {
     let growing = Growing::of(model);
     let grid = growing.grid();
-    let found = match model.given() {
+    let found = match model.given {
         Given::Depth => growing.relaxation(parameters, &grid),
         Given::Load => growing.creep(parameters, &grid),
     };
@@ -55,7 +55,7 @@ impl Growing {
         let pairs: Vec<(f64, f64)> =
             model.depths[..end].iter().map(|depth| model.unit_load(*depth)).collect();
         let widest = pairs.iter().fold(0.0, |m: f64, (_, slope)| m.max(*slope));
-        let weight = |slope: f64| match model.given() {
+        let weight = |slope: f64| match model.given {
             Given::Depth => 1.0,
             // An error of the depth is an error of φ times its slope.
             Given::Load => 1.0 / slope.max(0.05 * widest),

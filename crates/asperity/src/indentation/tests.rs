@@ -226,7 +226,7 @@ fn what_tells_nothing_is_refused_with_the_reason() {
     let few = said(&|columns| columns.into_iter().for_each(|c| c.truncate(9)), default);
     assert!(few.contains("number of rows"), "{few}");
     let late = said(&|[t, _, _]| t[5] = t[4], default);
-    assert!(late.contains("time of row 6") && late.contains("later"), "{late}");
+    assert!(late.contains("time of row 6") && late.contains("greater than the one before it"), "{late}");
     let missing = said(&|[_, w, _]| w[3] = f64::NAN, default);
     assert!(missing.contains("load of row 4"), "{missing}");
     let pulled = said(&|[_, w, _]| w[60] = -0.2 * w[10], default);

@@ -3,6 +3,7 @@
 //! They are pure functions of the geometry, without grid, material or time.
 
 mod boussinesq;
+pub(crate) mod gauss;
 mod line;
 mod periodic;
 

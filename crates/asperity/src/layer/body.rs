@@ -15,7 +15,7 @@
 use std::sync::Arc;
 
 use super::{Base, Interface, Layer, Layered, NonseparableLayers, Stack};
-use crate::error::{Error, Result};
+use crate::error::{Result, positive};
 use crate::material::{Body, Creep};
 
 /// Relative difference of two creep functions that counts as rounding.
@@ -98,7 +98,7 @@ pub struct Response {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] if layers creep differently in an unsupported way, naming the layer; as [`Stack::new`] and
+/// [`Error::Invalid`](crate::Error::Invalid) if layers creep differently in an unsupported way, naming the layer; as [`Stack::new`] and
 /// [`Body::contact_creep`].
 pub fn response(bodies: &[LayeredBody]) -> Result<Response> {
     let mut common: Option<Creep> = None;
@@ -136,15 +136,8 @@ pub fn response(bodies: &[LayeredBody]) -> Result<Response> {
 /// The elastic stack with these shear moduli and Poisson's ratios.
 pub(super) fn stack(body: &LayeredBody, moduli: &[(f64, f64)]) -> Result<Stack> {
     let layer = |(layer, &(shear, poisson)): (&BodyLayer, &(f64, f64))| -> Result<Layer> {
-        let (thickness, name) = (layer.thickness, &layer.material.name);
-        match thickness.is_finite() && thickness > 0.0 {
-            true => Ok(Layer { thickness, shear, poisson, interface: layer.interface }),
-            false => Err(Error::invalid(
-                format!("thickness of {name}"),
-                format!("{thickness} m"),
-                "finite and greater than 0 m",
-            )),
-        }
+        let thickness = positive(&format!("thickness of {}", layer.material.name), layer.thickness, "m")?;
+        Ok(Layer { thickness, shear, poisson, interface: layer.interface })
     };
     let layers = body.layers.iter().zip(moduli).map(layer).collect::<Result<Vec<Layer>>>()?;
     let base = match (&body.base, moduli.last()) {

@@ -161,7 +161,7 @@ mod tests {
     use super::super::samples::{half_space, layer, stack};
     use super::super::{Base, Interface, Layer};
     use super::*;
-    use crate::layer::kernel::GAUSS_4;
+    use crate::kernel::gauss::GAUSS_4;
 
     /// (1/2 pi) int (q C - a) J0(q r) dq of a point; of a line (1/pi) int rest(q) cos(q x) dq and the logarithm of the image. By panels
     /// that resolve the layers and the oscillation.

@@ -7,7 +7,8 @@ use ndarray::parallel::prelude::*;
 
 use super::hankel::{Load, Smooth};
 use super::{Base, Stack};
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
+use crate::kernel::gauss::{GAUSS_2, GAUSS_3, GAUSS_4};
 use crate::kernel::{Kernel, love, strip_at};
 
 /// Longest side of a cell over the thickness of a top layer.
@@ -19,20 +20,6 @@ const NEAR: f64 = 30.0;
 /// The same for a line.
 const PART_OF_LINE: f64 = 0.25;
 
-/// Gauss-Legendre rule on \[-1, 1\] (Abramowitz & Stegun, table 25.4).
-pub(super) const GAUSS_4: [(f64, f64); 4] = [
-    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-    (-0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
-    (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
-    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-];
-
-const GAUSS_2: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
-const GAUSS_3: [(f64, f64); 3] = [
-    (-0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
-    (0.0, 0.888_888_888_888_889),
-    (0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
-];
 /// The rules for parts up to these lengths, over the length on which k varies there, with errors below 1e-8.
 const RULES: [(f64, &[(f64, f64)]); 2] = [(0.03, &GAUSS_2), (0.15, &GAUSS_3)];
 
@@ -62,11 +49,14 @@ impl Layered {
     /// The kernel of these bodies against each other, or of one against a rigid one.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if there are no bodies or more than two.
+    /// [`Error::Invalid`](crate::Error::Invalid) if there are no bodies or more than two.
     pub fn new(stacks: Vec<Stack>) -> Result<Self> {
-        if stacks.is_empty() || stacks.len() > 2 {
-            return Err(Error::invalid("number of bodies", stacks.len(), "1 (against a rigid one) or 2"));
-        }
+        require(
+            (1..=2).contains(&stacks.len()),
+            "number of bodies",
+            stacks.len(),
+            "1 (against a rigid one) or 2",
+        )?;
         let scale = 2.0 / stacks.iter().map(Stack::short_waves).sum::<f64>();
         Ok(Layered { stacks, scale })
     }
@@ -86,7 +76,7 @@ impl Layered {
     /// unit pressure; distances must be ascending.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the layers differ too much.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the layers differ too much.
     pub(crate) fn response(&self, cell: [f64; 2], [xs, ys]: [&[f64]; 2]) -> Result<Array2<f64>> {
         let [dx, dy] = cell;
         let farthest = |side: &[f64], d: f64| side.last().copied().unwrap_or(0.0) + d;
@@ -118,7 +108,7 @@ impl Layered {
     /// is 0. Distances must be ascending.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the layers differ too much.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the layers differ too much.
     pub(crate) fn response_of_line(&self, dx: f64, xs: &[f64]) -> Result<Vec<f64>> {
         let reach = xs.last().copied().unwrap_or(0.0) + dx;
         let smooth = self.stacks.iter().map(|stack| Smooth::new(stack, Load::Line, self.scale, reach));
@@ -172,17 +162,15 @@ impl Kernel for Layered {
 
     fn check(&self, longest: f64) -> Result<()> {
         let most = self.longest_cell();
-        if longest <= most {
-            return Ok(());
-        }
-        Err(Error::invalid(
+        require(
+            longest <= most,
             "longest side of a cell",
             format!("{longest:e} m"),
             format!(
                 "at most {most:e} m on a free domain, {COARSEST} times the thickness of the top layer: take more cells, a \
                  smaller domain or a periodic one"
             ),
-        ))
+        )
     }
 }
 

@@ -34,7 +34,7 @@ pub use kernel::Layered;
 pub use nonseparable::NonseparableLayers;
 pub(crate) use nonseparable::TOLERANCE;
 
-use crate::error::{Error, Result, length, positive};
+use crate::error::{Error, Result, length, positive, require};
 
 /// The interface between the lower face of a layer and the material below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -61,7 +61,7 @@ pub struct Layer {
     pub interface: Interface,
 }
 
-/// What the layers lie on.
+/// The support of the layers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Base {
     /// A rigid base.
@@ -123,7 +123,7 @@ impl Stack {
         &self.layers
     }
 
-    /// What they lie on.
+    /// The support of the layers.
     pub fn base(&self) -> Base {
         self.base
     }
@@ -143,11 +143,6 @@ impl Stack {
             Base::HalfSpace { shear, poisson } => (1.0 - poisson) / shear,
             Base::Rigid => 0.0,
         }
-    }
-
-    /// The modulus E* = 2/(q C(q)) of the half-space of the same compliance under a wave of wave number q \[Pa\].
-    pub fn equivalent_modulus(&self, q: f64) -> f64 {
-        2.0 / (q * self.compliance(q))
     }
 
     /// Ratio of the largest to the smallest shear modulus of the layers and the base.
@@ -181,10 +176,6 @@ impl Layer {
 
 fn elasticity(of: impl Fn(&str) -> String, shear: f64, poisson: f64) -> Result<()> {
     positive(&of("shear modulus"), shear, "Pa")?;
-    match poisson > -1.0 && poisson <= 0.5 {
-        true => Ok(()),
-        false => {
-            Err(Error::invalid(of("Poisson's ratio"), poisson, "greater than -1 and not greater than 0.5"))
-        }
-    }
+    let expected = "greater than -1 and not greater than 0.5";
+    require(poisson > -1.0 && poisson <= 0.5, of("Poisson's ratio"), poisson, expected)
 }

@@ -54,7 +54,7 @@ pub struct NonseparableLayers {
 }
 
 impl NonseparableLayers {
-    /// Of one body against a rigid one, or of two bodies.
+    /// The layers of one body against a rigid one, or of two bodies.
     pub(super) fn new(bodies: &[LayeredBody]) -> Result<Self> {
         let intervals = intervals(bodies)?;
         let mut best: Option<NonseparableLayers> = None;

@@ -24,7 +24,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 
 /// R \[J/(mol K)\].
 pub const GAS_CONSTANT: f64 = 8.314_462_618;
@@ -51,48 +51,48 @@ pub enum Species {
 /// Temperatures at which the viscosities of the gases are known \[K\].
 const KNOWN: [f64; 2] = [200.0, 500.0];
 
+/// The viscosity over temperature, relative to that at 20 degC.
+enum Law {
+    /// (T/T0)^1.5 (T0 + S)/(T + S), with this S \[K\].
+    Sutherland(f64),
+    /// (T/T0)^n.
+    Power(f64),
+}
+
 impl Species {
-    /// All of them.
-    pub const ALL: [Species; 5] =
-        [Species::Air, Species::Nitrogen, Species::Oxygen, Species::Helium, Species::Hydrogen];
+    /// Its name, molar mass \[kg/mol\] and viscosity at 20 degC \[Pa s\], and the law of the viscosity.
+    fn properties(self) -> (&'static str, f64, f64, Law) {
+        match self {
+            Species::Air => ("air", 0.028_964_7, 18.2e-6, Law::Sutherland(110.4)),
+            Species::Nitrogen => ("nitrogen", 0.028_013_4, 17.57e-6, Law::Sutherland(111.0)),
+            Species::Oxygen => ("oxygen", 0.031_998_8, 20.25e-6, Law::Sutherland(125.0)),
+            Species::Helium => ("helium", 0.004_002_6, 19.6e-6, Law::Power(0.67)),
+            Species::Hydrogen => ("hydrogen", 0.002_015_88, 8.80e-6, Law::Power(0.68)),
+        }
+    }
 
     /// "air", ...
     pub fn name(self) -> &'static str {
-        match self {
-            Species::Air => "air",
-            Species::Nitrogen => "nitrogen",
-            Species::Oxygen => "oxygen",
-            Species::Helium => "helium",
-            Species::Hydrogen => "hydrogen",
-        }
+        self.properties().0
     }
 
     /// Molar mass \[kg/mol\].
     pub fn molar_mass(self) -> f64 {
-        match self {
-            Species::Air => 0.028_964_7,
-            Species::Nitrogen => 0.028_013_4,
-            Species::Oxygen => 0.031_998_8,
-            Species::Helium => 0.004_002_6,
-            Species::Hydrogen => 0.002_015_88,
-        }
+        self.properties().1
     }
 
     /// Viscosity \[Pa s\] at a temperature \[K\] and moderate pressure.
     ///
     /// Measured at 20 degC (E. W. Lemmon & R. T. Jacobsen, Int. J. Thermophys. 25 (2004) 21, and the NIST database for helium and
-    /// hydrogen); over temperature by Sutherland's formula, (T/T0)^1.5 (T0 + S)/(T + S), and for helium and hydrogen by a power
-    /// of T. Within 2 % from 200 K to 500 K.
+    /// hydrogen); over temperature by Sutherland's formula, and for helium and hydrogen by a power of T. Within 2 % from 200 K to
+    /// 500 K.
     pub fn viscosity(self, temperature: f64) -> f64 {
         const T0: f64 = 293.15;
         let ratio = temperature / T0;
-        let sutherland = |mu: f64, s: f64| mu * ratio * libm::sqrt(ratio) * (T0 + s) / (temperature + s);
-        match self {
-            Species::Air => sutherland(18.2e-6, 110.4),
-            Species::Nitrogen => sutherland(17.57e-6, 111.0),
-            Species::Oxygen => sutherland(20.25e-6, 125.0),
-            Species::Helium => 19.6e-6 * libm::pow(ratio, 0.67),
-            Species::Hydrogen => 8.80e-6 * libm::pow(ratio, 0.68),
+        let (_, _, mu, law) = self.properties();
+        match law {
+            Law::Sutherland(s) => mu * ratio * libm::sqrt(ratio) * (T0 + s) / (temperature + s),
+            Law::Power(n) => mu * libm::pow(ratio, n),
         }
     }
 }
@@ -143,13 +143,12 @@ impl Gas {
     /// # Errors
     /// [`Error::Invalid`] if the temperature is not between 200 K and 500 K.
     pub fn of(species: Species, temperature: f64) -> Result<Gas> {
-        if !(KNOWN[0]..=KNOWN[1]).contains(&temperature) {
-            return Err(Error::invalid(
-                "temperature of the gas",
-                format!("{temperature} K"),
-                "between 200 K and 500 K, where its viscosity is known; give viscosity and molar mass outside",
-            ));
-        }
+        require(
+            (KNOWN[0]..=KNOWN[1]).contains(&temperature),
+            "temperature of the gas",
+            format!("{temperature} K"),
+            "between 200 K and 500 K, where its viscosity is known; give viscosity and molar mass outside",
+        )?;
         Gas::new(species.viscosity(temperature), species.molar_mass(), temperature)
     }
 

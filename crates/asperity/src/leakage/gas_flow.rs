@@ -146,13 +146,5 @@ pub fn gas_flow(
             inverse = Inverse::new(&channel.network, options);
         }
     }
-    Err(Error::NotConverged(NotConverged {
-        method: "the flow of the gas through the gap",
-        iterations: PASSES,
-        residual: f64::NAN,
-        tolerance: SETTLED,
-        certificate: f64::NAN,
-        time: None,
-        velocity: None,
-    }))
+    Err(NotConverged::of("the flow of the gas through the gap", PASSES, f64::NAN, SETTLED))
 }

@@ -70,7 +70,7 @@ pub use gas_flow::{GasFlow, gas_flow, plate, standard};
 pub use opening::{Direction, Opening, Sides};
 pub use passages::{CellKind, Constriction, Passages};
 pub use solve::FlowOptions;
-pub use tensor::{conductance, flow_factors};
+pub use tensor::conductance;
 
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@
 
 use ndarray::{Array2, ArrayView2};
 
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result, non_negative, require};
 use crate::grid::Grid;
 
 /// The direction of the flow.
@@ -61,14 +61,10 @@ impl Opening {
         sides: Sides,
         smallest_gap: f64,
     ) -> Result<Opening> {
-        let shape = |what: &str, (nx, ny): (usize, usize)| -> Result<()> {
+        let shape = |what: &str, (nx, ny): (usize, usize)| {
             let [mx, my] = grid.cells();
             let expected = format!("that of the grid, {mx} x {my}");
-            if [nx, ny] == [mx, my] {
-                Ok(())
-            } else {
-                Err(Error::invalid(what, format!("{nx} x {ny}"), expected))
-            }
+            require([nx, ny] == [mx, my], what, format!("{nx} x {ny}"), expected)
         };
         shape("shape of the gap", gap.dim())?;
         if let Some(contact) = &contact {

@@ -8,7 +8,7 @@
 use super::cholesky::{Cholesky, factor_bytes};
 use super::multigrid::Multigrid;
 use super::network::Network;
-use crate::error::{Error, NotConverged, Result};
+use crate::error::{NotConverged, Result};
 use asperity_sweep::{dot, each};
 
 /// Options of the flow solver.
@@ -114,13 +114,10 @@ pub(super) fn solve(
             return Ok((now, iteration));
         }
     }
-    Err(Error::NotConverged(NotConverged {
-        method: "the flow through the gap",
-        iterations: options.max_iterations,
-        residual: (dot(&r, &r) / dot(b, b)).sqrt(),
-        tolerance: share,
-        certificate: f64::NAN,
-        time: None,
-        velocity: None,
-    }))
+    Err(NotConverged::of(
+        "the flow through the gap",
+        options.max_iterations,
+        (dot(&r, &r) / dot(b, b)).sqrt(),
+        share,
+    ))
 }

@@ -35,12 +35,6 @@ pub fn conductance(opening: &Opening, options: &FlowOptions) -> Result<[[f64; 2]
     })
 }
 
-/// K over the cubed mean gap (contact counts with 0).
-pub fn flow_factors(conductance: [[f64; 2]; 2], opening: &Opening) -> [[f64; 2]; 2] {
-    let mean = asperity_sweep::sum(&opening.gap) / opening.gap.len() as f64;
-    conductance.map(|row| row.map(|k| if mean > 0.0 { k / mean.powi(3) } else { 0.0 }))
-}
-
 /// A conductance below this fraction of that in the other direction counts as 0.
 const NOTHING: f64 = 1e-28;
 

@@ -4,7 +4,7 @@
 //! control, a history of its value with a separate time, and an end.
 
 use super::{Control, History, Loading, TimeGrid};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 
 /// The consecutive stages of a run. The run ends with the last stage or at the end of its time grid, whichever comes first.
 ///
@@ -150,19 +150,12 @@ impl Programme {
     /// # Errors
     /// [`Error::Invalid`] naming the stage, counted from 1, and the quantity.
     pub fn validate(&self) -> Result<()> {
-        if self.stages.is_empty() {
-            return Err(Error::invalid("list of stages", "empty", "one stage at least"));
-        }
+        require(!self.stages.is_empty(), "list of stages", "empty", "one stage at least")?;
         for (n, stage) in self.stages.iter().enumerate() {
             let result = stage.validate(n + 1 == self.stages.len());
             result.map_err(|error| if self.stages.len() > 1 { of_stage(error, n) } else { error })?;
         }
         Ok(())
-    }
-
-    /// Whether a stage ends at an event, so that times are only known during the run.
-    pub fn has_events(&self) -> bool {
-        self.stages.iter().any(|stage| stage.until.is_some())
     }
 }
 

@@ -1,6 +1,6 @@
 //! The times of the steps of a run or of one of its stages.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 
 /// The times after t = 0 to which a run steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,18 +45,12 @@ impl TimeGrid {
     /// [`Error::Invalid`] naming the wrong quantity.
     pub fn validate(&self) -> Result<()> {
         let steps_in_range = |steps: usize| {
-            if (1..=10_000_000).contains(&steps) {
-                Ok(())
-            } else {
-                Err(Error::invalid("number of steps", steps, "between 1 and 10000000").of("steps"))
-            }
+            require((1..=10_000_000).contains(&steps), "number of steps", steps, "between 1 and 10000000")
+                .map_err(|error| error.of("steps"))
         };
         let first_in_range = |first: f64, end: f64| {
             positive("first step", first, "s")?;
-            if first > end {
-                return Err(Error::invalid("first step", format!("{first} s"), format!("at most {end} s")));
-            }
-            Ok(())
+            require(first <= end, "first step", format!("{first} s"), format!("at most {end} s"))
         };
         match self {
             TimeGrid::Uniform { end, steps } => {
@@ -75,11 +69,13 @@ impl TimeGrid {
                     let least = format!("at least {:e} s, {SHORTEST:e} of the end", SHORTEST * end);
                     return Err(Error::invalid("first step", format!("{first:e} s"), least).of("first"));
                 }
-                if !(1e-9..=0.1).contains(tolerance) {
-                    return Err(Error::invalid("tolerance of the steps", tolerance, "between 1e-9 and 0.1")
-                        .of("tolerance"));
-                }
-                Ok(())
+                require(
+                    (1e-9..=0.1).contains(tolerance),
+                    "tolerance of the steps",
+                    tolerance,
+                    "between 1e-9 and 0.1",
+                )
+                .map_err(|error| error.of("tolerance"))
             }
             TimeGrid::List(times) => {
                 steps_in_range(times.len())?;

@@ -21,7 +21,8 @@
 mod polynomial;
 
 use super::shift::minimise;
-use polynomial::{Joint, dot, orthonormal, remove};
+use crate::material::dot;
+use polynomial::{Joint, orthonormal, remove};
 
 /// A curve as (ln x, ln value), x increasing.
 pub(super) type Logs = Vec<(f64, f64)>;
@@ -146,18 +147,20 @@ pub(super) fn raised(pairs: &[[Logs; 2]], d: f64) -> Raised {
     let Some(range) = Range::of(pairs) else { return unknown };
     let count = range.count(pairs);
     let most = most_degree(range.overlap(d)).min(range.highest_degree(true));
-    let judged = (1..=most).map(|degree| {
+    let information_of = (1..=most).map(|degree| {
         let squares = Joint::fit(pairs, d, degree, true).squares;
         (degree, squares, information(squares, count, unknowns(pairs, degree, true)))
     });
-    let Some((degree, squares, _)) = judged.min_by(|a, b| a.2.total_cmp(&b.2)) else { return unknown };
+    let Some((degree, squares, _)) = information_of.min_by(|a, b| a.2.total_cmp(&b.2)) else {
+        return unknown;
+    };
     let at = |d: f64| Joint::fit(pairs, d, degree, true);
     let (here, step) = (at(d), 0.05);
     let gap = Distance { value: d, deviation: 0.0, touching: range.touching }.gap();
-    let scatter = variance(squares, count - unknowns(pairs, degree, true)) / here.told;
+    let scatter = variance(squares, count - unknowns(pairs, degree, true)) / here.curvature;
     Raised {
         value: here.raised,
-        deviation: if here.told > 0.0 {
+        deviation: if here.curvature > 0.0 {
             (scatter + (gap * here.slope).powi(2)).sqrt()
         } else {
             f64::INFINITY

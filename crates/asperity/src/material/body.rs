@@ -203,30 +203,6 @@ impl Body {
     }
 }
 
-/// C(t) of the pair: C1 + C2; a missing second body is rigid.
-///
-/// ```
-/// use asperity::material::{Body, Lateral, Material, Modulus, pair_creep};
-/// let body = |modulus: f64, nu: f64| -> Result<Body, asperity::Error> {
-///     let material = Material::elastic(Modulus::Young, modulus)?;
-///     Ok(Body { name: "body".into(), material, lateral: Lateral::Poisson(nu), hardness: None })
-/// };
-/// // Steel on glass, 1/E* = (1 - 0.3^2)/210 GPa + (1 - 0.22^2)/70 GPa.
-/// let pair = pair_creep(&[body(210e9, 0.3)?, body(70e9, 0.22)?])?;
-/// assert!((1.0 / pair.value(0.0) / 55.7799e9 - 1.0).abs() < 1e-5);
-/// # Ok::<(), asperity::Error>(())
-/// ```
-///
-/// # Errors
-/// As [`Body::contact_creep`]; [`Error::Invalid`] if there are no bodies or more than two.
-pub fn pair_creep(bodies: &[Body]) -> Result<Creep> {
-    match bodies {
-        [body] => body.contact_creep(),
-        [first, second] => Ok(first.contact_creep()?.sum(&second.contact_creep()?)),
-        _ => Err(Error::invalid("number of deformable bodies", bodies.len(), "1 (against a rigid one) or 2")),
-    }
-}
-
 /// The hardness of the softer body \[Pa\]; `f64::INFINITY` if neither has one.
 pub fn pair_hardness(bodies: &[Body]) -> f64 {
     bodies.iter().filter_map(|b| b.hardness).fold(f64::INFINITY, f64::min)
@@ -307,15 +283,15 @@ mod tests {
         let mut polymer = body(zener(Modulus::Young), Lateral::Poisson(0.4));
         polymer.hardness = Some(3e8);
         let steel = body(Material::elastic(Modulus::Young, 210e9).unwrap(), Lateral::Poisson(0.3));
-        let pair = pair_creep(&[polymer.clone(), steel.clone()]).unwrap();
+        let creep = |body: &Body| body.contact_creep().unwrap();
+        let pair = creep(&polymer).sum(&creep(&steel));
         for t in [0.0, 1.0, 50.0] {
-            let sum = polymer.contact_creep().unwrap().value(t) + 0.91 / 210e9;
+            let sum = creep(&polymer).value(t) + 0.91 / 210e9;
             assert!((pair.value(t) / sum - 1.0).abs() < 1e-15);
         }
-        assert_eq!(pair_creep(&[polymer.clone(), polymer.clone()]).unwrap().terms.len(), 1);
+        assert_eq!(creep(&polymer).sum(&creep(&polymer)).terms.len(), 1);
         assert_eq!(pair_hardness(&[steel.clone(), polymer]), 3e8);
         assert_eq!(pair_hardness(&[steel]), f64::INFINITY);
-        assert!(pair_creep(&[]).is_err());
     }
 
     #[test]

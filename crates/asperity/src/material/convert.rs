@@ -18,7 +18,7 @@
 //! over the floating-point numbers. This gives full relative accuracy of the distance, which the weights need, over any number of
 //! decades.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 
 impl Relaxation {
@@ -87,13 +87,12 @@ impl Creep {
     pub fn to_relaxation(&self) -> Result<Relaxation> {
         self.validate()?;
         let creep = self.tidy();
-        if creep.long_time() <= 0.0 {
-            return Err(Error::invalid(
-                "creep function",
-                "0 at all times (rigid)",
-                "a compliance greater than 0 1/Pa, to have a modulus",
-            ));
-        }
+        require(
+            creep.long_time() > 0.0,
+            "creep function",
+            "0 at all times (rigid)",
+            "a compliance greater than 0 1/Pa, to have a modulus",
+        )?;
         let (mut relaxation, _) = relaxation_of(&creep)?;
         relaxation.terms.retain(|e| e.modulus > 0.0);
         relaxation.validate().map_err(|e| out_of_range("relaxation", &e))?;

@@ -4,7 +4,7 @@
 //! dashpot in series (the generalised Kelvin model). See J. D. Ferry, Viscoelastic Properties of
 //! Polymers (3rd ed., 1980), chapter 3.
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive, require};
 use crate::material::series;
 
 /// C(t) = C0 + sum_j C_j (1 - exp(-t/lambda_j)) + t/eta, per pascal; 0 for t < 0.
@@ -201,9 +201,7 @@ impl Creep {
             )?;
         }
         let all = self.terms.iter().map(|c| c.compliance).sum::<f64>() + self.instantaneous;
-        if !all.is_finite() {
-            return Err(Error::invalid("sum of the compliances", all, "finite"));
-        }
+        require(all.is_finite(), "sum of the compliances", all, "finite")?;
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! Checks of measured curves before the fit: order, sign, noise, and passivity.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, increasing, require};
 
 /// Number of points above which a curve is averaged.
 const MOST_POINTS: usize = 10_000_000;
@@ -21,6 +21,18 @@ pub(super) struct Words {
 }
 
 impl Words {
+    pub(super) const RELAXATION: Words =
+        Words { abscissa: "time", abscissa_unit: "s", ordinate: "relaxation modulus", ordinate_unit: "Pa" };
+    pub(super) const CREEP: Words =
+        Words { ordinate: "creep compliance", ordinate_unit: "1/Pa", ..Words::RELAXATION };
+    pub(super) const STORAGE: Words = Words {
+        abscissa: "angular frequency",
+        abscissa_unit: "rad/s",
+        ordinate: "storage modulus",
+        ordinate_unit: "Pa",
+    };
+    pub(super) const LOSS: Words = Words { ordinate: "loss modulus", ..Words::STORAGE };
+
     /// "relaxation modulus of point 3 (time 0.5 s)"
     fn point(&self, n: usize, x: f64) -> String {
         format!("{} of point {} ({} {x:e} {})", self.ordinate, n + 1, self.abscissa, self.abscissa_unit)
@@ -41,13 +53,12 @@ pub(super) enum Trend {
 /// Checks that the abscissae increase strictly from a positive number (or from 0, where `zero`).
 pub(super) fn check_abscissae(words: Words, xs: &[f64], zero: bool) -> Result<()> {
     let name = |n: usize| format!("{} of point {}", words.abscissa, n + 1);
-    if xs.len() < 2 || xs.len() > MOST_POINTS {
-        return Err(Error::invalid(
-            format!("number of points of the {}", words.ordinate),
-            xs.len(),
-            format!("between 2 and {MOST_POINTS}"),
-        ));
-    }
+    require(
+        (2..=MOST_POINTS).contains(&xs.len()),
+        format!("number of points of the {}", words.ordinate),
+        xs.len(),
+        format!("between 2 and {MOST_POINTS}"),
+    )?;
     for (n, x) in xs.iter().enumerate() {
         let positive = *x >= f64::MIN_POSITIVE || (zero && n == 0 && *x == 0.0);
         if !(positive && x.is_finite()) {
@@ -56,36 +67,26 @@ pub(super) fn check_abscissae(words: Words, xs: &[f64], zero: bool) -> Result<()
             return Err(Error::invalid(name(n), x, expected));
         }
     }
-    for (n, pair) in xs.windows(2).enumerate() {
-        if pair[1] <= pair[0] {
-            return Err(Error::invalid(
-                name(n + 1),
-                format!("{:e} {}", pair[1], words.abscissa_unit),
-                format!("greater than the one before it, {:e} (in order, none twice)", pair[0]),
-            ));
-        }
-    }
+    increasing(xs.iter().copied(), name, |x| format!("{x:e} {}", words.abscissa_unit))?;
     let first = if xs[0] > 0.0 { xs[0] } else { xs[1] };
     let decades = xs[xs.len() - 1].log10() - first.log10();
-    if decades > MOST_DECADES {
-        return Err(Error::invalid(
-            format!("range of the {}", words.abscissa),
-            format!("{decades:.0} decades"),
-            format!("at most {MOST_DECADES} decades"),
-        ));
-    }
+    require(
+        decades <= MOST_DECADES,
+        format!("range of the {}", words.abscissa),
+        format!("{decades:.0} decades"),
+        format!("at most {MOST_DECADES} decades"),
+    )?;
     Ok(())
 }
 
 /// Checks that there is one finite, positive (or not negative) value for each abscissa.
 pub(super) fn check_values(words: Words, xs: &[f64], values: &[f64], zero: bool) -> Result<()> {
-    if values.len() != xs.len() {
-        return Err(Error::invalid(
-            format!("number of values of the {}", words.ordinate),
-            values.len(),
-            format!("{}, one for each {}", xs.len(), words.abscissa),
-        ));
-    }
+    require(
+        values.len() == xs.len(),
+        format!("number of values of the {}", words.ordinate),
+        values.len(),
+        format!("{}, one for each {}", xs.len(), words.abscissa),
+    )?;
     for (n, (x, value)) in xs.iter().zip(values).enumerate() {
         if !(value.is_finite() && (*value >= f64::MIN_POSITIVE || (zero && *value == 0.0))) {
             let bound = if zero { "not less than" } else { "greater than" };

@@ -18,7 +18,7 @@
 //! and sqrt(E_i τ_i) λ_j/(λ_j - τ_i) sqrt(C_j/λ_j) is an orthogonal matrix: the conversion loses no digits if λ_j - τ_i is taken
 //! from the root finder's distance to the pole, never by subtraction.
 
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 use crate::material::convert::relaxation_of;
 use crate::material::{Creep, Relaxation};
 
@@ -40,13 +40,12 @@ impl Dual {
     /// Both forms of a creep function without zero terms; equal times are moved apart by a billionth.
     pub(crate) fn of(mut creep: Creep) -> Result<Self> {
         creep.validate()?;
-        if creep.long_time() <= 0.0 {
-            return Err(Error::invalid(
-                "contact creep compliance",
-                0,
-                "greater than 0 (both bodies are rigid)",
-            ));
-        }
+        require(
+            creep.long_time() > 0.0,
+            "contact creep compliance",
+            0,
+            "greater than 0 (both bodies are rigid)",
+        )?;
         let mut order: Vec<usize> = (0..creep.terms.len()).collect();
         order.sort_by(|a, b| creep.terms[*a].retardation_time.total_cmp(&creep.terms[*b].retardation_time));
         for pair in order.windows(2) {

@@ -15,7 +15,7 @@
 use super::align::{self, Distance, Logs, Ordinate};
 use super::master::{Abscissa, Isotherm, validate};
 use super::shift::{Shift, minimise};
-use crate::error::{Error, Result, kelvin};
+use crate::error::{Error, Result, kelvin, require};
 use std::f64::consts::LN_10;
 
 mod vertical;
@@ -124,9 +124,7 @@ fn sorted(isotherms: &[Isotherm]) -> Result<Vec<&Isotherm>> {
     validate(isotherms)?;
     let mut sorted: Vec<&Isotherm> = isotherms.iter().collect();
     sorted.sort_by(|a, b| a.temperature.total_cmp(&b.temperature));
-    if sorted.len() < 2 {
-        return Err(Error::invalid("number of isotherms", sorted.len(), "at least 2"));
-    }
+    require(sorted.len() >= 2, "number of isotherms", sorted.len(), "at least 2")?;
     if let Some(pair) = sorted.windows(2).find(|pair| pair[0].temperature == pair[1].temperature) {
         let value = format!("{} twice", kelvin(pair[0].temperature));
         return Err(Error::invalid("temperature of the isotherms", value, "each once"));

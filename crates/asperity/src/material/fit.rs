@@ -5,7 +5,7 @@
 //! over its value. Terms that the data do not require are then merged or left out, and the remaining times are refined. If the
 //! fit cannot describe the data, no passive material can: such data are refused, with the position.
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive, require, significant};
 use crate::material::data::{self, Trend, Words};
 use crate::material::refine;
 use crate::material::spectrum::{Kernel, Problem, Row, Spectrum};
@@ -113,13 +113,19 @@ pub struct Misfit {
 }
 
 impl<F> Fit<F> {
+    /// The same fit as a function of another form.
+    fn map<G>(self, form: impl FnOnce(F) -> Result<G>) -> Result<Fit<G>> {
+        let Fit { function, misfit, columns, window, noise, uncertainty } = self;
+        Ok(Fit { function: form(function)?, misfit, columns, window, noise, uncertainty })
+    }
+
     /// A sentence with the numbers if a run from `first` to `last` \[s\] leaves the fitted window.
     ///
     /// ```
     /// use asperity::material::{FitOptions, fit_relaxation};
     /// let fit = fit_relaxation(&[1.0, 10.0, 100.0], &[3e6, 2e6, 1e6], &FitOptions::default())?;
     /// assert_eq!(fit.beyond(1.0, 50.0), None);
-    /// assert!(fit.beyond(0.1, 50.0).unwrap().contains("from 1e-1 s to 5e1 s"));
+    /// assert!(fit.beyond(0.1, 50.0).unwrap().contains("from 0.1 s to 50 s"));
     /// # Ok::<(), asperity::Error>(())
     /// ```
     pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
@@ -127,7 +133,7 @@ impl<F> Fit<F> {
         // Rounding of 1/omega is not extrapolation.
         (first < start * (1.0 - 1e-9) || last > end * (1.0 + 1e-9)).then(|| {
             let covered = 100.0 * covered([first, last], [start, end]);
-            let [first, last, start, end] = [first, last, start, end].map(short);
+            let [first, last, start, end] = [first, last, start, end].map(|time| significant(time, 4));
             format!(
                 "the run needs the material from {first} s to {last} s, but the data cover only \
                  {start} s to {end} s ({covered:.0} % of these decades); beyond them the fit is an extrapolation"
@@ -143,12 +149,6 @@ fn covered(run: [f64; 2], data: [f64; 2]) -> f64 {
         decades if decades > 0.0 => inside / decades,
         _ => 0.0,
     }
-}
-
-/// Four digits, without zeros at their end.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    format!("{rounded:e}")
 }
 
 /// Fits E(t) \[Pa\] at increasing times \[s\] (0 may be the first) of a relaxation test.
@@ -169,8 +169,7 @@ fn short(value: f64) -> String {
 /// [`Error::Invalid`] naming the point: fewer than two points, times out of order or repeated, values that are not positive or
 /// grow with time by more than their scatter, or a misfit of every passive material above `options.limit`.
 pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Result<Fit<Relaxation>> {
-    let words =
-        Words { abscissa: "time", abscissa_unit: "s", ordinate: "relaxation modulus", ordinate_unit: "Pa" };
+    let words = Words::RELAXATION;
     options.validate()?;
     data::check_abscissae(words, times, true)?;
     data::check_values(words, times, moduli, false)?;
@@ -188,9 +187,7 @@ pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Re
         flow: false,
         range: [window[0] / fastest, window[1] * margin],
     };
-    let Solved { spectrum, misfit, columns, uncertainty } = options.solve(&problem, &[curve])?;
-    let noise = data::noise(times, moduli);
-    Ok(Fit { function: relaxation(spectrum)?, misfit, columns, window, noise, uncertainty })
+    options.solve(&problem, &[curve], window)?.map(relaxation)
 }
 
 /// Fits C(t) \[1/Pa\] at increasing times \[s\] of a creep test, for any compliance (uniaxial or shear). The first point may be
@@ -210,8 +207,7 @@ pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Re
 /// # Errors
 /// As [`fit_relaxation`], for a compliance that falls with time.
 pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Result<Fit<Creep>> {
-    let words =
-        Words { abscissa: "time", abscissa_unit: "s", ordinate: "creep compliance", ordinate_unit: "1/Pa" };
+    let words = Words::CREEP;
     options.validate()?;
     data::check_abscissae(words, times, true)?;
     let from_zero = times[0] == 0.0 && compliances.first() == Some(&0.0);
@@ -226,47 +222,43 @@ pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Re
         flow: options.long_time != LongTime::Solid,
         range: [window[0] / margin, window[1] * margin],
     };
-    let Solved { spectrum, misfit, columns, uncertainty } = options.solve(&problem, &[curve])?;
-    let noise = data::noise(kept, values);
-    Ok(Fit { function: creep(spectrum)?, misfit, columns, window, noise, uncertainty })
+    options.solve(&problem, &[curve], window)?.map(creep)
 }
 
 impl FitOptions {
     fn validate(&self) -> Result<()> {
-        if !(0.5..=20.0).contains(&self.per_decade) {
-            return Err(Error::invalid("times per decade of the fit", self.per_decade, "from 0.5 to 20"));
-        }
+        require(
+            (0.5..=20.0).contains(&self.per_decade),
+            "times per decade of the fit",
+            self.per_decade,
+            "from 0.5 to 20",
+        )?;
         non_negative("margin of the fit", self.margin, "decades")?;
-        if self.margin > 5.0 {
-            return Err(Error::invalid("margin of the fit", self.margin, "at most 5 decades"));
-        }
-        if self.max_terms == 0 {
-            return Err(Error::invalid("most terms of the fit", 0, "1 at least"));
-        }
+        require(self.margin <= 5.0, "margin of the fit", self.margin, "at most 5 decades")?;
+
+        require(self.max_terms > 0, "most terms of the fit", 0, "1 at least")?;
         if let Some(misfit) = self.misfit {
             positive("misfit to be held by the fit", misfit, "")?;
-            if misfit >= 0.5 {
-                return Err(Error::invalid(
-                    "misfit to be held by the fit",
-                    misfit,
-                    "a share below 0.5, such as 0.02 for 2 %",
-                ));
-            }
+            require(
+                misfit < 0.5,
+                "misfit to be held by the fit",
+                misfit,
+                "a share below 0.5, such as 0.02 for 2 %",
+            )?;
         }
         positive("weight of the loss modulus", self.loss_weight, "")?;
         positive("largest misfit of the fit", self.limit, "").map(|_| ())
     }
 
     /// Fits the curves and computes the misfit at every point of every curve.
-    fn solve(&self, problem: &Problem, curves: &[Curve]) -> Result<Solved> {
+    fn solve(&self, problem: &Problem, curves: &[Curve], window: [f64; 2]) -> Result<Fit<Spectrum>> {
         let count = (problem.range[1] / problem.range[0]).log10() * self.per_decade;
-        if count > MOST_TIMES {
-            return Err(Error::invalid(
-                "number of times of the fit",
-                format!("{count:.0}"),
-                format!("at most {MOST_TIMES}: fewer per decade, or data over fewer decades"),
-            ));
-        }
+        require(
+            count <= MOST_TIMES,
+            "number of times of the fit",
+            format!("{count:.0}"),
+            format!("at most {MOST_TIMES}: fewer per decade, or data over fewer decades"),
+        )?;
         let spectrum = match self.misfit {
             Some(misfit) => problem.fit_within(self.per_decade, misfit),
             None => problem.fit(self.per_decade, self.max_terms),
@@ -287,19 +279,19 @@ impl FitOptions {
         for curve in curves {
             data::check_misfit(curve.words, curve.xs, curve.values, &curve.residuals(&spectrum), self.limit)?;
         }
-        if misfit.rms.is_nan() || misfit.rms > self.limit {
-            return Err(Error::invalid(
-                "rms misfit of the fit",
-                format!("{:.2} % ({:.2} % at {:e})", 100.0 * misfit.rms, 100.0 * misfit.max, misfit.worst),
-                format!(
-                    "at most {:.2} % (the largest misfit allowed): fit a narrower window, allow more terms, leave \
+        require(
+            misfit.rms <= self.limit,
+            "rms misfit of the fit",
+            format!("{:.2} % ({:.2} % at {:e})", 100.0 * misfit.rms, 100.0 * misfit.max, misfit.worst),
+            format!(
+                "at most {:.2} % (the largest misfit allowed): fit a narrower window, allow more terms, leave \
                      outliers out, or allow a larger misfit",
-                    100.0 * self.limit
-                ),
-            ));
-        }
+                100.0 * self.limit
+            ),
+        )?;
+        let noise = curves.iter().map(|curve| data::noise(curve.xs, curve.values)).fold(0.0, f64::max);
         let uncertainty = refine::uncertainty(problem, &spectrum);
-        Ok(Solved { spectrum, misfit, columns, uncertainty })
+        Ok(Fit { function: spectrum, misfit, columns, window, noise, uncertainty })
     }
 }
 
@@ -316,14 +308,6 @@ fn together(curves: &[Curve], columns: &[Misfit]) -> Misfit {
     }
     all.rms = (squares / count).sqrt();
     all
-}
-
-/// A spectrum and its uncertainty.
-struct Solved {
-    spectrum: Spectrum,
-    misfit: Misfit,
-    columns: Vec<Misfit>,
-    uncertainty: Vec<[f64; 2]>,
 }
 
 /// One measured curve.

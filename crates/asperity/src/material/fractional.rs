@@ -13,7 +13,7 @@
 //! where x = t/tau and x_c = x (G_inf/G_0)^(1/alpha): a fractional Zener solid retards as it relaxes. All are completely
 //! monotone, so Prony series with positive weights approximate them to any accuracy.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, positive, require};
 use crate::material::mittag_leffler::{LEAST_ORDER, mittag_leffler};
 use crate::material::prony_sum::{self, ColeCole, Exact, PowerLaw};
 use crate::material::{Creep, CreepTerm};
@@ -76,6 +76,14 @@ pub struct Approximation {
     pub window: [f64; 2],
 }
 
+/// The spring G_inf (0 without one) and the modulus of the springpot, which is also that of the spring in series.
+struct Elements {
+    equilibrium: f64,
+    relaxing: f64,
+    time: f64,
+    order: f64,
+}
+
 impl Fractional {
     /// J(t) \[1/Pa\], exactly; 0 for t < 0.
     ///
@@ -116,11 +124,9 @@ impl Fractional {
             Fractional::Springpot { modulus, time, order } => {
                 modulus * (t / time).powf(-order) / libm::tgamma(1.0 - order)
             }
-            Fractional::Maxwell { modulus, time, order } => {
-                modulus * mittag_leffler(order, order * (t / time).ln()).0
-            }
-            Fractional::Zener { equilibrium, instantaneous, time, order } => {
-                equilibrium + (instantaneous - equilibrium) * mittag_leffler(order, order * (t / time).ln()).0
+            _ => {
+                let Elements { equilibrium, relaxing, time, order } = self.elements();
+                equilibrium + relaxing * mittag_leffler(order, order * (t / time).ln()).0
             }
         }
     }
@@ -128,31 +134,15 @@ impl Fractional {
     /// Storage and loss modulus \[Pa\] at the angular frequency `omega` \[rad/s\], exactly.
     pub fn complex(&self, omega: f64) -> (f64, f64) {
         // i^alpha = exp(i pi alpha / 2); z/(1 + z) = (z + |z|^2) / |1 + z|^2.
-        let z = |time: f64, order: f64| {
-            let (sine, cosine) = (std::f64::consts::FRAC_PI_2 * order).sin_cos();
-            let size = (omega * time).powf(order);
-            (size * cosine, size * sine)
-        };
-        let element = |time: f64, order: f64| {
-            let (re, im) = z(time, order);
-            let square = 1.0 + 2.0 * re + re * re + im * im;
-            ((re + re * re + im * im) / square, im / square)
-        };
-        match *self {
-            Fractional::Springpot { modulus, time, order } => {
-                let (re, im) = z(time, order);
-                (modulus * re, modulus * im)
-            }
-            Fractional::Maxwell { modulus, time, order } => {
-                let (re, im) = element(time, order);
-                (modulus * re, modulus * im)
-            }
-            Fractional::Zener { equilibrium, instantaneous, time, order } => {
-                let (re, im) = element(time, order);
-                let relaxing = instantaneous - equilibrium;
-                (equilibrium + relaxing * re, relaxing * im)
-            }
+        let Elements { equilibrium, relaxing, time, order } = self.elements();
+        let (sine, cosine) = (std::f64::consts::FRAC_PI_2 * order).sin_cos();
+        let size = (omega * time).powf(order);
+        let (re, im) = (size * cosine, size * sine);
+        if matches!(self, Fractional::Springpot { .. }) {
+            return (relaxing * re, relaxing * im);
         }
+        let square = 1.0 + 2.0 * re + re * re + im * im;
+        (equilibrium + relaxing * ((re + re * re + im * im) / square), relaxing * (im / square))
     }
 
     /// A Prony sum with a relative error below `tolerance` (1e-3 is a good value) in creep and in
@@ -174,10 +164,10 @@ impl Fractional {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] if an argument is out of its range, or if the tolerance is too small.
+    /// [`Error::Invalid`](crate::Error::Invalid) if an argument is out of its range, or if the tolerance is too small.
     pub fn to_prony(&self, window: [f64; 2], tolerance: f64) -> Result<Approximation> {
         self.validate()?;
-        let (time, order) = self.time_and_order();
+        let Elements { equilibrium, relaxing, time, order } = self.elements();
         if order == 1.0 {
             return Ok(Approximation { creep: self.classical(), error: 0.0, window });
         }
@@ -185,40 +175,37 @@ impl Fractional {
         let relaxation = |t| self.relaxation(t);
         let exact = Exact::new(&|t| self.creep(t), &relaxation, window, tolerance)?;
         match *self {
-            Fractional::Springpot { modulus, .. } => {
-                let law = PowerLaw { order, time, constant: 0.0, factor: 1.0 / modulus };
-                prony_sum::by_quadrature(&exact, &law)
+            Fractional::Springpot { modulus, .. } | Fractional::Maxwell { modulus, .. } => {
+                let constant = if matches!(self, Fractional::Maxwell { .. }) { 1.0 / modulus } else { 0.0 };
+                prony_sum::by_quadrature(&exact, &PowerLaw { order, time, constant, factor: 1.0 / modulus })
             }
-            Fractional::Maxwell { modulus, .. } => {
-                let law = PowerLaw { order, time, constant: 1.0 / modulus, factor: 1.0 / modulus };
-                prony_sum::by_quadrature(&exact, &law)
-            }
-            Fractional::Zener { equilibrium, instantaneous, .. } => {
-                let relaxing = instantaneous - equilibrium;
+            Fractional::Zener { .. } => {
                 let law = ColeCole { order, time, equilibrium, relaxing };
                 prony_sum::by_fit(&exact, true).or_else(|_| prony_sum::by_quadrature(&exact, &law))
             }
         }
     }
 
-    fn time_and_order(&self) -> (f64, f64) {
+    fn elements(&self) -> Elements {
         match *self {
-            Fractional::Springpot { time, order, .. }
-            | Fractional::Maxwell { time, order, .. }
-            | Fractional::Zener { time, order, .. } => (time, order),
+            Fractional::Springpot { modulus, time, order } | Fractional::Maxwell { modulus, time, order } => {
+                Elements { equilibrium: 0.0, relaxing: modulus, time, order }
+            }
+            Fractional::Zener { equilibrium, instantaneous, time, order } => {
+                Elements { equilibrium, relaxing: instantaneous - equilibrium, time, order }
+            }
         }
     }
 
     fn validate(&self) -> Result<()> {
-        let (time, order) = self.time_and_order();
+        let Elements { time, order, .. } = self.elements();
         positive("time of the fractional model", time, "s")?;
-        if !(order > 0.0 && order <= 1.0) {
-            return Err(Error::invalid(
-                "order of the fractional model",
-                order,
-                "greater than 0 (a spring) and not greater than 1 (a dashpot)",
-            ));
-        }
+        require(
+            order > 0.0 && order <= 1.0,
+            "order of the fractional model",
+            order,
+            "greater than 0 (a spring) and not greater than 1 (a dashpot)",
+        )?;
         match *self {
             Fractional::Springpot { modulus, .. } | Fractional::Maxwell { modulus, .. } => {
                 positive("modulus of the fractional model", modulus, "Pa").map(|_| ())
@@ -226,13 +213,12 @@ impl Fractional {
             Fractional::Zener { equilibrium, instantaneous, .. } => {
                 positive("equilibrium modulus of the fractional model", equilibrium, "Pa")?;
                 positive("instantaneous modulus of the fractional model", instantaneous, "Pa")?;
-                if instantaneous <= equilibrium {
-                    return Err(Error::invalid(
-                        "instantaneous modulus of the fractional model",
-                        format!("{instantaneous:e} Pa"),
-                        format!("greater than the equilibrium modulus, {equilibrium:e} Pa"),
-                    ));
-                }
+                require(
+                    instantaneous > equilibrium,
+                    "instantaneous modulus of the fractional model",
+                    format!("{instantaneous:e} Pa"),
+                    format!("greater than the equilibrium modulus, {equilibrium:e} Pa"),
+                )?;
                 Ok(())
             }
         }

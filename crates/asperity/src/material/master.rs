@@ -5,7 +5,7 @@
 //! the temperature T the reduced time of t is t/a_T, and the reduced frequency of omega is omega a_T. The shift factors come from
 //! a law ([`Shift`]) or from neighbouring isotherms ([`estimate_shift`](super::estimate_shift)).
 
-use crate::error::{Error, Result, kelvin, positive};
+use crate::error::{Error, Result, increasing, kelvin, positive, require};
 use crate::material::shift::Shift;
 
 /// The abscissa of a curve.
@@ -84,9 +84,7 @@ pub(super) fn validate(isotherms: &[Isotherm]) -> Result<()> {
     for isotherm in isotherms {
         positive("temperature of an isotherm", isotherm.temperature, "K (absolute)")?;
         let at = format!("the isotherm at {}", kelvin(isotherm.temperature));
-        if isotherm.x.len() < 2 {
-            return Err(Error::invalid(format!("number of points of {at}"), isotherm.x.len(), "at least 2"));
-        }
+        require(isotherm.x.len() >= 2, format!("number of points of {at}"), isotherm.x.len(), "at least 2")?;
         if isotherm.curves.is_empty() || isotherm.curves.len() != first.curves.len() {
             let expected = format!("{}, and at least 1, as in the first", first.curves.len());
             return Err(Error::invalid(format!("number of curves of {at}"), isotherm.curves.len(), expected));
@@ -102,17 +100,8 @@ pub(super) fn validate(isotherms: &[Isotherm]) -> Result<()> {
                 positive(&format!("point {} of {at}", n + 1), *value, "")?;
             }
         }
-        for (n, pair) in isotherm.x.windows(2).enumerate() {
-            if pair[1] <= pair[0] {
-                let expected =
-                    format!("greater than the one before it, {:e} (in order, none twice)", pair[0]);
-                return Err(Error::invalid(
-                    format!("abscissa of point {} of {at}", n + 2),
-                    pair[1],
-                    expected,
-                ));
-            }
-        }
+        let name = |n: usize| format!("abscissa of point {} of {at}", n + 1);
+        increasing(isotherm.x.iter().copied(), name, |x| x.to_string())?;
     }
     Ok(())
 }

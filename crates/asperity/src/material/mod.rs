@@ -43,7 +43,7 @@ mod temperature;
 mod thermal;
 mod vertical;
 
-pub use body::{Body, Lateral, PoissonCreep, pair_creep, pair_hardness};
+pub use body::{Body, Lateral, PoissonCreep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
 pub(crate) use dual::Dual;
 pub use estimate::{ModulusChange, ShiftEstimate, VerticalEstimate, estimate_shift, estimate_vertical};
@@ -51,7 +51,7 @@ pub use fit::{Fit, FitOptions, LongTime, Misfit, Moduli, fit_creep, fit_dma, fit
 pub use fractional::{Approximation, Fractional};
 pub use master::{Abscissa, Isotherm, MasterCurve, master_curve};
 pub use models::{Material, Modulus};
-pub(crate) use nnls::solve as least_squares;
+pub(crate) use nnls::{dot, solve as least_squares};
 pub(crate) use quadrature::integrate;
 pub use reduced_time::ReducedTime;
 pub use relaxation::{Relaxation, RelaxationTerm};

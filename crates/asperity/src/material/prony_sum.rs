@@ -8,11 +8,11 @@
 //!   fractional Zener solid of order near 1). A relative error of the relaxation function bounds that of the creep function, but
 //!   not the other way round.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::material::fit;
 use crate::material::fractional::Approximation;
 use crate::material::mittag_leffler::{Spread, sine};
-use crate::material::spectrum::{Kernel, Problem, Row};
+use crate::material::spectrum::{Kernel, Problem, Row, times};
 use crate::material::{Creep, CreepTerm, Relaxation};
 use std::f64::consts::PI;
 
@@ -62,7 +62,7 @@ pub(super) fn by_fit(exact: &Exact, solid: bool) -> Result<Approximation> {
         Row { kernel: Kernel::Relaxation, x, value, weight: 1.0 / value, count: 1.0 }
     };
     const WIDEST: f64 = 3.0;
-    let rows: Vec<Row> = samples(widen(exact.window, WIDEST), 12.0).into_iter().map(row).collect();
+    let rows: Vec<Row> = times(widen(exact.window, WIDEST), 12.0).into_iter().map(row).collect();
     let fit = |quarters: i32, margin: f64| -> Result<Approximation> {
         let range = widen(exact.window, margin);
         let rows = rows.iter().filter(|r| r.x >= range[0] && r.x <= range[1]).copied().collect();
@@ -194,7 +194,7 @@ impl<'a> Exact<'a> {
         tolerance: f64,
     ) -> Result<Self> {
         check(window, tolerance)?;
-        let samples = samples(window, 20.0).into_iter().map(|t| (t, creep(t), relaxation(t))).collect();
+        let samples = times(window, 20.0).into_iter().map(|t| (t, creep(t), relaxation(t))).collect();
         Ok(Exact { relaxation, samples, window, tolerance })
     }
 
@@ -216,27 +216,23 @@ impl<'a> Exact<'a> {
     }
 }
 
-/// Times evenly spaced in the logarithm, both ends included.
-fn samples([first, last]: [f64; 2], per_decade: f64) -> Vec<f64> {
-    let decades = (last / first).log10();
-    let count = (decades * per_decade).ceil().max(1.0);
-    (0..=count as usize).map(|k| first * 10f64.powf(decades * k as f64 / count)).collect()
-}
-
 fn widen([first, last]: [f64; 2], decades: f64) -> [f64; 2] {
     [first / 10f64.powf(decades), last * 10f64.powf(decades)]
 }
 
 fn check([first, last]: [f64; 2], tolerance: f64) -> Result<()> {
-    if !(first > 0.0 && first < last && last.is_finite() && last.log10() - first.log10() <= MOST_DECADES) {
-        return Err(Error::invalid(
-            "time window of the Prony sum",
-            format!("{first:e} s to {last:e} s"),
-            format!("two positive, increasing times at most {MOST_DECADES} decades apart"),
-        ));
-    }
-    if !(1e-8..=0.5).contains(&tolerance) {
-        return Err(Error::invalid("error allowed to the Prony sum", tolerance, "from 1e-8 to 0.5"));
-    }
+    require(
+        first > 0.0 && first < last && last.is_finite() && last.log10() - first.log10() <= MOST_DECADES,
+        "time window of the Prony sum",
+        format!("{first:e} s to {last:e} s"),
+        format!("two positive, increasing times at most {MOST_DECADES} decades apart"),
+    )?;
+
+    require(
+        (1e-8..=0.5).contains(&tolerance),
+        "error allowed to the Prony sum",
+        tolerance,
+        "from 1e-8 to 0.5",
+    )?;
     Ok(())
 }

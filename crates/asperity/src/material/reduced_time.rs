@@ -4,7 +4,7 @@
 //! 4 (1960) 233). The argument of the creep function is xi(t) - xi(s) instead of t - s, so time stepping in xi instead of t is
 //! exact.
 
-use crate::error::{Error, Result, kelvin};
+use crate::error::{Error, Result, kelvin, require, times_with_jumps};
 use crate::material::Shift;
 use crate::material::quadrature::integrate;
 
@@ -48,7 +48,8 @@ impl ReducedTime {
     /// [`Error::Invalid`] naming the point: no points, times not in order or more than twice the same, a
     /// temperature at which the shift is not defined, or a reduced time beyond the range of doubles.
     pub fn new(shift: Shift, temperatures: &[(f64, f64)]) -> Result<Self> {
-        validate(temperatures)?;
+        let times: Vec<f64> = temperatures.iter().map(|point| point.0).collect();
+        times_with_jumps("the temperature history", &times)?;
         for (n, (_, temperature)) in temperatures.iter().enumerate() {
             shift.ln_factor(*temperature).map_err(|error| match error {
                 Error::Invalid { parameter, value, expected, .. } => {
@@ -88,13 +89,12 @@ impl ReducedTime {
                 clock.pieces.push(piece);
             }
         }
-        if !reduced.is_finite() {
-            return Err(Error::invalid(
-                "reduced time of the temperature history",
-                reduced,
-                "finite: check the temperatures and the constants of the shift",
-            ));
-        }
+        require(
+            reduced.is_finite(),
+            "reduced time of the temperature history",
+            reduced,
+            "finite: check the temperatures and the constants of the shift",
+        )?;
         Ok(clock)
     }
 
@@ -228,34 +228,6 @@ impl Piece {
         // Between the two ends for any rounding: the shift is defined there.
         (self.from + share * (self.to - self.from)).clamp(self.from.min(self.to), self.from.max(self.to))
     }
-}
-
-fn validate(temperatures: &[(f64, f64)]) -> Result<()> {
-    let Some(first) = temperatures.first() else {
-        return Err(Error::invalid("temperature history", "empty", "one point at least"));
-    };
-    if first.0 != 0.0 {
-        return Err(Error::invalid("first time of the temperature history", first.0, "0 s"));
-    }
-    let name = |n: usize| format!("time of point {} of the temperature history", n + 1);
-    for (n, (t, _)) in temperatures.iter().enumerate() {
-        if !t.is_finite() {
-            return Err(Error::invalid(name(n), t, "finite"));
-        }
-    }
-    for (n, pair) in temperatures.windows(2).enumerate() {
-        if pair[1].0 < pair[0].0 {
-            let expected = format!("not less than the time before it, {} s", pair[0].0);
-            return Err(Error::invalid(name(n + 1), format!("{} s", pair[1].0), expected));
-        }
-    }
-    for (n, triple) in temperatures.windows(3).enumerate() {
-        if triple[0].0 == triple[2].0 {
-            let expected = "given at most twice (a jump has one temperature before and one after)";
-            return Err(Error::invalid(name(n + 2), format!("{} s", triple[2].0), expected));
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

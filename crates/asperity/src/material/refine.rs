@@ -3,8 +3,8 @@
 //! Logarithms keep weights and times positive without constraints, and make their steps relative
 //! (D. W. Marquardt, J. SIAM 11 (1963) 431, with his scaling by the diagonal).
 
-use crate::material::series;
 use crate::material::spectrum::{Problem, Spectrum};
+use crate::material::{dot, series};
 
 /// Improves all weights and times, at most `iterations` times; never worse than `start`.
 pub(super) fn refine(problem: &Problem, start: Spectrum, iterations: usize) -> Spectrum {
@@ -77,20 +77,11 @@ impl System {
         }
         for i in 0..n {
             for j in 0..=i {
-                let (above, here) = l.split_at_mut(i);
-                let row_j: &[f64] = if j < i { &above[j][..j] } else { &[] };
-                let sum: f64 = if j < i {
-                    here[0][..j].iter().zip(row_j).map(|(a, b)| a * b).sum()
-                } else {
-                    here[0][..i].iter().map(|a| a * a).sum()
-                };
-                let value = here[0][j] - sum;
-                here[0][j] = if j < i {
-                    value / above[j][j]
-                } else if value > 0.0 {
-                    value.sqrt()
-                } else {
-                    return None;
+                let value = l[i][j] - dot(&l[i][..j], &l[j][..j]);
+                l[i][j] = match j < i {
+                    true => value / l[j][j],
+                    false if value > 0.0 => value.sqrt(),
+                    false => return None,
                 };
             }
         }
@@ -102,8 +93,7 @@ impl System {
 fn substitute(l: &[Vec<f64>], mut x: Vec<f64>) -> Vec<f64> {
     let n = x.len();
     for i in 0..n {
-        let sum: f64 = l[i][..i].iter().zip(&x).map(|(a, b)| a * b).sum();
-        x[i] = (x[i] - sum) / l[i][i];
+        x[i] = (x[i] - dot(&l[i][..i], &x)) / l[i][i];
     }
     for i in (0..n).rev() {
         let sum: f64 = (i + 1..n).map(|k| l[k][i] * x[k]).sum();

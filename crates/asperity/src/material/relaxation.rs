@@ -7,7 +7,7 @@
 //! fractions of the instantaneous modulus ([`Relaxation::from_instantaneous`]; g_i of Abaqus, alpha_i of Ansys) and ratios to the
 //! relaxed modulus ([`Relaxation::from_equilibrium`]).
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Result, non_negative, positive, require};
 use crate::material::series;
 
 /// E(t) = E_inf + sum_i E_i exp(-t/tau_i) + viscosity delta(t), in pascal; 0 for t < 0.
@@ -43,7 +43,7 @@ impl Relaxation {
     /// From the equilibrium modulus \[Pa\] and (modulus \[Pa\], relaxation time \[s\]) terms.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a modulus is negative, a time not positive, or all moduli are zero.
+    /// [`Error::Invalid`](crate::Error::Invalid) if a modulus is negative, a time not positive, or all moduli are zero.
     pub fn absolute(equilibrium: f64, terms: &[(f64, f64)]) -> Result<Self> {
         let terms =
             terms.iter().map(|&(modulus, relaxation_time)| RelaxationTerm { modulus, relaxation_time });
@@ -63,7 +63,7 @@ impl Relaxation {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a fraction is negative, their sum exceeds 1 (by more than 1e-12, which
+    /// [`Error::Invalid`](crate::Error::Invalid) if a fraction is negative, their sum exceeds 1 (by more than 1e-12, which
     /// is rounding and taken as 1), a time is not positive, or the modulus is not positive.
     pub fn from_instantaneous(instantaneous: f64, fractions: &[(f64, f64)]) -> Result<Self> {
         positive("instantaneous modulus", instantaneous, "Pa")?;
@@ -75,14 +75,13 @@ impl Relaxation {
             )?;
         }
         let sum: f64 = fractions.iter().map(|f| f.0).sum();
-        if sum > 1.0 + 1e-12 {
-            return Err(Error::invalid(
-                "sum of the fractions of the instantaneous modulus",
-                sum,
-                "at most 1, what remains is the equilibrium modulus (if the terms are relative to the \
+        require(
+            sum <= 1.0 + 1e-12,
+            "sum of the fractions of the instantaneous modulus",
+            sum,
+            "at most 1, what remains is the equilibrium modulus (if the terms are relative to the \
                  relaxed modulus or are moduli, say so)",
-            ));
-        }
+        )?;
         // A remainder of rounding size means a fluid whose decimal fractions add up to 1.
         let remainder = if 1.0 - sum > 1e-12 { 1.0 - sum } else { 0.0 };
         let terms: Vec<_> = fractions.iter().map(|f| (f.0 * instantaneous, f.1)).collect();
@@ -100,7 +99,7 @@ impl Relaxation {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a ratio is negative, a time not positive, or the modulus not positive.
+    /// [`Error::Invalid`](crate::Error::Invalid) if a ratio is negative, a time not positive, or the modulus not positive.
     pub fn from_equilibrium(equilibrium: f64, ratios: &[(f64, f64)]) -> Result<Self> {
         positive("equilibrium modulus", equilibrium, "Pa")?;
         for (n, (ratio, _)) in ratios.iter().enumerate() {
@@ -179,7 +178,7 @@ impl Relaxation {
     /// zero.
     ///
     /// # Errors
-    /// [`Error::Invalid`] naming the term (counted from 1) and its value.
+    /// [`Error::Invalid`](crate::Error::Invalid) naming the term (counted from 1) and its value.
     pub fn validate(&self) -> Result<()> {
         non_negative("equilibrium modulus", self.equilibrium, "Pa")?;
         non_negative("viscosity", self.viscosity, "Pa s")?;
@@ -191,9 +190,7 @@ impl Relaxation {
             )?;
         }
         let all = self.equilibrium + self.terms.iter().map(|e| e.modulus).sum::<f64>() + self.viscosity;
-        if !(all > 0.0 && all.is_finite()) {
-            return Err(Error::invalid("sum of the moduli", all, "finite and greater than 0 Pa"));
-        }
+        require(all > 0.0 && all.is_finite(), "sum of the moduli", all, "finite and greater than 0 Pa")?;
         Ok(())
     }
 }

@@ -4,7 +4,7 @@
 //! E*(omega a_T, T_r). Above the glass transition a_T follows M. L. Williams, R. F. Landel & J. D. Ferry, J. Am. Chem. Soc. 77
 //! (1955) 3701, log10 a_T = -c1 (T - T_r) / (c2 + T - T_r), and otherwise often S. Arrhenius, ln a_T = (E_a/R) (1/T - 1/T_r).
 
-use crate::error::{Error, Result, kelvin, positive};
+use crate::error::{Error, Result, increasing, kelvin, positive, require};
 use std::f64::consts::LN_10;
 
 /// Gas constant R \[J/(mol K)\], exact in the SI of 2019.
@@ -162,11 +162,7 @@ impl Shift {
                 // 1/T - 1/T_r without cancellation.
                 activation_energy / GAS_CONSTANT * (reference - temperature) / (temperature * reference)
             }
-            Shift::Table { points } => {
-                let next = points.partition_point(|p| p.0 <= temperature).clamp(1, points.len() - 1);
-                let ((t0, v0), (t1, v1)) = (points[next - 1], points[next]);
-                v0 + (v1 - v0) * (temperature - t0) / (t1 - t0)
-            }
+            Shift::Table { points } => interpolated(points, temperature),
         }
     }
 
@@ -181,25 +177,34 @@ impl Shift {
 }
 
 fn validate_table(points: &[(f64, f64)]) -> Result<()> {
-    if points.len() < 2 {
-        return Err(Error::invalid("number of shift factors", points.len(), "at least 2"));
-    }
+    require(points.len() >= 2, "number of shift factors", points.len(), "at least 2")?;
+    validate_points(points)?;
+    increasing_temperatures("shift factor", points)
+}
+
+fn validate_points(points: &[(f64, f64)]) -> Result<()> {
     for (n, (temperature, ln)) in points.iter().enumerate() {
         positive(&format!("temperature of shift factor {}", n + 1), *temperature, "K (absolute)")?;
         if !ln.is_finite() {
             return Err(Error::invalid(format!("logarithm of shift factor {}", n + 1), ln, "finite"));
         }
     }
-    for (n, pair) in points.windows(2).enumerate() {
-        if pair[1].0 <= pair[0].0 {
-            return Err(Error::invalid(
-                format!("temperature of shift factor {}", n + 2),
-                kelvin(pair[1].0),
-                format!("greater than the one before it, {} (in order, none twice)", kelvin(pair[0].0)),
-            ));
-        }
-    }
     Ok(())
+}
+
+/// Checks that the temperatures of a table increase; `factor` names one of its points.
+pub(super) fn increasing_temperatures(factor: &str, points: &[(f64, f64)]) -> Result<()> {
+    let name = |n: usize| format!("temperature of {factor} {}", n + 1);
+    increasing(points.iter().map(|point| point.0), name, kelvin)
+}
+
+/// Linear between the points of a table, constant beyond its ends.
+pub(super) fn interpolated(points: &[(f64, f64)], temperature: f64) -> f64 {
+    let [first, .., last] = points else { return points.first().map_or(0.0, |point| point.1) };
+    let temperature = temperature.clamp(first.0, last.0);
+    let next = points.partition_point(|p| p.0 <= temperature).clamp(1, points.len() - 1);
+    let ((t0, v0), (t1, v1)) = (points[next - 1], points[next]);
+    v0 + (v1 - v0) * (temperature - t0) / (t1 - t0)
 }
 
 /// A law fitted to shift factors.
@@ -273,20 +278,14 @@ pub fn fit_arrhenius(points: &[(f64, f64)], reference: f64) -> Result<ShiftFit> 
 
 fn usable(points: &[(f64, f64)], reference: f64, least: usize) -> Result<Vec<(f64, f64)>> {
     positive("reference temperature", reference, "K (absolute)")?;
-    for (n, (temperature, ln)) in points.iter().enumerate() {
-        positive(&format!("temperature of shift factor {}", n + 1), *temperature, "K (absolute)")?;
-        if !ln.is_finite() {
-            return Err(Error::invalid(format!("logarithm of shift factor {}", n + 1), ln, "finite"));
-        }
-    }
+    validate_points(points)?;
     let points: Vec<_> = points.iter().filter(|p| p.0 != reference).copied().collect();
-    if points.len() < least {
-        return Err(Error::invalid(
-            "number of shift factors besides the reference",
-            points.len(),
-            format!("at least {least}"),
-        ));
-    }
+    require(
+        points.len() >= least,
+        "number of shift factors besides the reference",
+        points.len(),
+        format!("at least {least}"),
+    )?;
     Ok(points)
 }
 

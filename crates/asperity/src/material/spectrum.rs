@@ -89,6 +89,13 @@ impl Spectrum {
     }
 }
 
+/// Times evenly spaced in the logarithm, both ends included.
+pub(super) fn times([first, last]: [f64; 2], per_decade: f64) -> Vec<f64> {
+    let decades = (last / first).log10();
+    let steps = (decades * per_decade).ceil().max(1.0);
+    (0..=steps as usize).map(|k| first * 10f64.powf(decades * k as f64 / steps)).collect()
+}
+
 /// Relative accuracy of data; smaller residuals do not count as better.
 const DIGITS: f64 = 1e-7;
 
@@ -105,8 +112,10 @@ pub(super) struct Problem {
 impl Problem {
     /// The simplest spectrum that the rows require, from a grid of `per_decade` times, with at most `most` terms.
     pub(super) fn fit(&self, per_decade: f64, most: usize) -> Spectrum {
-        let mut best = refine::refine(self, self.weigh(&self.grid(per_decade)), 10);
-        while let Some(simpler) = self.simpler(&best) {
+        let mut best = refine::refine(self, self.weigh(&times(self.range, per_decade)), 10);
+        loop {
+            let limit = self.information(&best);
+            let Some(simpler) = self.fewer(&best, |trial| self.information(trial) <= limit) else { break };
             best = simpler;
         }
         while best.terms.len() > most {
@@ -134,22 +143,12 @@ impl Problem {
     /// time, the least important first; the whole grid if its misfit is larger.
     pub(super) fn fit_within(&self, per_decade: f64, misfit: f64) -> Spectrum {
         let mut best = self.fit_grid(per_decade);
-        while let Some(fewer) = self.fewer_within(&best, misfit) {
+        let within = |spectrum: &Spectrum| self.rms(spectrum) <= misfit;
+        while within(&best) && best.terms.len() > 1 {
+            let Some(fewer) = self.fewer(&best, within) else { break };
             best = fewer;
         }
         best
-    }
-
-    /// A spectrum with one term fewer whose rms residual is at most `misfit`.
-    fn fewer_within(&self, spectrum: &Spectrum, misfit: f64) -> Option<Spectrum> {
-        if self.rms(spectrum) > misfit || spectrum.terms.len() < 2 {
-            return None;
-        }
-        let trials = self.reductions(spectrum);
-        [(0, 15), (1, 15), (2, 15), (0, 100)].into_iter().find_map(|(k, iterations)| {
-            let trial = refine::refine(self, trials.get(k)?.clone(), iterations);
-            (self.rms(&trial) <= misfit).then_some(trial)
-        })
     }
 
     /// Root mean square of the relative residuals; means of several points count with their number.
@@ -162,26 +161,19 @@ impl Problem {
         f64::sqrt(squares / count)
     }
 
-    /// A spectrum with one term fewer that the information criterion prefers.
-    fn simpler(&self, spectrum: &Spectrum) -> Option<Spectrum> {
-        let limit = self.information(spectrum);
+    /// A spectrum with one term fewer that is good enough.
+    fn fewer(&self, spectrum: &Spectrum, enough: impl Fn(&Spectrum) -> bool) -> Option<Spectrum> {
         let trials = self.reductions(spectrum);
         // Usually the least important term can be removed after a few iterations; a long iteration decides at the end.
         [(0, 15), (1, 15), (2, 15), (0, 100)].into_iter().find_map(|(k, iterations)| {
             let trial = refine::refine(self, trials.get(k)?.clone(), iterations);
-            (self.information(&trial) <= limit).then_some(trial)
+            enough(&trial).then_some(trial)
         })
     }
 
     /// The best spectrum from a grid of `per_decade` times, with any number of terms.
     pub(super) fn fit_grid(&self, per_decade: f64) -> Spectrum {
-        refine::refine(self, self.weigh(&self.grid(per_decade)), 60)
-    }
-
-    fn grid(&self, per_decade: f64) -> Vec<f64> {
-        let decades = (self.range[1] / self.range[0]).log10();
-        let steps = (decades * per_decade).ceil().max(1.0);
-        (0..=steps as usize).map(|k| self.range[0] * 10f64.powf(decades * k as f64 / steps)).collect()
+        refine::refine(self, self.weigh(&times(self.range, per_decade)), 60)
     }
 
     /// The Bayesian information criterion (G. Schwarz, Annals of Statistics 6 (1978) 461): lower is

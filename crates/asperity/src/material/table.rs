@@ -27,14 +27,8 @@ impl CreepTable {
     /// [`Error::Invalid`] naming the point: fewer than two points, times not in order or repeated, or a compliance that is
     /// negative, not finite, or smaller than the previous one (noise must be smoothed or fitted first).
     pub fn new(times: &[f64], compliances: &[f64]) -> Result<Self> {
-        let words = Words {
-            abscissa: "time",
-            abscissa_unit: "s",
-            ordinate: "creep compliance",
-            ordinate_unit: "1/Pa",
-        };
-        data::check_abscissae(words, times, true)?;
-        data::check_values(words, times, compliances, true)?;
+        data::check_abscissae(Words::CREEP, times, true)?;
+        data::check_values(Words::CREEP, times, compliances, true)?;
         for (n, pair) in compliances.windows(2).enumerate() {
             if pair[1] < pair[0] {
                 return Err(Error::invalid(

@@ -1,7 +1,7 @@
 //! A material at a constant temperature: E(t, T) = E(t/a_T, T_r) / b_T.
 
 use super::{Material, Shift, VerticalShift};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 
 /// The effect of a constant temperature on a material: its times are multiplied by a_T, its moduli are divided by b_T.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,10 +13,10 @@ pub struct TemperatureFactors {
 }
 
 impl TemperatureFactors {
-    /// Those of the reference temperature.
+    /// The factors at the reference temperature.
     pub const NONE: Self = TemperatureFactors { times: 1.0, moduli: 1.0 };
 
-    /// Those at a temperature \[K\].
+    /// The factors at a temperature \[K\].
     ///
     /// ```
     /// use asperity::material::{Shift, TemperatureFactors, VerticalShift};
@@ -32,14 +32,9 @@ impl TemperatureFactors {
     pub fn at(shift: &Shift, vertical: Option<&VerticalShift>, kelvin: f64) -> Result<Self> {
         let times = shift.factor(kelvin)?;
         let moduli = vertical.map_or(Ok(1.0), |vertical| vertical.factor(kelvin))?;
-        match times.is_finite() && times > 0.0 {
-            true => Ok(TemperatureFactors { times, moduli }),
-            false => Err(Error::invalid(
-                format!("shift factor at {kelvin:.2} K"),
-                times,
-                "within the range of floating-point numbers: check the constants of the shift",
-            )),
-        }
+        let expected = "within the range of floating-point numbers: check the constants of the shift";
+        require(times.is_finite() && times > 0.0, format!("shift factor at {kelvin:.2} K"), times, expected)?;
+        Ok(TemperatureFactors { times, moduli })
     }
 
     /// The material that is `reference` at the reference temperature.

@@ -14,7 +14,8 @@
 //!
 //! with the expansion of the volume per kelvin. The moduli of a glass do not follow this law.
 
-use crate::error::{Error, Result, kelvin, positive};
+use super::shift::{increasing_temperatures, interpolated};
+use crate::error::{Error, Result, kelvin, positive, require};
 
 /// A vertical shift factor b_T as a function of temperature: moduli at T are those at the reference temperature divided by b_T.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,14 +44,12 @@ impl VerticalShift {
         match self {
             VerticalShift::Density { reference, expansion } => {
                 positive("reference temperature of the vertical shift", *reference, "K")?;
-                match (0.0..=0.01).contains(expansion) {
-                    true => Ok(()),
-                    false => Err(Error::invalid(
-                        "expansion of the vertical shift",
-                        format!("{expansion:e} 1/K"),
-                        "from 0 to 0.01 1/K: the relative growth of the volume per kelvin, about 6e-4 1/K for rubbers",
-                    )),
-                }
+                require(
+                    (0.0..=0.01).contains(expansion),
+                    "expansion of the vertical shift",
+                    format!("{expansion:e} 1/K"),
+                    "from 0 to 0.01 1/K: the relative growth of the volume per kelvin, about 6e-4 1/K for rubbers",
+                )
             }
             VerticalShift::Table { points } => validate_table(points),
         }
@@ -97,22 +96,11 @@ impl VerticalShift {
     }
 }
 
-/// ln b_T between two points of a table, constant beyond its ends.
-pub(super) fn interpolated(points: &[(f64, f64)], temperature: f64) -> f64 {
-    let [first, .., last] = points else { return points.first().map_or(0.0, |point| point.1) };
-    let temperature = temperature.clamp(first.0, last.0);
-    let next = points.partition_point(|p| p.0 <= temperature).clamp(1, points.len() - 1);
-    let ((t0, v0), (t1, v1)) = (points[next - 1], points[next]);
-    v0 + (v1 - v0) * (temperature - t0) / (t1 - t0)
-}
-
 /// Largest |ln b_T|: moduli of one master curve do not differ by more than a thousand for the same reduced time.
 const MOST: f64 = 6.9;
 
 fn validate_table(points: &[(f64, f64)]) -> Result<()> {
-    if points.is_empty() {
-        return Err(Error::invalid("number of vertical shift factors", 0, "at least 1"));
-    }
+    require(!points.is_empty(), "number of vertical shift factors", 0, "at least 1")?;
     for (n, (temperature, ln)) in points.iter().enumerate() {
         positive(&format!("temperature of vertical shift factor {}", n + 1), *temperature, "K (absolute)")?;
         if ln.is_nan() || ln.abs() > MOST {
@@ -120,14 +108,7 @@ fn validate_table(points: &[(f64, f64)]) -> Result<()> {
             return Err(Error::invalid(name, libm::exp(*ln), "positive, and from 0.001 to 1000"));
         }
     }
-    match points.windows(2).position(|pair| pair[1].0 <= pair[0].0) {
-        None => Ok(()),
-        Some(n) => Err(Error::invalid(
-            format!("temperature of vertical shift factor {}", n + 2),
-            kelvin(points[n + 1].0),
-            format!("greater than the one before it, {} (in order, none twice)", kelvin(points[n].0)),
-        )),
-    }
+    increasing_temperatures("vertical shift factor", points)
 }
 
 #[cfg(test)]

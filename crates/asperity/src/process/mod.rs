@@ -71,6 +71,8 @@ pub(crate) struct Solved<'a> {
     pub(crate) hardness: Hardness<'a>,
     pub(crate) operator: &'a mut dyn Operator,
     pub(crate) interrupt: Option<&'a AtomicBool>,
+    /// Estimated error of the stress, relative, if the history knows it.
+    pub(crate) time_error: Option<f64>,
     /// What the step did to the energy of the bodies, where account is kept of it.
     pub(crate) exchange: Option<Exchange>,
     /// Work that was done on the bodies in the step besides that of the load \[J\].
@@ -80,29 +82,20 @@ pub(crate) struct Solved<'a> {
 }
 
 /// The processes that a simulation asks for, in the order in which they take in a row.
-///
-/// # Errors
-/// [`Error::Invalid`](crate::Error::Invalid) where a process cannot start.
 pub(crate) fn of(
     simulation: &Simulation,
     operator: &dyn Operator,
     history: &mut dyn History,
-) -> Result<Vec<Box<dyn Process>>> {
-    let mut processes: Vec<Box<dyn Process>> = vec![];
-    if let Some(motion) = &simulation.motion {
-        processes.push(Box::new(motion::Moving::new(simulation, motion)?));
+) -> Vec<Box<dyn Process>> {
+    fn boxed<P: Process + 'static>(process: Option<P>) -> Option<Box<dyn Process>> {
+        process.map(|process| Box::new(process) as Box<dyn Process>)
     }
-    if let Some(stiffness) = stiffness::Stiffness::of(simulation, operator) {
-        processes.push(Box::new(stiffness));
-    }
-    if let Some(energy) = energy::Energy::of(simulation, history) {
-        processes.push(Box::new(energy));
-    }
-    if let Some(power) = load_power::LoadPower::of(simulation) {
-        processes.push(Box::new(power));
-    }
-    if let Some(flattening) = flattening::Flattening::of(simulation) {
-        processes.push(Box::new(flattening));
-    }
-    Ok(processes)
+    let all = [
+        boxed(simulation.motion.as_ref().map(|motion| motion::Moving::new(simulation, motion))),
+        boxed(stiffness::Stiffness::of(simulation, operator)),
+        boxed(energy::Energy::of(simulation, history)),
+        boxed(load_power::LoadPower::of(simulation)),
+        boxed(flattening::Flattening::of(simulation)),
+    ];
+    all.into_iter().flatten().collect()
 }

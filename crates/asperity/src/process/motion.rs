@@ -7,7 +7,7 @@
 use ndarray::{Array2, ArrayView2};
 
 use super::{Process, Solved};
-use crate::error::{Result, require, rounded};
+use crate::error::{Result, require, significant};
 use crate::grid::Boundary;
 use crate::material::Creep;
 use crate::quantities::Quantity;
@@ -77,9 +77,9 @@ impl Motion {
                 "within 0 m and {length} m, its track: the grid does not go with the body. Take a domain that holds the travel of \
                  {} m and the contact, let the body start elsewhere (center), or take a periodic domain or steady states \
                  ([motion.steady])",
-                rounded(most - least)
+                significant(most - least, 4)
             );
-            let track = format!("{} m to {} m", rounded(least), rounded(most));
+            let track = format!("{} m to {} m", significant(least, 4), significant(most, 4));
             let on_track = least >= 0.0 && most <= length;
             require(on_track, "place of the moving body on a free domain", track, expected)?;
         }
@@ -100,26 +100,26 @@ pub(super) struct Moving {
 }
 
 impl Moving {
-    pub(super) fn new(simulation: &Simulation, motion: &Motion) -> Result<Self> {
-        let (_, slopes) = motion.gap.at(0.0, motion.direction)?;
+    pub(super) fn new(simulation: &Simulation, motion: &Motion) -> Self {
+        let (_, slopes) = motion.gap.at(0.0, motion.direction);
         let (motion, spacing) = (motion.clone(), simulation.grid.spacing());
-        Ok(Moving { motion, spacing, slopes, distance: 0.0, before: 0.0, friction: Friction::default() })
+        Moving { motion, spacing, slopes, distance: 0.0, before: 0.0, friction: Friction::default() }
     }
 
-    fn move_to(&mut self, distance: f64, gap: &mut UndeformedGap) -> Result<()> {
+    fn move_to(&mut self, distance: f64, gap: &mut UndeformedGap) {
         if distance == self.distance {
-            return Ok(());
+            return;
         }
-        let (moved, slopes) = self.motion.gap.at(distance, self.motion.direction)?;
+        let (moved, slopes) = self.motion.gap.at(distance, self.motion.direction);
         gap.own_mut().iter_mut().zip(&moved).for_each(|(to, h)| *to = *h);
         (self.slopes, self.distance) = (slopes, distance);
-        Ok(())
     }
 }
 
 impl Process for Moving {
     fn open(&mut self, step: &Interval, gap: &mut UndeformedGap) -> Result<()> {
-        self.move_to(self.motion.path.position(step.instant.time), gap)
+        self.move_to(self.motion.path.position(step.instant.time), gap);
+        Ok(())
     }
 
     fn shift(&self, step: &Interval) -> Option<[isize; 2]> {
@@ -141,6 +141,7 @@ impl Process for Moving {
             velocity: self.motion.path.velocity(row.step.instant.time),
             distance: self.distance,
             shear_stress: self.motion.shear_stress,
+            time_error: row.time_error.unwrap_or(0.0),
         };
         let friction = Friction::of(&contact, SecondEstimate::Differences);
         let before = std::mem::replace(&mut self.before, self.distance);
@@ -163,7 +164,7 @@ impl Process for Moving {
     }
 
     fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
-        self.move_to(from.get("distance")?, gap)?;
+        self.move_to(from.get("distance")?, gap);
         self.before = self.distance;
         self.friction.force = from.get("force")?;
         Ok(())

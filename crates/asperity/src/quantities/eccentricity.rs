@@ -1,4 +1,4 @@
-//! How far the pressure bears beside the middle of its contact: |Σ p x / Σ p - mean of x over the cells in contact|.
+//! Distance of the centre of pressure from the middle of the contact: |Σ p x / Σ p - mean of x over the cells in contact|.
 //!
 //! On a periodic domain of length L the means are those around a circle, (L/2π) arg Σ exp(2πi x/L), and the distance is the shorter
 //! way round.

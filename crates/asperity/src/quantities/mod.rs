@@ -1,4 +1,4 @@
-//! Quantities of each row beyond load, approach and area, computed where they are asked for.
+//! Quantities of each row beyond load, approach and area, computed on request.
 //!
 //! | quantity | unit | meaning |
 //! |---|---|---|
@@ -21,13 +21,13 @@
 //! | `velocity`, `sliding_distance` | m/s, m | velocity of a contact in motion, and how far it has moved |
 //! | `friction_force`, `side_force` | N | force against motion and across it |
 //! | `friction_coefficient`, `friction_coefficient_total` | | friction force over load, without and with a shear stress on the contact |
-//! | `friction_uncertainty` | | difference of two estimates of the friction force |
+//! | `friction_uncertainty` | | estimated error of the friction force, relative |
 //! | `rolling_moment` | N m | moment of the pressure about the middle of the shapes |
 //! | `dissipated_power` | W | power lost in the bodies |
 //!
 //! What each costs and how it is derived: docs/theory.md ("Energy and other
 //! quantities of a row", "Permanent flattening"). A march takes them by
-//! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::step::Step::quantity).
+//! [`Simulation::quantities`](crate::Simulation::quantities) and gives them in [`Step::quantity`](crate::step::Step::quantity).
 
 mod eccentricity;
 mod histogram;
@@ -159,14 +159,14 @@ quantities! {
     /// Friction coefficient with the share of a given shear stress on the area in contact.
     FrictionCoefficientTotal = "friction_coefficient_total" ["1"] "friction coefficient with the shear stress on the contact", MotionOnRequest, ("Friction coefficient", "friction coefficient", "with the shear stress");
     /// Difference of the friction force from its second estimate, -Σ p du/ds, over the force.
-    FrictionUncertainty = "friction_uncertainty" ["1"] "difference of two estimates of friction, relative", Motion, ("Uncertainty of friction", "share of the force", "");
+    FrictionUncertainty = "friction_uncertainty" ["1"] "estimated error of the friction force, relative", Motion, ("Uncertainty of friction", "share of the force", "");
     /// Moment of the pressure about the middle of the shapes, in N m.
     RollingMoment = "rolling_moment" ["N m"] "rolling moment", Motion, ("Rolling moment", "moment", "");
     /// Power lost in the bodies, in W.
     DissipatedPower = "dissipated_power" ["W"] "power lost in the bodies", Motion, ("Power lost", "power", "");
 }
 
-/// What a quantity is declared to be.
+/// The declaration of a quantity.
 struct Declaration {
     name: &'static str,
     units: &'static str,
@@ -176,7 +176,7 @@ struct Declaration {
     line: Option<Line>,
 }
 
-/// What a quantity is on a line of cells.
+/// The unit and the description of a quantity on a line of cells.
 #[derive(Clone, Copy)]
 struct Line {
     units: &'static str,
@@ -185,7 +185,7 @@ struct Line {
     label: &'static str,
 }
 
-/// What a quantity is taken from.
+/// The source of a quantity.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// The state of the row.
@@ -195,33 +195,33 @@ enum Kind {
     Percolation,
     SpotHistogram,
     Histogram,
-    /// The energy of the bodies, kept account of from row to row.
+    /// The energy of the bodies, summed from row to row.
     Energy,
-    /// The step or the response of the contact: known in time only.
+    /// The step or the response of the contact: known only in runs in time.
     Response,
-    /// A contact in motion, each row of which has it, or on request.
+    /// A contact in motion: every row has it, or only on request.
     Motion,
     MotionOnRequest,
 }
 
-/// Where figures show a quantity: quantities of one title share a panel.
+/// The panel of a figure that shows a quantity; quantities with the same title share a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Panel {
     /// Title of the panel.
     pub title: &'static str,
     /// Label of its axis.
     pub label: &'static str,
-    /// Name of the quantity in the legend; empty where it has the panel for itself.
+    /// Name of the quantity in the legend; empty if it is alone in its panel.
     pub legend: &'static str,
 }
 
 impl Quantity {
-    /// Those of a contact whether it moves or not.
+    /// The quantities of every contact, moving or not.
     pub fn at_rest() -> impl Iterator<Item = Quantity> {
         Quantity::ALL.into_iter().filter(|quantity| !quantity.is_of_motion())
     }
 
-    /// Those of a contact in motion, which each of its rows has.
+    /// The quantities that every row of a contact in motion has.
     pub fn of_motion() -> impl Iterator<Item = Quantity> {
         Quantity::ALL.into_iter().filter(|quantity| quantity.declaration().kind == Kind::Motion)
     }
@@ -231,22 +231,22 @@ impl Quantity {
         self.declaration().name
     }
 
-    /// The quantity of that name.
+    /// The quantity with this name.
     pub fn from_name(name: &str) -> Option<Quantity> {
         Quantity::ALL.into_iter().find(|quantity| quantity.name() == name)
     }
 
-    /// Its unit; "1" where it has none.
+    /// Its unit; "1" if it has none.
     pub fn units(self) -> &'static str {
         self.declaration().units
     }
 
-    /// What it is, for axes and legends.
+    /// Its description for axes and legends.
     pub fn long_name(self) -> &'static str {
         self.declaration().long_name
     }
 
-    /// Its unit on this grid; "1" where it has none.
+    /// Its unit on this grid; "1" if it has none.
     pub fn units_on(self, grid: &Grid) -> &'static str {
         match self.declaration().line.filter(|_| grid.is_line()) {
             Some(line) => line.units,
@@ -254,12 +254,12 @@ impl Quantity {
         }
     }
 
-    /// What it is on this grid, for axes and legends.
+    /// Its description on this grid, for axes and legends.
     pub fn long_name_on(self, grid: &Grid) -> &'static str {
         self.declaration().line.filter(|_| grid.is_line()).map_or(self.long_name(), |line| line.long_name)
     }
 
-    /// Where figures show it on this grid; `None` of a histogram.
+    /// The panel that shows it on this grid; `None` for a histogram.
     pub fn panel_on(self, grid: &Grid) -> Option<Panel> {
         let Declaration { panel, line, .. } = self.declaration();
         let panel = match line.filter(|_| grid.is_line()) {
@@ -269,7 +269,7 @@ impl Quantity {
         (!self.is_histogram()).then_some(panel)
     }
 
-    /// Names of its values 0, 1, 2 ...; empty of a number.
+    /// Names of its values 0, 1, 2 ...; empty if its value is a number.
     pub fn states(self) -> &'static [&'static str] {
         match self.declaration().kind {
             Kind::Percolation => &["none", "x", "y", "x and y"],
@@ -277,7 +277,7 @@ impl Quantity {
         }
     }
 
-    /// Whether it has a number per bin; otherwise one per row.
+    /// Whether it has one number per bin; otherwise it has one per row.
     pub fn is_histogram(self) -> bool {
         matches!(self.declaration().kind, Kind::SpotHistogram | Kind::Histogram)
     }
@@ -297,7 +297,7 @@ impl Quantity {
         matches!(self.declaration().kind, Kind::Motion | Kind::MotionOnRequest)
     }
 
-    /// Whether it takes the memory of [`Spots`](crate::spots::Spots): connected cells are found.
+    /// Whether it needs the memory of [`Spots`](crate::spots::Spots), because connected cells are found.
     pub(crate) fn connects(self) -> bool {
         self.is_of_spots() || self.declaration().kind == Kind::Percolation
     }
@@ -363,20 +363,20 @@ impl Quantities {
         Quantities { list: list.into_iter().collect(), ..Quantities::default() }
     }
 
-    /// Whether a quantity is asked for.
+    /// Whether a quantity is requested.
     pub fn has(&self, quantity: Quantity) -> bool {
         self.list.contains(&quantity)
     }
 
-    /// Whether any energy is asked for.
+    /// Whether any energy is requested.
     pub fn has_energy(&self) -> bool {
         self.list.iter().any(|quantity| quantity.is_energy())
     }
 
-    /// Checks the list and the bins, as far as they do not depend on a gap; `capped` where there is a hardness.
+    /// Checks the list and the bins, as far as they do not depend on a gap; `capped` if there is a hardness.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where a quantity is named twice, the bins are none or too many, an end is not positive, or the
+    /// [`Error::Invalid`](crate::Error::Invalid) if a quantity is named twice, there are no bins or too many, an end is not positive, or the
     /// histogram of the pressure has no upper end.
     pub fn validate(&self, capped: bool) -> Result<()> {
         for (n, quantity) in self.list.iter().enumerate() {
@@ -398,10 +398,10 @@ impl Quantities {
         require(is_bounded, PRESSURE_END, "not given", expected).map_err(|error| error.of("quantities"))
     }
 
-    /// The quantities with their bins, for an undeformed gap \[m\] and a largest hardness \[Pa\] (infinite for none).
+    /// The quantities with their bins, for an undeformed gap \[m\] and a largest hardness \[Pa\] (infinite if there is none).
     ///
     /// # Errors
-    /// As [`validate`](Self::validate); where the histogram of the gap has no upper end.
+    /// As [`validate`](Self::validate), and if the histogram of the gap has no upper end.
     pub fn columns(&self, grid: &Grid, gap: &Array2<f64>, hardness: f64) -> Result<Vec<Column>> {
         self.validate(hardness.is_finite())?;
         let evenly = |top: f64| (0..=self.bins).map(|k| top * k as f64 / self.bins as f64).collect();

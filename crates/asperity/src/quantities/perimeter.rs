@@ -53,7 +53,7 @@ pub fn contact_edges(pressure: ArrayView2<f64>, boundary: Boundary) -> Edges {
         .into_par_iter()
         .map(|i| {
             let here = row(i);
-            // What comes after the last row, and after the last cell of a row.
+            // The neighbours of the last row and of the last cell of a row.
             let (below, right) = match boundary {
                 Boundary::Periodic => (row((i + 1) % nx), here.first()),
                 Boundary::Free => (row((i + 1).min(nx - 1)), here.last()),

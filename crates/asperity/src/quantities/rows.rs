@@ -8,40 +8,40 @@ use crate::step::Row;
 pub struct RowColumn {
     /// Its name in results.
     pub name: &'static str,
-    /// Its unit; "1" where it has none.
+    /// Its unit; "1" if it has none.
     pub units: &'static str,
-    /// What it is, for axes and legends.
+    /// Its description for axes and legends.
     pub long_name: &'static str,
-    /// Where a row keeps it.
+    /// The field of a row that holds it.
     pub entry: Entry,
-    /// What it is on a line of cells.
+    /// Its description on a line of cells.
     line_name: &'static str,
     figure: Option<(RowFigure, Panel)>,
     line_panel: Option<Panel>,
     needs_value: bool,
 }
 
-/// Where a row keeps a number.
+/// The field of a row that holds a number.
 #[derive(Clone, Copy, Debug)]
 pub enum Entry {
-    /// On its axis, which the row has before.
+    /// The coordinate, on the axis that the row already has.
     Coordinate,
     /// A number.
     Real(fn(&mut Row) -> &mut f64),
     /// A whole number.
     Count(fn(&mut Row) -> &mut usize),
-    /// A number that not every row has: NaN for none.
+    /// A number that not every row has: NaN if the row has none.
     Maybe(fn(&mut Row) -> &mut Option<f64>),
 }
 
 /// The figure that shows numbers of every row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowFigure {
-    /// How the contact evolves; its panels in this order.
+    /// The figure of the evolution of the contact; the number orders its panels.
     Evolution(u8),
     /// The work of the solver.
     Work,
-    /// That of the quantities, beside one of the same panel.
+    /// The figure of the quantities; the number joins the quantity with the same panel.
     Quantities,
 }
 
@@ -66,12 +66,12 @@ impl RowColumn {
         RowColumn { figure: Some((figure, panel)), line_panel: Some(panel), ..self }
     }
 
-    /// Called otherwise on a line of cells.
+    /// Has another description on a line of cells.
     const fn on_line(self, line_name: &'static str) -> Self {
         RowColumn { line_name, ..self }
     }
 
-    /// And shown otherwise, or not at all.
+    /// Has another description and another panel on a line of cells, or no panel there.
     const fn on_line_shown(self, line_name: &'static str, panel: Option<[&'static str; 3]>) -> Self {
         let line_panel = match panel {
             Some([title, label, legend]) => Some(Panel { title, label, legend }),
@@ -80,12 +80,12 @@ impl RowColumn {
         RowColumn { line_name, line_panel, ..self }
     }
 
-    /// Shown only where it is greater than 0 in some row.
+    /// Shown only if it is greater than 0 in some row.
     const fn where_positive(self) -> Self {
         RowColumn { needs_value: true, ..self }
     }
 
-    /// What it is, on a line of cells or in the plane.
+    /// Its description, on a line of cells or in the plane.
     pub fn long_name_on(&self, line: bool) -> &'static str {
         if line { self.line_name } else { self.long_name }
     }
@@ -96,12 +96,12 @@ impl RowColumn {
         Some((figure, if line { self.line_panel? } else { panel }))
     }
 
-    /// Whether figures leave it out where it is 0 in all rows.
+    /// Whether figures omit it if it is 0 in all rows.
     pub fn is_shown_where_positive(&self) -> bool {
         self.needs_value
     }
 
-    /// Its number in a row; NaN for none.
+    /// Its number in a row; NaN if the row has none.
     pub fn of(&self, row: &Row) -> f64 {
         let mut row = *row;
         match self.entry {
@@ -112,7 +112,7 @@ impl RowColumn {
         }
     }
 
-    /// Sets it in a row, whose coordinate is on its axis before.
+    /// Sets it in a row that already has the right axis.
     pub fn set(&self, row: &mut Row, value: f64) {
         match self.entry {
             Entry::Coordinate => row.coordinate = row.coordinate.axis().at(value),
@@ -173,6 +173,7 @@ pub const ROW_COLUMNS: [RowColumn; 16] = columns![
         .shown(Work, ["Error of each row", "relative error", "contact conditions (residual)"]);
     Real certificate ["1"] "certified relative error in the energy norm"
         .shown(Work, ["Error of each row", "relative error", "pressure (certificate)"]);
-    Maybe time_error ["1"] "estimated error of the stress, relative";
+    Maybe time_error ["1"] "estimated error of the stress because of the time steps, relative"
+        .shown(Work, ["Error of each row", "relative error", "stress (time steps)"]);
     Count stage ["1"] "stage of the load";
 ];

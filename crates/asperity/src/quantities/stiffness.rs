@@ -1,7 +1,7 @@
 //! The stiffness of a contact: dW/dw with the contact set as it is.
 //!
-//! Where cells carry a pressure between its bounds the gap stays closed, so that a small change dw of the approach
-//! moves all of them alike, c K dp = dw, while the others keep their pressure. With the unit distribution
+//! In cells whose pressure is between its bounds the gap stays closed, so a small change dw of the approach displaces all of them
+//! equally, c K dp = dw, while the other cells keep their pressure. With the unit distribution
 //!
 //! ```text
 //! K_SS q = 1 on the set S,     dW/dw = (dx dy / c) Σ q
@@ -55,9 +55,9 @@ impl ContactStiffness {
         ApproximateInverse::bytes(grid, boundary) + 33 * grid.len()
     }
 
-    /// dW/dw \[N/m\] of the cells that `bears` names, for a compliance \[1/Pa\], and the applications of K that it took.
+    /// dW/dw \[N/m\] of the cells for which `responds` is true, with a compliance \[1/Pa\], and the number of applications of K.
     ///
-    /// 0 where no cell bears; infinite without compliance, and where every cell of a periodic domain bears.
+    /// 0 if no cell responds; infinite without compliance, and if every cell of a periodic domain responds.
     ///
     /// ```
     /// use asperity::{Boundary, Grid, operator::half_space, quantities::ContactStiffness};
@@ -76,12 +76,12 @@ impl ContactStiffness {
         &mut self,
         operator: &mut dyn Operator,
         compliance: f64,
-        bears: impl Fn(usize) -> bool,
+        responds: impl Fn(usize) -> bool,
         interrupt: Option<&AtomicBool>,
     ) -> Result<(f64, usize)> {
         let mut cells = 0;
         for (k, (set, residual)) in self.set.iter_mut().zip(&mut self.residual).enumerate() {
-            *set = bears(k);
+            *set = responds(k);
             *residual = f64::from(u8::from(*set));
             cells += usize::from(*set);
         }
@@ -119,15 +119,7 @@ impl ContactStiffness {
                 *r -= if on { length * moved } else { 0.0 };
             });
         }
-        Err(Error::NotConverged(NotConverged {
-            method: "contact stiffness",
-            iterations: MOST_ITERATIONS,
-            residual: f64::NAN,
-            tolerance: SMALLEST_SHARE,
-            certificate: f64::NAN,
-            time: None,
-            velocity: None,
-        }))
+        Err(NotConverged::of("contact stiffness", MOST_ITERATIONS, f64::NAN, SMALLEST_SHARE))
     }
 
     /// d = z + beta d on S.

@@ -23,6 +23,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::HertzSphere;
 use super::elliptic::elliptic;
+use super::linear::solve;
 use super::quadrature::{fixed_rule, integrate_to, root};
 use crate::error::{Result, positive};
 
@@ -196,7 +197,7 @@ impl Annulus {
             approach: 0.0,
             load: 0.0,
         };
-        let mut solution = annulus.collocate();
+        let [mut solution] = annulus.collocate();
         annulus.approach = solution.pop().unwrap_or(f64::NAN);
         annulus.hardness = solution.pop().unwrap_or(f64::NAN);
         annulus.coefficients = solution;
@@ -231,7 +232,7 @@ impl Annulus {
     }
 
     /// Rows: gap = 0 at DEGREE + 1 points, p(c) = H, p(a) = 0. Columns: coefficients, H, approach.
-    fn collocate(&self) -> Vec<f64> {
+    fn collocate(&self) -> [Vec<f64>; 1] {
         let n = DEGREE + 1;
         let mut rows = Vec::with_capacity(n + 2);
         for i in 0..n {
@@ -288,26 +289,6 @@ fn chebyshev(phi: f64) -> impl Iterator<Item = f64> {
     std::iter::successors(Some((1.0, x)), move |(a, b)| Some((*b, 2.0 * x * b - a)))
         .map(|(t, _)| t)
         .take(DEGREE + 1)
-}
-
-/// Gaussian elimination with partial pivoting; each row ends with its right-hand side.
-fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
-    let n = rows.len();
-    for k in 0..n {
-        let pivot = (k..n).max_by(|a, b| rows[*a][k].abs().total_cmp(&rows[*b][k].abs())).unwrap_or(k);
-        rows.swap(k, pivot);
-        let (done, rest) = rows.split_at_mut(k + 1);
-        for row in rest {
-            let factor = row[k] / done[k][k];
-            row[k..].iter_mut().zip(&done[k][k..]).for_each(|(a, b)| *a -= factor * b);
-        }
-    }
-    let mut x = vec![0.0; n];
-    for k in (0..n).rev() {
-        let known: f64 = (k + 1..n).map(|c| rows[k][c] * x[c]).sum();
-        x[k] = (rows[k][n] - known) / rows[k][k];
-    }
-    x
 }
 
 #[cfg(test)]

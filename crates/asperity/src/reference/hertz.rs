@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use super::elliptic::elliptic;
 use super::quadrature::root;
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Result, non_negative, positive, require};
 
 /// The paraboloid r^2/(2R) on an elastic half-space.
 ///
@@ -45,7 +45,7 @@ impl HertzSphere {
     /// From the load W >= 0 \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the radius or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the radius or the modulus is not positive or the load is negative.
     pub fn under_load(radius: f64, contact_modulus: f64, load: f64) -> Result<Self> {
         check(radius, contact_modulus)?;
         non_negative("load", load, "N")?;
@@ -57,12 +57,10 @@ impl HertzSphere {
     /// From the approach \[m\]; a negative approach means no contact.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the radius or the modulus is not positive or the approach not finite.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the radius or the modulus is not positive or the approach not finite.
     pub fn under_approach(radius: f64, contact_modulus: f64, approach: f64) -> Result<Self> {
         check(radius, contact_modulus)?;
-        if !approach.is_finite() {
-            return Err(Error::invalid("approach", approach, "finite, in m"));
-        }
+        require(approach.is_finite(), "approach", approach, "finite, in m")?;
         let contact = Self::of_radius(radius, contact_modulus, (approach.max(0.0) * radius).sqrt());
         Ok(HertzSphere { approach, ..contact })
     }
@@ -131,7 +129,7 @@ impl HertzEllipse {
     /// From the load W >= 0 \[N\] and the radii along x and y \[m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a radius or the modulus is not positive and finite, the load is
+    /// [`Error::Invalid`](crate::Error::Invalid) if a radius or the modulus is not positive and finite, the load is
     /// negative, or one radius exceeds the other by more than 1e12 (a line contact, which has no
     /// approach).
     pub fn under_load(radii: [f64; 2], contact_modulus: f64, load: f64) -> Result<Self> {
@@ -139,13 +137,12 @@ impl HertzEllipse {
         check(radii[1], contact_modulus)?;
         non_negative("load", load, "N")?;
         let (small, large) = (radii[0].min(radii[1]), radii[0].max(radii[1]));
-        if small / large < 1e-12 {
-            return Err(Error::invalid(
-                "ratio of the principal radii",
-                small / large,
-                "1e-12 at least; beyond, use the line contact",
-            ));
-        }
+        require(
+            small / large >= 1e-12,
+            "ratio of the principal radii",
+            small / large,
+            "1e-12 at least; beyond, use the line contact",
+        )?;
         let ratio = axis_ratio(small / large);
         let integrals = elliptic(ratio);
         let a = (3.0 * load * small * integrals.b / (PI * ratio * ratio * contact_modulus)).cbrt();

@@ -24,7 +24,7 @@ use std::f64::consts::PI;
 
 use super::bessel::{quotient_k, quotients_i};
 use super::quadrature::{Point, integrate_to, root};
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive, require};
 use crate::material::Creep;
 
 /// A cylinder in steady motion over a viscoelastic half-space. Lengths are measured from its lowest point, x in the
@@ -77,13 +77,12 @@ impl HunterCylinder {
         non_negative("load per length", load_per_length, "N/m")?;
         creep.validate()?;
         positive("instantaneous compliance", creep.instantaneous, "1/Pa")?;
-        if creep.fluidity > 0.0 {
-            return Err(Error::invalid(
-                "fluidity",
-                creep.fluidity,
-                "0 1/(Pa s): a fluid has no steady motion",
-            ));
-        }
+        require(
+            creep.fluidity == 0.0,
+            "fluidity",
+            creep.fluidity,
+            "0 1/(Pa s): a fluid has no steady motion",
+        )?;
         let (retarded, time) = match creep.tidy().terms.as_slice() {
             [] => (0.0, 0.0),
             [term] => (term.compliance, term.retardation_time),
@@ -91,9 +90,7 @@ impl HunterCylinder {
         };
         let (glassy, relaxed) = (creep.instantaneous, creep.instantaneous + retarded);
         let memory = velocity * time;
-        if !memory.is_finite() {
-            return Err(Error::invalid("velocity times retardation time", memory, "finite, in m"));
-        }
+        require(memory.is_finite(), "velocity times retardation time", memory, "finite, in m")?;
         let lengths =
             Lengths { memory, lag: memory * (retarded / relaxed), short: memory * (glassy / relaxed) };
         let hertz = |compliance: f64| (4.0 * radius * load_per_length * compliance / PI).sqrt();

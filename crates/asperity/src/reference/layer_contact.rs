@@ -16,8 +16,8 @@
 use std::f64::consts::{FRAC_2_PI, PI};
 use std::sync::Arc;
 
-use super::MdrProfile;
-use crate::error::{Error, Result, positive};
+use super::{MdrProfile, linear};
+use crate::error::{Result, positive, require};
 use crate::layer::{Base, Interface, Layer, Stack};
 
 /// Radii of the table.
@@ -75,12 +75,7 @@ impl SpringProfile {
         while self.height(high) < height {
             high *= 2.0;
         }
-        let mut low = 0.0;
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if self.height(middle) < height { low = middle } else { high = middle }
-        }
-        0.5 * (low + high)
+        inverse(high, height, |x| self.height(x))
     }
 
     /// Mean of (g - g(x0)) / (g(x1) - g(x0)) over x0 < x < x1, by Simpson's rule.
@@ -103,7 +98,7 @@ impl LayerContact {
     /// A layer of this thickness \[m\] and Poisson's ratio on a rigid base, for depths up to `deepest` \[m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a number is not positive, Poisson's ratio is outside (-1, 0.5], or the width of the contact exceeds
+    /// [`Error::Invalid`](crate::Error::Invalid) if a number is not positive, Poisson's ratio is outside (-1, 0.5], or the width of the contact exceeds
     /// 30 times the thickness of the layer.
     pub fn new(
         profile: MdrProfile,
@@ -122,13 +117,12 @@ impl LayerContact {
             MdrProfile::Sphere { radius } => 2.0 * (radius * deepest).sqrt(),
             MdrProfile::Cone { slope } => 2.0 * deepest / slope,
         };
-        if widest > WIDEST * thickness {
-            return Err(Error::invalid(
-                "radius of the largest contact on the layer",
-                format!("up to {widest:e} m"),
-                format!("at most {WIDEST} times its thickness, {thickness:e} m"),
-            ));
-        }
+        require(
+            widest <= WIDEST * thickness,
+            "radius of the largest contact on the layer",
+            format!("up to {widest:e} m"),
+            format!("at most {WIDEST} times its thickness, {thickness:e} m"),
+        )?;
         let spacing = widest / RADII as f64;
         let rows: Vec<[f64; 3]> =
             (1..=RADII + 3).map(|n| solve(&stack, profile, spacing * n as f64 / thickness)).collect();
@@ -153,12 +147,7 @@ impl LayerContact {
         if depth <= 0.0 {
             return 0.0;
         }
-        let own = self.profile.reach(depth);
-        let half_space = match self.profile {
-            MdrProfile::Sphere { .. } => 4.0 / 3.0 * depth * own,
-            MdrProfile::Cone { .. } => depth * own,
-        };
-        half_space * self.at(&self.table.load, self.radius(depth))
+        self.profile.unit_load(depth) * self.at(&self.table.load, self.radius(depth))
     }
 
     /// Radius of the contact at a depth \[m\].
@@ -190,12 +179,7 @@ impl LayerContact {
 
     /// The a with f(a) = value for an increasing function.
     fn inverse(&self, value: f64, f: impl Fn(f64) -> f64) -> f64 {
-        let (mut low, mut high) = (0.0, self.table.spacing * (RADII + 3) as f64);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if f(middle) < value { low = middle } else { high = middle }
-        }
-        0.5 * (low + high)
+        inverse(self.table.spacing * (RADII + 3) as f64, value, f)
     }
 
     fn at(&self, column: &[f64], a: f64) -> f64 {
@@ -211,6 +195,16 @@ impl LayerContact {
             })
             .sum()
     }
+}
+
+/// The x between 0 and `high` with f(x) = value for an increasing function, by bisection.
+fn inverse(mut high: f64, value: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let mut low = 0.0;
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if f(middle) < value { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
 }
 
 /// δ/g(a), ρ/a and the load over that of the half-space at the depth δ, for a contact radius of `x` times the thickness of the
@@ -235,21 +229,22 @@ fn solve(stack: &Stack, profile: MdrProfile, x: f64) -> [f64; 3] {
     let coupled = |a: &[f64], b: &[f64]| -> f64 {
         FRAC_2_PI * a.iter().zip(b).zip(&waves).map(|((a, b), (_, w))| a * b * w).sum::<f64>()
     };
-    let mut matrix: Vec<Vec<f64>> = vec![vec![0.0; count]; count];
-    for i in 0..count {
-        for j in 0..=i {
-            let k = coupled(&cosines[i], &cosines[j]);
-            matrix[i][j] = k * nodes[j].1;
-            matrix[j][i] = k * nodes[i].1;
-        }
-        matrix[i][i] += 1.0;
-    }
     // The profile over its value at the edge.
     let shape = |t: f64| match profile {
         MdrProfile::Sphere { .. } => (t / x).powi(2),
         MdrProfile::Cone { .. } => t / x,
     };
-    let [ones, shapes] = eliminate(matrix, nodes.iter().map(|(t, _)| [1.0, shape(*t)]).collect());
+    let mut rows: Vec<Vec<f64>> = vec![vec![0.0; count + 2]; count];
+    for i in 0..count {
+        for j in 0..=i {
+            let k = coupled(&cosines[i], &cosines[j]);
+            rows[i][j] = k * nodes[j].1;
+            rows[j][i] = k * nodes[i].1;
+        }
+        rows[i][i] += 1.0;
+        rows[i][count..].copy_from_slice(&[1.0, shape(nodes[i].0)]);
+    }
+    let [ones, shapes] = linear::solve(rows);
     let edge = row(x);
     let at_edge = |of: &[f64], right: f64| {
         let sum: f64 = (0..count).map(|j| coupled(&edge, &cosines[j]) * nodes[j].1 * of[j]).sum();
@@ -264,31 +259,6 @@ fn solve(stack: &Stack, profile: MdrProfile, x: f64) -> [f64; 3] {
         MdrProfile::Cone { .. } => depth * x * depth,
     };
     [depth, integral(&ones) / x, load / half_space]
-}
-
-/// Both solutions of a linear system, by elimination with pivots.
-fn eliminate(mut matrix: Vec<Vec<f64>>, mut right: Vec<[f64; 2]>) -> [Vec<f64>; 2] {
-    let n = matrix.len();
-    for k in 0..n {
-        let pivot = (k..n).max_by(|a, b| matrix[*a][k].abs().total_cmp(&matrix[*b][k].abs())).unwrap_or(k);
-        matrix.swap(k, pivot);
-        right.swap(k, pivot);
-        let (above, below) = matrix.split_at_mut(k + 1);
-        let (own, of_own) = (&above[k], right[k]);
-        for (row, value) in below.iter_mut().zip(&mut right[k + 1..]) {
-            let factor = row[k] / own[k];
-            row[k..].iter_mut().zip(&own[k..]).for_each(|(x, y)| *x -= factor * y);
-            value.iter_mut().zip(of_own).for_each(|(x, y)| *x -= factor * y);
-        }
-    }
-    for k in (0..n).rev() {
-        let (before, after) = right.split_at_mut(k + 1);
-        for (c, value) in before[k].iter_mut().enumerate() {
-            let known: f64 = matrix[k][k + 1..].iter().zip(&*after).map(|(a, x)| a * x[c]).sum();
-            *value = (*value - known) / matrix[k][k];
-        }
-    }
-    [0, 1].map(|c| right.iter().map(|value| value[c]).collect())
 }
 
 /// Nodes and weights of Gauss and Legendre on \[-1, 1\], by Newton's method.

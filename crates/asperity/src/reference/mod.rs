@@ -8,14 +8,12 @@
 //! | elastic sphere, ellipsoid, cylinder | [`HertzSphere`], [`HertzEllipse`], [`HertzLine`] | Hertz 1881 |
 //! | elastic sphere with hardness | [`CappedHertz`] | ring displacements of Love 1929 |
 //! | elastic cone, flat punch; punch under any history | [`SneddonCone`], [`CircularPunch`] | Sneddon 1965 |
-//! | periodic flat strips on an elastic body | [`StripPunch`] | Johnson 1985 |
-//! | elastic waves; wave on a viscoelastic body | [`Westergaard`], [`JohnsonWave`], [`WestergaardStep`] | Westergaard 1939, Johnson et al. 1985 |
+//! | elastic waves; wave on a viscoelastic body | [`Westergaard`], [`WestergaardStep`] | Westergaard 1939 |
 //! | sphere on a viscoelastic body, contact growing then shrinking | [`Ting`] | Ting 1966 |
 //! | sphere, cone on a viscoelastic body, any history | [`Mdr`] | Popov & Hess 2015 |
 //! | sphere, cone on an elastic layer on a rigid base | [`LayerContact`] | Lebedev & Ufliand 1958 |
 //! | cylinder that rolls or slides on a viscoelastic body | [`HunterCylinder`] | Hunter 1961 |
-//! | sphere that slides slowly or fast on a viscoelastic body | [`SlidingSphere`] | Hertz 1881, first order in the speed |
-//! | waves that slide on a viscoelastic body in full contact | [`FullContactWave`], [`full_contact_friction`] | Persson 2001 |
+//! | waves that slide on a viscoelastic body in full contact | [`full_contact_friction`] | Persson 2001 |
 //! | friction and contact area of a rough surface, an estimate | [`Persson`] | Persson 2001, Yang & Persson 2008 |
 //! | any elastic contact on a small grid | [`Dense`], [`gauss_seidel`] | Wilton et al. 1984 |
 
@@ -29,12 +27,12 @@ mod hertz;
 mod hunter;
 mod layer_contact;
 mod line_hertz;
+mod linear;
 mod mdr;
 mod persson;
 mod quadrature;
 mod sliding;
 mod sneddon;
-mod strip_punch;
 mod ting;
 mod westergaard;
 
@@ -49,8 +47,7 @@ pub(crate) use layer_contact::SpringProfile;
 pub use line_hertz::HertzLine;
 pub use mdr::{Mdr, MdrOptions, MdrProfile, MdrState, MdrTarget};
 pub use persson::{Correction, Magnification, Persson, PerssonFriction};
-pub use sliding::{FullContactWave, SlidingSphere, full_contact_friction};
+pub use sliding::full_contact_friction;
 pub use sneddon::{CircularPunch, SneddonCone};
-pub use strip_punch::StripPunch;
 pub use ting::{Ting, TingState};
-pub use westergaard::{JohnsonWave, Westergaard, WestergaardStep};
+pub use westergaard::{Westergaard, WestergaardStep};

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Result, non_negative, positive, require};
 use crate::load::History;
 use crate::material::Creep;
 
@@ -34,7 +34,7 @@ impl SneddonCone {
     /// From the load W >= 0 \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the slope or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the slope or the modulus is not positive or the load is negative.
     pub fn under_load(slope: f64, contact_modulus: f64, load: f64) -> Result<Self> {
         positive("slope of the cone", slope, "")?;
         positive("contact modulus", contact_modulus, "Pa")?;
@@ -46,12 +46,10 @@ impl SneddonCone {
     /// From the approach \[m\]; a negative approach means no contact.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the slope or the modulus is not positive or the approach not finite.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the slope or the modulus is not positive or the approach not finite.
     pub fn under_approach(slope: f64, contact_modulus: f64, approach: f64) -> Result<Self> {
         positive("slope of the cone", slope, "")?;
-        if !approach.is_finite() {
-            return Err(Error::invalid("approach", approach, "finite, in m"));
-        }
+        require(approach.is_finite(), "approach", approach, "finite, in m")?;
         let a = approach.max(0.0) / (FRAC_PI_2 * slope);
         let contact = Self::under_load(slope, contact_modulus, FRAC_PI_2 * slope * contact_modulus * a * a)?;
         Ok(SneddonCone { contact_radius: a, approach, ..contact })
@@ -102,7 +100,7 @@ impl CircularPunch {
     /// From the load W >= 0 \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the radius or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the radius or the modulus is not positive or the load is negative.
     pub fn under_load(radius: f64, contact_modulus: f64, load: f64) -> Result<Self> {
         positive("radius of the flat punch", radius, "m")?;
         positive("contact modulus", contact_modulus, "Pa")?;
@@ -114,7 +112,7 @@ impl CircularPunch {
     /// s) dW(s), for any history that keeps the contact full, W > 0 (E. H. Lee and J. R. M. Radok, J. Appl. Mech. 27 (1960) 438).
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the radius is not positive, the history or the creep is invalid, or t is
+    /// [`Error::Invalid`](crate::Error::Invalid) if the radius is not positive, the history or the creep is invalid, or t is
     /// negative.
     pub fn viscoelastic(radius: f64, creep: &Creep, history: &History, t: f64) -> Result<Self> {
         positive("radius of the flat punch", radius, "m")?;

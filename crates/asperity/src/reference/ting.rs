@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 
 use super::hereditary::{hereditary, hereditary_before};
 use super::quadrature::{integrate_to, root};
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive, require};
 use crate::load::History;
 use crate::material::{Creep, Relaxation};
 
@@ -86,9 +86,7 @@ impl Ting {
         positive("instantaneous compliance", creep.instantaneous, "1/Pa")?;
         history.validate()?;
         let lowest = history.range(end)[0];
-        if lowest < 0.0 {
-            return Err(Error::invalid("smallest load of the history", format!("{lowest} N"), "0 N or more"));
-        }
+        require(lowest >= 0.0, "smallest load of the history", format!("{lowest} N"), "0 N or more")?;
         let (creep, history) = (creep.clone(), history.clone());
         let relaxation = creep.to_relaxation()?;
         let mut contact = Ting { radius, creep, relaxation, history, end, turn: 0.0, largest: 0.0 };
@@ -126,28 +124,9 @@ impl Ting {
         Ok(self.pressure_at(r, t, reached, self.radius_of(seen)))
     }
 
-    /// Normal displacement of the half-space at the distance r from the axis and the time t while the
-    /// contact grows \[m\]: int C(t - s) d(K p)(s) is the elastic displacement of the contact radius a(t).
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if t is outside \[0, turn\] or r is negative.
-    pub fn growing_displacement(&self, r: f64, t: f64) -> Result<f64> {
-        self.check_time(t)?;
-        non_negative("distance from the axis", r, "m")?;
-        let (reached, seen) = self.reached(t);
-        if reached != t {
-            return Err(Error::invalid("time", format!("{t} s"), format!("at most {} s", self.turn)));
-        }
-        // The displacement depends only on a and R; any modulus gives the same result.
-        let depth = self.depth_of(seen);
-        Ok(super::HertzSphere::under_approach(self.radius, 1.0, depth)?.displacement(r))
-    }
-
     fn check_time(&self, t: f64) -> Result<()> {
-        if (0.0..=self.end).contains(&t) {
-            return Ok(());
-        }
-        Err(Error::invalid("time", format!("{t} s"), format!("between 0 and {} s", self.end)))
+        let expected = format!("between 0 and {} s", self.end);
+        require((0.0..=self.end).contains(&t), "time", format!("{t} s"), expected)
     }
 
     /// L(t+).

@@ -1,13 +1,10 @@
-//! Waves on an elastic half-space.
-//!
-//! One wave, gap D (1 - cos(2 pi x / l)): H. M. Westergaard, J. Appl. Mech. 6 (1939) 49; K. L. Johnson,
-//! Contact Mechanics (Cambridge, 1985), section 13.2. Two crossed waves, gap D (1 - cos cos): K. L.
-//! Johnson, J. A. Greenwood and J. G. Higginson, Int. J. Mech. Sci. 27 (1985) 383.
+//! A wave on an elastic half-space, gap D (1 - cos(2 pi x / l)): H. M. Westergaard, J. Appl. Mech. 6 (1939) 49; K. L. Johnson,
+//! Contact Mechanics (Cambridge, 1985), section 13.2.
 //!
 //! The approach of a periodic contact uses the displacement relative to its mean (the mean displacement of a periodic half-space
 //! is not determined): approach = D - mean gap.
 
-use std::f64::consts::{PI, SQRT_2, TAU};
+use std::f64::consts::{PI, TAU};
 
 use super::quadrature::integrate;
 use crate::error::{Error, Result, non_negative, positive};
@@ -179,65 +176,6 @@ impl WestergaardStep {
     }
 }
 
-/// Two crossed waves, gap D (1 - cos(2 pi x / l) cos(2 pi y / l)), on an elastic half-space: the exact solution for full contact,
-/// and the two limits of partial contact. Each square l x l has two crests.
-///
-/// ```text
-/// p* = sqrt(2) pi E* D / l
-/// mean p >= p*:  p = mean p + p* cos cos
-/// mean p << p*:  each crest a Hertz contact, R = l^2 / (4 pi^2 D), W = mean p l^2 / 2
-/// mean p -> p*:  1 - A/A0 = (3 / (2 pi)) (1 - mean p / p*)
-/// ```
-///
-/// (Johnson, Greenwood and Higginson 1985, eqs 3, 12 and 17.)
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JohnsonWave {
-    /// Amplitude D \[m\].
-    pub amplitude: f64,
-    /// Wavelength along x and y l \[m\].
-    pub wavelength: f64,
-    /// Contact modulus E* \[Pa\].
-    pub contact_modulus: f64,
-}
-
-impl JohnsonWave {
-    /// A double wave.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if a length or the modulus is not positive.
-    pub fn new(amplitude: f64, wavelength: f64, contact_modulus: f64) -> Result<Self> {
-        positive("amplitude of the wave", amplitude, "m")?;
-        positive("wavelength", wavelength, "m")?;
-        positive("contact modulus", contact_modulus, "Pa")?;
-        Ok(JohnsonWave { amplitude, wavelength, contact_modulus })
-    }
-
-    /// Mean pressure that just closes the gap, p* \[Pa\].
-    pub fn full_contact_pressure(&self) -> f64 {
-        SQRT_2 * PI * self.contact_modulus * self.amplitude / self.wavelength
-    }
-
-    /// Pressure at (x, y) from a crest in full contact \[Pa\]; `None` below p*.
-    pub fn full_contact(&self, mean_pressure: f64, x: f64, y: f64) -> Option<f64> {
-        let p_star = self.full_contact_pressure();
-        let wave = (TAU * x / self.wavelength).cos() * (TAU * y / self.wavelength).cos();
-        (mean_pressure >= p_star).then_some(mean_pressure + p_star * wave)
-    }
-
-    /// Fraction of the area in contact in the limit of small mean pressure \[Pa\].
-    pub fn light_contact_fraction(&self, mean_pressure: f64) -> f64 {
-        let l2 = self.wavelength * self.wavelength;
-        let (radius, load) = (l2 / (TAU * TAU * self.amplitude), 0.5 * mean_pressure * l2);
-        let a = (0.75 * radius * load / self.contact_modulus).cbrt();
-        2.0 * PI * a * a / l2
-    }
-
-    /// Fraction of the area in contact in the limit of nearly full contact.
-    pub fn nearly_full_contact_fraction(&self, mean_pressure: f64) -> f64 {
-        1.0 - 1.5 / PI * (1.0 - mean_pressure / self.full_contact_pressure())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::quadrature::integrate_to;
@@ -314,23 +252,5 @@ mod tests {
         let mean = 2.0 * (strip(0.0, first) + strip(first, last));
         assert!((mean / 0.03769911184307752 - 1.0).abs() < 1e-9, "{mean}");
         assert!(step.pressure(0.0, -1.0).is_err());
-    }
-
-    #[test]
-    fn the_double_wave_has_johnsons_numbers() {
-        let wave = JohnsonWave::new(0.01, 1.0, 1.0).unwrap();
-        let p_star = wave.full_contact_pressure();
-        assert!((p_star / 0.044428829381583664 - 1.0).abs() < 1e-15);
-        assert!((wave.full_contact(2.0 * p_star, 0.5, 0.5).unwrap() / (3.0 * p_star) - 1.0).abs() < 1e-15);
-        assert!((wave.full_contact(2.0 * p_star, 0.5, 0.0).unwrap() / p_star - 1.0).abs() < 1e-15);
-        assert_eq!(wave.full_contact(0.99 * p_star, 0.0, 0.0), None);
-        for (share, fraction) in
-            [(1e-4, 0.001640857259171832), (1e-3, 0.007616184731724445), (1e-2, 0.03535119800550432)]
-        {
-            assert!((wave.light_contact_fraction(share * p_star) / fraction - 1.0).abs() < 1e-14);
-        }
-        for (share, fraction) in [(0.9, 0.9522535170724314), (0.99, 0.9952253517072431)] {
-            assert!((wave.nearly_full_contact_fraction(share * p_star) / fraction - 1.0).abs() < 1e-15);
-        }
     }
 }

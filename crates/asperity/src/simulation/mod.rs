@@ -79,17 +79,17 @@ pub struct Simulation {
     pub loading: Programme,
     /// When the state is computed.
     pub times: TimeGrid,
-    /// Instants that are steps besides \[s\]. (Adaptive steps need none: see [`crate::Drive::between`].)
+    /// Additional instants at which steps end \[s\]. (Adaptive steps need none: see [`crate::Drive::between`].)
     pub include: Vec<f64>,
     /// How time is discretised.
     pub scheme: Scheme,
     /// How each step is solved.
     pub solver: SolverOptions,
-    /// Quantities that each row has besides those of [`Row`](crate::step::Row).
+    /// Quantities that each row has in addition to those of [`Row`](crate::step::Row).
     pub quantities: Quantities,
     /// How the contact moves over the bodies; `None` where it stays.
     pub motion: Option<Motion>,
-    /// A traction on the surfaces besides the contact, as a function of the gap.
+    /// A traction on the surfaces in addition to the contact pressure, as a function of the gap.
     pub traction: Option<Arc<dyn TractionLaw>>,
 }
 
@@ -127,7 +127,7 @@ impl Simulation {
         self.loading.plan(&self.times, &include)
     }
 
-    /// The instants besides those of the grid at which steps end.
+    /// The instants at which steps end in addition to those of the grid.
     pub(crate) fn stops(&self) -> Vec<f64> {
         let mut stops = self.include.clone();
         // A travel that is too long is refused by `validate`.

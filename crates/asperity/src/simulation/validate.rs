@@ -6,7 +6,7 @@ use crate::grid::Boundary;
 use crate::load::{Control, Course, Event, History, of_stage};
 use crate::material::Creep;
 use crate::quantities::Quantity;
-use crate::time::SAME;
+use crate::time::{Instant, SAME};
 
 /// Fewer steps than this to the period of a sine miss its course.
 const LEAST_PER_PERIOD: f64 = 20.0;
@@ -22,36 +22,98 @@ impl Simulation {
     /// [`Error::Invalid`], [`Error::Infeasible`].
     pub fn validate(&self) -> Result<()> {
         self.validate_gap()?;
+        self.validate_numbers()?;
+        self.columns().map_err(|error| error.of("output"))?;
         self.validate_kernel()?;
+        self.motion
+            .iter()
+            .try_for_each(|motion| motion.validate(self).map_err(|error| error.of("motion")))?;
+        self.quantities.list.iter().try_for_each(|quantity| self.allows(*quantity))?;
+        self.faults().into_iter().next().map_or(Ok(()), Err)
+    }
+
+    /// Everything that is wrong apart from the gap and what depends on it; the gap may still be empty. The parameters of the errors
+    /// are keys of case files ("time.scheme", "load.stages\[1\].history").
+    pub fn faults(&self) -> Vec<Error> {
+        // The other checks rely on numbers that are valid by themselves.
+        if let Err(error) = self.validate_numbers() {
+            return vec![error];
+        }
+        let instants = self.plan().instants;
+        let mut checks = vec![
+            self.validate_line(),
+            self.quantities.validate(self.is_capped()).map_err(|error| error.of("output")),
+            self.validate_plasticity(),
+            self.validate_scheme(),
+            self.validate_layers(),
+            self.validate_jumps(&instants),
+        ];
+        let stages = 0..self.loading.stages.len();
+        checks.extend(stages.flat_map(|n| {
+            let checks = [self.validate_history(n), self.validate_steps(n, &instants), self.validate_load(n)];
+            checks.map(|checked| self.of_stage(n, checked))
+        }));
+        checks.into_iter().filter_map(Result::err).collect()
+    }
+
+    /// Whether rows can have this quantity.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with what stands against it.
+    pub fn allows(&self, quantity: Quantity) -> Result<()> {
+        let is_energy = quantity.is_energy();
+        let moves = self.motion.is_some();
+        let of_displacements = quantity.is_of_time() || quantity == Quantity::DissipatedPower && moves;
+        let expected = if self.is_up_to_a_constant() && of_displacements {
+            "one that does not depend on displacements. A line contact on a free domain knows them only up to a constant; a \
+             periodic domain (boundary = \"periodic\") has no such limit"
+        } else if self.scheme == Scheme::Direct && is_energy {
+            "one that is no energy. Energies need the springs and dashpots of the material, which the full hereditary sum does \
+             not use; set time.scheme to \"linear\" or \"constant\""
+        } else if self.layers.is_some() && (is_energy || quantity == Quantity::ContactStiffness) {
+            "one that is solved for layers that creep differently. Leave it out, or give all layers and bodies the same relative \
+             creep"
+        } else {
+            return Ok(());
+        };
+        Err(Error::invalid("quantity", quantity, expected).of("output.quantities"))
+    }
+
+    /// Numbers that are wrong by themselves.
+    fn validate_numbers(&self) -> Result<()> {
         self.parts().try_for_each(Creep::validate)?;
         let yields = self.parts().any(|creep| creep.value(f64::MAX.sqrt()) > 0.0);
         require(yields, "contact creep compliance", 0, "greater than 0 (both bodies are rigid)")?;
         require(self.hardness > 0.0, "hardness", format!("{} Pa", self.hardness), "greater than 0")?;
         self.validate_hardness_map()?;
-        self.validate_line()?;
-        require(
-            self.plasticity == Plasticity::Cap || self.hardness.is_finite() || self.hardness_map.is_some(),
-            "hardness",
-            "infinite",
-            "finite where flattening stays (plasticity \"accumulate\"): nothing is flattened without",
-        )?;
-        self.columns()?;
-        self.validate_energy()?;
-        self.validate_layers()?;
         self.loading.validate()?;
         self.times.validate()?;
+        self.solver.validate()
+    }
+
+    /// Whether a hardness limits the pressure.
+    fn is_capped(&self) -> bool {
+        self.hardness.is_finite() || self.hardness_map.is_some()
+    }
+
+    fn validate_plasticity(&self) -> Result<()> {
+        require(
+            self.plasticity == Plasticity::Cap || self.is_capped(),
+            "hardness",
+            "infinite",
+            "finite where flattening stays (plasticity \"accumulate\"). No body has one; give a body its `hardness`",
+        )
+        .map_err(|error| error.of("solver.plasticity"))
+    }
+
+    fn validate_scheme(&self) -> Result<()> {
         require(
             self.scheme == Scheme::Linear || !self.is_adaptive(),
             "scheme of a run with adaptive steps",
             format!("{:?}", self.scheme).to_lowercase(),
-            "linear (the error estimate belongs to it)",
-        )?;
-        self.solver.validate()?;
-        self.motion.iter().try_for_each(|motion| motion.validate(self))?;
-        self.validate_histories()?;
-        self.validate_steps()?;
-        self.validate_load()?;
-        self.validate_jumps()
+            "linear. The error estimate of adaptive steps is derived for it; omit `scheme`, or use spacing = \"log\" with `steps`",
+        )
+        .map_err(|error| error.of("time.scheme"))
     }
 
     fn validate_gap(&self) -> Result<()> {
@@ -98,32 +160,21 @@ impl Simulation {
         }
     }
 
-    fn validate_energy(&self) -> Result<()> {
-        let energies = self.quantities.list.iter().filter(|quantity| quantity.is_energy());
-        let names: Vec<_> = energies.map(|quantity| quantity.name()).collect();
-        let names = names.join(", ");
-        let expected = format!(
-            "linear or constant where {names} is asked for: the full hereditary sum knows no springs and dashpots"
-        );
-        require(names.is_empty() || self.scheme != Scheme::Direct, "scheme", "direct", expected)
-    }
-
     /// What goes with layers that creep differently.
     fn validate_layers(&self) -> Result<()> {
         if self.layers.is_none() {
             return Ok(());
         }
-        let require = |holds: bool, what: &str, value: String, expected: &str| {
-            require(holds, format!("{what} of layers that creep differently"), value, expected)
+        let require = |holds: bool, parameter: &str, what: &str, value: String, expected: &str| {
+            let what = format!("{what} of layers that creep differently");
+            require(holds, what, value, expected).map_err(|error| error.of(parameter))
         };
         let scheme = format!("{:?}", self.scheme).to_lowercase();
-        require(self.scheme == Scheme::Linear, "scheme", scheme, "linear")?;
-        require(self.thermal.is_empty(), "temperature", "not constant".into(), "a constant one")?;
+        require(self.scheme == Scheme::Linear, "time.scheme", "scheme", scheme, "linear")?;
+        let expected = "constant. Hold it constant, or give all layers the same relative creep";
+        require(self.thermal.is_empty(), "temperature", "temperature", "not constant".into(), expected)?;
         let expected = "none: the contact stays in its place";
-        require(self.motion.is_none(), "motion", "given".into(), expected)?;
-        let unknown = |q: &&Quantity| q.is_energy() || **q == Quantity::ContactStiffness;
-        let unknown = self.quantities.list.iter().find(unknown).map_or("", |quantity| quantity.name());
-        require(unknown.is_empty(), "quantity", unknown.into(), "another one")
+        require(self.motion.is_none(), "motion", "motion", "given".into(), expected)
     }
 
     /// Where displacements are known up to a constant.
@@ -131,123 +182,123 @@ impl Simulation {
         if !self.is_up_to_a_constant() {
             return Ok(());
         }
-        require(self.grid.len() > 1, "number of cells of a free line contact", 1, "2 at least")?;
+        require(self.grid.len() > 1, "number of cells of a free line contact", 1, "2 at least")
+            .map_err(|error| error.of("domain.cells"))?;
         for (n, stage) in self.loading.stages.iter().enumerate() {
-            let expected = "a load or a pressure: under a load on a line a half-space moves endlessly, so the approach is known up \
+            let expected = "a load or a pressure. Under a load on a line a half-space moves endlessly, so the approach is known up \
                             to a constant that depends on the domain; a periodic domain (boundary = \"periodic\") has no such limit, \
                             nor have layers on a rigid base";
-            let event = matches!(stage.until, Some(Event::Approach(_)));
-            self.of_stage(n, require(!event, "event of a free line contact", "an approach", expected))?;
-            let control = stage.control != Control::Approach;
-            self.of_stage(n, require(control, "control of a free line contact", "approach", expected))?;
+            let of_approach = [
+                ("until", "event", matches!(stage.until, Some(Event::Approach(_)))),
+                ("control", "control", stage.control == Control::Approach),
+            ];
+            for (key, what, found) in of_approach {
+                let checked = require(!found, format!("{what} of a free line contact"), "approach", expected);
+                self.of_stage(n, checked.map_err(|error| error.of(key)))?;
+            }
         }
-        let moves = self.motion.is_some();
-        let depends = |q: &&Quantity| q.is_of_time() || **q == Quantity::DissipatedPower && moves;
-        let depends = self.quantities.list.iter().find(depends).map_or("", |quantity| quantity.name());
-        require(
-            depends.is_empty(),
-            "quantity of a free line contact",
-            depends,
-            "one that does not depend on displacements, which are known up to a constant; a periodic domain has no such limit",
-        )
+        Ok(())
     }
 
-    /// An error says which stage it is of, where there are several.
+    /// The error names the stage, if there are several.
     fn of_stage(&self, n: usize, checked: Result<()>) -> Result<()> {
-        checked.map_err(|error| if self.loading.stages.len() > 1 { of_stage(error, n) } else { error })
+        let named = |error| if self.loading.stages.len() > 1 { of_stage(error, n) } else { error };
+        checked.map_err(|error| named(error).of(&format!("load.stages[{n}]")))
     }
 
     /// Times of a history must be apart.
-    fn validate_histories(&self) -> Result<()> {
+    fn validate_history(&self, n: usize) -> Result<()> {
+        let Course::Given(history) = &self.loading.stages[n].course else { return Ok(()) };
         let end = self.times.end();
-        for (n, stage) in self.loading.stages.iter().enumerate() {
-            let Course::Given(history) = &stage.course else { continue };
-            let close = |pair: &&[f64]| pair[1] > pair[0] && pair[1] - pair[0] <= SAME * end;
-            let times: Vec<f64> = std::iter::once(0.0).chain(history.breaks(end)).collect();
-            let Some(pair) = times.windows(2).find(close) else { continue };
-            let apart = SAME * end;
-            let expected =
-                format!("at least {apart:e} s apart, {SAME:e} of the run: rounding joins closer ones");
-            let pair = format!("{} s and {} s", pair[0], pair[1]);
-            self.of_stage(n, Err(Error::invalid("times of the history", pair, expected)))?;
-        }
-        Ok(())
+        let close = |pair: &&[f64]| pair[1] > pair[0] && pair[1] - pair[0] <= SAME * end;
+        let times: Vec<f64> = std::iter::once(0.0).chain(history.breaks(end)).collect();
+        let Some(pair) = times.windows(2).find(close) else { return Ok(()) };
+        let apart = SAME * end;
+        let expected = format!("at least {apart:e} s apart, {SAME:e} of the run. Rounding joins closer ones");
+        let pair = format!("{} s and {} s", pair[0], pair[1]);
+        Err(Error::invalid("times of the history", pair, expected).of("history"))
     }
 
     /// Steps must follow a sine.
-    fn validate_steps(&self) -> Result<()> {
-        let end = self.times.end();
-        let mut longest = vec![0.0_f64; self.loading.stages.len()];
-        for instant in self.plan().instants {
-            longest[instant.stage] = longest[instant.stage].max(instant.dt);
-        }
-        for (n, (stage, longest)) in self.loading.stages.iter().zip(longest).enumerate() {
-            let Course::Given(History::Sine { amplitude, frequency, .. }) = stage.course else { continue };
-            let grid = stage.times.as_ref().unwrap_or(&self.times);
-            let follows =
-                amplitude == 0.0 || grid.is_adaptive() || longest * frequency <= 1.001 / LEAST_PER_PERIOD;
-            let lasts = stage.duration.unwrap_or(end).min(grid.end());
-            let expected = format!(
-                "at most {} s, {LEAST_PER_PERIOD} steps to a period: {} uniform steps at least, or adaptive ones",
-                1.0 / (LEAST_PER_PERIOD * frequency),
-                (LEAST_PER_PERIOD * frequency * lasts).ceil(),
-            );
-            let longest = format!("{longest} s");
-            self.of_stage(n, require(follows, "longest time step under a sine", longest, expected))?;
+    fn validate_steps(&self, n: usize, instants: &[Instant]) -> Result<()> {
+        let stage = &self.loading.stages[n];
+        let Course::Given(History::Sine { amplitude, frequency, .. }) = stage.course else { return Ok(()) };
+        let of_stage = instants.iter().filter(|instant| instant.stage == n);
+        let longest = of_stage.map(|instant| instant.dt).fold(0.0, f64::max);
+        let grid = stage.times.as_ref().unwrap_or(&self.times);
+        let follows =
+            amplitude == 0.0 || grid.is_adaptive() || longest * frequency <= 1.001 / LEAST_PER_PERIOD;
+        let lasts = stage.duration.unwrap_or(self.times.end()).min(grid.end());
+        let expected = format!(
+            "at most {} s, {LEAST_PER_PERIOD} steps to a period. Take {} uniform steps at least, or adaptive ones",
+            1.0 / (LEAST_PER_PERIOD * frequency),
+            (LEAST_PER_PERIOD * frequency * lasts).ceil(),
+        );
+        require(follows, "longest time step under a sine", format!("{longest} s"), expected)
+            .map_err(|error| error.of("history"))
+    }
+
+    fn validate_load(&self, n: usize) -> Result<()> {
+        let (end, stage) = (self.times.end(), &self.loading.stages[n]);
+        let (factor, what, unit) = match stage.control {
+            Control::Approach => return Ok(()),
+            Control::Load => (1.0, "smallest load", "N"),
+            Control::Pressure => (self.grid.area(), "smallest mean pressure", "Pa"),
+        };
+        let lasts = stage.duration.unwrap_or(end).min(end);
+        let ([least, most], largest) = match &stage.course {
+            Course::Given(history) => (history.range(lasts), history.largest_value()),
+            Course::Hold => return Ok(()),
+            Course::RampTo { value, .. } => ([*value; 2], "value".to_owned()),
+        };
+        let presses = least >= 0.0 || least.is_nan() || self.traction.is_some();
+        let least = format!("{least} {unit}");
+        let low = match &stage.course {
+            Course::Given(History::Sine { .. }) => "history.amplitude",
+            _ => "history",
+        };
+        require(
+            presses,
+            what,
+            least,
+            "not negative. Bodies only press; prescribe the approach to pull them apart",
+        )
+        .map_err(|error| error.of(low))?;
+        let max = self.most() * self.grid.cell_area();
+        // Equality within rounding is the limit itself, which has a solution.
+        if most * factor > max * (1.0 + 1e-12) {
+            let parameter = format!("history.{largest}");
+            return Err(Error::Infeasible { parameter, load: most * factor, max });
         }
         Ok(())
     }
 
-    fn validate_load(&self) -> Result<()> {
-        let end = self.times.end();
-        for (n, stage) in self.loading.stages.iter().enumerate() {
-            let (factor, what, unit) = match stage.control {
-                Control::Approach => continue,
-                Control::Load => (1.0, "smallest load", "N"),
-                Control::Pressure => (self.grid.area(), "smallest mean pressure", "Pa"),
-            };
-            let lasts = stage.duration.unwrap_or(end).min(end);
-            let [least, most] = match &stage.course {
-                Course::Given(history) => history.range(lasts),
-                Course::Hold => continue,
-                Course::RampTo { value, .. } => [*value; 2],
-            };
-            let presses = least >= 0.0 || least.is_nan() || self.traction.is_some();
-            let least = format!("{least} {unit}");
-            self.of_stage(n, require(presses, what, least, "not negative (bodies only press)"))?;
-            let max = self.most() * self.grid.cell_area();
-            if most * factor > max * (1.0 + 1e-12) {
-                return Err(Error::Infeasible { load: most * factor, max });
-            }
-        }
-        Ok(())
-    }
-
-    /// Sum of the cut-off over the cells that can touch \[Pa\].
+    /// Sum of the cut-off over the cells that can touch \[Pa\]; over all cells as long as there is no gap.
     fn most(&self) -> f64 {
-        let touchable = |h: &f64| h.is_finite();
+        let gap = self.gap.as_slice().unwrap_or_default();
+        let cells = (0..self.grid.len()).filter(|cell| gap.get(*cell).is_none_or(|h| h.is_finite()));
         match self.hardness_of_cells() {
-            Some(cells) => {
-                self.gap.iter().zip(cells).filter(|(h, _)| touchable(h)).map(|(_, cell)| cell).sum()
-            }
-            None => self.hardness * self.gap.iter().filter(|h| touchable(h)).count() as f64,
+            Some(hardness) => cells.map(|cell| hardness[cell]).sum(),
+            None => self.hardness * cells.count() as f64,
         }
     }
 
     /// Without instantaneous compliance nothing follows a jump.
-    fn validate_jumps(&self) -> Result<()> {
+    fn validate_jumps(&self, instants: &[Instant]) -> Result<()> {
         if self.instantaneous() > 0.0 {
             return Ok(());
         }
         let (mut last, mut stage) = (0.0, 0);
-        for instant in self.plan().instants {
+        for instant in instants {
             // What a stage starts from may be known only as the run goes; the march looks then.
-            require(
+            let checked = require(
                 !instant.jump || instant.stage != stage || instant.value == last,
                 format!("jump of the history at t = {} s", instant.time),
-                format!("{last:e} to {:e}", instant.value),
-                "a ramp: the material has no instantaneous compliance, so no contact follows a jump",
-            )?;
+                format!("{last} to {}", instant.value),
+                "a ramp. The bodies have no instantaneous compliance (Kelvin-Voigt), so no contact follows a jump; use a ramp, or a \
+                 material with an instantaneous modulus (zener, prony)",
+            );
+            self.of_stage(instant.stage, checked.map_err(|error| error.of("history")))?;
             (last, stage) = (instant.value, instant.stage);
         }
         Ok(())

@@ -4,7 +4,7 @@ use asperity_sweep::sums;
 
 use super::Slopes;
 use crate::contact::ContactState;
-use crate::error::{Error, Result, require, rounded};
+use crate::error::{Error, Result, require, significant};
 use crate::grid::{Boundary, Grid};
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
@@ -38,7 +38,7 @@ impl Direction {
         match self {
             Direction::Angle(angle) if simulation.boundary == Boundary::Free => Err(Error::invalid(
                 "direction of motion on a free domain",
-                format!("{} degrees", rounded(angle.to_degrees())),
+                format!("{} degrees", significant(angle.to_degrees(), 4)),
                 "x or y; other directions need a periodic domain",
             )),
             _ => Ok(()),
@@ -73,7 +73,8 @@ pub struct Friction {
     pub side: f64,
     /// Force over load.
     pub coefficient: f64,
-    /// |force - second estimate| over |force|; the second estimate is -Σ p du/ds.
+    /// Estimated error over |force|: that of the grid, |force - second estimate| with the second estimate -Σ p du/ds, and in time that of
+    /// the time steps, the relative error of the stress times Σ p |dh/ds|.
     pub uncertainty: f64,
     /// Moment of the pressure about the centre of the slopes, Σ p s \[N m\]: the resistance to rolling.
     pub moment: f64,
@@ -132,6 +133,8 @@ pub(crate) struct ContactForces<'a> {
     /// How far the contact has moved.
     pub(crate) distance: f64,
     pub(crate) shear_stress: Option<f64>,
+    /// Relative error of the stress because of the time steps.
+    pub(crate) time_error: f64,
 }
 
 /// The second estimate of the force, -Σ p du/ds.
@@ -145,7 +148,7 @@ pub(crate) enum SecondEstimate {
 impl Friction {
     /// Of a solved contact.
     pub(crate) fn of(contact: &ContactForces, second: SecondEstimate) -> Friction {
-        let [load, mut force, mut side, moment, off, area] = contact.sums();
+        let [load, mut force, mut side, moment, off, area, slopes] = contact.sums();
         if !contact.remembers {
             (force, side) = (0.0, 0.0);
         }
@@ -164,7 +167,10 @@ impl Friction {
             force,
             side,
             coefficient,
-            uncertainty: if scale > ROUNDING * load { (apart / scale).abs() } else { 0.0 },
+            uncertainty: match scale > ROUNDING * load {
+                true => (apart.abs() + contact.time_error * slopes) / scale,
+                false => 0.0,
+            },
             moment,
             power,
             total: contact.shear_stress.map_or(f64::NAN, |stress| match load > 0.0 {
@@ -179,10 +185,10 @@ impl Friction {
 const ROUNDING: f64 = 1e-13;
 
 impl ContactForces<'_> {
-    /// Load, force, side force, moment, Σ p dg/ds with g the gap of the deformed bodies, and area in contact.
+    /// Load, force, side force, moment, Σ p dg/ds with g the gap of the deformed bodies, area in contact, and Σ p |dh/ds|.
     ///
     /// g is 0 in contact, so that Σ p dg/ds comes from the edges alone: it is the difference of the two estimates of the force.
-    fn sums(&self) -> [f64; 6] {
+    fn sums(&self) -> [f64; 7] {
         let (Simulation { grid, boundary, .. }, [cx, cy]) = (self.simulation, self.direction.unit());
         let ny = grid.cells()[1];
         // On a periodic domain from the nearest image of the centre.
@@ -193,13 +199,14 @@ impl ContactForces<'_> {
         let of_cell = |cell: usize| {
             let p = self.state.pressure[cell];
             if p <= 0.0 {
-                return [0.0; 6];
+                return [0.0; 7];
             }
             let (i, j) = (cell / ny, cell % ny);
             let (sx, sy) = (self.slopes.x[(i, j)], self.slopes.y[(i, j)]);
             let arm = cx * from(grid.x(i), 0) + cy * from(grid.y(j), 1);
             let edge = self.slope_of_gap(i, j);
-            [p, p * (cx * sx + cy * sy), p * (cx * sy - cy * sx), p * arm, p * edge, 1.0]
+            let along = p * (cx * sx + cy * sy);
+            [p, along, p * (cx * sy - cy * sx), p * arm, p * edge, 1.0, along.abs()]
         };
         sums(0..grid.len(), of_cell).map(|sum| grid.cell_area() * sum)
     }

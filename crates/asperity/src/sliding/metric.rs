@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use super::streaming::Streaming;
-use super::torus::Spectrum;
+use crate::convolution::torus::Spectrum;
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;

@@ -18,7 +18,6 @@ mod path;
 mod slopes;
 mod steady;
 mod streaming;
-pub(crate) mod torus;
 
 pub(crate) use friction::{ContactForces, SecondEstimate};
 pub use friction::{Direction, Friction};

@@ -8,11 +8,11 @@ use ndarray::Array2;
 use rustfft::num_complex::Complex64;
 
 use super::slopes::derivatives;
-use super::torus::{Spectrum, Torus};
 use super::{Direction, Slopes};
+use crate::convolution::torus::{Spectrum, Torus};
 use crate::error::{Result, require};
 use crate::grid::{Boundary, Grid};
-use crate::surface::{Part, Shape, undeformed_gap};
+use crate::surface::{Part, Shape, gap_of, undeformed_gap};
 
 /// A gap whose moving parts can be anywhere.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,38 +41,17 @@ impl MovingGap {
     /// [`Error::Invalid`](crate::Error::Invalid) as [`undeformed_gap`], and for a flat punch.
     pub fn new(grid: &Grid, boundary: Boundary, parts: &[(Part, bool)]) -> Result<Self> {
         let all: Vec<Part> = parts.iter().map(|(part, _)| part.clone()).collect();
-        let gap = undeformed_gap(grid, &all)?;
-        let centre = centre_of(grid, &all, &gap)?;
-        let mut still = Array2::zeros(grid.shape());
-        let mut shapes = vec![];
-        let mut heights: Option<Array2<f64>> = None;
+        let centre = centre_of(grid, &all, &undeformed_gap(grid, &all)?)?;
+        let still = gap_of(grid, parts.iter().filter(|(_, moves)| !moves).map(|(part, _)| part))?;
         let [x0, y0] = grid.centre();
-        for (part, moves) in parts {
-            match (part, moves) {
-                (Part::Shape { shape, center }, true) => {
-                    shapes.push((*shape, [x0 + center[0], y0 + center[1]]))
-                }
-                (Part::Shape { shape, center }, false) => {
-                    let [cx, cy] = [x0 + center[0], y0 + center[1]];
-                    still
-                        .indexed_iter_mut()
-                        .for_each(|((i, j), h)| *h += shape.gap(grid.x(i) - cx, grid.y(j) - cy));
-                }
-                (part, moves) => {
-                    let own = match part {
-                        Part::SelfAffine(surface) => surface.heights(grid)?,
-                        Part::Synthesis(surface) => surface.heights(grid)?,
-                        Part::Heights { heights, .. } => heights.clone(),
-                        Part::Shape { .. } => continue,
-                    };
-                    if *moves {
-                        heights = Some(heights.map_or_else(|| own.clone(), |sum| sum + &own));
-                    } else {
-                        still -= &own;
-                    }
-                }
+        let (mut shapes, mut rough) = (vec![], vec![]);
+        for part in parts.iter().filter(|(_, moves)| *moves).map(|(part, _)| part) {
+            match part {
+                Part::Shape { shape, center } => shapes.push((*shape, [x0 + center[0], y0 + center[1]])),
+                part => rough.push(part),
             }
         }
+        let heights = if rough.is_empty() { None } else { Some(-gap_of(grid, rough)?) };
         let heights = heights.map(|z| {
             let [x, y] = derivatives(grid, boundary, &z);
             [z, x, y]
@@ -84,7 +63,7 @@ impl MovingGap {
             .map(|fields| [0, 1, 2].map(|k| torus.transform(fields[k].as_slice().unwrap_or_default())));
         let mut moving =
             MovingGap { grid: *grid, boundary, still, shapes, heights, spectra, lowest: 0.0, centre };
-        let (start, _) = moving.at(0.0, Direction::X)?;
+        let (start, _) = moving.at(0.0, Direction::X);
         moving.lowest = start.iter().fold(f64::INFINITY, |low, h| low.min(*h));
         require(moving.lowest.is_finite(), "area that can touch", "no cell", "one cell at least")?;
         Ok(moving)
@@ -97,10 +76,7 @@ impl MovingGap {
 
     /// The gap \[m\] and its slopes when the moving parts have gone `distance` \[m\]. The slopes are those of the moving parts alone:
     /// they take the force.
-    ///
-    /// # Errors
-    /// None today.
-    pub fn at(&self, distance: f64, direction: Direction) -> Result<(Array2<f64>, Slopes)> {
+    pub fn at(&self, distance: f64, direction: Direction) -> (Array2<f64>, Slopes) {
         let grid = &self.grid;
         let offset = direction.unit().map(|c| c * distance);
         let mut gap = self.still.clone();
@@ -126,7 +102,7 @@ impl MovingGap {
         for slope in [&mut slopes.x, &mut slopes.y] {
             slope.mapv_inplace(|s| if s.is_finite() { s } else { 0.0 });
         }
-        Ok((gap, slopes))
+        (gap, slopes)
     }
 
     /// The place from the nearest image of a shape on a periodic domain. (Waves go on by themselves.)
@@ -263,12 +239,12 @@ mod tests {
         let heights = Array2::from_shape_fn((16, 10), |(i, j)| wave(grid.x(i), grid.y(j)));
         let parts = [(Part::Heights { name: "wave".into(), heights }, true)];
         let moving = MovingGap::new(&grid, Boundary::Periodic, &parts).unwrap();
-        let (start, _) = moving.at(0.0, Direction::X).unwrap();
+        let (start, _) = moving.at(0.0, Direction::X);
         for (distance, direction) in
             [(0.3, Direction::X), (0.137, Direction::X), (-0.4, Direction::Y), (0.2, Direction::Angle(0.5))]
         {
             let [dx, dy] = direction.unit().map(|c| c * distance);
-            let (gap, slopes) = moving.at(distance, direction).unwrap();
+            let (gap, slopes) = moving.at(distance, direction);
             for ((i, j), h) in gap.indexed_iter() {
                 let (x, y) = (grid.x(i) - dx, grid.y(j) - dy);
                 let exact = start[(0, 0)] + wave(grid.x(0), grid.y(0)) - wave(x, y);
@@ -285,7 +261,7 @@ mod tests {
         let grid = Grid::line(20, 2.0).unwrap();
         let parts = [(Part::Shape { shape: Shape::Cylinder { radius: 1.0 }, center: [0.0, 0.0] }, true)];
         let there = |boundary, distance| {
-            MovingGap::new(&grid, boundary, &parts).unwrap().at(distance, Direction::X).unwrap().0
+            MovingGap::new(&grid, boundary, &parts).unwrap().at(distance, Direction::X).0
         };
         let (home, round) = (there(Boundary::Periodic, 0.0), there(Boundary::Periodic, 2.0));
         assert!(home.iter().zip(&round).all(|(a, b)| (a - b).abs() < 1e-13));
@@ -301,9 +277,9 @@ mod tests {
         let moving =
             MovingGap::new(&grid, Boundary::Free, &[(Part::Heights { name: "p".into(), heights }, true)])
                 .unwrap();
-        let (start, _) = moving.at(0.0, Direction::X).unwrap();
+        let (start, _) = moving.at(0.0, Direction::X);
         for distance in [0.5, 0.33, -0.21] {
-            let (gap, _) = moving.at(distance, Direction::X).unwrap();
+            let (gap, _) = moving.at(distance, Direction::X);
             let open = gap.iter().filter(|h| h.is_infinite()).count();
             assert!((2..=6).contains(&open), "{distance}: {open}");
             for i in 8..32 {

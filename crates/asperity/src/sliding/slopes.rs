@@ -3,8 +3,8 @@
 use ndarray::Array2;
 use rustfft::num_complex::Complex64;
 
-use super::torus::Torus;
 use super::{Direction, MovingGap};
+use crate::convolution::torus::Torus;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::surface::Part;
@@ -28,7 +28,7 @@ impl Slopes {
     /// [`Error::Invalid`](crate::Error::Invalid) for a flat punch, whose edge has no slope, and for heights of another shape than the grid's.
     pub fn of(grid: &Grid, boundary: Boundary, parts: &[Part]) -> Result<Slopes> {
         let moving: Vec<(Part, bool)> = parts.iter().map(|part| (part.clone(), true)).collect();
-        Ok(MovingGap::new(grid, boundary, &moving)?.at(0.0, Direction::X)?.1)
+        Ok(MovingGap::new(grid, boundary, &moving)?.at(0.0, Direction::X).1)
     }
 }
 

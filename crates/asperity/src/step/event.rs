@@ -9,11 +9,12 @@ pub(super) const MET: f64 = 1e-6;
 /// The enclosure ends at this share of the step.
 const NARROWEST: f64 = 1e-9;
 
+/// An enclosed event.
 #[derive(Debug)]
-/// An enclosed event: at `near` not yet, at `far` met.
 pub(super) struct Enclosure {
-    near: f64,
-    far: f64,
+    /// A length at which the event has not happened yet, and one at which it has.
+    pub(super) near: f64,
+    pub(super) far: f64,
     /// Signals there, positive before the event; NaN where unknown.
     before: f64,
     after: f64,
@@ -28,7 +29,7 @@ impl Enclosure {
         Enclosure { near: 0.0, far: dt, before, after, width: NARROWEST * dt, count: 0, last_near: None }
     }
 
-    /// The length to try next, or `None` where the enclosure is narrow enough: the event is at [`Self::far`].
+    /// The length to try next, or `None` where the enclosure is narrow enough: the event is at `far`.
     pub(super) fn guess(&mut self) -> Option<f64> {
         let width = self.far - self.near;
         if width <= self.width || self.count > 200 {
@@ -57,16 +58,6 @@ impl Enclosure {
         }
         self.last_near = Some(near);
     }
-
-    /// A length at which the event has not happened yet.
-    pub(super) fn near(&self) -> f64 {
-        self.near
-    }
-
-    /// A length at which the event has happened.
-    pub(super) fn far(&self) -> f64 {
-        self.far
-    }
 }
 
 #[cfg(test)]
@@ -89,8 +80,8 @@ mod tests {
                     enclosure.narrow(t, signal(t));
                     tries += 1;
                 }
-                assert!((enclosure.far() - root).abs() <= 4.1e-9, "{root}: {}", enclosure.far());
-                assert!(signal(enclosure.far()) <= 0.0);
+                assert!((enclosure.far - root).abs() <= 4.1e-9, "{root}: {}", enclosure.far);
+                assert!(signal(enclosure.far) <= 0.0);
                 assert!(tries < 100, "{tries}"); // bisections alone: 30, and every third is one
             }
         }

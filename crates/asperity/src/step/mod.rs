@@ -37,6 +37,7 @@ pub(crate) use quantities::Recorder;
 pub(crate) use row::{PERIMETER_SHARE, Recalled};
 pub(crate) use schedule::{Proposal, Response, Schedule, Summary, Verdict};
 pub(crate) use snapshot::{Loader, Saved, Saver, saved};
+pub(crate) use step_size::SHARE;
 pub(crate) use undeformed::UndeformedGap;
 
 use std::sync::Arc;
@@ -73,7 +74,7 @@ impl Stepper {
         let operator = plan(simulation.grid, simulation.boundary, simulation.kernel.clone())?;
         let mut history = history::of(&simulation)?;
         Ok(Stepper {
-            processes: process::of(&simulation, &*operator, &mut *history)?,
+            processes: process::of(&simulation, &*operator, &mut *history),
             history,
             contact: StepContact::new(&simulation, operator),
             state: StepState::new(&simulation),
@@ -155,6 +156,7 @@ impl Stepper {
             self.reopen(&step)?;
             return Ok(step);
         }
+        self.state.undeformed.begin(self.shift(&step).is_some());
         self.move_gap(&step)?;
         let StepState { now, before, gap, undeformed, .. } = &mut self.state;
         let law = self.history.open(&step, now, undeformed.now(), gap)?;
@@ -182,6 +184,11 @@ impl Stepper {
         self.contact.take_operator(law.operator);
     }
 
+    /// Estimated error of the stress at the last row, relative.
+    pub(crate) fn time_error(&self) -> Option<f64> {
+        self.history.time_error()
+    }
+
     /// The attempt stands: the history closes the step, the processes take in the row.
     ///
     /// # Errors
@@ -205,6 +212,7 @@ impl Stepper {
             hardness,
             operator,
             interrupt,
+            time_error: self.history.time_error(),
             exchange,
             other_work: 0.0,
             convolutions: 0,

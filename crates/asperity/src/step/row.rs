@@ -47,8 +47,8 @@ pub struct Row {
     pub residual: f64,
     /// Certified relative energy-norm error of the pressure.
     pub certificate: f64,
-    /// Estimated error of the stress at the end of the step, relative, where steps are adaptive or layers creep differently; 0 of
-    /// a jump, and where nothing touches.
+    /// Estimated error of the stress because of the time steps, relative; 0 where nothing touches, `None` with the schemes constant and
+    /// direct.
     pub time_error: Option<f64>,
     /// Number of the stage, from 0.
     pub stage: usize,

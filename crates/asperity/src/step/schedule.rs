@@ -302,7 +302,7 @@ impl Schedule {
         if let Some(dt) = enclosure.guess() {
             return Verdict::Try(tried.of_length(dt));
         }
-        let far = enclosure.far();
+        let far = enclosure.far;
         self.search = Search::End;
         if dt == far { Verdict::Accept } else { Verdict::Try(tried.of_length(far)) }
     }

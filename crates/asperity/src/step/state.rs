@@ -44,7 +44,8 @@ impl StepState {
     /// Both ends of the step of the attempt.
     pub(super) fn ends(&self) -> Ends<'_> {
         let StepState { now, before, gap, undeformed, .. } = self;
-        Ends { before, now, loads: self.loads, gap, rigid: undeformed.now() }
+        let (rigid, rigid_before) = (undeformed.now(), undeformed.before());
+        Ends { before, now, loads: self.loads, gap, rigid, rigid_before }
     }
 
     /// The load that the attempt carries \[N\]; its own is the prescribed one, where that is a load.

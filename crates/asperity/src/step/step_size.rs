@@ -16,7 +16,7 @@ const SHRINK: f64 = 0.2;
 /// Share of the step that the tolerance would allow.
 const SAFETY: f64 = 0.9;
 /// Errors of single steps add up while the material remembers them: each may take this share.
-const SHARE: f64 = 0.25;
+pub(crate) const SHARE: f64 = 0.25;
 
 /// ln of the rate of a clock may change in a step by this times the root of the tolerance: the error of the step is about 0.15
 /// times the square of the change.

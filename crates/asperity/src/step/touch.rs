@@ -31,8 +31,8 @@ impl Stepper {
                 if -start > TOUCHING * (overlap - start) {
                     let mut enclosure = Enclosure::new(step.length(), -start, -overlap);
                     self.enclose(&mut enclosure, &step, -1.0)?;
-                    if enclosure.near() > 0.0 {
-                        return self.cut(&step, enclosure.near());
+                    if enclosure.near > 0.0 {
+                        return self.cut(&step, enclosure.near);
                     }
                 }
             }
@@ -45,7 +45,7 @@ impl Stepper {
             let step = step.under(Load::Approach);
             let mut enclosure = Enclosure::new(step.length(), f64::NAN, overlap);
             self.enclose(&mut enclosure, &step, 1.0)?;
-            return self.cut(&step, enclosure.far());
+            return self.cut(&step, enclosure.far);
         }
         Ok((step, false))
     }

@@ -7,20 +7,40 @@ use crate::simulation::Simulation;
 pub(crate) struct UndeformedGap {
     simulation: Arc<Simulation>,
     own: Option<Vec<f64>>,
+    /// At the start of the step under way, if a process moves the gap in it.
+    before: Option<Vec<f64>>,
 }
 
 impl UndeformedGap {
     pub(crate) fn of(simulation: &Arc<Simulation>) -> Self {
-        UndeformedGap { simulation: simulation.clone(), own: None }
+        UndeformedGap { simulation: simulation.clone(), own: None, before: None }
     }
 
-    /// h0 \[m\] now, and at the start of the run.
+    /// h0 \[m\] now.
     pub(crate) fn now(&self) -> &[f64] {
         self.own.as_deref().unwrap_or(self.at_start())
     }
 
+    /// At the start of the step under way.
+    pub(crate) fn before(&self) -> &[f64] {
+        self.before.as_deref().unwrap_or(self.now())
+    }
+
+    /// At the start of the run.
     pub(crate) fn at_start(&self) -> &[f64] {
         self.simulation.gap.as_slice().unwrap_or_default()
+    }
+
+    /// A step begins; `moves` if a process moves the gap in it.
+    pub(crate) fn begin(&mut self, moves: bool) {
+        if moves {
+            let mut before = self.before.take().unwrap_or_default();
+            before.clear();
+            before.extend_from_slice(self.now());
+            self.before = Some(before);
+        } else {
+            self.before = None;
+        }
     }
 
     /// To be changed.

@@ -17,9 +17,9 @@ use rustfft::num_complex::Complex64;
 use super::Component;
 use super::coefficients::{corner, strip, wave};
 use super::depths::check_depth;
-use super::history::{PressureHistory, mean};
+use super::history::{PressureHistory, check_pressure, mean};
 use crate::convolution::Convolution;
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 use crate::grid::{Boundary, Grid};
 
 /// Rows of coefficients that a task computes together: their corners are shared.
@@ -66,9 +66,7 @@ impl SubsurfaceStress {
     /// # Errors
     /// [`Error::Invalid`] for a Poisson's ratio that is not between 0 and 0.5.
     pub fn new(grid: Grid, boundary: Boundary, poisson: f64) -> Result<Self> {
-        if !(0.0..=0.5).contains(&poisson) {
-            return Err(Error::invalid("Poisson's ratio", poisson, "between 0 and 0.5"));
-        }
+        require((0.0..=0.5).contains(&poisson), "Poisson's ratio", poisson, "between 0 and 0.5")?;
         let lengths = match boundary {
             Boundary::Free => grid.cells().map(|n| Convolution::good_length(2 * n - 1)),
             Boundary::Periodic => grid.cells(),
@@ -96,22 +94,11 @@ impl SubsurfaceStress {
     /// # Errors
     /// [`Error::Invalid`] if the number of cells differs or a value is not finite.
     pub fn set_pressure(&mut self, p: &[f64]) -> Result<()> {
-        self.check(p)?;
+        check_pressure(p, self.grid.len())?;
         self.sources.clear();
         self.lateral = 0.0;
         self.add(p, self.poisson);
         Ok(())
-    }
-
-    fn check(&self, field: &[f64]) -> Result<()> {
-        if field.len() != self.grid.len() {
-            let expected = format!("{}, one for each cell", self.grid.len());
-            return Err(Error::invalid("number of pressures", field.len(), expected));
-        }
-        match field.iter().find(|p| !p.is_finite()) {
-            Some(p) => Err(Error::invalid("pressure", format!("{p} Pa"), "finite in every cell")),
-            None => Ok(()),
-        }
     }
 
     /// Sets a history of the pressure in place of a pressure, for a body whose Poisson's ratio changes with time.
@@ -130,7 +117,7 @@ impl SubsurfaceStress {
     /// [`Error::Invalid`] if their number differs from that of the cells, or one is not finite.
     pub fn set_transverse(&mut self, p: &[f64], transverse: &[f64], confined: f64) -> Result<()> {
         for field in [p, transverse] {
-            self.check(field)?;
+            check_pressure(field, self.grid.len())?;
         }
         let rest: Vec<f64> = p.iter().zip(transverse).map(|(p, t)| p - 2.0 * t).collect();
         let twice: Vec<f64> = transverse.iter().map(|t| 2.0 * t).collect();

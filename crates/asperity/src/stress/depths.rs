@@ -1,6 +1,6 @@
 //! The depths at which the stress is computed.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, increasing, require};
 use crate::grid::{Boundary, Grid};
 
 /// Depths between 0 and this fraction of a cell are refused: they would show the jumps of the pressure from cell to cell.
@@ -34,7 +34,7 @@ pub fn automatic_depths(grid: &Grid, boundary: Boundary, contact_box: f64) -> Ve
         Boundary::Free if grid.is_line() => area,
         Boundary::Free => 2.0 * (area / std::f64::consts::PI).sqrt(),
     };
-    let cell = longest_cell(grid);
+    let cell = grid.longest_cell();
     spaced_depths([0.5 * cell, deepest.max(CELLS * cell)], AUTOMATIC, true, true)
 }
 
@@ -56,11 +56,6 @@ pub fn spaced_depths([first, last]: [f64; 2], count: usize, geometric: bool, sur
     surface.then_some(0.0).into_iter().chain((0..count).map(depth)).collect()
 }
 
-/// Longer side of a cell \[m\]; for a line, its length along x.
-pub(super) fn longest_cell(grid: &Grid) -> f64 {
-    grid.cell_sides().fold(0.0, f64::max)
-}
-
 /// Area of the rectangle around the cells under pressure \[m^2\]; for a line, the width of the contact \[m\]; 0 if there are
 /// none.
 pub fn contact_box(grid: &Grid, pressure: &[f64]) -> f64 {
@@ -78,7 +73,7 @@ pub fn contact_box(grid: &Grid, pressure: &[f64]) -> f64 {
 /// # Errors
 /// [`Error::Invalid`] for any other.
 pub fn check_depth(grid: &Grid, depth: f64) -> Result<()> {
-    let shallowest = SHALLOWEST * longest_cell(grid);
+    let shallowest = SHALLOWEST * grid.longest_cell();
     let deepest = DEEPEST * grid.longest_side();
     if depth == 0.0 || (shallowest..=deepest).contains(&depth) {
         return Ok(());
@@ -98,15 +93,12 @@ pub fn check_depth(grid: &Grid, depth: f64) -> Result<()> {
 /// # Errors
 /// [`Error::Invalid`] with the first invalid depth.
 pub fn check_depths(grid: &Grid, depths: &[f64]) -> Result<()> {
-    if !(1..=MOST).contains(&depths.len()) {
-        return Err(Error::invalid("number of depths", depths.len(), format!("from 1 to {MOST}")));
-    }
+    require(
+        (1..=MOST).contains(&depths.len()),
+        "number of depths",
+        depths.len(),
+        format!("from 1 to {MOST}"),
+    )?;
     depths.iter().try_for_each(|depth| check_depth(grid, *depth))?;
-    match depths.windows(2).find(|two| two[0] >= two[1]) {
-        Some(two) => {
-            let expected = format!("deeper than the one before it, {:e} m", two[0]);
-            Err(Error::invalid("depth", format!("{:e} m", two[1]), expected))
-        }
-        None => Ok(()),
-    }
+    increasing(depths.iter().copied(), |_| "depth".to_owned(), |depth| format!("{depth:e} m"))
 }

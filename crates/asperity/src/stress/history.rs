@@ -10,7 +10,7 @@
 //! (1 - phi) p' with E = exp(-x), phi = (1 - E)/x, x = dt/lambda_j; of second order in the time step. The uniform part of a
 //! periodic pressure acts without lateral strain, so it has nu/(1 - nu) in place of nu ([`PoissonCreep`]).
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::material::{Creep, CreepTerm, PoissonCreep};
 
 /// Stores the pressure history of a body from the beginning on, for
@@ -63,19 +63,9 @@ impl PressureHistory {
     /// [`Error::Invalid`] for a time before the last, another number of pressures, or a pressure that is not finite.
     pub fn advance(&mut self, time: f64, p: &[f64]) -> Result<()> {
         let last = self.time.unwrap_or(time);
-        if time.is_nan() || time < last {
-            return Err(Error::invalid(
-                "time",
-                format!("{time} s"),
-                format!("not before the last, {last} s"),
-            ));
-        }
-        if p.len() != self.pressure.len() {
-            return Err(Error::invalid("number of pressures", p.len(), self.pressure.len().to_string()));
-        }
-        if let Some(p) = p.iter().find(|p| !p.is_finite()) {
-            return Err(Error::invalid("pressure", format!("{p} Pa"), "finite in every cell"));
-        }
+        require(time >= last, "time", format!("{time} s"), format!("not before the last, {last} s"))?;
+
+        check_pressure(p, self.pressure.len())?;
         let dt = time - last;
         let [mean, new_mean] = [mean(&self.pressure), mean(p)];
         for (r, term) in self.retarded_mean.iter_mut().zip(&self.creep.confined.terms) {
@@ -113,6 +103,15 @@ impl PressureHistory {
         let Creep { instantaneous, terms, .. } = &self.creep.confined;
         let retarded: f64 = self.retarded_mean.iter().zip(terms).map(|(r, term)| term.compliance * r).sum();
         instantaneous * mean(&self.pressure) + retarded
+    }
+}
+
+/// Checks that there is a finite pressure for each cell.
+pub(super) fn check_pressure(p: &[f64], cells: usize) -> Result<()> {
+    require(p.len() == cells, "number of pressures", p.len(), format!("{cells}, one for each cell"))?;
+    match p.iter().find(|p| !p.is_finite()) {
+        Some(p) => Err(Error::invalid("pressure", format!("{p} Pa"), "finite in every cell")),
+        None => Ok(()),
     }
 }
 

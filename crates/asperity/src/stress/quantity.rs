@@ -1,79 +1,65 @@
 //! The fields of the stress at a depth: a component, or an invariant of the tensor.
 
-#![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
-
 use super::{Component, Invariants, invariants};
-use asperity_sweep::sweep;
+use asperity_sweep::each;
 
-/// A field of the stress.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
-pub enum StressQuantity {
+/// Declares the fields: for each its meaning, its name, and its description for axes and legends.
+macro_rules! stress_quantities {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal: $long_name:literal;)+) => {
+        /// A field of the stress.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(
+            feature = "serde",
+            derive(serde::Serialize, serde::Deserialize),
+            serde(rename_all = "kebab-case")
+        )]
+        #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+        pub enum StressQuantity {
+            $($(#[$doc])* $variant,)+
+        }
+
+        impl StressQuantity {
+            /// All of them.
+            pub const ALL: [StressQuantity; [$($name),+].len()] = [$(StressQuantity::$variant),+];
+
+            /// Its name: "mises", "xx", ...
+            pub fn name(self) -> &'static str {
+                match self { $(StressQuantity::$variant => $name,)+ }
+            }
+
+            /// Its description for axes and legends.
+            pub fn long_name(self) -> &'static str {
+                match self { $(StressQuantity::$variant => $long_name,)+ }
+            }
+        }
+    };
+}
+
+// The invariants, then the components in the order of `Component::ALL`.
+stress_quantities! {
     /// von Mises stress.
-    Mises,
+    Mises = "mises": "von Mises stress";
     /// Largest shear stress (s1 - s3)/2.
-    Tresca,
+    Tresca = "tresca": "largest shear stress (Tresca)";
     /// Largest principal stress; positive in tension.
-    Tension,
+    Tension = "tension": "largest principal stress";
     /// Minus the mean of the normal stresses; positive in compression.
-    Pressure,
+    Pressure = "pressure": "hydrostatic pressure";
     /// Normal stress along x.
-    Xx,
+    Xx = "xx": "normal stress xx";
     /// Normal stress along y.
-    Yy,
+    Yy = "yy": "normal stress yy";
     /// Normal stress along z.
-    Zz,
+    Zz = "zz": "normal stress zz";
     /// Shear stress in the plane.
-    Xy,
+    Xy = "xy": "shear stress xy";
     /// Shear stress on planes parallel to the surface, along x.
-    Xz,
+    Xz = "xz": "shear stress xz";
     /// Shear stress on planes parallel to the surface, along y.
-    Yz,
+    Yz = "yz": "shear stress yz";
 }
 
 impl StressQuantity {
-    /// All of them.
-    pub const ALL: [StressQuantity; 10] = [
-        StressQuantity::Mises,
-        StressQuantity::Tresca,
-        StressQuantity::Tension,
-        StressQuantity::Pressure,
-        StressQuantity::Xx,
-        StressQuantity::Yy,
-        StressQuantity::Zz,
-        StressQuantity::Xy,
-        StressQuantity::Xz,
-        StressQuantity::Yz,
-    ];
-
-    /// Its name: "mises", "xx", ...
-    pub fn name(self) -> &'static str {
-        match (self, self.component()) {
-            (_, Some(component)) => component.name(),
-            (StressQuantity::Mises, _) => "mises",
-            (StressQuantity::Tresca, _) => "tresca",
-            (StressQuantity::Tension, _) => "tension",
-            _ => "pressure",
-        }
-    }
-
-    /// Its description for axes and legends.
-    pub fn long_name(self) -> &'static str {
-        match self {
-            StressQuantity::Mises => "von Mises stress",
-            StressQuantity::Tresca => "largest shear stress (Tresca)",
-            StressQuantity::Tension => "largest principal stress",
-            StressQuantity::Pressure => "hydrostatic pressure",
-            StressQuantity::Xx => "normal stress xx",
-            StressQuantity::Yy => "normal stress yy",
-            StressQuantity::Zz => "normal stress zz",
-            StressQuantity::Xy => "shear stress xy",
-            StressQuantity::Xz => "shear stress xz",
-            StressQuantity::Yz => "shear stress yz",
-        }
-    }
-
     /// The quantity of that name.
     pub fn from_name(name: &str) -> Option<StressQuantity> {
         StressQuantity::ALL.into_iter().find(|quantity| quantity.name() == name)
@@ -81,15 +67,7 @@ impl StressQuantity {
 
     /// The component, if it is one.
     pub fn component(self) -> Option<Component> {
-        Some(match self {
-            StressQuantity::Xx => Component::Xx,
-            StressQuantity::Yy => Component::Yy,
-            StressQuantity::Zz => Component::Zz,
-            StressQuantity::Xy => Component::Xy,
-            StressQuantity::Xz => Component::Xz,
-            StressQuantity::Yz => Component::Yz,
-            _ => return None,
-        })
+        (self as usize).checked_sub(StressQuantity::Xx as usize).map(|n| Component::ALL[n])
     }
 
     /// Its field, from the six components in the order of [`Component::ALL`]; all of one length.
@@ -109,18 +87,8 @@ impl StressQuantity {
         };
         assert!(six.iter().all(|field| field.len() == out.len()), "all fields have one length");
         let [xx, yy, zz, xy, xz, yz] = six.each_ref().map(Vec::as_slice);
-        sweep((out, xx, yy, zz, xy, xz, yz), &|(out, xx, yy, zz, xy, xz, yz): (
-            &mut [f64],
-            &[f64],
-            &[f64],
-            &[f64],
-            &[f64],
-            &[f64],
-            &[f64],
-        )| {
-            for (n, out) in out.iter_mut().enumerate() {
-                *out = pick(&invariants([xx[n], yy[n], zz[n], xy[n], xz[n], yz[n]]));
-            }
+        each(out, (xx, yy, zz, xy, xz, yz), |out, (xx, yy, zz, xy, xz, yz)| {
+            *out = pick(&invariants([xx, yy, zz, xy, xz, yz]));
         });
     }
 }

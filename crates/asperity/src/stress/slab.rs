@@ -21,14 +21,17 @@ impl First {
     }
 }
 
+/// The stresses whose maxima are found: von Mises, Tresca, the largest principal stress, and the range of the orthogonal shear
+/// stress.
+pub(super) const MISES: usize = 0;
+pub(super) const TRESCA: usize = 1;
+pub(super) const TENSION: usize = 2;
+pub(super) const SHEAR: usize = 3;
+
 /// Maxima of one depth, and the cells above a threshold.
 #[derive(Clone, Copy)]
 pub(super) struct Slab {
-    pub(super) mises: First,
-    pub(super) tresca: First,
-    pub(super) tension: First,
-    /// Largest range of the orthogonal shear stress.
-    pub(super) shear: First,
+    pub(super) maxima: [First; 4],
     /// Number of cells above the threshold.
     pub(super) above: f64,
     /// Number of cells processed: the cells of the next part begin there.
@@ -37,12 +40,9 @@ pub(super) struct Slab {
 
 impl Merge for Slab {
     fn merge(self, next: Self) -> Self {
-        let join = |a: First, b: First| a.or(First { cell: self.cells + b.cell, ..b });
+        let later = |first: First| First { cell: self.cells + first.cell, ..first };
         Slab {
-            mises: join(self.mises, next.mises),
-            tresca: join(self.tresca, next.tresca),
-            tension: join(self.tension, next.tension),
-            shear: join(self.shear, next.shear),
+            maxima: std::array::from_fn(|k| self.maxima[k].or(later(next.maxima[k]))),
             above: self.above + next.above,
             cells: self.cells + next.cells,
         }
@@ -56,31 +56,24 @@ impl Slab {
     pub(super) fn of(grid: &Grid, fields: &[Vec<f64>; 6], options: &SurveyOptions) -> Slab {
         let [xx, yy, zz, xy, xz, yz] = fields.each_ref().map(Vec::as_slice);
         let threshold = options.threshold.unwrap_or(f64::INFINITY);
-        let found = sweep((xx, yy, zz, xy, xz, yz), &|(xx, yy, zz, xy, xz, yz): Six<'_>| {
-            let mut found = Slab {
-                mises: NOTHING,
-                tresca: NOTHING,
-                tension: NOTHING,
-                shear: NOTHING,
-                above: 0.0,
-                cells: xx.len(),
-            };
+        let mut found = sweep((xx, yy, zz, xy, xz, yz), &|(xx, yy, zz, xy, xz, yz): Six<'_>| {
+            let mut found = Slab { maxima: [NOTHING; 4], above: 0.0, cells: xx.len() };
             for cell in 0..xx.len() {
                 let tensor = [xx[cell], yy[cell], zz[cell], xy[cell], xz[cell], yz[cell]];
                 let Invariants { mises, tresca, tension, .. } = invariants(tensor);
-                found.mises = found.mises.or(First { value: mises, cell });
-                found.tresca = found.tresca.or(First { value: tresca, cell });
-                found.tension = found.tension.or(First { value: tension, cell });
+                for (most, value) in found.maxima.iter_mut().zip([mises, tresca, tension]) {
+                    *most = most.or(First { value, cell });
+                }
                 found.above += f64::from(u8::from(mises > threshold));
             }
             found
         });
-        let shear = match options.rolling {
+        found.maxima[SHEAR] = match options.rolling {
             Some(Rolling::X) => range_along_x(xz, grid.cells()[1]),
             Some(Rolling::Y) => range_along_y(yz, grid.cells()[1]),
             None => NOTHING,
         };
-        Slab { shear, ..found }
+        found
     }
 }
 

@@ -1,7 +1,6 @@
 //! The largest stresses: maxima over depths, refined between them, and the profile over depth.
 
-use super::depths::longest_cell;
-use super::slab::{First, Slab};
+use super::slab::{First, MISES, SHEAR, Slab, TENSION, TRESCA};
 use super::{Component, SubsurfaceStress, check_depths};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -104,7 +103,7 @@ pub fn survey(stress: &mut SubsurfaceStress, depths: &[f64], options: &SurveyOpt
 /// the search of a maximum). An error of `visit` ends the survey.
 ///
 /// # Errors
-/// As [`survey`], and those of `visit`.
+/// The errors of [`survey`] and of `visit`.
 pub fn survey_with<E: From<Error>>(
     stress: &mut SubsurfaceStress,
     depths: &[f64],
@@ -122,41 +121,37 @@ pub fn survey_with<E: From<Error>>(
     }
     let slabs: Vec<Slab> = known.0.iter().map(|(_, slab)| *slab).collect();
     let deepest = depths.len() - 1;
-    let at_the_deepest = deepest > 0 && known.best(|slab| slab.mises) == deepest;
-    let mut wanted: Vec<fn(&Slab) -> First> = vec![|slab| slab.mises, |slab| slab.tresca];
-    if options.rolling.is_some() {
-        wanted.push(|slab| slab.shear);
-    }
-    for of in wanted {
+    let at_the_deepest = deepest > 0 && known.best(MISES) == deepest;
+    let shear = options.rolling.map(|_| SHEAR);
+    for of in [MISES, TRESCA].into_iter().chain(shear) {
         for _ in 0..REFINED {
             let Some(depth) = known.vertex(of) else { break };
             stress.at(depth, &mut fields)?;
             known.insert(depth, Slab::of(&grid, &fields, options));
         }
     }
-    let by_depth = |of: fn(&Slab) -> First| slabs.iter().map(|slab| of(slab).value).collect::<Vec<f64>>();
-    let mises = known.largest(|slab| slab.mises);
+    let by_depth = |of: usize| slabs.iter().map(|slab| slab.maxima[of].value).collect::<Vec<f64>>();
+    let mises = known.largest(MISES);
     Ok(Survey {
         depths: depths.to_vec(),
-        mises_by_depth: by_depth(|slab| slab.mises),
-        tresca_by_depth: by_depth(|slab| slab.tresca),
-        tension_by_depth: by_depth(|slab| slab.tension),
-        tresca: known.largest(|slab| slab.tresca),
-        tension: known.largest(|slab| slab.tension),
+        mises_by_depth: by_depth(MISES),
+        tresca_by_depth: by_depth(TRESCA),
+        tension_by_depth: by_depth(TENSION),
+        tresca: known.largest(TRESCA),
+        tension: known.largest(TENSION),
         at_the_deepest,
         unresolved: is_unresolved(&grid, mises.depth),
         stressed_volume: options.threshold.map(|_| volume(&grid, depths, &slabs)),
-        orthogonal_shear: options.rolling.map(|_| OrthogonalShear {
-            by_depth: by_depth(|slab| slab.shear),
-            largest: known.largest(|slab| slab.shear),
-        }),
+        orthogonal_shear: options
+            .rolling
+            .map(|_| OrthogonalShear { by_depth: by_depth(SHEAR), largest: known.largest(SHEAR) }),
         mises,
     })
 }
 
 /// Whether a maximum at this depth is less than two cells below the surface, but not at the surface.
 fn is_unresolved(grid: &Grid, depth: f64) -> bool {
-    depth > 0.0 && depth < 2.0 * longest_cell(grid)
+    depth > 0.0 && depth < 2.0 * grid.longest_cell()
 }
 
 /// Trapezoidal rule over the depths.
@@ -170,20 +165,20 @@ struct Known(Vec<(f64, Slab)>);
 
 impl Known {
     /// Number of the depth at which `of` is largest; the first of several.
-    fn best(&self, of: fn(&Slab) -> First) -> usize {
-        let value = |n: usize| of(&self.0[n].1).value;
+    fn best(&self, of: usize) -> usize {
+        let value = |n: usize| self.0[n].1.maxima[of].value;
         (1..self.0.len()).fold(0, |best, n| if value(n) > value(best) { n } else { best })
     }
 
-    fn largest(&self, of: fn(&Slab) -> First) -> Extreme {
+    fn largest(&self, of: usize) -> Extreme {
         let (depth, slab) = &self.0[self.best(of)];
-        let First { value, cell, .. } = of(slab);
+        let First { value, cell } = slab.maxima[of];
         Extreme { value, depth: *depth, cell }
     }
 
     /// The depth at which the parabola through the largest value and its neighbours, in the logarithm of the depth, is highest;
     /// `None` if the three are not all below the surface, or if the new depth gives no more information.
-    fn vertex(&self, of: fn(&Slab) -> First) -> Option<f64> {
+    fn vertex(&self, of: usize) -> Option<f64> {
         let best = self.best(of);
         let three = self.0.get(best.checked_sub(1)?..best + 2)?;
         let [(z0, s0), (z1, s1), (z2, s2)] = three else { return None };
@@ -191,7 +186,7 @@ impl Known {
             return None;
         }
         let [a, b, c] = [z0, z1, z2].map(|z| libm::log(*z));
-        let [f, g, h] = [s0, s1, s2].map(|slab| of(slab).value);
+        let [f, g, h] = [s0, s1, s2].map(|slab| slab.maxima[of].value);
         let (left, right) = ((g - f) / (b - a), (h - g) / (c - b));
         let curvature = (right - left) / (c - a);
         let at = 0.5 * (a + b) - 0.5 * left / curvature;

@@ -10,7 +10,7 @@ use ndarray::{Array2, ArrayView2};
 
 use super::membrane::Membrane;
 use super::spectrum::check_shape;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::grid::Grid;
 
 /// The treatment of undefined points.
@@ -43,9 +43,12 @@ pub enum Fill {
 /// [`Fill::Error`] and one is, or the shape is not the grid's; [`Error::NotConverged`] if the membrane does not converge.
 pub fn fill(grid: &Grid, heights: ArrayView2<f64>, method: Fill, largest_share: f64) -> Result<Array2<f64>> {
     check_shape(grid, heights)?;
-    if !(0.0..=1.0).contains(&largest_share) {
-        return Err(Error::invalid("largest share of undefined points", largest_share, "between 0 and 1"));
-    }
+    require(
+        (0.0..=1.0).contains(&largest_share),
+        "largest share of undefined points",
+        largest_share,
+        "between 0 and 1",
+    )?;
     let undefined = heights.iter().filter(|z| !z.is_finite()).count();
     let of = || format!("{undefined} of {}", heights.len());
     if undefined == 0 {

@@ -3,7 +3,7 @@
 use ndarray::{Array2, Zip};
 
 use super::{SelfAffine, Shape, Synthesis};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::grid::Grid;
 
 /// One contribution to the undeformed gap.
@@ -29,6 +29,30 @@ pub enum Part {
     },
 }
 
+impl Part {
+    /// "sphere", "self-affine", the name of the heights.
+    pub fn name(&self) -> &str {
+        match self {
+            Part::Shape { shape, .. } => shape.name(),
+            Part::SelfAffine(_) | Part::Synthesis(_) => "self-affine",
+            Part::Heights { name, .. } => name,
+        }
+    }
+
+    /// The heights of a rough part at the cells of the grid \[m\]; `None` for a smooth shape.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the roughness does not fit the grid.
+    pub fn heights(&self, grid: &Grid) -> Result<Option<Array2<f64>>> {
+        match self {
+            Part::Shape { .. } => Ok(None),
+            Part::SelfAffine(surface) => surface.heights(grid).map(Some),
+            Part::Synthesis(surface) => surface.heights(grid).map(Some),
+            Part::Heights { heights, .. } => Ok(Some(heights.clone())),
+        }
+    }
+}
+
 /// The undeformed gap h0 at the cell centres \[m\], shape (nx, ny), smallest value 0;
 /// `+INFINITY` in the cells that a flat punch keeps from touching.
 ///
@@ -47,19 +71,24 @@ pub enum Part {
 /// [`Error::Invalid`] if a part is outside its domain, heights do not have the shape of the grid or are not finite, the sum
 /// overflows, or no cell can touch. Without any part the gap is 0 (flat on flat).
 pub fn undeformed_gap(grid: &Grid, parts: &[Part]) -> Result<Array2<f64>> {
-    let mut gap = Array2::zeros(grid.shape());
-    for part in parts {
-        add(&mut gap, grid, part)?;
-    }
+    let mut gap = gap_of(grid, parts)?;
     let lowest = gap.fold(f64::INFINITY, |low, h| low.min(*h));
-    if !lowest.is_finite() {
-        return Err(Error::invalid(
-            "area that can touch",
-            "no cell",
-            "one cell centre at least inside the flat punch; enlarge the punch, move it or refine the grid",
-        ));
-    }
+    require(
+        lowest.is_finite(),
+        "area that can touch",
+        "no cell",
+        "one cell centre at least inside the flat punch; enlarge the punch, move it or refine the grid",
+    )?;
     gap.par_mapv_inplace(|h| h - lowest);
+    Ok(gap)
+}
+
+/// The sum of the gaps of the shapes less the heights \[m\].
+pub(crate) fn gap_of<'a>(grid: &Grid, parts: impl IntoIterator<Item = &'a Part>) -> Result<Array2<f64>> {
+    let mut gap = Array2::zeros(grid.shape());
+    for (n, part) in parts.into_iter().enumerate() {
+        add(&mut gap, grid, part).map_err(|error| error.of(&format!("surface[{n}]")))?;
+    }
     Ok(gap)
 }
 

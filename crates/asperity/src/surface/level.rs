@@ -6,7 +6,7 @@
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2};
 
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 
 /// The form that is subtracted from measured heights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -38,7 +38,7 @@ pub enum Level {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] if a form must be removed and no height is defined.
+/// [`Error::Invalid`](crate::Error::Invalid) if a form must be removed and no height is defined.
 pub fn level(heights: ArrayView2<f64>, form: Level) -> Result<Array2<f64>> {
     let mut flat = heights.to_owned();
     flat.par_mapv_inplace(|z| if z.is_finite() { z } else { f64::NAN });
@@ -48,9 +48,12 @@ pub fn level(heights: ArrayView2<f64>, form: Level) -> Result<Array2<f64>> {
         Level::Plane => remove::<3>,
         Level::Quadratic => remove::<6>,
     };
-    if flat.iter().all(|z| z.is_nan()) {
-        return Err(Error::invalid("number of defined heights", 0, "1 at least, to level the surface"));
-    }
+    require(
+        !flat.iter().all(|z| z.is_nan()),
+        "number of defined heights",
+        0,
+        "1 at least, to level the surface",
+    )?;
     // Twice: the second pass removes the rounding error of a form much larger than the roughness.
     remove(&mut flat);
     remove(&mut flat);

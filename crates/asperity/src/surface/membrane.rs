@@ -12,6 +12,7 @@ use ndarray::{Array2, ArrayView2};
 
 use crate::error::{NotConverged, Result};
 use crate::grid::Grid;
+use crate::material::dot;
 
 /// The equations, and their levels from fine to coarse.
 pub(super) struct Membrane {
@@ -90,7 +91,6 @@ impl Membrane {
 
     /// Solves for heights of range one, starting from `z`; returns the number of iterations.
     pub(super) fn solve(&self, z: &mut [f64]) -> Result<usize> {
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (finest, n) = (&self.levels[0], z.len());
         // Tens are enough; exact arithmetic would end after n.
         const MOST: usize = 2000;
@@ -121,16 +121,7 @@ impl Membrane {
                 direction[k] = scaled[k] + beta * direction[k];
             }
         }
-        Err(NotConverged {
-            method: "harmonic fill",
-            iterations: MOST,
-            residual: missed(&residual),
-            tolerance: TOLERANCE,
-            certificate: f64::INFINITY,
-            time: None,
-            velocity: None,
-        }
-        .into())
+        Err(NotConverged::of("harmonic fill", MOST, missed(&residual), TOLERANCE))
     }
 
     /// One V-cycle from zero: sweep down, correct by blocks, sweep up; symmetric, as conjugate gradients

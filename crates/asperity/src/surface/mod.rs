@@ -33,6 +33,7 @@ mod synthesis;
 mod waves;
 
 pub use fill::{Fill, fill};
+pub(crate) use gap::gap_of;
 pub use gap::{Part, undeformed_gap};
 pub use level::{Level, level};
 pub use map::Surface;

@@ -22,7 +22,7 @@ use std::f64::consts::TAU;
 use ndarray::Array2;
 
 use super::waves::{SAME, Waves};
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, positive, require};
 use crate::grid::Grid;
 
 /// The roughness of a synthetic surface.
@@ -101,7 +101,7 @@ impl SelfAffine {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the exponent, the roughness or a wavelength is outside its domain, the wavelengths are out of order
+    /// [`Error::Invalid`](crate::Error::Invalid) if the exponent, the roughness or a wavelength is outside its domain, the wavelengths are out of order
     /// or do not fit the grid, or the domain has no wave between them.
     pub fn heights(&self, grid: &Grid) -> Result<Array2<f64>> {
         self.heights_where(grid, |qx, qy| (qx * qx + qy * qy).sqrt())
@@ -119,27 +119,24 @@ impl SelfAffine {
         let exponent = if grid.is_line() { -1.0 - 2.0 * self.hurst } else { -2.0 * (1.0 + self.hurst) };
         let amplitude = |qx: f64, qy: f64| self.spectrum(seen(qx, qy), exponent).sqrt();
         let (mut columns, moments) = waves.amplitudes(self.seed, amplitude);
-        if moments.height <= 0.0 {
-            return Err(Error::invalid(
-                "band of wavelengths",
-                format!("{:e} m to {:e} m", self.shortest, self.longest),
-                "wide enough to hold a wave that fits the domain (size over an integer along x and y)",
-            ));
-        }
+        require(
+            moments.height > 0.0,
+            "band of wavelengths",
+            format!("{:e} m to {:e} m", self.shortest, self.longest),
+            "wide enough to hold a wave that fits the domain (size over an integer along x and y)",
+        )?;
         let scale = match self.roughness {
             Roughness::RmsHeight(height) => height / moments.height.sqrt(),
             Roughness::RmsGradient(gradient) => gradient / moments.gradient.sqrt(),
         };
         let heights = waves.sum(&mut columns, scale);
-        if heights.iter().all(|z| z.is_finite()) {
-            Ok(heights)
-        } else {
-            Err(Error::invalid(
-                "height of the self-affine surface",
-                "too large for a number",
-                "finite; check the roughness and its unit",
-            ))
-        }
+        require(
+            heights.iter().all(|z| z.is_finite()),
+            "height of the self-affine surface",
+            "too large for a number",
+            "finite; check the roughness and its unit",
+        )?;
+        Ok(heights)
     }
 
     /// Power spectrum up to a factor: 1 on the flat part, (q / q_rolloff)^exponent beyond.
@@ -153,11 +150,14 @@ impl SelfAffine {
     /// Checks the numbers, also against the grid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`heights`](Self::heights).
+    /// [`Error::Invalid`](crate::Error::Invalid) as [`heights`](Self::heights).
     pub fn validate(&self, grid: &Grid) -> Result<()> {
-        if !(self.hurst > 0.0 && self.hurst <= 1.0) {
-            return Err(Error::invalid("Hurst exponent", self.hurst, "greater than 0 and at most 1"));
-        }
+        require(
+            self.hurst > 0.0 && self.hurst <= 1.0,
+            "Hurst exponent",
+            self.hurst,
+            "greater than 0 and at most 1",
+        )?;
         match self.roughness {
             Roughness::RmsGradient(g) => positive("rms gradient", g, "")?,
             Roughness::RmsHeight(h) => positive("rms height", h, "m")?,
@@ -166,35 +166,34 @@ impl SelfAffine {
         positive("shortest wavelength", self.shortest, "m")?;
         positive("roll-off wavelength", self.roll_off, "m")?;
         let meters = |l: f64| format!("{l:e} m");
-        let (two_cells, domain) = (2.0 * grid.cell_sides().fold(0.0, f64::max), grid.longest_side());
-        if self.shortest < two_cells * (1.0 - SAME) {
-            return Err(Error::invalid(
-                "shortest wavelength",
+        let (two_cells, domain) = (2.0 * grid.longest_cell(), grid.longest_side());
+        require(
+            self.shortest >= two_cells * (1.0 - SAME),
+            "shortest wavelength",
+            meters(self.shortest),
+            format!("at least two cells, {}; refine the grid or cut longer waves off", meters(two_cells)),
+        )
+        .map_err(|error| error.of("shortest"))?;
+
+        require(
+            self.longest <= domain * (1.0 + SAME),
+            "longest wavelength",
+            meters(self.longest),
+            format!("at most the size of the domain, {}", meters(domain)),
+        )
+        .map_err(|error| error.of("longest"))?;
+
+        require(
+            self.shortest <= self.roll_off && self.roll_off <= self.longest,
+            "roll-off wavelength",
+            meters(self.roll_off),
+            format!(
+                "between the shortest, {}, and the longest, {}",
                 meters(self.shortest),
-                format!("at least two cells, {}; refine the grid or cut longer waves off", meters(two_cells)),
-            )
-            .of("shortest"));
-        }
-        if self.longest > domain * (1.0 + SAME) {
-            return Err(Error::invalid(
-                "longest wavelength",
-                meters(self.longest),
-                format!("at most the size of the domain, {}", meters(domain)),
-            )
-            .of("longest"));
-        }
-        if !(self.shortest <= self.roll_off && self.roll_off <= self.longest) {
-            return Err(Error::invalid(
-                "roll-off wavelength",
-                meters(self.roll_off),
-                format!(
-                    "between the shortest, {}, and the longest, {}",
-                    meters(self.shortest),
-                    meters(self.longest)
-                ),
-            )
-            .of("roll_off"));
-        }
+                meters(self.longest)
+            ),
+        )
+        .map_err(|error| error.of("roll_off"))?;
         Ok(())
     }
 }

@@ -14,7 +14,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, positive, require};
 
 /// A smooth shape, placed with its centre on the centre of the domain or at an offset from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,7 +162,7 @@ impl Shape {
     /// Checks the shape's numbers.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a radius or wavelength is not positive (infinity is accepted), the
+    /// [`Error::Invalid`](crate::Error::Invalid) if a radius or wavelength is not positive (infinity is accepted), the
     /// slope or a punch's size is not positive, or the amplitude is not finite.
     pub fn validate(&self) -> Result<()> {
         match self {
@@ -180,18 +180,15 @@ impl Shape {
                 radius_or_flat("size of the flat punch along y", size[1])
             }
             Shape::Wave { amplitude, wavelength } => {
-                if !amplitude.is_finite() {
-                    return Err(Error::invalid("amplitude of the wave", amplitude, "finite, in m"));
-                }
+                require(amplitude.is_finite(), "amplitude of the wave", amplitude, "finite, in m")?;
                 radius_or_flat("wavelength along x", wavelength[0])?;
                 radius_or_flat("wavelength along y", wavelength[1])?;
-                if wavelength.iter().all(|l| l.is_infinite()) {
-                    return Err(Error::invalid(
-                        "wavelength of the wave",
-                        "infinite along x and y",
-                        "finite along one axis at least",
-                    ));
-                }
+                require(
+                    !wavelength.iter().all(|l| l.is_infinite()),
+                    "wavelength of the wave",
+                    "infinite along x and y",
+                    "finite along one axis at least",
+                )?;
                 Ok(())
             }
         }
@@ -212,11 +209,7 @@ impl Punch {
 
 /// A length > 0 that may be infinite: straight along that axis.
 fn radius_or_flat(what: &str, value: f64) -> Result<()> {
-    if value > 0.0 {
-        Ok(())
-    } else {
-        Err(Error::invalid(what, value, "greater than 0 m (inf for a straight line)"))
-    }
+    require(value > 0.0, what, value, "greater than 0 m (inf for a straight line)")
 }
 
 #[cfg(test)]

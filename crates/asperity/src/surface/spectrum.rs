@@ -14,13 +14,13 @@ use asperity_convolution::plane::RealPlane;
 use ndarray::{Array2, ArrayView2};
 use rustfft::num_complex::Complex64;
 
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 use crate::grid::Grid;
 
 /// Amplitudes A_k of the heights.
 pub(super) fn transform(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<Complex64>> {
     check_shape(grid, heights)?;
-    check_defined(heights)?;
+    check_defined(heights.iter())?;
     let plane = RealPlane::new(grid.cells(), grid.cells());
     let mut columns = Array2::zeros((plane.waves_along_y(), grid.cells()[0]));
     let scale = 1.0 / grid.len() as f64;
@@ -67,25 +67,22 @@ pub(super) fn count(grid: &Grid, j: usize) -> f64 {
 /// Refuses heights that do not have the shape of the grid.
 pub(super) fn check_shape(grid: &Grid, heights: ArrayView2<f64>) -> Result<()> {
     let ((mx, my), (nx, ny)) = (heights.dim(), grid.shape());
-    if (mx, my) == (nx, ny) {
-        return Ok(());
-    }
-    Err(Error::invalid(
+    require(
+        (mx, my) == (nx, ny),
         "shape of the heights",
         format!("{mx} x {my}"),
         format!("that of the grid, {nx} x {ny}"),
-    ))
+    )
 }
 
 /// Refuses undefined heights.
-pub(super) fn check_defined(heights: ArrayView2<f64>) -> Result<()> {
-    let undefined = heights.iter().filter(|z| !z.is_finite()).count();
-    if undefined == 0 {
-        return Ok(());
-    }
-    Err(Error::invalid(
+pub(super) fn check_defined<'a>(heights: impl ExactSizeIterator<Item = &'a f64>) -> Result<()> {
+    let count = heights.len();
+    let undefined = heights.filter(|z| !z.is_finite()).count();
+    require(
+        undefined == 0,
         "number of undefined heights",
-        format!("{undefined} of {}", heights.len()),
+        format!("{undefined} of {count}"),
         "0 here; fill the undefined points first",
-    ))
+    )
 }

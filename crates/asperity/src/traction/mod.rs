@@ -185,7 +185,7 @@ impl Run<'_> {
             Prescribed::Load(load) => {
                 let carried = load - cell_area * sum(&own.bound);
                 if carried <= 0.0 {
-                    return Err(Error::Infeasible { load: carried, max: 0.0 });
+                    return Err(Error::Infeasible { parameter: String::new(), load: carried, max: 0.0 });
                 }
                 Prescribed::Load(carried)
             }

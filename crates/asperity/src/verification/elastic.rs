@@ -1,15 +1,13 @@
 //! Elastic contacts compared with closed forms, for unit contact modulus.
 
-use super::{Check, Checks, elastic_contact, shape_on};
+use super::{Check, Checks, elastic_contact, first, on_grid, shape_on, under};
 use crate::contact::SolverOptions;
-use crate::drive::Drive;
-use crate::drive::March;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Loading};
+use crate::load::{Control, History};
 use crate::reference::{CappedHertz, CircularPunch, HertzEllipse, HertzSphere, SneddonCone, Westergaard};
 use crate::simulation::Simulation;
-use crate::surface::{Part, Punch, Shape, undeformed_gap};
+use crate::surface::{Punch, Shape};
 
 /// (dx/a)^2 times `factor`: the discretisation error of approach and peak pressure.
 fn second_order(dx: f64, a: f64, factor: f64) -> f64 {
@@ -48,9 +46,8 @@ pub(super) fn hertz_ellipse() -> Result<Vec<Check>> {
     let (nx, ny) = (193, 131);
     let grid = Grid::new([nx, ny], [4.4, 2.0])?;
     let shape = Shape::Ellipsoid { radius_x: 4.0, radius_y: 1.0 };
-    let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }])?;
     let exact = HertzEllipse::under_load([4.0, 1.0], 1.0, 1.0)?;
-    let (row, _) = elastic_contact(Simulation::new(grid, gap), 1.0)?;
+    let (row, _) = elastic_contact(on_grid(grid, shape)?, 1.0)?;
     let [dx, dy] = grid.spacing();
     let [a, b] = exact.semi_axes;
     let ratio = (dx / a).max(dy / b);
@@ -105,38 +102,37 @@ pub(super) fn flat_punch() -> Result<Vec<Check>> {
     Ok(checks.list)
 }
 
+/// Cells along a wave.
+const CELLS: usize = 512;
+
 pub(super) fn westergaard_wave() -> Result<Vec<Check>> {
-    let mut checks = Checks::new("westergaard-wave", "Westergaard 1939; Johnson 1985, section 13.2");
-    let n = 512;
-    let grid = Grid::new([n, 4], [1.0, 4.0 / n as f64])?;
-    let shape = Shape::Wave { amplitude: 0.01, wavelength: [1.0, f64::INFINITY] };
-    let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }])?;
+    wave("westergaard-wave", Grid::new([CELLS, 4], [1.0, 4.0 / CELLS as f64])?)
+}
+
+pub(super) fn westergaard_line() -> Result<Vec<Check>> {
+    wave("westergaard-line", Grid::line(CELLS, 1.0)?)
+}
+
+fn wave(case: &'static str, grid: Grid) -> Result<Vec<Check>> {
+    let mut checks = Checks::new(case, "Westergaard 1939; Johnson 1985, section 13.2");
     let full = std::f64::consts::PI * 0.01;
+    let dx = grid.spacing()[0];
     for share in [0.1, 0.5, 0.9] {
         let simulation = Simulation {
             boundary: Boundary::Periodic,
-            loading: Loading { control: Control::Pressure, history: History::Step { value: share * full } }
-                .into(),
-            ..Simulation::new(grid, gap.clone())
+            loading: under(Control::Pressure, History::Step { value: share * full }),
+            ..on_grid(grid, Shape::Wave { amplitude: 0.01, wavelength: [1.0, f64::INFINITY] })?
         };
         let exact = Westergaard::under_pressure(0.01, 1.0, 1.0, share * full)?;
-        let mut march = March::new(simulation)?;
-        let row = march.advance()?.map(|s| s.row()).unwrap_or_default();
-        let dx = 1.0 / n as f64;
+        let (row, ..) = first(simulation)?;
         let name = |what: &str| format!("{what} at {share} p*");
         // Each end of a strip of contact is known to a cell.
-        checks.absolute(
-            name("contact fraction"),
-            (row.contact_fraction - exact.contact_fraction()).abs(),
-            2.0 * dx,
-        );
+        let off = (row.contact_fraction - exact.contact_fraction()).abs();
+        checks.absolute(name("contact fraction"), off, 2.0 * dx);
         // No cell centre lies on the crest, and a wave of N cells resolves its square-root ends to 1/N.
         checks.relative(name("peak pressure"), row.max_pressure, exact.pressure(0.0), 2.0 * dx);
-        checks.absolute(
-            name("mean gap over amplitude"),
-            (row.mean_gap - exact.mean_gap()).abs() / 0.01,
-            2.0 * dx,
-        );
+        let off = (row.mean_gap - exact.mean_gap()).abs() / 0.01;
+        checks.absolute(name("mean gap over amplitude"), off, 2.0 * dx);
     }
     Ok(checks.list)
 }

@@ -1,11 +1,10 @@
 //! Energy, stiffness and permanent flattening, compared with closed forms and consequences of the contact conditions.
 
-use super::{Check, Checks, shape_on, step_load, zener};
+use super::{Check, Checks, shape_on, step_load, under, zener};
 use crate::contact::SolverOptions;
-use crate::drive::Drive;
-use crate::drive::March;
+use crate::drive::{Drive, March};
 use crate::error::Result;
-use crate::load::{Control, History, Loading};
+use crate::load::{Control, History};
 use crate::material::Creep;
 use crate::quantities::{Quantities, Quantity};
 use crate::simulation::{Plasticity, Simulation};
@@ -73,7 +72,7 @@ pub(super) fn balance() -> Result<Vec<Check>> {
         let history = History::Table { points: vec![(0.0, 0.005), (2.0, 0.02)] };
         let sphere = Simulation {
             creep: zener(),
-            loading: Loading { control: Control::Load, history }.into(),
+            loading: under(Control::Load, history),
             times: TimeGrid::Uniform { end: 2.0, steps },
             ..shape_on(48, 0.5, Shape::Sphere { radius: 1.0 })?
         };
@@ -98,7 +97,7 @@ pub(super) fn dents() -> Result<Vec<Check>> {
             // A small tolerance, so that equal sets are found to be equal.
             solver: SolverOptions { tolerance: 1e-9, ..SolverOptions::default() },
             plasticity,
-            loading: Loading { control: Control::Load, history }.into(),
+            loading: under(Control::Load, history),
             times: TimeGrid::Uniform { end: steps as f64, steps },
             ..shape_on(48, 0.5, Shape::Sphere { radius: 1.0 })?
         })

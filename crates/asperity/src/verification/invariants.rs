@@ -1,12 +1,11 @@
 //! Facts that hold to the solver's tolerance on any grid, for any surface.
 
-use super::{Check, Checks, rows, step_load, zener};
+use super::{Check, Checks, first, rows, step_load, under, zener};
 use crate::contact::SolverOptions;
-use crate::drive::Drive;
-use crate::drive::March;
+use crate::drive::{Drive, March};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Loading, Programme};
+use crate::load::{Control, History, Programme};
 use crate::material::Creep;
 use crate::simulation::Simulation;
 use crate::step::Row;
@@ -37,11 +36,9 @@ fn rough(boundary: Boundary) -> Result<Simulation> {
 }
 
 /// The elastic contact of compliance `c` under a load: its row and pressure.
-fn elastic(base: &Simulation, c: f64, loading: impl Into<Programme>) -> Result<(Row, Vec<f64>)> {
-    let mut march =
-        March::new(Simulation { creep: Creep::elastic(c), loading: loading.into(), ..base.clone() })?;
-    let step = march.advance()?;
-    Ok(step.map(|s| (s.row(), s.pressure().iter().copied().collect())).unwrap_or_default())
+fn elastic(base: &Simulation, c: f64, loading: Programme) -> Result<(Row, Vec<f64>)> {
+    let simulation = Simulation { creep: Creep::elastic(c), loading, ..base.clone() };
+    first(simulation).map(|(row, pressure, _)| (row, pressure))
 }
 
 fn name(boundary: Boundary) -> &'static str {
@@ -61,7 +58,7 @@ pub(super) fn one_elastic_solve() -> Result<Vec<Check>> {
         let ramp = History::Ramp { value: 0.3, duration: 2.0 };
         let rows = rows(Simulation {
             creep: zener(),
-            loading: Loading { control: Control::Load, history: ramp }.into(),
+            loading: under(Control::Load, ramp),
             times: TimeGrid::List(vec![0.5, 2.0, 2.7, 9.0]),
             ..base.clone()
         })?;
@@ -116,7 +113,7 @@ pub(super) fn duality() -> Result<Vec<Check>> {
             let base = Simulation { hardness, ..rough(boundary)? };
             let (loaded, _) = elastic(&base, 0.25, step_load(0.2))?;
             let history = History::Step { value: loaded.approach };
-            let (pressed, _) = elastic(&base, 0.25, Loading { control: Control::Approach, history })?;
+            let (pressed, _) = elastic(&base, 0.25, under(Control::Approach, history))?;
             let cap = if hardness.is_finite() { "capped" } else { "uncapped" };
             checks.relative(
                 format!("load, {}, {cap}", name(boundary)),

@@ -1,32 +1,12 @@
 //! Line contacts compared with closed forms, for unit contact modulus.
 
-use crate::drive::Drive;
 use std::f64::consts::{FRAC_2_PI, PI};
 
-use super::{Check, Checks, step_load};
-use crate::drive::March;
+use super::{Check, Checks, first, on_grid, step_load};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Loading};
-use crate::reference::Westergaard;
 use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::{Part, Punch, Shape, undeformed_gap};
-
-/// The first row of a line contact, its pressure and its displacement.
-fn contact(simulation: Simulation) -> Result<(Row, Vec<f64>, Vec<f64>)> {
-    let shape = simulation.grid.shape();
-    let mut march = March::new(simulation)?;
-    let Some(step) = march.advance()? else { return Ok((Row::default(), vec![], vec![])) };
-    let mut displacement = ndarray::Array2::zeros(shape);
-    step.displacement_into(&mut displacement);
-    Ok((step.row(), step.pressure().iter().copied().collect(), displacement.into_raw_vec_and_offset().0))
-}
-
-fn shape_on(grid: Grid, shape: Shape) -> Result<Simulation> {
-    let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }])?;
-    Ok(Simulation::new(grid, gap))
-}
+use crate::surface::{Punch, Shape};
 
 pub(super) fn hertz() -> Result<Vec<Check>> {
     let mut checks = Checks::new("hertz-line", "Hertz 1881; Johnson 1985, section 4.2(c)");
@@ -35,8 +15,8 @@ pub(super) fn hertz() -> Result<Vec<Check>> {
     let a = (4.0 * load / PI).sqrt();
     let grid = Grid::line(n, 4.0 * a)?;
     let simulation =
-        Simulation { loading: step_load(load), ..shape_on(grid, Shape::Cylinder { radius: 1.0 })? };
-    let (row, pressure, displacement) = contact(simulation)?;
+        Simulation { loading: step_load(load), ..on_grid(grid, Shape::Cylinder { radius: 1.0 })? };
+    let (row, pressure, displacement) = first(simulation)?;
     let second_order = (grid.spacing()[0] / a).powi(2);
     checks.relative("load per length", row.load, load, 1e-12);
     checks.relative("peak pressure", row.max_pressure, FRAC_2_PI * load / a, 2.0 * second_order);
@@ -73,9 +53,9 @@ pub(super) fn strip_punch() -> Result<Vec<Check>> {
     let simulation = Simulation {
         boundary: Boundary::Periodic,
         loading: step_load(load),
-        ..shape_on(grid, Shape::FlatPunch(punch))?
+        ..on_grid(grid, Shape::FlatPunch(punch))?
     };
-    let (row, pressure, displacement) = contact(simulation)?;
+    let (row, pressure, displacement) = first(simulation)?;
     // The edges, at which the pressure is infinite, are first order.
     let first_order = 1.0 / n as f64;
     let sine = |x: f64| (PI * x).sin();
@@ -93,32 +73,5 @@ pub(super) fn strip_punch() -> Result<Vec<Check>> {
         6.0 * first_order,
     );
     checks.absolute("contact length", (row.contact_area - 2.0 * half).abs(), 1e-12);
-    Ok(checks.list)
-}
-
-pub(super) fn westergaard() -> Result<Vec<Check>> {
-    let mut checks = Checks::new("westergaard-line", "Westergaard 1939; Johnson 1985, section 13.2");
-    let n = 512;
-    let grid = Grid::line(n, 1.0)?;
-    let full = PI * 0.01;
-    for share in [0.1, 0.5, 0.9] {
-        let wave = Shape::Wave { amplitude: 0.01, wavelength: [1.0, f64::INFINITY] };
-        let simulation = Simulation {
-            boundary: Boundary::Periodic,
-            loading: Loading { control: Control::Pressure, history: History::Step { value: share * full } }
-                .into(),
-            ..shape_on(grid, wave)?
-        };
-        let exact = Westergaard::under_pressure(0.01, 1.0, 1.0, share * full)?;
-        let (row, ..) = contact(simulation)?;
-        let dx = 1.0 / n as f64;
-        let name = |what: &str| format!("{what} at {share} p*");
-        // As for the wave on a plane: each end of the contact is known to a cell.
-        let off = (row.contact_fraction - exact.contact_fraction()).abs();
-        checks.absolute(name("contact fraction"), off, 2.0 * dx);
-        checks.relative(name("peak pressure"), row.max_pressure, exact.pressure(0.0), 2.0 * dx);
-        let off = (row.mean_gap - exact.mean_gap()).abs() / 0.01;
-        checks.absolute(name("mean gap over amplitude"), off, 2.0 * dx);
-    }
     Ok(checks.list)
 }

@@ -1,9 +1,8 @@
 //! Loading programmes: stages, adaptive steps, cycles, pull-off.
 
-use super::{Check, Checks, rows, shape_on, step_load, zener};
+use super::{Check, Checks, rows, shape_on, step_load, under, zener};
 use crate::cycles::cycles;
-use crate::drive::Drive;
-use crate::drive::March;
+use crate::drive::{Drive, March};
 use crate::error::Result;
 use crate::load::{Control, Course, Event, History, Loading, Programme, Stage};
 use crate::material::{Creep, CreepTerm};
@@ -55,7 +54,7 @@ pub(super) fn event() -> Result<Vec<Check>> {
     // The load that an elastic contact of compliance C(0) needs for the target gives C(t) at the event.
     let history = History::Step { value: target };
     let elastic = rows(Simulation {
-        loading: Loading { control: Control::Approach, history }.into(),
+        loading: under(Control::Approach, history),
         creep: Creep::elastic(0.25),
         times: TimeGrid::Uniform { end: 1.0, steps: 1 },
         ..sphere()?
@@ -100,8 +99,7 @@ pub(super) fn adaptive() -> Result<Vec<Check>> {
         ..shape_on(32, 1.0, Shape::Sphere { radius: 1.0 })?
     };
     let history = History::Step { value: 0.03 };
-    let held =
-        rows(Simulation { loading: Loading { control: Control::Approach, history }.into(), ..base.clone() })?;
+    let held = rows(Simulation { loading: under(Control::Approach, history), ..base.clone() })?;
     let relaxation = creep.to_relaxation()?;
     let first = held.first().map_or(0.0, |row| row.load);
     let exact = |t: f64| first * relaxation.value(t) / relaxation.value(0.0);
@@ -115,7 +113,7 @@ pub(super) fn adaptive() -> Result<Vec<Check>> {
 pub(super) fn dense_output() -> Result<Vec<Check>> {
     let mut checks = Checks::new("dense-output", "states between steps against steps that end there");
     let points = vec![(0.0, 0.0), (1.0, 0.3), (3.0, 0.05)];
-    let loading: Programme = Loading { control: Control::Load, history: History::Table { points } }.into();
+    let loading: Programme = under(Control::Load, History::Table { points });
     let at = [0.25, 1.55, 2.45];
     let run = |steps: usize| -> Result<f64> {
         let simulation = Simulation {
@@ -161,7 +159,7 @@ pub(super) fn loss_angle() -> Result<Vec<Check>> {
     let punch = Shape::FlatPunch(Punch::Circle { radius: 0.3 });
     let base = Simulation { creep: zener(), ..shape_on(32, 1.0, punch)? };
     let history = History::Sine { mean: 1.0, amplitude: 0.5, frequency };
-    let loading: Programme = Loading { control: Control::Load, history }.into();
+    let loading: Programme = under(Control::Load, history);
     let found = |times: TimeGrid| -> Result<(f64, f64)> {
         let rows = rows(Simulation { loading: loading.clone(), times, ..base.clone() })?;
         let column = |value: fn(&Row) -> f64| rows.iter().map(value).collect::<Vec<f64>>();

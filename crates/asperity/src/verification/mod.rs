@@ -14,8 +14,7 @@ mod springs;
 mod temperature;
 mod viscoelastic;
 
-use crate::drive::Drive;
-use crate::drive::March;
+use crate::drive::{Drive, March};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::load::{Control, History, Loading, Programme};
@@ -59,7 +58,7 @@ pub const CASES: [Case; 32] = [
     ("capped-hertz", elastic::capped_hertz),
     ("hertz-line", line::hertz),
     ("strip-punch", line::strip_punch),
-    ("westergaard-line", line::westergaard),
+    ("westergaard-line", elastic::westergaard_line),
     ("ting-step", viscoelastic::ting_step),
     ("ting-triangle", viscoelastic::ting_triangle),
     ("westergaard-creep", viscoelastic::westergaard_creep),
@@ -123,13 +122,20 @@ fn zener_relaxation() -> Relaxation {
 
 /// One shape on a square domain of n x n cells.
 fn shape_on(n: usize, size: f64, shape: Shape) -> Result<Simulation> {
-    let grid = Grid::new([n, n], [size, size])?;
+    on_grid(Grid::new([n, n], [size, size])?, shape)
+}
+
+fn on_grid(grid: Grid, shape: Shape) -> Result<Simulation> {
     let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }])?;
     Ok(Simulation::new(grid, gap))
 }
 
 fn step_load(value: f64) -> Programme {
-    Loading { control: Control::Load, history: History::Step { value } }.into()
+    under(Control::Load, History::Step { value })
+}
+
+fn under(control: Control, history: History) -> Programme {
+    Loading { control, history }.into()
 }
 
 /// The rows of a simulation.
@@ -142,15 +148,21 @@ fn rows(simulation: Simulation) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
+/// The first row of a simulation, its pressure and its displacement, cell by cell.
+fn first(simulation: Simulation) -> Result<(Row, Vec<f64>, Vec<f64>)> {
+    let mut displacement = ndarray::Array2::zeros(simulation.grid.shape());
+    let mut march = March::new(simulation)?;
+    let Some(step) = march.advance()? else { return Ok(Default::default()) };
+    step.displacement_into(&mut displacement);
+    let pressure = step.pressure().iter().copied().collect();
+    Ok((step.row(), pressure, displacement.into_raw_vec_and_offset().0))
+}
+
 /// An elastic contact of unit modulus under a load: its row and the pressure along the middle row.
 fn elastic_contact(simulation: Simulation, load: f64) -> Result<(Row, Vec<f64>)> {
-    let mut march = March::new(Simulation { loading: step_load(load), ..simulation })?;
-    let Some(step) = march.advance()? else {
-        return Ok((Row::default(), vec![]));
-    };
-    let pressure = step.pressure();
-    let middle = pressure.row(pressure.nrows() / 2).to_vec();
-    Ok((step.row(), middle))
+    let [nx, ny] = simulation.grid.cells();
+    let (row, pressure, _) = first(Simulation { loading: step_load(load), ..simulation })?;
+    Ok((row, pressure[nx / 2 * ny..][..ny].to_vec()))
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Bodies whose temperature changes: reduced time compared with closed forms and the row of springs.
 
-use super::{Check, Checks, rows, shape_on, step_load, zener, zener_relaxation};
+use super::{Check, Checks, rows, shape_on, step_load, under, zener, zener_relaxation};
 use crate::error::Result;
-use crate::load::{Control, History, Loading};
+use crate::load::{Control, History};
 use crate::material::{Creep, ReducedTime, Shift, ThermalCreep};
 use crate::reference::{HertzSphere, Mdr, MdrProfile, MdrTarget};
 use crate::simulation::Simulation;
@@ -72,7 +72,7 @@ pub(super) fn temperature_springs() -> Result<Vec<Check>> {
     let simulation = Simulation {
         creep: Creep::default(),
         thermal: vec![body(zener())?],
-        loading: Loading { control: Control::Load, history }.into(),
+        loading: under(Control::Load, history),
         times,
         ..shape_on(n, size, Shape::Sphere { radius: 1.0 })?
     };

@@ -1,17 +1,16 @@
 //! Viscoelastic contacts compared with solutions in time.
 
-use super::{Check, Checks, rows, shape_on, zener, zener_relaxation};
+use super::{Check, Checks, on_grid, rows, shape_on, under, zener, zener_relaxation};
 use crate::contact::SolverOptions;
-use crate::drive::Drive;
-use crate::drive::March;
+use crate::drive::{Drive, March};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Loading};
+use crate::load::{Control, History};
 use crate::material::Relaxation;
 use crate::reference::{CircularPunch, Ting, WestergaardStep};
 use crate::simulation::Simulation;
 use crate::step::Row;
-use crate::surface::{Part, Punch, Shape, undeformed_gap};
+use crate::surface::{Punch, Shape};
 use crate::time::TimeGrid;
 
 fn tight() -> SolverOptions {
@@ -54,7 +53,7 @@ fn sphere_follows(
     let exact = Ting::new(radius, &zener(), history, times.end())?;
     let simulation = Simulation {
         creep: zener(),
-        loading: Loading { control: Control::Load, history: history.clone() }.into(),
+        loading: under(Control::Load, history.clone()),
         times,
         ..shape_on(n, size, Shape::Sphere { radius })?
     };
@@ -89,14 +88,13 @@ pub(super) fn westergaard_creep() -> Result<Vec<Check>> {
     let pressure = 0.037_699_111_843_077_52;
     let grid = Grid::new([n, 4], [1.0, 4.0 / n as f64])?;
     let shape = Shape::Wave { amplitude: 0.01, wavelength: [1.0, f64::INFINITY] };
-    let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }])?;
     let exact = WestergaardStep::under_pressure(0.01, 1.0, &zener(), pressure)?;
     let simulation = Simulation {
         boundary: Boundary::Periodic,
         creep: zener(),
-        loading: Loading { control: Control::Pressure, history: History::Step { value: pressure } }.into(),
+        loading: under(Control::Pressure, History::Step { value: pressure }),
         times: TimeGrid::Uniform { end: 4.0, steps: 80 },
-        ..Simulation::new(grid, gap)
+        ..on_grid(grid, shape)?
     };
     let dx = 1.0 / n as f64;
     for row in rows(simulation)?.iter().step_by(20) {
@@ -142,7 +140,7 @@ pub(super) fn stiff_held_approach() -> Result<Vec<Check>> {
             let history = History::Step { value: 0.04 };
             let rows = rows(Simulation {
                 creep: modulus.to_creep()?,
-                loading: Loading { control: Control::Approach, history }.into(),
+                loading: under(Control::Approach, history),
                 times,
                 solver: tight(),
                 ..shape_on(33, 0.6, Shape::Sphere { radius: 1.0 })?
@@ -164,7 +162,7 @@ pub(super) fn held_approach() -> Result<Vec<Check>> {
     let depth = 0.04;
     let simulation = Simulation {
         creep: zener(),
-        loading: Loading { control: Control::Approach, history: History::Step { value: depth } }.into(),
+        loading: under(Control::Approach, History::Step { value: depth }),
         times: TimeGrid::Uniform { end: 2.0, steps: 80 },
         solver: tight(),
         ..shape_on(n, size, Shape::Sphere { radius: 1.0 })?
@@ -199,7 +197,7 @@ pub(super) fn flat_punch_history() -> Result<Vec<Check>> {
     let history = History::Table { points };
     let simulation = Simulation {
         creep: zener(),
-        loading: Loading { control: Control::Load, history: history.clone() }.into(),
+        loading: under(Control::Load, history.clone()),
         times: TimeGrid::List(vec![0.5, 1.5, 2.5, 3.5, 4.0, 6.0, 10.0]),
         solver: SolverOptions { tolerance: 1e-10, ..SolverOptions::default() },
         ..shape_on(48, 2.4, Shape::FlatPunch(Punch::Circle { radius: 1.0 }))?
@@ -227,7 +225,7 @@ pub(super) fn order_in_time() -> Result<Vec<Check>> {
         let history = History::Sine { mean, amplitude, frequency };
         let simulation = Simulation {
             creep: zener(),
-            loading: Loading { control: Control::Approach, history }.into(),
+            loading: under(Control::Approach, history),
             times: TimeGrid::Uniform { end: 1.0, steps },
             solver: SolverOptions { tolerance: 1e-11, ..SolverOptions::default() },
             ..shape_on(24, 1.0, Shape::FlatPunch(Punch::Circle { radius: 0.3 }))?

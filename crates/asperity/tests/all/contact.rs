@@ -307,7 +307,7 @@ fn limits_of_the_load_are_told() {
     assert!(matches!(solve(-1.0), Err(Error::Invalid { .. })));
     assert!(matches!(solve(f64::NAN), Err(Error::Invalid { .. })));
     match solve(7.0) {
-        Err(Error::Infeasible { load, max }) => {
+        Err(Error::Infeasible { load, max, .. }) => {
             assert_eq!(load, 7.0);
             assert!((max - 6.25).abs() < 1e-12);
         }

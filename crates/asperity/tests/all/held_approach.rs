@@ -99,7 +99,8 @@ fn a_held_approach_relaxes_as_the_modulus_does_in_steps_of_any_length() {
             // The solver's tolerance, which holds for each row alone.
             let error = off(&rows, &relaxation, |t| t);
             assert!(error < 1e-7, "{error:e}");
-            assert!(rows.iter().all(|row| row.time_error.is_some_and(f64::is_finite) == adaptive));
+            // Exact but for the rounding errors of u.
+            assert!(rows.iter().all(|row| row.time_error.is_some_and(|error| error < 1e-6)));
             assert!(!adaptive || rows.len() < 80, "{} rows", rows.len());
         }
     }

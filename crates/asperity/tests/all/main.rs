@@ -23,3 +23,4 @@ mod sliding;
 mod stages;
 mod temperature;
 mod thin_sample;
+mod time_error;

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use asperity::convolution::Convolution;
+use asperity::convolution::OnRustfft;
 use asperity::kernel::{HalfSpace, Kernel};
 use asperity::operator::{Backend, ConvolutionPlan, InversePlan, plan, plan_on};
 use asperity::{Boundary, ContactState, Grid, Method, Prescribed, Problem, Result, Solver, SolverOptions};
@@ -125,7 +125,7 @@ impl Backend for Reference {
         lengths: [usize; 2],
         spectrum: ArrayView2<f64>,
     ) -> Box<dyn ConvolutionPlan> {
-        Box::new(Convolution::on_rustfft(cells, lengths, spectrum))
+        Box::new(ReferencePlan(OnRustfft::new(cells, lengths, spectrum)))
     }
 
     fn bytes(&self, _: [usize; 2], _: [usize; 2]) -> usize {
@@ -139,7 +139,7 @@ impl Backend for Reference {
         inverse: ArrayView2<f64>,
         screened: ArrayView2<f64>,
     ) -> Box<dyn InversePlan> {
-        let plan = |spectrum| Convolution::on_rustfft(cells, lengths, spectrum);
+        let plan = |spectrum| OnRustfft::new(cells, lengths, spectrum);
         Box::new(ReferenceInverse { inverse: plan(inverse), screened: plan(screened) })
     }
 
@@ -148,12 +148,20 @@ impl Backend for Reference {
     }
 }
 
-struct ReferenceInverse {
-    inverse: Convolution,
-    screened: Convolution,
+struct ReferencePlan(OnRustfft);
+
+impl ConvolutionPlan for ReferencePlan {
+    fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
+        self.0.apply_into(p, u);
+    }
 }
 
-fn times(plan: &mut Convolution, x: &[f64]) -> Vec<f64> {
+struct ReferenceInverse {
+    inverse: OnRustfft,
+    screened: OnRustfft,
+}
+
+fn times(plan: &mut OnRustfft, x: &[f64]) -> Vec<f64> {
     let mut y = vec![0.0; x.len()];
     plan.apply_into(x, &mut y);
     y

@@ -33,15 +33,15 @@ pub(super) struct Cost {
 /// The cost of a case; `None` where it cannot be estimated.
 pub(super) fn cost(case: &Case, description: &Description) -> Option<Cost> {
     let estimate = case.cost()?;
-    let iteration = match case.solver.method {
+    let iteration = match case.conditions.solver.method {
         Method::ProjectedCg => PROJECTED_CG,
         Method::PolonskyKeer => POLONSKY_KEER,
     };
     let rows = estimate.rows as f64;
-    let past = if case.scheme == Scheme::Direct { 0.5 * PAST * rows * rows } else { 0.0 };
+    let past = if case.conditions.scheme == Scheme::Direct { 0.5 * PAST * rows * rows } else { 0.0 };
     let terms = description.retardation_times.len() as f64;
     let units = iteration * estimate.convolutions as f64 + (ROW + TERM * terms) * rows + past;
-    let cells = case.grid.len() as f64;
+    let cells = case.conditions.grid.len() as f64;
     let stored = description.stored_rows.unwrap_or(estimate.rows) as f64;
     let fields = 8.0 * cells * (stored * description.fields.len() as f64 + 1.0);
     Some(Cost { estimate, seconds: START + units * convolution(case)? + fields / STORED })
@@ -49,9 +49,9 @@ pub(super) fn cost(case: &Case, description: &Description) -> Option<Cost> {
 
 /// What a convolution takes here \[s\], timed on a small grid and scaled as N log N.
 fn convolution(case: &Case) -> Option<f64> {
-    let cells = case.grid.cells().map(|n| n.min(TIMED));
-    let grid = case.grid.with_cells(cells).ok()?;
-    let mut operator = half_space(grid, case.boundary);
+    let cells = case.conditions.grid.cells().map(|n| n.min(TIMED));
+    let grid = case.conditions.grid.with_cells(cells).ok()?;
+    let mut operator = half_space(grid, case.conditions.boundary);
     let pressure = vec![1.0; grid.len()];
     let mut displacement = vec![0.0; grid.len()];
     operator.apply_into(&pressure, &mut displacement);
@@ -60,7 +60,7 @@ fn convolution(case: &Case) -> Option<f64> {
         operator.apply_into(&pressure, &mut displacement);
     }
     let timed = start.elapsed().as_secs_f64() / 3.0;
-    Some(timed * growth(&grid, &case.grid))
+    Some(timed * growth(&grid, &case.conditions.grid))
 }
 
 /// How much longer transforms take on the second grid: N log N.
@@ -77,11 +77,12 @@ const TIMED_FLOW: usize = 128;
 pub(super) fn leak_seconds(case: &Case, description: &Description) -> Option<f64> {
     let leak = case.leakage.as_ref()?;
     let times = leak.times.as_ref().map(Vec::len).or(description.stored_rows)? as f64;
-    let grid = case.grid.with_cells(case.grid.cells().map(|n| n.min(TIMED_FLOW))).ok()?;
+    let grid =
+        case.conditions.grid.with_cells(case.conditions.grid.cells().map(|n| n.min(TIMED_FLOW))).ok()?;
     let gap = ndarray::Array2::from_elem(grid.shape(), 1e-6);
     let start = Instant::now();
     leak.of_gap(&grid, gap.view(), None, 0.0).ok()?;
-    let open = 0.5 * case.grid.len() as f64 / grid.len() as f64;
+    let open = 0.5 * case.conditions.grid.len() as f64 / grid.len() as f64;
     Some(times * start.elapsed().as_secs_f64() * open.powf(1.3))
 }
 
@@ -90,9 +91,9 @@ const TIMED_STRESS: usize = 128;
 
 /// Times and depths times what the stress at a depth takes here, timed on a small grid and scaled as N log N.
 pub(super) fn stress_seconds(case: &Case, description: &StressDescription) -> Option<f64> {
-    let cells = case.grid.cells().map(|n| n.min(TIMED_STRESS));
-    let grid = case.grid.with_cells(cells).ok()?;
-    let mut stress = description.poisson.transforms(grid, case.boundary).ok()?;
+    let cells = case.conditions.grid.cells().map(|n| n.min(TIMED_STRESS));
+    let grid = case.conditions.grid.with_cells(cells).ok()?;
+    let mut stress = description.poisson.transforms(grid, case.conditions.boundary).ok()?;
     stress.set_pressure(&vec![1.0; grid.len()]).ok()?;
     let mut six = std::array::from_fn(|_| Vec::new());
     let depth = grid.size()[0];
@@ -100,7 +101,7 @@ pub(super) fn stress_seconds(case: &Case, description: &StressDescription) -> Op
     let start = Instant::now();
     stress.at(depth, &mut six).ok()?;
     let timed = start.elapsed().as_secs_f64();
-    Some(description.evaluations? as f64 * timed * growth(&grid, &case.grid))
+    Some(description.evaluations? as f64 * timed * growth(&grid, &case.conditions.grid))
 }
 
 /// What is computed from the stored fields after the run takes \[s\].

@@ -2,7 +2,8 @@
 
 mod cost;
 
-use asperity::{Axis, Grid};
+use asperity::Axis;
+use asperity::load::{Course, Stage};
 use asperity_io::case::{Case, Examination, Inputs, SurfaceInput, Travel};
 use asperity_io::stress::StressDescription;
 use serde_json::json;
@@ -65,18 +66,40 @@ fn shape(surface: &SurfaceInput) -> Option<String> {
     (!parts.is_empty()).then(|| format!("{}: {}", surface.name, parts.join(", ")))
 }
 
-/// "12.00 µm", or "12.00 µm right after the load, 15.00 µm at the end"; over velocities at the highest and the lowest.
-fn range([first, last]: [f64; 2], axis: Axis, words: impl Fn(f64) -> String) -> String {
+/// "12.00 µm", or "12.00 µm right after the load, 15.00 µm at the end"; over velocities at the highest and the lowest; of a load that
+/// falls again at its largest value.
+fn range(case: &Case, [first, last]: [f64; 2], words: impl Fn(f64) -> String) -> String {
     let [first, last] = [first, last].map(words);
-    match axis {
+    match (case.axis(), largest_before_the_end(case)) {
         _ if first == last => first,
-        Axis::Time | Axis::None => format!("{first} right after the load, {last} at the end"),
-        Axis::Velocity => format!("{first} at very high velocities, {last} at very low ones"),
+        (Axis::Velocity, _) => format!("{first} at very high velocities, {last} at very low ones"),
+        (_, Some(time)) => {
+            format!("{first} to {last} under the largest load, at t = {}", quantity(time, "s"))
+        }
+        _ => format!("{first} right after the load, {last} at the end"),
     }
 }
 
+/// When the prescribed history is largest, if it is smaller at the end; `None` also for a load in several stages.
+fn largest_before_the_end(case: &Case) -> Option<f64> {
+    let ([Stage { course: Course::Given(history), .. }], end) =
+        (&case.conditions.loading.stages[..], case.conditions.times.end())
+    else {
+        return None;
+    };
+    let most = history.range(end)[1];
+    let reached = |time: f64| history.range(time)[1] >= most * (1.0 - 1e-9);
+    let mut bracket = [0.0, end];
+    for _ in 0..60 {
+        let middle = 0.5 * (bracket[0] + bracket[1]);
+        bracket[usize::from(reached(middle))] = middle;
+    }
+    (history.before(end) < 0.99 * most).then_some(bracket[1])
+}
+
 /// What is prescribed at most, and the contact to be expected: lines of a name and a value.
-fn prospects(grid: &Grid, inputs: &Inputs, axis: Axis) -> Vec<[String; 2]> {
+fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
+    let grid = &case.conditions.grid;
     let mut lines = vec![];
     let mut line = |name: &str, value: String| lines.push([name.to_owned(), value]);
     if let (Some(load), Some(pressure)) = (inputs.largest_load, inputs.largest_mean_pressure) {
@@ -88,11 +111,11 @@ fn prospects(grid: &Grid, inputs: &Inputs, axis: Axis) -> Vec<[String; 2]> {
     }
     let strain = inputs.expected_pressure_over_modulus.map_or(String::new(), |p| format!(", p/E* {p:.2e}"));
     if let (Some(radii), Some(cells)) = (inputs.expected_contact_radius, inputs.expected_cells_across) {
-        let radius = range(radii, axis, |radius| quantity(radius, "m"));
+        let radius = range(case, radii, |radius| quantity(radius, "m"));
         let of = if grid.is_line() { "half-width of the contact" } else { "contact radius" };
         line("expected", format!("{of} {radius}, {cells:.0} cells across{strain}"));
     } else if let Some(shares) = inputs.expected_contact_share {
-        let share = range(shares, axis, |share| format!("{:.2} %", 100.0 * share));
+        let share = range(case, shares, |share| format!("{:.2} %", 100.0 * share));
         line("expected", format!("share of the domain in contact {share}{strain}"));
     }
     lines
@@ -119,11 +142,11 @@ fn motion_lines(case: &Case) -> Vec<[String; 2]> {
             )
         }
         Travel::Path(path) => {
-            let end = case.times.end();
+            let end = case.conditions.times.end();
             let times = (0..=1000).map(|k| end * f64::from(k) / 1000.0);
             let fastest = times.clone().map(|t| path.velocity(t).abs()).fold(0.0, f64::max);
             let far = times.map(|t| path.position(t).abs()).fold(0.0, f64::max);
-            let cells = far / motion.direction.cell(&case.grid);
+            let cells = far / motion.direction.cell(&case.conditions.grid);
             let far = quantity(far, "m");
             (
                 format!("{way} {direction}, up to {far} ({cells:.0} cells) at {} at most", speed(fastest)),
@@ -132,7 +155,8 @@ fn motion_lines(case: &Case) -> Vec<[String; 2]> {
         }
     };
     let mut lines = vec![["motion".to_owned(), words]];
-    let parts = std::iter::once(&case.creep).chain(case.thermal.iter().map(|body| &body.creep));
+    let parts =
+        std::iter::once(&case.conditions.creep).chain(case.conditions.thermal.iter().map(|body| &body.creep));
     let all: Vec<_> = parts.flat_map(|creep| creep.terms.iter()).collect();
     let total: f64 = all.iter().map(|term| term.compliance).sum();
     // The branch that carries most.
@@ -147,7 +171,7 @@ fn motion_lines(case: &Case) -> Vec<[String; 2]> {
                 100.0 * term.compliance / total,
                 quantity(reach, "m"),
                 speed(fastest),
-                quantity(reach / motion.direction.cell(&case.grid), "")
+                quantity(reach / motion.direction.cell(&case.conditions.grid), "")
             ),
         ]);
     }
@@ -257,7 +281,7 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>) -> String {
             );
             line("", text);
         }
-        line("", "equivalent half-space (contact modulus that yields as much):".into());
+        line("", "equivalent half-space:".into());
         for (name, wave) in ["longest", "shortest"].iter().zip(&layers.waves) {
             let relaxed = quantity(wave.relaxed_modulus, "Pa");
             let modulus = match wave.instantaneous_modulus.map(|modulus| quantity(modulus, "Pa")) {
@@ -289,7 +313,7 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>) -> String {
     if let Some([least, most]) = d.hardness_of_cells {
         line("hardness", format!("{} to {}, by cell", quantity(least, "Pa"), quantity(most, "Pa")));
     }
-    for [name, value] in prospects(&case.grid, inputs, case.axis()) {
+    for [name, value] in prospects(case, inputs) {
         line(&name, value);
     }
     let end = quantity(d.end, "s");
@@ -329,7 +353,7 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>) -> String {
             .for_each(|[name, value]| line(&name, value));
     }
     if let Some(leak) = &case.leakage {
-        let memory = bytes(leak.bytes(case.grid.len()));
+        let memory = bytes(leak.bytes(case.conditions.grid.len()));
         let times = match &leak.times {
             Some(times) => crate::format::counted(times.len(), "time"),
             None => "the stored times".to_owned(),

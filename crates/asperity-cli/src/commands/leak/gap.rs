@@ -7,7 +7,7 @@ use asperity::{Boundary, Grid};
 use asperity_io::case::leak as checked;
 use asperity_io::finding;
 use asperity_io::leakage::{Leakage, words};
-use asperity_report::figure::Form;
+use ndarray::Array2;
 use serde_json::{Value, json};
 
 use super::options;
@@ -17,10 +17,6 @@ use crate::format::quantity;
 
 /// Computes the leakage of one state and prints it.
 pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
-    if let Some(plot) = &args.plot {
-        Form::of(plot).map_err(|error| Failure::input(error.to_string()))?;
-        super::super::free(plot, args.force)?;
-    }
     let file = |path: &Path, height_unit: Option<String>| SurfaceFile {
         file: path.to_owned(),
         size: args.size.clone(),
@@ -35,13 +31,13 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         }
         None => None,
     };
-    let leak = checked(&options::keys(&args.fluid)?, Boundary::Periodic).map_err(Failure::input)?;
-    let failed = |error: asperity::Error| Failure::input(format!("{}: {error}", path.display()));
+    warn_of_heights(path, &gap.heights);
+    let leak = checked(&options::keys(&args.fluid), Boundary::Periodic).map_err(options::refused)?;
     let (nx, ny) = gap.heights.dim();
-    let grid = Grid::new([nx, ny], gap.size).map_err(failed)?;
+    let grid = Grid::new([nx, ny], gap.size).map_err(Failure::about(path.display()))?;
     let contact = contact.as_ref().map(|contact| contact.view());
     let state = leak.of_gap(&grid, gap.heights.view(), contact, 0.0).map_err(|error| match error {
-        asperity::Error::Invalid { .. } => failed(error),
+        asperity::Error::Invalid { .. } => Failure::about(path.display())(error),
         error => Failure::Solve(error.to_string()),
     })?;
     let mut diagnostics = LeakDiagnostics::default();
@@ -62,6 +58,21 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         format!("Leakage of {}\n\n{}", leak.words(), text(&state))
     };
     crate::print(&text)
+}
+
+/// Warns of a map whose numbers are heights, above and below their mean, and not the gap between two surfaces.
+fn warn_of_heights(path: &Path, map: &Array2<f64>) {
+    /// A gap may be negative in a few cells, by rounding or where the bodies overlap.
+    const MOST: f64 = 0.2;
+    let share = map.iter().filter(|gap| **gap < 0.0).count() as f64 / map.len() as f64;
+    if share > MOST {
+        crate::messages::message!(
+            "warning: {:.0} % of the map {} are below 0 and count as closed: these look like heights of a surface, not like a gap; \
+             the gap is the distance of the surfaces, 0 or more",
+            100.0 * share,
+            path.display()
+        );
+    }
 }
 
 fn object(state: &Leakage) -> Value {

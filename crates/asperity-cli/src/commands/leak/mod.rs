@@ -15,17 +15,17 @@ use serde_json::{Map, Value, json};
 
 use crate::args;
 use crate::failure::Failure;
+use crate::files::Files;
 use crate::format::quantity;
 use crate::messages::message;
-use crate::verb::{Paths, Threads, Verb};
+use crate::verb::{Threads, Verb};
 
 impl Verb for args::Leak {
-    fn reads(&self) -> Paths<'_> {
-        vec![self.result.as_ref(), self.gap.as_ref(), self.contact.as_ref()]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.plot.as_ref()]
+    fn files(&self) -> Files {
+        Files::default()
+            .reads(self.result.iter().chain(&self.gap).chain(&self.contact))
+            .draws(&self.plot)
+            .force(self.force)
     }
 
     fn threads(&self) -> Threads {
@@ -46,11 +46,9 @@ impl Verb for args::Leak {
 }
 
 fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
-    let failed = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
-    let reader = Reader::open(path).map_err(|error| failed(&error))?;
+    let reader = Reader::open(path)?;
     let leak = asked(args, &reader)?;
-    let stored = LeakHistory::of(&reader).map_err(|error| failed(&error))?;
-    let history = match stored {
+    let history = match LeakHistory::of(&reader)? {
         Some(stored) if stored.leak == leak => stored,
         stored => {
             if let Some(stored) = stored.filter(|_| !args.no_store) {
@@ -78,12 +76,12 @@ fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
 fn asked(args: &args::Leak, reader: &Reader) -> Result<Leak, Failure> {
     let boundary = reader.header().setup.get("boundary").and_then(Value::as_str).and_then(choice::parse);
     let boundary = boundary.unwrap_or(Boundary::Periodic);
-    let given = options::keys(&args.fluid)?;
+    let given = options::keys(&args.fluid);
     let leak = match settings(reader) {
         Some(earlier) => earlier.changed(given, boundary),
         None => checked(&given, boundary),
     };
-    let leak = leak.map_err(Failure::input)?;
+    let leak = leak.map_err(options::refused)?;
     Ok(match &args.times {
         Some(list) => Leak { times: super::times(list)?, ..leak },
         None => leak,

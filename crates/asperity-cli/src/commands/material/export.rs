@@ -2,49 +2,33 @@
 
 use asperity::material::Lateral;
 use asperity_io::case::{Specimen, specimens};
-use asperity_io::material_export::{Exported, Program, text};
-use asperity_io::quantity::{Number, range};
+use asperity_io::material_export::{Exported, text};
+use asperity_io::output::write_all;
 
-use super::{failed, parsed, write};
-use crate::args::{MaterialExport, To};
+use crate::args::MaterialExport;
 use crate::failure::Failure;
-use crate::verb::{Paths, Verb};
+use crate::files::Files;
+use crate::verb::Verb;
 
 impl Verb for MaterialExport {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.file)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.output.as_ref()]
+    fn files(&self) -> Files {
+        Files::default().reads([&self.file]).writes(&self.output).force(self.force)
     }
 
     /// Writes or prints it.
     fn run(&self) -> Result<(), Failure> {
-        if let Some(path) = &self.output {
-            crate::commands::free(path, self.force)?;
-        }
         let specimens = specimens(&self.file, &self.set, None)?;
         let specimen = chosen(&specimens, self)?;
-        let poisson = match &self.poisson {
-            Some(text) => Some(Lateral::Poisson(parsed::<Number<range::Poisson>>("--poisson", text)?.get())),
-            None => None,
-        };
-        let (material, shift) = specimen.at_reference().map_err(failed)?;
+        let poisson = self.poisson.map(|poisson| Lateral::Poisson(poisson.get()));
+        let (material, shift) = specimen.at_reference()?;
         let lateral = poisson.or(specimen.lateral);
         let vertical = specimen.report.vertical_law.as_ref();
         let exported = Exported { name: &specimen.name, material: &material, lateral, shift, vertical };
-        let program = match self.to {
-            To::Abaqus => Program::Abaqus,
-            To::Ansys => Program::Ansys,
-            To::Comsol => Program::Comsol,
-            To::Csv => Program::Csv,
-        };
         let help = if lateral.is_none() { " (--poisson NU)" } else { "" };
-        let text = text(&exported, program)
+        let text = text(&exported, self.to)
             .map_err(|error| Failure::input(format!("{}: {error}{help}", self.file.display())))?;
         match &self.output {
-            Some(path) => write(path, &text, self.force),
+            Some(path) => Ok(write_all(path, self.force, text.as_bytes())?),
             None => crate::print(&text),
         }
     }
@@ -54,27 +38,23 @@ impl Verb for MaterialExport {
 fn chosen<'a>(specimens: &'a [Specimen], args: &MaterialExport) -> Result<&'a Specimen, Failure> {
     let names: Vec<&str> = specimens.iter().map(|specimen| specimen.name.as_str()).collect();
     let names = names.join(", ");
-    let viscoelastic = |specimen: &&Specimen| {
+    let is_viscoelastic = |specimen: &Specimen| {
         let creep = specimen.material.creep();
         !creep.terms.is_empty() || creep.fluidity > 0.0
     };
-    match &args.body {
-        Some(name) => specimens
-            .iter()
-            .find(|specimen| specimen.name == *name)
-            .ok_or_else(|| Failure::input(format!("--body is \"{name}\", but the bodies are {names}"))),
-        None => {
-            let mut several = specimens.iter().filter(viscoelastic);
-            match (several.next(), several.next()) {
-                (Some(only), None) => Ok(only),
-                (None, _) => {
-                    Err(Failure::input(format!("{}: no body is viscoelastic ({names})", args.file.display())))
-                }
-                _ => Err(Failure::input(format!(
-                    "{}: one body must be chosen with --body: {names}",
-                    args.file.display()
-                ))),
-            }
+    let mut suited = specimens.iter().filter(|specimen| match &args.body {
+        Some(name) => specimen.name == *name,
+        None => is_viscoelastic(specimen),
+    });
+    let path = args.file.display();
+    match (suited.next(), suited.next(), &args.body) {
+        (Some(found), None, _) | (Some(found), _, Some(_)) => Ok(found),
+        (None, _, Some(name)) => {
+            Err(Failure::input(format!("--body is \"{name}\", but the bodies are {names}")))
+        }
+        (None, _, None) => Err(Failure::input(format!("{path}: no body is viscoelastic ({names})"))),
+        (Some(_), Some(_), None) => {
+            Err(Failure::input(format!("{path}: one body must be chosen with --body: {names}")))
         }
     }
 }

@@ -5,54 +5,51 @@ use std::fmt::Write as _;
 use asperity::finding::{self, Finding};
 use asperity::material::{Misfit, Modulus, Shift, VerticalShift};
 use asperity_io::curve::{Curves, Fitted, Kind, Request, Series, ShiftRequest};
+use asperity_io::output::write_all;
 use asperity_report::material as pictures;
 use serde_json::{Map, Value, json};
 
 use super::options::{self, refused};
-use super::{celsius, failed, symbols, write};
+use super::{celsius, law, symbols};
 use crate::args::Fit;
 use crate::failure::Failure;
+use crate::files::Files;
 use crate::format::quantity;
-use crate::verb::{Paths, Verb};
+use crate::verb::Verb;
 
 /// Room temperature \[K\]: shifts are estimated about the sweep nearest to it where no reference is given.
 const ROOM: f64 = 293.15;
 
 impl Verb for Fit {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.data), self.shift_table.as_ref()]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.output.as_ref(), self.plot.as_ref()]
+    fn files(&self) -> Files {
+        Files::default()
+            .reads(self.shift_table.iter().chain([&self.data]))
+            .writes(&self.output)
+            .draws(&self.plot)
+            .force(self.force)
     }
 
     /// Fits, reports, writes and draws.
     fn run(&self) -> Result<(), Failure> {
-        // What cannot be written is said before the work.
-        for path in self.output.iter().chain(&self.plot) {
-            crate::commands::free(path, self.force)?;
-        }
         let (shift, vertical, options) =
-            (options::shift(self)?, options::vertical(self)?, options::options(self)?);
+            (options::shift(self)?, options::vertical(self)?, options::options(self));
         let mut curves = options::curves(&self.data, &self.table)?;
         let window = self.window.as_deref().map(|text| options::ends(curves.kind, text)).transpose()?;
         let measure = self.modulus.or(curves.measure).unwrap_or_else(|| {
-        let note = "the header does not say which: taken as Young's moduli; --modulus shear takes them as shear moduli";
-        curves.notes.push(note.to_owned());
-        Modulus::Young
-    });
+            let note = "the header does not say which moduli these are: they are taken as Young's moduli; for shear moduli give \
+                        --modulus shear";
+            curves.notes.push(note.to_owned());
+            Modulus::Young
+        });
         let shift = estimated_unless_known(shift, &mut curves);
         let fitted = Request { measure, shift, vertical, window, options }.fit(&curves).map_err(refused)?;
         let findings = findings(&self.data.display().to_string(), &fitted);
         let block = fitted.to_toml(&curves);
         if let Some(path) = &self.output {
-            write(path, &block, self.force)?;
+            write_all(path, self.force, block.as_bytes())?;
         }
         if let Some(path) = &self.plot {
-            let title =
-                self.data.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
-            let figure = pictures::fit(&title, &curves, &fitted).map_err(failed)?;
+            let figure = pictures::fit(&crate::commands::title(&self.data), &curves, &fitted)?;
             crate::commands::picture::write(&figure, path, self.force)?;
         }
         if self.json {
@@ -169,19 +166,6 @@ fn beyond(fitted: &Fitted) -> String {
             };
             format!("a plateau of {} at shorter times, {long}", quantity(creep.instantaneous, "1/Pa"))
         }
-    }
-}
-
-/// The law in words.
-fn law(shift: &Shift) -> String {
-    match shift {
-        Shift::Wlf { c1, c2, reference } => {
-            format!("WLF c1 = {c1:.4}, c2 = {c2:.4} K about {:.2} °C", reference - 273.15)
-        }
-        Shift::Arrhenius { activation_energy, reference } => {
-            format!("Arrhenius {:.3} kJ/mol about {:.2} °C", 1e-3 * activation_energy, reference - 273.15)
-        }
-        Shift::Table { points } => format!("{} shift factors", points.len()),
     }
 }
 

@@ -43,7 +43,7 @@ pub fn show(args: &Show) -> Result<(), Failure> {
         text,
         "A wave of pressure of wave number q displaces the surface by C(q) times its amplitude;"
     );
-    let _ = writeln!(text, "2/(q C) is the contact modulus of the half-space that yields as much\n");
+    let _ = writeln!(text, "2/(q C) is the contact modulus of the equivalent half-space\n");
     let at_once = waves.iter().any(|wave| wave.instantaneous_modulus != Some(wave.relaxed_modulus));
     let of_modulus = |length: f64, modulus: f64| {
         let q = std::f64::consts::TAU / length;

@@ -3,15 +3,15 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use asperity::material::{Modulus, Shift};
+use asperity::material::Modulus;
 use asperity_io::curve::{Curves, Kind, Sweep};
 use asperity_report::material as pictures;
 use serde_json::{Value, json};
 
-use super::{celsius, options};
+use super::{celsius, law, options};
 use crate::args::Show;
 use crate::failure::Failure;
-use crate::format::{counted, quantity};
+use crate::format::{counted, extent, quantity};
 
 /// Whether a file is one of measured data, not a case or a material.
 pub fn is_data(path: &Path) -> bool {
@@ -29,8 +29,8 @@ pub fn show(args: &Show) -> Result<(), Failure> {
     }
     let curves = options::curves(&args.file, &args.table)?;
     if let Some(path) = &args.plot {
-        let title = args.file.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
-        crate::commands::picture::write(&pictures::isotherms(&title, &curves), path, args.force)?;
+        let figure = pictures::isotherms(&crate::commands::title(&args.file), &curves);
+        crate::commands::picture::write(&figure, path, args.force)?;
     }
     let text = if args.json { format!("{}\n", object(&curves)) } else { text(&curves) };
     crate::print(&text)
@@ -98,29 +98,8 @@ fn abscissae(kind: Kind, sweep: &Sweep) -> Vec<f64> {
 }
 
 fn range(values: &[f64], unit: &str) -> String {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    format!("{} to {}", quantity(least, unit), quantity(most, unit))
-}
-
-fn law(shift: &Shift) -> String {
-    match shift {
-        Shift::Wlf { c1, c2, reference } => {
-            format!("WLF c1 = {c1}, c2 = {c2} K about {:.2} °C", reference - 273.15)
-        }
-        Shift::Arrhenius { activation_energy, reference } => {
-            format!("Arrhenius {} kJ/mol about {:.2} °C", 1e-3 * activation_energy, reference - 273.15)
-        }
-        Shift::Table { points } => {
-            let celsius = |point: Option<&(f64, f64)>| point.map_or(0.0, |point| point.0 - 273.15);
-            format!(
-                "{} shift factors from {:.1} °C to {:.1} °C",
-                points.len(),
-                celsius(points.first()),
-                celsius(points.last())
-            )
-        }
-    }
+    let [least, most] = extent(values.iter().copied()).map(|end| quantity(end, unit));
+    format!("{least} to {most}")
 }
 
 fn object(curves: &Curves) -> Value {

@@ -8,28 +8,23 @@ mod options;
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::Path;
 
-use asperity::material::Modulus;
+use asperity::material::{Modulus, Relaxation, Shift};
 use asperity_io::case::{MaterialReport, Specimen, specimens};
-use asperity_io::quantity::{Time, range};
+use asperity_io::quantity::Time;
 use asperity_report::material as pictures;
 use serde_json::{Value, json};
 
 use crate::args::Show;
 use crate::failure::Failure;
+use crate::files::Files;
 use crate::format::{counted, quantity};
-use crate::verb::{Paths, Verb};
-pub(super) use options::{columns, parsed};
+use crate::verb::Verb;
+pub(super) use options::columns;
 
 impl Verb for Show {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.file)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.plot.as_ref()]
+    fn files(&self) -> Files {
+        Files::default().reads([&self.file]).draws(&self.plot).force(self.force)
     }
 
     /// Prints what a material does, or what a file of measured data holds.
@@ -46,13 +41,7 @@ impl Verb for Show {
 const MOST_DECADES: f64 = 60.0;
 
 fn show(args: &Show) -> Result<(), Failure> {
-    let given = [("--from", &args.from), ("--to", &args.to)].map(|(name, text)| {
-        text.as_deref()
-            .map(|text| parsed::<Time<range::Positive>>(name, text).map(|time| time.get()))
-            .transpose()
-    });
-    let [from, to] = given;
-    let (from, to) = (from?, to?);
+    let [from, to] = [args.from, args.to].map(|time| time.map(Time::get));
     let asked = match (from, to) {
         (Some(from), Some(to)) if from >= to => {
             return Err(Failure::input(format!("--from is {from} s, but must be less than --to, {to} s")));
@@ -78,7 +67,7 @@ fn show(args: &Show) -> Result<(), Failure> {
         let materials: Vec<_> = specimens.iter().map(|s| (s.name.as_str(), &s.material)).collect();
         let title = args.file.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
         let drawn = if from.is_none() && to.is_none() { covered(&specimens, window) } else { window };
-        let figure = pictures::functions(&title, &materials, drawn).map_err(failed)?;
+        let figure = pictures::functions(&title, &materials, drawn)?;
         let shifts: Vec<pictures::Factors> = specimens.iter().filter_map(shift_of).collect();
         let figure =
             pictures::shift_factors(&shifts).into_iter().fold(figure, |figure, panel| figure.with(panel));
@@ -89,13 +78,9 @@ fn show(args: &Show) -> Result<(), Failure> {
     let tables = specimens.iter().map(|specimen| Table::of(specimen, window, args.per_decade));
     let tables = tables.collect::<Result<Vec<Table>, Failure>>()?;
     if args.json {
-        let list: Vec<Value> =
-            specimens.iter().zip(&tables).map(|(specimen, table)| table.json(specimen)).collect();
-        return crate::print(&format!("{}\n", json!(list)));
+        return crate::print(&format!("{}\n", tables.iter().map(Table::json).collect::<Value>()));
     }
-    let texts: Vec<String> =
-        specimens.iter().zip(&tables).map(|(specimen, table)| table.text(specimen)).collect();
-    crate::print(&texts.join("\n"))
+    crate::print(&tables.iter().map(Table::text).collect::<Vec<_>>().join("\n"))
 }
 
 /// The shift of a material with the temperatures of its measurement.
@@ -153,36 +138,32 @@ fn extrapolated(specimen: &Specimen, drawn: [f64; 2]) -> Option<String> {
     })
 }
 
-/// The functions of a material at times and frequencies.
-struct Table {
+/// The functions of a material at times, and at frequencies of one over these times.
+struct Table<'a> {
+    specimen: &'a Specimen,
+    relaxation: Relaxation,
     times: Vec<f64>,
-    relaxation: Vec<f64>,
-    creep: Vec<f64>,
-    frequencies: Vec<f64>,
-    storage: Vec<f64>,
-    loss: Vec<f64>,
 }
 
-impl Table {
-    fn of(specimen: &Specimen, [first, last]: [f64; 2], per_decade: u16) -> Result<Table, Failure> {
-        let relaxation = specimen.material.relaxation().map_err(failed)?;
+impl<'a> Table<'a> {
+    fn of(specimen: &'a Specimen, [first, last]: [f64; 2], per_decade: u16) -> Result<Table<'a>, Failure> {
         let steps = ((last / first).log10() * f64::from(per_decade) - 1e-9).ceil().max(1.0) as usize;
         let decade = |k: usize| k as f64 / f64::from(per_decade);
-        let times: Vec<f64> =
-            (0..=steps).map(|k| (first * 10f64.powf(decade(k))).min(last * (1.0 + 1e-12))).collect();
-        let frequencies: Vec<f64> = times.iter().rev().map(|t| 1.0 / t).collect();
-        let complex: Vec<(f64, f64)> = frequencies.iter().map(|w| relaxation.complex(*w)).collect();
-        Ok(Table {
-            relaxation: times.iter().map(|t| relaxation.value(*t)).collect(),
-            creep: times.iter().map(|t| specimen.material.creep().value(*t)).collect(),
-            storage: complex.iter().map(|c| c.0).collect(),
-            loss: complex.iter().map(|c| c.1).collect(),
-            times,
-            frequencies,
+        let times = (0..=steps).map(|k| (first * 10f64.powf(decade(k))).min(last * (1.0 + 1e-12)));
+        Ok(Table { specimen, relaxation: specimen.material.relaxation()?, times: times.collect() })
+    }
+
+    /// Frequency, storage and loss modulus.
+    fn dynamic(&self) -> impl Iterator<Item = [f64; 3]> {
+        let frequencies = self.times.iter().rev().map(|time| 1.0 / time);
+        frequencies.map(|frequency| {
+            let (storage, loss) = self.relaxation.complex(frequency);
+            [frequency, storage, loss]
         })
     }
 
-    fn text(&self, specimen: &Specimen) -> String {
+    fn text(&self) -> String {
+        let specimen = self.specimen;
         let (name, modulus, compliance) = symbols(specimen.material.measure());
         let mut text = format!("{}: {}, {name}\n", specimen.name, specimen.report.model);
         source(&specimen.report).iter().for_each(|line| text += &format!("  {line}\n"));
@@ -195,7 +176,8 @@ impl Table {
         );
         let covered = specimen.report.window.unwrap_or([0.0, f64::INFINITY]);
         let mark = |t: f64| if t < covered[0] * 0.999 || t > covered[1] * 1.001 { " *" } else { "" };
-        for ((t, relaxation), creep) in self.times.iter().zip(&self.relaxation).zip(&self.creep) {
+        for t in &self.times {
+            let (relaxation, creep) = (self.relaxation.value(*t), specimen.material.creep().value(*t));
             let _ = writeln!(text, "  {t:>12.4e} {relaxation:>14.6e} {creep:>14.6e}{}", mark(*t));
         }
         let _ = writeln!(
@@ -207,7 +189,7 @@ impl Table {
             format!("{modulus}'' [Pa]"),
             "tan delta"
         );
-        for ((w, storage), loss) in self.frequencies.iter().zip(&self.storage).zip(&self.loss) {
+        for [w, storage, loss] in self.dynamic() {
             let (hertz, tan_delta) = (w / TAU, loss / storage);
             let _ = writeln!(
                 text,
@@ -225,11 +207,12 @@ impl Table {
         text
     }
 
-    fn json(&self, specimen: &Specimen) -> Value {
-        let material = &specimen.material;
-        let creep = material.creep();
-        let tan_delta: Vec<f64> =
-            self.loss.iter().zip(&self.storage).map(|(loss, storage)| loss / storage).collect();
+    fn json(&self) -> Value {
+        let specimen = self.specimen;
+        let (material, creep) = (&specimen.material, specimen.material.creep());
+        let over_time =
+            |of: &dyn Fn(f64) -> f64| self.times.iter().map(|time| of(*time)).collect::<Vec<f64>>();
+        let column = |of: fn([f64; 3]) -> f64| self.dynamic().map(of).collect::<Vec<f64>>();
         json!({
             "name": specimen.name,
             "modulus": material.measure(),
@@ -239,12 +222,12 @@ impl Table {
             "instantaneous_compliance": creep.instantaneous,
             "fluidity": creep.fluidity,
             "time": self.times,
-            "relaxation_modulus": self.relaxation,
-            "creep_compliance": self.creep,
-            "angular_frequency": self.frequencies,
-            "storage_modulus": self.storage,
-            "loss_modulus": self.loss,
-            "tan_delta": tan_delta,
+            "relaxation_modulus": over_time(&|time| self.relaxation.value(time)),
+            "creep_compliance": over_time(&|time| creep.value(time)),
+            "angular_frequency": column(|[frequency, ..]| frequency),
+            "storage_modulus": column(|[_, storage, _]| storage),
+            "loss_modulus": column(|[.., loss]| loss),
+            "tan_delta": column(|[_, storage, loss]| loss / storage),
         })
     }
 }
@@ -316,16 +299,24 @@ pub fn source(report: &MaterialReport) -> Vec<String> {
     lines
 }
 
+/// The law in words.
+fn law(shift: &Shift) -> String {
+    match shift {
+        Shift::Wlf { c1, c2, reference } => {
+            format!("WLF c1 = {c1:.4}, c2 = {c2:.4} K about {:.2} °C", reference - 273.15)
+        }
+        Shift::Arrhenius { activation_energy, reference } => {
+            format!("Arrhenius {:.3} kJ/mol about {:.2} °C", 1e-3 * activation_energy, reference - 273.15)
+        }
+        Shift::Table { points } => {
+            let celsius = |point: Option<&(f64, f64)>| point.map_or(0.0, |point| point.0 - 273.15);
+            let [first, last] = [points.first(), points.last()].map(celsius);
+            format!("{} shift factors from {first:.1} °C to {last:.1} °C", points.len())
+        }
+    }
+}
+
 /// A temperature of a sweep \[°C\] to a tenth, and no -0.
 fn celsius(kelvin: f64) -> f64 {
     (10.0 * (kelvin - 273.15)).round() / 10.0 + 0.0
-}
-
-pub(super) fn failed(error: impl std::fmt::Display) -> Failure {
-    Failure::input(error.to_string())
-}
-
-pub(super) fn write(path: &Path, text: &str, force: bool) -> Result<(), Failure> {
-    let written = asperity_io::output::write(path, force, |file| file.write_all(text.as_bytes()));
-    written.map_err(|error| Failure::input(format!("cannot write {}: {error}", path.display())))
 }

@@ -11,9 +11,9 @@ use asperity_io::quantity::{
     Expansion, MolarEnergy, Number, Temperature, TemperatureDifference, Time, range,
 };
 
-use super::failed;
 use crate::args::{Data, Fit};
 use crate::failure::Failure;
+use crate::input::read;
 
 /// A fault of a file, with what to do in the words of the command.
 pub fn refused(error: CurveError) -> Failure {
@@ -30,19 +30,18 @@ pub fn curves(path: &std::path::Path, data: &Data) -> Result<Curves, Failure> {
     Curves::read(path, kind, &said).map_err(refused)
 }
 
-pub fn options(args: &Fit) -> Result<FitOptions, Failure> {
+pub fn options(args: &Fit) -> FitOptions {
     let default = FitOptions::default();
-    let misfit = args.misfit.as_deref().map(|text| parsed::<Number<range::Positive>>("--misfit", text));
-    Ok(FitOptions {
+    FitOptions {
         per_decade: args.per_decade.unwrap_or(default.per_decade),
         margin: args.margin.unwrap_or(default.margin),
         limit: args.max_misfit.unwrap_or(default.limit),
         max_terms: args.max_terms.unwrap_or(default.max_terms),
         long_time: args.long_time,
-        misfit: misfit.transpose()?.map(Number::get),
+        misfit: args.misfit.map(Number::get),
         moduli: args.fit,
         loss_weight: args.loss_weight.unwrap_or(default.loss_weight),
-    })
+    }
 }
 
 /// The columns and units that are told.
@@ -70,8 +69,8 @@ pub fn shift(args: &Fit) -> Result<ShiftRequest, Failure> {
         let [c1, c2, reference] =
             split(text, "--wlf", "c1, c2 and the reference, e.g. --wlf '8.86, 101.6 K, 20 °C'")?;
         let shift = Shift::Wlf {
-            c1: parsed::<Number<range::Positive>>("c1 of --wlf", c1)?.get(),
-            c2: parsed::<TemperatureDifference<range::Positive>>("c2 of --wlf", c2)?.get(),
+            c1: read::<Number<range::Positive>>("c1 of --wlf", c1)?.get(),
+            c2: read::<TemperatureDifference<range::Positive>>("c2 of --wlf", c2)?.get(),
             reference: temperature("reference of --wlf", reference)?,
         };
         return Ok(ShiftRequest::Given(shift));
@@ -80,7 +79,7 @@ pub fn shift(args: &Fit) -> Result<ShiftRequest, Failure> {
         let wanted = "the energy and the reference, e.g. --arrhenius '120 kJ/mol, 20 °C'";
         let [energy, reference] = split(text, "--arrhenius", wanted)?;
         let shift = Shift::Arrhenius {
-            activation_energy: parsed::<MolarEnergy<range::Positive>>("energy of --arrhenius", energy)?.get(),
+            activation_energy: read::<MolarEnergy<range::Positive>>("energy of --arrhenius", energy)?.get(),
             reference: temperature("reference of --arrhenius", reference)?,
         };
         return Ok(ShiftRequest::Given(shift));
@@ -95,17 +94,11 @@ pub fn shift(args: &Fit) -> Result<ShiftRequest, Failure> {
 }
 
 pub fn vertical(args: &Fit) -> Result<VerticalRequest, Failure> {
-    let expansion = args.expansion.as_deref();
-    let expansion = expansion
-        .map(|text| {
-            parsed::<Expansion<range::NonNegative>>("--expansion", text).map(|expansion| expansion.get())
-        })
-        .transpose()?;
-    match (args.vertical, expansion) {
+    match (args.vertical, args.expansion) {
         (None, None) => Ok(VerticalRequest::None),
         (Some(VerticalWord::Free), None) => Ok(VerticalRequest::Free),
         (Some(VerticalWord::Density), expansion) => {
-            Ok(VerticalRequest::Density { expansion: expansion.unwrap_or(0.0) })
+            Ok(VerticalRequest::Density { expansion: expansion.map_or(0.0, Expansion::get) })
         }
         (_, Some(_)) => Err(Failure::input("--expansion goes with --vertical density")),
     }
@@ -116,9 +109,9 @@ pub fn ends(kind: Kind, text: &str) -> Result<[f64; 2], Failure> {
     let wanted = "two times or, of a dma, two frequencies, e.g. --window '0.1 s, 100 s'";
     let ends = split::<2>(text, "--window", wanted)?.map(|end| match kind {
         Kind::Dma => {
-            angular_frequency(end).map_err(|error| failed(format!("--window: {end} must be {error}")))
+            angular_frequency(end).map_err(|error| Failure::input(format!("--window: {end} must be {error}")))
         }
-        _ => parsed::<Time<range::Positive>>("--window", end).map(|time| time.get()),
+        _ => read::<Time<range::Positive>>("--window", end).map(|time| time.get()),
     });
     let [first, last] = ends;
     let (first, last) = (first?, last?);
@@ -140,18 +133,11 @@ fn split<'t, const N: usize>(text: &'t str, option: &str, wanted: &str) -> Resul
 fn temperature(what: &str, text: &str) -> Result<f64, Failure> {
     /// Nitrogen boils here \[K\]: no shift is measured about a lower temperature.
     const LEAST: f64 = 77.0;
-    let kelvin = parsed::<Temperature>(what, text)?.get();
+    let kelvin = read::<Temperature>(what, text)?.get();
     match kelvin < LEAST && text.trim().parse::<f64>().is_ok() {
         true => Err(Failure::input(format!(
             "{what} is \"{text}\", but must have a unit: \"{text} °C\" or \"{text} K\""
         ))),
         false => Ok(kelvin),
     }
-}
-
-pub fn parsed<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Failure>
-where
-    T::Err: std::fmt::Display,
-{
-    text.parse().map_err(|error| Failure::input(format!("{what} is \"{text}\", but must be {error}")))
 }

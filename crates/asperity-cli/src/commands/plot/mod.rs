@@ -5,19 +5,19 @@ mod options;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use asperity_io::quantity::{Time, range};
+use asperity_io::quantity::Time;
 use asperity_io::store::{At, Reader};
 use asperity_report::animation::{AnimationError, Course, Frames, Motion, animation};
-use asperity_report::figure::Form;
 use asperity_report::result::{Options, Plot, common_limits, figure, together};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::instant;
 use crate::args;
 use crate::failure::Failure;
+use crate::files::Files;
 use crate::format::counted;
-use crate::input::{meant, read};
-use crate::verb::{Paths, Verb};
+use crate::input::meant;
+use crate::verb::Verb;
 
 /// Whether a command line names a result but not what to draw of it: the one word of two that `asperity plot` needs is a path.
 pub fn lacks_figure(words: &[OsString], error: &clap::Error) -> bool {
@@ -41,12 +41,8 @@ pub fn no_figure() -> Failure {
 }
 
 impl Verb for args::Plot {
-    fn reads(&self) -> Paths<'_> {
-        self.results.iter().map(Some).collect()
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.output.as_ref(), self.animate.as_ref()]
+    fn files(&self) -> Files {
+        Files::default().reads(&self.results).draws(self.figure()).writes(&self.animate).force(self.force)
     }
 
     /// Draws the figure and prints where it is.
@@ -67,12 +63,22 @@ impl Verb for args::Plot {
         options::check(self, plot)?;
         let mut all = vec![];
         for (path, name) in self.results.iter().zip(names(&self.results)) {
-            all.push((name, Reader::open(path).map_err(failed)?));
+            all.push((name, Reader::open(path)?));
         }
         match &self.animate {
             Some(path) => animate(self, plot, &all, path),
             None => draw(self, plot, all),
         }
+    }
+}
+
+impl args::Plot {
+    /// The figure that is written; `None` for an animation.
+    fn figure(&self) -> Option<PathBuf> {
+        let stems = self.results.iter().map(|path| path.file_stem().unwrap_or_default().to_string_lossy());
+        let usual = || format!("{}-{}.png", stems.collect::<Vec<_>>().join("-"), self.what).into();
+        let is_drawn = self.animate.is_none() && Plot::from_name(&self.what).is_some();
+        is_drawn.then(|| self.output.clone().unwrap_or_else(usual))
     }
 }
 
@@ -86,20 +92,14 @@ fn names(results: &[PathBuf]) -> Vec<String> {
 }
 
 fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(), Failure> {
-    let stems = args.results.iter().map(|path| path.file_stem().unwrap_or_default().to_string_lossy());
-    let output = args
-        .output
-        .clone()
-        .unwrap_or_else(|| format!("{}-{}.png", stems.collect::<Vec<_>>().join("-"), plot.name()).into());
-    Form::of(&output).map_err(failed)?;
-    super::free(&output, args.force)?;
+    let output = args.figure().unwrap_or_default();
     let mut chosen = Options::default();
     if let Some((_, first)) = all.first() {
         chosen = options::of(args, plot, first)?;
     }
     if args.same_colours {
         let readers: Vec<&Reader> = all.iter().map(|(_, reader)| reader).collect();
-        chosen.limits = common_limits(&readers, plot, &chosen).map_err(failed)?;
+        chosen.limits = common_limits(&readers, plot, &chosen)?;
     }
     let at = |reader: &Reader| instant(reader, args.time.as_deref());
     let drawn = match &all[..] {
@@ -112,7 +112,7 @@ fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(),
             together(&all.collect::<Result<Vec<_>, Failure>>()?, plot, &chosen)
         }
     };
-    super::picture::write(&drawn.map_err(failed)?, &output, args.force)?;
+    super::picture::write(&drawn?, &output, args.force)?;
     crate::print(&format!("{}\n", output.display()))
 }
 
@@ -120,19 +120,15 @@ fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path)
     let [(_, reader)] = all else {
         return Err(Failure::input("--animate shows one result; give one".to_owned()));
     };
-    Motion::of(path).map_err(failed)?;
-    super::free(path, args.force)?;
-    let duration = args.duration.as_deref();
-    let duration =
-        duration.map(|text| read::<Time<range::Positive>>("--duration", text, "6 s")).transpose()?;
+    Motion::of(path)?;
     let usual = Course::default();
     let course = Course {
-        duration: duration.map(|duration| duration.get()),
+        duration: args.duration.map(Time::get),
         frames: args.frames.map_or(usual.frames, |frames| frames as usize),
     };
     let chosen = options::of(args, plot, reader)?;
     let last = Options { at: At::Last, ..chosen };
-    super::picture::warn_of_missing_letters(&figure(reader, plot, &last).map_err(failed)?);
+    super::picture::warn_of_missing_letters(&figure(reader, plot, &last)?);
     match animation(reader, plot, &last, course, path, args.force) {
         Ok(Frames { shown, without_contact }) => {
             if without_contact > 0 {
@@ -146,10 +142,6 @@ fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path)
         Err(AnimationError::Encoding { path, why }) => {
             Err(Failure::System(format!("cannot write {}: {why}", path.display())))
         }
-        Err(error) => Err(failed(error)),
+        Err(error) => Err(error.into()),
     }
-}
-
-fn failed(error: impl std::error::Error + 'static) -> Failure {
-    Failure::of(error)
 }

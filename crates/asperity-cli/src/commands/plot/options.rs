@@ -2,7 +2,6 @@
 
 use asperity_io::quantity::{Length, Pressure};
 use asperity_io::store::Reader;
-use asperity_report::figure::Palette;
 use asperity_report::result::{Line, Options, Plot};
 
 use super::super::moment;
@@ -56,8 +55,7 @@ pub(super) fn check(args: &args::Plot, plot: Plot) -> Result<(), Failure> {
 
 /// The options as the figures take them; the instant is not among them.
 pub(super) fn of(args: &args::Plot, plot: Plot, reader: &Reader) -> Result<Options, Failure> {
-    let place = args.at.as_deref().map(|text| read::<Length>("--at", text, "20 um")).transpose()?;
-    let place = place.map(|place| place.get());
+    let place = args.at.map(Length::get);
     let window =
         [moment(reader, "--from", args.from.as_deref())?, moment(reader, "--to", args.to.as_deref())?];
     if let ([Some(from), Some(to)], Some(text)) = (window, &args.from)
@@ -72,17 +70,10 @@ pub(super) fn of(args: &args::Plot, plot: Plot, reader: &Reader) -> Result<Optio
         title: args.title.clone(),
         window,
         limits: args.limits.as_deref().map(|text| limits(text, plot, args.log)).transpose()?,
-        palette: args.colours.as_deref().map(palette).transpose()?,
+        palette: args.colours,
         log_values: args.log,
         size: args.size.as_deref().map(size).transpose()?,
         ..Options::default()
-    })
-}
-
-fn palette(name: &str) -> Result<Palette, Failure> {
-    Palette::from_name(name).ok_or_else(|| {
-        let names: Vec<_> = Palette::ALL.iter().map(|palette| palette.name()).collect();
-        Failure::input(format!("--colours is \"{name}\", but must be one of {}", names.join(", ")))
     })
 }
 
@@ -121,7 +112,7 @@ fn size(text: &str) -> Result<[f64; 2], Failure> {
     };
     let mut points = [0.0; 2];
     for (point, side) in points.iter_mut().zip(&sides) {
-        let metres = read::<Length>("--size", side, example)?.get();
+        let metres = read::<Length>("--size", side)?.get();
         if !(SIDES[0]..=SIDES[1]).contains(&metres) {
             let [least, most] = SIDES.map(|side| 1e3 * side);
             let message = format!(

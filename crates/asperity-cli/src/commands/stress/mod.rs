@@ -1,37 +1,32 @@
 //! `asperity stress`: the stress below the surface of a result.
 
-mod summary;
+pub(super) mod summary;
 
 use std::time::{Duration, Instant};
 
 use asperity::stress::StressQuantity;
-use asperity_io::case::fragment::{self, Fault};
+use asperity_io::case::{CaseError, fragment};
 use asperity_io::export::volume;
-use asperity_io::quantity::range::NonNegative;
-use asperity_io::quantity::{Number, Time};
+use asperity_io::quantity::Number;
 use asperity_io::store::{At, Reader, Writer};
 use asperity_io::stress::{
     Below, StressBody, StressError, StressPlan, below_at, bodies_of, evaluate, of_result, refuse_layers,
 };
-use asperity_report::figure::Form;
 use asperity_report::result::stress_figure;
 
 use crate::args::Stress;
 use crate::failure::Failure;
-use crate::input::read;
+use crate::files::Files;
+use crate::input::note_unit;
 use crate::messages::message;
-use crate::verb::{Paths, Threads, Verb};
+use crate::verb::{Threads, Verb};
 
 /// Fields of a volume where none are named.
 const USUAL: [StressQuantity; 3] = [StressQuantity::Mises, StressQuantity::Tresca, StressQuantity::Tension];
 
 impl Verb for Stress {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.result)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.plot.as_ref(), self.output.as_ref()]
+    fn files(&self) -> Files {
+        Files::default().reads([&self.result]).draws(&self.plot).writes(&self.output).force(self.force)
     }
 
     fn threads(&self) -> Threads {
@@ -40,15 +35,9 @@ impl Verb for Stress {
 
     /// Computes and stores the stress, or shows the one that is stored; then draws and writes what is asked for.
     fn run(&self) -> Result<(), Failure> {
-        if let Some(path) = &self.plot {
-            Form::of(path).map_err(failed)?;
-        }
-        for path in self.plot.iter().chain(&self.output) {
-            super::free(path, self.force)?;
-        }
-        let reader = Reader::open(&self.result).map_err(failed)?;
+        let reader = Reader::open(&self.result)?;
         let plan = plan(self, &reader)?;
-        let stored = Below::of(&reader).map_err(failed)?;
+        let stored = Below::of(&reader)?;
         let below = match stored {
             Some(below) if StressPlan::of(&below.set, &reader) == plan => below,
             _ if self.no_store => of_result(&reader, &plan, &crate::interrupt::flag()).map_err(ended)?,
@@ -60,26 +49,26 @@ impl Verb for Stress {
                 store(self, &plan)?
             }
         };
-        let at = match &self.time {
-            Some(text) => At::Time(read::<Time>("--time", text, "500 s")?.get()),
+        let at = match self.time {
+            Some(time) => At::Time(time.get()),
             None => below.worst().map_or(At::Last, |worst| At::Index(worst.index)),
         };
-        let index = reader.index(at).map_err(failed)?;
+        let index = reader.index(at)?;
         let mut written = vec![];
         if let Some(path) = &self.plot {
-            let one = Reader::open(&self.result).map_err(failed)?;
+            let one = Reader::open(&self.result)?;
             let shown = match below.instants.iter().any(|instant| instant.index == index) {
                 true => below.clone(),
                 false => below_at(&one, &plan, at).map_err(ended)?,
             };
-            let figure = stress_figure(&one, &shown, index).map_err(failed)?;
+            let figure = stress_figure(&one, &shown, index)?;
             crate::commands::picture::write(&figure, path, self.force)?;
             written.push(path.display().to_string());
         }
         if let Some(path) = &self.output {
             let quantities =
                 if plan.quantities.is_empty() { USUAL.to_vec() } else { plan.quantities.clone() };
-            let files = volume(&reader, &plan, at, &quantities, path, self.force).map_err(failed)?;
+            let files = volume(&reader, &plan, at, &quantities, path, self.force)?;
             written.extend(files.iter().map(|path| path.display().to_string()));
         }
         let shown = below.instants.iter().find(|instant| instant.index == index).or(below.worst());
@@ -94,22 +83,18 @@ impl Verb for Stress {
     }
 }
 
-fn failed(error: impl std::error::Error + 'static) -> Failure {
-    Failure::of(error)
-}
-
 fn ended(error: StressError) -> Failure {
     match error {
         StressError::Solve(asperity::Error::Interrupted) => {
             Failure::Interrupted("the stress is not stored".into())
         }
-        error => failed(error),
+        error => error.into(),
     }
 }
 
 /// Computes the stress and adds it to the result.
 fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
-    let mut writer = Writer::amend(&args.result).map_err(failed)?;
+    let mut writer = Writer::amend(&args.result)?;
     /// Time between two messages.
     const OFTEN: Duration = Duration::from_secs(2);
     let mut printed_at = Instant::now();
@@ -120,7 +105,7 @@ fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
         }
     };
     let below = evaluate(&mut writer, plan, &crate::interrupt::flag(), progress).map_err(ended)?;
-    let reader = Reader::open(&args.result).map_err(failed)?;
+    let reader = Reader::open(&args.result)?;
     let new = below.findings(&reader.header().grid);
     let codes = [
         asperity::finding::STRESS_UNRESOLVED,
@@ -130,7 +115,7 @@ fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
     ];
     let others = writer.findings().iter().filter(|finding| !codes.contains(&finding.code.as_ref())).cloned();
     let findings = others.chain(new).collect();
-    writer.note(findings).map_err(failed)?;
+    writer.note(findings)?;
     Ok(below)
 }
 
@@ -154,9 +139,8 @@ fn keys(args: &Stress) -> impl Iterator<Item = (&'static str, &str)> {
 fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
     refuse_layers(reader).map_err(ended)?;
     let mut bodies = bodies_of(reader);
-    if let Some(text) = &args.poisson {
-        let ratio = read::<Number<NonNegative>>("--poisson", text, "0.3")?.get();
-        if ratio > 0.5 {
+    if let Some(ratio) = args.poisson.map(Number::get) {
+        if ratio < 0.0 {
             return Err(Failure::input(format!(
                 "--poisson is {ratio}, but must be a Poisson's ratio from 0 to 0.5"
             )));
@@ -182,28 +166,24 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
     {
         given.push(("body", &stored.body));
     }
+    for (key, unit) in [("depths", "m"), ("threshold", "Pa"), ("yield_stress", "Pa")] {
+        let texts = given.iter().filter(|given| given.0 == key).flat_map(|given| given.1.split(','));
+        texts.for_each(|text| note_unit(&option(key), text, unit));
+    }
     let mut plan = fragment::stress(&given, &reader.header().grid, &bodies).map_err(faults)?;
     if let Some(stored) = stored {
-        let is_new = |key: &str| keys(args).any(|given| given.0 == key);
-        if !is_new("depths") {
-            plan.depths = stored.depths;
-        }
-        if !is_new("components") {
-            plan.quantities = stored.quantities;
-        }
-        if args.poisson.is_none() && !is_new("body") {
-            plan.poisson = stored.poisson;
-        }
-        if !is_new("threshold") {
-            plan.threshold = stored.threshold;
-        }
-        if !is_new("yield_stress") {
-            plan.yield_stress = stored.yield_stress;
-        }
-        if !is_new("rolling") {
-            plan.rolling = stored.rolling;
-        }
-        plan.times = stored.times;
+        let keeps = |key: &str| !keys(args).any(|given| given.0 == key);
+        let poisson = if args.poisson.is_none() && keeps("body") { stored.poisson } else { plan.poisson };
+        plan = StressPlan {
+            depths: if keeps("depths") { stored.depths } else { plan.depths },
+            quantities: if keeps("components") { stored.quantities } else { plan.quantities },
+            threshold: if keeps("threshold") { stored.threshold } else { plan.threshold },
+            yield_stress: if keeps("yield_stress") { stored.yield_stress } else { plan.yield_stress },
+            rolling: if keeps("rolling") { stored.rolling } else { plan.rolling },
+            times: stored.times,
+            poisson,
+            ..plan
+        };
     }
     if let Some(list) = &args.times {
         plan.times = super::times(list)?;
@@ -211,13 +191,19 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
     Ok(plan)
 }
 
-fn faults(faults: Vec<Fault>) -> Failure {
-    let sentence = |fault: &Fault| {
+/// The option that gives a key.
+fn option(key: &str) -> String {
+    // An element of a list: "depths[0]".
+    format!("--{}", key.split('[').next().unwrap_or(key).replace('_', "-"))
+}
+
+fn faults(faults: Vec<CaseError>) -> Failure {
+    let sentence = |fault: &CaseError| {
         let help = fault.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
         // The table of a case as a whole has no option.
         let option = match fault.key.as_str() {
             "" | "stress" => String::new(),
-            key => format!("--{} ", key.replace('_', "-")),
+            key => option(key) + " ",
         };
         format!("{option}{}{help}", fault.message)
     };

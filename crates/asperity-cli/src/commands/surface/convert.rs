@@ -4,21 +4,18 @@ use asperity_io::topography::write;
 
 use crate::args::SurfaceConvert;
 use crate::failure::Failure;
-use crate::verb::{Paths, Verb};
+use crate::files::Files;
+use crate::verb::Verb;
 
 impl Verb for SurfaceConvert {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.file.file)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![Some(&self.output)]
+    fn files(&self) -> Files {
+        Files::default().reads([&self.file.file]).writes([&self.output]).force(self.force)
     }
 
     /// Reads and writes.
     fn run(&self) -> Result<(), Failure> {
-        let format = super::target(&self.output, self.to.as_deref(), self.force)?;
+        let format = super::target(&self.output, self.to.as_deref())?;
         let topography = super::open(&self.file)?;
-        write(&self.output, &topography, format).map_err(Failure::of)
+        Ok(write(&self.output, &topography, format)?)
     }
 }

@@ -3,17 +3,21 @@
 use asperity::surface::statistics::Extent;
 use asperity::surface::{Part, SelfAffine};
 use asperity_io::case::fragment;
-use asperity_io::topography::Topography;
 
-use super::table::SurfaceSummary;
 use crate::args::SurfaceGenerate;
 use crate::failure::Failure;
+use crate::files::Files;
+use crate::input::note_unit;
 use crate::verb::Verb;
 
 impl Verb for SurfaceGenerate {
+    fn files(&self) -> Files {
+        self.to.files().reads(&self.distribution)
+    }
+
     /// Makes the surface, writes it, and prints its statistics.
     fn run(&self) -> Result<(), Failure> {
-        let format = super::targets(&self.to)?;
+        let format = super::target(&self.to.output, self.to.to.as_deref())?;
         let seed = self.seed.to_string();
         // The patch of the challenge has a size of its own.
         let challenge_size = self.preset.is_some().then(|| SelfAffine::CHALLENGE_SIZE.to_string());
@@ -36,8 +40,13 @@ impl Verb for SurfaceGenerate {
         ];
         let keys: Vec<(&str, &str)> =
             given.into_iter().filter_map(|(key, text)| Some((key, text?))).collect();
+        for (key, text) in &keys {
+            if ["size", "rms_height", "longest", "shortest", "roll_off"].contains(key) {
+                text.split(',').for_each(|text| note_unit(&flag(key), text, "m"));
+            }
+        }
         let (grid, part) = fragment::roughness(&keys).map_err(|faults| {
-            let failed = |fault: &fragment::Fault| {
+            let failed = |fault: &asperity_io::case::CaseError| {
                 // A path of the command line is relative to where the command runs.
                 let help = fault.help.as_ref().filter(|_| fault.key != "distribution.path");
                 let help = help.map_or(String::new(), |help| format!("; {}", with_options(help)));
@@ -56,38 +65,38 @@ impl Verb for SurfaceGenerate {
                 return Err(Failure::input("no roughness".to_owned()));
             }
         };
-        let heights = heights.map_err(|error| Failure::input(error.to_string()))?;
+        let heights = heights?;
         let recipe: Vec<String> = keys.iter().map(|(key, text)| format!("{key} = {text}")).collect();
-        let mut topography = Topography {
-            format,
-            heights,
-            size: grid.size(),
-            channel: Some("roughness".to_owned()),
-            channels: Vec::new(),
-            metadata: Vec::new(),
-        };
         let version = env!("CARGO_PKG_VERSION");
-        topography.record([format!("made by asperity {version}: self-affine, {}", recipe.join(", "))]);
-        super::save(&self.to, &topography, format)?;
-        let written = self.to.output.display().to_string();
-        let summary = SurfaceSummary::of(&written, &topography, Extent::Periodic)?;
+        let history = vec![format!("made by asperity {version}: self-affine, {}", recipe.join(", "))];
+        let topography = super::roughness(format, heights, grid.size(), history);
         // The ring of the shortest waves is full only up to the cut-off.
-        summary.fitted(spectrum.longest, 1.1 * spectrum.shortest).print(
-            self.to.json,
-            self.to.plot.as_deref(),
-            self.to.force,
-        )
+        super::finish(&self.to, &topography, Extent::Periodic, |summary| {
+            summary.fitted(spectrum.longest, 1.1 * spectrum.shortest)
+        })
     }
 }
 
 /// The words of a case file's message with its keys replaced by the options that give them.
 fn with_options(message: &str) -> String {
-    const KEYS: [&str; 6] =
-        ["rms_gradient", "rms_height", "roll_off", "lay.angle", "lay.ratio", "distribution.path"];
-    const WORDS: [&str; 7] = ["cells", "size", "preset", "hurst", "longest", "shortest", "seed"];
-    let words = WORDS.iter().map(|key| (format!("`{key}`"), flag(key)));
-    let keys = KEYS.iter().flat_map(|key| [(format!("`{key}`"), flag(key)), ((*key).to_owned(), flag(key))]);
-    words.chain(keys).fold(message.to_owned(), |text, (key, option)| text.replace(&key, &option))
+    const KEYS: [&str; 12] = [
+        "rms_gradient",
+        "rms_height",
+        "roll_off",
+        "lay.angle",
+        "lay.ratio",
+        "cells",
+        "size",
+        "preset",
+        "hurst",
+        "longest",
+        "shortest",
+        "seed",
+    ];
+    // These names are no words of a sentence.
+    let bare = KEYS[..5].iter().chain(&["distribution.path"]);
+    let text = crate::input::with_options(&message.replace("`distribution.path`", "--distribution"), &KEYS);
+    bare.fold(text, |text, key| text.replace(key, &flag(key)))
 }
 
 /// The option that gives a key.

@@ -2,28 +2,21 @@
 
 use asperity::surface::statistics::Extent;
 
+use asperity_io::quantity::Length;
+
 use super::table::SurfaceSummary;
 use crate::args::SurfaceInfo;
 use crate::failure::Failure;
-use crate::verb::{Paths, Verb};
+use crate::files::Files;
+use crate::verb::Verb;
 
 impl Verb for SurfaceInfo {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.file.file)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![self.plot.as_ref()]
+    fn files(&self) -> Files {
+        Files::default().reads([&self.file.file]).draws(&self.plot).force(self.force)
     }
 
     /// Prints the table or one JSON object, and draws the picture asked for.
     fn run(&self) -> Result<(), Failure> {
-        super::table::check_plot(self.plot.as_deref(), self.force)?;
-        let limit = |given: &Option<String>, default: f64| match given {
-            Some(text) => super::length(text),
-            None => Ok(default),
-        };
-        let band = [limit(&self.longest, f64::INFINITY)?, limit(&self.shortest, 0.0)?];
         if let Some(profile) = super::profile::open(&self.file)? {
             return super::profile::info(self, profile);
         }
@@ -38,7 +31,9 @@ impl Verb for SurfaceInfo {
         let extent = if self.periodic { Extent::Periodic } else { Extent::Finite };
         let mut summary = SurfaceSummary::of(&name, &topography, extent)?;
         if self.longest.is_some() || self.shortest.is_some() {
-            summary = summary.fitted_as_asked(band[0], band[1])?;
+            let limit = |given: Option<Length>, usual: f64| given.map_or(usual, Length::get);
+            summary =
+                summary.fitted_as_asked(limit(self.longest, f64::INFINITY), limit(self.shortest, 0.0))?;
         }
         summary.print(self.json, self.plot.as_deref(), self.force)
     }

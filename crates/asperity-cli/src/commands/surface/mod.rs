@@ -11,31 +11,35 @@ use std::path::Path;
 
 use asperity::Grid;
 use asperity::surface::Surface as Map;
+use asperity::surface::statistics::Extent;
 use asperity_io::quantity::Length;
+use asperity_io::quantity::range::Positive;
 use asperity_io::topography::{Format, ReadOptions, Topography, read, write};
+use ndarray::Array2;
 
-use super::free;
+use self::table::SurfaceSummary;
 use crate::args::{SurfaceFile, SurfaceOutput};
 use crate::failure::Failure;
+use crate::input::read as parsed;
 
 /// Reads the file with what the command line says about it.
 pub(super) fn open(file: &SurfaceFile) -> Result<Topography, Failure> {
-    let size = file.size.as_deref().map(size).transpose()?;
+    let size = file.size.as_deref().map(|text| size("--size", text)).transpose()?;
     let height_unit = file.height_unit.as_deref().map(unit).transpose()?;
     let options = ReadOptions { size, height_unit, channel: file.channel.clone(), ..ReadOptions::default() };
-    read(&file.file, &options).map_err(|error| Failure::input(error.to_string()))
+    Ok(read(&file.file, &options)?)
 }
 
 /// The heights on their grid; `name` is what messages call them.
 fn map(name: &str, topography: &Topography) -> Result<Map, Failure> {
-    let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+    let failed = Failure::about(name);
     let (nx, ny) = topography.heights.dim();
-    let grid = Grid::new([nx, ny], topography.size).map_err(failed)?;
+    let grid = Grid::new([nx, ny], topography.size).map_err(&failed)?;
     Map::new(grid, topography.heights.clone()).map_err(failed)
 }
 
-/// The format that `--to` or else the ending of the path names; refuses to replace a file unless told.
-fn target(path: &Path, to: Option<&str>, force: bool) -> Result<Format, Failure> {
+/// The format that `--to` names, or else the extension of the path.
+fn target(path: &Path, to: Option<&str>) -> Result<Format, Failure> {
     let ending = path.extension().map(|e| e.to_string_lossy().into_owned());
     let name = to.map(str::to_owned).or(ending).unwrap_or_default();
     let format: Format = name.parse().map_err(|error| {
@@ -48,46 +52,55 @@ fn target(path: &Path, to: Option<&str>, force: bool) -> Result<Format, Failure>
             names.join(", ")
         )));
     }
-    free(path, force)?;
     Ok(format)
 }
 
-/// Checks where the output goes before the work begins.
-fn targets(output: &SurfaceOutput) -> Result<Format, Failure> {
-    let format = target(&output.output, output.to.as_deref(), output.force)?;
-    table::check_plot(output.plot.as_deref(), output.force)?;
-    Ok(format)
+/// Writes a surface where the command line says, and prints its statistics.
+fn finish(
+    output: &SurfaceOutput,
+    topography: &Topography,
+    extent: Extent,
+    fitted: impl FnOnce(SurfaceSummary<'_>) -> SurfaceSummary<'_>,
+) -> Result<(), Failure> {
+    write(&output.output, topography, topography.format)?;
+    let name = output.output.display().to_string();
+    fitted(SurfaceSummary::of(&name, topography, extent)?).print(
+        output.json,
+        output.plot.as_deref(),
+        output.force,
+    )
 }
 
-/// Writes a surface where the command line says.
-fn save(output: &SurfaceOutput, topography: &Topography, format: Format) -> Result<(), Failure> {
-    write(&output.output, topography, format).map_err(Failure::of)
+/// A roughness that is made, on its way to a file.
+fn roughness(format: Format, heights: Array2<f64>, size: [f64; 2], history: Vec<String>) -> Topography {
+    let channel = Some("roughness".to_owned());
+    let mut made = Topography { format, heights, size, channel, channels: Vec::new(), metadata: Vec::new() };
+    made.record(history);
+    made
 }
 
 /// "1 mm,2 mm" in metres.
-fn size(text: &str) -> Result<[f64; 2], Failure> {
-    let lengths: Vec<_> = text.split(',').map(length).collect::<Result<_, _>>()?;
+fn size(option: &str, text: &str) -> Result<[f64; 2], Failure> {
+    let lengths: Vec<_> = text.split(',').map(|side| length(option, side)).collect::<Result<_, _>>()?;
     match lengths[..] {
         [x, y] if x > 0.0 && y > 0.0 => Ok([x, y]),
         _ => Err(Failure::input(format!(
-            "--size is \"{text}\", but must be two lengths, e.g. --size '1 mm,1 mm'"
+            "{option} is \"{text}\", but must be two lengths greater than 0, e.g. {option} '1 mm,1 mm'"
         ))),
     }
 }
 
 /// "um" or "0.1 um" in metres.
 fn unit(text: &str) -> Result<f64, Failure> {
-    let value = length(&format!("1 {text}")).or_else(|_| length(text))?;
-    if value > 0.0 {
-        return Ok(value);
-    }
-    Err(Failure::input(format!("--height-unit is \"{text}\", but must be a length, e.g. --height-unit um")))
+    let text = text.trim();
+    let length: Result<Length<Positive>, _> = format!("1 {text}").parse().or_else(|_| text.parse());
+    length.map(Length::get).map_err(|_| {
+        Failure::input(format!(
+            "--height-unit is \"{text}\", but must be a unit of length, e.g. --height-unit um"
+        ))
+    })
 }
 
-fn length(text: &str) -> Result<f64, Failure> {
-    let length: Length = text
-        .trim()
-        .parse()
-        .map_err(|error| Failure::input(format!("length \"{}\": {error}", text.trim())))?;
-    Ok(length.get())
+fn length(option: &str, text: &str) -> Result<f64, Failure> {
+    Ok(parsed::<Length>(option, text)?.get())
 }

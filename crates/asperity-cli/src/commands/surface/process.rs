@@ -5,23 +5,19 @@ use asperity_io::case::fragment;
 use asperity_io::preparation::{Step, prepare};
 use asperity_io::topography::Topography;
 
-use super::table::SurfaceSummary;
 use crate::args::SurfaceProcess;
 use crate::failure::Failure;
-use crate::verb::{Paths, Verb};
+use crate::files::Files;
+use crate::verb::Verb;
 
 impl Verb for SurfaceProcess {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.file.file)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![Some(&self.to.output), self.to.plot.as_ref()]
+    fn files(&self) -> Files {
+        self.to.files().reads([&self.file.file])
     }
 
     /// Reads, prepares, writes, and prints the statistics of what was written.
     fn run(&self) -> Result<(), Failure> {
-        let format = super::targets(&self.to)?;
+        let format = super::target(&self.to.output, self.to.to.as_deref())?;
         let steps: Vec<Step> = self
             .op
             .iter()
@@ -40,13 +36,7 @@ impl Verb for SurfaceProcess {
         topography.record(prepared.history);
         let size = prepared.surface.grid().size();
         let processed = Topography { heights: prepared.surface.into_heights(), size, ..topography };
-        super::save(&self.to, &processed, format)?;
-        let written = self.to.output.display().to_string();
         let processed = Topography { format, ..processed };
-        SurfaceSummary::of(&written, &processed, Extent::Finite)?.print(
-            self.to.json,
-            self.to.plot.as_deref(),
-            self.to.force,
-        )
+        super::finish(&self.to, &processed, Extent::Finite, |summary| summary)
     }
 }

@@ -7,15 +7,16 @@ use asperity::surface::profile::{ProfileParameters, ProfileSpectrum, roughness};
 use asperity::surface::statistics::Extent;
 use asperity::surface::{Fill, Level, Operation};
 use asperity_io::preparation::{Step, prepare};
-use asperity_io::topography::{Profile, ReadOptions, Topography, read_profile};
+use asperity_io::quantity::Length;
+use asperity_io::topography::{Profile, ReadOptions, read_profile};
 use asperity_report::figure::{Axis, Curves, Figure, Series, Style};
 use serde_json::json;
 
-use super::table::SurfaceSummary;
 use crate::args::{SurfaceFile, SurfaceFromProfile, SurfaceInfo};
 use crate::failure::Failure;
-use crate::format::quantity;
-use crate::verb::{Paths, Verb};
+use crate::files::Files;
+use crate::format::{extent, quantity};
+use crate::verb::Verb;
 
 /// Rings of the spectrum per decade.
 const PER_DECADE: u32 = 16;
@@ -26,12 +27,12 @@ const MOST_FILLED: f64 = 0.25;
 pub(super) fn open(file: &SurfaceFile) -> Result<Option<Profile>, Failure> {
     // One length of a profile; two of a map are read again as such.
     let size = match file.size.as_deref() {
-        Some(text) if !text.contains(',') => Some([super::length(text)?, 1.0]),
+        Some(text) if !text.contains(',') => Some([super::length("--size", text)?, 1.0]),
         _ => None,
     };
     let height_unit = file.height_unit.as_deref().map(super::unit).transpose()?;
     let options = ReadOptions { size, height_unit, ..ReadOptions::default() };
-    read_profile(&file.file, &options).map_err(|error| Failure::input(error.to_string()))
+    Ok(read_profile(&file.file, &options)?)
 }
 
 /// Heights without their straight line and, with a cut-off, without their Gaussian mean line; and what was done.
@@ -40,7 +41,7 @@ fn prepared(
     profile: Profile,
     args: &SurfaceInfo,
 ) -> Result<(Vec<f64>, f64, Vec<String>), Failure> {
-    let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+    let failed = Failure::about(&name);
     let spacing = profile.surface.grid().spacing()[0];
     let mut steps = vec![];
     if profile.surface.undefined() > 0 {
@@ -49,15 +50,14 @@ fn prepared(
     steps.push(match args.circle.as_deref() {
         None => Step::Operation(Operation::Level(Level::Plane)),
         Some("fit") => Step::Circle { radius: None },
-        Some(radius) => Step::Circle { radius: Some(super::length(radius)?) },
+        Some(radius) => Step::Circle { radius: Some(super::length("--circle", radius)?) },
     });
-    let done = prepare(profile.surface, &steps, None).map_err(failed)?;
+    let done = prepare(profile.surface, &steps, None).map_err(&failed)?;
     let mut heights: Vec<f64> = done.surface.heights().iter().copied().collect();
     let mut history = profile.history;
     history.extend(done.history.into_iter().map(|step| step.replace("the plane", "the straight line")));
-    if let Some(cutoff) = &args.cutoff {
-        let cutoff = super::length(cutoff)?;
-        heights = roughness(&heights, spacing, cutoff).map_err(failed)?;
+    if let Some(cutoff) = args.cutoff.map(Length::get) {
+        heights = roughness(&heights, spacing, cutoff).map_err(&failed)?;
         history.push(format!(
             "subtract the Gaussian mean line of cut-off {} (ISO 16610-21)",
             quantity(cutoff, "m")
@@ -69,17 +69,13 @@ fn prepared(
 /// Prints the parameters of the profile, and draws the picture asked for.
 pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> {
     let name = args.file.file.display().to_string();
-    let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+    let failed = Failure::about(&name);
     let (stored, undefined) = (profile.surface.clone(), profile.surface.undefined());
     let size = stored.grid().size()[0];
     let (heights, spacing, history) = prepared(&name, profile, args)?;
-    let found = ProfileParameters::of(&heights, spacing).map_err(failed)?;
-    let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(failed)?;
-    let finite = stored.heights().iter().copied().filter(|z| z.is_finite()).collect::<Vec<f64>>();
-    let (low, high) = (
-        finite.iter().copied().fold(f64::INFINITY, f64::min),
-        finite.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-    );
+    let found = ProfileParameters::of(&heights, spacing).map_err(&failed)?;
+    let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(&failed)?;
+    let [low, high] = extent(stored.heights().iter().copied());
     if let Some(path) = &args.plot {
         crate::commands::picture::write(&figure(&name, &heights, spacing, &spectrum), path, args.force)?;
     }
@@ -137,19 +133,15 @@ fn figure(name: &str, heights: &[f64], spacing: f64, spectrum: &ProfileSpectrum)
 }
 
 impl Verb for SurfaceFromProfile {
-    fn reads(&self) -> Paths<'_> {
-        vec![Some(&self.file.file)]
-    }
-
-    fn writes(&self) -> Paths<'_> {
-        vec![Some(&self.to.output), self.to.plot.as_ref()]
+    fn files(&self) -> Files {
+        self.to.files().reads([&self.file.file])
     }
 
     /// Makes an isotropic surface with the spectrum of a profile, writes it, and prints its statistics.
     fn run(&self) -> Result<(), Failure> {
-        let format = super::targets(&self.to)?;
+        let format = super::target(&self.to.output, self.to.to.as_deref())?;
         let name = self.file.file.display().to_string();
-        let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+        let failed = Failure::about(&name);
         let Some(profile) = open(&self.file)? else {
             return Err(Failure::input(format!(
                 "{name} is no profile: it needs two columns of text, position and height"
@@ -158,37 +150,23 @@ impl Verb for SurfaceFromProfile {
         let spacing = profile.surface.grid().spacing()[0];
         let mut history = profile.history;
         let heights: Vec<f64> = profile.surface.heights().iter().copied().collect();
-        let spectrum = ProfileSpectrum::of(&heights, spacing, self.periodic, PER_DECADE).map_err(failed)?;
+        let spectrum = ProfileSpectrum::of(&heights, spacing, self.periodic, PER_DECADE).map_err(&failed)?;
         let size = match self.to_size.as_deref() {
-            Some(text) if text.contains(',') => super::size(text)?,
-            Some(text) => [super::length(text)?; 2],
+            Some(text) if text.contains(',') => super::size("--to-size", text)?,
+            Some(text) => [super::length("--to-size", text)?; 2],
             None => [profile.surface.grid().size()[0]; 2],
         };
         let cells = cells(self.cells.as_deref(), size, spacing)?;
-        let grid = Grid::new(cells, size).map_err(failed)?;
-        let made = spectrum.surface(&grid, self.seed).map_err(failed)?;
-        let mut topography = Topography {
-            format,
-            heights: made,
-            size,
-            channel: Some("roughness".to_owned()),
-            channels: Vec::new(),
-            metadata: Vec::new(),
-        };
+        let grid = Grid::new(cells, size).map_err(&failed)?;
+        let made = spectrum.surface(&grid, self.seed).map_err(&failed)?;
         history.push(format!(
-        "isotropic surface with the power spectrum of the profile {name}, random phases, seed {}, waves from {} to {}",
-        self.seed,
-        quantity(TAU / spectrum.edges[spectrum.edges.len() - 1], "m"),
-        quantity(TAU / spectrum.edges[0], "m"),
-    ));
-        topography.record(history);
-        super::save(&self.to, &topography, format)?;
-        let written = self.to.output.display().to_string();
-        SurfaceSummary::of(&written, &topography, Extent::Periodic)?.print(
-            self.to.json,
-            self.to.plot.as_deref(),
-            self.to.force,
-        )?;
+            "isotropic surface with the power spectrum of the profile {name}, random phases, seed {}, waves from {} to {}",
+            self.seed,
+            quantity(TAU / spectrum.edges[spectrum.edges.len() - 1], "m"),
+            quantity(TAU / spectrum.edges[0], "m"),
+        ));
+        let topography = super::roughness(format, made, size, history);
+        super::finish(&self.to, &topography, Extent::Periodic, |summary| summary)?;
         if !self.to.json {
             crate::messages::message!(
                 "assumed: the surface is the same in all directions and its heights are Gaussian; a profile cannot tell a lay"

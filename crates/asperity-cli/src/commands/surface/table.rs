@@ -6,7 +6,6 @@ use asperity::finding::{self, Finding};
 use asperity::surface::Surface as Map;
 use asperity::surface::statistics::{BearingCurve, Extent, SelfAffineFit, Summary};
 use asperity_io::topography::Topography;
-use asperity_report::figure::Form;
 use asperity_report::surface::picture;
 use serde_json::{Value, json};
 
@@ -28,19 +27,12 @@ pub struct SurfaceSummary<'a> {
     bearing: BearingCurve,
 }
 
-/// Refuses, before the work begins, a picture that cannot be written.
-pub fn check_plot(plot: Option<&Path>, force: bool) -> Result<(), Failure> {
-    let Some(plot) = plot else { return Ok(()) };
-    Form::of(plot).map_err(|error| Failure::input(error.to_string()))?;
-    super::free(plot, force)
-}
-
 impl<'a> SurfaceSummary<'a> {
     /// Takes the statistics; `name` is what the surface is called.
     pub fn of(name: &'a str, topography: &'a Topography, extent: Extent) -> Result<Self, Failure> {
         let map = super::map(name, topography)?;
-        let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
-        let summary = Summary::of(&map, extent).map_err(failed)?;
+        let failed = Failure::about(name);
+        let summary = Summary::of(&map, extent).map_err(&failed)?;
         let bearing = BearingCurve::of(&map, LEVELS).map_err(failed)?;
         Ok(SurfaceSummary { name, topography, map, extent, summary, bearing })
     }
@@ -56,8 +48,7 @@ impl<'a> SurfaceSummary<'a> {
     /// The same for a range that the user gives: too few waves are an error.
     pub fn fitted_as_asked(self, longest: f64, shortest: f64) -> Result<Self, Failure> {
         if let Some(waves) = &self.summary.waves {
-            SelfAffineFit::of(&waves.spectrum, longest, shortest)
-                .map_err(|error| Failure::input(format!("{}: {error}", self.name)))?;
+            SelfAffineFit::of(&waves.spectrum, longest, shortest).map_err(Failure::about(self.name))?;
         }
         Ok(self.fitted(longest, shortest))
     }

@@ -33,7 +33,7 @@ impl Verb for View {
     /// Serves until it is interrupted.
     fn run(&self) -> Result<(), Failure> {
         // What cannot be shown is told before anything listens.
-        Reader::open(&self.result).map_err(|error| Failure::input(error.to_string()))?;
+        Reader::open(&self.result)?;
         let failed =
             |error: std::io::Error| Failure::input(format!("cannot listen at {}: {error}", self.host));
         let token = token()?;

@@ -2,24 +2,20 @@
 
 use asperity::material::Material;
 
-use super::{Dependence, Law, Model, modulus};
+use super::{Dependence, Law, Model, springs};
 use crate::case::keys::*;
 
-/// A spring.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Elastic {
-    /// Young's modulus; this or `shear`.
-    #[schemars(example = "2.1 GPa")]
-    young: Option<Pressure<Positive>>,
-    /// Shear modulus; this or `young`.
-    #[schemars(example = "0.8 GPa")]
-    shear: Option<Pressure<Positive>>,
+springs! {
+    /// A spring.
+    Elastic [
+        young | shear: "of the spring", "2.1 GPa" | "0.8 GPa";
+    ] {
+    }
 }
 
 impl Law for Elastic {
     fn model(&self, at: &Place<'_>, _: Dependence) -> Option<Model> {
-        let (measure, modulus) = modulus(at, self.young, self.shear)?;
+        let (measure, [modulus]) = self.springs(at)?;
         Model::known(at, Material::elastic(measure, modulus))
     }
 }

@@ -4,7 +4,7 @@ use asperity::material::{FitOptions, LongTime, Moduli, Modulus};
 
 use super::{Dependence, Model};
 use crate::case::keys::*;
-use crate::curve::{self, Columns, Curves, Kind, Request, VerticalWord};
+use crate::curve::{self, Columns, Curves, Kind, Request, Role, VerticalWord};
 
 /// A column of a text table: its number, from 1, or its header with or without the unit.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -26,44 +26,84 @@ impl Column {
     }
 }
 
-/// Columns and units of a kind of table, and what a material says of them: `key: Role, example of a column, of a unit`.
-macro_rules! tables {
-    ($columns:ident $units:ident {
+/// A law that is fitted to a table of measured points: the key of what it measures, the path, and the columns, each with its
+/// role, an example of a column and one of a unit.
+macro_rules! table {
+    (
+        $(#[$doc:meta])*
+        $law:ident: $kind:ident, $columns:ident, $units:ident;
+        $(#[$measure_doc:meta])*
+        measure $measure:ident;
+        $(#[$path_doc:meta])*
+        path $file:literal;
+        examples { columns: $columns_example:tt, units: $units_example:tt }
         $($(#[$attribute:meta])* $key:ident: $role:ident, $column:literal, $unit:literal;)*
-    }) => {
+    ) => {
+        $(#[$doc])*
+        #[derive(Debug, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $law {
+            $(#[$measure_doc])*
+            $measure: asperity::material::Modulus,
+            $(#[$path_doc])*
+            #[schemars(example = $file)]
+            path: String,
+            /// The sheet of a spreadsheet (.xls, .xlsx); the first one that names such columns if not given.
+            #[schemars(example = "Exported Data")]
+            sheet: Option<String>,
+            /// The column of each quantity, by number from 1 or by header; taken from the header if not given.
+            #[schemars(example = serde_json::json!($columns_example))]
+            columns: Option<$columns>,
+            /// Units of the columns, if the header does not name them or names wrong ones.
+            #[schemars(example = serde_json::json!($units_example))]
+            units: Option<$units>,
+            /// How the series is fitted.
+            #[schemars(example = serde_json::json!({ "max_terms": 12 }))]
+            fit: Option<super::measured::Fit>,
+        }
+
         /// The column of each quantity, by number from 1 or by header.
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
         #[serde(deny_unknown_fields)]
-        pub struct $columns {
+        struct $columns {
             $($(#[$attribute])* #[schemars(example = $column)] $key: Option<super::measured::Column>,)*
         }
 
         /// Units of the columns.
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
         #[serde(deny_unknown_fields)]
-        pub struct $units {
+        struct $units {
             $($(#[$attribute])* #[schemars(example = &$unit)] $key: Option<String>,)*
         }
 
-        fn said(
-            columns: Option<&$columns>,
-            units: Option<&$units>,
-            sheet: Option<String>,
-        ) -> crate::curve::Columns {
-            let mut said = crate::curve::Columns { sheet, ..Default::default() };
-            $(
-                if let Some(column) = columns.and_then(|columns| columns.$key.as_ref()) {
-                    said.columns.insert(crate::curve::Role::$role, column.choice());
-                }
-                if let Some(unit) = units.and_then(|units| units.$key.as_ref()) {
-                    said.units.insert(crate::curve::Role::$role, unit.clone());
-                }
-            )*
-            said
+        impl super::Law for $law {
+            fn is_measured(&self) -> bool {
+                true
+            }
+
+            fn fit(&self) -> Option<&super::measured::Fit> {
+                self.fit.as_ref()
+            }
+
+            fn model(&self, at: &Place<'_>, dependence: super::Dependence) -> Option<super::Model> {
+                use crate::curve::{Columns, Kind, Role};
+                let mut columns = Columns { sheet: self.sheet.clone(), ..Columns::default() };
+                $(
+                    if let Some(column) = self.columns.as_ref().and_then(|columns| columns.$key.as_ref()) {
+                        columns.columns.insert(Role::$role, column.choice());
+                    }
+                    if let Some(unit) = self.units.as_ref().and_then(|units| units.$key.as_ref()) {
+                        columns.units.insert(Role::$role, unit.clone());
+                    }
+                )*
+                let path = &self.path;
+                let source = super::measured::Source { kind: Kind::$kind, measure: self.$measure, path, columns };
+                source.model(at, self.fit.as_ref(), dependence)
+            }
         }
     };
 }
-pub(super) use tables;
+pub(super) use table;
 
 /// How a series is fitted to a curve.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -92,7 +132,7 @@ pub struct Fit {
     max_misfit: Option<Number<Share>>,
     /// Behaviour at times longer than the data; "free" if not given.
     long_time: Option<LongTime>,
-    /// How the moduli of sweeps at several temperatures depend on temperature, besides their times; they do not if not given. It
+    /// How the moduli of sweeps at several temperatures depend on temperature, in addition to their times; they do not if not given. It
     /// may stand in `shift` as well.
     pub vertical: Option<VerticalWord>,
     /// The part of the curve that is fitted: two times or, for a dma, two frequencies (after the shift, if there
@@ -112,6 +152,11 @@ pub struct Source<'a> {
 impl Source<'_> {
     /// The fit to the file.
     pub fn model(self, at: &Place<'_>, fit: Option<&Fit>, dependence: Dependence) -> Option<Model> {
+        let named = |role| self.columns.columns.contains_key(&role);
+        if named(Role::Loss) && named(Role::TanDelta) {
+            let message = "`loss` and `tan_delta` exclude each other";
+            return at.key("columns").fault(message, "one of the two", "leave one of them out");
+        }
         let path = at.key("path");
         let file = path.file(self.path)?;
         let (options, window) = match fit {
@@ -121,12 +166,10 @@ impl Source<'_> {
         let Dependence { shift, vertical } = dependence;
         let request = Request { measure: self.measure, shift, vertical, window, options };
         let curves = Curves::read(&file, self.kind, &self.columns);
-        match curves.and_then(|curves| Ok((request.fit(&curves)?, curves.digest))) {
-            Ok((fitted, digest)) => {
-                Some(Model::Fitted { fitted: Box::new(fitted), file: self.path.to_owned(), digest })
-            }
-            Err(error) => path.fault(error, &format!("a table of a {} measurement", self.kind.name()), ""),
-        }
+        let fitted = curves.and_then(|curves| Ok((request.fit(&curves)?, curves.digest)));
+        let expected = format!("a table of a {} measurement", self.kind.name());
+        let (fitted, digest) = path.data(fitted, &expected)?;
+        Some(Model::Fitted { fitted: Box::new(fitted), file: self.path.to_owned(), digest })
     }
 }
 

@@ -20,6 +20,7 @@ use asperity::material::{Fractional, Material as Known, Modulus, Shift as ShiftL
 
 use super::keys::*;
 use super::shift::{self, Shift};
+use crate::Code;
 use crate::curve::{Fitted, ShiftRequest, VerticalRequest};
 use measured::Fit;
 
@@ -237,51 +238,65 @@ fn known(at: &Place<'_>, dependence: &Dependence) -> Option<(Option<ShiftLaw>, O
     }
 }
 
-type Given = Option<Pressure<Positive>>;
-
-/// The one of `young` and `shear` that is given.
-fn modulus(at: &Place<'_>, young: Given, shear: Given) -> Option<(Modulus, f64)> {
-    at.exactly_one(&["young", "shear"])?;
-    let young = young.map(|modulus| (Modulus::Young, modulus.get()));
-    young.or(shear.map(|modulus| (Modulus::Shear, modulus.get())))
-}
-
-/// The moduli after all relaxation and at once, both Young's or both shear moduli.
-fn relaxed_and_instantaneous(
-    at: &Place<'_>,
-    young: [Given; 2],
-    shear: [Given; 2],
-) -> Option<(Modulus, [f64; 2])> {
-    match (young, shear) {
-        ([Some(relaxed), Some(instantaneous)], [None, None]) => {
-            Some((Modulus::Young, [relaxed.get(), instantaneous.get()]))
+/// A law whose springs are given by Young's or by shear moduli: the keys of each spring with its place in the model and examples,
+/// then the other keys.
+macro_rules! springs {
+    (
+        $(#[$attribute:meta])*
+        $law:ident [
+            $($young:ident | $shear:ident: $what:literal, $young_example:literal | $shear_example:literal;)+
+        ] {
+            $($(#[$key_attribute:meta])* $key:ident: $type:ty,)*
         }
-        ([None, None], [Some(relaxed), Some(instantaneous)]) => {
-            Some((Modulus::Shear, [relaxed.get(), instantaneous.get()]))
+    ) => {
+        $(#[$attribute])*
+        #[derive(Debug, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $law {
+            $(
+                #[doc = concat!("Young's modulus ", $what, "; this or `", stringify!($shear), "`.")]
+                #[schemars(example = $young_example)]
+                $young: Option<Pressure<Positive>>,
+                #[doc = concat!("Shear modulus ", $what, "; this or `", stringify!($young), "`.")]
+                #[schemars(example = $shear_example)]
+                $shear: Option<Pressure<Positive>>,
+            )+
+            $($(#[$key_attribute])* $key: $type,)*
         }
-        _ => {
-            let wanted = "`young_equilibrium` and `young_instantaneous`, or `shear_equilibrium` and \
-                          `shear_instantaneous`";
-            at.error(format!("{} needs {wanted}", at.key), wanted, "")
-        }
-    }
-}
 
-/// The Kelvin element's modulus, in the same measure as the first.
-fn kelvin_modulus(at: &Place<'_>, measure: Modulus, young: Given, shear: Given) -> Option<f64> {
-    let (wanted, given, other) = match measure {
-        Modulus::Young => ("young_kelvin", young, shear),
-        Modulus::Shear => ("shear_kelvin", shear, young),
+        impl $law {
+            /// What its moduli measure, and their values.
+            fn springs(
+                &self,
+                at: &Place<'_>,
+            ) -> Option<(asperity::material::Modulus, [f64; [$(stringify!($young)),+].len()])> {
+                let keys = [$([stringify!($young), stringify!($shear)]),+];
+                super::moduli(at, keys, [$([self.$young, self.$shear]),+])
+            }
+        }
     };
-    if let (Some(modulus), None) = (given, other) {
-        return Some(modulus.get());
+}
+use springs;
+
+/// The moduli of the springs that have these keys: all of them Young's, or all of them shear moduli.
+fn moduli<const N: usize>(
+    at: &Place<'_>,
+    keys: [[&str; 2]; N],
+    given: [[Option<Pressure<Positive>>; 2]; N],
+) -> Option<(Modulus, [f64; N])> {
+    for (n, measure) in [Modulus::Young, Modulus::Shear].into_iter().enumerate() {
+        let complete = given.iter().all(|pair| pair[n].is_some() && pair[1 - n].is_none());
+        if complete {
+            return Some((measure, given.map(|pair| pair[n].map_or(0.0, Pressure::get))));
+        }
     }
-    let message = format!(
-        "{} gives its first modulus as {}, so it needs `{wanted}` and no other modulus of the Kelvin element",
-        at.key,
-        measure.name()
-    );
-    at.error(message, wanted, "")
+    if let [[young, shear]] = keys[..] {
+        return at.exactly_one(&[young, shear]).and(None);
+    }
+    let [young, shear] = [0, 1].map(|n| keys.map(|pair| format!("`{}`", pair[n])).join(" and "));
+    let mixed = [0, 1].iter().all(|n| given.iter().any(|pair| pair[*n].is_some()));
+    let code = if mixed { Code::Conflict } else { Code::MissingKey };
+    at.error(code, format!("{} needs {young}, or {shear}", at.key), &format!("{young}, or {shear}"), "")
 }
 
 fn few_terms(at: &Place<'_>, terms: usize) -> Option<()> {

@@ -3,6 +3,7 @@
 use asperity::material::{Material, Modulus, Relaxation};
 
 use super::{Dependence, Law, Model, few_terms};
+use crate::Code;
 use crate::case::keys::*;
 
 /// Relaxation modulus as Prony series (generalised Maxwell, Wiechert).
@@ -86,6 +87,11 @@ impl Term {
             _ => format!("the material gives `{given}`"),
         };
         let help = "`equilibrium` takes terms with `modulus` or `ratio` (to it), `instantaneous` takes terms with `fraction` (of it)";
-        at.error(format!("{} must have `{wanted}`{not}, because {why}", at.key), wanted, help)
+        at.error(
+            Code::MissingKey,
+            format!("{} must have `{wanted}`{not}, because {why}", at.key),
+            wanted,
+            help,
+        )
     }
 }

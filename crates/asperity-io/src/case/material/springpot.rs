@@ -2,33 +2,29 @@
 
 use asperity::material::Fractional;
 
-use super::{Dependence, Law, Model, modulus};
+use super::{Dependence, Law, Model, springs};
 use crate::case::keys::*;
 
-/// A power law, between spring and dashpot: J = (t/time)^order / (modulus Gamma(1 + order)); as a Prony sum
-/// over the times of the run.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Springpot {
-    /// Young's modulus at `time`; this or `shear`.
-    #[schemars(example = "3 MPa")]
-    young: Option<Pressure<Positive>>,
-    /// Shear modulus at `time`; this or `young`.
-    #[schemars(example = "1 MPa")]
-    shear: Option<Pressure<Positive>>,
-    /// Time at which the compliance is 1/(modulus Gamma(1 + order)).
-    #[schemars(example = "1 s")]
-    time: Time<Positive>,
-    /// Order of the derivative: 0 would be a spring, 1 is a dashpot.
-    order: Number<Order>,
-    /// Largest relative error of the Prony sum over the times of the run; 1e-3 if not given.
-    #[schemars(example = 1e-3)]
-    tolerance: Option<Number<Tolerance>>,
+springs! {
+    /// A power law, between spring and dashpot: J = (t/time)^order / (modulus Gamma(1 + order)); as a Prony sum
+    /// over the times of the run.
+    Springpot [
+        young | shear: "at `time`", "3 MPa" | "1 MPa";
+    ] {
+        /// Time at which the compliance is 1/(modulus Gamma(1 + order)).
+        #[schemars(example = "1 s")]
+        time: Time<Positive>,
+        /// Order of the derivative: 0 would be a spring, 1 is a dashpot.
+        order: Number<Order>,
+        /// Largest relative error of the Prony sum over the times of the run; 1e-3 if not given.
+        #[schemars(example = 1e-3)]
+        tolerance: Option<Number<Tolerance>>,
+    }
 }
 
 impl Law for Springpot {
     fn model(&self, at: &Place<'_>, _: Dependence) -> Option<Model> {
-        let (measure, modulus) = modulus(at, self.young, self.shear)?;
+        let (measure, [modulus]) = self.springs(at)?;
         let (time, order) = (self.time.get(), self.order.get());
         let model = Fractional::Springpot { modulus, time, order };
         Some(Model::fractional(measure, model, time, self.tolerance))

@@ -1,7 +1,7 @@
 //! The quantities of a curve: key, unit, and the names that programs and people give them.
 
 /// Makes the enum of the quantities from a table: key, unit in which a number without one is taken, unit of an example, and names,
-/// [bare](super::bare); "t" and "T" are told apart elsewhere.
+/// [bare](super::bare); what "t" and "T" mean is decided elsewhere.
 macro_rules! roles {
     ($($(#[$doc:meta])* $role:ident $key:literal [$si:literal, $example:literal] $names:literal;)*) => {
         /// What a column holds.

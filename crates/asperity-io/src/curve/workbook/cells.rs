@@ -1,4 +1,4 @@
-//! The cells of a sheet, of which a file of a few bytes may claim any number anywhere.
+//! The cells of a sheet. A file of a few bytes may claim any number of them at any place, so their number is bounded.
 
 use super::Rows;
 use crate::curve::error::{Fault, fault};

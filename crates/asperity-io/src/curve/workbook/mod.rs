@@ -53,7 +53,7 @@ fn damaged() -> Fault {
     fault("the spreadsheet is damaged; save it again or as text (csv)")
 }
 
-/// The tables of a file: one of a text file, those of all sheets of a spreadsheet, or of the one that is named.
+/// The tables of a file: the one of a text file; of a spreadsheet those of all sheets, or of the `wanted` one.
 pub(super) fn sheets(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Sheet>, Fault> {
     if !is_workbook(bytes) {
         if let Some(name) = wanted {

@@ -1,6 +1,6 @@
 //! Sheets of .xls files of Excel 5 to 2003: records in the stream `Workbook` or `Book` of a compound document (Microsoft,
-//! \[MS-XLS\], versions 5 and 8 of its format, BIFF). Numbers, texts, truth values and results of formulas are read, and no
-//! formatting.
+//! \[MS-XLS\], versions 5 and 8 of its format, BIFF). Numbers, texts, truth values and results of formulas are read; formatting is
+//! ignored.
 
 use super::cells::Cells;
 use super::{Book, MOST_CHARACTERS, Named, damaged};
@@ -245,7 +245,7 @@ impl<'a> Strings<'a> {
         Ok(strings)
     }
 
-    /// What is left of the current part; the next one where nothing is.
+    /// The rest of the current part, or the next part if nothing is left.
     fn rest(&mut self) -> Option<&'a [u8]> {
         while let Some(rest) = self.parts.last().map(|part| part.get(self.at..).unwrap_or_default()) {
             if !rest.is_empty() {

@@ -1,5 +1,5 @@
 //! Sheets of .xlsx files: XML in a zip archive (ECMA-376, Office Open XML, SpreadsheetML). Numbers, texts, truth values and
-//! stored results of formulas are read, and no formatting.
+//! stored results of formulas are read; formatting is ignored.
 
 use std::collections::HashMap;
 use std::io::{Cursor, Read};
@@ -215,7 +215,7 @@ impl Parts<'_> {
     }
 }
 
-/// Gives the pieces of a part to `on`, one after the other.
+/// Calls `on` for each piece of a part.
 fn walk(part: &str, on: impl FnMut(Piece<'_>) -> Result<(), Fault>) -> Result<(), Fault> {
     xml::walk(part, on)
 }

@@ -4,7 +4,7 @@ use memchr::memchr;
 
 use crate::topography::Problem;
 
-/// What stands between two numbers.
+/// The separator between two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Separator {
     /// Spaces and tabs.
@@ -47,7 +47,7 @@ pub(super) fn is_numbers(line: &[u8]) -> bool {
         if token.is_empty() {
         } else if is_number(token) {
             numbers += 1;
-        } else if is_undefined(token) {
+        } else if is_undefined(token) || is_infinite(token) {
             marks += 1;
         } else {
             return false;
@@ -74,26 +74,20 @@ fn is_number(token: &[u8]) -> bool {
 /// Whether a token marks an undefined point.
 pub(super) fn is_undefined(token: &[u8]) -> bool {
     let token = token.strip_prefix(b"+").or(token.strip_prefix(b"-")).unwrap_or(token);
-    const MARKS: [&str; 16] = [
-        "",
-        "nan",
-        "nan(ind)",
-        "nan(snan)",
-        "1.#qnan",
-        "1.#nan",
-        "1.#ind",
-        "1.#inf",
-        "inf",
-        "infinity",
-        "infinite",
-        "bad",
-        "na",
-        "n/a",
-        "#n/a",
-        "null",
-    ];
-    MARKS.iter().any(|mark| token.eq_ignore_ascii_case(mark.as_bytes()))
+    const MARKS: &str = "nan nan(ind) nan(snan) 1.#qnan 1.#nan 1.#ind bad na n/a #n/a null";
+    token.is_empty()
+        || is_one_of(token, MARKS)
         || (token.len() < 16 && (token.iter().all(|b| *b == b'*') || token.iter().all(|b| *b == b'-')))
+}
+
+/// Whether a token is infinite, which no height is.
+fn is_infinite(token: &[u8]) -> bool {
+    let token = token.strip_prefix(b"+").or(token.strip_prefix(b"-")).unwrap_or(token);
+    is_one_of(token, "inf infinity infinite 1.#inf")
+}
+
+fn is_one_of(token: &[u8], words: &str) -> bool {
+    words.split(' ').any(|word| token.eq_ignore_ascii_case(word.as_bytes()))
 }
 
 impl Dialect {
@@ -121,9 +115,9 @@ impl Dialect {
                 let mut commas = Commas::default();
                 blocks.for_each(|block| commas.scan(block));
                 if commas.blank_between_numbers {
-                    // "1,5 2,5": blanks part the numbers.
+                    // "1,5 2,5": the numbers are separated by blanks.
                     if commas.beside_blank || commas.twice_in_token {
-                        return Err(mixed("both between and inside numbers that blanks part"));
+                        return Err(mixed("both between and inside numbers that are separated by blanks"));
                     }
                     dialect(Separator::Blank, true)
                 } else if commas.beside_blank && commas.inside {
@@ -140,7 +134,7 @@ impl Dialect {
 /// Where the commas of a file without decimal points and semicolons stand.
 #[derive(Default)]
 struct Commas {
-    /// Two tokens parted by blanks alone.
+    /// Two tokens are separated by blanks alone.
     blank_between_numbers: bool,
     /// A comma next to a blank (not at the end of a line).
     beside_blank: bool,
@@ -165,7 +159,7 @@ impl Commas {
                     self.twice_in_token |= in_token > 1;
                 } else if byte.is_ascii_whitespace() {
                     in_token = 0;
-                    // A run of blanks parts numbers where no comma is at either end of it.
+                    // A run of blanks separates numbers if there is no comma at either end of it.
                     if neighbours[1].is_some_and(|b| !b.is_ascii_whitespace() && b != b',') {
                         let before = line[..at].iter().rev().find(|b| !b.is_ascii_whitespace());
                         self.blank_between_numbers |= before.is_some_and(|b| *b != b',');

@@ -2,19 +2,16 @@
 
 use std::borrow::Cow;
 
+use crate::topography::cursor::utf16;
+use crate::topography::sample::Order;
+
 /// The text with one byte per ASCII character, or `None` where the bytes are binary.
 ///
 /// An 8-bit code passes as it is: numbers are ASCII in all of them, and labels are decoded by [`label`].
 pub(super) fn utf8(bytes: &[u8]) -> Option<Cow<'_, [u8]>> {
-    let wide = |order: fn([u8; 2]) -> u16| {
-        let units = bytes[2..].as_chunks::<2>().0.iter().map(|pair| order(*pair));
-        let text: String =
-            char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
-        Cow::Owned(text.into_bytes())
-    };
     let text = match bytes {
-        [0xff, 0xfe, ..] => wide(u16::from_le_bytes),
-        [0xfe, 0xff, ..] => wide(u16::from_be_bytes),
+        [0xff, 0xfe, rest @ ..] => Cow::Owned(utf16(rest, Order::Little).into_bytes()),
+        [0xfe, 0xff, rest @ ..] => Cow::Owned(utf16(rest, Order::Big).into_bytes()),
         [0xef, 0xbb, 0xbf, rest @ ..] => Cow::Borrowed(rest),
         _ => Cow::Borrowed(bytes),
     };

@@ -5,7 +5,7 @@
 //! rows of column names with units ("x [mm]; y [mm]; z [µm]"). Other lines are kept as metadata.
 
 use super::encoding;
-use super::labels::{Label, label};
+use super::labels::in_english;
 use crate::topography::finish::{Lateral, Unit, unit_of};
 use crate::topography::unit::{LoneA, metres};
 
@@ -72,7 +72,7 @@ impl Header {
         self.above = Default::default();
     }
 
-    /// Takes in one header line; gives it back as key and value for the metadata.
+    /// Reads one header line; returns it as key and value for the metadata.
     pub(super) fn line(&mut self, line: &[u8]) -> Option<(String, String)> {
         // Longer lines are no header of any program.
         let line = encoding::label(&line[..line.len().min(4096)]);
@@ -103,18 +103,9 @@ impl Header {
     }
 
     fn entry(&mut self, is_comment: bool, key: &str, value: &str) {
-        match label(key) {
-            Some(Label::Channel) => return self.channel = Some(value.to_owned()),
-            Some(Label::Width) => return self.length[0] = length(value),
-            Some(Label::Height) => return self.length[1] = length(value),
-            Some(Label::LateralUnits) => {
-                return self.lateral_unit = [Some(value.to_owned()), Some(value.to_owned())];
-            }
-            Some(Label::ValueUnits) => return self.value_unit = Some(value.to_owned()),
-            None => {}
-        }
         let unit = || Some(value.to_owned());
-        match key.to_lowercase().as_str() {
+        match in_english(key).as_str() {
+            "channel" => self.channel = Some(value.to_owned()),
             // "h=305 w=75"
             "h" => {
                 let (height, rest) = value.split_once(char::is_whitespace).unwrap_or((value, ""));
@@ -123,21 +114,19 @@ impl Header {
                     self.points[0] = width.trim().parse().ok();
                 }
             }
-            "w" => self.points[0] = value.parse().ok(),
-            "x-pixels" | "nx" => self.points[0] = value.parse().ok(),
+            "w" | "x-pixels" | "nx" => self.points[0] = value.parse().ok(),
             "y-pixels" | "ny" => self.points[1] = value.parse().ok(),
-            "x-length" => self.length[0] = length(value),
-            "y-length" => self.length[1] = length(value),
+            "width" | "x-length" => self.length[0] = length(value),
+            "height" | "y-length" => self.length[1] = length(value),
             "scale x" => self.spacing[0] = length(value),
             "scale y" => self.spacing[1] = length(value),
             "pixel size" => self.spacing = [length(value), length(value)],
             "x-unit" => self.lateral_unit[0] = unit(),
-            "y-unit" => self.lateral_unit[1] = unit(),
-            "unit x" => self.lateral_unit = [unit(), unit()],
-            "unit y" => self.lateral_unit[1] = unit(),
-            "z-unit" | "unit data" => self.value_unit = unit(),
+            "y-unit" | "unit y" => self.lateral_unit[1] = unit(),
+            "lateral units" | "unit x" => self.lateral_unit = [unit(), unit()],
+            "value units" | "z-unit" | "unit data" => self.value_unit = unit(),
             "bit2nm" if self.value_unit.is_none() => {
-                self.scale = number(value).map(|(bits, _)| bits);
+                self.scale = leading_number(value).map(|(bits, _)| bits);
                 self.value_unit = Some("nm".to_owned());
             }
             "file format" => self.spip |= value.eq_ignore_ascii_case("ascii"),
@@ -145,7 +134,7 @@ impl Header {
                 // "height conversion factor (-> m)=2.9e-8"
                 let unit = key.split_once("->").map(|(_, unit)| unit.trim_end_matches(')').trim());
                 self.value_unit = unit.map(str::to_owned);
-                self.scale = number(value).map(|(factor, _)| factor);
+                self.scale = leading_number(value).map(|(factor, _)| factor);
             }
             _ if is_comment && self.unexplained.len() < MOST_UNEXPLAINED => {
                 self.unexplained.push((key.to_owned(), value.to_owned()));
@@ -278,7 +267,7 @@ fn split(text: &str) -> Option<(&str, &str)> {
 }
 
 /// The number at the start of a text, with a decimal point or comma, and the rest.
-fn number(text: &str) -> Option<(f64, &str)> {
+pub(crate) fn leading_number(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let end = text
         .char_indices()
@@ -294,7 +283,7 @@ fn number(text: &str) -> Option<(f64, &str)> {
 }
 
 fn length(text: &str) -> Option<Length> {
-    let (value, unit) = number(text)?;
+    let (value, unit) = leading_number(text)?;
     Some(Length { value, unit: unit.trim_matches(['[', ']', '(', ')']).to_owned() })
 }
 
@@ -315,7 +304,7 @@ fn columns(text: &str, before: &[Column]) -> Vec<Column> {
             None => (field, None),
         };
         match columns.last_mut() {
-            // Blanks part the names of columns, and a name from its unit.
+            // Blanks separate the names of columns, and a name from its unit.
             Some(last) if name.is_empty() && last.unit.is_none() => last.unit = unit,
             _ => columns.push(Column { name: name.to_owned(), unit }),
         }

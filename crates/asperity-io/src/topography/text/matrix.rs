@@ -1,11 +1,11 @@
-//! Text matrices: a line of the file is one y, the values on it run along x.
+//! Text matrices: each line of the file is one y; the values on it run along x.
 
 use super::parse::table;
 use super::{Block, Text, decode};
 use crate::topography::finish::{Measured, Unit};
 use crate::topography::{Problem, Request, grid};
 
-/// Reads the channel asked for; each block of numbers is one, those of no length are left out where others are.
+/// Reads the channel asked for. Each block of numbers is a channel; blocks that are not lengths are left out if there are others.
 ///
 /// Two columns are a profile (position, height) rather than an area, unless the header or the caller says that they
 /// are a matrix.

@@ -1,8 +1,8 @@
 //! Text: a matrix (one line per y, values along x) or points (x, y, height), with or without a header.
 //!
 //! The file is a run of lines that hold only numbers (a block) between lines that do not (headers). Separator and
-//! decimal mark are found from the whole of the file, so "1,5 2,5" and "1,5,2,5" are told apart; where both readings
-//! are possible the file is refused.
+//! decimal mark are found from the whole file, so that "1,5 2,5" and "1,5,2,5" are distinguished; if both readings are possible,
+//! the file is refused.
 
 mod dialect;
 mod encoding;
@@ -22,32 +22,17 @@ use header::Header;
 
 use super::{Format, Problem, Reader, write};
 
+pub(crate) use header::leading_number;
 pub(super) use parse::numbers;
 pub(super) use profile::{is_profile, read_columns};
 
-pub(super) const XYZ: Reader = Reader {
-    name: "xyz",
-    aliases: &[],
-    sniff: |bytes| detect(bytes) == Some(Format::Xyz),
-    read: xyz::read,
-    write: None,
-};
+pub(super) const XYZ: Reader = Reader::new("xyz", |bytes| detect(bytes) == Some(Format::Xyz), xyz::read);
 
-pub(super) const CSV: Reader = Reader {
-    name: "csv",
-    aliases: &[],
-    sniff: |bytes| detect(bytes) == Some(Format::Csv),
-    read: matrix::read,
-    write: None,
-};
+pub(super) const CSV: Reader = Reader::new("csv", |bytes| detect(bytes) == Some(Format::Csv), matrix::read);
 
-pub(super) const TEXT: Reader = Reader {
-    name: "asc",
-    aliases: &["text", "txt", "matrix"],
-    sniff: |bytes| detect(bytes) == Some(Format::Text),
-    read: matrix::read,
-    write: Some(write::text::encode),
-};
+pub(super) const TEXT: Reader = Reader::new("asc", |bytes| detect(bytes) == Some(Format::Text), matrix::read)
+    .also_called(&["text", "txt", "matrix"])
+    .written_by(write::text::encode);
 
 /// One block of numbers and what the lines before it say.
 struct Block<'a> {
@@ -56,11 +41,11 @@ struct Block<'a> {
     data: &'a [u8],
     /// Line of the file where they start, from 1.
     line: usize,
-    /// How much of the metadata is said before or, for the last block, after them.
+    /// Number of the metadata that stand before the block or, for the last block, also after it.
     metadata: usize,
 }
 
-/// A text file taken apart.
+/// A text file split into headers and blocks of numbers.
 struct Text<'a> {
     dialect: Dialect,
     blocks: Vec<Block<'a>>,
@@ -101,14 +86,14 @@ pub(crate) fn dialect<'a>(
 
 /// Whether the bytes are text with a block of numbers, and which.
 fn detect(bytes: &[u8]) -> Option<Format> {
-    // Enough for any header; a line of numbers that is cut off at the end is left away.
+    // Enough for any header; a line of numbers that is cut off at the end is ignored.
     const PREFIX: usize = 1 << 20;
     let mut prefix = &bytes[..bytes.len().min(PREFIX)];
     if bytes.len() > PREFIX {
         prefix = &prefix[..prefix.iter().rposition(|b| *b == b'\n').map_or(PREFIX, |end| end + 1)];
     }
     let text = encoding::utf8(prefix)?;
-    // Text whose numbers cannot be told is still text: reading says why.
+    // Text whose numbers are ambiguous is still text: the error when it is read gives the reason.
     let Ok(text) = Text::split(&text) else { return Some(Format::Text) };
     let block = text.blocks.first()?;
     let columns = parse::columns(text.dialect, block.data);
@@ -179,7 +164,7 @@ impl<'a> Text<'a> {
                 let (data, metadata) = (&bytes[start..], metadata.len());
                 blocks.push(Block { header, data, line, metadata });
             }
-            // What follows the last numbers is said about them.
+            // Lines after the last numbers describe the last block.
             None => {
                 if let Some(last) = blocks.last_mut() {
                     (last.header, last.metadata) = (header, metadata.len());

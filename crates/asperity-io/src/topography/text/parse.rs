@@ -46,7 +46,7 @@ pub(super) fn table(dialect: Dialect, block: &Block) -> Result<Table, Problem> {
     Ok(Table { columns, runs: parse(dialect, Some(columns), block.data, block.line)? })
 }
 
-/// The numbers of lines of any length, parted by blanks, from this line of the file on.
+/// The numbers of lines of any length, separated by blanks, from this line of the file on.
 pub(crate) fn numbers(data: &[u8], first_line: usize) -> Result<Vec<f64>, Problem> {
     let dialect = Dialect { separator: Separator::Blank, decimal_comma: false };
     Ok(parse(dialect, None, data, first_line)?.concat())
@@ -98,7 +98,7 @@ impl Fault {
             Fault::Number { at, length } => Problem::malformed(
                 format!("line {}", line(at)),
                 format!("{:?} where a number was expected", encoding::label(&run[at..at + length])),
-                "all numbers, or marks of undefined points such as nan",
+                "all finite numbers, or marks of undefined points such as nan",
             ),
             Fault::Columns { at, found, columns } => Problem::malformed(
                 format!("line {}", line(at)),
@@ -133,7 +133,7 @@ fn parse_run(dialect: Dialect, columns: Option<usize>, run: &[u8]) -> Result<Vec
     Ok(values)
 }
 
-/// A line of numbers that blanks part.
+/// A line of numbers that are separated by blanks.
 fn blank_line(
     comma: bool,
     run: &[u8],
@@ -163,7 +163,7 @@ fn blank_line(
     }
 }
 
-/// A line of numbers that a comma or semicolon parts.
+/// A line of numbers that are separated by a comma or semicolon.
 fn delimited_line(
     separator: u8,
     comma: bool,

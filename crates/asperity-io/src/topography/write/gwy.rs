@@ -6,30 +6,30 @@ use crate::topography::{HISTORY, Problem, Topography};
 pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     let (nx, ny) = topography.heights.dim();
     let too_large = || Problem::unsupported(format!("a GWY file of {nx} x {ny} points"), "write NPZ instead");
+    let container = container(topography).ok_or_else(too_large)?;
+    let mut bytes = b"GWYP".to_vec();
+    named(&mut bytes, "GwyContainer", &container).ok_or_else(too_large)?;
+    Ok(bytes)
+}
+
+/// The contents of the file; `None` where a length needs more than 32 bits.
+fn container(topography: &Topography) -> Option<Vec<u8>> {
     let mut container = Vec::new();
     string(&mut container, "/0/data/title", title(topography));
     let defined = topography.heights.iter().filter(|h| !h.is_nan());
     let mean = defined.clone().sum::<f64>() / (defined.count().max(1) as f64);
-    let heights = |h: f64| if h.is_nan() { mean } else { h };
-    object(
-        &mut container,
-        "/0/data",
-        "GwyDataField",
-        &field(topography, heights, "m").ok_or_else(too_large)?,
-    )
-    .ok_or_else(too_large)?;
+    let heights = field(topography, |h| if h.is_nan() { mean } else { h }, "m")?;
+    object(&mut container, "/0/data", "GwyDataField", &heights)?;
     if topography.heights.iter().any(|h| h.is_nan()) {
-        let mask = field(topography, |h| f64::from(u8::from(h.is_nan())), "").ok_or_else(too_large)?;
-        object(&mut container, "/0/mask", "GwyDataField", &mask).ok_or_else(too_large)?;
+        let mask = field(topography, |h| f64::from(u8::from(h.is_nan())), "")?;
+        object(&mut container, "/0/mask", "GwyDataField", &mask)?;
     }
     if let Some(history) = topography.history_line() {
         let mut meta = Vec::new();
         string(&mut meta, HISTORY, &history);
-        object(&mut container, "/0/meta", "GwyContainer", &meta).ok_or_else(too_large)?;
+        object(&mut container, "/0/meta", "GwyContainer", &meta)?;
     }
-    let mut bytes = b"GWYP".to_vec();
-    named(&mut bytes, "GwyContainer", &container).ok_or_else(too_large)?;
-    Ok(bytes)
+    Some(container)
 }
 
 /// Components of a GwyDataField.

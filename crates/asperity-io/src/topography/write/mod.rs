@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use crate::output;
 
+use super::finish::is_positive;
 use super::format::list;
 use super::{Format, Problem, Topography, TopographyError};
 
@@ -25,8 +26,8 @@ use super::{Format, Problem, Topography, TopographyError};
 /// # Errors
 /// As [`to_bytes`], and where the file cannot be written.
 pub fn write(path: &Path, topography: &Topography, format: Format) -> Result<(), TopographyError> {
-    let in_file = |problem| TopographyError { path: Some(path.to_owned()), problem };
-    let bytes = encode(topography, format).map_err(in_file)?;
+    let in_file = TopographyError::at(path);
+    let bytes = encode(topography, format).map_err(&in_file)?;
     output::write(path, true, |file| file.write_all(&bytes)).map_err(|e| in_file(Problem::Io(e)))
 }
 
@@ -49,14 +50,14 @@ pub fn write(path: &Path, topography: &Topography, format: Format) -> Result<(),
 /// [`Problem::Unsupported`] where the format cannot hold so many points, [`Problem::Malformed`] where heights or
 /// size are empty or no numbers.
 pub fn to_bytes(topography: &Topography, format: Format) -> Result<Vec<u8>, TopographyError> {
-    encode(topography, format).map_err(|problem| TopographyError { path: None, problem })
+    Ok(encode(topography, format)?)
 }
 
 fn encode(topography: &Topography, format: Format) -> Result<Vec<u8>, Problem> {
     let (nx, ny) = topography.heights.dim();
     super::grid::points(nx as u64, ny as u64)?;
     let [lx, ly] = topography.size;
-    if !(lx > 0.0 && ly > 0.0 && lx.is_finite() && ly.is_finite()) {
+    if !topography.size.into_iter().all(is_positive) {
         let value = format!("{lx:e} m x {ly:e} m");
         return Err(Problem::malformed("the physical size", value, "positive and finite"));
     }

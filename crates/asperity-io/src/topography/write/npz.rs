@@ -1,5 +1,5 @@
-//! NPZ: the arrays `heights` (nx, ny), `size` (Lx, Ly), the text `unit` = "m" of both, and the text `history` where
-//! there is one, for `numpy.load`.
+//! NPZ: the arrays `heights` (nx, ny), `size` (Lx, Ly), the text `unit` = "m" of both, and the text `history` if the
+//! surface has one, for `numpy.load`.
 
 use std::io::Cursor;
 

@@ -56,7 +56,10 @@ fn every_starter_case_is_solved_on_a_coarse_grid() {
         let mut largest: f64 = 0.0;
         while let Some(step) = march.advance().unwrap_or_else(|error| panic!("{}: {error}", template.name)) {
             let row = step.row();
-            assert!(row.max_pressure <= case.hardness && row.residual <= case.solver.tolerance);
+            assert!(
+                row.max_pressure <= case.conditions.hardness
+                    && row.residual <= case.conditions.solver.tolerance
+            );
             largest = largest.max(row.contact_fraction);
         }
         assert!(march.finished());
@@ -65,7 +68,7 @@ fn every_starter_case_is_solved_on_a_coarse_grid() {
         }
         // A contact that can be seen, and that stays away from the edges of a free domain (a disc that touches
         // them covers pi/4); rough-pmma fills the patch up to its corners, as in the paper.
-        let whole = template.name == "rough-pmma" || case.boundary == Boundary::Periodic;
+        let whole = template.name == "rough-pmma" || case.conditions.boundary == Boundary::Periodic;
         let most = if whole { 0.9 } else { 0.5 };
         assert!(largest > 0.001 && largest < most, "{}: {largest}", template.name);
     }
@@ -84,14 +87,14 @@ fn every_example_is_read() {
 #[test]
 fn the_case_of_the_paper_is_the_paper_s() {
     let case = Case::parse(Template::find("rough-pmma").unwrap().text, Path::new("."), &[]).unwrap();
-    assert_eq!(case.grid.cells(), [1024, 1024]);
-    assert_eq!(case.grid.size(), [0.1e-3, 0.1e-3]);
-    assert_eq!(case.hardness, 300e6);
+    assert_eq!(case.conditions.grid.cells(), [1024, 1024]);
+    assert_eq!(case.conditions.grid.size(), [0.1e-3, 0.1e-3]);
+    assert_eq!(case.conditions.hardness, 300e6);
     assert_eq!(super::values::history_of(&case).after(0.0), 0.5);
     // C(0) = (1 - 0.38^2) / 2491.44 MPa (theory: E(0) of eq. 23), exact up to the root finding
-    let modulus = 1.0 / case.creep.instantaneous;
+    let modulus = 1.0 / case.conditions.creep.instantaneous;
     assert!((modulus * (1.0 - 0.38 * 0.38) / 2491.4388e6 - 1.0).abs() < 1e-12, "{modulus}");
-    let times: Vec<f64> = case.creep.terms.iter().map(|term| term.retardation_time).collect();
+    let times: Vec<f64> = case.conditions.creep.terms.iter().map(|term| term.retardation_time).collect();
     // docs/theory.md, section 4: ten digits
     assert!((times[0] / 9.936295903 - 1.0).abs() < 1e-9 && (times[1] / 133.8704875 - 1.0).abs() < 1e-9);
     let description = case.describe();

@@ -69,20 +69,20 @@ fn grid_and_size_are_the_file_s_where_the_domain_leaves_them_out() {
     let dir = tempfile::tempdir().unwrap();
     wavy(dir.path(), "a.sdf", |_| ());
     let case = parse(dir.path(), "boundary = \"periodic\"", &[&file("")]).unwrap();
-    assert_eq!((case.grid.cells(), case.grid.size()), ([12, 8], [12e-6, 4e-6]));
+    assert_eq!((case.conditions.grid.cells(), case.conditions.grid.size()), ([12, 8], [12e-6, 4e-6]));
     assert_eq!(case.gap().unwrap().dim(), (12, 8));
     // What the preparation changes counts; so does a part that is given.
     let case = parse(dir.path(), "", &[&file("rotate = 1\ncrop = { cells = [4, 8] }")]).unwrap();
-    assert_eq!((case.grid.cells(), case.grid.size()), ([8, 4], [4e-6, 4e-6]));
+    assert_eq!((case.conditions.grid.cells(), case.conditions.grid.size()), ([8, 4], [4e-6, 4e-6]));
     let case = parse(dir.path(), "cells = [24, 8]", &[&file("resample = \"bilinear\"")]).unwrap();
-    assert_eq!((case.grid.cells(), case.grid.size()), ([24, 8], [12e-6, 4e-6]));
+    assert_eq!((case.conditions.grid.cells(), case.conditions.grid.size()), ([24, 8], [12e-6, 4e-6]));
     assert_eq!(case.gap().unwrap().dim(), (24, 8));
     // Resampling to the domain is nothing where the domain takes the surface's cells.
     let case = parse(dir.path(), "", &[&file("resample = \"bilinear\"")]).unwrap();
-    assert_eq!((case.grid.cells(), case.gap().unwrap().dim()), ([12, 8], (12, 8)));
+    assert_eq!((case.conditions.grid.cells(), case.gap().unwrap().dim()), ([12, 8], (12, 8)));
     // A sphere beside it needs no grid of its own.
     let sphere = "kind = \"sphere\"\nradius = \"1 mm\"";
-    assert_eq!(parse(dir.path(), "", &[sphere, &file("")]).unwrap().grid.cells(), [12, 8]);
+    assert_eq!(parse(dir.path(), "", &[sphere, &file("")]).unwrap().conditions.grid.cells(), [12, 8]);
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn a_list_of_steps_is_done_in_its_order_and_nothing_besides() {
     assert_eq!(done.len(), 10);
     assert_eq!(done[1], "crop to 8 x 8 cells from (1, 0)");
     let case = parse(dir.path(), "", &[&file(keys)]).unwrap();
-    assert_eq!((case.grid.cells(), case.grid.size()), ([10, 10], [4e-6, 8e-6]));
+    assert_eq!((case.conditions.grid.cells(), case.conditions.grid.size()), ([10, 10], [4e-6, 8e-6]));
     // An empty list: the heights as they are, tilt and all.
     let case = parse(dir.path(), "", &[&file("process = []")]).unwrap();
     let gap = case.gap().unwrap();
@@ -300,7 +300,7 @@ fn synthetic_roughness_takes_lay_distribution_and_preset() {
         ("lay = { ratio = 0.5 }", vec!["surface[0].lay", "1 or more"]),
         ("lay = { angle = \"3 m\", ratio = 2 }", vec!["surface[0].lay.angle", "30 deg"]),
         ("lay = {}", vec!["lay.ratio is missing"]),
-        ("distribution = {}", vec!["says nothing", "path names a measured surface"]),
+        ("distribution = {}", vec!["no key", "path names a measured surface"]),
         ("distribution = { skewness = 3, kurtosis = 4 }", vec!["surface[0].distribution", "well above"]),
         ("distribution = { path = \"a.sdf\", skewness = 1 }", vec!["leave path out"]),
         ("distribution = { path = \"none.sdf\" }", vec!["does not exist"]),

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use asperity_io::case::Case;
 
+use crate::wording;
+
 const ROLLER: &str = r#"[domain]
 cells = [64]
 size = ["2 mm"]
@@ -27,16 +29,18 @@ over = "rubber"
 velocities = ["1 mm/s", "1 m/s"]
 "#;
 
-/// Replaces `old` by `new`; the only error has the key and the words.
+/// Replaces `old` by `new`; the first error has the key, the code and the numbers.
 #[track_caller]
-fn says(old: &str, new: &str, key: &str, words: &[&str]) {
+fn says(old: &str, new: &str, key: &str, code: &str, numbers: &[&str]) {
     assert!(ROLLER.contains(old), "{old:?} is not in the case");
     let errors = Case::parse(&ROLLER.replacen(old, new, 1), Path::new("."), &[]).expect_err("it is refused");
     let shown: Vec<String> = errors.errors.iter().map(ToString::to_string).collect();
     assert_eq!(errors.errors[0].key, key, "{shown:?}");
-    for word in words {
-        assert!(shown[0].contains(word), "{:?} lacks {word:?}", shown[0]);
+    assert_eq!(errors.errors[0].code.to_string(), code, "{shown:?}");
+    for number in numbers {
+        assert!(shown[0].contains(number), "{:?} lacks {number:?}", shown[0]);
     }
+    wording::check(new, Path::new("."), &errors.errors[0]);
 }
 
 #[test]
@@ -44,15 +48,19 @@ fn the_body_that_stands_still_in_the_frame_has_relaxed() {
     let case = Case::parse(ROLLER, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}"));
     // C = 1/(4 G) where incompressible: that of the rubber at once, and that of the belt relaxed.
     let expected = 1.0 / 40e6 + 1.0 / 80e6 + 1.0 / 8e6;
-    assert!((case.creep.instantaneous / expected - 1.0).abs() < 1e-14, "{:?}", case.creep);
-    assert_eq!(case.creep.terms.len(), 1);
+    assert!(
+        (case.conditions.creep.instantaneous / expected - 1.0).abs() < 1e-14,
+        "{:?}",
+        case.conditions.creep
+    );
+    assert_eq!(case.conditions.creep.terms.len(), 1);
 }
 
 #[test]
 fn the_length_of_a_step_is_limited_at_its_key() {
     let steady = "[motion.steady]\nvelocities = [\"1 mm/s\", \"1 m/s\"]\n";
     let in_time = "velocity = \"1 mm/s\"\ncells_per_step = 9\n[time]\nend = \"1 s\"\nsteps = 2\n";
-    says(steady, in_time, "motion.cells_per_step", &["9", "at most 8"]);
+    says(steady, in_time, "motion.cells_per_step", "out-of-range", &["9", "at most 8"]);
 }
 
 #[test]
@@ -61,19 +69,21 @@ fn a_date_is_named_where_a_table_belongs() {
         "history = { kind = \"step\", value = \"100 N/m\" }",
         "history = 1979-05-27",
         "load.history",
+        "wrong-type",
         &["1979-05-27"],
     );
-    says("[\"1 mm/s\", \"1 m/s\"]", "1979-05-27", "motion.steady.velocities", &["1979-05-27"]);
+    says("[\"1 mm/s\", \"1 m/s\"]", "1979-05-27", "motion.steady.velocities", "wrong-type", &["1979-05-27"]);
 }
 
 #[test]
 fn what_is_wrong_with_a_motion_is_named() {
-    says("\"belt\"", "\"rubber\"", "motion.over", &["two bodies have the name \"rubber\""]);
-    says("over = \"rubber\"", "over = \"road\"", "motion.over", &["rubber, belt"]);
+    says("\"belt\"", "\"rubber\"", "motion.over", "conflict", &[]);
+    says("over = \"rubber\"", "over = \"road\"", "motion.over", "out-of-range", &[]);
     says(
         "{ model = \"zener\", shear = \"20 MPa\", shear_kelvin = \"2 MPa\", retardation_time = \"1 s\" }",
         "{ model = \"maxwell\", shear = \"20 MPa\", relaxation_time = \"1 s\" }",
         "body[1]",
-        &["`belt` flows", "no steady state"],
+        "conflict",
+        &[],
     );
 }

@@ -138,7 +138,7 @@ fn measured_surfaces_are_levelled_and_must_fit() {
 /// (C(0), C(3 s), C(infinity)) of an incompressible body, where C = J/4 = 3 D/4.
 fn creep(material: &str) -> [f64; 3] {
     let body = format!("{{ poisson = 0.5, material = {material} }}");
-    let creep = case(Parts { body: body.leak(), ..PARTS }).creep;
+    let creep = case(Parts { body: body.leak(), ..PARTS }).conditions.creep;
     [creep.value(0.0), creep.value(3.0), creep.long_time()]
 }
 
@@ -179,13 +179,13 @@ fn pairs_of_bodies() {
         { name = "soft", poisson = 0.5, hardness = "3 MPa", material = { model = "elastic", shear = "1 MPa" } },
         { bulk_modulus = "1 GPa", hardness = "2 MPa", material = { model = "elastic", young = "1 GPa" } }"#;
     let case = case(Parts { body, ..PARTS });
-    assert_eq!(case.hardness, 2e6); // the softer one yields
+    assert_eq!(case.conditions.hardness, 2e6); // the softer one yields
     assert_eq!(case.bodies[1].name, "body 2");
     assert_eq!(case.bodies[1].lateral, Lateral::BulkModulus(1e9));
     // nu = 1/2 - E/(6 B) = 1/3, C = (1 - 1/9) / 1 GPa
     let wanted = 0.25e-6 + 8.0 / 9.0 * 1e-9;
-    assert!((case.creep.value(0.0) / wanted - 1.0).abs() < 1e-12);
-    assert_eq!(super::values::case(PARTS).hardness, f64::INFINITY);
+    assert!((case.conditions.creep.value(0.0) / wanted - 1.0).abs() < 1e-12);
+    assert_eq!(super::values::case(PARTS).conditions.hardness, f64::INFINITY);
 }
 
 fn history(control: &'static str, history: &'static str) -> History {
@@ -194,7 +194,7 @@ fn history(control: &'static str, history: &'static str) -> History {
 
 /// The history of a case of one stage.
 pub fn history_of(case: &Case) -> History {
-    let [stage] = case.loading.stages.as_slice() else { panic!("{:?}", case.loading) };
+    let [stage] = case.conditions.loading.stages.as_slice() else { panic!("{:?}", case.conditions.loading) };
     let Course::Given(history) = &stage.course else { panic!("{stage:?}") };
     history.clone()
 }
@@ -215,8 +215,8 @@ fn histories() {
         History::Trapezoid { peak: 1.0, rise: 1.0, hold: 0.0, fall: 2.0 }
     );
     assert_eq!(
-        history("load", r#"{ kind = "sine", mean = 1, amplitude = 1, frequency = "2 kHz" }"#),
-        History::Sine { mean: 1.0, amplitude: 1.0, frequency: 2e3 }
+        history("load", r#"{ kind = "sine", mean = 1, amplitude = 1, frequency = "2 mHz" }"#),
+        History::Sine { mean: 1.0, amplitude: 1.0, frequency: 2e-3 }
     );
     assert_eq!(
         history("load", r#"{ kind = "table", points = [[0, 0], ["1 min", "1 N"], ["1 min", "0 N"]] }"#),
@@ -226,16 +226,19 @@ fn histories() {
     std::fs::write(dir.path().join("h.csv"), "time [min], load [mN]\n0, 0\n1, 5\n").unwrap();
     let parts = Parts { history: r#"{ kind = "file", path = "h.csv" }"#, ..PARTS };
     let case = case_in(dir.path(), parts);
-    assert_eq!(case.loading.stages[0].control, Control::Load);
+    assert_eq!(case.conditions.loading.stages[0].control, Control::Load);
     assert_eq!(history_of(&case), History::Table { points: vec![(0.0, 0.0), (60.0, 5e-3)] });
 }
 
 #[test]
 fn times_schemes_and_solver() {
     let plain = case(PARTS);
-    assert_eq!(plain.times, TimeGrid::Uniform { end: 60.0, steps: 10 });
-    assert_eq!((plain.scheme, plain.boundary), (Scheme::Linear, Boundary::Periodic));
-    assert_eq!((plain.solver.method, plain.solver.tolerance), (Method::ProjectedCg, 1e-6));
+    assert_eq!(plain.conditions.times, TimeGrid::Uniform { end: 60.0, steps: 10 });
+    assert_eq!((plain.conditions.scheme, plain.conditions.boundary), (Scheme::Linear, Boundary::Periodic));
+    assert_eq!(
+        (plain.conditions.solver.method, plain.conditions.solver.tolerance),
+        (Method::ProjectedCg, 1e-6)
+    );
     assert_eq!(plain.output.rows, Rows::Every(1)); // 10 steps: about ten fields
     assert_eq!(plain.output.path, Path::new("result.zarr"));
     assert_eq!(
@@ -244,11 +247,14 @@ fn times_schemes_and_solver() {
     );
 
     let listed = case(Parts { time: r#"{ times = ["1 s", 5], scheme = "constant" }"#, ..PARTS });
-    assert_eq!((listed.times, listed.scheme), (TimeGrid::List(vec![1.0, 5.0]), Scheme::Constant));
+    assert_eq!(
+        (listed.conditions.times, listed.conditions.scheme),
+        (TimeGrid::List(vec![1.0, 5.0]), Scheme::Constant)
+    );
     let log = r#"{ end = 100, steps = 5, spacing = "log", first = "10 ms", scheme = "direct" }"#;
     let log = case(Parts { time: log, ..PARTS });
-    assert_eq!(log.times, TimeGrid::Logarithmic { end: 100.0, steps: 5, first: 0.01 });
-    assert_eq!(log.scheme, Scheme::Direct);
+    assert_eq!(log.conditions.times, TimeGrid::Logarithmic { end: 100.0, steps: 5, first: 0.01 });
+    assert_eq!(log.conditions.scheme, Scheme::Direct);
     // A tenth of the shortest retardation time; a uniform step or a twentieth of the ramp where that is shorter.
     let body =
         r#"{ poisson = 0.5, material = { model = "kelvin-voigt", shear = 1e6, retardation_time = "2 s" } }"#;
@@ -258,7 +264,7 @@ fn times_schemes_and_solver() {
         (r#"{ end = 100, steps = 5, spacing = "log" }"#, r#"{ end = 100, steps = 1000, spacing = "log" }"#);
     for (steps, time, history, first) in [(5, few, slow, 0.2), (1000, many, slow, 0.1), (5, few, fast, 0.05)]
     {
-        let found = case(Parts { body, time, history, ..PARTS }).times;
+        let found = case(Parts { body, time, history, ..PARTS }).conditions.times;
         assert_eq!(found, TimeGrid::Logarithmic { end: 100.0, steps, first });
     }
 
@@ -268,7 +274,11 @@ output = { path = "a/b.zarr", fields = ["contact", "contact"], times = ["0 s", "
 "#;
     let case = case(Parts { more, ..PARTS });
     assert_eq!(
-        (case.solver.method, case.solver.tolerance, case.solver.max_iterations),
+        (
+            case.conditions.solver.method,
+            case.conditions.solver.tolerance,
+            case.conditions.solver.max_iterations
+        ),
         (Method::PolonskyKeer, 1e-8, 77)
     );
     assert_eq!((case.output.path.as_path(), case.output.checkpoint), (Path::new("a/b.zarr"), false));
@@ -322,14 +332,14 @@ fn stages() {
         times: Some(TimeGrid::Adaptive { end: 3.0, tolerance: 1e-4, first: 0.01 }),
         ..Stage::new(Control::Load, Course::Hold)
     };
-    assert_eq!(case.loading.stages, [ramp, hold, retract, press, last]);
+    assert_eq!(case.conditions.loading.stages, [ramp, hold, retract, press, last]);
     let description = case.describe();
     assert_eq!((description.rows, description.stages), (None, 5));
 }
 
 #[test]
 fn adaptive_steps() {
-    let grid = |time| case(Parts { time, ..PARTS }).times;
+    let grid = |time| case(Parts { time, ..PARTS }).conditions.times;
     let adaptive = |tolerance, first| TimeGrid::Adaptive { end: 60.0, tolerance, first };
     let text = r#"{ end = "1 min", spacing = "adaptive", tolerance = 1e-4, first = "1 ms" }"#;
     assert_eq!(grid(text), adaptive(1e-4, 1e-3));
@@ -337,7 +347,7 @@ fn adaptive_steps() {
     // States at the output times are interpolated: they are no steps.
     let more = "output = { times = [7] }";
     let case = case(Parts { time: r#"{ end = "1 min", spacing = "adaptive" }"#, more, ..PARTS });
-    assert!(case.include.is_empty() && case.describe().rows.is_none());
+    assert!(case.conditions.include.is_empty() && case.describe().rows.is_none());
     assert_eq!(case.describe().stored_rows, Some(3));
 }
 
@@ -362,7 +372,7 @@ fn quantities_are_those_named_or_all_that_the_case_allows() {
     assert_eq!((edges(Quantity::PressureHistogram)[7], edges(Quantity::GapHistogram)[7]), (1e6, 1e-6));
     let dented = "solver = { plasticity = \"accumulate\" }\noutput = { fields = [\"flattening\"] }";
     let case = case(Parts { more: dented, body: hard, ..PARTS });
-    assert_eq!(case.plasticity, Plasticity::Accumulate);
+    assert_eq!(case.conditions.plasticity, Plasticity::Accumulate);
     assert_eq!(case.output.fields.iter().copied().collect::<Vec<_>>(), [FieldKind::Flattening]);
 }
 
@@ -383,7 +393,7 @@ fn a_punch_bears_only_under_its_face() {
         ..PARTS
     };
     let errors = case(parts).simulation().unwrap_err();
-    assert_eq!(errors.errors[0].key, "load.history");
+    assert_eq!(errors.errors[0].key, "load.history.value");
     assert!(errors.to_string().contains("hardness times the area that can touch"), "{errors}");
 }
 
@@ -398,7 +408,7 @@ fn a_file_gives_each_cell_its_hardness() {
     write("map.txt", &line, 20);
     let body = r#"{ poisson = 0.5, hardness = "2 MPa", hardness_file = { path = "map.txt", unit = "1 MPa" }, material = { model = "elastic", shear = "1 MPa" } }"#;
     let case = case_in(dir.path(), Parts { body, ..PARTS });
-    let map = case.hardness_map.as_ref().unwrap();
+    let map = case.conditions.hardness_map.as_ref().unwrap();
     assert_eq!((map.dim(), map[[19, 3]], map[[20, 3]]), ((40, 20), 1e6, 3e6));
     assert_eq!(case.describe().hardness_of_cells, Some([1e6, 2e6])); // the lesser of both holds
     assert_eq!(case.files[0].0, "map.txt");

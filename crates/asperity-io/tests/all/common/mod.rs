@@ -97,11 +97,11 @@ impl Case {
         let (p, h, contact) = (self.pressure(step), self.gap(step), self.contact(step));
         let (u, f) = (&h * 0.5, p.mapv(|p| 1e-12 * p));
         let all = [
-            Field::Flattening(f.view()),
+            Field::Real(FieldKind::Flattening, f.view()),
             Field::Contact(contact.view()),
-            Field::Displacement(u.view()),
-            Field::Gap(h.view()),
-            Field::Pressure(p.view()),
+            Field::Real(FieldKind::Displacement, u.view()),
+            Field::Real(FieldKind::Gap, h.view()),
+            Field::Real(FieldKind::Pressure, p.view()),
         ];
         let kept: Vec<_> =
             all.into_iter().filter(|f| keep && self.header.fields.contains(&f.kind())).collect();

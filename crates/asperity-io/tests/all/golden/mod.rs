@@ -64,7 +64,7 @@ impl Golden {
         });
         let frozen = Frozen::parse(&text);
         let found = Frozen::of(self.whole());
-        let changes = frozen.changes(&found, self.case(&[]).solver.tolerance);
+        let changes = frozen.changes(&found, self.case(&[]).conditions.solver.tolerance);
         changes.into_iter().map(|change| format!("{}: {change}", self.name)).collect()
     }
 }

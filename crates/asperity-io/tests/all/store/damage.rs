@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use asperity_io::store::{At, FieldKind, Reader, Result, StoreError, Writer, verify};
+use asperity_io::store::{At, FieldKind, Outcome, Reader, Result, Status, StoreError, Writer, verify};
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 
@@ -492,4 +492,24 @@ fn a_pipe_in_place_of_a_file_is_refused() {
         };
         assert!(refused.unwrap_err().to_string().contains("a pipe, not a file"), "{}", file.display());
     }
+}
+
+#[test]
+fn a_document_of_an_array_that_counts_other_rows_is_damage() {
+    let (_directory, path) = place();
+    write(&path);
+    let count = |rows: u64| {
+        let array = path.join("load");
+        edit(&array, |document| document["shape"][0] = rows.into());
+        verify(&path).unwrap().damage.into_iter().map(|damage| damage.path).collect::<Vec<_>>()
+    };
+    // After a kill it may lag behind the document of the group, but not count more.
+    assert!(count(3).is_empty());
+    assert_eq!(count(5), [path.join("load").join("zarr.json")]);
+    assert!(count(4).is_empty());
+    let (header, gap) = (case().header, case().gap);
+    let (writer, _) = Writer::resume(&path, &header, gap.view()).unwrap();
+    writer.finish(&Outcome::new(Status::Complete)).unwrap();
+    assert!(verify(&path).unwrap().damage.is_empty());
+    assert_eq!(count(3), [path.join("load").join("zarr.json")]);
 }

@@ -52,11 +52,11 @@ fn go(march: &mut March, writer: &mut Writer, end: usize) {
         step.contact_into(&mut contact);
         step.flattening_into(&mut flattening);
         let fields = [
-            Field::Pressure(step.pressure()),
-            Field::Gap(gap.view()),
-            Field::Displacement(displacement.view()),
+            Field::Real(FieldKind::Pressure, step.pressure()),
+            Field::Real(FieldKind::Gap, gap.view()),
+            Field::Real(FieldKind::Displacement, displacement.view()),
             Field::Contact(contact.view()),
-            Field::Flattening(flattening.view()),
+            Field::Real(FieldKind::Flattening, flattening.view()),
         ];
         let kept = if step.index() % 3 == 0 { &fields[..] } else { &[] };
         writer.append_with(&step.row(), step.quantities(), kept).unwrap();

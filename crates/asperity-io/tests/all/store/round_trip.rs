@@ -95,7 +95,9 @@ fn maps_of_no_pressure_take_little_room() {
     let case = Case::new([256, 256], &[FieldKind::Pressure]);
     let (_directory, path) = place();
     let mut writer = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
-    writer.append(&case.row(0), &[Field::Pressure(Array2::zeros((256, 256)).view())]).unwrap();
+    writer
+        .append(&case.row(0), &[Field::Real(FieldKind::Pressure, Array2::zeros((256, 256)).view())])
+        .unwrap();
     let size = std::fs::metadata(path.join("pressure/c/0/0/0")).unwrap().len();
     // 512 KiB of one value: deflate reaches about 1000 : 1 (a match of 258 bytes in 2 bits).
     assert!(size < 8192, "{size} bytes");
@@ -156,10 +158,10 @@ fn what_does_not_fit_the_result_is_refused_and_leaves_it_as_it_was() {
     let (gap, contact) = (case.gap(0), case.contact(0));
     let row = case.row(6);
     for fields in [
-        vec![Field::Gap(gap.view())],
-        vec![Field::Gap(gap.view()), Field::Gap(gap.view())],
-        vec![Field::Gap(gap.view()), Field::Contact(contact.view())],
-        vec![Field::Gap(gap.view()), Field::Pressure(wrong.view())],
+        vec![Field::Real(FieldKind::Gap, gap.view())],
+        vec![Field::Real(FieldKind::Gap, gap.view()), Field::Real(FieldKind::Gap, gap.view())],
+        vec![Field::Real(FieldKind::Gap, gap.view()), Field::Contact(contact.view())],
+        vec![Field::Real(FieldKind::Gap, gap.view()), Field::Real(FieldKind::Pressure, wrong.view())],
     ] {
         assert!(matches!(writer.append(&row, &fields), Err(StoreError::Input { .. })));
     }

@@ -42,6 +42,18 @@ const GROWTH: f64 = 0.2;
 /// The first step after a jump is this share of the mean relaxation time.
 const FIRST: f64 = 0.2;
 
+/// Sums over the cells at the end of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Survey {
+    /// Of what bends the course of u: the cells in contact at either end, and those apart that would overlap.
+    bends: f64,
+    /// Of the stress.
+    stress: f64,
+    /// Of what bends the course of u in cells in contact at the end, and of their stress.
+    pub(super) own: f64,
+    pub(super) pressed: f64,
+}
+
 impl Relaxation {
     /// Keeps the state just solved as the third one, for a shorter step from the same start.
     pub(super) fn keep(&mut self, ends: &Ends<'_>) {
@@ -58,45 +70,62 @@ impl Relaxation {
         });
     }
 
-    /// The estimated error of the step under way, which has just been solved; 0 where nothing is remembered.
-    pub(super) fn estimate(&self, ends: &Ends<'_>) -> f64 {
-        let Some(reference) = self.reference else { return 0.0 };
-        if self.third.is_empty() || self.rules.length <= 0.0 {
-            return 0.0;
-        }
+    /// Surveys the cells at the end of the step under way, which has just been solved.
+    pub(super) fn survey(&self, ends: &Ends<'_>) -> Survey {
+        let Some(reference) = self.reference.filter(|_| self.rules.length > 0.0) else {
+            return self.survey_from(ends, [1.0, f64::INFINITY]);
+        };
         let (step, third) = reference.clock(self.rules.length, self.rules.driver);
-        let weight = 2.0 * self.defect();
-        let advance = if self.rules.driver == Driver::Time { ends.advance().abs() } else { 0.0 };
+        self.survey_from(ends, [step, third])
+    }
+
+    fn survey_from(&self, ends: &Ends<'_>, [step, third]: [f64; 2]) -> Survey {
         let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
-        let compliance = self.rules.compliance;
+        let (compliance, in_time) = (self.rules.compliance, self.rules.driver == Driver::Time);
+        let ([w_before, w], lasts) = (ends.approaches(), self.rules.length > 0.0);
         let cells = (
-            (&self.displacement[..], &self.third[..]),
+            (&self.displacement[..], &self.third[..], ends.rigid_before),
             (&ends.before.pressure[..], &ends.before.unit_displacement[..]),
             (&ends.now.pressure[..], &ends.now.unit_displacement[..]),
             (ends.gap, ends.rigid),
         );
-        let [curved, now, before, displaced] =
-            sums(cells, |((u, u_third), (p, unit), (p_now, unit_now), (gap, rigid))| {
-                let presses = p > 0.0 || p_now > 0.0;
-                let overlaps = rigid < ends.now.approach;
-                if !(presses || overlaps) {
-                    return [0.0; 4];
-                }
-                let u_now = compliance * unit_now + (gap - rigid);
-                let (before, now) = (u_third - u, u_now - u);
-                let second = (before / third - now / step) / (third - step);
-                // What rounding errors of u make of it.
-                let rounding = ROUNDING * u.abs().max(u_now.abs()) * spread;
-                let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
-                if !presses {
-                    return [curved, 0.0, 0.0, 0.0];
-                }
-                let touched = if p > 0.0 { 0.0 } else { LATE * (advance - now.abs()) };
-                [curved.max(touched), unit_now, unit, u_now.abs()]
-            });
-        let relaxed = self.dual.relaxation.equilibrium * displaced;
-        let scale = now.max(FLOOR * before).max(FLOOR * relaxed);
-        if scale > 0.0 { weight * curved / scale } else { 0.0 }
+        let sums = sums(cells, |((u, u_third, rigid_before), (p, unit), (p_now, unit_now), (gap, rigid))| {
+            let presses = p > 0.0 || p_now > 0.0;
+            if !(presses || rigid < w) {
+                return [0.0; 8];
+            }
+            let u_now = compliance * unit_now + (gap - rigid);
+            let (before, now) = (u_third - u, u_now - u);
+            let second = (before / third - now / step) / (third - step);
+            // What rounding errors of u make of it.
+            let rounding = ROUNDING * u.abs().max(u_now.abs()) * spread;
+            let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
+            if !presses {
+                return [curved, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            }
+            // A cell that comes into contact had this gap before.
+            let late = if p > 0.0 || !lasts { 0.0 } else { (rigid_before + u - w_before).max(0.0) };
+            let late = if late.is_finite() { late } else { 0.0 };
+            let bends = curved.max(if in_time { LATE * late } else { 0.0 });
+            let own = if p_now > 0.0 { curved.max(late) } else { 0.0 };
+            let touches = f64::from(u8::from(p_now > 0.0));
+            [bends, unit_now, unit, u_now.abs(), own, p_now * unit_now, p_now, touches]
+        });
+        let [bends, now, before, displaced, own, energy, pressure, touching] = sums;
+        let least = (FLOOR * before).max(FLOOR * self.dual.relaxation.equilibrium * displaced);
+        let mean = if pressure > 0.0 { touching * energy / pressure } else { 0.0 };
+        Survey {
+            bends,
+            stress: now.max(least),
+            own,
+            pressed: if touching > 0.0 { mean.max(least) } else { 0.0 },
+        }
+    }
+
+    /// The estimated error of the step that was surveyed, without those of the steps before; 0 where nothing is remembered.
+    pub(super) fn estimate(&self, survey: &Survey) -> f64 {
+        let is_known = self.reference.is_some() && self.rules.length > 0.0 && survey.stress > 0.0;
+        if is_known { 2.0 * self.defect() * survey.bends / survey.stress } else { 0.0 }
     }
 
     /// Σ E_i b(x/τ_i) + ζ/(2x), with what is remembered of the steps before.
@@ -163,7 +192,7 @@ pub(crate) fn remembered_defect(x: f64, whole: f64, tau: f64) -> f64 {
 }
 
 /// b(y) = \[y - 2 + (y + 2) exp(-y)\] / (2 y²), y/12 for small y.
-fn chord_defect(y: f64) -> f64 {
+pub(super) fn chord_defect(y: f64) -> f64 {
     if y < 0.1 {
         // sum over k >= 3 of (-1)^(k+1) (k - 2)/k! y^k, over 2 y²: six terms leave less than 1e-10 of the first.
         let (mut sum, mut power, mut factorial) = (0.0, y, 6.0);

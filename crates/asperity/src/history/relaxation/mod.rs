@@ -22,23 +22,26 @@ pub(super) mod load_cell;
 mod pair;
 pub(super) mod rules;
 pub(super) mod shape;
+mod total_error;
 mod within;
 
 pub(super) use estimate::{FLOOR, LATE, ROUNDING, growing, remembered_defect, soon};
 
 use branches::Branches;
 use energy::{Products, transition};
+use estimate::Survey;
 use load_cell::LoadCell;
 use pair::Pair;
 use rules::{Driver, Rules};
+use total_error::TotalError;
 
 use super::clocks::Clocks;
-use super::{Ends, Exchange, History, Law, Moment, ThirdState};
+use super::{Ends, Exchange, History, Law, Moment, ThirdState, third_state};
 use crate::contact::ContactState;
 use crate::error::Result;
 use crate::material::Dual;
 use crate::simulation::Simulation;
-use crate::step::{Interval, Load, Loader, Piece, Saved, Saver, saved};
+use crate::step::{Interval, Load, Loader, Piece, SHARE, Saved, Saver, saved};
 use asperity_sweep::zeros;
 
 /// The memory of a pair of bodies as branches that relax.
@@ -68,6 +71,11 @@ pub(crate) struct Relaxation {
     left: Vec<f64>,
     /// The account of the energy, where it is kept.
     products: Option<Products>,
+    /// Of the step that was solved last, and the error of all steps.
+    survey: Survey,
+    total_error: TotalError,
+    /// That of an adaptive step, by which its length was chosen.
+    adaptive_error: Option<f64>,
 }
 
 /// The step whose end is not yet in the states.
@@ -87,8 +95,8 @@ pub(crate) struct Reference {
 }
 
 impl Relaxation {
-    /// At rest; `estimates` where the error of steps is estimated.
-    pub(super) fn new(simulation: &Simulation, estimates: bool) -> Result<Self> {
+    /// At rest.
+    pub(super) fn new(simulation: &Simulation) -> Result<Self> {
         let pair = Pair::new(simulation);
         let rates = vec![1.0; pair.count()];
         let dual = Dual::of(pair.creep(&rates))?;
@@ -101,7 +109,7 @@ impl Relaxation {
             rates,
             states: Branches::new(count, cells),
             displacement: zeros(if elastic { 0 } else { cells }),
-            third: zeros(if elastic || !estimates { 0 } else { cells }),
+            third: zeros(if elastic { 0 } else { cells }),
             reference: None,
             since_kink: 0.0,
             cell: LoadCell::at_rest(&dual),
@@ -110,6 +118,9 @@ impl Relaxation {
             next: Rules::new(count),
             left: Vec::with_capacity(dual.strains()),
             products: None,
+            survey: Survey::default(),
+            total_error: TotalError { left: vec![0.0; count], value: 0.0 },
+            adaptive_error: None,
             pair,
             dual,
         })
@@ -190,6 +201,7 @@ saved! {
         "gone": gone;
         "elapsed": elapsed;
         "rules": rules;
+        "error_left": total_error.left;
     }
 }
 
@@ -223,12 +235,12 @@ impl History for Relaxation {
             gap.copy_from_slice(rigid);
         } else if ends && !new_rates {
             self.plan(step.load);
-            let third = Some(&mut self.third[..]).filter(|third| !third.is_empty());
+            let third = Some(&mut self.third[..]);
             let next = Some((self.next.recalled(), rigid, gap));
             self.states.end(self.rules.ending(), unit, &mut self.displacement, third, next);
         } else {
             if ends {
-                let third = Some(&mut self.third[..]).filter(|third| !third.is_empty());
+                let third = Some(&mut self.third[..]);
                 self.states.end(self.rules.ending(), unit, &mut self.displacement, third, None);
             }
             if new_rates {
@@ -252,8 +264,13 @@ impl History for Relaxation {
         Ok(Law::of(self.rules.compliance))
     }
 
+    fn time_error(&self) -> Option<f64> {
+        Some(self.adaptive_error.map_or(self.total_error.value, |error| error / SHARE))
+    }
+
     /// The load as a cell goes on to the end of the step.
     fn close(&mut self, ends: &Ends<'_>) -> Result<()> {
+        self.add_error();
         let rules = Some(&self.rules).filter(|_| self.under_way == UnderWay::Contact);
         self.cell.close(ends.loads[1], rules);
         if self.under_way == UnderWay::Apart {
@@ -276,8 +293,11 @@ impl History for Relaxation {
     }
 
     fn third_state(&self, step: &Interval) -> Option<ThirdState> {
-        let is_known = step.is_smooth && self.under_way == UnderWay::Contact;
-        (step.is_adaptive && !step.instant.jump && !is_known).then_some(ThirdState { at: 1.0, step: 0.5 })
+        if self.is_elastic() {
+            return None;
+        }
+        let is_known = self.under_way == UnderWay::Contact && (step.is_adaptive || self.rules.length > 0.0);
+        third_state(step, is_known)
     }
 
     fn keep_as_third(&mut self, ends: &Ends<'_>) {
@@ -285,7 +305,12 @@ impl History for Relaxation {
     }
 
     fn error(&mut self, step: &Interval, ends: &Ends<'_>) -> Option<f64> {
-        step.is_adaptive.then(|| if step.instant.jump { 0.0 } else { self.estimate(ends) })
+        if !self.is_elastic() {
+            self.survey = self.survey(ends);
+        }
+        let error = if step.instant.jump { 0.0 } else { self.estimate(&self.survey) };
+        self.adaptive_error = step.is_adaptive.then_some(error);
+        Some(error)
     }
 
     fn first_step(&mut self, piece: &Piece) -> Option<f64> {

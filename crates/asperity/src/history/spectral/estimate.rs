@@ -13,10 +13,10 @@
 use rustfft::num_complex::Complex64;
 
 use super::Spectral;
+use crate::convolution::torus::{Spectrum, Torus};
 use crate::history::Ends;
 use crate::history::relaxation::rules::{Driver, Share};
 use crate::history::relaxation::{FLOOR, LATE, Reference, UnderWay, remembered_defect};
-use crate::sliding::torus::{Spectrum, Torus};
 
 impl Spectral {
     /// Keeps the state just solved as the third one, for another step from the same start.

@@ -16,15 +16,15 @@ use rustfft::num_complex::Complex64;
 
 use super::relaxation::rules::Driver;
 use super::relaxation::{ROUNDING, Reference, UnderWay};
-use super::{Ends, History, Law, Moment, ThirdState};
+use super::{Ends, History, Law, Moment, ThirdState, third_state};
 use crate::contact::ContactState;
+use crate::convolution::torus::{Spectrum, Torus};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
 use crate::layer::NonseparableLayers;
 use crate::operator::{self, Operator, of_eigenvalues, wide};
 use crate::simulation::Simulation;
-use crate::sliding::torus::{Spectrum, Torus};
 use crate::step::{Interval, Load, Loader, Piece, Saver, saved};
 use mean::{Mean, Run, linear};
 pub use waves::check_layers;
@@ -63,6 +63,8 @@ pub(super) struct Spectral {
     past: Vec<f64>,
     /// The error of u that a solve leaves, over the approach.
     noise: f64,
+    /// The estimated error of the step solved last.
+    error: f64,
 }
 
 impl Spectral {
@@ -93,6 +95,7 @@ impl Spectral {
             recalled: vec![Complex64::ZERO; count],
             past: vec![0.0; simulation.grid.len()],
             noise: simulation.solver.tolerance.max(ROUNDING),
+            error: 0.0,
             waves,
         })
     }
@@ -214,18 +217,9 @@ impl History for Spectral {
         true
     }
 
-    /// Adaptive steps are solved at their full length first and taken at half of it, so that the next try is shorter; steps of a
-    /// given length the other way round.
     fn third_state(&self, step: &Interval) -> Option<ThirdState> {
-        if step.instant.jump || step.length() == 0.0 {
-            return None;
-        }
-        let leaves_a_third = self.under_way == UnderWay::Contact && (step.is_adaptive || self.length > 0.0);
-        let third = match step.is_adaptive {
-            true => ThirdState { at: 1.0, step: 0.5 },
-            false => ThirdState { at: 0.5, step: 1.0 },
-        };
-        (!(step.is_smooth && leaves_a_third)).then_some(third)
+        let is_known = self.under_way == UnderWay::Contact && (step.is_adaptive || self.length > 0.0);
+        third_state(step, is_known)
     }
 
     fn keep_as_third(&mut self, ends: &Ends<'_>) {
@@ -233,7 +227,12 @@ impl History for Spectral {
     }
 
     fn error(&mut self, step: &Interval, ends: &Ends<'_>) -> Option<f64> {
-        Some(if step.instant.jump { 0.0 } else { self.estimate(ends) })
+        self.error = if step.instant.jump { 0.0 } else { self.estimate(ends) };
+        Some(self.error)
+    }
+
+    fn time_error(&self) -> Option<f64> {
+        Some(self.error)
     }
 
     fn first_step(&mut self, piece: &Piece) -> Option<f64> {

@@ -1,6 +1,7 @@
 //! Least-squares polynomials through two curves, of which the second is moved and raised.
 
 use super::Logs;
+use crate::material::dot;
 
 /// The polynomials of all quantities, with the second curves moved by d and, if v is free, raised by the best v.
 pub(super) struct Joint {
@@ -10,26 +11,26 @@ pub(super) struct Joint {
     /// The best v.
     pub raised: f64,
     /// Half of the second derivative of the squares with respect to v; 0 if they do not depend on it.
-    pub told: f64,
+    pub curvature: f64,
 }
 
 impl Joint {
     pub(super) fn fit(pairs: &[[Logs; 2]], d: f64, degree: usize, free: bool) -> Joint {
-        let mut joint = Joint { squares: 0.0, slope: 0.0, raised: 0.0, told: 0.0 };
+        let mut joint = Joint { squares: 0.0, slope: 0.0, raised: 0.0, curvature: 0.0 };
         let (mut along, mut points) = (0.0, 0);
         for [first, second] in pairs {
             let fit = Polynomial::fit(first, second, d, degree, free);
             joint.squares += fit.squares;
             joint.slope = joint.slope.max(fit.slope);
-            joint.told += fit.told;
+            joint.curvature += fit.curvature;
             along += fit.along;
             points += first.len() + second.len();
         }
-        if !free || joint.told < 1e-9 * points as f64 {
-            return Joint { told: 0.0, ..joint };
+        if !free || joint.curvature < 1e-9 * points as f64 {
+            return Joint { curvature: 0.0, ..joint };
         }
-        let squares = (joint.squares - along * along / joint.told).max(0.0);
-        Joint { squares, raised: -along / joint.told, ..joint }
+        let squares = (joint.squares - along * along / joint.curvature).max(0.0);
+        Joint { squares, raised: -along / joint.curvature, ..joint }
     }
 }
 
@@ -41,7 +42,7 @@ struct Polynomial {
     slope: f64,
     /// The part of a step between the two curves that is orthogonal to the polynomials, squared, and its product with the
     /// residuals of the values.
-    told: f64,
+    curvature: f64,
     along: f64,
 }
 
@@ -64,7 +65,7 @@ impl Polynomial {
         Polynomial {
             squares: dot(&rest, &rest),
             slope: slope(&points, &fitted, first.len()),
-            told: dot(&step, &step),
+            curvature: dot(&step, &step),
             along: dot(&step, &rest),
         }
     }
@@ -120,10 +121,6 @@ fn chebyshev(n: usize, u: f64) -> f64 {
         (before, now) = (now, 2.0 * u * now - before);
     }
     if n == 0 { 1.0 } else { now }
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Removes the part along a unit vector.

@@ -6,7 +6,8 @@
 
 use super::{Abscissa, Isotherm, Result, Shift, align, kelvin, pairs, sorted};
 use crate::error::Error;
-use crate::material::vertical::{VerticalShift, interpolated};
+use crate::material::VerticalShift;
+use crate::material::shift::interpolated;
 use std::f64::consts::LN_10;
 
 /// Vertical shift factors found from isotherms.

@@ -5,7 +5,7 @@
 //! because one modulus contains the compliance of the instrument. Either modulus may therefore be fitted separately. Data whose
 //! moduli cannot be fitted together are refused, and the error states the misfit of each modulus fitted separately.
 
-use super::{Curve, Fit, FitOptions, LongTime, Misfit, Moduli, Solved, relaxation, together};
+use super::{Curve, Fit, FitOptions, LongTime, Misfit, Moduli, relaxation, together};
 use crate::error::{Error, Result};
 use crate::material::Relaxation;
 use crate::material::data::{self, Trend, Words};
@@ -41,13 +41,7 @@ pub fn fit_dma(
     loss: &[f64],
     options: &FitOptions,
 ) -> Result<Fit<Relaxation>> {
-    let words = Words {
-        abscissa: "angular frequency",
-        abscissa_unit: "rad/s",
-        ordinate: "storage modulus",
-        ordinate_unit: "Pa",
-    };
-    let loss_words = Words { ordinate: "loss modulus", ..words };
+    let (words, loss_words) = (Words::STORAGE, Words::LOSS);
     options.validate()?;
     data::check_abscissae(words, omega, false)?;
     data::check_values(words, omega, storage, false)?;
@@ -61,20 +55,17 @@ pub fn fit_dma(
         Curve { words: loss_words, kernel: Kernel::Loss, xs: omega, values: loss, floor, weight },
     ];
     let window = [1.0 / omega[omega.len() - 1], 1.0 / omega[0]];
-    let scatter = of(&curves, options.moduli).iter().map(|curve| data::noise(omega, curve.values));
-    let noise = scatter.fold(0.0, f64::max);
-    let solved = solve(&curves, window, options).map_err(|refusal| match options {
+    let fit = solve(&curves, window, options).map_err(|refusal| match options {
         FitOptions { moduli: Moduli::Both, misfit: None, .. } => {
             alone(&curves, window, options).unwrap_or(refusal)
         }
         _ => refusal,
     });
-    let Solved { spectrum, misfit, columns, uncertainty } = solved?;
-    Ok(Fit { function: relaxation(spectrum)?, misfit, columns, window, noise, uncertainty })
+    fit?.map(relaxation)
 }
 
 /// Fits the requested moduli, and computes the misfit of both.
-fn solve(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Result<Solved> {
+fn solve(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Result<Fit<Spectrum>> {
     let fitted = of(curves, options.moduli);
     let margin = 10f64.powf(options.margin);
     let problem = Problem {
@@ -84,12 +75,12 @@ fn solve(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Result<
         flow: false,
         range: [window[0] / margin, window[1] * margin],
     };
-    let mut solved = options.solve(&problem, fitted)?;
+    let mut fit = options.solve(&problem, fitted, window)?;
     if options.moduli == Moduli::Loss && options.long_time != LongTime::Fluid {
-        solved.spectrum.constant = equilibrium(&curves[0], &solved.spectrum);
+        fit.function.constant = equilibrium(&curves[0], &fit.function);
     }
-    solved.columns = curves.iter().map(|curve| curve.misfit(&solved.spectrum)).collect();
-    Ok(solved)
+    fit.columns = curves.iter().map(|curve| curve.misfit(&fit.function)).collect();
+    Ok(fit)
 }
 
 fn of<'a, 'c>(curves: &'a [Curve<'c>; 2], moduli: Moduli) -> &'a [Curve<'c>] {
@@ -124,12 +115,12 @@ fn alone(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Option<
     let reached: Vec<String> = [(Moduli::Storage, 0, "storage"), (Moduli::Loss, 1, "loss")]
         .into_iter()
         .filter_map(|(moduli, column, name)| {
-            let solved = single(moduli)?;
-            let other = shares(&solved.columns[1 - column]);
+            let fit = single(moduli)?;
+            let other = shares(&fit.columns[1 - column]);
             let rest = if column == 0 { "loss" } else { "storage" };
             Some(format!(
                 "the {name} modulus alone is fitted to {} (and then misses the {rest} modulus by {other})",
-                shares(&together(of(curves, moduli), &[solved.columns[column]]))
+                shares(&together(of(curves, moduli), &[fit.columns[column]]))
             ))
         })
         .collect();

@@ -25,7 +25,7 @@ impl Backend for Cpu {
     }
 
     fn bytes(&self, cells: [usize; 2], lengths: [usize; 2]) -> usize {
-        Convolution::bytes(cells, lengths)
+        Convolution::bytes(cells, lengths, 1)
     }
 
     fn plan_inverse(

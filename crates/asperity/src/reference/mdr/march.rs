@@ -1,7 +1,7 @@
 //! Time stepping of a row of springs through a load or approach history.
 
 use super::{Mdr, MdrProfile, MdrState, MdrTarget};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, increasing, positive, require};
 use crate::load::{Control, Loading};
 use crate::material::Relaxation;
 
@@ -88,13 +88,7 @@ impl Mdr {
             }
             Control::Approach => profile.reach(highest.max(0.0)),
             Control::Load => {
-                if lowest < 0.0 {
-                    return Err(Error::invalid(
-                        "smallest load of the history",
-                        format!("{lowest} N"),
-                        "0 N or more",
-                    ));
-                }
+                require(lowest >= 0.0, "smallest load of the history", format!("{lowest} N"), "0 N or more")?;
                 profile.elastic_radius(highest, relaxation.to_creep()?.value(end))
             }
         };
@@ -104,19 +98,10 @@ impl Mdr {
 }
 
 fn check_times(times: &[f64]) -> Result<f64> {
-    let mut last = 0.0;
+    let name = |n: usize| format!("time {} of the list", n + 1);
     for (n, t) in times.iter().enumerate() {
-        if !(t.is_finite() && *t > last) {
-            return Err(Error::invalid(
-                format!("time {} of the list", n + 1),
-                format!("{t} s"),
-                format!("finite and greater than {last} s"),
-            ));
-        }
-        last = *t;
+        positive(&name(n), *t, "s")?;
     }
-    if times.is_empty() {
-        return Err(Error::invalid("list of times", "empty", "one time at least"));
-    }
-    Ok(last)
+    increasing(times.iter().copied(), name, |t| format!("{t} s"))?;
+    times.last().copied().ok_or_else(|| Error::invalid("list of times", "empty", "one time at least"))
 }

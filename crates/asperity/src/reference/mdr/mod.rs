@@ -25,7 +25,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::layer_contact::SpringProfile;
 use super::quadrature::root;
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive, require};
 use crate::material::Relaxation;
 
 mod march;
@@ -98,7 +98,7 @@ impl Mdr {
     /// the contact grows beyond.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a number is not positive, the relaxation function is invalid, or the
+    /// [`Error::Invalid`](crate::Error::Invalid) if a number is not positive, the relaxation function is invalid, or the
     /// springs are fewer than 2 or more than a million.
     pub fn new(
         profile: MdrProfile,
@@ -109,9 +109,7 @@ impl Mdr {
         profile.validate()?;
         relaxation.validate()?;
         positive("largest contact radius", largest_radius, "m")?;
-        if !(2..=1_000_000).contains(&springs) {
-            return Err(Error::invalid("number of springs", springs, "between 2 and 1000000"));
-        }
+        require((2..=1_000_000).contains(&springs), "number of springs", springs, "between 2 and 1000000")?;
         let mut row = Mdr {
             profile,
             layer: None,
@@ -145,7 +143,7 @@ impl Mdr {
     /// Advances by `dt` >= 0 \[s\] (0: a jump) to the target.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if `dt` is negative, the load is negative, the target is not finite, a relaxation function with a
+    /// [`Error::Invalid`](crate::Error::Invalid) if `dt` is negative, the load is negative, the target is not finite, a relaxation function with a
     /// viscosity has a jump, the contact would open from within (it would no longer be one disc), or it grows beyond the row.
     pub fn step(&mut self, dt: f64, target: MdrTarget) -> Result<MdrState> {
         non_negative("time step", dt, "s")?;

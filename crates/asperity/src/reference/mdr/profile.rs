@@ -27,7 +27,7 @@ pub enum MdrProfile {
 }
 
 impl MdrProfile {
-    pub(super) fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         match self {
             MdrProfile::Sphere { radius } => positive("radius", *radius, "m"),
             MdrProfile::Cone { slope } => positive("slope of the cone", *slope, ""),
@@ -48,6 +48,15 @@ impl MdrProfile {
         match self {
             MdrProfile::Sphere { radius } => (height * radius).sqrt(),
             MdrProfile::Cone { slope } => height / (FRAC_PI_2 * slope),
+        }
+    }
+
+    /// Load at a depth \[m\] for E* = 1 \[m²\]: 2 int_0^a (depth - g) dx.
+    pub(crate) fn unit_load(&self, depth: f64) -> f64 {
+        let a = self.reach(depth);
+        match self {
+            MdrProfile::Sphere { .. } => 4.0 / 3.0 * depth * a,
+            MdrProfile::Cone { .. } => depth * a,
         }
     }
 

@@ -20,7 +20,7 @@ mod shells;
 
 use rayon::prelude::*;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 use crate::material::{Creep, integrate};
 use crate::sliding::Direction;
 use crate::surface::Surface;
@@ -182,18 +182,16 @@ impl Persson {
         Ok(curve)
     }
 
-    /// Contact fraction and friction coefficient; calls `told` with those at the end of each shell.
-    fn accumulate(&self, velocity: f64, mut told: impl FnMut(f64, f64, f64)) -> Result<(f64, f64)> {
-        if !velocity.is_finite() {
-            return Err(Error::invalid("velocity", velocity, "finite, in m/s"));
-        }
+    /// Contact fraction and friction coefficient; calls `visit` with those at the end of each shell.
+    fn accumulate(&self, velocity: f64, mut visit: impl FnMut(f64, f64, f64)) -> Result<(f64, f64)> {
+        require(velocity.is_finite(), "velocity", velocity, "finite, in m/s")?;
         let (mut root, mut friction) = (0.0, 0.0);
         self.shells.each(&self.creep, velocity.abs(), |shell| {
             // sqrt(G), which does not overflow if G would.
             let next = libm::hypot(root, shell.square.sqrt() / self.pressure);
             friction += shell.stress / self.pressure * self.mean_share(root, next);
             root = next;
-            told(shell.wave_number, contact_fraction(root), friction);
+            visit(shell.wave_number, contact_fraction(root), friction);
         });
         if !(root.is_finite() && friction.is_finite()) {
             let expected = format!("large enough for the modulus of the material: sqrt(G) is {root:e}");

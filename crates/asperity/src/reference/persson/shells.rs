@@ -13,7 +13,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, increasing, positive, require};
 use crate::material::Creep;
 use crate::sliding::Direction;
 use crate::surface::Surface;
@@ -39,10 +39,10 @@ pub(super) enum Shells {
 
 impl Shells {
     /// The shells at a speed, starting from the longest waves.
-    pub(super) fn each(&self, creep: &Creep, speed: f64, told: impl FnMut(Shell)) {
+    pub(super) fn each(&self, creep: &Creep, speed: f64, visit: impl FnMut(Shell)) {
         match self {
-            Shells::Waves(waves) => waves.each(creep, speed, told),
-            Shells::Isotropic(spectrum) => spectrum.each(creep, speed, told),
+            Shells::Waves(waves) => waves.each(creep, speed, visit),
+            Shells::Isotropic(spectrum) => spectrum.each(creep, speed, visit),
         }
     }
 }
@@ -68,9 +68,12 @@ impl Waves {
     /// From a surface that slides in a direction.
     pub(super) fn of(surface: &Surface, direction: Direction) -> Result<Self> {
         let [cos, sin] = direction.unit();
-        if !(cos.is_finite() && sin.is_finite()) {
-            return Err(Error::invalid("direction", format!("{direction:?}"), "of a finite angle in rad"));
-        }
+        require(
+            cos.is_finite() && sin.is_finite(),
+            "direction",
+            format!("{direction:?}"),
+            "of a finite angle in rad",
+        )?;
         let along = |wave: &Wave| (wave.wave_vector[0] * cos + wave.wave_vector[1] * sin).abs();
         let spectrum = PowerSpectrum::of(surface)?;
         let power: f64 = spectrum.waves().map(|wave| wave.power).sum();
@@ -99,7 +102,7 @@ impl Waves {
         Ok(Waves { waves: weighed.collect(), along: different, shells })
     }
 
-    fn each(&self, creep: &Creep, speed: f64, mut told: impl FnMut(Shell)) {
+    fn each(&self, creep: &Creep, speed: f64, mut visit: impl FnMut(Shell)) {
         let moduli: Vec<(f64, f64)> = self.along.iter().map(|q| square_and_loss(creep, q * speed)).collect();
         let mut start = 0;
         for &(wave_number, end) in &self.shells {
@@ -109,7 +112,7 @@ impl Waves {
                 shell.square += for_square * square;
                 shell.stress += for_stress * loss;
             }
-            told(shell);
+            visit(shell);
             start = end;
         }
     }
@@ -191,7 +194,7 @@ impl Isotropic {
         Ok(Isotropic { panels, circle: (0..=count).map(node).collect() })
     }
 
-    fn each(&self, creep: &Creep, speed: f64, mut told: impl FnMut(Shell)) {
+    fn each(&self, creep: &Creep, speed: f64, mut visit: impl FnMut(Shell)) {
         for panel in &self.panels {
             let mut shell = Shell { wave_number: panel.end, square: 0.0, stress: 0.0 };
             for (q, power) in panel.points {
@@ -204,7 +207,7 @@ impl Isotropic {
                 shell.square += 0.125 * power * squares;
                 shell.stress += 0.5 * power * losses;
             }
-            told(shell);
+            visit(shell);
         }
     }
 }
@@ -226,23 +229,17 @@ fn no_roughness() -> Error {
 }
 
 fn check(wave_numbers: &[f64], power: &[f64]) -> Result<()> {
-    if wave_numbers.len() != power.len() || power.len() < 2 {
-        return Err(Error::invalid(
-            "number of points of the spectrum",
-            format!("{} wave numbers and {} values of C", wave_numbers.len(), power.len()),
-            "the same for both, 2 at least",
-        ));
-    }
+    require(
+        wave_numbers.len() == power.len() && power.len() >= 2,
+        "number of points of the spectrum",
+        format!("{} wave numbers and {} values of C", wave_numbers.len(), power.len()),
+        "the same for both, 2 at least",
+    )?;
     for q in wave_numbers {
         positive("wave number of the spectrum", *q, "1/m")?;
     }
-    if let Some(pair) = wave_numbers.windows(2).find(|pair| pair[1] <= pair[0]) {
-        return Err(Error::invalid(
-            "wave number of the spectrum",
-            pair[1],
-            format!("greater than the one before, {}", pair[0]),
-        ));
-    }
+    let name = |_| "wave number of the spectrum".to_owned();
+    increasing(wave_numbers.iter().copied(), name, |q| q.to_string())?;
     if let Some(c) = power.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
         return Err(Error::invalid("value of the spectrum", c, "finite and not less than 0 m^4"));
     }

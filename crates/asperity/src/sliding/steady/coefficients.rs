@@ -11,11 +11,11 @@
 use std::sync::atomic::AtomicBool;
 
 use super::operators::Stream;
+use crate::convolution::torus::{Spectrum, Torus};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::sliding::Direction;
 use crate::sliding::influence::{Branch, influence};
-use crate::sliding::torus::{Spectrum, Torus};
 
 /// A over the relaxed compliance on a torus of `lengths`, which is longer than the `shortest` along the motion, or equal.
 ///

@@ -192,6 +192,7 @@ impl Steady {
             velocity,
             distance: 0.0,
             shear_stress: self.motion.shear_stress,
+            time_error: 0.0,
         };
         *friction = Friction::of(&forces, SecondEstimate::Steady(stream.loss(&state.pressure)));
         solved

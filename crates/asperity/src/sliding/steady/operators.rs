@@ -16,13 +16,13 @@ use rustfft::num_complex::Complex64;
 use super::coefficients;
 use crate::contact::Solver;
 use crate::convolution::Convolution;
+use crate::convolution::torus::{Spectrum, Torus};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::operator::Convolved;
 use crate::simulation::Simulation;
 use crate::sliding::metric::{MetricKernel, metric};
 use crate::sliding::stop_at;
-use crate::sliding::torus::{Spectrum, Torus};
 use crate::sliding::{Direction, Streaming};
 
 /// The torus of a free domain along the motion over the shortest one, at most, and the memory that makes it longer at most \[bytes\].
@@ -118,7 +118,7 @@ fn torus_bytes(grid: &Grid, [mx, my]: [usize; 2]) -> usize {
     let half = my / 2 + 1;
     32 * grid.cells()[0] * half
         + 64 * mx * half
-        + Convolution::bytes(grid.cells(), [mx, my])
+        + Convolution::bytes(grid.cells(), [mx, my], 1)
         + 8 * mx * my
         + 8 * (mx + 1) * half
 }
@@ -224,7 +224,7 @@ impl Stream<'_> {
             let compliance = self.streaming.at(along * self.velocity);
             (along * kernel.symbol(q(kx, 0).abs(), q(ky, 1).abs()) * compliance.im).into()
         });
-        let energy = torus.energy(&spectrum, |s, _| s.re, pressure);
+        let energy = torus.energy(&spectrum, pressure);
         Some(energy * grid.cell_area())
     }
 }

@@ -3,24 +3,23 @@
 use ndarray::s;
 
 use super::Surface;
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 use crate::grid::Grid;
 
 /// The `cells` = \[nx, ny\] cells from `from` = \[i, j\] on; the cells keep their size.
 ///
 /// # Errors
-/// [`Error::Invalid`] if the rectangle is empty or not inside the surface.
+/// [`Error::Invalid`](crate::Error::Invalid) if the rectangle is empty or not inside the surface.
 pub fn crop(surface: &Surface, from: [usize; 2], cells: [usize; 2]) -> Result<Surface> {
     let (whole, [dx, dy]) = (surface.grid().cells(), surface.grid().spacing());
     for (axis, name) in ["x", "y"].into_iter().enumerate() {
         let end = from[axis].checked_add(cells[axis]);
-        if cells[axis] == 0 || end.is_none_or(|end| end > whole[axis]) {
-            return Err(Error::invalid(
-                format!("cells to keep along {name}"),
-                format!("{} from {}", cells[axis], from[axis]),
-                format!("at least 1, within the {} of the surface", whole[axis]),
-            ));
-        }
+        require(
+            cells[axis] > 0 && end.is_some_and(|end| end <= whole[axis]),
+            format!("cells to keep along {name}"),
+            format!("{} from {}", cells[axis], from[axis]),
+            format!("at least 1, within the {} of the surface", whole[axis]),
+        )?;
     }
     let kept = s![from[0]..from[0] + cells[0], from[1]..from[1] + cells[1]];
     let size = [dx * cells[0] as f64, dy * cells[1] as f64];

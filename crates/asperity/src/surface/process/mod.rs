@@ -22,7 +22,7 @@ use std::fmt;
 
 use super::profile::remove_circle;
 use super::{Fill, Level, Surface, fill, level};
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 
 /// One step of the preparation of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,13 +100,12 @@ impl Operation {
 /// A profile without its circle.
 fn without_circle(surface: &Surface, radius: Option<f64>) -> Result<Surface> {
     let grid = *surface.grid();
-    if !grid.is_line() {
-        return Err(Error::invalid(
-            "surface to subtract a circle from",
-            "a plane",
-            "a profile, heights on a line of cells",
-        ));
-    }
+    require(
+        grid.is_line(),
+        "surface to subtract a circle from",
+        "a plane",
+        "a profile, heights on a line of cells",
+    )?;
     let heights: Vec<f64> = surface.heights().iter().copied().collect();
     let (flat, _) = remove_circle(&heights, grid.spacing()[0], radius)?;
     let mut left = surface.clone();

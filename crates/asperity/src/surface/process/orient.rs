@@ -8,7 +8,7 @@ use std::fmt;
 use ndarray::s;
 
 use super::Surface;
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 use crate::grid::Grid;
 
 /// An axis of the surface.
@@ -56,9 +56,12 @@ pub fn rotate(surface: &Surface, quarter_turns: i32) -> Result<Surface> {
         _ => heights.reversed_axes().slice_move(s![.., ..;-1]),
     };
     let ([nx, ny], [lx, ly]) = (surface.grid().cells(), surface.grid().size());
-    if surface.grid().is_line() && quarter_turns % 2 != 0 {
-        return Err(Error::invalid("number of quarter turns of a profile", quarter_turns, "even"));
-    }
+    require(
+        !surface.grid().is_line() || quarter_turns % 2 == 0,
+        "number of quarter turns of a profile",
+        quarter_turns,
+        "even",
+    )?;
     let grid = if quarter_turns % 2 == 0 { *surface.grid() } else { Grid::new([ny, nx], [ly, lx])? };
     Surface::new(grid, turned.to_owned())
 }

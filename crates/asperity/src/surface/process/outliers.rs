@@ -9,7 +9,7 @@ use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2, s};
 
 use super::Surface;
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, positive, require};
 
 /// Criteria for outliers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,16 +29,15 @@ impl Default for Outliers {
 /// The surface with its outliers undefined; fill them next.
 ///
 /// # Errors
-/// [`Error::Invalid`] if the threshold is not positive or the radius not between 1 and 10.
+/// [`Error::Invalid`](crate::Error::Invalid) if the threshold is not positive or the radius not between 1 and 10.
 pub fn remove_outliers(surface: &Surface, outliers: Outliers) -> Result<Surface> {
     positive("threshold of the outliers", outliers.threshold, "(standard deviations)")?;
-    if !(1..=10).contains(&outliers.radius) {
-        return Err(Error::invalid(
-            "radius of the outliers' neighbourhood",
-            outliers.radius,
-            "between 1 and 10 cells",
-        ));
-    }
+    require(
+        (1..=10).contains(&outliers.radius),
+        "radius of the outliers' neighbourhood",
+        outliers.radius,
+        "between 1 and 10 cells",
+    )?;
     let deviations = deviations(surface.heights(), outliers.radius);
     let mut sizes: Vec<f64> = deviations.iter().filter(|d| !d.is_nan()).map(|d| d.abs()).collect();
     if sizes.is_empty() {

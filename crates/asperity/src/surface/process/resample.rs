@@ -11,9 +11,7 @@ use std::f64::consts::PI;
 use asperity_convolution::fft;
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2, Axis};
-use realfft::{ComplexToReal, RealToComplex};
 use rustfft::num_complex::Complex64;
-use std::sync::Arc;
 
 use super::super::spectrum::check_defined;
 use super::Surface;
@@ -54,7 +52,7 @@ pub fn resample(surface: &Surface, cells: [usize; 2], method: Resampling) -> Res
         Resampling::Bilinear => rows_linear(heights, n),
     };
     if method == Resampling::BandLimited {
-        check_defined(heights)?;
+        check_defined(heights.iter())?;
     }
     // Both methods are products of one along y and one along x.
     let first = along(heights, cells[1]);
@@ -83,71 +81,43 @@ fn rows_by_waves(heights: ArrayView2<f64>, n: usize) -> Array2<f64> {
         return heights.to_owned();
     }
     let (forward, inverse) = (fft::real_forward(old), fft::real_inverse(n));
-    let row = Row { old, new: n, forward, inverse };
     let mut resampled = Array2::zeros((heights.nrows(), n));
     resampled.axis_iter_mut(Axis(0)).into_par_iter().zip(heights.outer_iter()).for_each_init(
-        || row.work(),
-        |work, (mut out, z)| {
-            work.input.iter_mut().zip(z).for_each(|(a, b)| *a = *b);
-            row.resample(work);
-            out.iter_mut().zip(&work.output).for_each(|(a, b)| *a = *b);
+        || {
+            let scratch = [forward.make_scratch_vec(), inverse.make_scratch_vec()];
+            let waves = [forward.make_output_vec(), inverse.make_input_vec()];
+            (forward.make_input_vec(), waves, inverse.make_output_vec(), scratch)
+        },
+        |(input, [waves, new_waves], output, [scratch, new_scratch]), (mut out, z)| {
+            input.iter_mut().zip(z).for_each(|(a, b)| *a = *b);
+            // The lengths come from the plans themselves, so the calls cannot fail.
+            let _ = forward.process_with_scratch(input, waves, scratch);
+            resample_waves(waves, old, new_waves, n);
+            let _ = inverse.process_with_scratch(new_waves, output, new_scratch);
+            out.iter_mut().zip(output).for_each(|(a, b)| *a = *b);
         },
     );
     resampled
 }
 
-/// Resampling of one periodic row.
-struct Row {
-    old: usize,
-    new: usize,
-    forward: Arc<dyn RealToComplex<f64>>,
-    inverse: Arc<dyn ComplexToReal<f64>>,
-}
-
-struct Work {
-    input: Vec<f64>,
-    waves: Vec<Complex64>,
-    new_waves: Vec<Complex64>,
-    output: Vec<f64>,
-    scratch: Vec<Complex64>,
-    new_scratch: Vec<Complex64>,
-}
-
-impl Row {
-    fn work(&self) -> Work {
-        Work {
-            input: self.forward.make_input_vec(),
-            waves: self.forward.make_output_vec(),
-            new_waves: self.inverse.make_input_vec(),
-            output: self.inverse.make_output_vec(),
-            scratch: self.forward.make_scratch_vec(),
-            new_scratch: self.inverse.make_scratch_vec(),
-        }
+/// The waves of a row of `old` points, for a row of `new` points.
+fn resample_waves(waves: &[Complex64], old: usize, new_waves: &mut [Complex64], new: usize) {
+    new_waves.fill(Complex64::ZERO);
+    for k in 0..=old.min(new) / 2 {
+        // From centres of old cells to centres of new ones.
+        let shift = PI * k as f64 * (1.0 / new as f64 - 1.0 / old as f64);
+        let wave = waves[k] * Complex64::from_polar(1.0 / old as f64, shift);
+        // The wave at Nyquist is both k and -k: half of it each if the new grid distinguishes them, their sum otherwise.
+        new_waves[k] = if 2 * k == old {
+            0.5 * wave
+        } else if 2 * k == new {
+            Complex64::new(2.0 * wave.re, 0.0)
+        } else {
+            wave
+        };
     }
-
-    fn resample(&self, work: &mut Work) {
-        // The lengths come from the plans themselves, so the calls cannot fail.
-        let _ = self.forward.process_with_scratch(&mut work.input, &mut work.waves, &mut work.scratch);
-        let (old, new) = (self.old, self.new);
-        work.new_waves.fill(Complex64::ZERO);
-        for k in 0..=old.min(new) / 2 {
-            // From centres of old cells to centres of new ones.
-            let shift = PI * k as f64 * (1.0 / new as f64 - 1.0 / old as f64);
-            let wave = work.waves[k] * Complex64::from_polar(1.0 / old as f64, shift);
-            // The wave at Nyquist is both k and -k: half of it each if the new grid distinguishes them, their sum otherwise.
-            work.new_waves[k] = if 2 * k == old {
-                0.5 * wave
-            } else if 2 * k == new {
-                Complex64::new(2.0 * wave.re, 0.0)
-            } else {
-                wave
-            };
-        }
-        // The constant is real except for rounding.
-        work.new_waves[0].im = 0.0;
-        let _ =
-            self.inverse.process_with_scratch(&mut work.new_waves, &mut work.output, &mut work.new_scratch);
-    }
+    // The constant is real except for rounding.
+    new_waves[0].im = 0.0;
 }
 
 #[cfg(test)]

@@ -12,7 +12,8 @@
 
 use std::f64::consts::{LN_2, PI};
 
-use crate::error::{Error, Result, positive};
+use super::super::spectrum::check_defined;
+use crate::error::{Result, positive, require};
 
 /// Sections of a profile, for Rz.
 const SECTIONS: usize = 5;
@@ -54,7 +55,7 @@ impl ProfileParameters {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] for fewer than five heights, undefined ones, or a spacing that is not positive.
+    /// [`Error::Invalid`](crate::Error::Invalid) for fewer than five heights, undefined ones, or a spacing that is not positive.
     pub fn of(heights: &[f64], spacing: f64) -> Result<ProfileParameters> {
         positive("spacing of the profile", spacing, "m")?;
         check(heights, SECTIONS)?;
@@ -111,7 +112,7 @@ fn slope(z: &[f64]) -> Option<f64> {
 /// At the ends the weights are those inside, scaled to a sum of 1.
 ///
 /// # Errors
-/// [`Error::Invalid`] for undefined heights, or where spacing or cut-off are not positive.
+/// [`Error::Invalid`](crate::Error::Invalid) for undefined heights, or where spacing or cut-off are not positive.
 pub fn roughness(heights: &[f64], spacing: f64, cutoff: f64) -> Result<Vec<f64>> {
     positive("spacing of the profile", spacing, "m")?;
     positive("cut-off of the profile", cutoff, "m")?;
@@ -133,22 +134,13 @@ pub fn roughness(heights: &[f64], spacing: f64, cutoff: f64) -> Result<Vec<f64>>
 
 /// Refuses undefined heights, and fewer than `least`.
 pub(super) fn check(heights: &[f64], least: usize) -> Result<()> {
-    if heights.len() < least {
-        return Err(Error::invalid(
-            "number of heights of the profile",
-            heights.len(),
-            format!("{least} at least"),
-        ));
-    }
-    let undefined = heights.iter().filter(|z| !z.is_finite()).count();
-    if undefined > 0 {
-        return Err(Error::invalid(
-            "number of undefined heights",
-            undefined,
-            "0 here; fill the undefined points first",
-        ));
-    }
-    Ok(())
+    require(
+        heights.len() >= least,
+        "number of heights of the profile",
+        heights.len(),
+        format!("{least} at least"),
+    )?;
+    check_defined(heights.iter())
 }
 
 #[cfg(test)]

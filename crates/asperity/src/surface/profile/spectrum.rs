@@ -17,7 +17,7 @@ use ndarray::Array2;
 
 use super::super::waves::Waves;
 use super::parameters::check;
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, positive, require};
 use crate::grid::Grid;
 
 /// Power spectrum of a profile, averaged over rings of wave numbers.
@@ -38,7 +38,7 @@ impl ProfileSpectrum {
     /// by a straight line and multiplied by Hann's window.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for fewer than eight or undefined heights, or a spacing that is not positive.
+    /// [`Error::Invalid`](crate::Error::Invalid) for fewer than eight or undefined heights, or a spacing that is not positive.
     pub fn of(heights: &[f64], spacing: f64, periodic: bool, per_decade: u32) -> Result<ProfileSpectrum> {
         positive("spacing of the profile", spacing, "m")?;
         check(heights, 8)?;
@@ -95,11 +95,9 @@ impl ProfileSpectrum {
     /// machine for one seed. Waves outside the rings are 0; between ring centres ln C is linear in ln q.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a line of cells, and for a grid without any of the waves.
+    /// [`Error::Invalid`](crate::Error::Invalid) for a line of cells, and for a grid without any of the waves.
     pub fn surface(&self, grid: &Grid, seed: u64) -> Result<Array2<f64>> {
-        if grid.is_line() {
-            return Err(Error::invalid("grid of the surface", "a line of cells", "a plane"));
-        }
+        require(!grid.is_line(), "grid of the surface", "a line of cells", "a plane")?;
         let (wave_numbers, power) = (self.wave_numbers(), self.isotropic());
         let at = interpolation(&wave_numbers, &power);
         let (lowest, highest) = (self.edges[0], self.edges[self.edges.len() - 1]);
@@ -120,13 +118,12 @@ impl ProfileSpectrum {
                 }
             }
         }
-        if !(moments.height > 0.0 && expected > 0.0) {
-            return Err(Error::invalid(
-                "grid of the surface",
-                format!("{:e} m x {:e} m", grid.size()[0], grid.size()[1]),
-                format!("one that holds waves of {:e} m to {:e} m", TAU / highest, TAU / lowest),
-            ));
-        }
+        require(
+            moments.height > 0.0 && expected > 0.0,
+            "grid of the surface",
+            format!("{:e} m x {:e} m", grid.size()[0], grid.size()[1]),
+            format!("one that holds waves of {:e} m to {:e} m", TAU / highest, TAU / lowest),
+        )?;
         Ok(waves.sum(&mut columns, (expected / moments.height).sqrt()))
     }
 }

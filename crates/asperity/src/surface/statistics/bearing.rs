@@ -3,7 +3,7 @@
 
 use super::super::Surface;
 use super::heights::defined;
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 
 /// Fraction of the defined points above each height of a list.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,15 +21,14 @@ impl BearingCurve {
     /// At `levels` heights, at least 2.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if no point is defined or the levels are fewer than 2 or more than 2^24.
+    /// [`Error::Invalid`](crate::Error::Invalid) if no point is defined or the levels are fewer than 2 or more than 2^24.
     pub fn of(surface: &Surface, levels: usize) -> Result<Self> {
-        if !(2..=MOST).contains(&levels) {
-            return Err(Error::invalid(
-                "number of levels of the bearing curve",
-                levels,
-                "between 2 and 2^24",
-            ));
-        }
+        require(
+            (2..=MOST).contains(&levels),
+            "number of levels of the bearing curve",
+            levels,
+            "between 2 and 2^24",
+        )?;
         let (low, high) = range(surface)?;
         let heights: Vec<f64> =
             (0..levels)
@@ -87,11 +86,9 @@ impl BearingCurve {
     /// Smc(mr): height \[m\] that the fraction mr of the surface reaches, linear between the levels.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the share is not in \[0, 1\].
+    /// [`Error::Invalid`](crate::Error::Invalid) if the share is not in \[0, 1\].
     pub fn height_at(&self, share: f64) -> Result<f64> {
-        if !(0.0..=1.0).contains(&share) {
-            return Err(Error::invalid("material ratio", share, "between 0 and 1"));
-        }
+        require((0.0..=1.0).contains(&share), "material ratio", share, "between 0 and 1")?;
         // Fractions decrease with the height: the first level that fewer points reach.
         let n = self.share.partition_point(|s| *s >= share);
         if n == 0 || n == self.share.len() {
@@ -105,16 +102,17 @@ impl BearingCurve {
 /// Probability density of the heights: (middles of `bins` equal bins \[m\], density \[1/m\]).
 ///
 /// # Errors
-/// [`Error::Invalid`] if no point is defined, the surface is flat (its density is infinite), or the
+/// [`Error::Invalid`](crate::Error::Invalid) if no point is defined, the surface is flat (its density is infinite), or the
 /// bins are none or more than 2^24.
 pub fn height_distribution(surface: &Surface, bins: usize) -> Result<(Vec<f64>, Vec<f64>)> {
-    if !(1..=MOST).contains(&bins) {
-        return Err(Error::invalid("number of bins of the height distribution", bins, "between 1 and 2^24"));
-    }
+    require(
+        (1..=MOST).contains(&bins),
+        "number of bins of the height distribution",
+        bins,
+        "between 1 and 2^24",
+    )?;
     let (low, high) = range(surface)?;
-    if low == high {
-        return Err(Error::invalid("range of the heights", "0 m", "more than 0 m, to have a distribution"));
-    }
+    require(low != high, "range of the heights", "0 m", "more than 0 m, to have a distribution")?;
     let mut counts = vec![0usize; bins];
     let mut total = 0usize;
     for z in defined(surface.heights()) {
@@ -130,9 +128,7 @@ pub fn height_distribution(surface: &Surface, bins: usize) -> Result<(Vec<f64>, 
 fn range(surface: &Surface) -> Result<(f64, f64)> {
     let (low, high) = defined(surface.heights())
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
-    if low > high {
-        return Err(Error::invalid("number of defined heights", 0, "1 at least"));
-    }
+    require(low <= high, "number of defined heights", 0, "1 at least")?;
     Ok((low, high))
 }
 

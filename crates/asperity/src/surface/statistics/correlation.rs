@@ -15,7 +15,7 @@ use ndarray::{Array2, s};
 use super::super::Surface;
 use super::super::spectrum::{check_defined, inverse, transform};
 use super::heights::mean;
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 use crate::grid::Grid;
 
 /// Whether the surface is periodic.
@@ -42,10 +42,10 @@ impl Autocorrelation {
     /// From a surface whose points are all defined.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a point is undefined or the surface is flat.
+    /// [`Error::Invalid`](crate::Error::Invalid) if a point is undefined or the surface is flat.
     pub fn of(surface: &Surface, extent: Extent) -> Result<Self> {
         let (grid, heights) = (*surface.grid(), surface.heights());
-        check_defined(heights)?;
+        check_defined(heights.iter())?;
         let mean = mean(heights)?;
         let [nx, ny] = grid.cells();
         // Padded by the longest lag, so that no pair wraps around.
@@ -61,9 +61,7 @@ impl Autocorrelation {
         // Mean over the padded cells of z z(+lag).
         let products = inverse(&padded, power);
         let variance = products[[0, 0]];
-        if variance <= 0.0 {
-            return Err(Error::invalid("rms height", "0 m", "more than 0 m, to have an autocorrelation"));
-        }
+        require(variance > 0.0, "rms height", "0 m", "more than 0 m, to have an autocorrelation")?;
         let values = Array2::from_shape_fn((nx, ny), |(i, j)| {
             let (lag_x, lag_y) = (i as i64 - (nx / 2) as i64, j as i64 - (ny / 2) as i64);
             let at = [lag_x.rem_euclid(cells[0] as i64) as usize, lag_y.rem_euclid(cells[1] as i64) as usize];

@@ -14,7 +14,7 @@
 use std::f64::consts::TAU;
 
 use super::RadialSpectrum;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 
 /// A self-affine spectrum fitted to a measured one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,13 +73,12 @@ impl SelfAffineFit {
                 weight: spectrum.waves[n] as f64,
             })
             .collect();
-        if points.len() < 5 {
-            return Err(Error::invalid(
-                "number of rings of the spectrum between the longest and the shortest wavelength",
-                points.len(),
-                "5 at least; widen the range",
-            ));
-        }
+        require(
+            points.len() >= 5,
+            "number of rings of the spectrum between the longest and the shortest wavelength",
+            points.len(),
+            "5 at least; widen the range",
+        )?;
         // At least three rings determine the slope. Of equal fits, the one with the shortest flat part is taken.
         let fits: Vec<Bend> = points[..points.len() - 3].iter().map(|p| bend(&points, p.x)).collect();
         let best = fits.iter().reduce(|best, fit| if fit.squares < best.squares { fit } else { best });

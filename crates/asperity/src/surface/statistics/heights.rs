@@ -47,7 +47,7 @@ pub struct HeightStatistics {
 }
 
 impl HeightStatistics {
-    /// Of the defined points.
+    /// The value for the defined points.
     ///
     /// # Errors
     /// [`Error::Invalid`] if no point is defined.

@@ -47,7 +47,7 @@ pub struct RadialSpectrum {
 }
 
 impl RadialSpectrum {
-    /// Of a surface whose points are all defined.
+    /// The spectrum of a surface whose points are all defined.
     ///
     /// ```
     /// use asperity::{Grid, surface::{Surface, statistics::{RadialSpectrum, Rings}}};
@@ -76,7 +76,7 @@ pub struct PowerSpectrum {
 }
 
 impl PowerSpectrum {
-    /// Of a surface whose points are all defined.
+    /// The spectrum of a surface whose points are all defined.
     ///
     /// # Errors
     /// [`Error::Invalid`] if a point is undefined.
@@ -104,14 +104,12 @@ impl PowerSpectrum {
     /// # Ok::<(), asperity::Error>(())
     /// ```
     pub fn waves(&self) -> impl Iterator<Item = Wave> {
-        let [nx, ny] = self.grid.cells();
-        self.power.indexed_iter().skip(1).map(move |((i, j), power)| {
-            let [qx, qy] = wave_vector(&self.grid, (i, j));
-            let slopes = [if 2 * i == nx { 0.0 } else { qx }, if 2 * j == ny { 0.0 } else { qy }];
+        self.power.indexed_iter().skip(1).map(|(at, power)| {
+            let [qx, qy] = wave_vector(&self.grid, at);
             Wave {
                 wave_number: libm::hypot(qx, qy),
-                wave_vector: slopes,
-                power: count(&self.grid, j) * power,
+                wave_vector: self.slope_vector(at),
+                power: count(&self.grid, at.1) * power,
             }
         })
     }
@@ -124,8 +122,8 @@ impl PowerSpectrum {
         self.averaged(rings, [[1.0, 0.0], [0.0, 1.0]])
     }
 
-    /// Spectrum averaged over ellipses along the axes of a lay, as a function of the wave number across it: that of the isotropic
-    /// surface from which the surface is obtained by stretching along the lay.
+    /// Spectrum averaged over ellipses along the axes of a lay, as a function of the wave number across it: the spectrum of the
+    /// isotropic surface from which the surface is obtained by stretching along the lay.
     ///
     /// # Errors
     /// As [`radial`](Self::radial).
@@ -213,21 +211,7 @@ impl PowerSpectrum {
         if nx.min(ny) < FEWEST {
             return SpectralLay { ratio: 1.0, angle: 0.0 };
         }
-        let rows: Vec<[f64; 3]> = (0..nx)
-            .into_par_iter()
-            .map(|i| {
-                let mut sums = [0.0; 3];
-                for (j, power) in self.power.row(i).iter().enumerate() {
-                    // Waves on the Nyquist frequency of an axis have no slope along it.
-                    let [qx, qy] = wave_vector(&self.grid, (i, j));
-                    let [qx, qy] = [if 2 * i == nx { 0.0 } else { qx }, if 2 * j == ny { 0.0 } else { qy }];
-                    let power = count(&self.grid, j) * power;
-                    [qx * qx, qx * qy, qy * qy].iter().zip(&mut sums).for_each(|(q, s)| *s += q * power);
-                }
-                sums
-            })
-            .collect();
-        let [xx, xy, yy] = rows.iter().fold([0.0; 3], |sum, row| std::array::from_fn(|n| sum[n] + row[n]));
+        let [xx, xy, yy] = self.sums(|[qx, qy], power| [qx * qx, qx * qy, qy * qy].map(|q| q * power));
         let (mean, half) = (0.5 * (xx + yy), (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt());
         // The steepest direction is across the lay.
         let across = 0.5 * libm::atan2(2.0 * xy, xx - yy);
@@ -238,22 +222,30 @@ impl PowerSpectrum {
 
     /// Sums of |A|^2, |q|^2 |A|^2 and |q|^4 |A|^2, without the mean.
     fn even_moments(&self) -> [f64; 3] {
-        let grid = &self.grid;
-        let [nx, ny] = grid.cells();
-        let rows: Vec<[f64; 3]> = (0..nx)
-            .into_par_iter()
-            .map(|i| {
-                let mut sums = [0.0; 3];
-                for (j, power) in self.power.row(i).iter().enumerate().skip(usize::from(i == 0)) {
-                    let [qx, qy] = wave_vector(grid, (i, j));
-                    let [qx, qy] = [if 2 * i == nx { 0.0 } else { qx }, if 2 * j == ny { 0.0 } else { qy }];
-                    let (q2, power) = (qx * qx + qy * qy, count(grid, j) * power);
-                    [power, q2 * power, q2 * q2 * power].iter().zip(&mut sums).for_each(|(p, s)| *s += p);
-                }
-                sums
-            })
-            .collect();
+        self.sums(|[qx, qy], power| {
+            let q2 = qx * qx + qy * qy;
+            [power, q2 * power, q2 * q2 * power]
+        })
+    }
+
+    /// Sums over all waves except the mean of functions of the wave vector and the power.
+    fn sums(&self, of: impl Fn([f64; 2], f64) -> [f64; 3] + Sync) -> [f64; 3] {
+        let row = |i: usize| {
+            let mut sums = [0.0; 3];
+            for (j, power) in self.power.row(i).iter().enumerate().skip(usize::from(i == 0)) {
+                let terms = of(self.slope_vector((i, j)), count(&self.grid, j) * power);
+                terms.iter().zip(&mut sums).for_each(|(term, sum)| *sum += term);
+            }
+            sums
+        };
+        let rows: Vec<[f64; 3]> = (0..self.power.nrows()).into_par_iter().map(row).collect();
         rows.iter().fold([0.0; 3], |sum, row| std::array::from_fn(|n| sum[n] + row[n]))
+    }
+
+    /// The wave vector, 0 along an axis on whose Nyquist frequency the wave lies, as it has no slope there.
+    fn slope_vector(&self, (i, j): (usize, usize)) -> [f64; 2] {
+        let ([nx, ny], [qx, qy]) = (self.grid.cells(), wave_vector(&self.grid, (i, j)));
+        [if 2 * i == nx { 0.0 } else { qx }, if 2 * j == ny { 0.0 } else { qy }]
     }
 }
 
@@ -309,7 +301,7 @@ pub struct SpectralMoments {
 }
 
 impl SpectralMoments {
-    /// Of a surface whose points are all defined. Waves on the Nyquist frequency of an axis have no
+    /// The moments of a surface whose points are all defined. Waves on the Nyquist frequency of an axis have no
     /// slope along it.
     ///
     /// # Errors

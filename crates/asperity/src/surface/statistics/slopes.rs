@@ -13,7 +13,7 @@ use ndarray::parallel::prelude::*;
 use ndarray::{ArrayView1, Axis};
 
 use super::super::Surface;
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 
 /// Sdq and Sdr.
 ///
@@ -33,19 +33,14 @@ pub struct SlopeStatistics {
     pub sdr: f64,
 }
 
-/// Sums and counts of a pair of rows.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    along_x: (f64, usize),
-    along_y: (f64, usize),
-    area: (f64, usize),
-}
+/// Sum and count of the squared slopes along x, of those along y, and of the excess areas.
+type Sums = [(f64, usize); 3];
 
 impl SlopeStatistics {
-    /// Of the defined points.
+    /// The value for the defined points.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if no two neighbours are defined.
+    /// [`Error::Invalid`](crate::Error::Invalid) if no two neighbours are defined.
     pub fn of(surface: &Surface) -> Result<Self> {
         let (heights, [dx, dy]) = (surface.heights(), surface.grid().spacing());
         // Rows in parallel, their sums added in order.
@@ -56,37 +51,31 @@ impl SlopeStatistics {
                 row_sums(heights.index_axis_move(Axis(0), i), next, [dx, dy])
             })
             .collect();
-        let add = |a: (f64, usize), b: (f64, usize)| (a.0 + b.0, a.1 + b.1);
-        let total = rows.iter().fold(Sums::default(), |a, b| Sums {
-            along_x: add(a.along_x, b.along_x),
-            along_y: add(a.along_y, b.along_y),
-            area: add(a.area, b.area),
-        });
-        if total.along_x.1 + total.along_y.1 == 0 {
-            return Err(Error::invalid(
-                "number of defined neighbours",
-                0,
-                "1 pair at least, to have a slope",
-            ));
-        }
+        let add = |a: Sums, b: &Sums| std::array::from_fn(|k| (a[k].0 + b[k].0, a[k].1 + b[k].1));
+        let [along_x, along_y, area] = rows.iter().fold(Sums::default(), add);
+        require(
+            along_x.1 + along_y.1 > 0,
+            "number of defined neighbours",
+            0,
+            "1 pair at least, to have a slope",
+        )?;
         let mean = |(sum, count): (f64, usize)| if count > 0 { sum / count as f64 } else { 0.0 };
-        Ok(SlopeStatistics { sdq: (mean(total.along_x) + mean(total.along_y)).sqrt(), sdr: mean(total.area) })
+        Ok(SlopeStatistics { sdq: (mean(along_x) + mean(along_y)).sqrt(), sdr: mean(area) })
     }
 }
 
 fn row_sums(row: ArrayView1<f64>, next: Option<ArrayView1<f64>>, [dx, dy]: [f64; 2]) -> Sums {
     let mut sums = Sums::default();
-    let mut add = |sum: fn(&mut Sums) -> &mut (f64, usize), value: f64| {
+    let mut add = |kind: usize, value: f64| {
         if value.is_finite() {
-            let sum = sum(&mut sums);
-            *sum = (sum.0 + value, sum.1 + 1);
+            sums[kind] = (sums[kind].0 + value, sums[kind].1 + 1);
         }
     };
     for j in 0..row.len() {
         let right = row.get(j + 1).map(|z| (z - row[j]) / dy);
         let up = next.map(|next| (next[j] - row[j]) / dx);
-        right.into_iter().for_each(|slope| add(|s| &mut s.along_y, slope * slope));
-        up.into_iter().for_each(|slope| add(|s| &mut s.along_x, slope * slope));
+        right.into_iter().for_each(|slope| add(1, slope * slope));
+        up.into_iter().for_each(|slope| add(0, slope * slope));
         if let (Some(low_y), Some(low_x), Some(next)) = (right, up, next) {
             let (high_y, high_x) = ((next[j + 1] - next[j]) / dy, (next[j + 1] - row[j + 1]) / dx);
             // The four triangles of the two cuts, one at each corner of the square.
@@ -96,7 +85,7 @@ fn row_sums(row: ArrayView1<f64>, next: Option<ArrayView1<f64>>, [dx, dy]: [f64;
             };
             let corners =
                 excess(low_x, low_y) + excess(low_x, high_y) + excess(high_x, low_y) + excess(high_x, high_y);
-            add(|s| &mut s.area, 0.25 * corners);
+            add(2, 0.25 * corners);
         }
     }
     sums

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{SQRT_2, TAU};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 
 /// The distribution of the heights of a synthetic surface; the roughness determines mean and rms.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -18,7 +18,7 @@ pub enum HeightDistribution {
         /// Sku.
         kurtosis: f64,
     },
-    /// That of the given samples (for example of a measured surface), linear between them.
+    /// The distribution of the given samples (for example of a measured surface), linear between them.
     Samples(Vec<f64>),
 }
 
@@ -51,26 +51,19 @@ impl HeightDistribution {
         let mean = values.iter().sum::<f64>() / n as f64;
         values.iter_mut().for_each(|z| *z -= mean);
         let rms = (values.iter().map(|z| z * z).sum::<f64>() / n as f64).sqrt();
-        if !(rms.is_finite() && rms > 0.0) {
-            return Err(Error::invalid(
-                "spread of the height distribution",
-                rms,
-                "finite and greater than 0",
-            ));
-        }
+        require(
+            rms.is_finite() && rms > 0.0,
+            "spread of the height distribution",
+            rms,
+            "finite and greater than 0",
+        )?;
         values.iter_mut().for_each(|z| *z /= rms);
         Ok(values)
     }
 }
 
 fn check_samples(samples: &[f64]) -> Result<()> {
-    if samples.len() < 2 {
-        return Err(Error::invalid(
-            "number of samples of the height distribution",
-            samples.len(),
-            "2 at least",
-        ));
-    }
+    require(samples.len() >= 2, "number of samples of the height distribution", samples.len(), "2 at least")?;
     if let Some(bad) = samples.iter().find(|z| !z.is_finite()) {
         return Err(Error::invalid("sample of the height distribution", bad, "finite"));
     }
@@ -83,13 +76,12 @@ fn sorted_samples(samples: &[f64]) -> Result<Vec<f64>> {
     sorted.sort_by(f64::total_cmp);
     // In units of their range: no overflow of squares.
     let (low, range) = (sorted[0], sorted[sorted.len() - 1] - sorted[0]);
-    if !(range.is_finite() && range > 0.0) {
-        return Err(Error::invalid(
-            "range of the samples of the height distribution",
-            range,
-            "finite and greater than 0",
-        ));
-    }
+    require(
+        range.is_finite() && range > 0.0,
+        "range of the samples of the height distribution",
+        range,
+        "finite and greater than 0",
+    )?;
     sorted.iter_mut().for_each(|z| *z = (*z - low) / range);
     Ok(sorted)
 }

@@ -1,31 +1,50 @@
 //! Multiplication of a real field by a complex spectrum: u = F⁻¹[ S F p ] on a torus at least as large as the domain.
 //!
-//! The convolution engine of the contact solver takes even, real spectra only. What slides has a front and a back: its
-//! spectrum S(-q) = conj S(q) is complex. Normalisation: both transforms together are the identity.
+//! [`Convolution`](crate::Convolution) takes real, even spectra only. The spectrum of a body that streams by, of a derivative or
+//! of a shift is complex, with S(-q) = conj S(q). Normalisation: both transforms together are the identity.
 
-use asperity_convolution::plane::RealPlane;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 
+use crate::plane::{Column, RealPlane};
+
 /// The multipliers of a torus of mx x my cells, in columns of constant ky: S(kx, ky) at `ky * mx + kx`, 0 <= ky <= my/2, all kx.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Spectrum(pub(crate) Vec<Complex64>);
+pub struct Spectrum(pub Vec<Complex64>);
 
-/// The transforms of a domain on a torus.
-pub(crate) struct Torus {
+/// The transforms of a domain of nx x ny cells on a torus of mx x my cells. Bit-identical for any number of threads.
+///
+/// ```
+/// use asperity_convolution::torus::Torus;
+/// use rustfft::num_complex::Complex64;
+///
+/// // Multiplied by i q, a wave along x becomes its derivative.
+/// let mut torus = Torus::new([8, 1], [8, 1]);
+/// let q = std::f64::consts::TAU / 8.0;
+/// let derivative = torus.spectrum(|kx, _| Complex64::new(0.0, q * kx as f64));
+/// let wave: Vec<f64> = (0..8).map(|i| (q * i as f64).sin()).collect();
+/// let mut slope = [0.0; 8];
+/// torus.apply_into(&derivative, &wave, &mut slope);
+/// assert!((slope[1] - q * q.cos()).abs() < 1e-15);
+/// ```
+pub struct Torus {
     plane: RealPlane,
     /// The transformed rows of a field.
     columns: Vec<Complex64>,
 }
 
 impl Torus {
-    pub(crate) fn new(cells: [usize; 2], lengths: [usize; 2]) -> Self {
+    /// Plans the transforms of fields of `cells` = \[nx, ny\] on a torus of `lengths` = \[mx, my\].
+    ///
+    /// # Panics
+    /// If a length is less than the number of cells.
+    pub fn new(cells: [usize; 2], lengths: [usize; 2]) -> Self {
         let plane = RealPlane::new(cells, lengths);
         Torus { columns: plane.columns(), plane }
     }
 
     /// mx, my.
-    pub(crate) fn lengths(&self) -> [usize; 2] {
+    pub fn lengths(&self) -> [usize; 2] {
         self.plane.lengths()
     }
 
@@ -36,12 +55,12 @@ impl Torus {
     }
 
     /// Numbers of a [`Spectrum`].
-    pub(crate) fn spectrum_len(&self) -> usize {
+    pub fn spectrum_len(&self) -> usize {
         self.lengths()[0] * self.plane.waves_along_y()
     }
 
     /// The spectrum with these numbers S(kx, ky), -mx/2 < kx <= mx/2. Where a wave is its own opposite, only the real part counts.
-    pub(crate) fn spectrum(&self, of: impl Fn(i64, i64) -> Complex64 + Sync) -> Spectrum {
+    pub fn spectrum(&self, of: impl Fn(i64, i64) -> Complex64 + Sync) -> Spectrum {
         let [mx, my] = self.lengths();
         let own = |k: usize, m: usize| k == 0 || 2 * k == m;
         let number = |n: usize| {
@@ -54,7 +73,7 @@ impl Torus {
     }
 
     /// u = F⁻¹[ S F p ]; both fields have nx ny cells.
-    pub(crate) fn apply_into(&mut self, spectrum: &Spectrum, p: &[f64], u: &mut [f64]) {
+    pub fn apply_into(&mut self, spectrum: &Spectrum, p: &[f64], u: &mut [f64]) {
         let (mx, scale) = (self.lengths()[0], self.scale());
         self.plane.rows_forward(p, &mut self.columns);
         self.plane.each_column(&mut self.columns, |transforms, ky, column| {
@@ -66,7 +85,7 @@ impl Torus {
     }
 
     /// F p, p of nx ny cells.
-    pub(crate) fn transform(&mut self, p: &[f64]) -> Spectrum {
+    pub fn transform(&mut self, p: &[f64]) -> Spectrum {
         let mut all = vec![Complex64::ZERO; self.spectrum_len()];
         self.plane.rows_forward(p, &mut self.columns);
         let nx = self.columns.len() / self.plane.waves_along_y();
@@ -77,47 +96,34 @@ impl Torus {
         Spectrum(all)
     }
 
-    /// Σ weight(kx, ky) |p^|² over all waves of the torus, over mx my: by Parseval's theorem a sum over its cells.
-    pub(crate) fn energy(
-        &mut self,
-        spectrum: &Spectrum,
-        weight: impl Fn(Complex64, i64) -> f64 + Sync,
-        p: &[f64],
-    ) -> f64 {
+    /// Σ Re S |p^|² over all waves of the torus, over mx my: by Parseval's theorem a sum over its cells.
+    pub fn energy(&mut self, spectrum: &Spectrum, p: &[f64]) -> f64 {
         let [mx, my] = self.lengths();
         self.plane.rows_forward(p, &mut self.columns);
         let nx = self.columns.len() / self.plane.waves_along_y();
-        let sums: Vec<f64> = self
-            .columns
-            .par_chunks(nx)
-            .enumerate()
-            .map_init(
-                || self.plane.column(),
-                |transforms, (ky, column)| {
-                    let twice = if ky == 0 || 2 * ky == my { 1.0 } else { 2.0 };
-                    let terms = transforms.forward(column).iter().enumerate().map(|(kx, x)| {
-                        let signed = if 2 * kx > mx { kx as i64 - mx as i64 } else { kx as i64 };
-                        weight(spectrum.0[ky * mx + kx], signed) * x.norm_sqr()
-                    });
-                    twice * terms.sum::<f64>()
-                },
-            )
-            .collect();
+        let column = |transforms: &mut Column, (ky, column): (usize, &[Complex64])| {
+            let twice = if ky == 0 || 2 * ky == my { 1.0 } else { 2.0 };
+            let waves = transforms.forward(column).iter().zip(&spectrum.0[ky * mx..]);
+            twice * waves.map(|(x, s)| s.re * x.norm_sqr()).sum::<f64>()
+        };
+        let columns = self.columns.par_chunks(nx).enumerate();
+        // One column after the other, so that the sum has the same bits for any number of threads.
+        let sums: Vec<f64> = columns.map_init(|| self.plane.column(), column).collect();
         sums.iter().sum::<f64>() / (mx as f64 * my as f64)
     }
 
     /// u = F⁻¹[ S T ] of a transform T and a spectrum S.
-    pub(crate) fn back_from(&mut self, transform: &Spectrum, spectrum: &Spectrum, u: &mut [f64]) {
+    pub fn back_from(&mut self, transform: &Spectrum, spectrum: &Spectrum, u: &mut [f64]) {
         self.back(|n| transform.0[n] * spectrum.0[n], u);
     }
 
     /// u = F⁻¹ T of a transform T.
-    pub(crate) fn back_of(&mut self, transform: &[Complex64], u: &mut [f64]) {
+    pub fn back_of(&mut self, transform: &[Complex64], u: &mut [f64]) {
         self.back(|n| transform[n], u);
     }
 
     /// u = F⁻¹ of the numbers `wave(ky mx + kx)`.
-    pub(crate) fn back(&mut self, wave: impl Fn(usize) -> Complex64 + Sync, u: &mut [f64]) {
+    pub fn back(&mut self, wave: impl Fn(usize) -> Complex64 + Sync, u: &mut [f64]) {
         let (mx, scale) = (self.lengths()[0], self.scale());
         self.plane.each_column(&mut self.columns, |transforms, ky, column| {
             transforms.waves.iter_mut().zip(ky * mx..).for_each(|(x, n)| *x = wave(n) * scale);
@@ -153,7 +159,8 @@ mod tests {
                 }
             }
             let square: f64 = p.iter().map(|p| p * p).sum();
-            let energy = torus.energy(&spectrum, |_, _| 1.0, &p);
+            let one = torus.spectrum(|_, _| Complex64::ONE);
+            let energy = torus.energy(&one, &p);
             assert!((energy / square - 1.0).abs() < 1e-13);
         }
     }

@@ -1,0 +1,52 @@
+//! The worst value of a quantity over the rows of a run.
+
+use super::Finding;
+use super::words::rows;
+
+/// Adds a row to the range of rows concerned.
+pub(super) fn extend(range: &mut Option<[usize; 2]>, row: usize) {
+    *range = Some(range.map_or([row; 2], |[first, _]| [first, row]));
+}
+
+/// The worst of the values beyond their limits, and the range of rows that have such values.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Worst {
+    pub value: f64,
+    pub limit: f64,
+    /// Factor by which the value exceeds the limit, or falls below it; 0 if no value is beyond its limit.
+    pub excess: f64,
+    /// `None` if the values belong to no run.
+    pub rows: Option<[usize; 2]>,
+}
+
+impl Worst {
+    /// Adds the value of a row if it is above the limit, and returns whether it is.
+    pub(super) fn above(&mut self, row: impl Into<Option<usize>>, value: f64, limit: f64) -> bool {
+        value > limit && self.add(row.into(), value, limit, value / limit)
+    }
+
+    /// Adds the value of a row if it is below the limit, and returns whether it is.
+    pub(super) fn below(&mut self, row: impl Into<Option<usize>>, value: f64, limit: f64) -> bool {
+        value < limit && self.add(row.into(), value, limit, limit / value)
+    }
+
+    fn add(&mut self, row: Option<usize>, value: f64, limit: f64, excess: f64) -> bool {
+        if let Some(row) = row {
+            extend(&mut self.rows, row);
+        }
+        if excess > self.excess {
+            *self = Worst { value, limit, excess, rows: self.rows };
+        }
+        true
+    }
+
+    /// " (rows 2 to 4)"; nothing if the values belong to no run.
+    pub(super) fn place(&self) -> String {
+        self.rows.map_or(String::new(), |at| format!(" ({})", rows(at)))
+    }
+
+    /// The warning about the worst value, if there is one.
+    pub(super) fn warning(&self, code: &'static str, text: impl FnOnce(&Self) -> String) -> Option<Finding> {
+        (self.excess > 0.0).then(|| Finding::warning(code, self.value, self.limit, text(self)).at(self.rows))
+    }
+}

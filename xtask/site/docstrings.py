@@ -11,12 +11,25 @@ SECTION = re.compile(r"^(Parameters|Raises|Warns|Yields|Attributes)\n-+\n((?:.+\
 ENTRY = re.compile(r"^(\*{0,2}\w[\w, *]*) : ", re.M)
 
 
+OPTIONS = re.compile(r"arguments_of\((\w+)\)")
+
+
 class Markdown(griffe.Extension):
-    """Changes each docstring before it is parsed."""
+    """Changes each docstring before it is parsed, and gives functions of an options object the fields of its class as arguments."""
 
     def on_object(self, *, obj, **kwargs):
         if obj.docstring:
             obj.docstring.value = markdown(obj.docstring.value)
+
+    def on_package(self, *, pkg, **kwargs):
+        # Gives dataclasses their parameters.
+        griffe.DataclassesExtension().on_package(pkg=pkg)
+        for module in pkg.modules.values():
+            for function in module.functions.values():
+                for decorator in function.decorators if not function.is_alias else ():
+                    if found := OPTIONS.fullmatch(str(decorator.value)):
+                        _, *arguments = module[found[1]].parameters
+                        function.parameters = griffe.Parameters(*arguments)
 
 
 def markdown(text):

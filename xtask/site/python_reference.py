@@ -5,7 +5,7 @@ import re
 TOPICS = {
     "Solve and run": "solve march run check elastic open study Step March Result Cycle ElasticContact ElasticCurve ConvergenceHistory".split(),
     "Surfaces": ["Surface", "Autocorrelation"],
-    "Materials": "Material Elastic Maxwell KelvinVoigt Zener Burgers Prony Creep Springpot FractionalMaxwell FractionalZener Body Layer "
+    "Materials": "Material Elastic Maxwell KelvinVoigt Zener StandardLinearSolid Burgers Prony Creep Springpot FractionalMaxwell FractionalZener Body Layer "
     "layer_compliance".split(),
     "Fits and shifts": "fit_relaxation fit_creep fit_dma fit_file fit_indentation Fit IndentationFit wlf arrhenius shift_table Shift".split(),
     "Loads and times": "step ramp ramp_to hold triangle trapezoid sine table History Stage uniform log listed adaptive Times".split(),
@@ -19,7 +19,7 @@ TOPICS = {
 
 def pages(root, write):
     """Writes the pages and returns titles and places. Every public name is on one of them."""
-    public = set(re.findall(r'^    "(\w+)",$', (root / "crates/asperity-py/python/asperity/__init__.py").read_text(encoding="utf-8"), re.M))
+    public = set(re.findall(r"\b(\w+) as \1\b", (root / "crates/asperity-py/python/asperity/__init__.py").read_text(encoding="utf-8")))
     told = {name.split(".")[0] for names in TOPICS.values() for name in names}
     if missing := public - told - {"__version__"}:
         raise SystemExit(f"python_reference.py: no topic for {', '.join(sorted(missing))}")

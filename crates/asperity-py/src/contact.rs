@@ -71,30 +71,15 @@ impl Elastic {
         if grid.is_line() && boundary == Boundary::Free && grid.len() < 2 {
             return Err(CaseError::new_err(FREE_LINE));
         }
-        for (what, value) in [("contact modulus", contact_modulus), ("hardness", hardness)] {
-            if value.is_nan() || value <= 0.0 || (what == "contact modulus" && value.is_infinite()) {
-                return Err(CaseError::new_err(format!("{what} is {value}, but must be greater than 0 Pa")));
-            }
-        }
-        if let Some(value) = gap.iter().find(|h| h.is_nan() || **h == f64::NEG_INFINITY) {
-            let words = "finite, or infinite where a cell cannot touch";
-            return Err(CaseError::new_err(format!("gap holds {value}, but must be {words}")));
+        if !(contact_modulus.is_finite() && contact_modulus > 0.0) {
+            let expected = "finite and greater than 0 Pa";
+            return Err(CaseError::new_err(format!(
+                "contact modulus is {contact_modulus}, but must be {expected}"
+            )));
         }
         let hardness_map = hardness_map.map(|map| map.as_array().as_standard_layout().into_owned());
-        if let Some(map) = hardness_map.as_ref().filter(|map| map.dim() != gap.dim()) {
-            let (found, expected) = (map.dim(), gap.dim());
-            let words =
-                format!("hardness has shape {found:?}, but must have {expected:?}, one for each cell");
-            return Err(CaseError::new_err(words));
-        }
-        if let Some(value) = hardness_map.iter().flatten().find(|h| !(h.is_finite() && **h > 0.0)) {
-            let words =
-                format!("hardness holds {value}, but must be finite and greater than 0 Pa in every cell");
-            return Err(CaseError::new_err(words));
-        }
         let options =
             asperity::SolverOptions { method: choose("method", method)?, tolerance, max_iterations };
-        options.validate().map_err(|error| raised(py, error))?;
         let kernel = kernel.map(|values| Table::new(grid, boundary, values.as_array().to_owned()));
         let kernel = kernel.transpose().map_err(|error| raised(py, error))?;
         let half_space = kernel.is_none();
@@ -125,22 +110,20 @@ impl Elastic {
 
     /// The contact under a load \[N\] or an approach \[m\], starting from a pressure; the numbers of its row by their names, and the
     /// fields; with `history` its iterations.
-    #[pyo3(signature = (load, approach, start, history))]
+    #[pyo3(signature = (control, value, start, history))]
     fn solve<'py>(
         &self,
         py: Python<'py>,
-        load: Option<f64>,
-        approach: Option<f64>,
+        control: &str,
+        value: f64,
         start: Option<PyReadonlyArray2<'_, f64>>,
         history: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let start: Option<Vec<f64>> = start.map(|pressure| pressure.as_array().iter().copied().collect());
-        let prescribed = match (load, approach) {
-            (Some(load), None) => (Control::Load, load),
-            (None, Some(_)) if self.is_free_line => return Err(CaseError::new_err(FREE_LINE)),
-            (None, Some(approach)) => (Control::Approach, approach),
-            _ => return Err(CaseError::new_err("give load or approach, exactly one of them")),
-        };
+        let control = choose("control", control)?;
+        if control == Control::Approach && self.is_free_line {
+            return Err(CaseError::new_err(FREE_LINE));
+        }
         let shape = self.shape;
         if start.as_ref().is_some_and(|start| start.len() != shape.0 * shape.1) {
             return Err(CaseError::new_err(format!("the start needs a pressure of shape {shape:?}")));
@@ -148,7 +131,7 @@ impl Elastic {
         let interrupt = Arc::new(AtomicBool::new(false));
         let solved = without_python(py, &interrupt, || {
             let mut planned = self.planned.lock().unwrap_or_else(PoisonError::into_inner);
-            planned.solve(prescribed, start, history, interrupt.clone())
+            planned.solve((control, value), start, history, interrupt.clone())
         })?;
         let Solution { row, pressure, displacement, findings, iterations } = match solved {
             Ok(solution) => solution,
@@ -166,11 +149,8 @@ impl Elastic {
         out.set_item("pressure", pressure.into_pyarray(py))?;
         out.set_item("displacement", displacement.into_pyarray(py))?;
         out.set_item("findings", findings)?;
-        let steps: Vec<_> = iterations
-            .into_iter()
-            .map(|one| (one.number, one.residual, one.working, one.step, one.convolutions))
-            .collect();
-        out.set_item("history", steps)?;
+        let entry = |one: Iteration| (one.number, one.residual, one.working, one.step, one.convolutions);
+        out.set_item("history", iterations.into_iter().map(entry).collect::<Vec<_>>())?;
         Ok(out)
     }
 

@@ -63,25 +63,17 @@ pub fn given(errors: &CaseErrors) -> PyErr {
     CaseError::new_err(said.collect::<Vec<_>>().join("\n"))
 }
 
-/// The same of a body alone.
-pub fn of_body(errors: CaseErrors) -> PyErr {
-    alone(errors, &[("body[0].material", "the material"), ("body[0]", "the body")])
-}
-
-/// The same of a shift alone.
-pub fn of_shift(errors: CaseErrors) -> PyErr {
-    alone(errors, &[("shift", "the shift")])
-}
-
-/// The same of a surface alone.
-pub fn of_surface(errors: CaseErrors) -> PyErr {
-    alone(errors, &[("surface[0]", "the surface"), ("domain", "the domain")])
-}
-
-/// Faults of tables that stand alone, whose keys are parameters: a message begins with the parameter, or with a word for the table.
-fn alone(mut errors: CaseErrors, tables: &[(&str, &str)]) -> PyErr {
+/// The faults of tables that stand alone, whose keys are parameters: a message begins with the parameter, or with a word for the table.
+pub fn alone(mut errors: CaseErrors) -> PyErr {
+    const TABLES: [(&str, &str); 5] = [
+        ("body[0].material", "the material"),
+        ("body[0]", "the body"),
+        ("shift", "the shift"),
+        ("surface[0]", "the surface"),
+        ("domain", "the domain"),
+    ];
     for error in &mut errors.errors {
-        let rest = tables.iter().find_map(|(table, word)| Some((error.message.strip_prefix(table)?, word)));
+        let rest = TABLES.iter().find_map(|(table, word)| Some((error.message.strip_prefix(table)?, word)));
         if let Some((rest, word)) = rest {
             error.message = rest.strip_prefix('.').map_or_else(|| format!("{word}{rest}"), str::to_owned);
         }

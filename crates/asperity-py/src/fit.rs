@@ -1,5 +1,6 @@
 //! Materials from measured curves.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -23,7 +24,7 @@ use crate::wait::detached;
 #[pyo3(from_item_all)]
 pub struct Options<'py> {
     /// None: what the header of the file names, or else Young's modulus.
-    measure: Option<String>,
+    modulus: Option<String>,
     /// Keys of a shift, also of one that is to be estimated.
     shift: Option<Bound<'py, PyDict>>,
     /// "density", "free", or none.
@@ -32,7 +33,7 @@ pub struct Options<'py> {
     per_decade: f64,
     margin: f64,
     long_time: String,
-    limit: f64,
+    max_misfit: f64,
     max_terms: Option<usize>,
     misfit: Option<f64>,
     moduli: String,
@@ -42,7 +43,7 @@ pub struct Options<'py> {
 impl Options<'_> {
     /// The request; `named` is the modulus that the header of the file names.
     fn request(self, named: Option<Modulus>) -> PyResult<Request> {
-        let measure = self.measure.map(|word| choose("modulus", &word)).transpose()?;
+        let measure = self.modulus.map(|word| choose("modulus", &word)).transpose()?;
         let (shift, vertical) = match &self.shift {
             Some(keys) => shift(keys)?,
             None => (ShiftRequest::None, VerticalRequest::None),
@@ -67,13 +68,21 @@ impl Options<'_> {
                 per_decade: self.per_decade,
                 margin: self.margin,
                 long_time: choose("long_time", &self.long_time)?,
-                limit: self.limit,
+                limit: self.max_misfit,
                 max_terms: self.max_terms.unwrap_or(usize::MAX),
                 misfit: self.misfit,
                 moduli: choose("moduli", &self.moduli)?,
                 loss_weight: self.loss_weight,
             },
         })
+    }
+}
+
+/// A fault of a file: of what it holds, or of reading it.
+fn unreadable(error: CurveError) -> PyErr {
+    match error.path.is_file() {
+        true => CaseError::new_err(error.told(Remedy::in_python)),
+        false => file(error),
     }
 }
 
@@ -108,34 +117,36 @@ fn located(error: CurveError) -> PyErr {
     CaseError::new_err(format!("{point}{}{remedy}", error.message))
 }
 
-/// What is said of a column: quantity, name or number, unit.
-type Said = (String, Option<String>, Option<usize>, Option<String>);
+/// Where a column is.
+#[derive(FromPyObject)]
+pub enum Place {
+    Name(String),
+    Number(usize),
+}
 
-/// Fits a text table.
+/// Fits a text table or a spreadsheet; `columns` and `units` are by quantity.
 #[pyfunction]
 pub fn fit_file<'py>(
     py: Python<'py>,
     path: PathBuf,
     kind: Option<String>,
-    columns: Vec<Said>,
+    columns: BTreeMap<String, Place>,
+    units: BTreeMap<String, String>,
     sheet: Option<String>,
     options: Options<'_>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let mut said = Columns { sheet, ..Columns::default() };
-    for (role, name, number, unit) in columns {
-        let role = Role::from_str(&role).map_err(CaseError::new_err)?;
-        match (name, number) {
-            (Some(name), _) => drop(said.columns.insert(role, Column::Name(name))),
-            (None, Some(number)) => drop(said.columns.insert(role, Column::Number(number))),
-            (None, None) => {}
-        }
-        if let Some(unit) = unit {
-            said.units.insert(role, unit);
-        }
-    }
-    let unreadable = |error: CurveError| match error.path.is_file() {
-        true => CaseError::new_err(error.told(Remedy::in_python)),
-        false => file(error),
+    let role = |name: String| Role::from_str(&name).map_err(CaseError::new_err);
+    let column = |place| match place {
+        Place::Name(name) => Column::Name(name),
+        Place::Number(number) => Column::Number(number),
+    };
+    let said = Columns {
+        sheet,
+        columns: columns
+            .into_iter()
+            .map(|(name, place)| Ok((role(name)?, column(place))))
+            .collect::<PyResult<_>>()?,
+        units: units.into_iter().map(|(name, unit)| Ok((role(name)?, unit))).collect::<PyResult<_>>()?,
     };
     let found = match kind {
         Some(word) => choose("kind", &word)?,
@@ -164,32 +175,33 @@ fn reference_of_several(curves: &Curves) -> Option<f64> {
 /// The shift that a table of temperatures and shift factors holds, in a text file or a spreadsheet.
 #[pyfunction]
 pub fn read_shift_table(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
-    let unreadable = |error: CurveError| match error.path.is_file() {
-        true => CaseError::new_err(error.told(Remedy::in_python)),
-        false => file(error),
-    };
     let read = asperity_io::curve::read_shift_table(&path).map_err(unreadable)?;
     dictionary(py, &shift_keys(&read, None))
 }
 
+/// The fields of a `Fit`.
 fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> PyResult<Bound<'py, PyDict>> {
     let out = PyDict::new(py);
     out.set_item("kind", curves.kind.name())?;
     out.set_item("modulus", choice::word(&fitted.material.measure()))?;
-    match &fitted.series {
+    let (equilibrium, creep, terms): (_, _, Vec<_>) = match &fitted.series {
         Series::Relaxation(relaxation) => {
-            let terms: Vec<_> = relaxation.terms.iter().map(|t| (t.modulus, t.relaxation_time)).collect();
-            out.set_item("relaxation", (relaxation.equilibrium, terms))?;
+            let terms = relaxation.terms.iter().map(|t| (t.modulus, t.relaxation_time));
+            (Some(relaxation.equilibrium), None, terms.collect())
         }
         Series::Creep(creep) => {
-            let terms: Vec<_> = creep.terms.iter().map(|t| (t.compliance, t.retardation_time)).collect();
-            out.set_item("creep", (creep.instantaneous, terms, creep.fluidity))?;
+            let terms = creep.terms.iter().map(|t| (t.compliance, t.retardation_time));
+            (None, Some(creep), terms.collect())
         }
-    }
+    };
+    out.set_item("equilibrium", equilibrium)?;
+    out.set_item("instantaneous", creep.map(|creep| creep.instantaneous))?;
+    out.set_item("fluidity", creep.map(|creep| creep.fluidity))?;
+    out.set_item("terms", terms)?;
     out.set_item("max_misfit", fitted.misfit.max)?;
     out.set_item("rms_misfit", fitted.misfit.rms)?;
     let columns = fitted.columns.iter().map(|(name, m)| (*name, (m.rms, m.max)));
-    out.set_item("misfits", columns.collect::<std::collections::BTreeMap<_, _>>())?;
+    out.set_item("misfits", columns.collect::<BTreeMap<_, _>>())?;
     out.set_item("worst", fitted.misfit.worst)?;
     entries!(out, fitted; noise shift_rms temperatures notes);
     out.set_item("uncertainty", fitted.uncertainty.iter().map(|u| (u[0], u[1])).collect::<Vec<_>>())?;
@@ -199,7 +211,7 @@ fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> PyResult<Bound
     let factors = |list: &[[f64; 3]]| list.iter().map(|f| (f[0], f[1], f[2])).collect::<Vec<_>>();
     out.set_item("shift_factors", factors(&fitted.factors))?;
     out.set_item("vertical_factors", factors(&fitted.vertical_factors))?;
-    out.set_item("toml", fitted.to_toml(curves))?;
+    out.set_item("case_block", fitted.to_toml(curves))?;
     out.set_item("x", fitted.data.x.into_pyarray(py))?;
     let columns: Vec<_> = fitted.data.curves.into_iter().map(|curve| curve.into_pyarray(py)).collect();
     out.set_item("curves", columns)?;

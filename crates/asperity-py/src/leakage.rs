@@ -56,7 +56,8 @@ pub fn leakage<'py>(
     Ok(out)
 }
 
-/// A state for the diagnostics: row (none for a gap of no run), critical gap (none where tight), cells across it, error of the gap, pressure drop, contact pressure.
+/// A state for the diagnostics: row (none for a gap without a run), critical gap (none if nothing passes), cells across it, error
+/// of the gap, pressure drop, contact pressure.
 type State = (Option<usize>, Option<f64>, Option<usize>, f64, Option<f64>, f64);
 
 /// Which leaks the numbers carry, and what was found against the others (a JSON list).

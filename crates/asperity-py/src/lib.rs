@@ -12,6 +12,7 @@ mod kernel;
 mod leakage;
 mod march;
 mod material;
+mod registry;
 mod session;
 mod sliding;
 mod store;
@@ -29,42 +30,26 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use super::command::command;
-    #[pymodule_export]
-    use super::contact::{Elastic, spot_labels};
-    #[pymodule_export]
-    use super::cycles::cycles_of;
-    #[pymodule_export]
-    use super::error::{CaseError, ConvergenceError, FormatError};
-    #[pymodule_export]
-    use super::fit::{fit, fit_file, read_shift_table};
-    #[pymodule_export]
-    use super::indentation::fit_indentation;
-    #[pymodule_export]
-    use super::leakage::{judge_leaks, leakage};
-    #[pymodule_export]
-    use super::march::{March, fields, quantities, rows};
-    #[pymodule_export]
-    use super::material::{Body, layer_compliance, shift_factor, vertical_shift_factor};
-    #[pymodule_export]
-    use super::session::{case_text, check, report, run};
-    #[pymodule_export]
-    use super::sliding::Persson;
-    #[pymodule_export]
-    use super::store::{Store, derive_again};
-    #[pymodule_export]
-    use super::stress::{stress_check, stress_depths, stress_field, stress_survey, stress_transverse};
-    #[pymodule_export]
-    use super::surface::{
-        autocorrelation, bearing_curve, describe, gap, height_distribution, heights, power_spectrum, process,
-        profile_parameters, read_surface, write_surface,
+    use super::{
+        command::command,
+        contact::{Elastic, spot_labels},
+        cycles::cycles_of,
+        error::{CaseError, ConvergenceError, FormatError},
+        fit::{fit, fit_file, read_shift_table},
+        indentation::fit_indentation,
+        leakage::{judge_leaks, leakage},
+        march::March,
+        material::{Body, layer_compliance, shift_factor, vertical_shift_factor},
+        registry::{histogram_coordinates, registry},
+        session::{case_text, check, report, run},
+        sliding::Persson,
+        store::{Store, derive_again},
+        stress::{Stress, stress_transverse},
+        surface::{Heights, heights, read_surface},
+        units::{readable_unit, unit_factor},
+        wait::{set_threads, threads},
+        writer::Writer,
     };
-    #[pymodule_export]
-    use super::units::unit_factor;
-    #[pymodule_export]
-    use super::wait::{set_threads, threads};
-    #[pymodule_export]
-    use super::writer::Writer;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -6,7 +6,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use asperity::finding::{Diagnostics, Finding, Known};
-use asperity::quantities::Quantity;
 use asperity::{Drive, drive, process, step};
 use asperity_io::case::{Case, CaseErrors};
 use asperity_io::session;
@@ -33,25 +32,6 @@ pub struct March {
     /// Whether the state is that of the last row.
     settled: bool,
     interrupt: Arc<AtomicBool>,
-}
-
-/// (name, unit, meaning) of the numbers that each row has.
-#[pyfunction]
-pub fn rows() -> Vec<(&'static str, &'static str, &'static str)> {
-    SCALARS.iter().map(|scalar| (scalar.name, scalar.units, scalar.long_name)).collect()
-}
-
-/// (name, unit, meaning) of the fields that a result may have.
-#[pyfunction]
-pub fn fields() -> Vec<(&'static str, &'static str, &'static str)> {
-    FieldKind::ALL.map(|kind| (kind.name(), kind.units(), kind.long_name())).to_vec()
-}
-
-/// (name, unit, meaning, whether it is a histogram) of all quantities that a row may have besides.
-#[pyfunction]
-pub fn quantities() -> Vec<(&'static str, &'static str, &'static str, bool)> {
-    let words = |q: Quantity| (q.name(), q.units(), q.long_name(), q.is_histogram());
-    Quantity::ALL.into_iter().map(words).collect()
 }
 
 #[pymethods]

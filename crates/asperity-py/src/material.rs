@@ -15,7 +15,7 @@ type Curve<'py> = Bound<'py, PyArray1<f64>>;
 
 /// The bodies of these keys (`body`, `temperature`).
 pub fn bodies(keys: &Bound<'_, PyDict>, window: Option<[f64; 2]>) -> PyResult<Pair> {
-    given::bodies(&table(keys)?, window).map_err(error::of_body)
+    given::bodies(&table(keys)?, window).map_err(error::alone)
 }
 
 /// One half-space, at its own temperature or the reference temperature of its shift.
@@ -113,7 +113,7 @@ pub fn layer_compliance<'py>(
 
 /// The shift of these keys, and how the moduli depend on temperature.
 pub fn shift(keys: &Bound<'_, PyDict>) -> PyResult<(ShiftRequest, VerticalRequest)> {
-    given::shift(table(keys)?).map_err(error::of_shift)
+    given::shift(table(keys)?).map_err(error::alone)
 }
 
 /// The keys of a shift.

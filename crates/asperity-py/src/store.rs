@@ -28,8 +28,8 @@ pub struct Store {
 }
 
 impl Store {
-    /// The reader, unless another result stands in the place of the one that was opened: rows of one and fields of the other would
-    /// be mixed.
+    /// The reader. An error if another result has replaced the one that was opened: otherwise rows of one would be combined with
+    /// fields of the other.
     fn unchanged(&self) -> PyResult<&Reader> {
         #[cfg(unix)]
         {
@@ -59,9 +59,14 @@ impl Store {
         })
     }
 
-    /// A number of every row.
-    fn series<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(self.reader.series(name).map_err(file)?.into_pyarray(py))
+    /// A number of every row; counts are integers.
+    fn series<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let numbers = self.reader.series(name).map_err(file)?;
+        if SCALARS.iter().any(|scalar| scalar.name == name && scalar.is_count()) {
+            let counts: Vec<i64> = numbers.into_iter().map(|number| number as i64).collect();
+            return Ok(counts.into_pyarray(py).into_any());
+        }
+        Ok(numbers.into_pyarray(py).into_any())
     }
 
     /// Names of the quantities that were asked for.

@@ -1,6 +1,7 @@
 //! The stress below the surface.
 
 use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, PoisonError};
 
 use asperity::stress::{
     Extreme, PressureHistory, StressQuantity, SubsurfaceStress, SurveyOptions, automatic_depths,
@@ -13,70 +14,136 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, raised};
-use crate::given::{choose, entries};
+use crate::given::{choose, entries, grid_of};
 use crate::wait::without_python;
 
 /// Where the Poisson's ratio changes with time, int nu(t - s) dp(s) \[Pa\] in each cell and the lateral pressure \[Pa\] that
 /// belongs to the mean pressure: [`SubsurfaceStress::set_transverse`].
 type Transverse<'py> = Option<(PyReadonlyArray2<'py, f64>, f64)>;
 
-/// Pressure, grid and transforms. A line has one length.
-fn planned(
-    py: Python<'_>,
-    pressure: &PyReadonlyArray2<'_, f64>,
-    size: &[f64],
-    boundary: &str,
-    poisson: f64,
-    transverse: &Transverse<'_>,
-) -> PyResult<(Grid, Boundary, Vec<f64>, SubsurfaceStress)> {
-    let (nx, ny) = pressure.as_array().dim();
-    let boundary = choose("boundary", boundary)?;
-    let cells: Vec<f64> = pressure.as_array().iter().copied().collect();
-    let planned = || -> Result<_, Error> {
-        let grid = match *size {
-            [length] => Grid::line(nx, length)?,
-            [x, y] => Grid::new([nx, ny], [x, y])?,
-            _ => return Err(Error::invalid("size", format!("{size:?}"), "one or two lengths")),
+/// The stress below one pressure.
+#[pyclass(frozen)]
+pub struct Stress {
+    grid: Grid,
+    boundary: Boundary,
+    pressure: Vec<f64>,
+    /// Locked where threads of Python share it.
+    stress: Mutex<SubsurfaceStress>,
+}
+
+#[pymethods]
+impl Stress {
+    /// Of a pressure on a plane, or on a line, whose size is one length.
+    #[new]
+    #[pyo3(signature = (pressure, size, boundary, poisson, transverse))]
+    fn new(
+        py: Python<'_>,
+        pressure: PyReadonlyArray2<'_, f64>,
+        size: Vec<f64>,
+        boundary: &str,
+        poisson: f64,
+        transverse: Transverse<'_>,
+    ) -> PyResult<Stress> {
+        let boundary = choose("boundary", boundary)?;
+        let grid = grid_of(py, pressure.as_array().dim(), &size)?;
+        let pressure: Vec<f64> = pressure.as_array().iter().copied().collect();
+        let planned = || -> Result<_, Error> {
+            let mut stress = SubsurfaceStress::new(grid, boundary, poisson)?;
+            match transverse {
+                None => stress.set_pressure(&pressure)?,
+                Some((transverse, confined)) => {
+                    let transverse: Vec<f64> = transverse.as_array().iter().copied().collect();
+                    stress.set_transverse(&pressure, &transverse, confined)?;
+                }
+            }
+            Ok(Mutex::new(stress))
         };
-        let mut stress = SubsurfaceStress::new(grid, boundary, poisson)?;
-        match transverse {
-            None => stress.set_pressure(&cells)?,
-            Some((transverse, confined)) => {
-                let transverse: Vec<f64> = transverse.as_array().iter().copied().collect();
-                stress.set_transverse(&cells, &transverse, *confined)?;
+        let stress = planned().map_err(|error| raised(py, error))?;
+        Ok(Stress { grid, boundary, pressure, stress })
+    }
+
+    /// Depths that suit the contact.
+    fn automatic_depths(&self) -> Vec<f64> {
+        automatic_depths(&self.grid, self.boundary, contact_box(&self.grid, &self.pressure))
+    }
+
+    /// Checks depths.
+    fn check_depths(&self, py: Python<'_>, depths: Vec<f64>) -> PyResult<()> {
+        check_depths(&self.grid, &depths).map_err(|error| raised(py, error))
+    }
+
+    /// One field of shape (depth, x, y): a component ("xx", ...), "mises", "tresca", "tension" or "pressure".
+    fn field<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        depths: Vec<f64>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let [nx, ny] = self.grid.cells();
+        let mut field = vec![0.0; depths.len() * self.grid.len()];
+        let quantity = StressQuantity::from_name(name)
+            .ok_or_else(|| CaseError::new_err(format!("there is no stress '{name}'")))?;
+        self.solve(py, |stress| {
+            let mut six = std::array::from_fn(|_| Vec::new());
+            for (depth, out) in depths.iter().zip(field.chunks_mut(self.grid.len())) {
+                match quantity.component() {
+                    Some(component) => stress.component_into(component, *depth, out)?,
+                    None => {
+                        stress.at(*depth, &mut six)?;
+                        quantity.field_into(&six, out);
+                    }
+                }
+            }
+            Ok(())
+        })?;
+        let field = Array3::from_shape_vec((depths.len(), nx, ny), field);
+        field.map(|field| field.into_pyarray(py)).map_err(|error| CaseError::new_err(error.to_string()))
+    }
+
+    /// Maxima with their places, and the profile over depth.
+    #[pyo3(signature = (depths, threshold, rolling))]
+    fn survey<'py>(
+        &self,
+        py: Python<'py>,
+        depths: Vec<f64>,
+        threshold: Option<f64>,
+        rolling: Option<&str>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let rolling = rolling.map(|word| choose("rolling", word)).transpose()?;
+        let options = SurveyOptions { threshold, rolling };
+        let found = self.solve(py, |stress| survey(stress, &depths, &options))?;
+        let out = PyDict::new(py);
+        let (grid, ny) = (self.grid, self.grid.cells()[1]);
+        for (name, Extreme { value, depth, cell }) in
+            [("mises", found.mises), ("tresca", found.tresca), ("tension", found.tension)]
+        {
+            out.set_item(format!("max_{name}"), value)?;
+            out.set_item(format!("max_{name}_depth"), depth)?;
+            out.set_item(format!("max_{name}_x"), grid.x(cell / ny))?;
+            if !grid.is_line() {
+                out.set_item(format!("max_{name}_y"), grid.y(cell % ny))?;
             }
         }
-        Ok((grid, stress))
-    };
-    let (grid, stress) = planned().map_err(|error| raised(py, error))?;
-    Ok((grid, boundary, cells, stress))
+        entries!(out, found; mises_by_depth tresca_by_depth tension_by_depth stressed_volume at_the_deepest unresolved);
+        if let Some(shear) = found.orthogonal_shear {
+            out.set_item("orthogonal_shear", shear.largest.value)?;
+            out.set_item("orthogonal_shear_depth", shear.largest.depth)?;
+            out.set_item("orthogonal_shear_by_depth", shear.by_depth)?;
+        }
+        Ok(out)
+    }
 }
 
-/// Depths of a survey that the user leaves to the program.
-#[pyfunction]
-pub fn stress_depths(
-    py: Python<'_>,
-    pressure: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    boundary: &str,
-) -> PyResult<Vec<f64>> {
-    let (grid, boundary, cells, _) = planned(py, &pressure, &size, boundary, 0.0, &None)?;
-    Ok(automatic_depths(&grid, boundary, contact_box(&grid, &cells)))
-}
-
-/// Checks all numbers of a stress.
-#[pyfunction]
-pub fn stress_check(
-    py: Python<'_>,
-    pressure: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    boundary: &str,
-    poisson: f64,
-    transverse: Transverse<'_>,
-    depths: Vec<f64>,
-) -> PyResult<()> {
-    let (grid, ..) = planned(py, &pressure, &size, boundary, poisson, &transverse)?;
-    check_depths(&grid, &depths).map_err(|error| raised(py, error))
+impl Stress {
+    /// What `work` finds while other threads of Python run.
+    fn solve<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut SubsurfaceStress) -> Result<T, Error> + Send,
+    ) -> PyResult<T> {
+        let locked = || work(&mut self.stress.lock().unwrap_or_else(PoisonError::into_inner));
+        without_python(py, &AtomicBool::new(false), locked)?.map_err(|error| raised(py, error))
+    }
 }
 
 /// int nu(t - s) dp(s) \[Pa\] in each cell at the last of the times, and the lateral pressure \[Pa\] of the mean pressure without
@@ -102,80 +169,4 @@ pub fn stress_transverse<'py>(
     let field = Array2::from_shape_vec((nx, ny), history.transverse());
     let field = field.map_err(|error| CaseError::new_err(error.to_string()))?;
     Ok((field.into_pyarray(py), history.confined()))
-}
-
-/// One field of shape (depth, x, y): a component ("xx", ...), "mises", "tresca", "tension" or "pressure".
-#[pyfunction]
-#[allow(clippy::too_many_arguments)]
-pub fn stress_field<'py>(
-    py: Python<'py>,
-    name: &str,
-    pressure: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    boundary: &str,
-    poisson: f64,
-    transverse: Transverse<'_>,
-    depths: Vec<f64>,
-) -> PyResult<Bound<'py, PyArray3<f64>>> {
-    let (grid, _, _, mut stress) = planned(py, &pressure, &size, boundary, poisson, &transverse)?;
-    let [nx, ny] = grid.cells();
-    let mut field = vec![0.0; depths.len() * grid.len()];
-    let quantity = StressQuantity::from_name(name)
-        .ok_or_else(|| CaseError::new_err(format!("there is no stress '{name}'")))?;
-    let solved = without_python(py, &AtomicBool::new(false), || -> Result<(), Error> {
-        let mut six = std::array::from_fn(|_| Vec::new());
-        for (depth, out) in depths.iter().zip(field.chunks_mut(grid.len())) {
-            match quantity.component() {
-                Some(component) => stress.component_into(component, *depth, out)?,
-                None => {
-                    stress.at(*depth, &mut six)?;
-                    quantity.field_into(&six, out);
-                }
-            }
-        }
-        Ok(())
-    })?;
-    solved.map_err(|error| raised(py, error))?;
-    let field = Array3::from_shape_vec((depths.len(), nx, ny), field);
-    field.map(|field| field.into_pyarray(py)).map_err(|error| CaseError::new_err(error.to_string()))
-}
-
-/// Maxima with their places, and the profile over depth.
-#[pyfunction]
-#[allow(clippy::too_many_arguments)]
-pub fn stress_survey<'py>(
-    py: Python<'py>,
-    pressure: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    boundary: &str,
-    poisson: f64,
-    transverse: Transverse<'_>,
-    depths: Vec<f64>,
-    threshold: Option<f64>,
-    rolling: Option<&str>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (grid, _, _, mut stress) = planned(py, &pressure, &size, boundary, poisson, &transverse)?;
-    let rolling = rolling.map(|word| choose("rolling", word)).transpose()?;
-    let options = SurveyOptions { threshold, rolling };
-    let found = without_python(py, &AtomicBool::new(false), || survey(&mut stress, &depths, &options))?;
-    let found = found.map_err(|error| raised(py, error))?;
-    let out = PyDict::new(py);
-    let ny = grid.cells()[1];
-    for (name, Extreme { value, depth, cell }) in
-        [("mises", found.mises), ("tresca", found.tresca), ("tension", found.tension)]
-    {
-        out.set_item(format!("max_{name}"), value)?;
-        out.set_item(format!("max_{name}_depth"), depth)?;
-        out.set_item(format!("max_{name}_x"), grid.x(cell / ny))?;
-        if !grid.is_line() {
-            out.set_item(format!("max_{name}_y"), grid.y(cell % ny))?;
-        }
-    }
-    entries!(out, found; mises_by_depth tresca_by_depth tension_by_depth stressed_volume at_the_deepest unresolved);
-    if let Some(shear) = found.orthogonal_shear {
-        out.set_item("orthogonal_shear", shear.largest.value)?;
-        out.set_item("orthogonal_shear_depth", shear.largest.depth)?;
-        out.set_item("orthogonal_shear_by_depth", shear.by_depth)?;
-    }
-    Ok(out)
 }

@@ -3,16 +3,17 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use asperity::Grid;
 use asperity::surface::profile::{self, ProfileParameters};
 use asperity::surface::statistics::{
-    Autocorrelation, BearingCurve, Extent, RadialSpectrum, Rings, SelfAffineFit, Summary,
+    Autocorrelation, BearingCurve, Extent, RadialSpectrum, Rings, SelfAffineFit, Summary, height_distribution,
 };
-use asperity::surface::{self, Part, Surface, undeformed_gap};
+use asperity::surface::{Part, Surface, undeformed_gap};
 use asperity_io::case::{fragment, given};
 use asperity_io::preparation::{Step, prepare};
 use asperity_io::topography::{Format, ReadOptions, Topography, read, read_profile, write};
 use ndarray::Array2;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -20,41 +21,24 @@ use crate::error::{self, CaseError, file, raised, topography as topography_error
 use crate::given::{entries, grid_of, table};
 use crate::wait::detached;
 
-type Heights<'py> = Bound<'py, PyArray2<f64>>;
+type Map<'py> = Bound<'py, PyArray2<f64>>;
 
 /// Heights of the shape or the synthetic roughness that the keys `domain` and `surface` describe; minus infinity where a shape
 /// cannot touch.
 #[pyfunction]
-pub fn heights<'py>(py: Python<'py>, keys: Bound<'_, PyDict>) -> PyResult<Heights<'py>> {
-    let (grid, part) = given::surface(&table(&keys)?).map_err(error::of_surface)?;
+pub fn heights<'py>(py: Python<'py>, keys: Bound<'_, PyDict>) -> PyResult<Map<'py>> {
+    let (grid, part) = given::surface(&table(&keys)?).map_err(error::alone)?;
     let made = detached(py, || match part {
         Part::SelfAffine(roughness) => roughness.heights(&grid),
         Part::Synthesis(roughness) => roughness.heights(&grid),
         Part::Heights { heights, .. } => Ok(heights),
         Part::Shape { shape, center } => {
             let [x0, y0] = grid.centre();
-            let at = |i: usize, j: usize| (grid.x(i) - (x0 + center[0]), grid.y(j) - (y0 + center[1]));
-            Ok(Array2::from_shape_fn(grid.shape(), |(i, j)| {
-                let (x, y) = at(i, j);
-                -shape.gap(x, y)
-            }))
+            let height = |(i, j)| -shape.gap(grid.x(i) - (x0 + center[0]), grid.y(j) - (y0 + center[1]));
+            Ok(Array2::from_shape_fn(grid.shape(), height))
         }
     })?;
     Ok(made.map_err(|error| raised(py, error))?.into_pyarray(py))
-}
-
-/// The undeformed gap of heights, least value 0; a height of minus infinity cannot touch.
-#[pyfunction]
-pub fn gap<'py>(
-    py: Python<'py>,
-    heights: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-) -> PyResult<Heights<'py>> {
-    let heights = heights.as_array().as_standard_layout().into_owned();
-    let grid = grid_of(py, heights.dim(), &size)?;
-    let part = Part::Heights { name: "surface".into(), heights };
-    let gap = detached(py, || undeformed_gap(&grid, &[part]))?.map_err(|error| raised(py, error))?;
-    Ok(gap.into_pyarray(py))
 }
 
 /// Reads a measured surface: heights, size, and what the file says.
@@ -70,14 +54,16 @@ pub fn read_surface<'py>(
     let of_map = size.as_ref().is_some_and(|size| size.len() == 2);
     let lengths = size.as_ref().and_then(|size| Some([*size.first()?, size.get(1).copied().unwrap_or(1.0)]));
     let options = ReadOptions { size: lengths, height_unit, channel, ..ReadOptions::default() };
-    if !of_map
-        && let Some(profile) = detached(py, || read_profile(&path, &options))?.map_err(topography_error)?
-    {
-        let out = PyDict::new(py);
+    let out = PyDict::new(py);
+    let profile = if of_map {
+        None
+    } else {
+        detached(py, || read_profile(&path, &options))?.map_err(topography_error)?
+    };
+    if let Some(profile) = profile {
         out.set_item("format", "profile")?;
-        out.set_item("history", profile.history)?;
         out.set_item("size", profile.surface.grid().extents().to_vec())?;
-        out.set_item("metadata", profile.metadata)?;
+        entries!(out, profile; history metadata);
         out.set_item("heights", profile.surface.into_heights().into_pyarray(py))?;
         return Ok(out);
     }
@@ -87,191 +73,169 @@ pub fn read_surface<'py>(
         ));
     }
     let topography = detached(py, || read(&path, &options))?.map_err(topography_error)?;
-    let out = PyDict::new(py);
     out.set_item("format", topography.format.name())?;
     out.set_item("history", topography.history().collect::<Vec<_>>())?;
-    out.set_item("size", topography.size)?;
-    out.set_item("channel", topography.channel)?;
-    out.set_item("channels", topography.channels)?;
-    out.set_item("metadata", topography.metadata)?;
+    entries!(out, topography; size channel channels metadata);
     out.set_item("heights", topography.heights.into_pyarray(py))?;
     Ok(out)
 }
 
-/// Writes heights in the format of the path's ending, or of that name.
-#[pyfunction]
-pub fn write_surface(
-    py: Python<'_>,
-    path: PathBuf,
-    heights: PyReadonlyArray2<'_, f64>,
-    size: [f64; 2],
-    format: &str,
-    history: Vec<String>,
-) -> PyResult<()> {
-    let format = Format::from_str(format).map_err(|error| CaseError::new_err(error.to_string()))?;
-    let heights = heights.as_array().as_standard_layout().into_owned();
-    let mut topography =
-        Topography { format, heights, size, channel: None, channels: vec![], metadata: vec![] };
-    topography.record(history);
-    detached(py, || write(&path, &topography, format))?.map_err(file)
+/// Heights on their grid.
+#[pyclass(frozen)]
+pub struct Heights {
+    /// As they were given: minus infinity where a shape cannot touch.
+    heights: Array2<f64>,
+    grid: Grid,
 }
 
-/// Steps of a preparation, each in words as `asperity surface process --op` takes them: heights, size, and one
-/// sentence per step.
-#[pyfunction]
-pub fn process<'py>(
-    py: Python<'py>,
-    heights: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    steps: Vec<String>,
-) -> PyResult<(Heights<'py>, Vec<f64>, Vec<String>)> {
-    let steps = steps.iter().map(|words| fragment::step(words).map_err(CaseError::new_err));
-    let steps = steps.collect::<PyResult<Vec<Step>>>()?;
-    let map = map(py, heights, size)?;
-    let prepared = detached(py, || prepare(map, &steps, None))?.map_err(|error| {
-        // There is no domain here.
-        let reason = error.to_string();
-        CaseError::new_err(
-            reason.replace("as `cells` of the step or as `domain.cells` of the case", "cells=(nx, ny)"),
-        )
-    })?;
-    let size = prepared.surface.grid().extents().to_vec();
-    Ok((prepared.surface.into_heights().into_pyarray(py), size, prepared.history))
+/// A curve: places and values.
+type Curve<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
+#[pymethods]
+impl Heights {
+    #[new]
+    fn new(py: Python<'_>, heights: PyReadonlyArray2<'_, f64>, size: Vec<f64>) -> PyResult<Heights> {
+        let heights = heights.as_array().as_standard_layout().into_owned();
+        Ok(Heights { grid: grid_of(py, heights.dim(), &size)?, heights })
+    }
+
+    /// The undeformed gap, least value 0; a height of minus infinity cannot touch.
+    fn gap<'py>(&self, py: Python<'py>) -> PyResult<Map<'py>> {
+        let part = Part::Heights { name: "surface".into(), heights: self.heights.clone() };
+        let gap = detached(py, || undeformed_gap(&self.grid, &[part]))?.map_err(|error| raised(py, error))?;
+        Ok(gap.into_pyarray(py))
+    }
+
+    /// Writes the heights in the format of the path's ending, or of that name.
+    fn write(&self, py: Python<'_>, path: PathBuf, format: &str, history: Vec<String>) -> PyResult<()> {
+        let format = Format::from_str(format).map_err(|error| CaseError::new_err(error.to_string()))?;
+        let (heights, size) = (self.heights.clone(), self.grid.size());
+        let mut topography =
+            Topography { format, heights, size, channel: None, channels: vec![], metadata: vec![] };
+        topography.record(history);
+        detached(py, || write(&path, &topography, format))?.map_err(file)
+    }
+
+    /// Steps of a preparation, each in words as `asperity surface process --op` takes them: heights, size, and one
+    /// sentence per step.
+    fn process<'py>(
+        &self,
+        py: Python<'py>,
+        steps: Vec<String>,
+    ) -> PyResult<(Map<'py>, Vec<f64>, Vec<String>)> {
+        let steps = steps.iter().map(|words| fragment::step(words).map_err(CaseError::new_err));
+        let steps = steps.collect::<PyResult<Vec<Step>>>()?;
+        let surface = self.surface(py)?;
+        let prepared = detached(py, || prepare(surface, &steps, None))?.map_err(|error| {
+            // There is no domain here.
+            let reason = error.to_string();
+            CaseError::new_err(
+                reason.replace("as `cells` of the step or as `domain.cells` of the case", "cells=(nx, ny)"),
+            )
+        })?;
+        let size = prepared.surface.grid().extents().to_vec();
+        Ok((prepared.surface.into_heights().into_pyarray(py), size, prepared.history))
+    }
+
+    /// Statistics as `asperity surface info` prints them; `band` limits the fit of the Hurst exponent.
+    #[pyo3(signature = (periodic, band))]
+    fn describe<'py>(
+        &self,
+        py: Python<'py>,
+        periodic: bool,
+        band: Option<[f64; 2]>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (summary, undefined) =
+            self.found(py, |surface| Ok((Summary::of(&surface, extent(periodic))?, surface.undefined())))?;
+        let out = PyDict::new(py);
+        entries!(out, summary.heights; sa sq ssk sku sp sv sz min max mean);
+        out.set_item("undefined", undefined)?;
+        if let Some(slopes) = &summary.slopes {
+            entries!(out, slopes; sdq sdr);
+        }
+        if let Some(waves) = &summary.waves {
+            entries!(out, waves.moments; m0 m2 m4);
+            out.set_item("bandwidth", waves.moments.bandwidth())?;
+            out.set_item("lay", waves.lay.is_clear())?;
+            out.set_item("lay_ratio", waves.lay.ratio)?;
+            out.set_item("lay_angle", waves.lay.angle)?;
+            let banded =
+                band.map(|[longest, shortest]| SelfAffineFit::of(&waves.spectrum, longest, shortest));
+            if let Some(fit) = banded.transpose().map_err(|error| raised(py, error))?.or(waves.fit) {
+                entries!(out, fit; hurst roll_off plateau);
+                out.set_item("hurst_error", fit.error)?;
+                out.set_item("spectrum_misfit", fit.misfit)?;
+                let found = Vec::from_iter(asperity::finding::hurst(&fit));
+                out.set_item("findings", asperity_io::finding::list(&found).to_string())?;
+            }
+        }
+        Ok(out)
+    }
+
+    /// Parameters of a profile, less its Gaussian mean line where a cut-off is given.
+    #[pyo3(signature = (cutoff))]
+    fn profile_parameters<'py>(&self, py: Python<'py>, cutoff: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
+        let spacing = self.grid.spacing()[0];
+        let found = self.found(py, |surface| {
+            let heights: Vec<f64> = surface.into_heights().into_iter().collect();
+            let roughness = cutoff.map(|cutoff| profile::roughness(&heights, spacing, cutoff)).transpose()?;
+            ProfileParameters::of(&roughness.unwrap_or(heights), spacing)
+        })?;
+        let out = PyDict::new(py);
+        entries!(out, found; ra rq rz rt rsk rku rsm rdq);
+        Ok(out)
+    }
+
+    /// Heights and the share of points at or above each.
+    fn bearing_curve<'py>(&self, py: Python<'py>, levels: usize) -> PyResult<Curve<'py>> {
+        let curve = self.found(py, |surface| BearingCurve::of(&surface, levels))?;
+        Ok((curve.heights.into_pyarray(py), curve.share.into_pyarray(py)))
+    }
+
+    /// Middles of bins of height and the density of points in them.
+    fn height_distribution<'py>(&self, py: Python<'py>, bins: usize) -> PyResult<Curve<'py>> {
+        let (at, density) = self.found(py, |surface| height_distribution(&surface, bins))?;
+        Ok((at.into_pyarray(py), density.into_pyarray(py)))
+    }
+
+    /// Wavenumbers and radially averaged power spectrum.
+    fn power_spectrum<'py>(&self, py: Python<'py>, per_decade: u32) -> PyResult<Curve<'py>> {
+        let rings = if per_decade == 0 { Rings::Linear } else { Rings::PerDecade(per_decade) };
+        let spectrum = self.found(py, |surface| RadialSpectrum::of(&surface, rings))?;
+        Ok((spectrum.wave_number.into_pyarray(py), spectrum.power.into_pyarray(py)))
+    }
+
+    /// The autocorrelation map, and Sal and Str where they exist.
+    fn autocorrelation<'py>(
+        &self,
+        py: Python<'py>,
+        periodic: bool,
+    ) -> PyResult<(Map<'py>, Option<f64>, Option<f64>)> {
+        let (values, length, aspect) = self.found(py, |surface| {
+            let found = Autocorrelation::of(&surface, extent(periodic))?;
+            let (length, aspect) = (found.length(), found.texture_aspect_ratio());
+            Ok((found.values, length, aspect))
+        })?;
+        Ok((values.into_pyarray(py), length, aspect))
+    }
+}
+
+impl Heights {
+    fn surface(&self, py: Python<'_>) -> PyResult<Surface> {
+        Surface::new(self.grid, self.heights.clone()).map_err(|error| raised(py, error))
+    }
+
+    /// What `find` finds of the surface while other threads of Python run.
+    fn found<T: Send>(
+        &self,
+        py: Python<'_>,
+        find: impl FnOnce(Surface) -> asperity::Result<T> + Send,
+    ) -> PyResult<T> {
+        let surface = self.surface(py)?;
+        detached(py, || find(surface))?.map_err(|error| raised(py, error))
+    }
 }
 
 fn extent(periodic: bool) -> Extent {
     if periodic { Extent::Periodic } else { Extent::Finite }
-}
-
-/// Statistics of a surface, as `asperity surface info` tells them; `band` limits the fit of the Hurst exponent.
-#[pyfunction]
-#[pyo3(signature = (heights, size, periodic, band))]
-pub fn describe<'py>(
-    py: Python<'py>,
-    heights: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    periodic: bool,
-    band: Option<[f64; 2]>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let map = map(py, heights, size)?;
-    let summary = detached(py, || Summary::of(&map, extent(periodic)))?.map_err(|error| raised(py, error))?;
-    let out = PyDict::new(py);
-    entries!(out, summary.heights; sa sq ssk sku sp sv sz min max mean);
-    out.set_item("undefined", map.undefined())?;
-    if let Some(slopes) = &summary.slopes {
-        entries!(out, slopes; sdq sdr);
-    }
-    if let Some(waves) = &summary.waves {
-        entries!(out, waves.moments; m0 m2 m4);
-        out.set_item("bandwidth", waves.moments.bandwidth())?;
-        out.set_item("lay", waves.lay.is_clear())?;
-        out.set_item("lay_ratio", waves.lay.ratio)?;
-        out.set_item("lay_angle", waves.lay.angle)?;
-        let fit = match band {
-            Some([longest, shortest]) => Some(
-                SelfAffineFit::of(&waves.spectrum, longest, shortest).map_err(|error| raised(py, error))?,
-            ),
-            None => waves.fit,
-        };
-        if let Some(fit) = fit {
-            entries!(out, fit; hurst roll_off plateau);
-            out.set_item("hurst_error", fit.error)?;
-            out.set_item("spectrum_misfit", fit.misfit)?;
-            let found = Vec::from_iter(asperity::finding::hurst(&fit));
-            out.set_item("findings", asperity_io::finding::list(&found).to_string())?;
-        }
-    }
-    Ok(out)
-}
-
-/// Parameters of a profile, less its Gaussian mean line where a cut-off is given.
-#[pyfunction]
-#[pyo3(signature = (heights, spacing, cutoff))]
-pub fn profile_parameters<'py>(
-    py: Python<'py>,
-    heights: PyReadonlyArray1<'_, f64>,
-    spacing: f64,
-    cutoff: Option<f64>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let heights = heights.as_array().to_vec();
-    let found = detached(py, || {
-        let heights = match cutoff {
-            Some(cutoff) => profile::roughness(&heights, spacing, cutoff)?,
-            None => heights,
-        };
-        ProfileParameters::of(&heights, spacing)
-    })?;
-    let found = found.map_err(|error| raised(py, error))?;
-    let out = PyDict::new(py);
-    entries!(out, found; ra rq rz rt rsk rku rsm rdq);
-    Ok(out)
-}
-
-/// Heights and the share of points at or above each.
-#[pyfunction]
-#[allow(clippy::type_complexity)]
-pub fn bearing_curve<'py>(
-    py: Python<'py>,
-    heights: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    levels: usize,
-) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
-    let map = map(py, heights, size)?;
-    let curve = detached(py, || BearingCurve::of(&map, levels))?.map_err(|error| raised(py, error))?;
-    Ok((curve.heights.into_pyarray(py), curve.share.into_pyarray(py)))
-}
-
-/// Middles of bins of height and the density of points in them.
-#[pyfunction]
-#[allow(clippy::type_complexity)]
-pub fn height_distribution<'py>(
-    py: Python<'py>,
-    heights: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    bins: usize,
-) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
-    let map = map(py, heights, size)?;
-    let (at, density) = detached(py, || surface::statistics::height_distribution(&map, bins))?
-        .map_err(|error| raised(py, error))?;
-    Ok((at.into_pyarray(py), density.into_pyarray(py)))
-}
-
-/// The autocorrelation map, and Sal and Str where they exist.
-#[pyfunction]
-#[allow(clippy::type_complexity)]
-pub fn autocorrelation<'py>(
-    py: Python<'py>,
-    heights: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    periodic: bool,
-) -> PyResult<(Heights<'py>, Option<f64>, Option<f64>)> {
-    let map = map(py, heights, size)?;
-    let made = detached(py, || {
-        let correlation = Autocorrelation::of(&map, extent(periodic))?;
-        let numbers = (correlation.length(), correlation.texture_aspect_ratio());
-        Ok((correlation, numbers))
-    })?;
-    let (correlation, (length, aspect)) = made.map_err(|error: asperity::Error| raised(py, error))?;
-    Ok((correlation.values.into_pyarray(py), length, aspect))
-}
-
-/// Wavenumbers and radially averaged power spectrum.
-#[pyfunction]
-#[allow(clippy::type_complexity)]
-pub fn power_spectrum<'py>(
-    py: Python<'py>,
-    heights: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    per_decade: u32,
-) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
-    let map = map(py, heights, size)?;
-    let rings = if per_decade == 0 { Rings::Linear } else { Rings::PerDecade(per_decade) };
-    let spectrum = detached(py, || RadialSpectrum::of(&map, rings))?.map_err(|error| raised(py, error))?;
-    Ok((spectrum.wave_number.into_pyarray(py), spectrum.power.into_pyarray(py)))
-}
-
-fn map(py: Python<'_>, heights: PyReadonlyArray2<'_, f64>, size: Vec<f64>) -> PyResult<Surface> {
-    let heights = heights.as_array().to_owned();
-    let grid = grid_of(py, heights.dim(), &size)?;
-    Surface::new(grid, heights).map_err(|error| raised(py, error))
 }

@@ -15,17 +15,26 @@ from ._arrays import Floats
 
 
 def declared() -> str:
-    rows = [name for name, _, _ in _core.rows()]
-    quantities = [name for name, _, _, _ in _core.quantities()]
-    numbers = [*rows, *(name for name, _, _, is_histogram in _core.quantities() if not is_histogram)]
-    of_contact = [name for name in rows if name not in ("time", "time_error", "stage")]
+    registry = _core.registry()
+    numbers = [one for part in ("rows", "quantities") for one in registry[part] if one[-1] != "histogram"]
+    of_contact = [one for one in registry["rows"] if one[0] not in ("time", "time_error", "stage")]
 
-    def holder(name: str, names: list[str], kind: str) -> str:
-        return f"class {name}:\n" + "".join(f"    @property\n    def {one}(self) -> {kind}: ...\n" for one in names)
+    def holder(name: str, entries: list[tuple[str, ...]], kind: str) -> str:
+        def of(entry: tuple[str, ...]) -> str:
+            return "int" if kind == "float" and entry[-1] == "count" else kind
 
-    words = "Quantity = Literal[\n" + "".join(f'    "{name}",\n' for name in quantities) + "]\n\n"
-    holders = (("Columns", numbers, "Floats"), ("Numbers", numbers, "float"), ("ContactColumns", of_contact, "Floats"))
-    return HEAD + words + "\n".join(holder(*one) for one in holders)
+        return f"class {name}:\n" + "".join(f"    @property\n    def {one[0]}(self) -> {of(one)}: ...\n" for one in entries)
+
+    words = "Quantity = Literal[\n" + "".join(f'    "{name}",\n' for name, *_ in registry["quantities"]) + "]\n"
+    names = "OF_CONTACT: list[str]\n\n"
+    holders = (
+        ("Columns", numbers, "Floats"),
+        ("Numbers", numbers, "float"),
+        ("StressColumns", registry["stress"], "Floats"),
+        ("ContactColumns", of_contact, "Floats"),
+        ("ContactNumbers", of_contact, "float"),
+    )
+    return HEAD + words + names + "\n".join(holder(*one) for one in holders)
 
 
 def test_the_stub_is_that_of_the_registry():

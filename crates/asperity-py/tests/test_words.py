@@ -99,3 +99,28 @@ def test_a_study_warns_once_in_the_words_of_its_caller(ball, zener):
     assert (error.value.result.status == "complete").all()
     with pytest.raises(asp.CaseError, match="'1 mN'"):
         asp.study(given["case"], over={"load": ["1 mN", "2 mN"]}, progress=False)
+
+
+def test_arguments_of_the_wrong_kind_are_named(ball, zener):
+    for wrong, told in (
+        (dict(quantities=None), "quantities is None"),
+        (dict(fields=None), "fields is None"),
+        (dict(fields=["gap", "gap"]), "fields holds 'gap' twice"),
+        (dict(output=1), "output is 1"),
+        (dict(hardness=np.ones((3, 3))), r"\(3, 3\), but must have \(16, 16\)"),
+    ):
+        with pytest.raises(asp.CaseError, match=told):
+            asp.solve(ball, zener, load=1e-3, times=[1.0], **wrong)
+    with pytest.raises(TypeError, match="solve.*did you mean 'boundary'"):
+        asp.solve(ball, zener, load=1e-3, times=[1.0], boundry="free")
+    with pytest.raises(TypeError, match="solve.*'times'"):
+        asp.solve(ball, zener, load=1e-3)
+    parameters = inspect.signature(asp.solve).parameters
+    assert list(parameters)[:2] == ["surface", "material"] and parameters["fields"].default == ("pressure",)
+
+
+def test_counts_stay_whole_numbers_on_disk(ball, zener, tmp_path):
+    result = asp.solve(ball, zener, load=1e-3, times=[1.0], output=tmp_path / "ball.zarr")
+    held = asp.solve(ball, zener, load=1e-3, times=[1.0])
+    for name in ("iterations", "convolutions", "stage"):
+        assert getattr(result, name).dtype == getattr(held, name).dtype == np.int64

@@ -100,7 +100,7 @@ pub(super) const BINS: [(Kind, [Series; 2]); 3] = [
 ];
 
 /// The coordinates of a histogram with their numbers: middles, then ends. Another quantity has none.
-pub(super) fn coordinates(column: &Quantity, grid: &Grid) -> Vec<(Series, Vec<f64>)> {
+pub fn coordinates(column: &Quantity, grid: &Grid) -> Vec<(Series, Vec<f64>)> {
     let Some((_, series)) = BINS.iter().find(|(kind, _)| *kind == column.quantity) else { return vec![] };
     let middle = |pair: &[f64]| match column.quantity {
         Kind::SpotHistogram => (pair[0] * pair[1]).sqrt(),

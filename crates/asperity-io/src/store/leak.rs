@@ -99,6 +99,11 @@ fn flag(flag: bool) -> f64 {
     f64::from(u8::from(flag))
 }
 
+/// What a leak of a gas, or of a liquid, may have one number of.
+pub fn leak_series(gas: bool) -> impl Iterator<Item = Series> {
+    NUMBERS.iter().map(move |number| number.series(gas))
+}
+
 /// The effective conductance: xx, xy, yx, yy of each leak.
 const CONDUCTANCE: Series = Series::new("conductance", "m3", "effective conductance");
 /// The pressure of the fluid.
@@ -142,8 +147,7 @@ impl Leaks {
 
     /// What each leak has one number of.
     pub fn series(&self) -> Vec<Series> {
-        let own = NUMBERS.iter().filter(|number| self.names.contains(&number.name));
-        own.map(|number| number.series(self.gas)).collect()
+        leak_series(self.gas).filter(|series| self.names.contains(&series.name)).collect()
     }
 
     /// Whether the pressure of the fluid is stored.

@@ -25,40 +25,11 @@ from ._contact import (
 )
 from ._findings import Finding as Finding, ResultWarning as ResultWarning
 from ._fit import Fit as Fit, fit_creep as fit_creep, fit_dma as fit_dma, fit_file as fit_file, fit_relaxation as fit_relaxation
-from ._histories import (
-    History as History,
-    Stage as Stage,
-    Times as Times,
-    adaptive as adaptive,
-    hold as hold,
-    listed as listed,
-    log as log,
-    ramp as ramp,
-    ramp_to as ramp_to,
-    sine as sine,
-    step as step,
-    table as table,
-    trapezoid as trapezoid,
-    triangle as triangle,
-    uniform as uniform,
-)
+from ._histories import *
 from ._indentation import IndentationFit as IndentationFit, fit_indentation as fit_indentation
 from ._leakage import Leakage as Leakage, leakage as leakage
 from ._layers import Body as Body, Layer as Layer, layer_compliance as layer_compliance
-from ._materials import (
-    Burgers as Burgers,
-    Creep as Creep,
-    Elastic as Elastic,
-    FractionalMaxwell as FractionalMaxwell,
-    FractionalZener as FractionalZener,
-    KelvinVoigt as KelvinVoigt,
-    Material as Material,
-    Maxwell as Maxwell,
-    Prony as Prony,
-    Springpot as Springpot,
-    StandardLinearSolid as StandardLinearSolid,
-    Zener as Zener,
-)
+from ._materials import *
 from ._motion import rubber_friction as rubber_friction, slide as slide, steady as steady
 from ._persson import Magnification as Magnification, PerssonFriction as PerssonFriction, persson_friction as persson_friction
 from ._result import Cycle as Cycle, Result as Result, open as open

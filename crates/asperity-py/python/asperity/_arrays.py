@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Sequence
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,15 @@ def number(what: str, value: Any, unit: str | None = None) -> float:
         raise CaseError(f"{what} is {shown(value)}, but must be a number in SI units") from None
 
 
+def numbers_of(given: dict[str, Any], units: dict[str, str] | None = None) -> dict[str, Any]:
+    """The parameters that are given: numbers in SI units, words as they are. `units` has the units that do not follow from the name."""
+    return {
+        name: value if isinstance(value, (str, bool)) else number(name, value, (units or {}).get(name))
+        for name, value in given.items()
+        if value is not None
+    }
+
+
 def shown(value: Any) -> str:
     """A value in a message: a number of numpy as a plain one."""
     return repr(value.item() if isinstance(value, np.generic) else value)
@@ -41,7 +51,33 @@ def choice(what: str, value: Any, words: Sequence[str]) -> Any:
         return value
     near = difflib.get_close_matches(value, words, 1) if isinstance(value, str) else []
     hint = f"; did you mean {near[0]!r}?" if near else ""
-    raise CaseError(f"{what} is {value!r}, but must be {', '.join(map(repr, words[:-1]))} or {words[-1]!r}{hint}")
+    raise CaseError(f"{what} is {value!r}, but must be {either(map(repr, words))}{hint}")
+
+
+def path_of(what: str, given: Any) -> str | None:
+    """A path as text; None where none is given."""
+    if given is None:
+        return None
+    try:
+        return str(os.fspath(given))
+    except TypeError:
+        raise CaseError(f"{what} is {given!r}, but must be a path") from None
+
+
+def either(words: Iterable[str]) -> str:
+    """The words as alternatives: "a, b or c"."""
+    *first, last = words
+    return f"{', '.join(first)} or {last}" if first else last
+
+
+def distinct(what: str, given: Any, words: Sequence[str]) -> list[str]:
+    """A list of some of these words, each at most once."""
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise CaseError(f"{what} is {given!r}, but must be a list, as in {what}=[{(given if isinstance(given, str) else words[0])!r}]")
+    names = [str(choice(f"an entry of {what}", str(name), words)) for name in given]
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise CaseError(f"{what} holds {twice[0]!r} twice")
+    return names
 
 
 def _gathered(value: Any) -> Any:
@@ -57,6 +93,13 @@ def in_hertz(what: str, value: Any) -> float:
 def angle(what: str, value: Any) -> float:
     """An angle in rad; a quantity of pint, say, may be in degrees."""
     return number(what, value, "rad") if has_unit(value) else number(what, value)
+
+
+def direction_of(value: Any) -> str | float:
+    """A direction in the plane: "x", "y" or an angle from x towards y [rad]."""
+    if isinstance(value, str) and value not in ("x", "y"):
+        raise CaseError(f"direction is {value!r}, but must be 'x', 'y' or an angle from x towards y [rad]")
+    return value if isinstance(value, str) else angle("direction", value)
 
 
 def count(what: str, value: Any, least: int = 1, most: int = 2**53) -> int:
@@ -256,6 +299,12 @@ def line(what: str, value: Any, unit: str | None = None) -> Floats:
     if array.dtype.kind not in "fiu" or array.ndim != 1:
         raise CaseError(f"{what} has shape {array.shape} and dtype {array.dtype}, but must be a list of real numbers")
     return plain(array)
+
+
+def each(function: Callable[[Floats], Floats], what: str, value: Any) -> Floats:
+    """The numbers of a function of a list at each number of an array of any shape."""
+    at = array(what, value)
+    return function(line(what, at.reshape(-1))).reshape(at.shape)
 
 
 def points(what: str, value: Any, units: tuple[str, str] = ("", "")) -> list[tuple[float, float]]:

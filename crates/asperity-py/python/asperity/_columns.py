@@ -2,32 +2,41 @@
 
 from __future__ import annotations
 
-from typing import Any, NoReturn, overload
+from typing import Any, Literal, NamedTuple, NoReturn, overload
 
 from . import _core
 from ._arrays import Floats
 from ._units import written
 
-#: Numbers of each row: unit and meaning.
-ROW: dict[str, tuple[str, str]] = {name: (written(unit), words) for name, unit, words in _core.rows()}
-#: Optional quantities of a row: unit and meaning.
-QUANTITIES: dict[str, tuple[str, str]] = {name: (written(unit), words) for name, unit, words, _ in _core.quantities()}
-#: Those of them with a number for each bin: names of dimension and ends, unit and meaning of what is counted.
-HISTOGRAMS: dict[str, tuple[str, str, str, str]] = {
-    "spot_histogram": ("spot_bin", "spot_edge", "m^2", "a class of spots"),
-    "pressure_histogram": ("pressure_bin", "pressure_edge", "Pa", "a bin of the pressure"),
-    "gap_histogram": ("gap_bin", "gap_edge", "m", "a bin of the gap"),
+
+class Entry(NamedTuple):
+    """What a column or a field of a result is."""
+
+    #: Its unit, "1" where it has none, and that on a line contact, where forces, areas and energies are per length along y.
+    unit: str
+    line_unit: str
+    words: str
+    kind: Literal["real", "count", "histogram"]
+
+    def attributes(self, line: bool = False) -> dict[str, str]:
+        """The attributes of its array in a dataset."""
+        return {"units": self.line_unit if line else self.unit, "long_name": self.words}
+
+
+_REGISTRY: dict[str, dict[str, Entry]] = {
+    part: {name: Entry(written(unit), written(line_unit), words, kind) for name, unit, line_unit, words, kind in entries}
+    for part, entries in _core.registry().items()
 }
-#: Units on a line contact, where forces, areas and energies are per length along y.
-ON_LINE = {"N": "N/m", "m^2": "m", "J": "J/m", "N/m": "N/m^2", "N m": "N", "W": "W/m"}
-
-
-def units_of(name: str, unit: str, line: bool) -> str:
-    """The unit of a number of a row, of a line contact where `line`."""
-    if not line:
-        return unit
-    # The border of a contact on a line are its ends.
-    return "1" if name == "contact_perimeter" else ON_LINE.get(unit, unit)
+#: Numbers of each row, and optional quantities of a row.
+ROW, QUANTITIES = _REGISTRY["rows"], _REGISTRY["quantities"]
+COLUMNS = {**ROW, **QUANTITIES}
+#: Those of them with a number for each bin.
+HISTOGRAMS = [name for name, entry in QUANTITIES.items() if entry.kind == "histogram"]
+FIELDS = _REGISTRY["fields"]
+#: Stress below the surface, over `field_times` and `depth`.
+STRESS = _REGISTRY["stress"]
+#: Numbers of the leak of a liquid, and of a gas.
+LEAKS, GAS_LEAKS = _REGISTRY["leaks"], _REGISTRY["leaks of a gas"]
 
 
 class _Held:
@@ -38,8 +47,8 @@ class _Held:
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
-        unit, words = {**ROW, **QUANTITIES}.get(name, ("", name.replace("_", " ")))
-        self.__doc__ = f"{words[:1].upper()}{words[1:]}{f' [{unit}]' if unit not in ('', '1') else ''}."
+        unit, _, words, _ = {**COLUMNS, **STRESS}[name]
+        self.__doc__ = f"{words[:1].upper()}{words[1:]}{f' [{unit}]' if unit != '1' else ''}."
 
     def _of(self, holder: Any) -> Any:
         return self if holder is None else getattr(holder, self._find)(self._name)

@@ -13,13 +13,16 @@ from typing import TYPE_CHECKING, Any, get_args, overload
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from ._arrays import Floats, array, as_plane, cells_of, centres, check_places, choice, count, field, frozen, number
-from ._columns import ROW
+from . import _core, _html
+from ._arrays import Floats, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
+from ._columns import FIELDS, ROW
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
+from ._grid import OnGrid
+from ._histories import one_of
+from ._problem import hardness_of
 from ._result import Result
-from ._rows import ContactColumns
+from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
 from ._surface import Surface, surface_of
 from ._units import bare, is_labelled
@@ -68,8 +71,9 @@ class _Planned:
         self.gap: Floats = frozen(gap)
         self.size = surface.size
         self.keys = {"contact_modulus": modulus, **keys}
-        self.kernel, self.hardness = kernel, hardness
         cells = isinstance(hardness, np.ndarray)
+        # The array of the caller may change.
+        self.kernel, self.hardness = kernel, np.array(hardness) if cells else hardness
         self.core = _core.Elastic(
             gap=as_plane(gap),
             size=list(surface.size),
@@ -86,9 +90,9 @@ class _Planned:
         same = (np.array_equal(ours, theirs) for ours, theirs in ((self.hardness, hardness), (self.kernel, kernel)))
         return all(same) and np.array_equal(self.gap, surface.gap())
 
-    def solve(self, load: float | None, approach: float | None, start: Floats | None, history: bool, out: Any) -> ElasticContact:
+    def solve(self, control: str, value: float, start: Floats | None, history: bool, out: Any) -> ElasticContact:
         """One contact."""
-        found = self.core.solve(load, approach, None if start is None else as_plane(start), history)
+        found = self.core.solve(control, value, None if start is None else as_plane(start), history)
         fields = {name: found.pop(name).reshape(self.gap.shape) for name in ("pressure", "displacement")}
         for name, values in fields.items():
             if name in out:
@@ -107,37 +111,12 @@ class _Planned:
         return contact
 
 
-class ElasticContact(Sealed):
+class ElasticContact(OnGrid, ContactNumbers, Sealed):
     """The solution of one elastic contact; made by :func:`elastic`. Fields have the shape (nx, ny), of a line contact (n,).
 
     Its numbers are those of a row of a :class:`Result`; all arrays are read-only.
     """
 
-    #: Load [N]; of a line contact per length [N/m].
-    load: float
-    #: Approach [m]; of a free line contact measured from the end of the domain.
-    approach: float
-    #: Area of the cells with pressure [m^2]; of a line contact its length [m].
-    contact_area: float
-    #: The same less the share of the cells at the border of the contact that does not touch (Yastrebov, Anciaux, Molinari 2017).
-    contact_area_corrected: float
-    #: Contact area over nominal area.
-    contact_fraction: float
-    #: Area at the hardness [m^2].
-    capped_area: float
-    #: Load over nominal area [Pa].
-    mean_pressure: float
-    #: Largest pressure [Pa].
-    max_pressure: float
-    #: Mean gap [m].
-    mean_gap: float
-    #: Largest violation of the contact conditions over the mean displacement.
-    residual: float
-    #: Certified relative error of the pressure in the energy norm.
-    certificate: float
-    #: Iterations and convolutions that it took.
-    iterations: int
-    convolutions: int
     #: Pressure [Pa], positive in compression.
     pressure: Floats
     #: Normal displacement [m].
@@ -166,7 +145,6 @@ class ElasticContact(Sealed):
         self._stiffness: float | None = None
         # Fields in arrays of the caller, which may change: each with its checksum.
         self._lent = {name: (frozen(values), _checksum(values)) for name, values in lent.items()}
-        self.__dict__.update({name: value for name, value in row.items() if name not in ("time", "stage", "time_error")})
         self.__dict__.update(
             pressure=frozen(pressure),
             displacement=frozen(displacement),
@@ -176,6 +154,9 @@ class ElasticContact(Sealed):
             history=history,
         )
         self._findings = findings
+
+    def _number(self, name: str) -> Any:
+        return self._row[name]
 
     @property
     def findings(self) -> list[Finding]:
@@ -203,23 +184,6 @@ class ElasticContact(Sealed):
     def cells(self) -> tuple[int, ...]:
         """Number of cells along x and y; of a line contact along x."""
         return self.pressure.shape
-
-    @property
-    def is_line(self) -> bool:
-        """Whether it is a line contact."""
-        return self.pressure.ndim == 1
-
-    @property
-    def x(self) -> Floats:
-        """Cell centres along x [m]."""
-        return centres(self.cells[0], self.size[0])
-
-    @property
-    def y(self) -> Floats:
-        """Cell centres along y [m]."""
-        if self.is_line:
-            raise AttributeError("a line contact has no y: nothing changes along it")
-        return centres(self.cells[1], self.size[1])
 
     @property
     def stiffness(self) -> float:
@@ -269,20 +233,19 @@ class ElasticContact(Sealed):
             self.__dict__[name] = frozen(state[name])
 
     def _repr_html_(self) -> str:
-        lines = [
-            ("load", f"{self.load:.6g} {'N/m' if self.is_line else 'N'}"),
+        rows = [
+            ("load", f"{self.load:.6g} {self._load_unit}"),
             ("approach", f"{self.approach:.6g} m"),
             ("contact length" if self.is_line else "contact area", f"{self.contact_area:.6g} {'m' if self.is_line else 'm²'}"),
             ("contact fraction", f"{100 * self.contact_fraction:.4g} %"),
             ("largest pressure", f"{self.max_pressure:.6g} Pa"),
             ("certified error", f"{self.certificate:.1e}"),
         ]
-        rows = "".join(f"<tr><th style='text-align:left'>{a}</th><td>{b}</td></tr>" for a, b in lines)
-        return f"<b>Elastic contact</b>, {cells_of(self.pressure)}<table>{rows}</table>"
+        return f"<b>Elastic contact</b>, {cells_of(self.pressure)}{_html.table(rows)}"
 
     def __repr__(self) -> str:
         return (
-            f"<ElasticContact: {cells_of(self.pressure)}, load {self.load:.4g} {'N/m' if self.is_line else 'N'}, approach {self.approach:.4g} m, "
+            f"<ElasticContact: {cells_of(self.pressure)}, load {self.load:.4g} {self._load_unit}, approach {self.approach:.4g} m, "
             f"contact {'length' if self.is_line else 'area'} {100 * self.contact_fraction:.4g} %, certified error {self.certificate:.1e}>"
         )
 
@@ -329,7 +292,7 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
         """The numbers as pandas.DataFrame, a row for each contact."""
         import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
-        return pandas.DataFrame({name: np.array(self._column(name)) for name in ROW if name not in ("time", "time_error", "stage")})
+        return pandas.DataFrame({name: np.array(self._column(name)) for name in OF_CONTACT})
 
     def to_xarray(self) -> Any:
         """The numbers and the pressures as xarray.Dataset over `load`."""
@@ -337,10 +300,8 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
 
         rows = _result(self._contacts, False).to_xarray().drop_vars(["time_error", "stage", "field_time"])
         rows = rows.swap_dims(time="load").set_coords("load").drop_vars("time")
-        first = self._contacts[0]
-        over = ("load", "x") if first.is_line else ("load", "x", "y")
         pressures = np.array([contact.pressure for contact in self._contacts])
-        return rows.assign(pressure=xarray.Variable(over, pressures, {"units": "Pa", "long_name": "contact pressure"}))
+        return rows.assign(pressure=xarray.Variable(("load", *self._contacts[0]._axes), pressures, FIELDS["pressure"].attributes()))
 
     @property
     def plot(self) -> CurvePlots:
@@ -351,9 +312,8 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
 
     def __repr__(self) -> str:
         first, last = self._contacts[0], self._contacts[-1]
-        unit = "N/m" if first.is_line else "N"
         return (
-            f"<ElasticCurve: {len(self)} contacts of {cells_of(first.pressure)}, load {first.load:.4g} to {last.load:.4g} {unit}, contact "
+            f"<ElasticCurve: {len(self)} contacts of {cells_of(first.pressure)}, load {first.load:.4g} to {last.load:.4g} {first._load_unit}, contact "
             f"{100 * first.contact_fraction:.4g} to {100 * last.contact_fraction:.4g} %>"
         )
 
@@ -367,7 +327,7 @@ def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
     first = contacts[0]
     for contact in contacts:
         contact._whole("a result")
-    table = {name: np.array([float(contact._row[name]) for contact in contacts]) for name in ROW}
+    table = {name: np.array([contact._row[name] for contact in contacts]) for name in ROW}
     names = ("pressure", "gap", "displacement") if with_fields else ()
     return Result(
         table=table,
@@ -503,7 +463,7 @@ def elastic(
     modulus = 1.0 if contact_modulus is None else number("contact_modulus", contact_modulus)
     for what, value in (("hardness", hardness), ("start of the pressure", start)):
         check_places(what, value, surface if gap is None else gap)
-    limit = _hardness(hardness, shape.size)
+    limit = hardness_of(hardness, shape)
     table = None if kernel is None else _table(kernel, shape, boundary, "m/Pa" if contact_modulus is None else "m")
     if table is not None:
         factor = _scale(table, shape, boundary)
@@ -513,7 +473,7 @@ def elastic(
     held = start._planned if isinstance(start, ElasticContact) else None
     planned = held if held is not None and held.is_for(shape, modulus, limit, table, keys) else _Planned(shape, modulus, limit, table, keys)
 
-    what, values = _prescribed(load, pressure, approach)
+    what, values = one_of({"load": load, "pressure": pressure, "approach": approach}, "give")
     unit = {"load": "N/m" if shape.is_line else "N", "pressure": "Pa", "approach": "m"}[what]
     scale = math.prod(shape.size) if what == "pressure" else 1.0
     given = bare(what, list(values) if isinstance(values, Iterator) else values, unit)
@@ -533,28 +493,14 @@ def elastic(
     contacts: list[ElasticContact] = []
     try:
         for value in numbers:
-            force, depth = (None, value) if what == "approach" else (value, None)
-            contacts.append(planned.solve(force, depth, contacts[-1].pressure if contacts else first, history, receives))
+            control = "approach" if what == "approach" else "load"
+            contacts.append(planned.solve(control, value, contacts[-1].pressure if contacts else first, history, receives))
     except BaseException as error:
         if contacts:
             error.result = ElasticCurve(contacts)  # type: ignore[attr-defined]
         raise
-    warn({finding["code"]: finding for contact in contacts for finding in contact.findings}.values(), 2)
+    warn({finding["code"]: finding for contact in contacts for finding in contact.findings}.values())
     return ElasticCurve(contacts) if several else contacts[0]
-
-
-def _prescribed(load: Any, pressure: Any, approach: Any) -> tuple[str, Any]:
-    given = [(name, value) for name, value in (("load", load), ("pressure", pressure), ("approach", approach)) if value is not None]
-    if len(given) != 1:
-        raise CaseError(f"give load, pressure or approach, exactly one of them; given: {', '.join(name for name, _ in given) or 'none'}")
-    return given[0]
-
-
-def _hardness(hardness: Any, size: Sequence[float]) -> float | Floats | None:
-    from ._solve import hardness_parts
-
-    cells, limit = hardness_parts(hardness, size)
-    return limit if cells is None else np.array(cells)
 
 
 def _receivers(out: Any, shape: Surface) -> dict[str, Floats]:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
-#: The longer side of a map is so many times the shorter one at most: a narrower one is stretched, so that it can be seen.
+#: The longer side of a drawn map is at most this many times the shorter one: narrower maps are stretched.
 _STRIP = 8.0
 #: A map this many times wider than high has its colour bar below.
 _WIDE = 3.0
@@ -42,7 +42,7 @@ def _stretched(size: tuple[float, ...], style: dict[str, Any]) -> str:
 def _image(ax: Any, values: Any, size: tuple[float, ...], style: dict[str, Any]) -> Any:
     """A map over the domain; its values are in SI units, so that those of norm, vmin and vmax are too."""
     narrow = bool(_stretched(size, style))
-    # Both sides have one unit, but for a narrow domain.
+    # Both axes have the same unit, except on a narrow domain.
     (across, x_unit), (up, y_unit) = (shown(side if narrow else max(size), "m") for side in size)
     image = _placed(ax, values, (0, size[0] * across, 0, size[1] * up), size, style)
     ax.set_xlabel(f"x [{x_unit}]")
@@ -172,18 +172,18 @@ def _in_si(style: dict[str, Any], unit: str) -> dict[str, Any]:
     return {key: number(key, value, unit) if key in ("vmin", "vmax") and value is not None else value for key, value in style.items()}
 
 
-def _scale(ax: Any, words: str, largest: float, unit: str, power: int = 1, axis: str = "y", log: bool = False) -> tuple[float, str]:
-    """Factor and text of the unit of an axis: that of a curve which is there already, else one that suits the numbers. A logarithmic
-    axis has powers of ten as its numbers, and needs none in its unit."""
+def _scale(ax: Any, words: str, largest: float, unit: str, power: int = 1, axis: str = "y", log: bool = False) -> float:
+    """Labels an axis with its unit and returns the factor of that unit: the unit of a curve which is there already, else one that suits
+    the numbers. A logarithmic axis has powers of ten as its numbers, and needs none in its unit."""
+    label, set_label = (ax.get_ylabel(), ax.set_ylabel) if axis == "y" else (ax.get_xlabel(), ax.set_xlabel)
     if unit == "1":
-        return 1.0, "1"
+        set_label(words)
+        return 1.0
     suited = prefixed if log else shown
-    label = ax.get_ylabel() if axis == "y" else ax.get_xlabel()
-    for tens in range(-60, 61):
-        factor, text = suited(10.0**tens, unit, power)
-        if label == f"{words} [{text}]":
-            return factor, text
-    return suited(largest, unit, power)
+    usual = (suited(10.0**tens, unit, power) for tens in range(-60, 61))
+    factor, text = next((one for one in usual if label == f"{words} [{one[1]}]"), suited(largest, unit, power))
+    set_label(f"{words} [{text}]")
+    return factor
 
 
 def _largest(*values: Any) -> float:
@@ -192,14 +192,14 @@ def _largest(*values: Any) -> float:
 
 
 def _is_constant(values: Any) -> bool:
-    """Whether numbers are equal but for rounding errors."""
+    """Whether numbers differ by rounding errors only."""
     finite = values[np.isfinite(values)]
     return bool(finite.size and np.ptp(finite) <= 1e-6 * np.abs(finite).max())
 
 
 def _settle(ax: Any, axis: str = "y") -> None:
-    """Limits about curves that are constant but for rounding errors, which would fill the axes, and 0 to 1 for zeros; a curve that is
-    added later scales them anew."""
+    """Sets limits around curves whose numbers differ by rounding errors only, which would otherwise fill the axes; 0 to 1 for zeros. A
+    curve that is added later scales the axes again."""
     drawn = np.concatenate([np.asarray(line.get_data()[axis == "y"], dtype=float) for line in ax.lines])
     free, limit = (ax.get_autoscaley_on(), ax.set_ylim) if axis == "y" else (ax.get_autoscalex_on(), ax.set_xlim)
     if not free or not _is_constant(drawn):

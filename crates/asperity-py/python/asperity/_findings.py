@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import warnings
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
@@ -53,7 +55,7 @@ class Finding(dict[str, Any]):
 
 
 def findings_of(objects: Iterable[Mapping[str, Any]], *, of_case: bool = False) -> list[Finding]:
-    """The findings of a list of objects, in the words of Python, or of a case file."""
+    """The findings of a list of objects. Their texts name parameters of Python, or with `of_case` keys of the case file."""
     found = [Finding(one) for one in objects]
     for one in [] if of_case else found:
         for word, parameter in _WORDS.items():
@@ -61,8 +63,16 @@ def findings_of(objects: Iterable[Mapping[str, Any]], *, of_case: bool = False) 
     return found
 
 
-def warn(findings: Iterable[Finding], stacklevel: int) -> None:
-    """A :class:`ResultWarning` for each warning among the findings; `stacklevel` as of the caller."""
+def warn(findings: Iterable[Finding]) -> None:
+    """A :class:`ResultWarning` for each warning among the findings."""
     for found in findings:
         if found["severity"] == "warning":
-            warnings.warn(str(found), ResultWarning, stacklevel=stacklevel + 1)
+            warn_caller(str(found))
+
+
+def warn_caller(text: str, kind: type[Warning] = ResultWarning) -> None:
+    """A warning at the line of the user's program that called this package."""
+    package, frame, level = os.path.dirname(__file__), sys._getframe(), 1
+    while frame.f_code.co_filename.startswith(package) and frame.f_back is not None:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(text, kind, stacklevel=level)

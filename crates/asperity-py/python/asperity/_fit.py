@@ -11,16 +11,17 @@ import html
 import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, _html
 from ._arrays import Floats, count, line, number, pair, plain
 from ._core import CaseError
 from ._materials import Creep, Material, Prony
+from ._options import arguments_of
 from ._sealed import ReadOnlyArrays
 from ._shifts import Shift, made
 from ._words import LongTime, Measure, Moduli, Vertical
@@ -64,7 +65,7 @@ class Fit(ReadOnlyArrays):
     window: tuple[float, float]
     #: How times depend on temperature, given or estimated.
     shift: Shift | None
-    #: Distance of an estimated law from the factors found [decades of a_T]; None where there is none.
+    #: Rms distance of an estimated law from the estimated factors [decades of a_T]; None if no law was estimated.
     shift_rms: float | None
     #: (temperature [K], log10 a_T, standard deviation [decades]) of each sweep whose factor was estimated.
     shift_factors: list[tuple[float, float, float]]
@@ -146,36 +147,145 @@ class Fit(ReadOnlyArrays):
 
     def _repr_html_(self) -> str:
         weight = "modulus [Pa]" if self.equilibrium is not None else "compliance [1/Pa]"
-        head = f"<tr><th>{weight}</th><th>time [s]</th><th>&plusmn; weight</th><th>&plusmn; time</th></tr>"
-        rows = "".join(
-            f"<tr><td>{w:.6g}</td><td>{t:.6g}</td><td>{100 * a:.2g} %</td><td>{100 * b:.2g} %</td></tr>"
-            for (w, t), (a, b) in zip(self.terms, self.uncertainty)
-        )
-        return f"<p>{html.escape(repr(self).strip('<>'))}</p><table>{head}{rows}</table>"
+        rows = [
+            (f"{w:.6g}", f"{t:.6g}", f"{100 * a:.2g} %", f"{100 * b:.2g} %") for (w, t), (a, b) in zip(self.terms, self.uncertainty)
+        ]
+        return f"<p>{html.escape(repr(self).strip('<>'))}</p>{_html.table(rows, (weight, 'time [s]', '± weight', '± time'))}"
 
 
-def fit_relaxation(
-    time: Any,
-    values: Any,
-    /,
-    *,
-    temperature: Any = None,
-    modulus: Measure = "young",
-    shift: Shift | str | None = None,
-    reference: float | None = None,
-    vertical: Vertical | None = None,
-    poisson: float | None = None,
-    bulk_modulus: float | None = None,
-    hardness: float | None = None,
-    name: str | None = None,
-    window: Sequence[float] | None = None,
-    per_decade: float = 3.0,
-    margin: float = 1.0,
-    long_time: LongTime = "free",
-    max_misfit: float = 0.1,
-    max_terms: int | None = None,
-    misfit: float | None = None,
-) -> Fit:
+@dataclass(kw_only=True)
+class Options:
+    """How a material is fitted; :func:`fit_relaxation` describes the fields."""
+
+    modulus: Measure | None = "young"
+    shift: Shift | str | None = None
+    reference: float | None = None
+    vertical: Vertical | None = None
+    poisson: float | None = None
+    bulk_modulus: float | None = None
+    hardness: float | None = None
+    name: str | None = None
+    window: Sequence[float] | None = None
+    per_decade: float = 3.0
+    margin: float = 1.0
+    long_time: LongTime = "free"
+    max_misfit: float = 0.1
+    max_terms: int | None = None
+    misfit: float | None = None
+
+    def keys(self, kind: str | None) -> dict[str, Any]:
+        """The options as the core takes them, for curves of that kind."""
+        return {
+            "modulus": self.modulus,
+            "shift": self._shift_keys(),
+            "vertical": self.vertical,
+            "window": self._window(kind),
+            "per_decade": number("per_decade", self.per_decade),
+            "margin": number("margin", self.margin),
+            "long_time": self.long_time,
+            "max_misfit": number("max_misfit", self.max_misfit),
+            "max_terms": None if self.max_terms is None else count("max_terms", self.max_terms),
+            "misfit": None if self.misfit is None else number("misfit", self.misfit),
+            "moduli": "both",
+            "loss_weight": 1.0,
+        }
+
+    def _shift_keys(self) -> dict[str, Any] | None:
+        estimated = isinstance(self.shift, str) and self.shift == "estimated"
+        if self.shift is not None and not estimated and not isinstance(self.shift, Shift):
+            raise CaseError(f"shift is {self.shift!r}, but must be one of asperity.wlf, arrhenius, shift_table, or 'estimated'")
+        if estimated and self.reference is None:
+            raise CaseError("shift is 'estimated', so that a reference temperature in K is needed: reference=...")
+        if self.reference is not None and not estimated:
+            raise CaseError("reference goes with shift='estimated'; other shifts have their own")
+        if isinstance(self.shift, Shift):
+            return self.shift._keys
+        return {"model": "estimated", "reference": number("reference", self.reference)} if estimated else None
+
+    def _window(self, kind: str | None) -> list[float] | None:
+        """The ends of the window [s], of a DMA [rad/s]; with a unit only where the kind is known."""
+        given: Any = self.window
+        if given is None:
+            return None
+        if has_unit(given) and kind is not None:
+            given = angular_frequency("window", given, angular=True) if kind == "dma" else bare("window", given, "s")
+        return list(pair("window", given))
+
+    def fit_of(self, found: dict[str, Any]) -> Fit:
+        """The fit of these numbers of the core."""
+        body = {key: getattr(self, key) for key in ("poisson", "bulk_modulus", "hardness", "name")}
+        lists = {key: tuple(found[key]) for key in ("terms", "curves")}
+        return Fit(**{**found, **lists, "shift": made(found["shift"])}, _body=body)
+
+
+@dataclass(kw_only=True)
+class Points(Options):
+    """A fit to points, each of which may have its temperature."""
+
+    temperature: Any = None
+
+    def fit(self, kind: str, x: Any, values: list[Any]) -> Fit:
+        """The fit of curves over times [s] or angular frequencies [rad/s]."""
+        at = line("frequency" if kind == "dma" else "time", x)
+        curves = [line(label, value) for label, value in zip(_LABELS[kind], values)]
+        for label, curve in zip(_LABELS[kind], curves):
+            if len(curve) != len(at):
+                raise CaseError(f"{label} has {len(curve)} values for {len(at)} points")
+        sweeps = _sweeps(at, curves, self.temperature)
+        if len(sweeps) > 1 and self.shift is None:
+            known = ", ".join(f"{kelvin:.2f} K" for kelvin, _, _ in sweeps[:20])
+            raise CaseError(
+                f"the data hold {len(sweeps)} temperatures ({known}); state how times depend on temperature: "
+                "shift=asperity.wlf(c1=..., c2=..., reference=...), or shift='estimated' with reference=..."
+            )
+        return self.fit_of(_core.fit(kind, sweeps, self.keys(kind)))
+
+
+@dataclass(kw_only=True)
+class Spectra(Options):
+    """A fit that may be one of storage and loss modulus; :func:`fit_dma` describes the fields."""
+
+    moduli: Moduli = "both"
+    loss_weight: float = 1.0
+
+    def keys(self, kind: str | None) -> dict[str, Any]:
+        return {**super().keys(kind), "moduli": self.moduli, "loss_weight": number("loss_weight", self.loss_weight)}
+
+
+@dataclass
+class OfCurve(Points):
+    """The arguments of :func:`fit_relaxation` and :func:`fit_creep`."""
+
+    time: Any
+    values: Any
+
+
+@dataclass
+class OfDma(Points, Spectra):
+    """The arguments of :func:`fit_dma`."""
+
+    frequency: Any
+    storage: Any
+    loss: Any
+    _: KW_ONLY
+    angular: bool = False
+
+
+@dataclass
+class OfFile(Spectra):
+    """The arguments of :func:`fit_file`."""
+
+    path: str | os.PathLike[str]
+    _: KW_ONLY
+    kind: str | None = None
+    sheet: str | None = None
+    columns: Mapping[str, str | int] | None = None
+    units: Mapping[str, str] | None = None
+    modulus: Measure | None = None
+
+
+@arguments_of(OfCurve)
+def fit_relaxation(given: OfCurve) -> Fit:
     """Fits a relaxation modulus.
 
     Parameters
@@ -210,31 +320,11 @@ def fit_relaxation(
     >>> round(float(fit.material.relaxation_modulus(0.0)), -3)
     3000000.0
     """
-    return _fit("relaxation", time, [values], temperature, **_rest(locals()))
+    return given.fit("relaxation", given.time, [given.values])
 
 
-def fit_creep(
-    time: Any,
-    values: Any,
-    /,
-    *,
-    temperature: Any = None,
-    modulus: Measure = "young",
-    shift: Shift | str | None = None,
-    reference: float | None = None,
-    vertical: Vertical | None = None,
-    poisson: float | None = None,
-    bulk_modulus: float | None = None,
-    hardness: float | None = None,
-    name: str | None = None,
-    window: Sequence[float] | None = None,
-    per_decade: float = 3.0,
-    margin: float = 1.0,
-    long_time: LongTime = "free",
-    max_misfit: float = 0.1,
-    max_terms: int | None = None,
-    misfit: float | None = None,
-) -> Fit:
+@arguments_of(OfCurve)
+def fit_creep(given: OfCurve) -> Fit:
     """Fits a creep compliance [1/Pa]; the parameters are those of :func:`fit_relaxation`.
 
     >>> import asperity as asp, numpy as np
@@ -243,35 +333,11 @@ def fit_creep(
     >>> round(fit.instantaneous * 1e6, 3), [(round(c * 1e6, 3), round(s, 2)) for c, s in fit.terms]
     (1.0, [(2.0, 10.0)])
     """
-    return _fit("creep", time, [values], temperature, **_rest(locals()))
+    return given.fit("creep", given.time, [given.values])
 
 
-def fit_dma(
-    frequency: Any,
-    storage: Any,
-    loss: Any,
-    /,
-    *,
-    angular: bool = False,
-    temperature: Any = None,
-    modulus: Measure = "young",
-    shift: Shift | str | None = None,
-    reference: float | None = None,
-    vertical: Vertical | None = None,
-    poisson: float | None = None,
-    bulk_modulus: float | None = None,
-    hardness: float | None = None,
-    name: str | None = None,
-    window: Sequence[float] | None = None,
-    per_decade: float = 3.0,
-    margin: float = 1.0,
-    long_time: LongTime = "free",
-    max_misfit: float = 0.1,
-    max_terms: int | None = None,
-    misfit: float | None = None,
-    moduli: Moduli = "both",
-    loss_weight: float = 1.0,
-) -> Fit:
+@arguments_of(OfDma)
+def fit_dma(given: OfDma) -> Fit:
     """Fits storage and loss modulus [Pa] over frequency [Hz], or [rad/s] where `angular`, by one spectrum; frequencies with a unit
     are converted.
 
@@ -286,38 +352,14 @@ def fit_dma(
     >>> len(fit.terms), fit.max_misfit < 1e-3
     (2, True)
     """
-    rest = _rest(locals())
-    at = angular_frequency("frequency", frequency, angular=True)
+    at = angular_frequency("frequency", given.frequency, angular=True)
     # Converted where it carries a unit; a plain number is what `angular` says.
-    omega = line("frequency", at) * (1.0 if angular or has_unit(frequency) else 2.0 * math.pi)
-    return _fit("dma", omega, [storage, loss], temperature, **rest)
+    omega = line("frequency", at) * (1.0 if given.angular or has_unit(given.frequency) else 2.0 * math.pi)
+    return given.fit("dma", omega, [given.storage, given.loss])
 
 
-def fit_file(
-    path: str | os.PathLike[str],
-    *,
-    kind: str | None = None,
-    sheet: str | None = None,
-    columns: Mapping[str, str | int] | None = None,
-    units: Mapping[str, str] | None = None,
-    modulus: Measure | None = None,
-    shift: Shift | str | None = None,
-    reference: float | None = None,
-    vertical: Vertical | None = None,
-    poisson: float | None = None,
-    bulk_modulus: float | None = None,
-    hardness: float | None = None,
-    name: str | None = None,
-    window: Sequence[float] | None = None,
-    per_decade: float = 3.0,
-    margin: float = 1.0,
-    long_time: LongTime = "free",
-    max_misfit: float = 0.1,
-    max_terms: int | None = None,
-    misfit: float | None = None,
-    moduli: Moduli = "both",
-    loss_weight: float = 1.0,
-) -> Fit:
+@arguments_of(OfFile)
+def fit_file(given: OfFile) -> Fit:
     """Fits a text table of a relaxation test, a creep test or a DMA, as ``asperity material fit`` does.
 
     Parameters that are not listed are those of :func:`fit_dma` and :func:`fit_relaxation`; `window` in s, or rad/s of a DMA.
@@ -339,76 +381,9 @@ def fit_file(
     CaseError : naming the line of the file
     OSError : the file cannot be read
     """
-    names, given_units = dict(columns or {}), dict(units or {})
-    said: list[tuple[str, str | None, int | None, str | None]] = []
-    for role in dict.fromkeys([*names, *given_units]):
-        at = names.get(role)
-        told = at if isinstance(at, str) or at is None else None
-        place = None if told is not None or at is None else count(f"column of {role}", at)
-        said.append((role, told, place, given_units.get(role)))
-    rest = _rest(locals())
-    options = _options(rest, kind)
-    return _made(_core.fit_file(os.fspath(path), kind, said, sheet, options), rest)
-
-
-def _rest(given: dict[str, Any]) -> dict[str, Any]:
-    names = [
-        *("modulus", "shift", "reference", "vertical", "poisson", "bulk_modulus", "hardness", "name"),
-        *("window", "per_decade", "margin", "long_time", "max_misfit", "max_terms", "misfit", "moduli", "loss_weight"),
-    ]
-    return {key: given[key] for key in names if key in given}
-
-
-def _window(given: Any, kind: str | None) -> list[float] | None:
-    """The ends of the window [s], of a DMA [rad/s]; with a unit only where the kind is known."""
-    if given is None:
-        return None
-    if has_unit(given) and kind is not None:
-        given = angular_frequency("window", given, angular=True) if kind == "dma" else bare("window", given, "s")
-    return list(pair("window", given))
-
-
-def _options(rest: dict[str, Any], kind: str | None) -> dict[str, Any]:
-    shift, reference = rest["shift"], rest["reference"]
-    estimated = isinstance(shift, str) and shift == "estimated"
-    if shift is not None and not estimated and not isinstance(shift, Shift):
-        raise CaseError(f"shift is {shift!r}, but must be one of asperity.wlf, arrhenius, shift_table, or 'estimated'")
-    if estimated and reference is None:
-        raise CaseError("shift is 'estimated', so that a reference temperature in K is needed: reference=...")
-    if reference is not None and not estimated:
-        raise CaseError("reference goes with shift='estimated'; other shifts have their own")
-    most = rest["max_terms"]
-    keys = {"model": "estimated", "reference": number("reference", reference)} if estimated else None
-    return {
-        "measure": rest["modulus"],
-        "shift": shift._keys if isinstance(shift, Shift) else keys,
-        "vertical": rest["vertical"],
-        "window": _window(rest["window"], kind),
-        "per_decade": number("per_decade", rest["per_decade"]),
-        "margin": number("margin", rest["margin"]),
-        "long_time": rest["long_time"],
-        "limit": number("max_misfit", rest["max_misfit"]),
-        "max_terms": None if most is None else count("max_terms", most),
-        "misfit": None if rest.get("misfit") is None else number("misfit", rest["misfit"]),
-        "moduli": rest.get("moduli", "both"),
-        "loss_weight": number("loss_weight", rest.get("loss_weight", 1.0)),
-    }
-
-
-def _fit(kind: str, x: Any, values: list[Any], temperature: Any, **rest: Any) -> Fit:
-    at = line("frequency" if kind == "dma" else "time", x)
-    curves = [line(label, value) for label, value in zip(_LABELS[kind], values)]
-    for label, curve in zip(_LABELS[kind], curves):
-        if len(curve) != len(at):
-            raise CaseError(f"{label} has {len(curve)} values for {len(at)} points")
-    sweeps = _sweeps(at, curves, temperature)
-    if len(sweeps) > 1 and rest["shift"] is None:
-        known = ", ".join(f"{kelvin:.2f} K" for kelvin, _, _ in sweeps[:20])
-        raise CaseError(
-            f"the data hold {len(sweeps)} temperatures ({known}); state how times depend on temperature: "
-            "shift=asperity.wlf(c1=..., c2=..., reference=...), or shift='estimated' with reference=..."
-        )
-    return _made(_core.fit(kind, sweeps, _options(rest, kind)), rest)
+    places = {role: at if isinstance(at, str) else count(f"column of {role}", at) for role, at in (given.columns or {}).items()}
+    found = _core.fit_file(os.fspath(given.path), given.kind, places, dict(given.units or {}), given.sheet, given.keys(given.kind))
+    return given.fit_of(found)
 
 
 def _sweeps(x: Floats, curves: list[Floats], temperature: Any) -> list[tuple[float | None, Floats, list[Floats]]]:
@@ -441,36 +416,3 @@ def _sweeps(x: Floats, curves: list[Floats], temperature: Any) -> list[tuple[flo
             )
         found.append(sweep(float(held.mean()), np.sort(rows)))
     return found
-
-
-def _made(found: dict[str, Any], rest: dict[str, Any]) -> Fit:
-    equilibrium = instantaneous = fluidity = None
-    if "relaxation" in found:
-        equilibrium, terms = found["relaxation"]
-    else:
-        instantaneous, terms, fluidity = found["creep"]
-    return Fit(
-        kind=found["kind"],
-        modulus=rest["modulus"] or found["modulus"],
-        terms=tuple(terms),
-        equilibrium=equilibrium,
-        instantaneous=instantaneous,
-        fluidity=fluidity,
-        max_misfit=found["max_misfit"],
-        rms_misfit=found["rms_misfit"],
-        misfits=found["misfits"],
-        worst=found["worst"],
-        noise=found["noise"],
-        uncertainty=found["uncertainty"],
-        window=found["window"],
-        shift=made(found["shift"]),
-        shift_rms=found["shift_rms"],
-        shift_factors=found["shift_factors"],
-        vertical_factors=found["vertical_factors"],
-        temperatures=found["temperatures"],
-        notes=found["notes"],
-        x=found["x"],
-        curves=tuple(found["curves"]),
-        case_block=found["toml"],
-        _body={key: rest[key] for key in ("poisson", "bulk_modulus", "hardness", "name")},
-    )

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import choice, count, in_hertz, line, number, points
+from ._arrays import choice, count, either, in_hertz, line, number, points
 from ._core import CaseError
 from ._units import has_unit, unit_among
 
@@ -40,10 +40,7 @@ class History:
     @property
     def _keys(self) -> dict[str, Any]:
         """The keys of a `history`."""
-        if self.kind == "ramp-to":
-            kind = {"kind": "ramp", "from": "current"}
-        else:
-            kind = {"kind": self.kind}
+        kind = {"kind": "ramp", "from": "current"} if self.kind == "ramp-to" else {"kind": self.kind}
         points = {"points": [list(point) for point in self.points]} if self.kind == "table" else {}
         return {**kind, **dict(zip(_NUMBERS.get(self.kind, ()), self.numbers)), **points}
 
@@ -82,44 +79,39 @@ class Times:
 _UNITS = ("N", "N/m", "Pa", "m", "m/s")
 
 
-def _values(**given: Any) -> tuple[tuple[float, ...], str | None]:
-    """The values of a history, and their unit where they carry one: all of them then, but zeros."""
-    unit = unit_among("the value of a history", list(given.values()), _UNITS)
-    for name, value in given.items():
+def _history(kind: str, values: dict[str, Any], **times: Any) -> History:
+    """A history of values by the words for them, and of times [s]. Where values carry a unit, all of them but zeros do."""
+    unit = unit_among("the value of a history", list(values.values()), _UNITS)
+    for name, value in values.items():
         if unit is not None and not has_unit(value) and number(name, value, unit) != 0.0:
             raise CaseError(f"{name} is {value!r} without a unit, but other values of the history are in {unit}")
-    return tuple(number(name.replace("_", " "), value, unit or "") for name, value in given.items()), unit
+    numbers = [number(name, value, unit or "") for name, value in values.items()]
+    return History(kind, (*numbers, *(number(name, time) for name, time in times.items())), unit=unit)
 
 
 def step(value: float) -> History:
     """The value from t = 0+ on."""
-    values, unit = _values(value_of_the_step=value)
-    return History("step", values, unit=unit)
+    return _history("step", {"value of the step": value})
 
 
 def ramp(value: float, *, duration: float) -> History:
     """Linear from 0 to `value` during `duration` [s], then held."""
-    values, unit = _values(value_of_the_ramp=value)
-    return History("ramp", (*values, number("duration", duration)), unit=unit)
+    return _history("ramp", {"value of the ramp": value}, duration=duration)
 
 
 def triangle(peak: float, *, rise: float, fall: float) -> History:
     """Linear from 0 to `peak` during `rise` [s] and back to 0 during `fall` [s], then 0."""
-    values, unit = _values(peak=peak)
-    return History("triangle", (*values, number("rise", rise), number("fall", fall)), unit=unit)
+    return _history("triangle", {"peak": peak}, rise=rise, fall=fall)
 
 
 def trapezoid(peak: float, *, rise: float, hold: float, fall: float) -> History:
     """As :func:`triangle`, with `hold` [s] at the peak."""
-    values, unit = _values(peak=peak)
-    times = number("rise", rise), number("hold", hold), number("fall", fall)
-    return History("trapezoid", (*values, *times), unit=unit)
+    return _history("trapezoid", {"peak": peak}, rise=rise, hold=hold, fall=fall)
 
 
 def sine(*, mean: float, amplitude: float, frequency: float) -> History:
     """mean + amplitude sin(2 pi frequency t), the frequency in Hz (a quantity may be in rad/s or rpm)."""
-    values, unit = _values(mean=mean, amplitude=amplitude)
-    return History("sine", (*values, in_hertz("frequency", frequency)), unit=unit)
+    return _history("sine", {"mean": mean, "amplitude": amplitude}, frequency=in_hertz("frequency", frequency))
 
 
 def table(pairs: Sequence[tuple[float, float]] | npt.NDArray[Any]) -> History:
@@ -138,8 +130,7 @@ def hold() -> History:
 def ramp_to(value: float, *, duration: float) -> History:
     """Linear from the value that the quantity has when the stage starts to `value` during `duration` [s], then held; for a
     :class:`Stage`."""
-    values, unit = _values(value_of_the_ramp=value)
-    return History("ramp-to", (*values, number("duration", duration)), unit=unit)
+    return _history("ramp-to", {"value of the ramp": value}, duration=duration)
 
 
 @dataclass(frozen=True)
@@ -201,7 +192,7 @@ class Stage:
     def _keys(self, load_unit: str) -> dict[str, Any]:
         """The keys of one of the `stages`; the unit of a load is N, or N/m of a line contact."""
         given = {"load": self.load, "pressure": self.pressure, "approach": self.approach}
-        control, value = one_of(given, "a stage needs load, pressure or approach")
+        control, value = one_of(given, "a stage needs")
         keys: dict[str, Any] = {
             "control": control,
             "history": as_history(control, value, load_unit if control == "load" else None)._keys,
@@ -220,12 +211,12 @@ class Stage:
         return keys
 
 
-def one_of(given: dict[str, History | float | None], otherwise: str) -> tuple[str, History | float]:
-    """The one that is given."""
-    named = [(name, value) for name, value in given.items() if value is not None]
-    if len(named) != 1:
-        raise CaseError(f"{otherwise}, exactly one of them; given: {', '.join(name for name, _ in named) or 'none'}")
-    return named[0]
+def one_of(alternatives: dict[str, Any], otherwise: str) -> tuple[str, Any]:
+    """The one of the alternatives that is given; `otherwise` begins the message of the error."""
+    given = [(name, value) for name, value in alternatives.items() if value is not None]
+    if len(given) != 1:
+        raise CaseError(f"{otherwise} {either(alternatives)}, exactly one of them; given: {' and '.join(name for name, _ in given) or 'none'}")
+    return given[0]
 
 
 def uniform(end: float, steps: int) -> Times:

@@ -8,14 +8,15 @@ numbers of terms that the record allows.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from ._arrays import Floats, count, line, number
+from . import _core, _html
+from ._arrays import Floats, choice, count, line, number
 from ._core import CaseError
+from ._histories import one_of
 from ._materials import Prony
 from ._sealed import ReadOnlyArrays
 from ._words import Interface, LongTime
@@ -65,13 +66,11 @@ class IndentationFit(ReadOnlyArrays):
         )
 
     def _repr_html_(self) -> str:
-        open_ = "not determined"
         lines = [("E(0) [Pa]", self.instantaneous), ("E(inf) [Pa]", self.equilibrium)]
         for n, (modulus, time) in enumerate(self.terms, 1):
             lines += [(f"E_{n} [Pa]", modulus), (f"tau_{n} [s]", time)]
-        cells = [(name, [f"{x:.5g}" if x == x else open_ for x in values]) for name, values in lines]
-        rows = "".join(f"<tr><th>{name}</th>{''.join(f'<td>{x}</td>' for x in values)}</tr>" for name, values in cells)
-        return f"<table><tr><th></th><th>value</th><th>95 % from</th><th>to</th></tr>{rows}</table>"
+        rows = [(name, *(f"{x:.5g}" if x == x else "not determined" for x in values)) for name, values in lines]
+        return _html.table(rows, ("", "value", "95 % from", "to"))
 
 
 def fit_indentation(
@@ -144,32 +143,18 @@ def fit_indentation(
     if len({len(column) for column in columns}) > 1:
         told = ", ".join(f"{what} {len(column)}" for what, column in zip(("time", "load", "depth"), columns))
         raise CaseError(f"the columns must have the same length; there are: {told}")
-    if (radius is None) == (slope is None):
-        raise CaseError("give radius or slope, exactly one of them")
-    profile = ("sphere", number("radius", radius)) if slope is None else ("cone", number("slope", slope))
+    what, shape = one_of({"radius": radius, "slope": slope}, "give")
+    profile = "sphere" if what == "radius" else "cone"
     nu = number("poisson", poisson)
     if not -1.0 < nu <= 0.5:
         raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
     most = None if terms is None else count("terms", terms, 0)
-    if interface not in ("bonded", "slip"):
-        raise CaseError(f"interface is {interface!r}, but must be 'bonded' or 'slip'")
+    choice("interface", interface, get_args(Interface))
     if thickness is None and interface != "bonded":
         raise CaseError("interface is that of a thin sample to its base: give its thickness too")
     thin = None if thickness is None else (number("thickness", thickness), nu, interface)
-    found = _core.fit_indentation(
-        columns[0],
-        columns[1],
-        columns[2],
-        profile[0],
-        profile[1],
-        given,
-        most,
-        long_time,
-        bool(fit_touch),
-        thin,
-        count("springs", springs),
-        number("max_misfit", max_misfit),
-    )
+    how = given, most, long_time, bool(fit_touch), thin, count("springs", springs), number("max_misfit", max_misfit)
+    found = _core.fit_indentation(columns[0], columns[1], columns[2], profile, number(what, shape), *how)
     # E = E* (1 - nu^2)
     factor = 1.0 - nu**2
 
@@ -178,26 +163,19 @@ def fit_indentation(
         return (factor * value if determined else float("nan"), factor * low, factor * high)
 
     rows = np.asarray(found["rows"], dtype=np.int64)
-    return IndentationFit(
-        terms=[(interval(modulus, factor), interval(relaxation)) for modulus, relaxation in found["terms"]],
-        equilibrium=interval(found["equilibrium"], factor),
-        instantaneous=interval(found["instantaneous"], factor),
-        touch=interval(found["touch"]),
-        given=found["given"],
-        time=columns[0][rows],
-        predicted=found["predicted"],
-        rows=rows,
-        rms=found["rms"],
-        relative_rms=found["relative_rms"],
-        durbin_watson=found["durbin_watson"],
-        numbers_of_terms=found["numbers_of_terms"],
-        window=found["window"],
-        notes=found["notes"],
-        material=Prony(
-            equilibrium=factor * found["equilibrium"][0],
-            terms=[(factor * modulus[0], relaxation[0]) for modulus, relaxation in found["terms"]],
-            poisson=nu,
-            hardness=hardness,
-            name=name,
-        ),
+    own = {
+        "terms": [(interval(modulus, factor), interval(relaxation)) for modulus, relaxation in found["terms"]],
+        "equilibrium": interval(found["equilibrium"], factor),
+        "instantaneous": interval(found["instantaneous"], factor),
+        "touch": interval(found["touch"]),
+        "rows": rows,
+        "time": columns[0][rows],
+    }
+    material = Prony(
+        equilibrium=factor * found["equilibrium"][0],
+        terms=[(factor * modulus[0], relaxation[0]) for modulus, relaxation in found["terms"]],
+        poisson=nu,
+        hardness=hardness,
+        name=name,
     )
+    return IndentationFit(**{**found, **own}, material=material)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,11 +16,10 @@ if TYPE_CHECKING:
 
 def last_cycle(result: Result) -> slice | None:
     """Rows of the last full period of a load that is a sine; else from the last but one to the last peak of the load or, where this is
-    held, of the approach. None where there is none."""
+    held, of the approach. None if there is no cycle."""
     if result.is_sweep:
         return None
-    sines = json.loads(result.attributes.get("setup") or "{}").get("sines") or []
-    for sine in reversed(sines):
+    for sine in reversed(result._setup.get("sines") or []):
         if (span := _last_period(result, sine["stage"], sine["frequency"])) is not None:
             # Ends of periods and times of rows differ by rounding errors.
             rounding = 1e-9 * (span[1] - span[0])

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, array, check_length, choice, line, number
+from ._arrays import Floats, check_length, choice, each, number
 from ._core import CaseError
 from ._materials import Material
 from ._words import Interface
@@ -106,9 +106,11 @@ def layer_compliance(q: npt.ArrayLike, body: Material | Body, *, time: float = 0
     """
     if not isinstance(body, (Material, Body)):
         raise CaseError(f"body is {body!r}, but must be an asperity.Body or a material")
-    at = array("wave numbers", q)
-    waves = line("wave numbers", at.reshape(-1))
-    if not (np.isfinite(waves) & (waves > 0.0)).all():
-        raise CaseError("wave numbers must be finite and greater than 0 rad/m")
-    values: Floats = _core.layer_compliance(waves, {"body": [body._keys]}, number("time", time)).reshape(at.shape)
-    return values
+    keys, instant = {"body": [body._keys]}, number("time", time)
+
+    def compliance(waves: Floats) -> Floats:
+        if not (np.isfinite(waves) & (waves > 0.0)).all():
+            raise CaseError("wave numbers must be finite and greater than 0 rad/m")
+        return _core.layer_compliance(waves, keys, instant)
+
+    return each(compliance, "wave numbers", q)

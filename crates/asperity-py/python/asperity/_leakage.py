@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, choice, field, in_order, number, pair
-from ._findings import Finding, ResultWarning, findings_of
+from ._arrays import Floats, choice, field, in_order, number, numbers_of, pair
+from ._columns import GAS_LEAKS, LEAKS
+from ._findings import Finding, findings_of, warn
 from ._sealed import Sealed
 from ._surface import _parts
 from ._words import Flow, Sides
@@ -21,31 +21,8 @@ if TYPE_CHECKING:
 
     from ._result import Result
 
-#: Numbers of a leak: unit (of a liquid) and meaning.
-LEAKS: dict[str, tuple[str, str]] = {
-    "leak_rate": ("m^3/s", "leak rate"),
-    "leak_rate_standard": ("Pa m^3/s", "leak rate at 0 degC"),
-    "leak_estimate_junction": ("m^3/s", "leak rate of plates at the critical gap"),
-    "leak_estimate_medium": ("m^3/s", "leak rate of the effective medium"),
-    "hydraulic_gap": ("m", "gap of plates that leak as much"),
-    "critical_gap": ("m", "gap at the critical constriction"),
-    "critical_x": ("m", "x of the critical constriction"),
-    "critical_y": ("m", "y of the critical constriction"),
-    "percolates": ("1", "whether inlet and outlet are connected"),
-    "leak_resolved": ("1", "whether gap, grid and fluid pressure carry the leak"),
-    "open_fraction": ("1", "share of the cells that are open"),
-    "trapped_area": ("m^2", "open area connected to neither inlet nor outlet"),
-    "trapped_volume": ("m^3", "volume of it"),
-    "knudsen_number": ("1", "mean free path over critical gap"),
-}
-#: Those whose unit is kg/s for a gas.
-_RATES = ("leak_rate", "leak_estimate_junction", "leak_estimate_medium")
+#: Numbers of a leak that say yes or no.
 _FLAGS = ("percolates", "leak_resolved")
-
-
-def units_of(name: str, gas: bool) -> str:
-    """Unit of a number of a leak."""
-    return "kg/s" if gas and name in _RATES else LEAKS[name][0]
 
 
 class Leakage(Sealed):
@@ -125,11 +102,9 @@ class Leakage(Sealed):
         temperature : [K]
         rarefaction : "boltzmann", "slip" or "continuum"
         """
-        given = {"gas": gas, "viscosity": viscosity, "molar_mass": molar_mass, "rarefaction": rarefaction}
-        numbers = {"inlet": inlet, "outlet": outlet, "temperature": temperature}
-        fluid: dict[str, Any] = {name: number(name, value) for name, value in numbers.items()}
-        fluid |= {name: value if isinstance(value, str) else number(name, value) for name, value in given.items() if value is not None}
-        found = self._solved(fluid)
+        fluid: dict[str, Any] = {"inlet": inlet, "outlet": outlet, "temperature": temperature}
+        fluid |= {"gas": gas, "viscosity": viscosity, "molar_mass": molar_mass, "rarefaction": rarefaction}
+        found = self._solved(numbers_of(fluid))
         rate: float = found["leak_rate_standard" if standard else "leak_rate"]
         return rate
 
@@ -194,9 +169,9 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     """The leaks at the times of a result's fields."""
     if "gap" not in result.fields:
         raise _core.CaseError("leakage needs the field 'gap'; the result keeps " + (", ".join(result.fields) or "no fields"))
-    setup = json.loads(str(result.attributes.get("setup") or "{}"))
+    setup = result._setup
     boundary = setup.get("boundary", "free")
-    keys = {"sides": "periodic" if boundary == "periodic" else "closed", **{k: v for k, v in keys.items() if v is not None}}
+    keys = {"sides": "periodic" if boundary == "periodic" else "closed", **keys}
     if keys.get("direction") == "both" and boundary != "periodic":
         raise _core.CaseError("direction is 'both', the conductance of a gap that repeats, but the domain is free: use 'x' or 'y'")
     for name, words in (("direction", get_args(Flow)), ("sides", get_args(Sides))):
@@ -210,33 +185,22 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     for index, time in enumerate(result.field_times):
         gap = result.field("gap", index=index)
         contact = contact_of(result, index)
-        found = _core.leakage(
-            np.ascontiguousarray(gap), contact, list(result.size), json.dumps(keys), temperatures, float(time)
-        )
+        found = _core.leakage(np.ascontiguousarray(gap), contact, list(result.size), json.dumps(keys), temperatures, float(time))
         step = int(result._field_steps[index])
         touching = (gap - result.initial_gap)[contact > 0]
         # The mean displacement in the contact, to which the tolerance is relative.
         displacement = float(touching.mean()) + float(result.approach[step]) if touching.size else 0.0
         area = float(result.contact_area[step])
-        states.append(
-            (
-                step,
-                found["critical_gap"] if found["percolates"] else None,
-                found["critical_width"],
-                tolerance * abs(displacement),
-                drop,
-                float(result.load[step]) / area if area > 0 else 0.0,
-            )
-        )
+        narrowest = found["critical_gap"] if found["percolates"] else None
+        pressure = float(result.load[step]) / area if area > 0 else 0.0
+        states.append((step, narrowest, found["critical_width"], tolerance * abs(displacement), drop, pressure))
         rows.append(found)
     resolved, told = _core.judge_leaks(states)
     for row, good in zip(rows, resolved):
         row["leak_resolved"] = good
-    for finding in findings_of(json.loads(told)):
-        if finding.severity == "warning":
-            warnings.warn(str(finding.text), ResultWarning, stacklevel=3)
+    warn(findings_of(json.loads(told)))
     gas = rows[0]["leak_rate_standard"] is not None
-    columns = {name: np.array([row[name] for row in rows]) for name in LEAKS if rows and rows[0][name] is not None}
+    columns = {name: np.array([row[name] for row in rows]) for name in LEAKS if rows[0].get(name) is not None}
     conductance = None if rows[0]["conductance"] is None else np.array([row["conductance"] for row in rows])
     pressures = np.array([row["pressure"] for row in rows]) if keys.get("field") else None
     return dataset(result, result.field_times, columns, gas, conductance, pressures)
@@ -244,10 +208,9 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
 
 def contact_of(result: Result, index: int) -> Any:
     """Where the surfaces touch: from the field that tells it."""
-    if "contact" in result.fields:
-        return np.ascontiguousarray(result.field("contact", index=index) != 0, dtype=np.uint8)
-    if "pressure" in result.fields:
-        return np.ascontiguousarray(result.field("pressure", index=index) > 0, dtype=np.uint8)
+    for name in ("contact", "pressure"):
+        if name in result.fields:
+            return np.ascontiguousarray(result.field(name, index=index) > 0, dtype=np.uint8)
     gap = result.field("gap", index=index)
     deepest = np.abs(gap[np.isfinite(gap)]).max(initial=0.0)
     return np.ascontiguousarray(gap <= 1e-9 * deepest, dtype=np.uint8)
@@ -271,10 +234,10 @@ def dataset(
 
     def column(name: str) -> Any:
         values = columns[name].astype(bool) if name in _FLAGS else columns[name]
-        return ("leak_time", values, {"units": units_of(name, gas), "long_name": LEAKS[name][1]})
+        return ("leak_time", values, (GAS_LEAKS if gas else LEAKS)[name].attributes())
 
     data: dict[str, Any] = {name: column(name) for name in columns if name in LEAKS}
-    coordinates: dict[str, Any] = {"leak_time": ("leak_time", np.asarray(times), {"units": "s", "long_name": "time of the leak"})}
+    coordinates: dict[str, Any] = {"leak_time": ("leak_time", np.asarray(times), LEAKS["leak_time"].attributes())}
     if conductance is not None:
         words = {"units": "m^3", "long_name": "effective conductance"}
         data["conductance"] = (("leak_time", "flow_direction", "gradient_direction"), conductance, words)

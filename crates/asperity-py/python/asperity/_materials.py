@@ -14,20 +14,24 @@ Mechanics (1985), section 3.2, for the contact compliance.
 
 from __future__ import annotations
 
+import functools
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from ._arrays import Floats, array, line, number, points
+from . import _core, _html
+from ._arrays import Floats, array, each, line, number, points
 from ._core import CaseError
 from ._sealed import Sealed
 from ._shifts import Shift
 from ._units import frequency
 from ._words import Measure
+
+__all__ = ["Burgers", "Creep", "Elastic", "FractionalMaxwell", "FractionalZener", "KelvinVoigt", "Material", "Maxwell", "Prony", "Springpot", "StandardLinearSolid", "Zener"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -44,8 +48,6 @@ class Material(Sealed):
     shift: Shift | None = None
     temperature: float | None = None
 
-    #: Its name in a case.
-    _model: ClassVar[str]
     #: The keys of a `[[body]]`, and what the core makes of them.
     _keys: dict[str, Any] = field(init=False)
     _body: _core.Body = field(init=False)
@@ -78,7 +80,9 @@ class Material(Sealed):
         own = {key: value for key, value in self._given.items() if key not in _OF_BODY}
         if self.shift is not None:
             own["shift"] = self.shift._keys
-        return {"model": self._model, **own}
+        # The name of a model in a case is that of its class here: "kelvin-voigt" of KelvinVoigt, and of a user's subclass of it.
+        name = next(kind.__name__ for kind in type(self).__mro__ if kind.__module__ == __name__)
+        return {"model": re.sub("(?<=[a-z])(?=[A-Z])", "-", name).lower(), **own}
 
     @property
     def _whole(self) -> str:
@@ -93,21 +97,16 @@ class Material(Sealed):
         return f"{type(self).__name__}({others}, {len(terms)} terms from {terms[0]} to {terms[-1]})"
 
     def _repr_html_(self) -> str:
-        import html
-
         def words(value: Any) -> str:
             if isinstance(value, list):
                 return ", ".join(f"({a:g}, {b:g})" for a, b in value[:12]) + (", ..." if len(value) > 12 else "")
             return f"{value:g}" if isinstance(value, float) else str(value)
 
-        rows = "".join(
-            f"<tr><th style='text-align:left'>{html.escape(key)}</th><td style='text-align:left'>{html.escape(words(value))}</td></tr>"
-            for key, value in self._given.items()
-        )
-        return f"<b>{type(self).__name__}</b> (SI)<table>{rows}</table>"
+        rows = [(key, words(value)) for key, value in self._given.items()]
+        return f"<b>{type(self).__name__}</b> (SI){_html.table(rows)}"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _make, (type(self), self._given)
+        return functools.partial(type(self), **self._given), ()
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and isinstance(other, Material) and self._given == other._given
@@ -122,11 +121,11 @@ class Material(Sealed):
         >>> float(zener.creep_compliance(0.0)), float(zener.creep_compliance(1e9))
         (1e-06, 2e-06)
         """
-        return self._curve(self._body.creep, t)
+        return each(self._body.creep, "times", t)
 
     def relaxation_modulus(self, t: npt.ArrayLike) -> Floats:
         """Relaxation modulus [Pa] at times `t` [s], of the modulus that the material was given in."""
-        return self._curve(self._body.relaxation, t)
+        return each(self._body.relaxation, "times", t)
 
     def storage_loss(self, omega: npt.ArrayLike) -> tuple[Floats, Floats]:
         """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s] (quantities may be in Hz or rpm).
@@ -143,7 +142,7 @@ class Material(Sealed):
 
     def contact_compliance(self, t: npt.ArrayLike) -> Floats:
         """Contact creep compliance C(t) [1/Pa] against a rigid body: 1/E* of an elastic one."""
-        return self._curve(self._body.contact_creep, t)
+        return each(self._body.contact_creep, "times", t)
 
     @property
     def creep_terms(self) -> tuple[float, list[tuple[float, float]], float]:
@@ -160,29 +159,43 @@ class Material(Sealed):
         """Equilibrium modulus, (modulus, relaxation time) of each term."""
         return self._body.relaxation_terms()
 
-    @staticmethod
-    def _curve(function: Any, t: npt.ArrayLike) -> Floats:
-        at = array("times", t)
-        out: Floats = function(line("times", at.reshape(-1)))
-        return out.reshape(at.shape)
-
-
-def _make(kind: type[Material], given: dict[str, Any]) -> Material:
-    return kind(**given)
-
 
 #: What is said of the body, beside its material.
 _OF_BODY = ("name", "poisson", "bulk_modulus", "hardness")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Elastic(Material):
-    """An elastic body of Young's modulus `young` or shear modulus `shear` [Pa]."""
-
-    _model = "elastic"
+class _OneModulus(Sealed):
+    """A model with one modulus."""
 
     young: float | None = None
     shear: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class _KelvinModuli(Sealed):
+    """A model with a spring, and a Kelvin element."""
+
+    young: float | None = None
+    young_kelvin: float | None = None
+    shear: float | None = None
+    shear_kelvin: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class _EndModuli(Sealed):
+    """A model given by its moduli after all relaxation and at once."""
+
+    young_equilibrium: float | None = None
+    young_instantaneous: float | None = None
+    shear_equilibrium: float | None = None
+    shear_instantaneous: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Elastic(Material, _OneModulus):
+    """An elastic body of Young's modulus `young` or shear modulus `shear` [Pa]."""
+
 
     def _material(self) -> dict[str, Any]:
         own = super()._material()
@@ -195,64 +208,38 @@ class Elastic(Material):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Maxwell(Material):
+class Maxwell(Material, _OneModulus):
     """Spring and dashpot in series: a fluid. `relaxation_time` [s]."""
 
-    _model = "maxwell"
-
-    young: float | None = None
-    shear: float | None = None
     relaxation_time: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class KelvinVoigt(Material):
+class KelvinVoigt(Material, _OneModulus):
     """Spring and dashpot in parallel: no instantaneous compliance. `retardation_time` [s]."""
 
-    _model = "kelvin-voigt"
-
-    young: float | None = None
-    shear: float | None = None
     retardation_time: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Zener(Material):
+class Zener(Material, _KelvinModuli):
     """A spring in series with a Kelvin element: the standard linear solid. `retardation_time` [s] of creep."""
 
-    _model = "zener"
-
-    young: float | None = None
-    young_kelvin: float | None = None
-    shear: float | None = None
-    shear_kelvin: float | None = None
     retardation_time: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class StandardLinearSolid(Material):
+class StandardLinearSolid(Material, _EndModuli):
     """A spring in parallel with a Maxwell element: the solid of `Zener`, given by the moduli after all relaxation and at once and
     the `relaxation_time` [s] of a relaxation test."""
 
-    _model = "standard-linear-solid"
-
-    young_equilibrium: float | None = None
-    young_instantaneous: float | None = None
-    shear_equilibrium: float | None = None
-    shear_instantaneous: float | None = None
     relaxation_time: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Burgers(Material):
+class Burgers(Material, _KelvinModuli):
     """A Maxwell and a Kelvin element in series."""
 
-    _model = "burgers"
-
-    young: float | None = None
-    young_kelvin: float | None = None
-    shear: float | None = None
-    shear_kelvin: float | None = None
     relaxation_time: float
     retardation_time: float
 
@@ -275,8 +262,6 @@ class Prony(Material):
     2491.44
     """
 
-    _model = "prony"
-
     equilibrium: float | None = None
     instantaneous: float | None = None
     terms: Sequence[tuple[float, float]]
@@ -298,8 +283,6 @@ class Creep(Material):
 
     `terms` are (compliance [1/Pa], retardation time [s]); `fluidity` in 1/(Pa s).
     """
-
-    _model = "creep"
 
     instantaneous: float
     terms: Sequence[tuple[float, float]] = ()
@@ -324,6 +307,11 @@ def _pairs(terms: Sequence[tuple[float, float]], units: tuple[str, str]) -> list
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class _Fractional(Material):
     """A model that becomes a Prony sum."""
+
+    time: float
+    order: float
+    window: tuple[float, float]
+    tolerance: float = 1e-3
 
     #: The sum of its model alone.
     _sum: _core.Body = field(init=False)
@@ -359,7 +347,7 @@ class _Fractional(Material):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Springpot(_Fractional):
+class Springpot(_Fractional, _OneModulus):
     """Creep (t/time)^order / (modulus Gamma(1 + order)), between spring and dashpot.
 
     As a Prony sum with a relative error of creep and relaxation below `tolerance` over `window` = (first, last) time [s];
@@ -371,41 +359,12 @@ class Springpot(_Fractional):
     (1.0, True)
     """
 
-    _model = "springpot"
-
-    young: float | None = None
-    shear: float | None = None
-    time: float
-    order: float
-    window: tuple[float, float]
-    tolerance: float = 1e-3
-
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class FractionalMaxwell(_Fractional):
+class FractionalMaxwell(_Fractional, _OneModulus):
     """A spring and a springpot in series, as a Prony sum; see :class:`Springpot`."""
 
-    _model = "fractional-maxwell"
-
-    young: float | None = None
-    shear: float | None = None
-    time: float
-    order: float
-    window: tuple[float, float]
-    tolerance: float = 1e-3
-
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class FractionalZener(_Fractional):
+class FractionalZener(_Fractional, _EndModuli):
     """A spring in parallel with a fractional Maxwell element, as a Prony sum; see :class:`Springpot`."""
-
-    _model = "fractional-zener"
-
-    young_equilibrium: float | None = None
-    young_instantaneous: float | None = None
-    shear_equilibrium: float | None = None
-    shear_instantaneous: float | None = None
-    time: float
-    order: float
-    window: tuple[float, float]
-    tolerance: float = 1e-3

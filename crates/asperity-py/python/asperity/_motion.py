@@ -2,63 +2,69 @@
 
 from __future__ import annotations
 
-import difflib
-import inspect
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any, ClassVar, get_args
 
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import Floats, angle, choice, line, number
-from ._core import CaseError
-from ._histories import History, Times, as_history
-
-if TYPE_CHECKING:
-    from ._words import Field, Movement
-    from ._layers import Body
-    from ._materials import Material
-    from ._result import Result
-
-def _keys(travel: dict[str, Any], direction: str | float, kind: str, shear_stress: float | None) -> dict[str, Any]:
-    """The keys of `[motion]`."""
-    if isinstance(direction, str) and direction not in ("x", "y"):
-        raise CaseError(f"direction is {direction!r}, but must be 'x', 'y' or an angle from x towards y [rad]")
-    keys = {
-        **travel,
-        "direction": direction if isinstance(direction, str) else angle("direction", direction),
-        "kind": choice("kind", kind, ("slide", "roll")),
-    }
-    return keys if shear_stress is None else {**keys, "shear_stress": number("shear_stress", shear_stress)}
+from ._arrays import Floats, choice, direction_of, line, number
+from ._histories import History, as_history, one_of
+from ._options import arguments_of
+from ._problem import InTime, Run
+from ._result import Result
+from ._solve import solved
+from ._words import Movement
 
 
-def _check_options(function: Callable[..., Any], options: dict[str, Any]) -> None:
-    """Refuses options that :func:`solve` does not have, before anything is solved."""
-    from ._solve import solve
+@dataclass(kw_only=True)
+class Moving(Run):
+    """A contact that moves."""
 
-    known = [name for name in inspect.signature(solve).parameters if name[0] != "_" and name != "approach" and name != "stages"]
-    for name in options:
-        if name not in known:
-            near = difflib.get_close_matches(name, [*known, *inspect.signature(function).parameters], 1)
-            raise TypeError(f"{function.__name__}() takes no argument {name!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
+    direction: str | float = "x"
+    kind: Movement = "slide"
+    shear_stress: float | None = None
+
+    def motion_keys(self) -> dict[str, Any]:
+        """The keys of `[motion]` that say how it moves."""
+        keys = {"direction": direction_of(self.direction), "kind": choice("kind", self.kind, get_args(Movement))}
+        return keys if self.shear_stress is None else {**keys, "shear_stress": number("shear_stress", self.shear_stress)}
 
 
-def slide(
-    surface: Any = None,
-    material: Material | Body | Sequence[Material | Body] | None = None,
-    *,
-    times: Times | npt.ArrayLike,
-    load: History | float | None = None,
-    pressure: History | float | None = None,
-    velocity: History | float | None = None,
-    path: History | None = None,
-    start: float = 0.0,
-    direction: str | float = "x",
-    kind: Movement = "slide",
-    cells_per_step: float = 1.0,
-    shear_stress: float | None = None,
-    **options: Any,
-) -> Result:
+@dataclass(kw_only=True)
+class Slide(Moving, InTime):
+    """The arguments of :func:`asperity.slide`."""
+
+    velocity: History | float | None = None
+    path: History | None = None
+    start: float = 0.0
+    cells_per_step: float = 1.0
+
+    alternatives: ClassVar[list[tuple[str, ...]]] = [*Moving.alternatives, ("velocity", "path")]
+
+    def course_keys(self) -> dict[str, Any]:
+        what, course = one_of({"velocity": self.velocity, "path": self.path}, "give")
+        motion = {
+            what: as_history(what, course)._keys,
+            "start": number("start", self.start),
+            "cells_per_step": number("cells_per_step", self.cells_per_step),
+            **self.motion_keys(),
+        }
+        return {**super().course_keys(), "motion": motion}
+
+
+@dataclass(kw_only=True)
+class Steady(Moving):
+    """The arguments of :func:`asperity.steady`."""
+
+    velocities: npt.ArrayLike
+
+    def course_keys(self) -> dict[str, Any]:
+        return {"motion": {"steady": {"velocities": line("velocities", self.velocities).tolist()}, **self.motion_keys()}}
+
+
+@arguments_of(Slide)
+def slide(given: Slide) -> Result:
     """A contact that moves in time: `surface` slides over the viscoelastic body, or rolls.
 
     Parameters
@@ -72,7 +78,7 @@ def slide(
     kind : "slide", or "roll": the contact moves over both bodies
     cells_per_step : cells that the surface moves in a step, at most
     shear_stress : on the area in contact [Pa], for `friction_coefficient_total`
-    options : further ones of :func:`solve`: gap, size, boundary, hardness, temperature, quantities, fields, every, ...
+    gap, size, boundary, hardness, temperature, quantities, fields, every, ... : as in :func:`solve`
 
     Returns
     -------
@@ -92,37 +98,11 @@ def slide(
     >>> bool(abs(result.sliding_distance[-1] - 3e-3) < 1e-12)
     True
     """
-    from ._solve import solve
-
-    _check_options(slide, options)
-    if (velocity is None) == (path is None):
-        raise CaseError("give velocity or path, exactly one of them")
-    what, given = ("path", path) if velocity is None else ("velocity", velocity)
-    travel = {
-        what: as_history(what, given)._keys,
-        "start": number("start", start),
-        "cells_per_step": number("cells_per_step", cells_per_step),
-    }
-    motion = _keys(travel, direction, kind, shear_stress)
-    return solve(surface, material, times=times, load=load, pressure=pressure, _motion=motion, **options)
+    return solved(given)
 
 
-def steady(
-    surface: Any = None,
-    material: Material | Body | Sequence[Material | Body] | None = None,
-    *,
-    velocities: npt.ArrayLike,
-    load: float | None = None,
-    pressure: float | None = None,
-    direction: str | float = "x",
-    kind: Movement = "slide",
-    shear_stress: float | None = None,
-    fields: Sequence[Field] = ("pressure",),
-    every: int | None = None,
-    progress: bool | None = None,
-    on_step: Callable[[Any], object] | None = None,
-    **options: Any,
-) -> Result:
+@arguments_of(Steady)
+def steady(given: Steady) -> Result:
     """Steady states of motion: friction over the velocity.
 
     Parameters
@@ -132,7 +112,7 @@ def steady(
     load, pressure : held [N], [Pa], one of them
     direction, kind, shear_stress : as in :func:`slide`
     fields, every, progress, on_step : as in :func:`solve`
-    options : further ones of :func:`solve`: gap, size, boundary, hardness, temperature, tolerance, ...
+    gap, size, boundary, hardness, temperature, tolerance, ... : as in :func:`solve`
 
     Returns
     -------
@@ -148,23 +128,7 @@ def steady(
     >>> int(np.argmax(result.friction_coefficient))     # most is lost while the material relaxes under the contact
     2
     """
-    from ._solve import solve
-
-    _check_options(steady, options)
-    travel = {"steady": {"velocities": line("velocities", velocities).tolist()}}
-    return solve(
-        surface,
-        material,
-        times=[1.0],
-        load=load,
-        pressure=pressure,
-        fields=fields,
-        every=every,
-        progress=progress,
-        on_step=on_step,
-        _motion=_keys(travel, direction, kind, shear_stress),
-        **options,
-    )
+    return solved(given)
 
 
 def rubber_friction(result: Result, *, shear_stress: float) -> Floats:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, angle, array, choice, line, number
+from ._arrays import Floats, array, choice, direction_of, line, number
 from ._core import CaseError
 from ._materials import Material
 from ._sealed import ReadOnlyArrays, Sealed
@@ -41,7 +41,7 @@ class PerssonFriction(Sealed):
 
     #: Velocities [m/s], as given.
     velocity: Floats
-    #: Friction coefficient, against the motion whatever its sign.
+    #: Friction coefficient: positive against the motion, in either direction.
     friction_coefficient: Floats
     #: Share of the nominal area in contact.
     contact_fraction: Floats
@@ -114,19 +114,11 @@ def persson_friction(
     speeds = line("velocities", np.atleast_1d(array("velocities", velocities)))
     if speeds.size == 0:
         raise CaseError("velocities is empty, but must hold one velocity at least, in m/s")
-    if isinstance(direction, str) and direction not in ("x", "y"):
-        raise CaseError(f"direction is {direction!r}, but must be 'x', 'y' or an angle in rad")
-    along, turned = (direction, 0.0) if isinstance(direction, str) else ("angle", angle("direction", direction))
+    along = direction_of(direction)
+    word, turned = (along, 0.0) if isinstance(along, str) else ("angle", along)
     keys: dict[str, Any] = {"body": [material._keys]}
     if temperature is not None:
         keys["temperature"] = {"history": {"kind": "constant", "value": number("temperature", temperature)}}
-    theory = _core.Persson(
-        shape.heights,
-        list(shape.size),
-        keys,
-        number("pressure", pressure),
-        along,
-        turned,
-        choice("correction", correction, get_args(Correction)),
-    )
+    how = choice("correction", correction, get_args(Correction))
+    theory = _core.Persson(shape.heights, list(shape.size), keys, number("pressure", pressure), word, turned, how)
     return PerssonFriction(theory, speeds)

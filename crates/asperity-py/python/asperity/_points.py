@@ -28,7 +28,7 @@ from ._findings import ResultWarning
 from ._materials import Material
 from ._result import Result, open as open_result
 from ._motion import slide, steady
-from ._solve import solve
+from ._solve import overrides, solve
 from ._surface import Surface
 
 #: Answer to a point: a result, or why there is none.
@@ -168,7 +168,7 @@ def _solve_point(point: Point) -> Solved:
 def _solved(point: Point, folder: str) -> Result:
     path = os.path.join(folder, f"{point.name}.zarr")
     if point.case is not None:
-        keys = [f"{key}={_toml(value)}" for key, value in point.settings.items()]
+        keys = overrides(point.settings)
         there = os.path.exists(path)
         try:
             _core.run(point.directory, point.case, keys, path, False, there, None)
@@ -187,15 +187,6 @@ def _solved(point: Point, folder: str) -> Result:
         raise TypeError(f"the function of a study must return an asperity.Result, but returned {type(found).__name__}")
     found.save(path, force=True)
     return found
-
-
-def _toml(value: Any) -> str:
-    """A value as an override takes it: text as it is, lists and numbers as TOML."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, np.generic):
-        value = value.item()
-    return json.dumps(value)
 
 
 def trimmed(result: Result, names: tuple[str, ...]) -> Result:

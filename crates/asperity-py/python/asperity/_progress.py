@@ -32,7 +32,7 @@ class Progress:
         if now - self.told < PAUSE and (self.total is None or done < self.total):
             return
         self.told = now
-        text = f"t = {row['time']:.4g} s  contact {100 * row['contact_fraction']:.2f} % {self._sparks()}"
+        text = f"t = {row['time']:.4g} s  contact {100 * row['contact_fraction']:.2f} % {sparkline(self.rows)}"
         if self.total is None:
             text = f"{done} rows  {text}"
         else:
@@ -44,9 +44,6 @@ class Progress:
         """Clears the line."""
         if self.rows:
             self.show(None)
-
-    def _sparks(self) -> str:
-        return sparkline(self.rows)
 
 
 def sparkline(rows: list[tuple[float, float]], width: int = 16) -> str:

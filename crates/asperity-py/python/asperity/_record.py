@@ -5,16 +5,16 @@ from __future__ import annotations
 import errno
 import json
 import os
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, as_plane, choice, count, line
-from ._columns import HISTOGRAMS, ROW
+from ._arrays import Floats, as_plane, count, distinct, line
+from ._columns import FIELDS, HISTOGRAMS, ROW
 from ._core import CaseError
-from ._result import FIELDS, Result, open
+from ._problem import InTime, Problem
+from ._result import Result, open
 
 if TYPE_CHECKING:
     from ._solve import March, Step
@@ -23,32 +23,34 @@ if TYPE_CHECKING:
 class Keep:
     """Which fields are kept, and of which rows."""
 
-    def __init__(self, fields: Sequence[str], every: int | None, field_times: Any) -> None:
-        if isinstance(fields, str):
-            raise CaseError(f"fields is {fields!r}, but must be a list, as in fields=[{fields!r}]")
-        self.fields = [str(name) for name in fields]
-        for name in self.fields:
-            choice("an entry of fields", name, list(FIELDS))
-        self.times = None if field_times is None else line("field_times", field_times)
-        if self.times is not None and every is not None:
+    def __init__(self, given: Problem) -> None:
+        self.fields = distinct("fields", given.fields, list(FIELDS))
+        self.title = given.title
+        self.every = None if given.every is None else count("every", given.every)
+        self.times = None if given.field_times is None else line("field_times", given.field_times)
+        #: Times that become steps.
+        self.steps: list[float] = []
+        if self.times is None:
+            return
+        if self.every is not None:
             raise CaseError("give every or field_times, exactly one of them")
-        if self.times is not None:
-            for time in self.times[~(np.isfinite(self.times) & (self.times >= 0))]:
-                raise CaseError(f"field_times holds {time:g} s, but must hold times of the run, from 0 s on")
-            if len(np.unique(self.times)) < len(self.times):
-                raise CaseError("field_times holds a time twice; give each one once")
-        self.every = None if every is None else count("every", every)
+        for time in self.times[~(np.isfinite(self.times) & (self.times >= 0))]:
+            raise CaseError(f"field_times holds {time:g} s, but must hold times of the run, from 0 s on")
+        if len(np.unique(self.times)) < len(self.times):
+            raise CaseError("field_times holds a time twice; give each one once")
+        if isinstance(given, InTime):
+            self.steps = self.times[self.times > 0].tolist()
 
 
 class Record:
     """The rows of a march so far, and their fields; with an `output` the fields are on disk only."""
 
-    def __init__(self, march: March, keep: Keep, title: str, output: str | None, force: bool) -> None:
+    def __init__(self, march: March, keep: Keep, output: str | None, force: bool) -> None:
         core = march._core
-        self._march, self._keep, self._title = march, keep, title
+        self._march, self._keep = march, keep
         self._edges: dict[str, Floats] = {name: np.array(ends) for name, ends in core.columns()}
         self._rows: list[dict[str, Any]] = []
-        # The fields that are kept, by the number of their row; with an output those that are not yet on disk.
+        # The fields that are kept, by the number of their row; with an output only those that are not yet on disk.
         self._maps: dict[int, dict[str, Any]] = {}
         # Adaptive steps find their rows as they go.
         rows = core.rows_expected
@@ -63,7 +65,7 @@ class Record:
                 raise FileExistsError(errno.EEXIST, "exists already; choose another output or replace it with force=True", output)
             columns = [(name, ends) for name, ends in self._edges.items()]
             setup, gap = json.dumps(march._setup), np.array(as_plane(march.initial_gap))
-            self._writer = _core.Writer(output, force, title, setup, list(march.size), gap, keep.fields, columns, rows)
+            self._writer = _core.Writer(output, force, keep.title, setup, list(march.size), gap, keep.fields, columns, rows)
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -80,7 +82,7 @@ class Record:
         self._write(len(self) if keeps else len(self) - 1)
 
     def _write(self, end: int) -> None:
-        """Writes the rows up to this one to the output, where there is one."""
+        """Writes the rows before row `end` to the output, if there is one."""
         while self._writer is not None and self._writer.rows < end:
             row = self._rows[self._writer.rows]
             numbers = [float(n) for name in self._edges for n in np.ravel(row[name])]
@@ -129,7 +131,7 @@ class Record:
             initial_gap=self._march.initial_gap,
             size=self._march.size,
             attributes={
-                "title": self._title,
+                "title": self._keep.title,
                 "version": _core.__version__,
                 "status": status,
                 "setup": json.dumps(self._march._setup),
@@ -144,8 +146,3 @@ def layers_of(setup: dict[str, Any]) -> dict[str, Any]:
     if "layer_separable" not in setup:
         return {}
     return {"layer_separable": int(setup["layer_separable"]), "layer_misfit": setup["layer_misfit"]}
-
-
-def path_of(output: str | os.PathLike[str] | None) -> str | None:
-    """The path of a result that is written as it grows."""
-    return None if output is None else os.fspath(output)

@@ -12,14 +12,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from ._arrays import Floats, as_plane, cells_of, centres, choice, frozen, in_hertz, number, plain
+from . import _core, _html
+from ._arrays import Floats, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
 from ._axis import TIME, VELOCITY
-from ._columns import HISTOGRAMS, QUANTITIES, ROW, Column, units_of
+from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, Column
 from ._core import CaseError
 from ._findings import Finding, findings_of
-from ._rows import Columns
+from ._grid import OnGrid
+from ._rows import Columns, StressColumns
 from ._sealed import Sealed
+from ._units import written
 from ._words import Field, Flow, Sides
 
 if TYPE_CHECKING:
@@ -27,10 +29,6 @@ if TYPE_CHECKING:
 
     from ._stress import Stress
     from .plot import Plots
-
-#: Fields: unit and meaning.
-FIELDS: dict[str, tuple[str, str]] = {name: (unit, words) for name, unit, words in _core.fields()}
-
 
 class Cycle(NamedTuple):
     """One period of a cyclic load; made by :meth:`Result.cycles`."""
@@ -49,7 +47,7 @@ class Cycle(NamedTuple):
     drift_work: float
 
 
-class Result(Columns, Sealed):
+class Result(OnGrid, Columns, StressColumns, Sealed):
     """What a run found: one-dimensional arrays over the rows, and fields at some of them.
 
     `time` [s], `load` [N], `approach` [m], `contact_area`, `contact_area_corrected`, `capped_area` [m^2],
@@ -60,28 +58,6 @@ class Result(Columns, Sealed):
     The arrays are read-only: take ``result.approach.copy()`` to change numbers. Fields of a result in memory are read-only views,
     those of a result on disk are read anew each time, into arrays of your own.
     """
-
-    # Stress below the surface, where it is stored, over `field_times` and `depth`.
-    depth = Column()
-    max_mises = Column()
-    max_mises_depth = Column()
-    max_mises_x = Column()
-    max_mises_y = Column()
-    mises_by_depth = Column()
-    max_tresca = Column()
-    max_tresca_depth = Column()
-    max_tresca_x = Column()
-    max_tresca_y = Column()
-    tresca_by_depth = Column()
-    max_tension = Column()
-    max_tension_depth = Column()
-    max_tension_x = Column()
-    max_tension_y = Column()
-    tension_by_depth = Column()
-    stressed_volume = Column()
-    orthogonal_shear = Column()
-    orthogonal_shear_depth = Column()
-    orthogonal_shear_by_depth = Column()
 
     def __init__(
         self,
@@ -109,9 +85,8 @@ class Result(Columns, Sealed):
         self._initial_gap = initial_gap
         self._size = tuple(float(length) for length in size)
         self._attributes = attributes
-        motion = json.loads(attributes.get("setup") or "{}").get("motion") or {}
         # Of a sweep the velocities stand in place of the times.
-        self._axis = VELOCITY if motion.get("steady") else TIME
+        self._axis = VELOCITY if (self._setup.get("motion") or {}).get("steady") else TIME
         self._path = path
         self._store = store
         self._histograms = dict(histograms or {})
@@ -129,28 +104,29 @@ class Result(Columns, Sealed):
         if not isinstance(self._initial_gap, _core.Store):
             self._initial_gap = frozen(np.asarray(self._initial_gap))
 
+    @property
+    def _setup(self) -> dict[str, Any]:
+        """The run in numbers."""
+        setup: dict[str, Any] = json.loads(self._attributes.get("setup") or "{}")
+        return setup
+
     def _column(self, name: str) -> Floats:
         """A column of the rows, or why there is none."""
-        table = self.__dict__.get("_table")
-        if self.__dict__.get("_axis") == VELOCITY and table is not None:
-            if name == "velocity":
-                velocities: Floats = table["time"]
-                return velocities
-            if name == "time":
-                raise AttributeError("a sweep over velocities has no 'time'; use velocity")
-        if table is not None and name in table:
-            values: Floats = table[name]
-            return values
-        stress = self.__dict__.get("_stress") or {}
-        if name in stress:
-            found: Floats = stress[name]
-            return found
-        if name == "depth" or name.startswith(("max_mises", "max_tresca", "max_tension")) or name.endswith("_by_depth"):
+        # A copy that is being made has no columns yet.
+        held = self.__dict__
+        columns: dict[str, Floats] = {**held.get("_stress", {}), **held.get("_table", {})}
+        if "_axis" in held and self.is_sweep and "time" in columns:
+            columns["velocity"] = columns.pop("time")
+        if name in columns:
+            return columns[name]
+        if name == "time":
+            raise AttributeError("a sweep over velocities has no 'time'; use velocity")
+        if name in STRESS:
             words = "which [stress] of a case, or `asperity stress RESULT`, stores; stress(time=...) computes it now"
             raise AttributeError(f"the result has no {name!r}, {words}")
+        if name in held.get("_histograms", {}):
+            raise AttributeError(f"{name!r} has a number for each bin: use histogram({name!r})")
         if name in QUANTITIES:
-            if table is not None and name in self.__dict__.get("_histograms", {}):
-                raise AttributeError(f"{name!r} has a number for each bin: use histogram({name!r})")
             raise AttributeError(f"the result has no {name!r}, because it was not requested: quantities=[{name!r}]")
         if name == "y" and self.is_line:
             raise AttributeError("a line contact has no y: nothing changes along it")
@@ -165,9 +141,8 @@ class Result(Columns, Sealed):
 
     def __dir__(self) -> list[str]:
         # Columns that it does not have are left out.
-        columns = {name for name, value in {**vars(Columns), **vars(Result)}.items() if isinstance(value, Column)}
-        here = {*self._table, *self._stress, self._axis.name} - ({"time"} - {self._axis.name})
-        return sorted({*super().__dir__()} - columns | here)
+        here = {*self._table, *self._stress} - {"time"} | {self._axis.name}
+        return sorted({*super().__dir__()} - {*COLUMNS, *STRESS} | here)
 
     def __len__(self) -> int:
         """Rows."""
@@ -261,36 +236,17 @@ class Result(Columns, Sealed):
         return self._size
 
     @property
-    def is_line(self) -> bool:
-        """Whether it is a line contact: loads are per length along y [N/m], the contact area is a length [m], and fields have one
-        dimension."""
-        return len(self._size) == 1
-
-    @property
     def cells(self) -> tuple[int, ...]:
         """Number of cells along x and y; of a line contact along x."""
         return self.initial_gap.shape
 
     def units(self, name: str) -> str:
         """The unit of a number of the rows by its name, "1" where it has none: "N" or, of a line contact, "N/m" of the load."""
-        known = {**ROW, **QUANTITIES}
         if name == "time":
             return self._axis.unit
-        if name not in known:
-            raise CaseError(f"{name!r} is no number of a row; there are {', '.join(known)}")
-        return units_of(name, known[name][0], self.is_line)
-
-    @property
-    def x(self) -> Floats:
-        """Cell centres along x [m]."""
-        return centres(self.cells[0], self._size[0])
-
-    @property
-    def y(self) -> Floats:
-        """Cell centres along y [m]."""
-        if self.is_line:
-            return self._column("y")
-        return centres(self.cells[1], self._size[1])
+        if name not in COLUMNS:
+            raise CaseError(f"{name!r} is no number of a row; there are {', '.join(COLUMNS)}")
+        return COLUMNS[name].attributes(self.is_line)["units"]
 
     @property
     def initial_gap(self) -> Floats:
@@ -343,7 +299,7 @@ class Result(Columns, Sealed):
         """
         from ._stress import changing, stress
 
-        setup = json.loads(self._attributes.get("setup") or "{}")
+        setup = self._setup
         if "layer_separable" in setup:
             raise CaseError(_core.LAYERED_STRESS)
         boundary = setup.get("boundary", "free")
@@ -375,46 +331,35 @@ class Result(Columns, Sealed):
         leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray."""
         import xarray
 
-        along, at = self._axis.name, f"field_{self._axis.name}"
-        rows = {
-            name: (along, np.array(self._table[name]), {"units": self.units(name), "long_name": words})
-            for name, (_, words) in {**ROW, **QUANTITIES}.items()
+        along, at, line = self._axis.name, f"field_{self._axis.name}", self.is_line
+        data: dict[str, Any] = {
+            name: (along, np.array(self._table[name]), entry.attributes(line))
+            for name, entry in COLUMNS.items()
             if name != "time" and name in self._table
         }
-        over = ("x",) if self.is_line else ("x", "y")
-        maps = {
-            name: ((at, *over), np.array(self._stack(name)), {"units": FIELDS[name][0], "long_name": FIELDS[name][1]})
-            for name in self._fields
-        }
+        for name in self._fields:
+            data[name] = ((at, *self._axes), np.array(self._stack(name)), FIELDS[name].attributes())
         for name, values in self._stress.items():
             if name != "depth":
-                volume = "m^2" if self.is_line else "m^3"
-                unit = volume if name == "stressed_volume" else "m" if name.endswith(("_depth", "_x", "_y")) and "_by_" not in name else "Pa"
-                dimensions = (at, "depth")[: values.ndim]
-                maps[name] = (dimensions, np.array(values), {"units": unit, "long_name": name.replace("_", " ")})
+                data[name] = ((at, "depth")[: values.ndim], np.array(values), STRESS[name].attributes(line))
         for name in self._stress_fields:
-            told = {"units": "Pa", "long_name": name.replace("_", " ")}
-            maps[name] = ((at, "depth", *over), self._stress_volume(name), told)
-        gap = ("initial_gap", (over, np.array(self.initial_gap), {"units": "m", "long_name": "undeformed gap"}))
+            data[name] = ((at, "depth", *self._axes), self._stress_volume(name), {"units": "Pa", "long_name": name.replace("_", " ")})
+        data["initial_gap"] = (self._axes, np.array(self.initial_gap), {"units": "m", "long_name": "undeformed gap"})
         coordinates = {
             along: (along, np.array(self._table["time"]), {"units": self.units("time"), "long_name": along}),
             at: (at, np.array(self.field_times), {"units": self.units("time"), "long_name": f"{along} of the fields"}),
-            "x": ("x", np.array(self.x), {"units": "m", "long_name": "x"}),
+            **self._coordinates,
         }
-        if not self.is_line:
-            coordinates["y"] = ("y", np.array(self.y), {"units": "m", "long_name": "y"})
         if "depth" in self._stress:
-            coordinates["depth"] = ("depth", np.array(self._stress["depth"]), {"units": "m", "long_name": "depth below the surface"})
+            coordinates["depth"] = ("depth", np.array(self._stress["depth"]), STRESS["depth"].attributes())
         for name, (edges, numbers) in self._histograms.items():
-            bins, ends, unit, words = HISTOGRAMS[name]
-            middle = np.sqrt(edges[1:] * edges[:-1]) if name == "spot_histogram" else 0.5 * (edges[1:] + edges[:-1])
-            unit = units_of(bins, unit, self.is_line)
-            rows[name] = ((along, bins), np.array(numbers), dict(zip(("units", "long_name"), QUANTITIES[name])))  # type: ignore[assignment]
-            coordinates[bins] = (bins, middle, {"units": unit, "long_name": f"middle of {words}"})
-            coordinates[ends] = (ends, np.array(edges), {"units": unit, "long_name": f"ends of {words}"})
+            places = _core.histogram_coordinates(name, edges, line)
+            data[name] = ((along, places[0][0]), np.array(numbers), QUANTITIES[name].attributes(line))
+            for place, unit, words, ends in places:
+                coordinates[place] = (place, ends, {"units": written(unit), "long_name": words})
         # Text, as all other attributes, so that the dataset can be written.
         attributes = {**self._attributes, "findings": json.dumps(self._attributes.get("findings", []))}
-        whole = xarray.Dataset({**rows, **maps, **dict([gap])}, coords=coordinates, attrs=attributes)
+        whole = xarray.Dataset(data, coords=coordinates, attrs=attributes)
         if not self._leaks:
             return whole
         from ._leakage import stored
@@ -443,26 +388,11 @@ class Result(Columns, Sealed):
         gas (`inlet`, `outlet` [Pa, absolute], `gas`, or `viscosity` and `molar_mass` [kg/mol]; `temperature` [K]; `rarefaction`), or
         without a fluid the gap alone. `field` adds `fluid_pressure`.
         """
+        arguments = locals()
         from ._leakage import over_time, stored
 
-        given: dict[str, Any] = {
-            "direction": direction,
-            "pressure_drop": pressure_drop,
-            "viscosity": viscosity,
-            "gas": gas,
-            "molar_mass": molar_mass,
-            "temperature": temperature,
-            "inlet": inlet,
-            "outlet": outlet,
-            "rarefaction": rarefaction,
-            "sides": sides,
-            "smallest_gap": smallest_gap,
-            "field": field,
-        }
-        given = {name: value if value is None or isinstance(value, (str, bool)) else number(name, value) for name, value in given.items()}
-        if self._leaks and all(value is None for value in given.values()):
-            return stored(self)
-        return over_time(self, given)
+        given = numbers_of({name: value for name, value in arguments.items() if name != "self"})
+        return over_time(self, given) if given or not self._leaks else stored(self)
 
     @property
     def plot(self) -> Plots:
@@ -487,7 +417,7 @@ class Result(Columns, Sealed):
             touches = np.asarray(self.field("contact", **at) > 0, dtype=np.float64)  # type: ignore[arg-type]
         else:
             touches = self.field("pressure", **at)  # type: ignore[arg-type]
-        boundary = json.loads(self._attributes.get("setup") or "{}").get("boundary", "free")
+        boundary = self._setup.get("boundary", "free")
         labels: npt.NDArray[np.uint32] = _core.spot_labels(plain(as_plane(touches)), boundary)
         return labels.reshape(touches.shape)
 
@@ -497,7 +427,7 @@ class Result(Columns, Sealed):
         import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
         along = self._axis.name
-        columns = {name: np.array(self._table[name]) for name in {**ROW, **QUANTITIES} if name != "time" and name in self._table}
+        columns = {name: np.array(self._table[name]) for name in COLUMNS if name != "time" and name in self._table}
         frame = pandas.DataFrame(columns, index=pandas.Index(np.array(self._table["time"]), name=along))
         frame.attrs["units"] = {along: self.units("time"), **{name: self.units(name) for name in columns}}
         return frame
@@ -565,18 +495,13 @@ class Result(Columns, Sealed):
         )
 
     def _repr_html_(self) -> str:
-        def lines() -> list[tuple[str, str]]:
-            size = " x ".join(f"{length:g} m" for length in self._size)
-            first = [("domain", f"{cells_of(self.initial_gap)}, {size}"), ("rows", str(len(self)))]
-            if len(self) == 0:
-                return first
-            units = {name: "" if self.units(name) == "1" else self.units(name) for name in ROW}
-            last = [(words, f"{self._table[name][-1]:.6g} {units[name]}") for name, (_, words) in ROW.items()]
-            return [*first, *last]
-
         title = html.escape(str(self._attributes.get("title") or "Result"))
-        rows = "".join(f"<tr><th style='text-align:left'>{html.escape(a)}</th><td>{html.escape(b)}</td></tr>" for a, b in lines())
-        return f"<b>{title}</b>, last row:<table>{rows}</table>"
+        size = " x ".join(f"{length:g} m" for length in self._size)
+        rows = [("domain", f"{cells_of(self.initial_gap)}, {size}"), ("rows", str(len(self)))]
+        for name, entry in ROW.items() if len(self) else ():
+            unit = self.units(name)
+            rows.append((entry.words, f"{self._table[name][-1]:.6g} {'' if unit == '1' else unit}"))
+        return f"<b>{title}</b>, last row:{_html.table(rows)}"
 
     def _index(self, time: float | None, index: int | None) -> int:
         kept = len(self._field_steps)
@@ -652,7 +577,7 @@ def open(path: str | os.PathLike[str]) -> Result:
     store = _core.Store(os.fspath(path))
     attributes: dict[str, Any] = json.loads(store.attributes)
     return Result(
-        table={name: store.series(name) for name in [*ROW, *(q for q in store.quantities if q not in HISTOGRAMS)]},
+        table={name: store.series(name) for name in [*ROW, *store.quantities] if name not in HISTOGRAMS},
         histograms={name: store.histogram(name) for name in store.quantities if name in HISTOGRAMS},
         fields={name: store for name in store.fields},
         field_steps=store.field_steps,

@@ -9,8 +9,8 @@ Soc. Rheology 4 (1960) 233.
 
 from __future__ import annotations
 
+import functools
 import os
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -19,9 +19,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, array, line, number, points
+from ._arrays import Floats, each, number, points
 from ._core import CaseError
-from ._findings import ResultWarning
+from ._findings import warn_caller
 from ._units import carries
 
 
@@ -52,9 +52,7 @@ class Shift:
         >>> round(float(asp.wlf(c1=8.86, c2=101.6, reference=293.15).factor(303.15)), 3)
         0.161
         """
-        at = array("temperatures", temperature)
-        out: Floats = _core.shift_factor(self._keys, line("temperatures", at.reshape(-1)))
-        return out.reshape(at.shape)
+        return each(functools.partial(_core.shift_factor, self._keys), "temperatures", temperature)
 
     def vertical_factor(self, temperature: npt.ArrayLike) -> Floats:
         """b_T at temperatures [K]: moduli are those at the reference temperature over b_T; 1 without a vertical shift.
@@ -64,9 +62,7 @@ class Shift:
         >>> round(1 / float(rubber.vertical_factor(353.15)), 4)
         1.2047
         """
-        at = array("temperatures", temperature)
-        out: Floats = _core.vertical_shift_factor(self._keys, line("temperatures", at.reshape(-1)))
-        return out.reshape(at.shape)
+        return each(functools.partial(_core.vertical_shift_factor, self._keys), "temperatures", temperature)
 
     @property
     def _keys(self) -> dict[str, Any]:
@@ -99,14 +95,14 @@ _NUMBERS = {"wlf": ("c1", "c2", "reference"), "arrhenius": ("energy", "reference
 
 def wlf(*, c1: float, c2: float, reference: float, vertical: Vertical = None) -> Shift:
     """log10 a_T = -c1 (T - T_r)/(c2 + T - T_r), c2 and the reference temperature T_r in K; `vertical` as :class:`Shift` says."""
-    numbers = (number("c1", c1), number("c2", c2), _kelvin("reference", reference, 3))
+    numbers = (number("c1", c1), number("c2", c2), _kelvin("reference", reference))
     return _checked(Shift("wlf", numbers, vertical=_vertical(vertical)))
 
 
 def arrhenius(*, activation_energy: float, reference: float, vertical: Vertical = None) -> Shift:
     """ln a_T = (E_a/R)(1/T - 1/T_r), the activation energy in J/mol, the reference temperature in K; `vertical` as :class:`Shift`
     says."""
-    numbers = (number("activation_energy", activation_energy), _kelvin("reference", reference, 3))
+    numbers = (number("activation_energy", activation_energy), _kelvin("reference", reference))
     return _checked(Shift("arrhenius", numbers, vertical=_vertical(vertical)))
 
 
@@ -146,12 +142,12 @@ def _vertical(given: Vertical) -> float | tuple[tuple[float, float], ...] | None
 _COLD = 100.0
 
 
-def _kelvin(what: str, value: Any, stacklevel: int) -> float:
+def _kelvin(what: str, value: Any) -> float:
     """A temperature [K], with a warning where it looks like one in degrees Celsius."""
     kelvin = number(what, value)
     if 0.0 < kelvin < _COLD and not carries(value):
         words = f"{what} is {kelvin:g} K, which is {kelvin - 273.15:g} °C: temperatures are in K, and {kelvin:g} °C is {kelvin + 273.15:g} K"
-        warnings.warn(f"{words} [unlikely-unit]", ResultWarning, stacklevel=stacklevel)
+        warn_caller(f"{words} [unlikely-unit]")
     return kelvin
 
 
@@ -177,7 +173,7 @@ def made(keys: dict[str, Any] | None) -> Shift | None:
 def temperature_keys(value: float | Sequence[tuple[float, float]]) -> dict[str, Any]:
     """The keys of `[temperature]`, of a temperature of the run [K] or its (time [s], temperature [K]) points."""
     if carries(value) or (not isinstance(value, (list, tuple)) and np.ndim(value) == 0):
-        return {"history": {"kind": "constant", "value": _kelvin("temperature", value, 5)}}
+        return {"history": {"kind": "constant", "value": _kelvin("temperature", value)}}
     pairs = points("temperature", value, ("s", "K"))
     if not pairs:
         raise CaseError("temperature holds no points: give a number [K] or (time [s], temperature [K]) pairs")

@@ -8,28 +8,22 @@ import json
 import os
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
-from ._arrays import as_plane, cells_of, check_places, choice, count, field, in_order, number
+from ._arrays import cells_of, path_of
 from ._columns import HISTOGRAMS, Number
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
-from ._histories import History, Stage, Times, as_history, as_times, one_of
-from ._layers import Body
-from ._materials import Material
+from ._options import arguments_of
+from ._problem import InStages, Problem, Run, Solve
 from ._progress import Progress
-from ._record import Keep, Record, path_of
+from ._record import Keep, Record
 from ._result import Result, open
+from ._rows import Numbers
 from ._sealed import Sealed
-from ._shifts import temperature_keys
-from ._surface import surface_of
-from ._units import bare
-from ._rows import Numbers, Quantity
-from ._words import Boundary, Field, Method, Plasticity, Scheme
 
 if TYPE_CHECKING:
     from ._arrays import Floats
@@ -113,22 +107,15 @@ class March(Sealed):
     #: Lengths of the domain along x and y [m], of a line contact along x.
     size: tuple[float, ...]
 
-    def __init__(
-        self,
-        core: _core.March,
-        initial_gap: Floats,
-        size: tuple[float, ...],
-        keep: Keep,
-        title: str,
-        output: str | None,
-        force: bool,
-    ) -> None:
-        self._core = core
+    def __init__(self, given: Problem, output: str | None = None, force: bool = False) -> None:
+        keep = Keep(given)
+        shape, keys, arrays = given.parts()
+        self._core = _core.March(keys, arrays, keep.steps)
         # Threads that share a march take turns.
         self._turn = threading.Lock()
-        self._hold(initial_gap=initial_gap, size=size)
-        self._setup: dict[str, Any] = json.loads(core.setup)
-        self._record = Record(self, keep, title, output, force)
+        self._hold(initial_gap=shape.gap(), size=shape.size)
+        self._setup: dict[str, Any] = json.loads(self._core.setup)
+        self._record = Record(self, keep, output, force)
 
     def __repr__(self) -> str:
         whole = self._core.rows_expected
@@ -163,7 +150,7 @@ class March(Sealed):
         return Step(self, self._core.row(), index)
 
     def result(self) -> Result:
-        """The rows so far, with the fields that :func:`march` was told to keep, and those of the last row. The march can go on.
+        """The rows so far, with the `fields` that were given to :func:`march`, and those of the last row. The march can go on.
 
         >>> import asperity as asp
         >>> cone = asp.Surface.cone(cells=(32, 32), size=(1e-3, 1e-3), slope=0.1)
@@ -177,37 +164,8 @@ class March(Sealed):
         return self._record.result("complete" if done or len(self._record) == rows else "interrupted")
 
 
-def march(
-    surface: Any = None,
-    material: Material | Body | Sequence[Material | Body] | None = None,
-    *,
-    times: Times | npt.ArrayLike,
-    load: History | float | None = None,
-    pressure: History | float | None = None,
-    approach: History | float | None = None,
-    stages: Sequence[Stage] | None = None,
-    gap: Any = None,
-    size: float | Sequence[float] | None = None,
-    hardness: float | npt.ArrayLike | None = None,
-    temperature: float | Sequence[tuple[float, float]] | None = None,
-    boundary: Boundary = "free",
-    scheme: Scheme = "linear",
-    method: Method = "projected-cg",
-    tolerance: float = 1e-6,
-    max_iterations: int = 5000,
-    plasticity: Plasticity = "cap",
-    quantities: Sequence[Quantity] = (),
-    bins: int = 50,
-    largest_pressure: float | None = None,
-    largest_gap: float | None = None,
-    fields: Sequence[Field] = (),
-    every: int | None = None,
-    field_times: npt.ArrayLike | None = None,
-    title: str = "",
-    _motion: dict[str, Any] | None = None,
-    _output: str | None = None,
-    _force: bool = False,
-) -> March:
+@arguments_of(InStages)
+def march(given: InStages) -> March:
     """A simulation, step by step; the parameters are those of :func:`solve`. `fields` are those that :meth:`March.result` has: by
     default none.
 
@@ -218,126 +176,11 @@ def march(
     0 0.0 (32, 32)
     1 1.0 (32, 32)
     """
-    for what, given_word, words in (
-        ("boundary", boundary, Boundary),
-        ("scheme", scheme, Scheme),
-        ("method", method, Method),
-        ("plasticity", plasticity, Plasticity),
-    ):
-        choice(what, given_word, get_args(words))
-    if isinstance(surface, (Material, Body)):
-        raise CaseError("the surface is a material: the surface comes first, as in solve(surface, material, ...)")
-    keep = Keep(fields, every, field_times)
-    shape = surface_of(surface, gap, size)
-    check_places("hardness", hardness, surface if gap is None else gap)
-    bodies = [dict(body._keys) for body in bodies_of(material)]
-    arrays = {"heights": as_plane(shape.heights)}
-    cells, limit = hardness_parts(hardness, shape.size)
-    if limit is not None:
-        bodies = [{**body, "hardness": limit} for body in bodies]
-    if cells is not None:
-        bodies[0]["hardness_array"], arrays["hardness"] = "hardness", as_plane(cells)
-    if isinstance(quantities, str):
-        raise CaseError(f"quantities is {quantities!r}, but must be a list, as in quantities=[{quantities!r}]")
-    names = [str(choice("an entry of quantities", str(name), get_args(Quantity))) for name in quantities]
-    if twice := [name for name in names if names.count(name) > 1]:
-        raise CaseError(f"quantities holds {twice[0]!r} twice")
-    given_ends = {"pressure": largest_pressure, "gap": largest_gap}
-    ends = {key: number(f"largest_{key}", value) for key, value in given_ends.items() if value is not None}
-    keys: dict[str, Any] = {
-        "domain": {"cells": list(shape.cells), "size": list(shape.size), "boundary": boundary},
-        "surface": [{"kind": "array", "array": "heights"}],
-        "body": bodies,
-        "load": _load_keys({"load": load, "pressure": pressure, "approach": approach}, stages, "N/m" if shape.is_line else "N"),
-        "solver": {
-            "method": method,
-            "tolerance": number("tolerance", tolerance),
-            "max_iterations": count("max_iterations", max_iterations),
-            "plasticity": plasticity,
-        },
-        "output": {"quantities": names, "histogram": {"bins": count("bins", bins), **ends}},
-    }
-    steady = _motion is not None and "steady" in _motion
-    if not steady:
-        keys["time"] = {**as_times(times)._keys, "scheme": scheme}
-    elif scheme != "linear":
-        raise CaseError(f"scheme is {scheme!r}, but steady states of motion have no time, and so no scheme: leave it out")
-    if temperature is not None:
-        keys["temperature"] = temperature_keys(temperature)
-    if _motion is not None:
-        keys["motion"] = _motion
-    include = [] if keep.times is None or steady else [t for t in keep.times.tolist() if t > 0]
-    core = _core.March(keys, arrays, include)
-    return March(core, shape.gap(), shape.size, keep, title, _output, _force)
+    return March(given)
 
 
-def _load_keys(given: dict[str, Any], stages: Sequence[Stage] | None, load_unit: str) -> dict[str, Any]:
-    """The keys of `[load]`; the unit of a load is N, or N/m of a line contact."""
-    if stages is None:
-        control, value = one_of(given, "give load, pressure, approach or stages")
-        return {"control": control, "history": as_history(control, value, load_unit if control == "load" else None)._keys}
-    if any(value is not None for value in given.values()):
-        raise CaseError("give load, pressure, approach or stages, exactly one of them")
-    programme = list(stages)
-    if not programme or not all(isinstance(stage, Stage) for stage in programme):
-        raise CaseError("stages is a list of asperity.Stage, one at least")
-    return {"stages": [stage._keys(load_unit) for stage in programme]}
-
-
-def bodies_of(material: Any) -> list[Material | Body]:
-    """The deformable bodies, one or two."""
-    bodies = list(material) if isinstance(material, (list, tuple)) else [material]
-    if 1 <= len(bodies) <= 2 and all(isinstance(body, (Material, Body)) for body in bodies):
-        return bodies
-    shown = repr(material) if len(repr(material)) < 60 else type(material).__name__
-    raise CaseError(
-        f"material is {shown}, but must be a material, such as asperity.Elastic(young=1e6, poisson=0.5), asperity.Prony(...) or "
-        "asperity.Zener(...), an asperity.Body of layers, or a pair of them for two deformable bodies"
-    )
-
-
-def hardness_parts(hardness: Any, size: Sequence[float]) -> tuple[Floats | None, float | None]:
-    """The hardness [Pa] of each cell of a domain of that size [m], or that of all."""
-    if hardness is None:
-        return None, None
-    if np.ndim(bare("hardness", in_order("hardness", hardness, size))) == len(size):
-        return field("hardness", hardness, line=True, size=size), None
-    return None, number("hardness", hardness)
-
-
-def solve(
-    surface: Any = None,
-    material: Material | Body | Sequence[Material | Body] | None = None,
-    *,
-    times: Times | npt.ArrayLike,
-    load: History | float | None = None,
-    pressure: History | float | None = None,
-    approach: History | float | None = None,
-    stages: Sequence[Stage] | None = None,
-    gap: Any = None,
-    size: float | Sequence[float] | None = None,
-    hardness: float | npt.ArrayLike | None = None,
-    temperature: float | Sequence[tuple[float, float]] | None = None,
-    boundary: Boundary = "free",
-    scheme: Scheme = "linear",
-    method: Method = "projected-cg",
-    tolerance: float = 1e-6,
-    max_iterations: int = 5000,
-    plasticity: Plasticity = "cap",
-    quantities: Sequence[Quantity] = (),
-    bins: int = 50,
-    largest_pressure: float | None = None,
-    largest_gap: float | None = None,
-    fields: Sequence[Field] = ("pressure",),
-    every: int | None = None,
-    field_times: npt.ArrayLike | None = None,
-    title: str = "",
-    output: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    progress: bool | None = None,
-    on_step: Callable[[Step], object] | None = None,
-    _motion: dict[str, Any] | None = None,
-) -> Result:
+@arguments_of(Solve)
+def solve(given: Solve) -> Result:
     """Solves a contact over time.
 
     Parameters
@@ -386,11 +229,15 @@ def solve(
     -----
     ResultWarning : the numbers may be off; the result's `findings` say where and why
     """
-    given = {name: value for name, value in locals().items() if name not in ("output", "force", "progress", "on_step")}
-    run = march(**given, _output=path_of(output), _force=force)
+    return solved(given)
+
+
+def solved(given: Run) -> Result:
+    """Solves a problem to its end."""
+    run, on_step = March(given, path_of("output", given.output), given.force), given.on_step
     if on_step is not None and not callable(on_step):
         raise CaseError(f"on_step is {on_step!r}, but must be a function that takes a Step")
-    teller = Progress(run._core.rows_expected, progress)
+    teller = Progress(run._core.rows_expected, given.progress)
     status, message = "complete", None
     try:
         for step in run:
@@ -406,7 +253,7 @@ def solve(
     finally:
         teller.end()
     result = run._record.close(status, message)
-    warn(run.findings, 2 if _motion is None else 3)
+    warn(run.findings)
     return result
 
 
@@ -467,7 +314,7 @@ def run(
             on_row(row, done, total)
 
     try:
-        summary = _core.run(*_source(case), _keys(set), None if output is None else os.fspath(output), force, resume, told)
+        summary = _core.run(*_source(case), overrides(set), path_of("output", output), force, resume, told)
     except BaseException as error:
         if output is not None and teller is not None:
             with contextlib.suppress(OSError, CaseError):
@@ -477,14 +324,14 @@ def run(
         if teller is not None:
             teller.end()
     result = open(summary["result"])
-    warn(result.findings, 2)
+    warn(result.findings)
     return result
 
 
 def check(case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None) -> dict[str, Any]:
     """What a case (as in :func:`run`) will do, in numbers: cells, rows, moduli, memory [byte], ...; the inputs that a slip
     would hide in, the contact to be expected, and the findings that are known before the run."""
-    out: dict[str, Any] = json.loads(_core.check(*_source(case), _keys(set)))
+    out: dict[str, Any] = json.loads(_core.check(*_source(case), overrides(set)))
     return out
 
 
@@ -500,10 +347,11 @@ def _source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str 
     return path, None
 
 
-def _keys(given: dict[str, Any] | Sequence[str] | None) -> list[str]:
+def overrides(given: Mapping[str, Any] | Sequence[str] | None) -> list[str]:
+    """Changed keys of a case, as the core takes them."""
     if given is None:
         return []
-    if isinstance(given, dict):
+    if isinstance(given, Mapping):
         return [f"{key}={_toml(key, value)}" for key, value in given.items()]
     return [str(key) for key in given]
 

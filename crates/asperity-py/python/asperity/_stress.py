@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from . import _core
+from ._core import CaseError
+from ._findings import warn_caller
 from ._sealed import Sealed
 from ._surface import _parts
 from ._words import Boundary
@@ -45,31 +46,37 @@ class Stress(Sealed):
     def __init__(
         self,
         pressure: Floats,
-        size: list[float],
-        depths: Floats,
+        size: Sequence[float],
+        depths: str | Sequence[float],
         poisson: float | None,
         boundary: str,
         transverse: tuple[Floats, float] | None = None,
     ) -> None:
         # Fields are computed later: the array of the caller may have changed until then.
         self._pressure = np.array(pressure)
-        self._size = size
         self._poisson = poisson
-        self._boundary = boundary
         # Where the Poisson's ratio changes with time: see `changing`.
-        self._transverse = transverse
-        self._hold(depths=np.array(depths))
+        confined = None if transverse is None else (as_plane(transverse[0]), transverse[1])
+        self._given = as_plane(self._pressure), list(size), boundary, poisson or 0.0, confined
+        self._core = _core.Stress(*self._given)
+        below = self._core.automatic_depths() if isinstance(depths, str) and depths == "auto" else depths
+        if isinstance(below, str):
+            raise CaseError(f'depths is {depths!r}, but must be "auto" or numbers in m')
+        self._hold(depths=np.array(np.atleast_1d(array("depths", below))))
+        if self.depths.ndim != 1 or self.depths.size == 0:
+            raise CaseError("depths must be one row of numbers in m, at least one")
         # Errors come here and not with the first field.
-        _core.stress_check(*self._what, [float(d) for d in depths])
+        self._core.check_depths(self.depths.tolist())
 
-    @property
-    def _what(self) -> tuple[Floats, list[float], str, float, tuple[Floats, float] | None]:
-        """Pressure, size, boundary and Poisson's ratio, as the core takes them."""
-        transverse = None if self._transverse is None else (as_plane(self._transverse[0]), self._transverse[1])
-        return as_plane(self._pressure), self._size, self._boundary, self._poisson or 0.0, transverse
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_core"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        super().__setstate__(state)
+        self._core = _core.Stress(*self._given)
 
     def _field(self, name: str) -> Floats:
-        found = _core.stress_field(name, *self._what, [float(d) for d in self.depths])
+        found = self._core.field(name, self.depths.tolist())
         values: Floats = frozen(found[:, :, 0] if self._pressure.ndim == 1 else found)
         return values
 
@@ -93,19 +100,12 @@ class Stress(Sealed):
 
         Warns where the maximum lies at the deepest depth, or nearer to the surface than two cells.
         """
-        found: dict[str, Any] = _core.stress_survey(
-            *self._what,
-            [float(d) for d in self.depths],
-            None if threshold is None else number("threshold", threshold),
-            rolling,
-        )
+        limit = None if threshold is None else number("threshold", threshold)
+        found = self._core.survey(self.depths.tolist(), limit, rolling)
         if found.pop("at_the_deepest"):
-            warnings.warn("the largest von Mises stress lies at the deepest depth: give deeper ones", stacklevel=2)
+            warn_caller("the largest von Mises stress lies at the deepest depth: give deeper ones", UserWarning)
         if found.pop("unresolved"):
-            warnings.warn(
-                "the largest von Mises stress lies less than two cells below the surface: the grid is too coarse for it",
-                stacklevel=2,
-            )
+            warn_caller("the largest von Mises stress lies less than two cells below the surface: the grid is too coarse for it", UserWarning)
         return {name: np.asarray(value) if isinstance(value, list) else value for name, value in found.items()}
 
     def __repr__(self) -> str:
@@ -157,9 +157,7 @@ def stress(
     """
     values, extent, _ = _parts(pressure, size, "pressure")
     p = field("pressure", values, line=True)
-    lengths = size_of("pressure", p, extent)
-    nu = number("poisson", poisson)
-    return Stress(p, lengths, depths_below(p, lengths, boundary, depths), nu, boundary)
+    return Stress(p, size_of("pressure", p, extent), depths, number("poisson", poisson), boundary)
 
 
 def changing(creep: Any, times: Sequence[float], pressures: Floats, size: Sequence[float], depths: Any, boundary: str) -> Stress:
@@ -168,18 +166,4 @@ def changing(creep: Any, times: Sequence[float], pressures: Floats, size: Sequen
     stack = plain(pressures if pressures.ndim == 3 else pressures[:, :, np.newaxis])
     transverse, confined = _core.stress_transverse(json.dumps(creep), [float(t) for t in times], stack)
     last = plain(pressures[-1])
-    lengths = list(size)
-    below = depths_below(last, lengths, boundary, depths)
-    return Stress(last, lengths, below, None, boundary, (transverse.reshape(last.shape), confined))
-
-
-def depths_below(pressure: Floats, size: list[float], boundary: str, depths: str | Sequence[float]) -> Floats:
-    """The depths [m] that are asked for."""
-    if isinstance(depths, str):
-        if depths != "auto":
-            raise _core.CaseError(f'depths is {depths!r}, but must be "auto" or numbers in m')
-        return np.asarray(_core.stress_depths(as_plane(pressure), size, boundary))
-    below = np.atleast_1d(array("depths", depths))
-    if below.ndim != 1 or below.size == 0:
-        raise _core.CaseError("depths must be one row of numbers in m, at least one")
-    return below
+    return Stress(last, size, depths, None, boundary, (transverse.reshape(last.shape), confined))

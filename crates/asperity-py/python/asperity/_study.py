@@ -12,7 +12,6 @@ import json
 import os
 import re
 import time
-import warnings
 from collections.abc import Callable, Generator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,24 +19,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import count, number
+from ._arrays import count, distinct, number
 from ._core import CaseError
-from ._findings import Finding, ResultWarning
-from ._leakage import LEAKS, units_of
-from ._points import Point, Solved, _toml, base_of, found, label, label_all, note, solve_point
+from ._findings import Finding, ResultWarning, warn_caller
+from ._points import Point, Solved, base_of, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
 from ._progress import line_of
-from ._columns import QUANTITIES, ROW
+from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW
+from ._histories import one_of
+from ._motion import slide, steady
 from ._units import UNITS, bare, carries, has_unit, is_labelled, unit_among
-from ._result import FIELDS, Result
-from ._solve import _source
+from ._result import Result
+from ._solve import _source, overrides, solve
 from ._surface import Surface
 
 if TYPE_CHECKING:
     import xarray
 
 #: Names that a parameter may not have in the dataset.
-_TAKEN = {*ROW, *QUANTITIES, *FIELDS, *LEAKS, "leak_time", "leak_step", "status", "error", "steps", "step", "point", "x", "y", "field_step", "field_time"}
+_TAKEN = {*COLUMNS, *FIELDS, *LEAKS, "leak_step", "status", "error", "steps", "step", "point", "x", "y", "field_step", "field_time"}
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].*?)?\s*")
 
 
@@ -112,8 +112,7 @@ def study(
     except ImportError:
         raise ImportError("a study gives an xarray.Dataset: pip install xarray (or asperity[xarray])") from None
     plan = _Plan(over, zip)
-    if unknown := [name for name in fields if name not in FIELDS]:
-        raise CaseError(f"fields holds {unknown[0]!r}, but may hold {', '.join(FIELDS)}")
+    distinct("fields", fields, list(FIELDS))
     for what, number in (("workers", workers), ("threads", threads)):
         if number is not None:
             count(what, number)
@@ -177,7 +176,7 @@ def _warn(points: list[Point], done: dict[int, Solved]) -> None:
                 held.setdefault(finding["code"], []).append((point.settings, finding))
     for (settings, finding), *others in held.values():
         place = ", ".join(f"{name} = {value}" for name, value in label_all(settings).items())
-        warnings.warn(f"point {place}{f' and {len(others)} others' if others else ''}: {finding}", ResultWarning, stacklevel=3)
+        warn_caller(f"point {place}{f' and {len(others)} others' if others else ''}: {finding}")
 
 
 class _Plan:
@@ -266,8 +265,6 @@ def _common(case: Any, names: list[str]) -> dict[str, Any]:
         function = _solver({*given, *names})
         return {"fixed": given, "function": function, "base": base_of(None, "", function, given)}
     if callable(case) and not isinstance(case, (str, os.PathLike)):
-        from ._solve import solve
-
         function = None if case is solve else case
         return {"function": function, "base": base_of(None, "", function, {})}
     try:
@@ -287,8 +284,6 @@ def _common(case: Any, names: list[str]) -> dict[str, Any]:
 
 def _solver(names: set[str]) -> Callable[..., Result] | None:
     """What solves parameters of these names: None is :func:`asperity.solve`."""
-    from ._motion import slide, steady
-
     if "velocities" in names:
         return steady
     return slide if names & {"velocity", "path"} else None
@@ -299,54 +294,37 @@ def _check_names(common: dict[str, Any], plan: _Plan) -> None:
     if "case" in common:
         _check_keys(common, plan)
         return
-    for name in plan.names if "fixed" in common else ():
+    fixed, function = common.get("fixed", {}), common.get("function") or solve
+    for name in plan.names if fixed else ():
         if name in UNITS and (text := [point[name] for point in plan.points if isinstance(point[name], str)]):
             raise CaseError(f"the values of {name} hold the text {text[0]!r}, but must be numbers [{UNITS[name]}] or quantities with a unit")
-    from ._solve import solve
-
-    function = common.get("function") or solve
     try:
         parameters = inspect.signature(function).parameters
     except (TypeError, ValueError):  # of some compiled functions it is not known
         return
-    words = f"asperity.{function.__name__}" if function is solve else f"the function {getattr(function, '__name__', function)!r}"
-    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values()):
-        _check_controls(function, common.get("fixed", {}), plan)
-        return
+    called = getattr(function, "__name__", function)
+    words = f"asperity.{called}" if hasattr(function, "options") else f"the function {called!r}"
+    takes_all = any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values())
     known = [name for name, parameter in parameters.items() if parameter.kind is not parameter.POSITIONAL_ONLY and name[0] != "_"]
-    given = [*common.get("fixed", {}), *plan.names]
-    for name in given:
+    given = [*fixed, *plan.names]
+    for name in given if not takes_all else ():
         if name not in known:
             near = difflib.get_close_matches(name, known, 1)
             hint = f"did you mean {near[0]!r}?" if near else f"it takes {', '.join(known)}"
             raise CaseError(f"{words} has no parameter {name!r}: {hint}")
-    _check_controls(function, common.get("fixed", {}), plan)
-    for name in known:
+    # Points that prescribe nothing, or two things at once.
+    alternatives = getattr(getattr(function, "options", None), "alternatives", [])
+    for point, names in itertools.product(plan.points, alternatives):
+        whole = {**fixed, **point}
+        one_of({name: whole.get(name) for name in names}, f"the point {label_all(point)} needs")
+    for name in known if not takes_all else ():
         if name not in given and parameters[name].default is parameters[name].empty:
             raise CaseError(f"{words} needs the parameter {name!r}, which neither the common parameters nor `over` hold")
 
 
-def _check_controls(function: Any, fixed: Mapping[str, Any], plan: _Plan) -> None:
-    """Refuses points that prescribe nothing, or two things at once."""
-    from ._motion import slide, steady
-    from ._solve import solve
-
-    ways: dict[Any, list[tuple[str, ...]]] = {
-        solve: [("load", "pressure", "approach", "stages"), ("surface", "gap")],
-        slide: [("load", "pressure"), ("velocity", "path"), ("surface", "gap")],
-        steady: [("load", "pressure"), ("surface", "gap")],
-    }
-    for point in plan.points:
-        for names in ways.get(function, []):
-            here = [name for name in names if {**fixed, **point}.get(name) is not None]
-            if len(here) != 1:
-                told = f"the point {label_all(point)} has {' and '.join(here) or 'none of them'}"
-                raise CaseError(f"a study needs {', '.join(names[:-1])} or {names[-1]}, exactly one of them; {told}")
-
-
 def _check_keys(common: dict[str, Any], plan: _Plan) -> None:
     """Refuses keys that a case does not have; wrong values are errors of their points."""
-    keys = [f"{key}={_toml(value)}" for key, value in plan.points[0].items()]
+    keys = overrides(plan.points[0])
     try:
         _core.check(common["directory"], common["case"], keys)
     except CaseError as error:
@@ -446,13 +424,10 @@ def _dataset(
     most = int(steps.max(initial=0))
     columns: dict[str, Any] = {}
     asked = dict.fromkeys(name for result in results if result is not None for name in result._table if name not in ROW)
-    for name, (unit, words) in {**ROW, **{name: QUANTITIES[name] for name in asked}}.items():
-        table = np.full((len(points), most), np.nan)
-        for n, result in enumerate(results):
-            if result is not None and name in result._table:
-                table[n, : steps[n]] = result._table[name]
+    for name, entry in {**ROW, **{name: QUANTITIES[name] for name in asked}}.items():
+        table = _padded([None if result is None else result._table.get(name) for result in results], most)
         units = {result.units(name) for result in results if result is not None}
-        attributes = {"units": " or ".join(sorted(units)) or unit, "long_name": words}
+        attributes = {"units": " or ".join(sorted(units)) or entry.unit, "long_name": entry.words}
         if name == "time":
             whole = table[steps == most] if most else table
             sweeps = any(result is not None and result.is_sweep for result in results)
@@ -476,6 +451,15 @@ def _dataset(
     return xarray.Dataset(columns, coords=coordinates, attrs=attributes)
 
 
+def _padded(columns: Sequence[Any], most: int, cells: tuple[int, ...] = ()) -> Any:
+    """The columns of all points, or stacks of their fields, with NaN beyond their ends."""
+    table = np.full((len(columns), most, *cells), np.nan)
+    for n, column in enumerate(columns):
+        if column is not None:
+            table[n, : len(column)] = column
+    return table
+
+
 def _add_leaks(
     columns: dict[str, Any], coordinates: dict[str, Any], plan: _Plan, dims: tuple[str, ...], results: list[Result | None]
 ) -> None:
@@ -483,15 +467,11 @@ def _add_leaks(
     leaks = [{} if result is None else result._leaks for result in results]
     most = max((len(table["leak_time"]) for table in leaks if table), default=0)
     gas = any("leak_rate_standard" in table for table in leaks)
-    for name in ["leak_time", *LEAKS]:
+    for name, entry in (GAS_LEAKS if gas else LEAKS).items():
         if not any(name in table for table in leaks):
             continue
-        values = np.full((len(leaks), most), np.nan)
-        for n, table in enumerate(leaks):
-            if name in table:
-                values[n, : len(table[name])] = table[name]
-        unit, words = ("s", "time of the leak") if name == "leak_time" else (units_of(name, gas), LEAKS[name][1])
-        column = ((*dims, "leak_step"), values.reshape(*plan.shape, most), {"units": unit, "long_name": words})
+        values = _padded([table.get(name) for table in leaks], most)
+        column = ((*dims, "leak_step"), values.reshape(*plan.shape, most), entry.attributes())
         (coordinates if name == "leak_time" else columns)[name] = column
 
 
@@ -507,28 +487,18 @@ def _add_fields(
     grids = {(result.cells, result.size) for result in whole}
     if len(grids) != 1:
         if grids:
-            warnings.warn("the points have different grids: the dataset holds no fields", stacklevel=3)
+            warn_caller("the points have different grids: the dataset holds no fields", UserWarning)
         return
     first = whole[0]
     most = max(len(result.field_times) for result in whole)
-    times = np.full((len(results), most), np.nan)
-    for n, result in enumerate(results):
-        if result is not None:
-            times[n, : len(result.field_times)] = result.field_times
+    times = _padded([None if result is None else result.field_times for result in results], most)
     words = {"units": "s", "long_name": "time of the fields"}
     coordinates["field_time"] = ((*dims, "field_step"), times.reshape(*plan.shape, most), words)
-    coordinates["x"] = ("x", first.x, {"units": "m", "long_name": "x"})
-    over = ("x",) if first.is_line else ("x", "y")
-    if not first.is_line:
-        coordinates["y"] = ("y", first.y, {"units": "m", "long_name": "y"})
+    coordinates.update(first._coordinates)
     for name in names:
-        stack = np.full((len(results), most, *first.cells), np.nan)
-        for n, result in enumerate(results):
-            if result is not None:
-                stack[n, : len(result.field_times)] = result._stack(name)
-        unit, long_name = FIELDS[name]
+        stack = _padded([None if result is None else result._stack(name) for result in results], most, first.cells)
         shape = (*plan.shape, most, *first.cells)
-        columns[name] = ((*dims, "field_step", *over), stack.reshape(shape), {"units": unit, "long_name": long_name})
+        columns[name] = ((*dims, "field_step", *first._axes), stack.reshape(shape), FIELDS[name].attributes())
 
 
 def _coordinate(column: list[Any]) -> tuple[Any, dict[str, str]]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import re
-import warnings
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field as dataclass_field
 from typing import TYPE_CHECKING, Any, Protocol, Union
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol, Union
 import numpy as np
 import numpy.typing as npt
 
-from . import _core, _foreign
+from . import _core, _foreign, _html
 from ._arrays import (
     Floats,
     along,
@@ -21,7 +21,6 @@ from ._arrays import (
     as_plane,
     cell_counts,
     cells_of,
-    centres,
     count,
     counts,
     field,
@@ -29,12 +28,15 @@ from ._arrays import (
     in_order,
     lengths,
     number,
+    numbers_of,
     pair,
     pitch_of,
     size_of,
 )
 from ._core import CaseError
-from ._findings import ResultWarning, findings_of, warn
+from ._findings import findings_of, warn, warn_caller
+from ._grid import OnGrid
+from ._histories import one_of
 from ._sealed import ReadOnlyArrays
 from ._units import carries, factor_of, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
@@ -80,7 +82,7 @@ class Autocorrelation(ReadOnlyArrays):
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class Surface(OnGrid):
     """Heights [m] at the cell centres of a rectangle, shape (nx, ny), or of a line, shape (n,), pointing out of their body.
 
     A line is for line contacts in plane strain, in which nothing changes along y; its `size` is one length, (L,).
@@ -115,29 +117,12 @@ class Surface:
         object.__setattr__(self, "metadata", {**known, **(metadata or {})})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _surface, (self.heights, self.size, self.metadata)
+        return functools.partial(Surface, size=self.size, metadata=self.metadata), (self.heights,)
 
     @property
     def cells(self) -> tuple[int, ...]:
         """Number of cells along x and y; of a line one number."""
         return self.heights.shape
-
-    @property
-    def is_line(self) -> bool:
-        """Whether it is a line of cells, for a line contact."""
-        return self.heights.ndim == 1
-
-    @property
-    def x(self) -> Floats:
-        """Cell centres along x [m]."""
-        return centres(self.cells[0], self.size[0])
-
-    @property
-    def y(self) -> Floats:
-        """Cell centres along y [m]."""
-        if self.is_line:
-            raise AttributeError("a line of cells has no y: nothing changes along it")
-        return centres(self.cells[1], self.size[1])
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
         """The heights [m]."""
@@ -213,17 +198,20 @@ class Surface:
         """The heights as xarray.DataArray with coordinates x and y, and units."""
         import xarray
 
-        names = ("x",) if self.is_line else ("x", "y")
-        axes = {name: (name, np.array(getattr(self, name)), {"units": "m", "long_name": name}) for name in names}
         attributes = {"units": "m", "long_name": "height"}
-        return xarray.DataArray(np.array(self.heights), dims=names, coords=axes, name="heights", attrs=attributes)
+        return xarray.DataArray(np.array(self.heights), dims=self._axes, coords=self._coordinates, name="heights", attrs=attributes)
 
     def __repr__(self) -> str:
         return f"Surface({cells_of(self.heights)}, {' x '.join(f'{length:g} m' for length in self.size)})"
 
     def gap(self) -> Floats:
         """The undeformed gap against a flat [m]: least value 0, infinite where nothing can touch."""
-        return _core.gap(as_plane(self.heights), list(self.size)).reshape(self.heights.shape)
+        return self._compiled.gap().reshape(self.heights.shape)
+
+    @property
+    def _compiled(self) -> _core.Heights:
+        """The surface as the core takes it."""
+        return _core.Heights(as_plane(self.heights), list(self.size))
 
     @property
     def history(self) -> list[str]:
@@ -231,7 +219,7 @@ class Surface:
         return list(self.metadata.get("history", []))
 
     def process(self, *steps: str) -> Surface:
-        """The surface after steps in the words of ``asperity surface process --op``, done in order.
+        """The surface after these steps, done in order; they are written as for ``asperity surface process --op``.
 
         ``level=plane``, ``fill=harmonic share=0.25``, ``crop cells=512,512 from=0,0``, ``filter longest=40um``, ... The
         methods below do the same steps one by one. Each step is recorded in :attr:`history`.
@@ -242,7 +230,7 @@ class Surface:
         >>> flat.cells, bool(np.all(abs(flat.heights) < 1e-13)), flat.history[1]
         ((4, 4), True, 'crop to 4 x 4 cells from (3, 2)')
         """
-        heights, size, done = _core.process(as_plane(self.heights), list(self.size), [str(step) for step in steps])
+        heights, size, done = self._compiled.process([str(step) for step in steps])
         heights = heights[:, 0] if self.is_line else heights
         metadata = {**self.metadata, "history": [*self.history, *done]}
         return Surface(heights, size=size, metadata=metadata)
@@ -271,9 +259,7 @@ class Surface:
     ) -> Surface:
         """A rectangle of it: `cells` from the cell `start`, or `size` [m] from the `corner` [m], else about the middle;
         or the smallest rectangle that holds every defined point."""
-        given = [name for name, value in (("cells", cells), ("size", size), ("defined", defined or None)) if value is not None]
-        if len(given) != 1:
-            raise CaseError(f"give cells, size or defined=True, exactly one of them; given: {', '.join(given) or 'none'}")
+        one_of({"cells": cells, "size": size, "defined=True": defined or None}, "give")
         if defined:
             return self.process("crop defined=true")
         if cells is not None:
@@ -295,11 +281,8 @@ class Surface:
 
         The surface is taken as periodic: lay a :meth:`window` over one that is not.
         """
-        words = ["filter"]
-        for name, value in (("longest", longest), ("shortest", shortest)):
-            if value is not None:
-                words.append(f"{name}={number(name, value)!r}")
-        return self.process(" ".join([*words, f"edge={edge}"]))
+        ends = numbers_of({"longest": longest, "shortest": shortest})
+        return self.process(" ".join(["filter", *(f"{name}={value!r}" for name, value in ends.items()), f"edge={edge}"]))
 
     def flip(self, axis: Axis) -> Surface:
         """Mirrored along "x" or "y"."""
@@ -351,18 +334,14 @@ class Surface:
         if self.is_line:
             if periodic is not None or shortest is not None:
                 raise CaseError("a profile has no `periodic` and no `shortest`: give `longest`, the cut-off, or nothing")
-            cutoff = None if longest is None else number("longest", longest)
-            return _core.profile_parameters(self.heights, self.size[0] / self.cells[0], cutoff)
+            return self._compiled.profile_parameters(None if longest is None else number("longest", longest))
         band = None
         if longest is not None or shortest is not None:
             # Without one of them: from the size of the surface, or down to its cells.
-            from_, to = max(self.size), 2 * min(length / n for length, n in zip(self.size, self.cells))
-            band = [
-                from_ if longest is None else number("longest", longest),
-                to if shortest is None else number("shortest", shortest),
-            ]
-        found = _core.describe(self.heights, list(self.size), self._repeats(periodic), band)
-        warn(findings_of(json.loads(found.pop("findings", "[]"))), 2)
+            ends = {"longest": max(self.size), "shortest": 2 * min(length / n for length, n in zip(self.size, self.cells))}
+            band = list({**ends, **numbers_of({"longest": longest, "shortest": shortest})}.values())
+        found = self._compiled.describe(self._repeats(periodic), band)
+        warn(findings_of(json.loads(found.pop("findings", "[]"))))
         return found
 
     def power_spectrum(self, per_decade: int = 16) -> tuple[Floats, Floats]:
@@ -373,7 +352,7 @@ class Surface:
         """
         if self.is_line:
             return self.power_spectrum_1d()
-        return _core.power_spectrum(self.heights, list(self.size), count("per_decade", per_decade, 0, 1000))
+        return self._compiled.power_spectrum(count("per_decade", per_decade, 0, 1000))
 
     def power_spectrum_1d(self, direction: Axis = "x") -> tuple[Floats, Floats]:
         """Wavenumbers q > 0 [1/m] and power spectrum C1(q) [m^3] of the profiles along "x" or "y", their mean.
@@ -412,7 +391,7 @@ class Surface:
         >>> bool(np.isclose(np.sum(c) * (qx[1] - qx[0]) * (qy[1] - qy[0]) / (2 * np.pi) ** 2, 1e-12))
         True
         """
-        self._plane("power_spectrum_2d")
+        self._check_plane("power_spectrum_2d")
         z = self._defined("power_spectrum_2d")
         (nx, ny), (lx, ly) = z.shape, self.size
         power = np.fft.fftshift(np.abs(np.fft.fft2(z - z.mean())) ** 2) * (lx * ly / (nx * ny) ** 2)
@@ -428,23 +407,23 @@ class Surface:
 
     def bearing_curve(self, levels: int = 200) -> tuple[Floats, Floats]:
         """Heights [m] and the share of the points at or above each (Abbott and Firestone 1933)."""
-        return _core.bearing_curve(as_plane(self.heights), list(self.size), count("levels", levels, 2))
+        return self._compiled.bearing_curve(count("levels", levels, 2))
 
     def height_distribution(self, bins: int = 100) -> tuple[Floats, Floats]:
         """Heights [m], the middles of bins, and the density of points there [1/m]."""
-        return _core.height_distribution(as_plane(self.heights), list(self.size), count("bins", bins))
+        return self._compiled.height_distribution(count("bins", bins))
 
     def autocorrelation(self, *, periodic: bool | None = None) -> Autocorrelation:
         """The autocorrelation function and the spatial parameters Sal and Str (ISO 25178-2)."""
-        values, length, aspect = _core.autocorrelation(self._plane("autocorrelation"), list(self.size), self._repeats(periodic))
+        self._check_plane("autocorrelation")
+        values, length, aspect = self._compiled.autocorrelation(self._repeats(periodic))
         lags: list[Floats] = [np.asarray((np.arange(n) - n // 2) * (side / n), dtype=np.float64) for n, side in zip(self.cells, self.size)]
         return Autocorrelation(values, lags[0], lags[1], length, aspect)
 
-    def _plane(self, what: str) -> Floats:
-        """The heights over a plane, which the method `what` needs."""
+    def _check_plane(self, what: str) -> None:
+        """Refuses a line of cells, for which there is no method `what`."""
         if self.is_line:
             raise CaseError(f"{what} is for surfaces over a plane, but this one is a line of {self.cells[0]} cells")
-        return self.heights
 
     def _repeats(self, periodic: bool | None) -> bool:
         # A file's surface knows its format.
@@ -458,17 +437,14 @@ class Surface:
         return SurfacePlots(self)
 
     def _repr_html_(self) -> str:
-        import html
-
         finite = self.heights[np.isfinite(self.heights)]
-        lines = [("size", " x ".join(f"{length:g} m" for length in self.size))]
+        rows = [("size", " x ".join(f"{length:g} m" for length in self.size))]
         if finite.size:
-            lines.append(("heights", f"{finite.min():.4g} m to {finite.max():.4g} m, Sq {finite.std():.4g} m"))
+            rows.append(("heights", f"{finite.min():.4g} m to {finite.max():.4g} m, Sq {finite.std():.4g} m"))
         if missing := self.heights.size - finite.size:
-            lines.append(("undefined", f"{missing} of {self.heights.size} points"))
-        lines += [("history" if n == 0 else "", step) for n, step in enumerate(self.history)]
-        rows = "".join(f"<tr><th style='text-align:left'>{a}</th><td style='text-align:left'>{html.escape(b)}</td></tr>" for a, b in lines)
-        return f"<b>Surface</b>, {cells_of(self.heights)}<table>{rows}</table>"
+            rows.append(("undefined", f"{missing} of {self.heights.size} points"))
+        rows += [("history" if n == 0 else "", step) for n, step in enumerate(self.history)]
+        return f"<b>Surface</b>, {cells_of(self.heights)}{_html.table(rows)}"
 
     def write(self, path: str | os.PathLike[str], *, format: str | None = None, force: bool = False) -> None:
         """Writes NPZ, GWY, X3P, SDF, NetCDF or text, selected by the path's extension or by `format`."""
@@ -476,7 +452,8 @@ class Surface:
         if not force and os.path.exists(path):
             raise FileExistsError(f"{path} already exists; choose another file or give force=True")
         form = format or os.path.splitext(path)[1].lstrip(".")
-        _core.write_surface(path, self._plane("write"), list(self.size), form, self.history)
+        self._check_plane("write")
+        self._compiled.write(path, form, self.history)
 
     @staticmethod
     def read(
@@ -518,11 +495,9 @@ class Surface:
             found = _foreign.read(path, given, unit, name, error)
         heights, extent = found.pop("heights"), found.pop("size")
         if transpose is None and len(extent) == 2 and _is_savetxt(path):
-            warnings.warn(
+            warn_caller(
                 f"{path} looks as if numpy.savetxt had written it: its lines are read along x, so that an array with axes (x, y) comes out "
-                "transposed. Give transpose=True for such an array, or transpose=False if the lines run along x.",
-                ResultWarning,
-                stacklevel=2,
+                "transposed. Give transpose=True for such an array, or transpose=False if the lines run along x."
             )
         if transpose:
             if len(extent) != 2:
@@ -566,27 +541,13 @@ class Surface:
         >>> round(surface.statistics()["sq"] * 1e6, 12)
         1.0
         """
-        lay = {
-            "angle": None if lay_angle is None else angle("lay_angle", lay_angle),
-            "ratio": _optional("lay_ratio", lay_ratio),
-        }
-        distribution = {"skewness": _optional("skewness", skewness), "kurtosis": _optional("kurtosis", kurtosis)}
-        if len(lengths("size", size)) == 1 and (_given(lay) or _given(distribution)):
+        lay = numbers_of({"angle": None if lay_angle is None else angle("lay_angle", lay_angle), "ratio": lay_ratio})
+        distribution = numbers_of({"skewness": skewness, "kurtosis": kurtosis})
+        if len(lengths("size", size)) == 1 and (lay or distribution):
             raise CaseError("a profile has no lay, and heights of a normal distribution: leave lay, skewness and kurtosis out")
-        return _made(
-            cells,
-            size,
-            kind="self-affine",
-            hurst=number("hurst", hurst),
-            rms_gradient=_optional("rms_gradient", rms_gradient),
-            rms_height=_optional("rms_height", rms_height),
-            longest=number("longest", longest),
-            shortest=number("shortest", shortest),
-            roll_off=_optional("roll_off", roll_off),
-            lay=_given(lay),
-            distribution=_given(distribution),
-            seed=count("seed", seed, 0, 2**63 - 1),
-        )
+        numbers = dict(hurst=hurst, rms_gradient=rms_gradient, rms_height=rms_height, longest=longest, shortest=shortest, roll_off=roll_off)
+        given = {"seed": count("seed", seed, 0, 2**63 - 1), "lay": lay, "distribution": distribution}
+        return _made(cells, size, "self-affine", numbers, **{name: value for name, value in given.items() if value != {}})
 
     @staticmethod
     def contact_mechanics_challenge(*, cells: Sequence[int], seed: int = 0) -> Surface:
@@ -594,15 +555,15 @@ class Surface:
 
         Hurst exponent 0.8, roll-off 20 um, cut-off 0.1 um, rms gradient 1; it needs 2000 cells a side or more.
         """
-        challenge = dict(kind="self-affine", preset="contact-mechanics-challenge", seed=count("seed", seed, 0, 2**63 - 1))
-        return _made(cells, (1e-4, 1e-4), **challenge)
+        whole = count("seed", seed, 0, 2**63 - 1)
+        return _made(cells, (1e-4, 1e-4), "self-affine", {}, preset="contact-mechanics-challenge", seed=whole)
 
     @staticmethod
     def sphere(
         *, cells: Sequence[int], size: Sequence[float], radius: float, center: Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A paraboloid of that radius [m]; `center` [m] from the middle of the domain."""
-        return _shape(cells, size, center, kind="sphere", radius=number("radius", radius))
+        return _shape(cells, size, center, "sphere", radius=radius)
 
     @staticmethod
     def ellipsoid(
@@ -614,8 +575,7 @@ class Surface:
         center: Sequence[float] = (0.0, 0.0),
     ) -> Surface:
         """A paraboloid of two radii [m]; an infinite one makes a cylinder."""
-        radii = dict(radius_x=number("radius_x", radius_x), radius_y=number("radius_y", radius_y))
-        return _shape(cells, size, center, kind="ellipsoid", **radii)
+        return _shape(cells, size, center, "ellipsoid", radius_x=radius_x, radius_y=radius_y)
 
     @staticmethod
     def cylinder(
@@ -629,21 +589,21 @@ class Surface:
         >>> bool(abs(hertz.pressure.max() / np.sqrt(20e3 * 1e9 / (np.pi * 10e-3)) - 1) < 1e-3)
         True
         """
-        return _shape(cells, size, center, kind="cylinder", radius=number("radius", radius))
+        return _shape(cells, size, center, "cylinder", radius=radius)
 
     @staticmethod
     def wedge(
         *, cells: int | Sequence[int], size: float | Sequence[float], slope: float, center: float | Sequence[float] = 0.0
     ) -> Surface:
         """A wedge along y that rises by `slope` per length; `center` [m] along x from the middle of the domain."""
-        return _shape(cells, size, center, kind="wedge", slope=number("slope", slope))
+        return _shape(cells, size, center, "wedge", slope=slope)
 
     @staticmethod
     def cone(
         *, cells: Sequence[int], size: Sequence[float], slope: float, center: Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A cone that rises by `slope` per length."""
-        return _shape(cells, size, center, kind="cone", slope=number("slope", slope))
+        return _shape(cells, size, center, "cone", slope=slope)
 
     @staticmethod
     def flat_punch(
@@ -656,54 +616,40 @@ class Surface:
     ) -> Surface:
         """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch. On a line of cells a strip of
         half the width `radius`, or of the width `sides`."""
-        dimensions = len(lengths("size", size))
-        face = None if sides is None else along("sides", sides, dimensions, np.inf)[:dimensions]
-        return _shape(cells, size, center, kind="flat-punch", radius=_optional("radius", radius), size=face)
+        face = {} if sides is None else {"size": _along_both("sides", sides, size)}
+        return _shape(cells, size, center, "flat-punch", face, radius=radius)
 
     @staticmethod
     def wave(
         *, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]
     ) -> Surface:
         """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge. On a line one wavelength."""
-        dimensions = len(lengths("size", size))
-        waves = along("wavelength", wavelength, dimensions, np.inf)[:dimensions]
-        return _made(cells, size, kind="wave", amplitude=number("amplitude", amplitude), wavelength=waves)
+        return _made(cells, size, "wave", {"amplitude": amplitude}, wavelength=_along_both("wavelength", wavelength, size))
 
 
-def _surface(heights: Any, size: Any, metadata: Any) -> Surface:
-    return Surface(heights, size=size, metadata=metadata)
+def _along_both(what: str, value: Any, size: Any) -> list[float]:
+    """Lengths along x and y, of a line along x: along y they are infinite there."""
+    dimensions = len(lengths("size", size))
+    return along(what, value, dimensions, np.inf)[:dimensions]
 
 
-def _optional(what: str, value: Any) -> float | None:
-    return None if value is None else number(what, value)
-
-
-def _given(keys: dict[str, Any]) -> dict[str, Any] | None:
-    """The keys that have a value; None where none has."""
-    return {key: value for key, value in keys.items() if value is not None} or None
-
-
-def _shape(cells: Any, size: Any, center: float | Sequence[float], /, **keys: Any) -> Surface:
+def _shape(cells: Any, size: Any, center: Any, kind: str, keys: dict[str, Any] | None = None, /, **numbers: Any) -> Surface:
     """A smooth shape at `center` [m] from the middle of the domain."""
     dimensions = len(lengths("size", size))
     # What is straight along y has no place along it.
-    straight = keys["kind"] in ("cylinder", "wedge") and np.size(center) == 1
+    straight = kind in ("cylinder", "wedge") and np.size(center) == 1
     place = [*lengths("center", center), 0.0] if straight else along("center", center, dimensions)
-    return _made(cells, size, center=place[:dimensions], **keys)
+    return _made(cells, size, kind, numbers, center=place[:dimensions], **(keys or {}))
 
 
-def _made(cells: Any, size: Any, /, **keys: Any) -> Surface:
+def _made(cells: Any, size: Any, kind: str, numbers: dict[str, Any], /, **keys: Any) -> Surface:
     """The surface of a case that has these keys."""
     extent, grid = lengths("size", size), cell_counts("cells", cells)
-    check_dimensions(grid, extent)
-    heights = _core.heights({"domain": {"cells": list(grid), "size": list(extent)}, "surface": [_given(keys)]})
+    if len(grid) != len(extent):
+        raise CaseError(f"cells is {grid} and size {extent}, but both must have two numbers, or both one for a line of cells")
+    domain = {"cells": list(grid), "size": list(extent)}
+    heights = _core.heights({"domain": domain, "surface": [{"kind": kind, **numbers_of(numbers), **keys}]})
     return Surface(heights.reshape(grid), size=extent)
-
-
-def check_dimensions(cells: tuple[int, ...], size: tuple[float, ...]) -> None:
-    """Cells and size are both those of a plane, or both those of a line."""
-    if len(cells) != len(size):
-        raise CaseError(f"cells is {cells} and size {size}, but both must have two numbers, or both one for a line of cells")
 
 
 def as_surface(value: Any, size: float | Sequence[float] | None) -> Surface:
@@ -727,10 +673,10 @@ def surface_of(surface: Any, gap: Any, size: float | Sequence[float] | None) -> 
 
 
 def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict[str, Any]]:
-    """The numbers [m] of what stands for a surface, its size [m] and its metadata."""
+    """Heights [m], size [m] and metadata of a surface, or of an object that describes one."""
     value = variable_of(what, value)
     held = getattr(value, "magnitude", None)
-    if isinstance(held, Surface):  # of pint, which multiplies whatever it finds
+    if isinstance(held, Surface):  # a quantity of pint, which multiplies objects of any kind
         return _parts(held * number("factor of the surface", type(value)(1.0, value.units), ""), size, what)
     if isinstance(value, Surface):
         if size is not None and not np.allclose(size_of("heights", value.heights, size), value.size, rtol=1e-9, atol=0.0):

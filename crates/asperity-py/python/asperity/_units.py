@@ -68,7 +68,7 @@ def is_labelled(value: Any) -> bool:
 
 
 def unit_text(value: Any) -> str:
-    """The unit of a quantity, or of an array of xarray, in the words of its package; "dimensionless" where they are none."""
+    """The unit of a quantity, or of an array of xarray, as its package writes it; "dimensionless" if it has none."""
     unit = value.attrs.get("units", "") if is_labelled(value) else getattr(value, "units", None)
     return str(getattr(value, "unit", "") if unit is None else unit) or "dimensionless"
 
@@ -186,7 +186,7 @@ def factor_of(what: str, given: Any, unit: str) -> float:
 
 
 def expected(unit: str) -> str:
-    """A unit in the words of a message."""
+    """What a message says is expected in this unit."""
     return f"in {unit} or a unit of the same kind" if unit else "a plain number"
 
 

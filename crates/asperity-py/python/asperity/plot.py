@@ -1,6 +1,6 @@
 """Figures of results, surfaces and fits by matplotlib (an optional dependency: pip install asperity[plot]).
 
-Units of axes are those that suit the numbers; a second curve in the same axes has the unit of the first."""
+Each axis has a unit that suits its numbers; a second curve in the same axes keeps the unit of the first."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from ._drawing import (
 )
 from ._last_cycle import last_cycle as _last_cycle_of
 from ._prefixes import quantity, shown
-from ._result import FIELDS
+from ._columns import FIELDS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,7 +55,7 @@ def _told(plots: Any, missing: frozenset[str] = frozenset()) -> str:
 _LIGHT = "#f0f0ee"
 #: Labels of the contact states, by number.
 _STATES = {0: ("open", _LIGHT), 1: ("contact", "#0072b2"), 2: ("at hardness", "#d55e00")}
-#: Gaps below this share of the largest undeformed gap or approach are closed but for rounding errors.
+#: Gaps below this share of the largest undeformed gap, or of the approach, are rounding errors: the gap is closed.
 _ROUNDING = 1e-12
 
 
@@ -120,8 +120,8 @@ class Plots:
         for ax, panel in zip(drawn.flat, self._panels()):
             # Decades on both sides of a second, or of 1 m/s, are powers of ten of it.
             wide = log_time and np.any(over[rows] < 1.0) and over[-1] > 1e6 * np.min(over[rows], initial=np.inf) and over[-1] > 1.0
-            shift, rows_unit = _scale(ax, along.name, 1.0 if wide else _largest(over), along.unit, axis="x", log=log_time)
-            factor, text = _scale(ax, panel.title, _largest(*(values for _, values in panel.curves)), panel.unit, panel.power)
+            shift = _scale(ax, along.name, 1.0 if wide else _largest(over), along.unit, axis="x", log=log_time)
+            factor = _scale(ax, panel.title, _largest(*(values for _, values in panel.curves)), panel.unit, panel.power)
             first = None
             for n, (words, values) in enumerate(panel.curves):
                 told = ", ".join(str(part) for part in (label, words) if part not in (None, ""))
@@ -129,8 +129,6 @@ class Plots:
                 (line,) = ax.plot(over[rows] * shift, values[rows] * factor, label=told or None, **_marked(given, values[rows]))
                 first = first or line
             _settle(ax)
-            ax.set_xlabel(f"{along.name} [{rows_unit}]")
-            ax.set_ylabel(panel.title if panel.unit == "1" else f"{panel.title} [{text}]")
             if log_time:
                 # What another evolution has at the time 0 has no place here either.
                 ax.set_xscale("log", nonpositive="mask")
@@ -181,7 +179,7 @@ class Plots:
         _, (whole, last) = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
         _load_displacement(approach, load, unit, whole, style)
         _load_displacement(approach[cycle], load[cycle], unit, last, style)
-        # The titles lie above the legend, where there is one.
+        # If there is a legend, the titles lie above it.
         pad = 2.0 * _letters() if "label" in style else None
         from_, to = result.time[cycle][[0, -1]]
         whole.set_title("all cycles", pad=pad)
@@ -225,9 +223,7 @@ class Plots:
         ax = _axes(ax, style, "curve" if result.is_line else "map", result.size)
         self._tell(ax, at, notes=[] if result.is_line else [_stretched(result.size, style)])
         if result.is_line:
-            along = _scale(ax, "x", result.size[0], "m", axis="x")
-            ax.step(result.x * along[0], states, **{"where": "mid", **style})
-            ax.set_xlabel(f"x [{along[1]}]")
+            ax.step(result.x * _scale(ax, "x", result.size[0], "m", axis="x"), states, **{"where": "mid", **style})
             _name_states(ax, states)
             return ax
         colours = [colour for _, colour in _STATES.values()]
@@ -289,18 +285,15 @@ class Plots:
         self, name: str, values: Any, at: Any, ax: Axes | None, style: dict[str, Any], place: str = "", before: Any = None
     ) -> Axes:
         """A field over x, and what it was `before` the bodies touched."""
-        unit = FIELDS[name][0]
         curves = [(style, values)]
         if before is not None and ax is None and "label" not in style:
             curves = [({"label": "now", **style}, values), ({"label": "undeformed", "color": "0.5", "linestyle": "--"}, before)]
         ax = _axes(ax, style)
-        x, x_unit = _scale(ax, "x", self._result.size[0], "m", axis="x")
-        factor, text = _scale(ax, name, _largest(*(course for _, course in curves)), unit)
+        x = _scale(ax, "x", self._result.size[0], "m", axis="x")
+        factor = _scale(ax, name, _largest(*(course for _, course in curves)), FIELDS[name].unit)
         for given, course in curves:
             ax.plot(self._result.x * x, course * factor, **_marked(given, course))
         _settle(ax)
-        ax.set_xlabel(f"x [{x_unit}]")
-        ax.set_ylabel(f"{name} [{text}]" if unit != "1" else name)
         if name == "contact":
             _name_states(ax, values)
         if "label" not in style:
@@ -314,7 +307,7 @@ class Plots:
     def _map(self, name: str, colours: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
         if self._result.is_line:
             return self._curve(name, at, ax, style)
-        unit, size, values = FIELDS[name][0], self._result.size, self._field(name, at)
+        unit, size, values = FIELDS[name].unit, self._result.size, self._field(name, at)
         values = np.where(np.isfinite(values), values, np.nan)
         if name == "gap":
             values = self._closed(values, at)
@@ -354,8 +347,7 @@ class Plots:
         return bool(self._result.contact_area[self._result._field_steps[self._row(at)]] > 0)
 
     def _tell(self, ax: Any, at: Any, place: str = "", notes: Sequence[str] = ()) -> None:
-        """The place and the time, where there is more than one, as the title of the axes, and below it what there is to note, in lines of
-        their own."""
+        """Sets the title of the axes: the place, the time if fields of several times are stored, and notes below, one in each line."""
         result, when = self._result, ""
         if len(result.field_times) > 1:
             moment = float(result.field_times[self._row(at)])
@@ -433,12 +425,11 @@ class CurvePlots:
         """Contact fraction over mean pressure; with `corrected` that of the area less its perimeter's share, of a line contact of the length
         less the share of its ends."""
         curve, ax = self._curve, _axes(ax, style)
-        factor, text = _scale(ax, "mean pressure", _largest(curve.mean_pressure), "Pa", axis="x")
+        factor = _scale(ax, "mean pressure", _largest(curve.mean_pressure), "Pa", axis="x")
         fraction, share = curve.contact_fraction, "contact length [% of the domain]" if curve[0].is_line else "contact area [% of nominal]"
         if corrected:
             fraction = curve.contact_area_corrected / math.prod(curve[0].size)
         ax.plot(curve.mean_pressure * factor, 100 * fraction, **{"marker": ".", **style})
-        ax.set_xlabel(f"mean pressure [{text}]")
         ax.set_ylabel(f"{'corrected ' if corrected else ''}{share}")
         if "label" in style:
             _legend(ax)
@@ -470,10 +461,7 @@ class SurfacePlots:
         ax = _axes(ax, style, "curve" if surface.is_line else "map", surface.size)
         if surface.is_line:
             along = _scale(ax, "x", max(surface.size), "m", axis="x")
-            factor, text = _scale(ax, "height", _largest(z), "m")
-            ax.plot(surface.x * along[0], z * factor, **style)
-            ax.set_xlabel(f"x [{along[1]}]")
-            ax.set_ylabel(f"height [{text}]")
+            ax.plot(surface.x * along, z * _scale(ax, "height", _largest(z), "m"), **style)
             return ax
         if told := _stretched(surface.size, style):
             ax.set_title(told)
@@ -536,10 +524,8 @@ class SurfacePlots:
         """Height over the share of the surface above it."""
         z, share = self._surface.bearing_curve()
         ax = _axes(ax, style)
-        factor, text = _scale(ax, "height", _largest(z), "m")
-        ax.plot(100 * share, z * factor, **style)
+        ax.plot(100 * share, z * _scale(ax, "height", _largest(z), "m"), **style)
         ax.set_xlabel("share of the surface above [%]")
-        ax.set_ylabel(f"height [{text}]")
         ax.set_xlim(0, 100)
         return ax
 
@@ -550,18 +536,16 @@ def _load_displacement(approach: Any, load: Any, unit: str, ax: Axes | None, sty
     along = _scale(ax, "approach", _largest(approach), "m", axis="x")
     if not np.any(load) and not ax.lines and "label" not in style:
         style = {**style, "label": "nothing touches"}
-    ax.plot(approach * along[0], load * across[0], **_marked(style, approach, load))
+    ax.plot(approach * along, load * across, **_marked(style, approach, load))
     _settle(ax)
     _settle(ax, "x")
-    ax.set_xlabel(f"approach [{along[1]}]")
-    ax.set_ylabel(f"load [{across[1]}]")
     if "label" in style:
         _legend(ax)
     return ax
 
 
 def _two_or_five(value: float) -> str:
-    """2 and 5 times a power of ten in the words of matplotlib; nothing for other numbers."""
+    """The label of 2 or 5 times a power of ten, written for matplotlib; empty for other numbers."""
     power = math.floor(math.log10(value) + 1e-9) if value > 0 else 0
     first = round(value / 10.0**power)
     return f"${first}\\times10^{{{power}}}$" if first in (2, 5) else ""

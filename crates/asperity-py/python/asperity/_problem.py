@@ -1,0 +1,181 @@
+"""What a run is given: the arguments of :func:`asperity.solve` and of its relatives, as the keys of a case."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import KW_ONLY, dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from ._arrays import as_plane, check_places, choice, count, distinct, field, in_order, number
+from ._core import CaseError
+from ._histories import History, Stage, Times, as_history, as_times, one_of
+from ._layers import Body
+from ._materials import Material
+from ._rows import Quantity
+from ._shifts import temperature_keys
+from ._surface import Surface, surface_of
+from ._units import bare
+from ._words import Boundary, Field, Method, Plasticity, Scheme
+
+if TYPE_CHECKING:
+    from ._arrays import Floats
+    from ._solve import Step
+
+
+@dataclass
+class Problem:
+    """What each kind of run takes; :func:`asperity.solve` describes the fields."""
+
+    surface: Any = None
+    material: Material | Body | Sequence[Material | Body] | None = None
+    _: KW_ONLY
+    load: History | float | None = None
+    pressure: History | float | None = None
+    gap: Any = None
+    size: float | Sequence[float] | None = None
+    hardness: float | npt.ArrayLike | None = None
+    temperature: float | Sequence[tuple[float, float]] | None = None
+    boundary: Boundary = "free"
+    method: Method = "projected-cg"
+    tolerance: float = 1e-6
+    max_iterations: int = 5000
+    plasticity: Plasticity = "cap"
+    quantities: Sequence[Quantity] = ()
+    bins: int = 50
+    largest_pressure: float | None = None
+    largest_gap: float | None = None
+    fields: Sequence[Field] = ()
+    every: int | None = None
+    field_times: npt.ArrayLike | None = None
+    title: str = ""
+
+    #: Groups of fields of which exactly one is given.
+    alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure"), ("surface", "gap")]
+
+    def parts(self) -> tuple[Surface, dict[str, Any], dict[str, Floats]]:
+        """The surface, the keys of the case, and the arrays that the keys name."""
+        if isinstance(self.surface, (Material, Body)):
+            raise CaseError("the surface is a material: the surface comes first, as in solve(surface, material, ...)")
+        for what, words in (("boundary", Boundary), ("method", Method), ("plasticity", Plasticity)):
+            choice(what, getattr(self, what), get_args(words))
+        shape = surface_of(self.surface, self.gap, self.size)
+        check_places("hardness", self.hardness, self.surface if self.gap is None else self.gap)
+        bodies = [dict(body._keys) for body in bodies_of(self.material)]
+        arrays = {"heights": as_plane(shape.heights)}
+        limit = hardness_of(self.hardness, shape)
+        if isinstance(limit, np.ndarray):
+            bodies[0]["hardness_array"], arrays["hardness"] = "hardness", as_plane(limit)
+        elif limit is not None:
+            bodies = [{**body, "hardness": limit} for body in bodies]
+        ends = {"pressure": self.largest_pressure, "gap": self.largest_gap}
+        histogram = {name: number(f"largest_{name}", end) for name, end in ends.items() if end is not None}
+        keys: dict[str, Any] = {
+            "domain": {"cells": list(shape.cells), "size": list(shape.size), "boundary": self.boundary},
+            "surface": [{"kind": "array", "array": "heights"}],
+            "body": bodies,
+            "load": self.load_keys("N/m" if shape.is_line else "N"),
+            "solver": {
+                "method": self.method,
+                "tolerance": number("tolerance", self.tolerance),
+                "max_iterations": count("max_iterations", self.max_iterations),
+                "plasticity": self.plasticity,
+            },
+            "output": {
+                "quantities": distinct("quantities", self.quantities, get_args(Quantity)),
+                "histogram": {"bins": count("bins", self.bins), **histogram},
+            },
+            **self.course_keys(),
+        }
+        if self.temperature is not None:
+            keys["temperature"] = temperature_keys(self.temperature)
+        return shape, keys, arrays
+
+    def load_keys(self, load_unit: str) -> dict[str, Any]:
+        """The keys of `[load]`; the unit of a load is N, or N/m of a line contact."""
+        control, value = one_of(self.controls(), "give")
+        return {"control": control, "history": as_history(control, value, load_unit if control == "load" else None)._keys}
+
+    def controls(self) -> dict[str, Any]:
+        """What may be prescribed."""
+        return {"load": self.load, "pressure": self.pressure}
+
+    def course_keys(self) -> dict[str, Any]:
+        """The keys of `[time]` and `[motion]`."""
+        raise NotImplementedError
+
+
+@dataclass(kw_only=True)
+class InTime(Problem):
+    """A run in time."""
+
+    times: Times | npt.ArrayLike
+    scheme: Scheme = "linear"
+
+    def course_keys(self) -> dict[str, Any]:
+        return {"time": {**as_times(self.times)._keys, "scheme": choice("scheme", self.scheme, get_args(Scheme))}}
+
+
+@dataclass(kw_only=True)
+class InStages(InTime):
+    """A run in time at rest, whose control may switch: the arguments of :func:`asperity.march`."""
+
+    approach: History | float | None = None
+    stages: Sequence[Stage] | None = None
+
+    alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure", "approach", "stages"), ("surface", "gap")]
+
+    def controls(self) -> dict[str, Any]:
+        return {**super().controls(), "approach": self.approach, "stages": self.stages}
+
+    def load_keys(self, load_unit: str) -> dict[str, Any]:
+        if self.stages is None:
+            return super().load_keys(load_unit)
+        one_of(self.controls(), "give")
+        programme = list(self.stages)
+        if not programme or not all(isinstance(stage, Stage) for stage in programme):
+            raise CaseError("stages is a list of asperity.Stage, one at least")
+        return {"stages": [stage._keys(load_unit) for stage in programme]}
+
+
+@dataclass(kw_only=True)
+class Run(Problem):
+    """A run to its end."""
+
+    fields: Sequence[Field] = ("pressure",)
+    output: str | os.PathLike[str] | None = None
+    force: bool = False
+    progress: bool | None = None
+    on_step: Callable[[Step], object] | None = None
+
+
+@dataclass(kw_only=True)
+class Solve(Run, InStages):
+    """The arguments of :func:`asperity.solve`."""
+
+
+def bodies_of(material: Any) -> list[Material | Body]:
+    """The deformable bodies, one or two."""
+    bodies = list(material) if isinstance(material, (list, tuple)) else [material]
+    if 1 <= len(bodies) <= 2 and all(isinstance(body, (Material, Body)) for body in bodies):
+        return bodies
+    shown = repr(material) if len(repr(material)) < 60 else type(material).__name__
+    raise CaseError(
+        f"material is {shown}, but must be a material, such as asperity.Elastic(young=1e6, poisson=0.5), asperity.Prony(...) or "
+        "asperity.Zener(...), an asperity.Body of layers, or a pair of them for two deformable bodies"
+    )
+
+
+def hardness_of(hardness: Any, shape: Surface) -> float | Floats | None:
+    """The hardness [Pa] of each cell of the domain of this surface, or of all."""
+    if hardness is None:
+        return None
+    if np.ndim(bare("hardness", in_order("hardness", hardness, shape.size))) != len(shape.size):
+        return number("hardness", hardness)
+    cells = field("hardness", hardness, line=True, size=shape.size)
+    if cells.shape != shape.cells:
+        raise CaseError(f"hardness has shape {cells.shape}, but must have {shape.cells}: one value for each cell")
+    return cells

@@ -1,0 +1,89 @@
+//! What results may hold, as the library declares it.
+
+use std::collections::BTreeMap;
+
+use asperity::Grid;
+use asperity::quantities::{Column, Quantity};
+use asperity::stress::Rolling;
+use asperity_io::store::{FieldKind, SCALARS, Series, StressSet, coordinates, leak_series};
+use asperity_io::stress::Ratio;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+
+use crate::error::raised;
+use crate::given::choose;
+
+/// Name, unit, unit on a line of cells, meaning, and kind: "real", "count" or "histogram".
+type Entry = (&'static str, &'static str, &'static str, &'static str, &'static str);
+
+/// All columns and fields by the part of a result that they belong to.
+#[pyfunction]
+pub fn registry(py: Python<'_>) -> PyResult<BTreeMap<&'static str, Vec<Entry>>> {
+    let line = Grid::line(2, 1.0).map_err(|error| raised(py, error))?;
+    let rows = SCALARS.iter().map(|scalar| {
+        let kind = if scalar.is_count() { "count" } else { "real" };
+        (scalar.name, scalar.units, line.units(scalar.units), scalar.long_name, kind)
+    });
+    let quantities = Quantity::ALL.map(|quantity| {
+        let kind = if quantity.is_histogram() { "histogram" } else { "real" };
+        (quantity.name(), quantity.units(), quantity.units_on(&line), quantity.long_name(), kind)
+    });
+    let fields =
+        FieldKind::ALL.map(|field| real(field.name(), field.units(), field.units(), field.long_name()));
+    let on_line = stress(true);
+    let stress = stress(false).into_iter().map(|Series { name, units, long_name }| {
+        let line = on_line.iter().find(|series| series.name == name);
+        real(name, units, line.map_or(units, |series| series.units), long_name)
+    });
+    let depth = real("depth", "m", "m", "depth below the surface");
+    let leaks =
+        |gas| leak_series(gas).map(|series| real(series.name, series.units, series.units, series.long_name));
+    Ok(BTreeMap::from([
+        ("rows", rows.collect()),
+        ("quantities", quantities.to_vec()),
+        ("fields", fields.to_vec()),
+        ("stress", stress.chain([depth]).collect()),
+        ("leaks", leaks(false).collect()),
+        ("leaks of a gas", leaks(true).collect()),
+    ]))
+}
+
+fn real(name: &'static str, units: &'static str, on_line: &'static str, words: &'static str) -> Entry {
+    (name, units, on_line, words, "real")
+}
+
+/// All that a result may hold of the stress below a plane contact, or a line contact.
+fn stress(line: bool) -> Vec<Series> {
+    let set = StressSet {
+        body: String::new(),
+        poisson: Ratio::Constant(0.0),
+        line,
+        depths: vec![],
+        quantities: vec![],
+        threshold: Some(0.0),
+        yield_stress: None,
+        rolling: Some(Rolling::X),
+        instants: vec![],
+    };
+    [set.scalars(), set.profiles()].concat()
+}
+
+/// Name, unit, meaning and numbers of a coordinate.
+type Coordinate<'py> = (&'static str, &'static str, &'static str, Bound<'py, PyArray1<f64>>);
+
+/// The coordinates of a histogram whose bins have these ends: the middles of its bins, and the ends.
+#[pyfunction]
+pub fn histogram_coordinates<'py>(
+    py: Python<'py>,
+    name: &str,
+    edges: PyReadonlyArray1<'_, f64>,
+    line: bool,
+) -> PyResult<Vec<Coordinate<'py>>> {
+    let grid = if line { Grid::line(2, 1.0) } else { Grid::new([2, 2], [1.0, 1.0]) };
+    let column = Column { quantity: choose("quantity", name)?, edges: edges.as_array().to_vec() };
+    let found = coordinates(&column, &grid.map_err(|error| raised(py, error))?);
+    Ok(found
+        .into_iter()
+        .map(|(s, numbers)| (s.name, s.units, s.long_name, numbers.into_pyarray(py)))
+        .collect())
+}

@@ -218,7 +218,7 @@ fn a_slip_in_the_section_is_told_with_key_value_and_what_to_do() {
         ("[\"0 um\", \"-5 um\"]", "stress.depths[1]", "not less than 0"),
         ("[\"0 um\", nan]", "stress.depths[1]", "nan"),
         ("[\"0 um\", \"1 um\"]", "stress.depths[1]", "a quarter of a cell"),
-        ("[\"80 um\", \"60 um\"]", "stress.depths", "deeper than the one before"),
+        ("[\"80 um\", \"60 um\"]", "stress.depths", "greater than the one before"),
         ("[]", "stress.depths", "number of depths"),
         ("\"deep\"", "stress.depths", "\"auto\""),
         ("7", "stress.depths", "a list of lengths"),

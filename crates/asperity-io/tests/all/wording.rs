@@ -19,7 +19,7 @@ static FILE_IN_USE: Mutex<()> = Mutex::new(());
 #[track_caller]
 pub(crate) fn check(input: &str, dir: &Path, error: &CaseError) {
     let input: String = input.trim().chars().take(MOST_CHARACTERS).collect();
-    let input = format!("{}: {input}", error.key);
+    let input = format!("{} [{}]: {input}", error.key, error.code);
     let said = plain(&error.to_string(), dir);
     let _lock = FILE_IN_USE.lock();
     let text = std::fs::read_to_string(FILE).unwrap_or_else(|_| "{}".to_owned());

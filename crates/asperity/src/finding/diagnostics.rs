@@ -8,7 +8,7 @@ use super::expected::{ROOM, radius};
 use super::motion::Slides;
 use super::strain::Strain;
 use super::thin::Widest;
-use super::worst::{Worst, extend};
+use super::worst::extend;
 use super::{
     CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN, STEPS_TOO_LONG, domain, material,
     strain, surface, thin, time,
@@ -75,8 +75,9 @@ pub struct Diagnostics {
     /// The finding for a held approach with cells at the hardness, and whether there were such cells.
     held: Option<Finding>,
     capped: bool,
-    /// The rows in which the error of the time steps is too large.
-    coarse: Worst,
+    /// Errors of the time steps that are too large by themselves: number of the row, error, load; and the largest load of the run.
+    coarse: Vec<(usize, f64, f64)>,
+    heaviest: f64,
     /// Thickness of a body on a free domain, and its contacts.
     thickness: Option<f64>,
     widest: Widest,
@@ -105,7 +106,8 @@ impl Diagnostics {
             held: time::held_at_hardness(simulation)
                 .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
             capped: false,
-            coarse: Worst::default(),
+            coarse: vec![],
+            heaviest: 0.0,
             thickness: known.thickness.filter(|_| free),
             widest: Widest::default(),
             earlier_balance: None,
@@ -183,8 +185,9 @@ impl Diagnostics {
 
     fn take(&mut self, index: usize, row: &Row, contact: Counted) {
         self.deepest = self.deepest.max(row.approach);
-        if let Some(error) = row.time_error {
-            self.coarse.above(index, error, time::COARSE);
+        self.heaviest = self.heaviest.max(row.load);
+        if let Some(error) = row.time_error.filter(|error| *error > time::COARSE) {
+            self.coarse.push((index, error, row.load));
         }
         self.resolution.see(index, contact);
         self.strain.see(index, row, contact);
@@ -220,7 +223,7 @@ impl Diagnostics {
         if lacks(&found, LARGE_SLOPE) {
             found.extend(surface::near(&self.grid, &simulation.gap, self.deepest));
         }
-        if let Some(coarse) = time::coarse(&self.coarse) {
+        if let Some(coarse) = time::coarse(&self.coarse, self.heaviest) {
             // What was expected before the run is known now.
             found.retain(|finding| finding.code != STEPS_TOO_LONG);
             found.push(coarse);

@@ -62,9 +62,14 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     found
 }
 
-/// The finding for steps whose estimated error is too large.
-pub(super) fn coarse(error: &Worst) -> Option<Finding> {
-    error.warning(STEPS_TOO_LONG, |error| {
+/// The finding for steps whose estimated error is too large for the largest load of the run. (In the first step of a load that grows from 0
+/// the error is large for the load of that moment, whatever the length of the step.) `rows` are their numbers, errors and loads.
+pub(super) fn coarse(rows: &[(usize, f64, f64)], heaviest: f64) -> Option<Finding> {
+    let mut worst = Worst::default();
+    for (row, error, _) in rows.iter().filter(|(_, error, load)| error * load > COARSE * heaviest) {
+        worst.above(*row, *error, COARSE);
+    }
+    worst.warning(STEPS_TOO_LONG, |error| {
         format!(
             "The time steps are too long for the history and the material{}: load or approach and the largest pressure may be off by \
              up to {} %. Take more steps there, or use spacing = \"adaptive\". If the steps are adaptive already, use a smaller \

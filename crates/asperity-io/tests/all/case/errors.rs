@@ -75,7 +75,8 @@ fn says(old: &str, new: &str, key: &str, line: usize, code: &str, numbers: &[&st
     for number in numbers {
         assert!(shown.contains(number), "{shown:?} lacks {number:?}");
     }
-    wording::check(new, Path::new("."), found);
+    let input = if new.is_empty() { format!("without {old}") } else { new.to_owned() };
+    wording::check(&input, Path::new("."), found);
     assert!(shown.contains(key) || key.contains('.'), "{shown:?} does not name {key}");
     let span = found.span.clone().unwrap();
     assert!(text.get(span.clone()).is_some_and(|there| !there.is_empty()), "{shown}: {span:?}");

@@ -361,7 +361,7 @@ fn a_run_beyond_the_data_is_warned_of_with_the_numbers() {
     assert!(case_in(dir.path(), &body(material), "").describe().warnings.is_empty());
     let long = text(&body(material), "").replace("\"100 s\"", "\"5000 s\"");
     let warnings = Case::parse(&long, dir.path(), &[]).unwrap().describe().warnings;
-    assert!(warnings[0].contains("to 5e3 s") && warnings[0].contains("1e-2 s to 1e3 s"), "{warnings:?}");
+    assert!(warnings[0].contains("to 5000 s") && warnings[0].contains("0.01 s to 1000 s"), "{warnings:?}");
     assert!(warnings[0].starts_with("body 1: "));
 }
 

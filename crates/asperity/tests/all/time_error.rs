@@ -146,8 +146,8 @@ fn errors(case: &Case) -> Option<[f64; 3]> {
 
 #[test]
 fn the_stated_error_covers_the_true_one_in_95_of_100_cases_and_is_within_ten_times_it_in_90() {
-    let found: Vec<[f64; 3]> = (0..100).filter_map(|seed| errors(&case(seed))).collect();
-    assert!(found.len() > 95, "{} cases", found.len());
+    let found: Vec<[f64; 3]> = (0..200).filter_map(|seed| errors(&case(seed))).collect();
+    assert!(found.len() > 190, "{} cases", found.len());
     let of = |share: f64| share * found.len() as f64;
     // 1e-6: what the tolerance of the solver leaves.
     let covered = found.iter().filter(|[stated, number, _]| number <= stated || *number < 1e-6).count();

@@ -109,11 +109,8 @@ fn the_case_of_the_paper_is_the_paper_s() {
 
 #[test]
 fn the_rubber_that_warms_up_is_solved_on_a_coarse_grid() {
-    let case = Case::read(
-        &examples().join("rubber-dma.toml"),
-        &["domain.cells=[48, 48]".into(), "time.steps=22".into()],
-    )
-    .unwrap_or_else(|errors| panic!("{errors}"));
+    let case = Case::read(&examples().join("rubber-dma.toml"), &["domain.cells=[48, 48]".into()])
+        .unwrap_or_else(|errors| panic!("{errors}"));
     let description = case.describe();
     let report = &description.materials[0];
     // Eight sweeps of 13 points with 2 % of scatter, met to the scatter.

@@ -81,6 +81,11 @@ impl Relaxation {
 
     fn survey_from(&self, ends: &Ends<'_>, [step, third]: [f64; 2]) -> Survey {
         let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
+        // What the solver leaves of u.
+        let [energy, pressure] =
+            sums((&ends.now.pressure[..], &ends.now.unit_displacement[..]), |(p, unit)| [p * unit, p]);
+        let left =
+            if pressure > 0.0 { self.tolerance * self.rules.compliance * energy / pressure } else { 0.0 };
         let (compliance, in_time) = (self.rules.compliance, self.rules.driver == Driver::Time);
         let ([w_before, w], lasts) = (ends.approaches(), self.rules.length > 0.0);
         let cells = (
@@ -92,7 +97,7 @@ impl Relaxation {
         let sums = sums(cells, |((u, u_third, rigid_before), (p, unit), (p_now, unit_now), (gap, rigid))| {
             let presses = p > 0.0 || p_now > 0.0;
             if !(presses || rigid < w) {
-                return [0.0; 8];
+                return [0.0; 6];
             }
             let u_now = compliance * unit_now + (gap - rigid);
             let (before, now) = (u_third - u, u_now - u);
@@ -101,17 +106,18 @@ impl Relaxation {
             let rounding = ROUNDING * u.abs().max(u_now.abs()) * spread;
             let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
             if !presses {
-                return [curved, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+                return [curved, 0.0, 0.0, 0.0, 0.0, 0.0];
             }
             // A cell that comes into contact had this gap before.
             let late = if p > 0.0 || !lasts { 0.0 } else { (rigid_before + u - w_before).max(0.0) };
             let late = if late.is_finite() { late } else { 0.0 };
             let bends = curved.max(if in_time { LATE * late } else { 0.0 });
-            let own = if p_now > 0.0 { curved.max(late) } else { 0.0 };
+            let is_seen = second.abs() > left * spread;
+            let own = if p_now > 0.0 { late.max(if is_seen { curved } else { 0.0 }) } else { 0.0 };
             let touches = f64::from(u8::from(p_now > 0.0));
-            [bends, unit_now, unit, u_now.abs(), own, p_now * unit_now, p_now, touches]
+            [bends, unit_now, unit, u_now.abs(), own, touches]
         });
-        let [bends, now, before, displaced, own, energy, pressure, touching] = sums;
+        let [bends, now, before, displaced, own, touching] = sums;
         let least = (FLOOR * before).max(FLOOR * self.dual.relaxation.equilibrium * displaced);
         let mean = if pressure > 0.0 { touching * energy / pressure } else { 0.0 };
         Survey {

@@ -71,6 +71,8 @@ pub(crate) struct Relaxation {
     left: Vec<f64>,
     /// The account of the energy, where it is kept.
     products: Option<Products>,
+    /// That of the solver.
+    tolerance: f64,
     /// Of the step that was solved last, and the error of all steps.
     survey: Survey,
     total_error: TotalError,
@@ -118,6 +120,7 @@ impl Relaxation {
             next: Rules::new(count),
             left: Vec::with_capacity(dual.strains()),
             products: None,
+            tolerance: simulation.solver.tolerance,
             survey: Survey::default(),
             total_error: TotalError { left: vec![0.0; count], value: 0.0 },
             adaptive_error: None,

@@ -91,7 +91,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let what = format!("the heights {:?} of the FRT file", image.name);
     let height = |n: f64| if n == UNDEFINED { f64::NAN } else { n * unit };
     let layout = Layout::dense(image.points, kind(image.bits)?, Order::Little);
-    let heights = layout.from_bottom().map(image.data, &what, height)?;
+    let heights = layout.bottom_up().map(image.data, &what, height)?;
     let lateral = size.map_or(Lateral::Unstated(String::new()), Lateral::Metres);
     Ok(Measured::new(heights, Unit::Metres(1.0), lateral).of_channel(names, index).with(metadata))
 }

@@ -36,19 +36,19 @@ pub(super) struct Layout {
     /// Bytes from the start of a line to that of the next.
     pub stride: u64,
     /// Whether the lines are in the order of falling y.
-    pub from_bottom: bool,
+    pub bottom_up: bool,
 }
 
 impl Layout {
     /// Lines (x runs fastest) without padding between them.
     pub(super) fn dense(points: [u64; 2], kind: Kind, order: Order) -> Self {
         let stride = points[0].saturating_mul(kind.width() as u64);
-        Layout { points, kind, order, stride, from_bottom: false }
+        Layout { points, kind, order, stride, bottom_up: false }
     }
 
     /// The same with lines in the order of falling y.
-    pub(super) fn from_bottom(self) -> Self {
-        Layout { from_bottom: true, ..self }
+    pub(super) fn bottom_up(self) -> Self {
+        Layout { bottom_up: true, ..self }
     }
 
     /// The map with axis 0 = x, each number replaced by `value` of it. The padding of the last line may be missing.
@@ -83,7 +83,7 @@ impl Layout {
         let (nx, ny, stride) = (nx as usize, ny as usize, self.stride as usize);
         let width = self.kind.width();
         Ok(transposed(nx, ny, &|y, columns, out| {
-            let y = if self.from_bottom { ny - 1 - y } else { y };
+            let y = if self.bottom_up { ny - 1 - y } else { y };
             let line = &bytes[y * stride..][columns.start * width..columns.end * width];
             decode_into(out, line, self.kind, self.order);
             values(out);
@@ -186,7 +186,7 @@ mod tests {
             assert!(matches!(error, Problem::Truncated { needed: 318, available: 317, .. }), "{error}");
         }
         let layout = Layout::dense([2, 3], Kind::U8, Order::Little);
-        let map = layout.from_bottom().map(&[4, 5, 2, 3, 0, 1], "the map", |v| v).unwrap();
+        let map = layout.bottom_up().map(&[4, 5, 2, 3, 0, 1], "the map", |v| v).unwrap();
         assert!(map.indexed_iter().all(|((x, y), v)| *v == (2 * y + x) as f64), "{map}");
         let absurd = Layout::dense([u64::MAX, 1], Kind::F64, Order::Big);
         assert!(absurd.map(&[], "the map", |v| v).is_err());

@@ -106,7 +106,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
 
     let start = index * layer as usize;
     let layout = Layout::dense([nx, ny], kind, order);
-    let heights = layout.from_bottom().map(&data[start..], "a layer of the Igor wave", |h| h)?;
+    let heights = layout.bottom_up().map(&data[start..], "a layer of the Igor wave", |h| h)?;
     let size = [nx as f64 * spacing[0].abs(), ny as f64 * spacing[1].abs()];
     let lateral = Lateral::of(size, [&units[1], &units[2]].map(|u| unit_of(u, LoneA::Ampere)));
     let measured = Measured::new(heights, unit(index), lateral).of_channel(names, index);

@@ -72,7 +72,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let what = format!("the image {:?}", names[index]);
     let data = Cursor::at(bytes, offset, Order::Little, &what)?.rest();
     let layout = Layout::dense(plane.points, plane.kind, Order::Little);
-    let heights = layout.from_bottom().map(data, &what, |n| n * scale)?;
+    let heights = layout.bottom_up().map(data, &what, |n| n * scale)?;
     let measured = Measured::new(heights, unit, plane.lateral).of_channel(names, index);
     Ok(measured.with(header.metadata(image)))
 }

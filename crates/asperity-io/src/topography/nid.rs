@@ -58,9 +58,8 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let signed = matches!(set.kind, Kind::I8 | Kind::I16 | Kind::I32);
     let (step, least) = (range / 2f64.powi(bits), if signed { least + range / 2.0 } else { least });
     let data = Cursor::at(data, set.offset, set.order, &what)?.rest();
-    let heights = Layout::dense(set.points, set.kind, set.order)
-        .from_bottom()
-        .map(data, &what, |n| least + step * n)?;
+    let heights =
+        Layout::dense(set.points, set.kind, set.order).bottom_up().map(data, &what, |n| least + step * n)?;
     let info = sections.iter().find(|s| s.title == "DataSet-Info");
     let metadata = info.into_iter().chain([set.section]).cloned().flatten();
     let metadata = metadata.filter(|(key, _)| !key.starts_with("--"));

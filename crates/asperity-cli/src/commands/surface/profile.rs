@@ -120,7 +120,7 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
 fn figure(name: &str, heights: &[f64], spacing: f64, spectrum: &ProfileSpectrum) -> Figure {
     let x: Vec<f64> = (0..heights.len()).map(|i| (i as f64 + 0.5) * spacing).collect();
     let profile = Curves::new("Profile", Axis::linear("x", "m"), Axis::linear("height", "m"))
-        .with(Series::new("", Style::Line, x, heights.to_vec()));
+        .with(Series::new("", Style::Line, x, heights));
     let power = Curves::new(
         "Power spectrum of the profile",
         Axis::log("wave number", "1/m"),

@@ -27,11 +27,11 @@ pub struct Pair {
     pub waves: Option<Arc<NonseparableLayers>>,
     /// Contact creep compliance [1/Pa] of each of `bodies`, and its clock where its temperature changes.
     pub creeps: Vec<(Creep, Option<ReducedTime>)>,
-    /// Contact creep compliance of the bodies of constant temperature [1/Pa].
+    /// Contact creep compliance of the bodies of constant temperature \[1/Pa\].
     pub creep: Creep,
     /// The bodies whose temperature changes.
     pub thermal: Vec<ThermalCreep>,
-    /// Hardness of the softer body [Pa]; infinite without.
+    /// Hardness of the softer body \[Pa\]; infinite without.
     pub hardness: f64,
     /// Where the materials come from, one for each of `bodies`.
     pub reports: Vec<MaterialReport>,

@@ -63,7 +63,7 @@ impl From<asperity::Error> for ExportError {
 /// Result of an export.
 pub type Result<T, E = ExportError> = std::result::Result<T, E>;
 
-/// An error of a file whose path [`at`](ExportError::at) adds.
+/// An error of writing a file; its path is added later.
 impl From<io::Error> for ExportError {
     fn from(source: io::Error) -> Self {
         ExportError::Io { path: PathBuf::new(), action: "write", source }

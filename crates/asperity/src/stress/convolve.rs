@@ -64,7 +64,7 @@ impl SubsurfaceStress {
     /// Plans the transforms. `poisson` is that of the body whose stress is computed.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a Poisson's ratio that is not between 0 and 0.5.
+    /// [`Error::Invalid`](crate::Error::Invalid) for a Poisson's ratio that is not between 0 and 0.5.
     pub fn new(grid: Grid, boundary: Boundary, poisson: f64) -> Result<Self> {
         require((0.0..=0.5).contains(&poisson), "Poisson's ratio", poisson, "between 0 and 0.5")?;
         let lengths = match boundary {
@@ -92,7 +92,7 @@ impl SubsurfaceStress {
     /// Sets the pressure p \[Pa\] on the surface, nx ny cells in C-order.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the number of cells differs or a value is not finite.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the number of cells differs or a value is not finite.
     pub fn set_pressure(&mut self, p: &[f64]) -> Result<()> {
         check_pressure(p, self.grid.len())?;
         self.sources.clear();
@@ -114,7 +114,7 @@ impl SubsurfaceStress {
     /// on a body of ratio 0 and that of 2 P on one of ratio 1/2.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if their number differs from that of the cells, or one is not finite.
+    /// [`Error::Invalid`](crate::Error::Invalid) if their number differs from that of the cells, or one is not finite.
     pub fn set_transverse(&mut self, p: &[f64], transverse: &[f64], confined: f64) -> Result<()> {
         for field in [p, transverse] {
             check_pressure(field, self.grid.len())?;
@@ -152,7 +152,7 @@ impl SubsurfaceStress {
     /// One component \[Pa\] at `depth` >= 0 \[m\] below every cell centre.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a depth that is negative, or between 0 and a quarter of a cell.
+    /// [`Error::Invalid`](crate::Error::Invalid) for a depth that is negative, or between 0 and a quarter of a cell.
     pub fn component_into(&mut self, component: Component, depth: f64, out: &mut [f64]) -> Result<()> {
         check_depth(&self.grid, depth)?;
         self.work.fill(Complex64::ZERO);

@@ -76,7 +76,7 @@ impl Operation {
     /// The surface after this step.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as the function of this step.
+    /// [`Error::Invalid`](crate::Error::Invalid) as the function of this step.
     pub fn apply(&self, surface: &Surface) -> Result<Surface> {
         let grid = *surface.grid();
         match *self {
@@ -130,7 +130,7 @@ fn without_circle(surface: &Surface, radius: Option<f64>) -> Result<Surface> {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] of the first step that fails.
+/// [`Error::Invalid`](crate::Error::Invalid) of the first step that fails.
 pub fn apply(surface: &Surface, steps: &[Operation]) -> Result<Surface> {
     steps.iter().try_fold(surface.clone(), |surface, step| step.apply(&surface))
 }

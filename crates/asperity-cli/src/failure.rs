@@ -107,6 +107,8 @@ fn drawn(error: &CaseError, name: &str, source: &str) -> Option<String> {
     let counted_lines = 1 + source[..span.start].matches('\n').count();
     let added = error.line.map_or(0, |line| counted_lines.saturating_sub(line));
     let start = source.match_indices('\n').nth(added.wrapping_sub(1)).map_or(0, |(end, _)| end + 1);
+    // The place may be in an added line itself.
+    let start = start.min(source[..span.start].rfind('\n').map_or(0, |end| end + 1));
     let (source, span) = (&source[start..], span.start - start..span.end - start);
     let place =
         Snippet::source(source).path(name).annotation(AnnotationKind::Primary.span(span).label(label));

@@ -202,7 +202,7 @@ impl Case {
                         let help = error.help.take().map(|help| format!("; {help}")).unwrap_or_default();
                         error.help = Some(format!("set by an override{help}"));
                     }
-                    error.line = error.line.map(|line| line_of_file(line, &added));
+                    error.line = error.line.map(|line| line_of_file(line, &added)).filter(|line| *line > 0);
                 }
                 Err(CaseErrors { name: name.to_owned(), source, errors })
             }

@@ -71,9 +71,9 @@ pub(super) fn coarse(rows: &[(usize, f64, f64)], heaviest: f64) -> Option<Findin
     }
     worst.warning(STEPS_TOO_LONG, |error| {
         format!(
-            "The time steps are too long for the history and the material{}: load or approach and the largest pressure may be off by \
-             up to {} %. Take more steps there, or use spacing = \"adaptive\". If the steps are adaptive already, use a smaller \
-             tolerance; if the contact moves, fewer cells_per_step.",
+            "The time steps are long for the history and the material{}: the pressures may be off by up to {} % of their sum (load and \
+             approach are often more accurate, single cells less). Take more steps there, or use spacing = \"adaptive\" in place of \
+             steps. If the steps are adaptive already, use a smaller tolerance; if the contact moves, fewer cells_per_step.",
             error.place(),
             digits(100.0 * error.value)
         )

@@ -21,7 +21,7 @@ mod spectral;
 
 pub use spectral::check_layers;
 
-use crate::contact::ContactState;
+use crate::contact::{ContactState, Hardness};
 use crate::error::Result;
 use crate::operator::Operator;
 use crate::simulation::{Scheme, Simulation};
@@ -128,6 +128,7 @@ pub(crate) struct Ends<'a> {
     pub(crate) rigid: &'a [f64],
     /// h0 at the start of the step.
     pub(crate) rigid_before: &'a [f64],
+    pub(crate) hardness: Hardness<'a>,
 }
 
 impl Ends<'_> {

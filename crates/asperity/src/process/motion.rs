@@ -97,13 +97,23 @@ pub(super) struct Moving {
     /// How far it had at the end of the last row.
     before: f64,
     friction: Friction,
+    /// Error of the stress of the last row because of the time steps: a short step does not take it back.
+    time_error: f64,
 }
 
 impl Moving {
     pub(super) fn new(simulation: &Simulation, motion: &Motion) -> Self {
         let (_, slopes) = motion.gap.at(0.0, motion.direction);
         let (motion, spacing) = (motion.clone(), simulation.grid.spacing());
-        Moving { motion, spacing, slopes, distance: 0.0, before: 0.0, friction: Friction::default() }
+        Moving {
+            motion,
+            spacing,
+            slopes,
+            distance: 0.0,
+            before: 0.0,
+            friction: Friction::default(),
+            time_error: 0.0,
+        }
     }
 
     fn move_to(&mut self, distance: f64, gap: &mut UndeformedGap) {
@@ -129,6 +139,7 @@ impl Process for Moving {
 
     /// Finds the forces at the end of the row.
     fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        let time_error = row.time_error.unwrap_or(0.0);
         let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
         let contact = ContactForces {
             simulation: row.simulation,
@@ -141,12 +152,12 @@ impl Process for Moving {
             velocity: self.motion.path.velocity(row.step.instant.time),
             distance: self.distance,
             shear_stress: self.motion.shear_stress,
-            time_error: row.time_error.unwrap_or(0.0),
+            time_error: time_error.max(self.time_error),
         };
         let friction = Friction::of(&contact, SecondEstimate::Differences);
         let before = std::mem::replace(&mut self.before, self.distance);
         row.other_work += 0.5 * (self.friction.force + friction.force) * (self.distance - before);
-        self.friction = friction;
+        (self.friction, self.time_error) = (friction, time_error);
         Ok(())
     }
 
@@ -161,12 +172,14 @@ impl Process for Moving {
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
         to.value("distance", &self.before);
         to.value("force", &self.friction.force);
+        to.value("time_error", &self.time_error);
     }
 
     fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
         self.move_to(from.get("distance")?, gap);
         self.before = self.distance;
         self.friction.force = from.get("force")?;
+        self.time_error = from.get("time_error")?;
         Ok(())
     }
 }

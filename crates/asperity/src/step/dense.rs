@@ -32,7 +32,8 @@ impl Stepper {
         }
         let part = row.up_to(time);
         let mut displacement = zeros(self.state.gap.len());
-        let Moment { share, load } = self.history.within(&part, &self.state.ends(), &mut displacement)?;
+        let Moment { share, load } =
+            self.history.within(&part, &self.state.ends(self.contact.hardness()), &mut displacement)?;
         let hardness = self.contact.hardness();
         let cell_area = self.simulation.grid.cell_area();
         let (from, to) = (&self.state.before.pressure[..], &self.state.now.pressure[..]);

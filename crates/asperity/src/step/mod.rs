@@ -109,7 +109,7 @@ impl Stepper {
         let Some(third) = third else { return self.solve(step) };
         let first = self.solve(&step.share(third.at))?;
         if !self.is_apart() {
-            self.history.keep_as_third(&self.state.ends());
+            self.history.keep_as_third(&self.state.ends(self.contact.hardness()));
         } else if third.step < third.at {
             // Nothing presses: the step has no error.
             return Ok(first);
@@ -140,7 +140,7 @@ impl Stepper {
         self.tried = Some(step.length());
         Ok(Summary {
             instant: step.instant,
-            error: self.history.error(&step, &self.state.ends()),
+            error: self.history.error(&step, &self.state.ends(self.contact.hardness())),
             is_turn,
             touches: self.state.now.touches(),
             pulls: self.contact.pulls(),
@@ -195,8 +195,8 @@ impl Stepper {
     /// Those of the processes.
     pub(crate) fn accept(&mut self) -> Result<()> {
         let Some(step) = &self.step else { return Ok(()) };
-        self.history.close(&self.state.ends())?;
-        let exchange = self.history.exchange(&self.state.ends());
+        self.history.close(&self.state.ends(self.contact.hardness()))?;
+        let exchange = self.history.exchange(&self.state.ends(self.contact.hardness()));
         self.contact.commit();
         let (operator, hardness, interrupt) = self.contact.parts();
         let StepState { now, before, loads, gap, undeformed, compliance, .. } = &mut self.state;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Loader, Saver, Stepper, UndeformedGap, saved};
-use crate::contact::{ContactState, Prescribed};
+use crate::contact::{ContactState, Hardness, Prescribed};
 use crate::error::Result;
 use crate::history::Ends;
 use crate::simulation::Simulation;
@@ -42,10 +42,10 @@ impl StepState {
     }
 
     /// Both ends of the step of the attempt.
-    pub(super) fn ends(&self) -> Ends<'_> {
+    pub(super) fn ends<'a>(&'a self, hardness: Hardness<'a>) -> Ends<'a> {
         let StepState { now, before, gap, undeformed, .. } = self;
         let (rigid, rigid_before) = (undeformed.now(), undeformed.before());
-        Ends { before, now, loads: self.loads, gap, rigid, rigid_before }
+        Ends { before, now, loads: self.loads, gap, rigid, rigid_before, hardness }
     }
 
     /// The load that the attempt carries \[N\]; its own is the prescribed one, where that is a load.

@@ -52,6 +52,8 @@ pub(super) struct Survey {
     /// Of what bends the course of u in cells in contact at the end, and of their stress.
     pub(super) own: f64,
     pub(super) pressed: f64,
+    /// The pressure that these cells could carry at most, over that of all: no error is larger.
+    pub(super) largest: f64,
 }
 
 impl Relaxation {
@@ -92,40 +94,46 @@ impl Relaxation {
             (&self.displacement[..], &self.third[..], ends.rigid_before),
             (&ends.before.pressure[..], &ends.before.unit_displacement[..]),
             (&ends.now.pressure[..], &ends.now.unit_displacement[..]),
-            (ends.gap, ends.rigid),
+            (ends.gap, ends.rigid, ends.hardness),
         );
-        let sums = sums(cells, |((u, u_third, rigid_before), (p, unit), (p_now, unit_now), (gap, rigid))| {
-            let presses = p > 0.0 || p_now > 0.0;
-            if !(presses || rigid < w) {
-                return [0.0; 6];
-            }
-            let u_now = compliance * unit_now + (gap - rigid);
-            let (before, now) = (u_third - u, u_now - u);
-            let second = (before / third - now / step) / (third - step);
-            // What rounding errors of u make of it.
-            let rounding = ROUNDING * u.abs().max(u_now.abs()) * spread;
-            let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
-            if !presses {
-                return [curved, 0.0, 0.0, 0.0, 0.0, 0.0];
-            }
-            // A cell that comes into contact had this gap before.
-            let late = if p > 0.0 || !lasts { 0.0 } else { (rigid_before + u - w_before).max(0.0) };
-            let late = if late.is_finite() { late } else { 0.0 };
-            let bends = curved.max(if in_time { LATE * late } else { 0.0 });
-            let is_seen = second.abs() > left * spread;
-            let own = if p_now > 0.0 { late.max(if is_seen { curved } else { 0.0 }) } else { 0.0 };
-            let touches = f64::from(u8::from(p_now > 0.0));
-            [bends, unit_now, unit, u_now.abs(), own, touches]
-        });
-        let [bends, now, before, displaced, own, touching] = sums;
-        let least = (FLOOR * before).max(FLOOR * self.dual.relaxation.equilibrium * displaced);
+        let sums =
+            sums(cells, |((u, u_third, rigid_before), (p, unit), (p_now, unit_now), (gap, rigid, most))| {
+                let presses = p > 0.0 || p_now > 0.0;
+                if !(presses || rigid < w) {
+                    return [0.0; 7];
+                }
+                let u_now = compliance * unit_now + (gap - rigid);
+                let (before, now) = (u_third - u, u_now - u);
+                let second = (before / third - now / step) / (third - step);
+                // What rounding errors of u make of it.
+                let rounding = ROUNDING * u.abs().max(u_now.abs()) * spread;
+                let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
+                if !presses {
+                    return [curved, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+                }
+                // A cell that comes into contact had this gap before.
+                let late = if p > 0.0 || !lasts { 0.0 } else { (rigid_before + u - w_before).max(0.0) };
+                let late = if late.is_finite() { late } else { 0.0 };
+                let bends = curved.max(if in_time { LATE * late } else { 0.0 });
+                let is_seen = second.abs() > left * spread;
+                // At the hardness the pressure is known.
+                let is_free = p_now > 0.0 && p_now < most;
+                let own = if is_free { late.max(if is_seen { curved } else { 0.0 }) } else { 0.0 };
+                let touches = f64::from(u8::from(p_now > 0.0));
+                [bends, unit_now, unit, u_now.abs(), own, touches, if is_free { most } else { 0.0 }]
+            });
+        let [bends, now, before, displaced, own, touching, most] = sums;
+        // U under pressures all over a contact of this size. (On a periodic domain an even pressure has none.)
+        let contact = match self.is_line {
+            true => touching * self.cell_area,
+            false => (touching * self.cell_area).sqrt(),
+        };
+        let relaxed = self.dual.relaxation.equilibrium * displaced;
+        let least = FLOOR * before.max(relaxed).max(pressure * contact);
         let mean = if pressure > 0.0 { touching * energy / pressure } else { 0.0 };
-        Survey {
-            bends,
-            stress: now.max(least),
-            own,
-            pressed: if touching > 0.0 { mean.max(least) } else { 0.0 },
-        }
+        let pressed = if touching > 0.0 { mean.max(least) } else { 0.0 };
+        let largest = if pressure > 0.0 { most / pressure } else { 0.0 };
+        Survey { bends, stress: now.max(least), own, pressed, largest }
     }
 
     /// The estimated error of the step that was surveyed, without those of the steps before; 0 where nothing is remembered.

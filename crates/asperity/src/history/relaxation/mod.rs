@@ -73,6 +73,8 @@ pub(crate) struct Relaxation {
     products: Option<Products>,
     /// That of the solver.
     tolerance: f64,
+    cell_area: f64,
+    is_line: bool,
     /// Of the step that was solved last, and the error of all steps.
     survey: Survey,
     total_error: TotalError,
@@ -121,6 +123,8 @@ impl Relaxation {
             left: Vec::with_capacity(dual.strains()),
             products: None,
             tolerance: simulation.solver.tolerance,
+            cell_area: simulation.grid.cell_area(),
+            is_line: simulation.grid.is_line(),
             survey: Survey::default(),
             total_error: TotalError { left: vec![0.0; count], value: 0.0 },
             adaptive_error: None,

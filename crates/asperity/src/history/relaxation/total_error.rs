@@ -45,6 +45,7 @@ impl Relaxation {
             sum += term.modulus * *left;
         }
         let pressed = if presses { self.survey.pressed } else { 0.0 };
-        self.total_error.value = if pressed > 0.0 { MARGIN * sum / pressed } else { 0.0 };
+        self.total_error.value =
+            if pressed > 0.0 { (MARGIN * sum / pressed).min(self.survey.largest) } else { 0.0 };
     }
 }

@@ -41,6 +41,9 @@ impl Verb for SurfaceGenerate {
         let keys: Vec<(&str, &str)> =
             given.into_iter().filter_map(|(key, text)| Some((key, text?))).collect();
         for (key, text) in &keys {
+            if *key == "lay.angle" {
+                note_unit(&flag(key), text, "rad");
+            }
             if ["size", "rms_height", "longest", "shortest", "roll_off"].contains(key) {
                 text.split(',').for_each(|text| note_unit(&flag(key), text, "m"));
             }

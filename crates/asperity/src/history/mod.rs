@@ -150,11 +150,12 @@ pub(crate) struct ThirdState {
     pub(crate) step: f64,
 }
 
-/// The state that is solved first where the states before the step are of no use, or `is_known` is false: a third one besides both
-/// ends. Adaptive steps are solved at their full length first and taken at half of it, so that the next try is shorter; steps of a
+/// The state that is solved first where the last step, which was `length` long and `in_contact` or not, leaves no third one besides
+/// both ends. Adaptive steps are solved at their full length first and taken at half of it, so that the next try is shorter; steps of a
 /// given length the other way round.
-fn third_state(step: &Interval, is_known: bool) -> Option<ThirdState> {
-    if step.instant.jump || step.length() == 0.0 || step.is_smooth && is_known {
+fn third_state(step: &Interval, in_contact: bool, length: f64) -> Option<ThirdState> {
+    let is_known = step.is_smooth && in_contact && (step.is_adaptive || length > 0.0);
+    if step.instant.jump || step.length() == 0.0 || is_known {
         return None;
     }
     Some(match step.is_adaptive {

@@ -5,20 +5,20 @@
 //!
 //! ```text
 //! ε = 2 |u[z0, z1, z2]| Δz² [ Σ E_i b(x/τ_i) + ζ/(2x) ],    b(y) = [y - 2 + (y + 2) exp(-y)]/(2 y²)
-//! error = Σ ε / max( Σ U', 0.1 Σ U_n, 0.1 E_inf Σ |u'| )
+//! error = Σ ε / max( Σ U', 0.1 Σ U_n, 0.1 E_inf Σ |u'|, 0.1 a Σ p' )
 //! ```
 //!
 //! with b(y) taken (1 - exp(-(T + x)/τ_i))/(1 - exp(-y)) times: the errors of the steps before add up as long as the branch
 //! remembers them, and T is how long the smooth piece of the course has lasted, 15 steps at most. Here u\[z0, z1, z2\] is the second divided
 //! difference of three states, and the sums of the stress go over the cells in contact at either end: an error of the stress
 //! over the stress, not of the displacement over the approach. The second and third bound keep it finite
-//! where contact ends or begins.
+//! where contact ends or begins, the fourth, with the size a of the contact, where an even pressure on a periodic domain has no U.
 //!
 //! The sum of ε goes over those cells and over the cells apart whose undeformed surfaces would overlap, h0 < w: a surface that
 //! has recovered there touches again, and its error then is one of the pressure.
 //!
 //! A cell that comes into contact during the step moves with the approach w only from then on, and so faster than u' - u over
-//! the whole step says. Where u runs linearly in time, 1/4 of |Δw| - |Δu| stands in its place of |u\[z0, z1, z2\]| Δz² where it is
+//! the whole step says. Where u runs linearly in time, a quarter of its gap before the step replaces |u\[z0, z1, z2\]| Δz² if it is
 //! larger. (A quarter, because this error does not add up over the steps.)
 
 use super::rules::Driver;

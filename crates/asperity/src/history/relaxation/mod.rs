@@ -303,8 +303,7 @@ impl History for Relaxation {
         if self.is_elastic() {
             return None;
         }
-        let is_known = self.under_way == UnderWay::Contact && (step.is_adaptive || self.rules.length > 0.0);
-        third_state(step, is_known)
+        third_state(step, self.under_way == UnderWay::Contact, self.rules.length)
     }
 
     fn keep_as_third(&mut self, ends: &Ends<'_>) {

@@ -218,8 +218,7 @@ impl History for Spectral {
     }
 
     fn third_state(&self, step: &Interval) -> Option<ThirdState> {
-        let is_known = self.under_way == UnderWay::Contact && (step.is_adaptive || self.length > 0.0);
-        third_state(step, is_known)
+        third_state(step, self.under_way == UnderWay::Contact, self.length)
     }
 
     fn keep_as_third(&mut self, ends: &Ends<'_>) {

@@ -125,12 +125,11 @@ impl Document {
             None => output,
         });
         let stages = programme.iter().flat_map(|programme| &programme.stages);
-        let grids = times.iter().chain(stages.filter_map(|stage| stage.times.as_ref()));
-        let adaptive = grids.into_iter().any(TimeGrid::is_adaptive);
-        let layered = self.body.iter().any(|body| !body.layer.is_empty());
+        let mut grids = times.iter().chain(stages.filter_map(|stage| stage.times.as_ref()));
+        let adaptive = grids.any(TimeGrid::is_adaptive);
         let include = match output.as_ref().map(|output| &output.rows) {
-            // States between adaptive steps are interpolated; other steps end there, and those of layers.
-            Some(Rows::At(times)) if !adaptive || layered || motion.is_some() => times.clone(),
+            // Steps end there.
+            Some(Rows::At(times)) => times.clone(),
             _ => Vec::new(),
         };
         let plan = |breaks: &[f64]| match (&times, programme) {

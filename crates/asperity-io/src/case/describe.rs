@@ -120,7 +120,7 @@ pub struct Description {
     pub stages: usize,
     /// "linear", "constant" or "direct".
     pub scheme: &'static str,
-    /// Rows and states between rows whose fields are stored; absent where not known beforehand.
+    /// Rows whose fields are stored; absent where not known beforehand.
     pub stored_rows: Option<usize>,
     /// Fields that are stored.
     pub fields: Vec<&'static str>,

@@ -106,18 +106,4 @@ impl Rows {
         };
         chosen || row == 0 || last
     }
-
-    /// The times within the step from `start` to `end` \[s\], its ends left out.
-    ///
-    /// ```
-    /// use asperity_io::case::Rows;
-    /// assert_eq!(Rows::At(vec![1.0, 1.5, 2.0]).between(1.0, 2.0), [1.5]);
-    /// assert!(Rows::Every(1).between(1.0, 2.0).is_empty());
-    /// ```
-    pub fn between(&self, start: f64, end: f64) -> &[f64] {
-        let Rows::At(times) = self else { return &[] };
-        let first = times.partition_point(|t| *t <= start * (1.0 + SAME));
-        let last = times.partition_point(|t| *t < end * (1.0 - SAME));
-        times.get(first..last).unwrap_or_default()
-    }
 }

@@ -41,7 +41,7 @@ pub(super) struct Record<'a> {
 }
 
 impl Record<'_> {
-    /// Stores the last row, and before it the fields between it and the row before it that are asked for.
+    /// Stores the last row, with its fields where they are asked for.
     pub(super) fn store(
         &mut self,
         maps: &mut Maps<'_>,
@@ -50,15 +50,6 @@ impl Record<'_> {
         let Some(step) = drive.last() else { return Ok(None) };
         let (row, stored) = (step.row(), &self.case.output.rows);
         let at = row.coordinate.value();
-        let start = step.instant().map_or(at, |instant| at - instant.dt);
-        for coordinate in stored.between(start, at) {
-            // Steps that end there keep their own fields.
-            if let Some(between) = drive.between(*coordinate)
-                && let Some(view) = drive.view(&between)
-            {
-                self.writer.stage(*coordinate, &maps.of(&view))?;
-            }
-        }
         let fields = if stored.holds(step.index(), drive.finished(), at) { maps.of(&step) } else { vec![] };
         self.writer.append_with(&row, step.quantities(), &fields)?;
         self.diagnostics.see(&step, &row);

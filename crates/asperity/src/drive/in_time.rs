@@ -6,10 +6,7 @@ use std::sync::atomic::AtomicBool;
 use super::{Axis, Coordinate, Drive};
 use crate::error::{Error, Result};
 use crate::simulation::Simulation;
-use crate::step::{
-    Between, Checkpoint, Loader, Proposal, Recalled, Recorder, Saver, Schedule, Step, Stepper, Summary,
-    Verdict,
-};
+use crate::step::{Checkpoint, Loader, Proposal, Recorder, Saver, Schedule, Step, Stepper, Summary, Verdict};
 use crate::time::Instant;
 
 /// A simulation on its way through time.
@@ -171,25 +168,5 @@ impl Drive for March {
         to.within("schedule", |to| self.schedule.save(to));
         to.within("step", |to| self.stepper.save(to));
         to.finish()
-    }
-
-    fn between(&self, time: f64) -> Option<Between> {
-        self.stepper.between(time)
-    }
-
-    /// Work, residual and certificate are those of the last row's solve.
-    fn view<'a>(&'a self, between: &'a Between) -> Option<Step<'a>> {
-        Some(Step {
-            index: self.done.saturating_sub(1),
-            coordinate: Coordinate::Time(between.instant.time),
-            instant: Some(between.instant),
-            control: between.instant.control,
-            state: &between.state,
-            gap: &between.gap,
-            compliance: 0.0,
-            recalled: Recalled::Field(&between.displacement),
-            processes: &[],
-            ..self.stepper.row()
-        })
     }
 }

@@ -23,7 +23,7 @@ use std::sync::atomic::AtomicBool;
 use crate::error::Result;
 use crate::simulation::Simulation;
 use crate::sliding::{Steady, SteadyMotion, Streaming};
-use crate::step::{Between, Checkpoint, Step};
+use crate::step::{Checkpoint, Step};
 
 /// What makes one row after the other.
 pub trait Drive: Send {
@@ -61,16 +61,6 @@ pub trait Drive: Send {
 
     /// Everything that the rows to come depend on: resumed from it ([`resume`]), they have the same bits.
     fn checkpoint(&self) -> Checkpoint<'_>;
-
-    /// The state at a coordinate within the last row's step; `None` where the drive has none.
-    fn between(&self, _coordinate: f64) -> Option<Between> {
-        None
-    }
-
-    /// A state between rows as a row.
-    fn view<'a>(&'a self, _between: &'a Between) -> Option<Step<'a>> {
-        None
-    }
 
     /// The creep functions of the bodies that stream through a contact in steady motion.
     fn streaming(&self) -> Option<&Streaming> {

@@ -28,12 +28,6 @@ impl Clocks {
         &self.lengths
     }
 
-    /// The same, apart from the step under way.
-    pub(super) fn lengths_of(&self, step: &Interval) -> Vec<f64> {
-        let clocked = self.bodies.iter().map(|clock| clock.elapsed(step.start, step.instant.time));
-        std::iter::once(step.length()).chain(clocked).collect()
-    }
-
     /// Rate of the fastest clock of a body over a time `dt` from `start` on, not less than `laboratory`.
     pub(super) fn fastest(&self, start: f64, dt: f64, laboratory: f64) -> f64 {
         let end = start + dt;

@@ -87,12 +87,6 @@ pub(crate) trait History: Send {
         None
     }
 
-    /// The moment within the step just closed that lies `part` into it; writes u there. `None` where states between rows are not
-    /// known.
-    fn within(&self, _part: &Interval, _ends: &Ends<'_>, _u: &mut [f64]) -> Option<Moment> {
-        None
-    }
-
     /// Saves what the rest of a run depends on.
     fn save<'a>(&'a self, to: &mut Saver<'a>);
 
@@ -174,15 +168,6 @@ pub(crate) struct Exchange {
     pub(crate) heat: f64,
     /// The mean of the load while u ran from its start to its end \[N\].
     pub(crate) mean_load: f64,
-}
-
-/// A moment within a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Moment {
-    /// How far u is from its value at the start (0) to that at the end (1).
-    pub(crate) share: f64,
-    /// The load then \[N\].
-    pub(crate) load: f64,
 }
 
 /// The history that a simulation asks for.

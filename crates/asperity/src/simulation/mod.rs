@@ -79,7 +79,7 @@ pub struct Simulation {
     pub loading: Programme,
     /// When the state is computed.
     pub times: TimeGrid,
-    /// Additional instants at which steps end \[s\]. (Adaptive steps need none: see [`crate::Drive::between`].)
+    /// Additional instants at which steps end \[s\].
     pub include: Vec<f64>,
     /// How time is discretised.
     pub scheme: Scheme,

@@ -78,12 +78,6 @@ impl Interval {
         if share == 1.0 { self.clone() } else { self.of_length(share * self.length()) }
     }
 
-    /// The part of a step that was taken, up to `time`.
-    pub(crate) fn up_to(&self, time: f64) -> Interval {
-        let value = self.course.history.before(time - self.course.start);
-        Interval { instant: Instant { time, dt: time - self.start, value, ..self.instant }, ..self.clone() }
-    }
-
     /// The same step, of whose load this is known.
     pub(crate) fn under(&self, load: Load) -> Interval {
         Interval { load, ..self.clone() }

@@ -13,7 +13,6 @@
 //! a `History`, what else goes on a `Process`, when the steps are the `Schedule`'s matter.
 
 mod contact;
-mod dense;
 mod event;
 mod imposed;
 mod interval;
@@ -27,14 +26,13 @@ mod touch;
 mod undeformed;
 mod warm_start;
 
-pub use dense::Between;
 pub use row::{Row, Step};
 pub use snapshot::Checkpoint;
 
 pub(crate) use contact::StepContact;
 pub(crate) use interval::{Interval, Load, Piece, prescribed};
 pub(crate) use quantities::Recorder;
-pub(crate) use row::{PERIMETER_SHARE, Recalled};
+pub(crate) use row::PERIMETER_SHARE;
 pub(crate) use schedule::{Proposal, Response, Schedule, Summary, Verdict};
 pub(crate) use snapshot::{Loader, Saved, Saver, saved};
 pub(crate) use step_size::SHARE;

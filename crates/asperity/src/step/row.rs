@@ -89,8 +89,6 @@ pub struct Step<'a> {
 pub(crate) enum Recalled<'a> {
     /// Of the step under way.
     History(&'a dyn History),
-    /// Itself.
-    Field(&'a [f64]),
     /// None.
     Nothing,
 }
@@ -307,7 +305,6 @@ impl Recalled<'_> {
     fn write(self, g: &mut [f64]) {
         match self {
             Recalled::History(history) => history.recalled(g),
-            Recalled::Field(own) => g.copy_from_slice(own),
             Recalled::Nothing => g.fill(0.0),
         }
     }

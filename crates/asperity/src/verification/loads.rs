@@ -2,7 +2,6 @@
 
 use super::{Check, Checks, rows, shape_on, step_load, under, zener};
 use crate::cycles::cycles;
-use crate::drive::{Drive, March};
 use crate::error::Result;
 use crate::load::{Control, Course, Event, History, Loading, Programme, Stage};
 use crate::material::{Creep, CreepTerm};
@@ -107,44 +106,6 @@ pub(super) fn adaptive() -> Result<Vec<Check>> {
     checks.absolute(format!("load, {} steps, largest relative difference", held.len() - 1), error, tolerance);
     let crept = rows(Simulation { loading: step_load(0.01), ..base })?;
     checks.absolute("number of steps under a held load, over 80", (crept.len() - 1) as f64 / 80.0, 1.0);
-    Ok(checks.list)
-}
-
-pub(super) fn dense_output() -> Result<Vec<Check>> {
-    let mut checks = Checks::new("dense-output", "states between steps against steps that end there");
-    let points = vec![(0.0, 0.0), (1.0, 0.3), (3.0, 0.05)];
-    let loading: Programme = under(Control::Load, History::Table { points });
-    let at = [0.25, 1.55, 2.45];
-    let run = |steps: usize| -> Result<f64> {
-        let simulation = Simulation {
-            loading: loading.clone(),
-            times: TimeGrid::Uniform { end: 3.0, steps },
-            ..sphere()?
-        };
-        let fine = Simulation {
-            times: TimeGrid::Uniform { end: 3.0, steps: 480 },
-            include: at.to_vec(),
-            ..simulation.clone()
-        };
-        let fine = rows(fine)?;
-        let mut march = March::new(simulation)?;
-        let (mut start, mut worst) = (0.0, 0.0_f64);
-        while march.advance()?.is_some() {
-            let end = march.last().map_or(start, |step| step.coordinate().value());
-            for t in at.into_iter().filter(|t| *t > start && *t <= end) {
-                let Some(between) = march.between(t) else { continue };
-                let found = march.view(&between).map_or(f64::NAN, |step| step.row().approach);
-                let exact =
-                    fine.iter().find(|row| (row.time() - t).abs() < 1e-9).map_or(0.0, |row| row.approach);
-                worst = worst.max((found / exact - 1.0).abs());
-            }
-            start = end;
-        }
-        Ok(worst)
-    };
-    // The rim of the contact moves in proportion to dt: second order for a step of a tenth of the retardation time.
-    checks.absolute("approach, steps of 0.1", run(30)?, 1e-2);
-    checks.absolute("approach, steps of 0.05", run(60)?, 2.5e-3);
     Ok(checks.list)
 }
 

@@ -1,4 +1,4 @@
-//! Steps that follow their error, states between the steps, and marches resumed on the way.
+//! Steps that follow their error, the rows at the times asked for, and marches resumed on the way.
 
 use asperity::Drive;
 use asperity::contact::Hardness;
@@ -142,55 +142,41 @@ fn a_tighter_tolerance_gives_a_smaller_error_and_breaks_are_hit() {
     assert!(errors[2] < 0.2 * errors[0], "{errors:?}");
 }
 
-#[test]
-fn states_between_rows_are_second_order_and_disturb_nothing() {
-    let base = sphere(32);
-    let loading = load(History::Step { value: 0.01 });
-    let times = adaptive(100.0, 1e-3, 1e-3);
-    let simulation = Simulation { loading, times, ..base.clone() };
-    let plain = rows(simulation.clone());
-    let wanted = [5e-4, 0.033, 0.7, 5.0, 33.0, 100.0];
-    let mut march = March::new(simulation).unwrap();
-    let (mut with, mut shown) = (vec![], 0);
-    let mut start = 0.0;
-    while march.advance().unwrap().is_some() {
-        let row = march.last().unwrap().row();
-        for t in wanted.into_iter().filter(|t| *t > start && *t <= row.time()) {
-            let between = march.between(t).unwrap();
-            let step = march.view(&between).unwrap();
-            let state = elastic(&base, creep().value(t), 0.01);
-            let view = step.row();
-            // The tolerance of the steps.
-            assert!(
-                (view.approach / state.approach - 1.0).abs() < 1e-3,
-                "{t}: {} {}",
-                view.approach,
-                state.approach
-            );
-            assert!((view.load - 0.01).abs() < 1e-12);
-            // The gap is closed where the bodies press, up to the change of the contact's rim in a step; and the
-            // displacement is that of the gap: h = h0 + u - w.
-            let (mut gap, mut u) = (Array2::zeros((32, 32)), Array2::zeros((32, 32)));
-            step.gap_into(&mut gap);
-            step.displacement_into(&mut u);
-            for ((h, h0), u) in gap.iter().zip(&base.gap).zip(&u) {
-                assert!((h - (h0 + u - view.approach)).abs() < 1e-14);
-            }
-            let open: f64 = gap.iter().zip(step.pressure()).map(|(h, p)| h * p).sum::<f64>()
-                / step.pressure().iter().sum::<f64>();
-            assert!(open.abs() < 1e-12 * view.approach.abs() + 1e-15, "{open:e}");
-            shown += 1;
+/// The pressure at the times that steps must end at.
+fn pressures(simulation: Simulation) -> Vec<Array2<f64>> {
+    let mut march = March::new(simulation.clone()).unwrap();
+    let mut found = vec![];
+    while let Some(step) = march.advance().unwrap() {
+        if simulation.include.contains(&step.row().time()) {
+            found.push(step.pressure().to_owned());
         }
-        assert!(march.between(start - 1.0).is_none() && march.between(row.time() * 1.01 + 1.0).is_none());
-        // At the end of a step the state between is the row.
-        if let Some(end) = march.between(row.time()) {
-            assert!((march.view(&end).unwrap().row().approach / row.approach - 1.0).abs() < 1e-6);
-        }
-        start = row.time();
-        with.push(row);
     }
-    assert_eq!(shown, wanted.len());
-    assert_eq!(with, plain);
+    assert_eq!(found.len(), simulation.include.len());
+    found
+}
+
+#[test]
+fn adaptive_steps_end_at_the_times_asked_for_with_the_pressure_of_many_steps() {
+    // A contrast of 100 in one term, pressed in 1 s, held, and pressed again: the pressure relaxes within the long steps.
+    let terms = vec![CreepTerm { compliance: 0.99, retardation_time: 100.0 }];
+    let creep = Creep { instantaneous: 0.01, terms, fluidity: 0.0 };
+    let points = vec![(0.0, 0.0), (1.0, 0.02), (40.0, 0.02), (60.0, 0.03)];
+    let loading: Programme =
+        Loading { control: Control::Approach, history: History::Table { points } }.into();
+    let wanted = vec![0.4, 2.2, 5.0, 17.0, 33.0, 47.0, 55.0];
+    let run = |times| {
+        let (creep, loading, include) = (creep.clone(), loading.clone(), wanted.clone());
+        pressures(Simulation { creep, loading, include, times, ..sphere(32) })
+    };
+    let fine = run(TimeGrid::Uniform { end: 60.0, steps: 1200 });
+    for tolerance in [1e-2, 1e-3] {
+        for ((found, fine), t) in run(adaptive(60.0, tolerance, 1.0)).iter().zip(&fine).zip(&wanted) {
+            let off: f64 = (found - fine).iter().map(|p| p.abs()).sum();
+            // The tolerance holds for the sum; in single cells of the rim errors of both signs add half as much. A mixture of
+            // the pressures at both ends of a long step is off by several per cent.
+            assert!(off < 1.5 * tolerance * fine.sum(), "{tolerance} {t}: {}", off / fine.sum());
+        }
+    }
 }
 
 #[test]

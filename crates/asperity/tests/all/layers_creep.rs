@@ -386,45 +386,6 @@ fn adaptive_steps_keep_their_tolerance() {
 }
 
 #[test]
-fn fields_within_an_adaptive_step_are_those_of_a_run_that_steps_there() {
-    let of = coated(0.2);
-    let times = [0.7, 1.5, 3.1, 4.7];
-    let pressed = |value| History::Table { points: vec![(0.0, 0.0), (2.0, value), (6.0, 0.5 * value)] };
-    for (control, value) in [(Control::Load, 0.6), (Control::Approach, 0.1)] {
-        let adaptive = TimeGrid::Adaptive { end: 6.0, tolerance: 1e-3, first: 0.05 };
-        let simulation = sphere(33, 3.0, &of, control, pressed(value), adaptive);
-        let mut stepping = March::new(Simulation { include: times.to_vec(), ..simulation.clone() }).unwrap();
-        let mut rows = vec![];
-        while let Some(step) = stepping.advance().unwrap() {
-            if times.contains(&step.row().time()) {
-                rows.push((step.pressure().to_owned(), step.row()));
-            }
-        }
-        assert_eq!(rows.len(), times.len());
-        let mut march = March::new(simulation).unwrap();
-        let (mut start, mut met) = (0.0, 0);
-        while let Some(step) = march.advance().unwrap() {
-            let now = step.row().time();
-            for (t, (expected, row)) in times.iter().zip(&rows).filter(|(t, _)| start < **t && **t < now) {
-                let between = march.between(*t).unwrap();
-                let found = march.view(&between).unwrap();
-                let apart: f64 = (&found.pressure() - expected).iter().map(|p| p.abs()).sum();
-                // The contact grows within the step: the pressure between is of second order there.
-                assert!(apart < 0.01 * expected.sum(), "{control:?} {t}: {}", apart / expected.sum());
-                let (load, approach) = (found.row().load / row.load, found.row().approach / row.approach);
-                assert!(
-                    (load - 1.0).abs() < 2e-3 && (approach - 1.0).abs() < 2e-3,
-                    "{control:?} {t}: {load} {approach}"
-                );
-                met += 1;
-            }
-            start = now;
-        }
-        assert_eq!(met, times.len(), "a time is the end of a step");
-    }
-}
-
-#[test]
 fn what_is_not_solved_is_refused() {
     let of = coated(0.2);
     let times = TimeGrid::Uniform { end: 1.0, steps: 2 };

@@ -2,7 +2,6 @@
 
 use super::rules::{Driver, Rules};
 use super::shape::Shape;
-use crate::history::Moment;
 use crate::material::Dual;
 use crate::step::saved;
 
@@ -71,28 +70,6 @@ impl LoadCell {
         self.end.load = load;
         if let Some(rules) = rules {
             self.end.driver = rules.end(load, self.start.driver, &mut self.end.states);
-        }
-    }
-
-    /// The moment that lies `part` into the step, where u has gone this share of its way and its driver as told.
-    pub(crate) fn moment(&self, dual: &Dual, part: f64, share: f64, driver: Driver) -> Moment {
-        let mut rules = Rules::new(dual.states());
-        rules.set(dual, part, driver, &self.shape);
-        let at = self.start.driver + share * (self.end.driver - self.start.driver);
-        let recalled = rules.recalled();
-        let sum: f64 = recalled.weights.iter().zip(&self.start.states).map(|(w, q)| w * q).sum();
-        let load = (at - sum - recalled.own * self.start.driver) / rules.compliance;
-        Moment { share, load: load.max(0.0) }
-    }
-
-    /// The share of its way that u has gone `part` into a step of length `whole`, and how its driver has run until then.
-    pub(crate) fn gone(&self, dual: &Dual, driver: Driver, part: f64, whole: f64) -> (f64, Driver) {
-        match driver {
-            Driver::Time => (part / whole, Driver::Time),
-            Driver::Load(change) => {
-                let gone = self.shape.change(dual, part);
-                (gone / change, Driver::Load(gone))
-            }
         }
     }
 }

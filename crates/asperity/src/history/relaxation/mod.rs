@@ -23,7 +23,6 @@ mod pair;
 pub(super) mod rules;
 pub(super) mod shape;
 mod total_error;
-mod within;
 
 pub(super) use estimate::{FLOOR, LATE, ROUNDING, growing, remembered_defect, soon};
 
@@ -36,7 +35,7 @@ use rules::{Driver, Rules};
 use total_error::TotalError;
 
 use super::clocks::Clocks;
-use super::{Ends, Exchange, History, Law, Moment, ThirdState, third_state};
+use super::{Ends, Exchange, History, Law, ThirdState, third_state};
 use crate::contact::ContactState;
 use crate::error::Result;
 use crate::material::Dual;
@@ -333,13 +332,6 @@ impl History for Relaxation {
         let exchange = self.exchanged(&mut products, ends);
         self.products = Some(products);
         Some(exchange)
-    }
-
-    fn within(&self, part: &Interval, ends: &Ends<'_>, u: &mut [f64]) -> Option<Moment> {
-        let lengths = self.clocks.lengths_of(part);
-        let moment = self.moment(&lengths);
-        self.displaced(&lengths, moment, ends, u);
-        Some(moment)
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>) {

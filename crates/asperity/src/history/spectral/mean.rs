@@ -8,7 +8,6 @@
 //! mean then, Σ A_i (1 - exp(-s/τ_i)) with A_i = E_i (L - q_i). Otherwise u runs linearly in time.
 
 use crate::error::Result;
-use crate::history::Moment;
 use crate::history::relaxation::load_cell::LoadCell;
 use crate::history::relaxation::rules::{Driver, Rules, Share};
 use crate::history::relaxation::shape::{fading_share, moment};
@@ -80,18 +79,6 @@ impl Mean {
         let Some(slope) = piece.load_rate(1e-3 * longest) else { return relaxed };
         self.cell.go_on(&self.dual, slope);
         growing(&self.dual, &self.cell.shape, self.cell.end.driver, [relaxed, longest], 1.0)
-    }
-
-    /// The moment that lies `part` into the step of length `whole` in which u runs so.
-    pub(super) fn moment(&self, run: &Run, part: f64, whole: f64) -> Moment {
-        let (share, driver) = match run {
-            Run::Linear(driver) => self.cell.gone(&self.dual, *driver, part, whole),
-            Run::Relaxing(terms) => {
-                let gone = |s: f64| terms.iter().map(|(a, tau)| -a * libm::expm1(-s / tau)).sum::<f64>();
-                (gone(part) / gone(whole), Driver::Time)
-            }
-        };
-        self.cell.moment(&self.dual, part, share, driver)
     }
 
     /// What a state with the relaxation time `tau` takes over a step of length `x` in which u runs so.

@@ -16,7 +16,7 @@ use rustfft::num_complex::Complex64;
 
 use super::relaxation::rules::Driver;
 use super::relaxation::{ROUNDING, Reference, UnderWay};
-use super::{Ends, History, Law, Moment, ThirdState, third_state};
+use super::{Ends, History, Law, ThirdState, third_state};
 use crate::contact::ContactState;
 use crate::convolution::torus::{Spectrum, Torus};
 use crate::error::Result;
@@ -237,28 +237,6 @@ impl History for Spectral {
     fn first_step(&mut self, piece: &Piece) -> Option<f64> {
         let longest = piece.length / 20.0;
         Some(self.mean.as_mut().map_or(longest, |mean| mean.first_step(piece, longest)))
-    }
-
-    /// u of every wave runs as the mean course does.
-    fn within(&self, part: &Interval, ends: &Ends<'_>, u: &mut [f64]) -> Option<Moment> {
-        let (x, whole) = (part.length(), self.length);
-        let moment = match &self.mean {
-            Some(mean) if self.under_way == UnderWay::Contact && x < whole => {
-                mean.moment(&self.run, x, whole)
-            }
-            _ => Moment { share: if whole > 0.0 { x / whole } else { 1.0 }, load: ends.loads[1] },
-        };
-        let mut start = vec![0.0; self.grid.len()];
-        let mut torus = Torus::new(self.grid.cells(), self.waves.lengths());
-        torus.back_of(&self.displacement, &mut start);
-        let mut end = vec![0.0; self.grid.len()];
-        let Spectrum(p) = torus.transform(&ends.now.pressure);
-        let waves: Vec<Complex64> = self.end_of(&p);
-        torus.back_of(&waves, &mut end);
-        for (u, (start, end)) in u.iter_mut().zip(start.iter().zip(&end)) {
-            *u = start + moment.share * (end - start);
-        }
-        Some(moment)
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>) {

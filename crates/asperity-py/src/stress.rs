@@ -3,11 +3,13 @@
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
+use asperity::load::Control;
 use asperity::stress::{
-    Extreme, PressureHistory, StressQuantity, SubsurfaceStress, SurveyOptions, automatic_depths,
-    check_depths, contact_box, survey,
+    Extreme, StressQuantity, SubsurfaceStress, SurveyOptions, automatic_depths, check_depths, contact_box,
+    survey,
 };
 use asperity::{Boundary, Error, Grid};
+use asperity_io::stress::ChangingRatio;
 use ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
@@ -148,23 +150,30 @@ impl Stress {
 
 /// int nu(t - s) dp(s) \[Pa\] in each cell at the last of the times, and the lateral pressure \[Pa\] of the mean pressure without
 /// lateral strain, for a body whose Poisson's ratio changes with time; `creep` are its functions as JSON, as the setup of a result
-/// has them.
+/// has them, and `stages` the stage of each of the times, `controls` what is prescribed in each stage.
 #[pyfunction]
 pub fn stress_transverse<'py>(
     py: Python<'py>,
     creep: &str,
+    controls: &str,
+    stages: Vec<usize>,
     times: Vec<f64>,
     pressures: PyReadonlyArray3<'_, f64>,
 ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-    let creep = serde_json::from_str(creep).map_err(|error| CaseError::new_err(error.to_string()))?;
+    let unreadable = |error: serde_json::Error| CaseError::new_err(error.to_string());
+    let changing: ChangingRatio = serde_json::from_str(creep).map_err(unreadable)?;
+    let controls: Vec<Control> = serde_json::from_str(controls).map_err(unreadable)?;
     let (rows, nx, ny) = pressures.as_array().dim();
     if rows != times.len() {
         return Err(CaseError::new_err(format!("{rows} pressures, but {} times", times.len())));
     }
-    let mut history = PressureHistory::new(creep, nx * ny);
-    for (time, pressure) in times.iter().zip(pressures.as_array().outer_iter()) {
+    let grid = Grid::new([nx, ny], [nx as f64, ny as f64]).map_err(|error| raised(py, error))?;
+    let mut history = changing.history(grid).map_err(|error| raised(py, error))?;
+    let fields = pressures.as_array();
+    for ((time, stage), pressure) in times.iter().zip(&stages).zip(fields.outer_iter()) {
         let cells: Vec<f64> = pressure.iter().copied().collect();
-        history.advance(*time, &cells).map_err(|error| raised(py, error))?;
+        let control = controls.get(*stage).copied().unwrap_or(Control::Load);
+        history.advance(*time, control, &cells).map_err(|error| raised(py, error))?;
     }
     let field = Array2::from_shape_vec((nx, ny), history.transverse());
     let field = field.map_err(|error| CaseError::new_err(error.to_string()))?;

@@ -98,9 +98,11 @@ impl Stress {
         if pair.layers.is_some() {
             return at.fault(LAYERED, "bodies without layers", "delete the section");
         }
-        let bodies: Vec<StressBody> = (pair.bodies.iter().zip(&pair.creeps))
-            .map(|(body, (_, clock))| StressBody::of(body, clock.is_some()))
-            .collect();
+        let warms = pair.creeps.iter().any(|(_, clock)| clock.is_some());
+        let contact = pair.creeps.iter().map(|(creep, _)| creep.clone()).reduce(|sum, creep| sum.sum(&creep));
+        let contact = contact.filter(|_| !warms);
+        let bodies: Vec<StressBody> =
+            pair.bodies.iter().map(|body| StressBody::of(body, contact.as_ref())).collect();
         let plan = self.plan(at, grid, &bodies)?;
         if let Ratio::Changing(_) = plan.poisson {
             let place = if self.body.is_some() { at.key("body") } else { at.clone() };

@@ -1,6 +1,7 @@
 //! What a result says of its run before the first row: the case in numbers.
 
 use asperity::kernel::Kernel;
+use asperity::load::Control;
 use asperity::material::Creep;
 use asperity::sliding::SteadyMotion;
 use asperity::{Axis, Simulation};
@@ -69,14 +70,18 @@ pub fn setup(case: &Case) -> Map<String, Value> {
             json!({ "steady": steady, "direction": [x, y], "rolls": motion.rolls, "shear_stress": shear }),
         );
     }
-    let ratio = |body| StressBody::of(body, !case.conditions.thermal.is_empty()).poisson;
+    let contact = Some(&case.conditions.creep).filter(|_| case.conditions.thermal.is_empty());
+    let ratio = |body| StressBody::of(body, contact).poisson;
     let ratios: Vec<Option<Ratio>> = case.bodies.iter().map(ratio).collect();
     if ratios.iter().flatten().any(|ratio| ratio.constant().is_none()) {
         let creep = |ratio: &Option<Ratio>| match ratio {
-            Some(Ratio::Changing(creep)) => json!(creep),
+            Some(Ratio::Changing(changing)) => json!(changing),
             _ => Value::Null,
         };
         setup.insert(stress::POISSON_CREEP.into(), ratios.iter().map(creep).collect());
+        let controls: Vec<Control> =
+            case.conditions.loading.stages.iter().map(|stage| stage.control).collect();
+        setup.insert(stress::CONTROLS.into(), json!(controls));
     }
     setup.insert("solver_tolerance".into(), json!(case.conditions.solver.tolerance));
     if let Some(plan) = &case.stress {

@@ -1,6 +1,6 @@
 //! Which stress is computed: the body, the depths, the times.
 
-use asperity::material::Body;
+use asperity::material::{Body, Creep};
 use asperity::stress::{Rolling, StressQuantity, SurveyOptions};
 use asperity::{Boundary, Grid};
 use serde::{Deserialize, Serialize};
@@ -20,6 +20,8 @@ const REFINED: usize = 6;
 pub(crate) const SETUP: &str = "stress_plan";
 /// Functions of Poisson's ratio in the setup of a result, one for each body; null where it is constant.
 pub(crate) const POISSON_CREEP: &str = "poisson_creep";
+/// What is prescribed in each stage, in the setup of a result with such functions.
+pub(crate) const CONTROLS: &str = "stage_controls";
 const NO_POISSON: &str = "it does not say the Poisson's ratio of its first body, or this changes with the temperature; use \
                           asperity stress --poisson NU";
 
@@ -33,10 +35,9 @@ pub struct StressBody {
 }
 
 impl StressBody {
-    /// That of a case, whose temperature may change.
-    pub fn of(body: &Body, warms: bool) -> StressBody {
-        let ratio = Ratio::of(body).filter(|ratio| !warms || ratio.constant().is_some());
-        StressBody { name: body.name.clone(), poisson: ratio }
+    /// That of a case with this contact creep compliance; `None` where a temperature changes it.
+    pub fn of(body: &Body, contact: Option<&Creep>) -> StressBody {
+        StressBody { name: body.name.clone(), poisson: Ratio::of(body, contact) }
     }
 }
 

@@ -1,23 +1,34 @@
 //! The stored pressures of a result, as the stress needs them: one by one, or from the beginning on where Poisson's ratio changes
 //! with time.
 
+use asperity::load::Control;
 use asperity::stress::{PressureHistory, SubsurfaceStress};
 
-use super::Ratio;
 use super::evaluate::StressError;
+use super::{CONTROLS, Ratio};
 use crate::store::{At, FieldKind, Reader};
 
 const GAPS: &str = "Poisson's ratio of the body changes with time (constant bulk modulus), so that the stress needs the pressures \
                     of all rows, but not all are stored; run the case again with output.every = 1, or give --poisson NU for an \
                     estimate with a constant one";
+const UNKNOWN: &str = "the result does not say what was prescribed in each stage, which the stress of a body whose Poisson's ratio changes with \
+                       time (constant bulk modulus) needs; run the case again, or give --poisson NU for an estimate with a constant one";
 const MOVES: &str = "the stress of a contact that moves over a body whose Poisson's ratio changes with time (constant bulk \
                      modulus) is not computed";
 
 /// Reads the pressures of a result.
 pub(crate) struct Pressures<'a> {
     reader: &'a Reader,
-    /// The pressures so far, and the number of the next stored instant.
-    history: Option<(PressureHistory, usize)>,
+    history: Option<History>,
+}
+
+/// The pressures so far.
+struct History {
+    pressures: PressureHistory,
+    /// What is prescribed in the step to each row.
+    controls: Vec<Control>,
+    /// The number of the next stored instant.
+    next: usize,
 }
 
 impl<'a> Pressures<'a> {
@@ -26,7 +37,7 @@ impl<'a> Pressures<'a> {
     /// # Errors
     /// [`StressError`] where the ratio changes, and not every row is stored or the contact moves.
     pub(crate) fn new(reader: &'a Reader, ratio: &Ratio) -> Result<Self, StressError> {
-        let Ratio::Changing(creep) = ratio else { return Ok(Pressures { reader, history: None }) };
+        let Ratio::Changing(changing) = ratio else { return Ok(Pressures { reader, history: None }) };
         let refused = |why| Err(StressError::Refused { path: reader.path().to_owned(), why });
         if reader.header().setup.contains_key("motion") {
             return refused(MOVES);
@@ -36,8 +47,8 @@ impl<'a> Pressures<'a> {
         if !whole {
             return refused(GAPS);
         }
-        let history = PressureHistory::new(creep.clone(), reader.header().grid.len());
-        Ok(Pressures { reader, history: Some((history, 0)) })
+        let pressures = changing.history(reader.header().grid)?;
+        Ok(Pressures { reader, history: Some(History { pressures, controls: controls(reader)?, next: 0 }) })
     }
 
     /// Gives the pressure of a stored instant to the transforms; where the ratio changes, no earlier instant than the last time.
@@ -46,15 +57,30 @@ impl<'a> Pressures<'a> {
     /// [`StressError`] where a pressure is not stored or damaged.
     pub(crate) fn give(&mut self, index: usize, stress: &mut SubsurfaceStress) -> Result<(), StressError> {
         let read = |index| self.reader.field(FieldKind::Pressure, At::Index(index));
-        let Some((history, next)) = &mut self.history else {
+        let Some(History { pressures, controls, next }) = &mut self.history else {
             stress.set_pressure(read(index)?.as_slice().unwrap_or_default())?;
             return Ok(());
         };
         while *next <= index {
             let pressure = read(*next)?;
-            history.advance(self.reader.field_times()[*next], pressure.as_slice().unwrap_or_default())?;
+            let control = controls.get(*next).copied().unwrap_or(Control::Load);
+            pressures.advance(
+                self.reader.field_times()[*next],
+                control,
+                pressure.as_slice().unwrap_or_default(),
+            )?;
             *next += 1;
         }
-        Ok(stress.set_history(history)?)
+        Ok(stress.set_history(pressures)?)
     }
+}
+
+/// What is prescribed in the step to each row of a result.
+fn controls(reader: &Reader) -> Result<Vec<Control>, StressError> {
+    let stages = reader.header().setup.get(CONTROLS);
+    let stages: Vec<Control> =
+        stages.and_then(|stages| serde_json::from_value(stages.clone()).ok()).unwrap_or_default();
+    let of_stage = |stage: &f64| stages.get(*stage as usize).copied();
+    let controls: Option<Vec<Control>> = reader.series("stage")?.iter().map(of_stage).collect();
+    controls.ok_or_else(|| StressError::Refused { path: reader.path().to_owned(), why: UNKNOWN })
 }

@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-use asperity::material::{Body, PoissonCreep};
+use asperity::material::{Body, Creep, PoissonCreep};
 use asperity::stress::{PressureHistory, SubsurfaceStress};
 use asperity::{Boundary, Grid};
 use serde::{Deserialize, Serialize};
 
-/// Poisson's ratio of a body. As JSON it is a number, or the two functions of [`PoissonCreep`].
+/// Poisson's ratio of a body. As JSON it is a number, or the functions of a [`ChangingRatio`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Ratio {
@@ -15,13 +15,37 @@ pub enum Ratio {
     Constant(f64),
     /// Of a viscoelastic body of constant bulk modulus: it changes with time, and the stress follows from the pressures of all
     /// rows up to its time.
-    Changing(PoissonCreep),
+    Changing(ChangingRatio),
+}
+
+/// Poisson's ratio that changes with time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChangingRatio {
+    /// How.
+    #[serde(flatten)]
+    pub creep: PoissonCreep,
+    /// Contact creep compliance of the pair \[1/Pa\]: pressures follow it between two rows.
+    pub contact: Creep,
+}
+
+impl ChangingRatio {
+    /// The history of the pressures on a grid, from the beginning on.
+    ///
+    /// # Errors
+    /// As [`PressureHistory::new`].
+    pub fn history(&self, grid: Grid) -> asperity::Result<PressureHistory> {
+        PressureHistory::new(&self.creep, &self.contact, grid)
+    }
 }
 
 impl Ratio {
-    /// That of a body at constant temperature; `None` where its numbers make none.
-    pub fn of(body: &Body) -> Option<Ratio> {
-        body.poisson().map(Ratio::Constant).or_else(|| body.poisson_creep().ok().map(Ratio::Changing))
+    /// That of a body in a pair with the contact creep compliance `contact`, if no temperature changes it; `None` where it is not known.
+    pub fn of(body: &Body, contact: Option<&Creep>) -> Option<Ratio> {
+        let changing = || {
+            let (creep, contact) = (body.poisson_creep().ok()?, contact?.clone());
+            Some(Ratio::Changing(ChangingRatio { creep, contact }))
+        };
+        body.poisson().map(Ratio::Constant).or_else(changing)
     }
 
     /// The ratio where it is constant.
@@ -47,8 +71,8 @@ impl Ratio {
         match self {
             Ratio::Constant(_) => transforms,
             // A second pressure and its transform, and the fields that they are made from.
-            Ratio::Changing(creep) => {
-                transforms + PressureHistory::bytes(creep, grid.len()) + 8 * 7 * grid.len()
+            Ratio::Changing(ChangingRatio { creep, contact }) => {
+                transforms + PressureHistory::bytes(creep, contact, grid) + 8 * 7 * grid.len()
             }
         }
     }
@@ -65,7 +89,7 @@ impl fmt::Display for Ratio {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Ratio::Constant(ratio) => write!(f, "{ratio}"),
-            Ratio::Changing(PoissonCreep { ratio, .. }) => {
+            Ratio::Changing(ChangingRatio { creep: PoissonCreep { ratio, .. }, .. }) => {
                 write!(f, "{:.3} at once to {:.3} in the end", ratio.instantaneous, ratio.long_time())
             }
         }

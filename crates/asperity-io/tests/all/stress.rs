@@ -5,7 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use asperity::finding::YIELD_EXCEEDED;
-use asperity::stress::{Component, PressureHistory, StressQuantity, SubsurfaceStress};
+use asperity::load::Control;
+use asperity::stress::{Component, StressQuantity, SubsurfaceStress};
 use asperity_io::case::{Case, CaseErrors};
 use asperity_io::export::{Format, Options, export, volume};
 use asperity_io::session::{RunOptions, run};
@@ -378,6 +379,53 @@ fn a_line_contact_has_the_stress_below_a_cylinder() {
 }
 
 #[test]
+fn the_stress_under_a_held_approach_does_not_depend_on_the_steps() {
+    // G falls from 1 GPa to 20 MPa, B = 4 GPa: Poisson's ratio rises from 0.38 to 0.4975.
+    let of = |times: &str| {
+        format!(
+            r#"
+[domain]
+cells = [24, 20]
+size = ["1.2 mm", "1 mm"]
+[[surface]]
+kind = "sphere"
+radius = "5 mm"
+[[body]]
+bulk_modulus = "4 GPa"
+material = {{ model = "prony", modulus = "shear", instantaneous = "1 GPa", terms = [{{ fraction = 0.98, time = "3 s" }}] }}
+[load]
+control = "approach"
+history = {{ kind = "step", value = "10 um" }}
+[time]
+end = "20 s"
+{times}
+[output]
+fields = ["pressure"]
+every = 1
+[stress]
+depths = {{ from = "50 um", to = "0.8 mm", count = 6 }}
+"#
+        )
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let found = |times: &str| {
+        let reader = solved(&of(times), directory.path());
+        (reader.field_times().to_vec(), reader.stress_series("max_mises").unwrap())
+    };
+    let (times, fine) = found("steps = 400");
+    for steps in ["steps = 1", "steps = 7", "spacing = \"adaptive\""] {
+        let (at, mises) = found(steps);
+        for (t, mises) in at.iter().zip(&mises) {
+            let after = times.partition_point(|time| time < t).max(1);
+            let share = (t - times[after - 1]) / (times[after] - times[after - 1]);
+            let expected = fine[after - 1] + share * (fine[after] - fine[after - 1]);
+            // 4e-5: the chord of the reference, (0.05/3)^2/8; the rest is the tolerance of the contact solver.
+            assert!((mises / expected - 1.0).abs() < 1e-4, "{steps} at {t} s: {mises} {expected}");
+        }
+    }
+}
+
+#[test]
 fn a_constant_bulk_modulus_goes_through_all_rows() {
     let directory = tempfile::tempdir().unwrap();
     let text = CASE
@@ -386,19 +434,19 @@ fn a_constant_bulk_modulus_goes_through_all_rows() {
         .replace("end = \"2 s\"\nsteps = 8", "end = \"200 s\"\nsteps = 40");
     let reader = solved(&text, directory.path());
     let set = reader.stress().unwrap();
-    let Ratio::Changing(creep) = &set.poisson else { panic!("{}", set.poisson) };
+    let Ratio::Changing(changing) = &set.poisson else { panic!("{}", set.poisson) };
     // B = 4 GPa; G = 1 GPa at once, 2/3 GPa in the end.
     assert_eq!(set.poisson.to_string(), "0.385 at once to 0.421 in the end");
     assert_eq!(set.instants.len(), reader.len());
     // The same sum as of the pressures of all rows.
     let grid = reader.header().grid;
-    let mut history = PressureHistory::new(creep.clone(), grid.len());
+    let mut history = changing.history(grid).unwrap();
     let mut stress = SubsurfaceStress::new(grid, asperity::Boundary::Free, 0.0).unwrap();
     let mut six = std::array::from_fn(|_| vec![]);
     let mut mises = vec![0.0; grid.len()];
     for (index, time) in reader.field_times().iter().enumerate() {
         let pressure = reader.field(FieldKind::Pressure, At::Index(index)).unwrap();
-        history.advance(*time, pressure.as_slice().unwrap()).unwrap();
+        history.advance(*time, Control::Load, pressure.as_slice().unwrap()).unwrap();
         stress.set_history(&history).unwrap();
         stress.at(set.depths[3], &mut six).unwrap();
         StressQuantity::Mises.field_into(&six, &mut mises);
@@ -407,7 +455,8 @@ fn a_constant_bulk_modulus_goes_through_all_rows() {
     }
     // Long after the load has come to rest it is that of the ratio in the end: what is left decays as exp(-t/3 s).
     let pressure = reader.field(FieldKind::Pressure, At::Last).unwrap();
-    let mut settled = SubsurfaceStress::new(grid, asperity::Boundary::Free, creep.ratio.long_time()).unwrap();
+    let mut settled =
+        SubsurfaceStress::new(grid, asperity::Boundary::Free, changing.creep.ratio.long_time()).unwrap();
     settled.set_pressure(pressure.as_slice().unwrap()).unwrap();
     settled.at(set.depths[3], &mut six).unwrap();
     let mut expected = vec![0.0; grid.len()];

@@ -309,7 +309,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
                 raise CaseError(f"body is {body}, but the result has {len(known)} bodies, counted from 0")
             poisson = known[body] if known else None
             creep = (setup.get("poisson_creep") or [None] * (body + 1))[body]
-            if poisson is None and creep is not None:
+            if poisson is None and creep is not None and "stage_controls" in setup:
                 last = self._index(time, index) + 1
                 rows = np.asarray(self._table["time"])[:last]
                 if "motion" in setup:
@@ -320,7 +320,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
                         "all rows, but not all were kept: keep every row, or give poisson=... for an estimate with a constant one"
                     )
                 pressures = np.array([self._one("pressure", n) for n in range(last)])
-                return changing(creep, rows.tolist(), pressures, self._size, depths, boundary)
+                stages = np.asarray(self._table["stage"], dtype=np.int64)[:last]
+                return changing(setup, body, (stages.tolist(), rows.tolist()), pressures, self._size, depths)
             if poisson is None:
                 raise CaseError("the result does not say the Poisson's ratio of the body, or it changes with the temperature; give poisson=...")
         pressure = self.field("pressure", time=time, index=index)

@@ -160,10 +160,11 @@ def stress(
     return Stress(p, size_of("pressure", p, extent), depths, number("poisson", poisson), boundary)
 
 
-def changing(creep: Any, times: Sequence[float], pressures: Floats, size: Sequence[float], depths: Any, boundary: str) -> Stress:
+def changing(setup: dict[str, Any], body: int, rows: tuple[list[int], list[float]], pressures: Floats, size: Sequence[float], depths: Any) -> Stress:
     """The stress at the last of the times below pressures [Pa] of shape (time, x, y) or (time, x), from the beginning of a run on,
-    of a body whose Poisson's ratio changes with time; `creep` are its functions, as the setup of a result has them."""
+    of a body whose Poisson's ratio changes with time; `setup` is that of the result, `rows` their stages and times."""
     stack = plain(pressures if pressures.ndim == 3 else pressures[:, :, np.newaxis])
-    transverse, confined = _core.stress_transverse(json.dumps(creep), [float(t) for t in times], stack)
+    creep, controls = json.dumps(setup["poisson_creep"][body]), json.dumps(setup["stage_controls"])
+    transverse, confined = _core.stress_transverse(creep, controls, *rows, stack)
     last = plain(pressures[-1])
-    return Stress(last, size, depths, None, boundary, (transverse.reshape(last.shape), confined))
+    return Stress(last, size, depths, None, setup.get("boundary", "free"), (transverse.reshape(last.shape), confined))

@@ -8,6 +8,8 @@
 //! - `ConstantPressure`: the pressure of a step is that of its end;
 //! - `HereditarySum`: the full sum over all steps before.
 //!
+//! `Retarded` uses the first of them for integrals over pressures that are known already.
+//!
 //! A step is opened, solved, opened again at other lengths where its error or an event asks for it, and closed. What came
 //! before it is taken in once, when it is first opened.
 
@@ -17,8 +19,10 @@ mod clocks;
 mod constant;
 mod hereditary;
 mod relaxation;
+mod retarded;
 mod spectral;
 
+pub(crate) use retarded::Retarded;
 pub use spectral::check_layers;
 
 use crate::contact::{ContactState, Hardness};

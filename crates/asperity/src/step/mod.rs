@@ -30,7 +30,7 @@ pub use row::{Row, Step};
 pub use snapshot::Checkpoint;
 
 pub(crate) use contact::StepContact;
-pub(crate) use interval::{Interval, Load, Piece, prescribed};
+pub(crate) use interval::{Course, Interval, Load, Piece, prescribed};
 pub(crate) use quantities::Recorder;
 pub(crate) use row::PERIMETER_SHARE;
 pub(crate) use schedule::{Proposal, Response, Schedule, Summary, Verdict};

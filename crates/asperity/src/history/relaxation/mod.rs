@@ -20,13 +20,14 @@ mod energy;
 mod estimate;
 pub(super) mod load_cell;
 mod pair;
+mod response;
 pub(super) mod rules;
 pub(super) mod shape;
 mod total_error;
 
 pub(super) use estimate::{FLOOR, LATE, ROUNDING, growing, remembered_defect, soon};
 
-use branches::Branches;
+use branches::{Branches, Combination, Ending};
 use energy::{Products, transition};
 use estimate::Survey;
 use load_cell::LoadCell;

@@ -305,6 +305,20 @@ implementations (dense matrix, Gauss-Seidel, full hereditary sum, one-dimensiona
 
 ";
 
+const TIME_ERRORS: &str = "\
+## Stated against true errors of the time steps
+
+The test `time_error` runs 200 random cases: a cylinder or a rough line on a body of 1 to 4 terms with E(0)/E(infinity) from 2 to 3000,
+under a load or an approach that runs straight between 2 to 5 points, in 5 to 500 uniform or logarithmic steps or in adaptive steps with a
+tolerance of 1e-4 to 3e-2, some in motion. The reference takes 16 steps in place of each. A case is covered if the largest `time_error` of
+its rows is at least its largest error of the load, of the largest pressure, and of the stress history of a body whose Poisson's ratio
+changes (or these are below 1e-6, the tolerance of the solver). It is close if the largest `time_error` is at most ten times the largest of these errors and those of the
+pressure fields, or at most 1e-3. The test asserts that 95 of 100 are covered and 90 of 100 are close.
+
+| prescribed | cases | covered | close |
+|---|---|---|---|
+";
+
 fn verification() -> Done {
     run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
     let output = Command::new(root().join("target/release/asperity"))
@@ -314,6 +328,15 @@ fn verification() -> Done {
     if !output.status.success() {
         return Err(String::from_utf8_lossy(&output.stderr).into_owned());
     }
-    let text = format!("{VERIFICATION}{}", String::from_utf8_lossy(&output.stdout));
+    let found = cargo(&["test", "-p", "asperity", "--test", "all", "time_error", "--", "--nocapture"])
+        .output()
+        .map_err(|error| error.to_string())?;
+    if !found.status.success() {
+        return Err(String::from_utf8_lossy(&found.stdout).into_owned());
+    }
+    let found = String::from_utf8_lossy(&found.stdout);
+    let rows: Vec<&str> = found.lines().filter(|line| line.starts_with("| ")).collect();
+    let cases = String::from_utf8_lossy(&output.stdout);
+    let text = format!("{VERIFICATION}{cases}{TIME_ERRORS}{}\n", rows.join("\n"));
     std::fs::write(root().join("docs/verification.md"), text).map_err(|error| error.to_string())
 }

@@ -54,6 +54,8 @@ pub(super) struct Survey {
     pub(super) pressed: f64,
     /// The pressure that these cells could carry at most, over that of all: no error is larger.
     pub(super) largest: f64,
+    /// Share of the cells in contact at the start that still are at the end.
+    pub(super) staying: f64,
 }
 
 impl Relaxation {
@@ -100,7 +102,7 @@ impl Relaxation {
             sums(cells, |((u, u_third, rigid_before), (p, unit), (p_now, unit_now), (gap, rigid, most))| {
                 let presses = p > 0.0 || p_now > 0.0;
                 if !(presses || rigid < w) {
-                    return [0.0; 7];
+                    return [0.0; 9];
                 }
                 let u_now = compliance * unit_now + (gap - rigid);
                 let (before, now) = (u_third - u, u_now - u);
@@ -109,7 +111,7 @@ impl Relaxation {
                 let rounding = ROUNDING * u.abs().max(u_now.abs()) * spread;
                 let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
                 if !presses {
-                    return [curved, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+                    return [curved, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
                 }
                 // A cell that comes into contact had this gap before.
                 let late = if p > 0.0 || !lasts { 0.0 } else { (rigid_before + u - w_before).max(0.0) };
@@ -120,9 +122,21 @@ impl Relaxation {
                 let is_free = p_now > 0.0 && p_now < most;
                 let own = if is_free { late.max(if is_seen { curved } else { 0.0 }) } else { 0.0 };
                 let touches = f64::from(u8::from(p_now > 0.0));
-                [bends, unit_now, unit, u_now.abs(), own, touches, if is_free { most } else { 0.0 }]
+                let touched = f64::from(u8::from(p > 0.0));
+                [
+                    bends,
+                    unit_now,
+                    unit,
+                    u_now.abs(),
+                    own,
+                    touches,
+                    if is_free { most } else { 0.0 },
+                    touched,
+                    touched * touches,
+                ]
             });
-        let [bends, now, before, displaced, own, touching, most] = sums;
+        let [bends, now, before, displaced, own, touching, most, touched, stay] = sums;
+        let staying = if touched > 0.0 { stay / touched } else { 1.0 };
         // U under pressures all over a contact of this size. (On a periodic domain an even pressure has none.)
         let contact = match self.is_line {
             true => touching * self.cell_area,
@@ -133,7 +147,7 @@ impl Relaxation {
         let mean = if pressure > 0.0 { touching * energy / pressure } else { 0.0 };
         let pressed = if touching > 0.0 { mean.max(least) } else { 0.0 };
         let largest = if pressure > 0.0 { most / pressure } else { 0.0 };
-        Survey { bends, stress: now.max(least), own, pressed, largest }
+        Survey { bends, stress: now.max(least), own, pressed, largest, staying }
     }
 
     /// The estimated error of the step that was surveyed, without those of the steps before; 0 where nothing is remembered.

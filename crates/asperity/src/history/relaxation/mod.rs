@@ -41,7 +41,7 @@ use crate::contact::ContactState;
 use crate::error::Result;
 use crate::material::Dual;
 use crate::simulation::Simulation;
-use crate::step::{Interval, Load, Loader, Piece, SHARE, Saved, Saver, saved};
+use crate::step::{Interval, Load, Loader, Piece, Saved, Saver, saved};
 use asperity_sweep::zeros;
 
 /// The memory of a pair of bodies as branches that relax.
@@ -78,8 +78,6 @@ pub(crate) struct Relaxation {
     /// Of the step that was solved last, and the error of all steps.
     survey: Survey,
     total_error: TotalError,
-    /// That of an adaptive step, by which its length was chosen.
-    adaptive_error: Option<f64>,
 }
 
 /// The step whose end is not yet in the states.
@@ -126,8 +124,7 @@ impl Relaxation {
             cell_area: simulation.grid.cell_area(),
             is_line: simulation.grid.is_line(),
             survey: Survey::default(),
-            total_error: TotalError { left: vec![0.0; count], value: 0.0 },
-            adaptive_error: None,
+            total_error: TotalError { left: vec![0.0; count], value: 0.0, adaptive: None },
             pair,
             dual,
         })
@@ -272,7 +269,7 @@ impl History for Relaxation {
     }
 
     fn time_error(&self) -> Option<f64> {
-        Some(self.adaptive_error.map_or(self.total_error.value, |error| error / SHARE))
+        Some(self.total_error.value)
     }
 
     /// The load as a cell goes on to the end of the step.
@@ -315,7 +312,7 @@ impl History for Relaxation {
             self.survey = self.survey(ends);
         }
         let error = if step.instant.jump { 0.0 } else { self.estimate(&self.survey) };
-        self.adaptive_error = step.is_adaptive.then_some(error);
+        self.total_error.adaptive = step.is_adaptive.then_some(error);
         Some(error)
     }
 

@@ -66,13 +66,13 @@ fn given_steps_are_proposed_once_each() {
 #[test]
 fn adaptive_steps_are_tried_shorter_until_their_error_is_small_enough() {
     // The error of a step is its length squared.
-    let times = TimeGrid::Adaptive { end: 10.0, tolerance: 4e-2, first: 5.0 };
+    let times = TimeGrid::Adaptive { end: 10.0, tolerance: 0.125, first: 5.0 };
     let stage = Stage::new(Control::Load, History::Step { value: 1.0 });
     let (rows, attempts, _) = run(plan(vec![stage], times), |step| {
         let error = Some(step.length() * step.length());
         Summary { error, ..reaches(step, 1.0) }
     });
-    // A step may take a quarter of the tolerance: 0.1 s.
+    // A step may take 0.08 of the tolerance: 0.1 s.
     assert!(rows.iter().all(|row| row.dt <= 0.1 + 1e-12));
     assert!(rows.last().unwrap().time == 10.0 && rows.len() < 150 && attempts < rows.len() + 10);
 }

@@ -1,7 +1,11 @@
 //! Materials: moduli that suggest a wrong unit, and the quality and coverage of fits of measured data.
 
 use super::words::{digits, si};
-use super::{BEYOND_MATERIAL_DATA, Finding, MATERIAL_MISFIT, POINTS_LEFT_OUT, UNLIKELY_UNIT};
+use super::{
+    BEYOND_MATERIAL_DATA, DATA_SCATTER, Finding, MATERIAL_MISFIT, MODULUS_KIND, POINTS_LEFT_OUT,
+    SHIFT_UNCERTAIN, UNLIKELY_UNIT,
+};
+use crate::material::{Modulus, Reversal};
 use crate::simulation::Simulation;
 
 /// Plausible moduli of solids: from the softest gels to above diamond \[Pa\].
@@ -11,6 +15,8 @@ const COLD: f64 = 100.0;
 /// Largest rms misfit of a fit, and its largest ratio to the scatter of the data.
 const MISFIT: f64 = 0.05;
 const SCATTER: f64 = 2.0;
+/// Largest standard deviation of an estimated shift factor: a factor of two in time \[decades\].
+const FACTOR: f64 = 0.3;
 
 /// A modulus \[Pa\] that no body has; `name` is the name of the modulus.
 pub fn unlikely_modulus(name: &str, modulus: f64) -> Option<Finding> {
@@ -75,6 +81,54 @@ pub fn contradiction(name: &str, column: &str, rms: f64) -> Option<Finding> {
             digits(100.0 * rms)
         );
         Finding::warning(MATERIAL_MISFIT, rms, MISFIT, text)
+    })
+}
+
+/// A curve that changes in the wrong direction, and the rms and largest relative misfit of the fit through it.
+pub fn reversal(name: &str, found: Reversal, rms: f64, largest: f64) -> Finding {
+    let text = format!(
+        "The {} of {name} changes by {} % in the direction in which that of a passive material does not: points scatter, or sweeps at \
+         different temperatures do not continue each other. The fit runs through them with a misfit of {} % rms and {} % at most, and \
+         results that depend on the modulus are uncertain by that much. Check the shift factors and the points (asperity material \
+         fit --plot).",
+        found.quantity,
+        digits(100.0 * found.share),
+        digits(100.0 * rms),
+        digits(100.0 * largest)
+    );
+    Finding::warning(DATA_SCATTER, found.share, found.allowed, text)
+}
+
+/// Estimated shift factors, each as temperature \[K\], log10 a_T and standard deviation \[decades\].
+pub fn shift_uncertain(name: &str, factors: &[[f64; 3]]) -> Option<Finding> {
+    let [kelvin, _, decades] = factors.iter().max_by(|a, b| a[2].total_cmp(&b[2]))?;
+    (decades.is_nan() || *decades > FACTOR).then(|| {
+        let text = format!(
+            "The shift factors of {name} were estimated from its sweeps; that of {} °C is uncertain by {} decades (a factor of {} in \
+             time). At temperatures and times that depend on it, results are uncertain by the same factor in time. Give the shift \
+             where it is known, or measure sweeps that overlap more.",
+            digits(kelvin - 273.15),
+            digits(*decades),
+            digits(10f64.powf(*decades))
+        );
+        Finding::warning(SHIFT_UNCERTAIN, *decades, FACTOR, text)
+    })
+}
+
+/// A file whose header names another modulus than the one that its numbers are taken as.
+pub fn modulus_kind(name: &str, named: Modulus, taken: Modulus) -> Option<Finding> {
+    let words = |measure| match measure {
+        Modulus::Young => "Young's moduli (E)",
+        Modulus::Shear => "shear moduli (G)",
+    };
+    (named != taken).then(|| {
+        let text = format!(
+            "The header of the data of {name} names {}, but the numbers are taken as {}, as the case or the command says: these \
+             differ by the factor 2 (1 + Poisson's ratio), about 3 for a rubber. Correct the kind of modulus, or the header.",
+            words(named),
+            words(taken)
+        );
+        Finding::warning(MODULUS_KIND, f64::NAN, f64::NAN, text)
     })
 }
 

@@ -225,6 +225,26 @@ fn dma_sweeps_at_several_temperatures_become_one_material() {
 }
 
 #[test]
+fn what_a_fit_knows_of_its_data_is_a_finding_of_the_case() {
+    // Between 30 and 70 °C, by two decades, the sweeps hardly overlap.
+    let wide = sweeps(&[0.0, 10.0, 20.0, 30.0, 70.0]);
+    let dir =
+        files(&[("wide.csv", &wide), ("young.csv", &curve("t [s], E [MPa]", |t| 1e-6 * solid().value(t)))]);
+    let codes = |material: &str| -> Vec<String> {
+        let case = case_in(dir.path(), &body(material), "");
+        case.examine().unwrap().findings.iter().map(|finding| finding.code.to_string()).collect()
+    };
+    let estimated = r#"{ model = "dma", path = "wide.csv", modulus = "young", shift = { model = "estimated", reference = "20 °C" } }"#;
+    let found = codes(estimated);
+    assert!(found.contains(&"shift-uncertain".to_owned()), "{found:?}");
+    let table = |modulus: &str| {
+        format!("{{ model = \"relaxation-table\", path = \"young.csv\", modulus = \"{modulus}\" }}")
+    };
+    assert!(codes(&table("shear")).contains(&"modulus-kind".to_owned()));
+    assert!(!codes(&table("young")).contains(&"modulus-kind".to_owned()));
+}
+
+#[test]
 fn the_loss_factor_stands_for_the_loss_modulus() {
     let mut text = "angular frequency [rad/s], E' [MPa], tan(delta) [-]\n".to_owned();
     for k in 0..40 {

@@ -129,6 +129,12 @@ fn coldest(sample: &Sample, course: Option<&[(f64, f64)]>) -> f64 {
     shift.reference().into_iter().chain(sample.temperature).chain(course).fold(f64::INFINITY, f64::min)
 }
 
+/// The reference temperature of a material with a shift \[K\], where neither the material nor the run has a temperature.
+fn untold(sample: &Sample, course: &Course<'_>) -> Option<f64> {
+    let told = sample.temperature.is_some() || course.temperatures.is_some();
+    sample.shift.as_ref().filter(|_| !told)?.reference()
+}
+
 /// What is found about the material of the body `name`; `beyond` says where a run over `window` [s] leaves the data.
 fn findings(
     name: &str,
@@ -162,6 +168,7 @@ impl Pair {
         self.bodies.push(body);
         self.findings.extend(findings(&name, sample, &report, window, outside));
         self.findings.extend(finding::unlikely_temperature(&name, coldest(sample, course.temperatures)));
+        self.findings.extend(untold(sample, course).map(|kelvin| finding::at_reference(&name, kelvin)));
         self.reports.push(MaterialReport { body: name, ..report });
         Some(())
     }

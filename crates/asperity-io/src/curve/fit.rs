@@ -97,6 +97,8 @@ pub struct Fitted {
     pub temperatures: Vec<f64>,
     /// What the header of the data calls the moduli.
     pub named: Option<Modulus>,
+    /// Whether the moduli or compliances of the file have no unit.
+    pub unnamed: bool,
     /// The largest change of the data in a direction that no passive material has.
     pub reversal: Option<Reversal>,
     /// Points of the file that lack a number and were left out.
@@ -147,7 +149,14 @@ impl Fitted {
             self.other().and_then(|(column, misfit)| finding::contradiction(name, column, misfit.rms));
         let kind = self.named.and_then(|named| finding::modulus_kind(name, named, self.material.measure()));
         let measured = self.data.x.len() + self.left_out;
+        let values = self.data.curves.first().into_iter().flatten().map(|value| match self.series {
+            Series::Relaxation(_) => *value,
+            Series::Creep(_) => 1.0 / value,
+        });
+        let ends =
+            values.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], v| [least.min(v), most.max(v)]);
         let all = [
+            finding::unlikely_data(name, ends, self.unnamed),
             finding::misfit(name, rms, max, self.noise),
             self.reversal.map(|found| finding::reversal(name, found, rms, max)),
             other,
@@ -258,6 +267,7 @@ impl Request {
             vertical_factors,
             temperatures,
             named: curves.measure,
+            unnamed: curves.columns.iter().any(|place| !place.named && place.role.is_modulus()),
             reversal,
             left_out: curves.left_out,
             notes,
@@ -267,6 +277,11 @@ impl Request {
     /// The shift of the material.
     fn shift_of(&self, curves: &Curves, notes: &mut Vec<String>) -> Result<Found, Fault> {
         let known = |shift: Option<Shift>| Found { shift, rms: None, factors: Vec::new() };
+        if let (ShiftRequest::None, None, Some(why)) = (&self.shift, &curves.held.list, &curves.held.refused)
+        {
+            let message = format!("the list of shift factors in the file: {why}");
+            return Err(fault(message).remedy(Remedy::KnownShift));
+        }
         match (&self.shift, curves.held.shift()) {
             (ShiftRequest::None, Some(shift)) => {
                 notes.extend(told_of_held(curves, shift));

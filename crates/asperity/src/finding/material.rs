@@ -1,17 +1,14 @@
 //! Materials: moduli that suggest a wrong unit, and the quality and coverage of fits of measured data.
 
+use super::plausible::{COLD, MODULI, SOFTEST_DATA, TRANSITION};
 use super::words::{digits, si};
 use super::{
-    BEYOND_MATERIAL_DATA, DATA_SCATTER, Finding, MATERIAL_MISFIT, MODULUS_KIND, POINTS_LEFT_OUT,
-    SHIFT_UNCERTAIN, UNLIKELY_UNIT,
+    AT_REFERENCE_TEMPERATURE, BEYOND_MATERIAL_DATA, DATA_SCATTER, Finding, MATERIAL_MISFIT, MODULUS_KIND,
+    POINTS_LEFT_OUT, SHIFT_UNCERTAIN, UNLIKELY_UNIT,
 };
 use crate::material::{Modulus, Reversal};
 use crate::simulation::Simulation;
 
-/// Plausible moduli of solids: from the softest gels to above diamond \[Pa\].
-const MODULI: [f64; 2] = [150.0, 3e12];
-/// Below this temperature polymers neither creep nor are measured \[K\].
-const COLD: f64 = 100.0;
 /// Largest rms misfit of a fit, and its largest ratio to the scatter of the data.
 const MISFIT: f64 = 0.05;
 const SCATTER: f64 = 2.0;
@@ -34,6 +31,20 @@ pub fn unlikely_modulus(name: &str, modulus: f64) -> Option<Finding> {
     })
 }
 
+/// Measured moduli from the least to the largest \[Pa\] that are those of a polymer in another unit; `unnamed` if the file names no unit.
+pub fn unlikely_data(name: &str, [least, most]: [f64; 2], unnamed: bool) -> Option<Finding> {
+    let unlikely = most < SOFTEST_DATA && (unnamed || most > TRANSITION * least);
+    unlikely.then(|| {
+        let text = format!(
+            "The largest modulus in the data of {name} is {}{}. Check its unit (Pa, kPa, MPa, GPa): curves of polymers reach MPa to \
+             GPa.",
+            si(most, "Pa"),
+            if unnamed { ", because the file names no unit and its numbers are taken in Pa" } else { "" }
+        );
+        Finding::warning(UNLIKELY_UNIT, most, SOFTEST_DATA, text)
+    })
+}
+
 /// A temperature \[K\] at which no curves of polymers are shifted; `name` is the body.
 pub fn unlikely_temperature(name: &str, kelvin: f64) -> Option<Finding> {
     (kelvin < COLD).then(|| {
@@ -46,6 +57,16 @@ pub fn unlikely_temperature(name: &str, kelvin: f64) -> Option<Finding> {
         );
         Finding::warning(UNLIKELY_UNIT, kelvin, COLD, text)
     })
+}
+
+/// The material of `name` has a shift with this reference temperature \[K\], and the run has no temperature.
+pub fn at_reference(name: &str, reference: f64) -> Finding {
+    let text = format!(
+        "The material of {name} depends on temperature, and the case gives none: the run is at its reference temperature, {} °C. \
+         Give another one as [temperature] history = {{ kind = \"constant\", value = \"... °C\" }}, or `temperature` of the material.",
+        digits(reference - 273.15)
+    );
+    Finding::warning(AT_REFERENCE_TEMPERATURE, reference, f64::NAN, text).as_note()
 }
 
 /// The moduli of the pair.

@@ -289,7 +289,14 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>) -> String {
                 Some(instantaneous) => format!("{instantaneous} instantaneous, {relaxed} relaxed"),
                 None => format!("{relaxed} relaxed, instantaneously rigid"),
             };
-            line("", format!("- {name} wave, {}: {modulus}", quantity(wave.length, "m")));
+            let length = quantity(wave.length, "m");
+            // Of a free domain the contact decides, not its waves: strain and compliance of a contact of radius a are those of q = 1/a.
+            let radius = quantity(wave.length / std::f64::consts::TAU, "m");
+            let place = match d.boundary {
+                "free" => format!("contact of radius {radius}"),
+                _ => format!("{name} wave, {length}"),
+            };
+            line("", format!("- {place}: {modulus}"));
         }
     }
     if !d.retardation_times.is_empty() {

@@ -272,7 +272,7 @@ fn a_constant_temperature_stretches_the_times() {
     let kelvin =
         "[temperature]\nhistory = { kind = \"table\", points = [[0, 308.15], [\"50 s\", \"308.15 K\"]] }\n";
     for (material, more, celsius) in [
-        (shifted(""), "", 20.0),
+        (shifted(""), "", 20.0), // and a note says so, see below
         (shifted(", temperature = \"35 °C\""), "", 35.0),
         (shifted(""), constant, 35.0),
         (shifted(""), kelvin, 35.0),
@@ -280,6 +280,11 @@ fn a_constant_temperature_stretches_the_times() {
         let case = case(&body(&material), more);
         assert!(case.conditions.thermal.is_empty());
         assert!((case.conditions.creep.value(3.0) / at(celsius) - 1.0).abs() < 1e-12, "{material} {more}");
+        let untold: Vec<_> =
+            case.findings.iter().filter(|finding| finding.code == "at-reference-temperature").collect();
+        let told = celsius != 20.0;
+        assert!(untold.len() == usize::from(!told), "{material} {more}: {untold:?}");
+        assert!(untold.iter().all(|finding| !finding.is_warning() && finding.text.contains("20 °C")));
         let factor = case.describe().materials[0].shift_factor.unwrap();
         assert!((factor / wlf().factor(celsius + 273.15).unwrap() - 1.0).abs() < 1e-12);
     }

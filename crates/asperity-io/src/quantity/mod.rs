@@ -156,12 +156,11 @@ impl<D: Dimension, R: Range> Quantity<D, R> {
     /// 1e50.
     pub fn new(value: f64) -> Result<Self, QuantityError> {
         if value != 0.0 && value.is_finite() && !MAGNITUDES.contains(&value.abs()) {
-            let help = format!(
-                "{value:e} {}: no quantity of a contact is that {}",
-                D::SI,
-                if value.abs() < 1.0 { "small" } else { "large" }
-            );
-            return Err(Self::error(Code::OutOfRange, Some(help)));
+            let (least, most) = (MAGNITUDES.start(), MAGNITUDES.end());
+            let size = if value.abs() < *least { "small" } else { "large" };
+            let help = format!("no quantity of a contact is that {size}");
+            let expected = format!("{} from {least:e} to {most:e} {}", D::NAME, D::SI).trim_end().to_owned();
+            return Err(QuantityError { code: Code::OutOfRange, expected, help: Some(help) });
         }
         match R::contains(value) {
             true => Ok(Quantity { value, kind: PhantomData }),

@@ -502,6 +502,15 @@ fn a_sweep_expects_the_strain_of_its_slowest_velocity() {
     assert!((strain(&[1e6]) / hertz(1e-7) - 1.0).abs() < 1e-4);
     let found = Expected::of_sweep(&simulation, &parts, &streaming, &[1e-9]).unwrap().findings(&simulation);
     assert!(codes(&found).contains(&LARGE_STRAIN), "{found:?}");
+    // On a rough surface the mean pressure of the spots over the modulus is about half the rms slope, p C = h'/sqrt(pi) at light loads.
+    for (slope, large) in [(0.1, false), (0.4, true)] {
+        let parts = [rough(1e-4, slope)];
+        let gap = undeformed_gap(&simulation.grid, &parts).unwrap();
+        let (boundary, loading) = (Boundary::Periodic, step(1e-3));
+        let simulation = Simulation { boundary, gap, loading, ..simulation.clone() };
+        let expected = Expected::of_sweep(&simulation, &parts, &streaming, &[1e-3]).unwrap();
+        assert_eq!(codes(&expected.findings(&simulation)).contains(&LARGE_STRAIN), large, "{slope}");
+    }
 }
 
 #[test]

@@ -72,7 +72,7 @@ fn range(case: &Case, [first, last]: [f64; 2], words: impl Fn(f64) -> String) ->
     let [first, last] = [first, last].map(words);
     match (case.axis(), largest_before_the_end(case)) {
         _ if first == last => first,
-        (Axis::Velocity, _) => format!("{first} at very high velocities, {last} at very low ones"),
+        (Axis::Velocity, _) => format!("{first} at high velocities, {last} at low ones"),
         (_, Some(time)) => {
             format!("{first} to {last} under the largest load, at t = {}", quantity(time, "s"))
         }

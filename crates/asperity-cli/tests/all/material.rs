@@ -236,15 +236,25 @@ fn the_header_says_which_modulus_it_is() {
         let object = json(&asperity(dir.path(), &[&kind[..], more].concat()));
         let block = object["material"].as_str().unwrap().to_owned();
         let modulus = if block.contains("\"shear\"") { "shear" } else { "young" };
-        (modulus, object["notes"].to_string())
+        (modulus, object["notes"].to_string() + &object["findings"].to_string())
     };
     for (symbol, options, modulus, note) in [
         ("G(t)", &[][..], "shear", ""),
         ("E", &[], "young", ""),
         ("shear modulus", &["--column", "modulus=2"], "shear", ""),
         ("modulus", &[], "young", "does not say which"),
-        ("G(t)", &["--modulus", "young"], "young", "the header names shear moduli"),
-        ("E", &["--modulus", "shear"], "shear", "the header names Young's moduli"),
+        (
+            "G(t)",
+            &["--modulus", "young"],
+            "young",
+            "names shear moduli (G), but the numbers are taken as Young's",
+        ),
+        (
+            "E",
+            &["--modulus", "shear"],
+            "shear",
+            "names Young's moduli (E), but the numbers are taken as shear",
+        ),
     ] {
         let (found, notes) = fit(symbol, options);
         assert_eq!(found, modulus, "{symbol} {options:?}");

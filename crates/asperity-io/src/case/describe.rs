@@ -39,9 +39,6 @@ pub struct MaterialReport {
     pub window: Option<[f64; 2]>,
     /// Measured points.
     pub points: Option<usize>,
-    /// Points that lack a number and were left out.
-    #[serde(skip)]
-    pub left_out: usize,
     /// Temperatures at which they were measured \[K\].
     pub temperatures: Vec<f64>,
     /// The file that holds them, as the case names it.

@@ -96,17 +96,17 @@ impl Document {
             surface: reader.list("surface"),
             body: reader.list("body"),
             load: reader.required("load").unwrap_or_default(),
-            motion: reader.optional("motion"),
+            motion: reader.table("motion"),
             // Steady states of motion have no times.
             time: match text.has("motion.steady") {
-                true => reader.optional("time"),
+                true => reader.table("time"),
                 false => reader.required("time"),
             },
-            temperature: reader.optional("temperature"),
-            leakage: reader.optional("leakage"),
-            solver: reader.optional("solver").unwrap_or_default(),
-            output: reader.optional("output").unwrap_or_default(),
-            stress: reader.optional("stress"),
+            temperature: reader.table("temperature"),
+            leakage: reader.table("leakage"),
+            solver: reader.table("solver").unwrap_or_default(),
+            output: reader.table("output").unwrap_or_default(),
+            stress: reader.table("stress"),
         };
         reader.finish(Some(document))
     }
@@ -129,7 +129,7 @@ pub fn roughness(text: &Text<'_>) -> Read<(Domain, Vec<Surface>)> {
 /// The bodies and the temperature of a document that may have nothing else.
 pub fn bodies(text: &Text<'_>) -> Read<(Vec<Body>, Option<Temperature>)> {
     let mut reader = Reader::new(text);
-    let (bodies, temperature) = (reader.list("body"), reader.optional("temperature"));
+    let (bodies, temperature) = (reader.list("body"), reader.table("temperature"));
     reader.finish(Some((bodies, temperature)))
 }
 
@@ -150,6 +150,6 @@ pub fn material(text: &Text<'_>) -> Read<Material> {
     for key in ["bulk_modulus", "hardness"] {
         let _: Option<Pressure<Positive>> = reader.optional(key);
     }
-    let material = reader.optional("material");
+    let material = reader.table("material");
     reader.finish(material)
 }

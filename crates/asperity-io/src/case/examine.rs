@@ -3,6 +3,7 @@
 use asperity::contact::Prescribed;
 use asperity::finding::{Contact, Diagnostics, Expected, Finding, Known, thin_body};
 use asperity::material::Modulus;
+use asperity::sliding::Streaming;
 use asperity::surface::statistics::{HeightStatistics, SlopeStatistics};
 use asperity::surface::{Part, Punch, Shape, Surface};
 use asperity::{Boundary, Simulation};
@@ -86,12 +87,17 @@ impl Case {
     pub fn examine(&self) -> Result<Examination, CaseErrors> {
         let parts = self.parts()?;
         let simulation = self.simulation_of(&parts)?;
-        self.steady_of(&parts, &simulation)?;
+        let steady = self.steady_of(&parts, &simulation)?;
         let diagnostics = Diagnostics::new(
             &simulation,
             Known { parts: &parts, bodies: &self.bodies, thickness: self.thickness },
         );
-        let expected = Expected::of(&simulation, &parts);
+        let expected = match &steady {
+            None => Expected::of(&simulation, &parts),
+            Some(motion) => Streaming::new(&simulation).ok().and_then(|streaming| {
+                Expected::of_sweep(&simulation, &parts, &streaming, &motion.velocities)
+            }),
+        };
         let of_case = self.findings.iter().chain(diagnostics.known()).cloned();
         let to_come = expected.iter().flat_map(|expected| expected.findings(&simulation));
         let findings = of_case.chain(to_come).chain(self.thin(expected.as_ref())).collect();

@@ -12,7 +12,7 @@ use asperity::{Boundary, Error, Grid};
 
 use super::body::{self, Part};
 use super::describe::MaterialReport;
-use super::material::Sample;
+use super::material::{Model, Sample};
 use super::place::Place;
 use super::warmth::{Course, Warmth, at_temperature, warmth};
 use super::words::number;
@@ -129,28 +129,29 @@ fn coldest(sample: &Sample, course: Option<&[(f64, f64)]>) -> f64 {
     shift.reference().into_iter().chain(sample.temperature).chain(course).fold(f64::INFINITY, f64::min)
 }
 
+/// The reference temperature of a material with a shift \[K\], where neither the material nor the run has a temperature.
+fn untold(sample: &Sample, course: &Course<'_>) -> Option<f64> {
+    let told = sample.temperature.is_some() || course.temperatures.is_some();
+    sample.shift.as_ref().filter(|_| !told)?.reference()
+}
+
 /// What is found about the material of the body `name`; `beyond` says where a run over `window` [s] leaves the data.
 fn findings(
     name: &str,
+    sample: &Sample,
     report: &MaterialReport,
     window: Option<[f64; 2]>,
     beyond: Option<String>,
 ) -> Vec<Finding> {
-    let misfit = match (report.rms_misfit, report.max_misfit) {
-        (Some(rms), Some(largest)) => finding::misfit(name, rms, largest, report.noise.unwrap_or(0.0)),
-        _ => None,
-    };
     let beyond = match (beyond, window, report.window) {
         (Some(words), Some(needed), Some(known)) => Some(finding::beyond_data(name, needed, known, &words)),
         _ => None,
     };
-    let other = report
-        .other_misfit
-        .as_ref()
-        .and_then(|(column, misfit)| finding::contradiction(name, column, *misfit));
-    let measured = report.points.unwrap_or(0) + report.left_out;
-    let left_out = finding::points_left_out(name, report.left_out, measured);
-    misfit.into_iter().chain(other).chain(beyond).chain(left_out).collect()
+    let fitted = match &sample.model {
+        Model::Fitted { fitted, .. } => fitted.findings(name),
+        _ => Vec::new(),
+    };
+    fitted.into_iter().chain(beyond).collect()
 }
 
 impl Pair {
@@ -165,8 +166,9 @@ impl Pair {
         let body = Body { name: name.clone(), material, lateral, hardness: part.hardness };
         self.creeps.push((part.at.core(body.contact_creep())?, clock));
         self.bodies.push(body);
-        self.findings.extend(findings(&name, &report, window, outside));
+        self.findings.extend(findings(&name, sample, &report, window, outside));
         self.findings.extend(finding::unlikely_temperature(&name, coldest(sample, course.temperatures)));
+        self.findings.extend(untold(sample, course).map(|kelvin| finding::at_reference(&name, kelvin)));
         self.reports.push(MaterialReport { body: name, ..report });
         Some(())
     }

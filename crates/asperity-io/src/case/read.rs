@@ -86,6 +86,21 @@ impl<'r, 't> Reader<'r, 't> {
         if !self.text.root.contains_key(key) {
             self.missing(key);
         }
+        self.table(key)
+    }
+
+    /// A section that is one table. serde would also fill a struct from a list, by the order of its fields.
+    pub fn table<T: DeserializeOwned>(&mut self, key: &str) -> Option<T> {
+        if let Some(DeValue::Array(_)) = self.text.root.get(key).map(Spanned::get_ref) {
+            let help = format!("there is one {key}: begin it with the line [{key}], once");
+            self.errors.push(self.text.wrong(
+                Code::WrongType,
+                self.text.of(key),
+                "a table, not a list",
+                &help,
+            ));
+            return None;
+        }
         self.optional(key)
     }
 

@@ -140,7 +140,6 @@ fn reference(
                     .collect(),
                 window: Some(fitted.window),
                 points: Some(fitted.data.x.len()),
-                left_out: fitted.left_out,
                 temperatures: fitted.temperatures.clone(),
                 file: Some(file.clone()),
                 shift: sample.shift.as_ref().map(law),

@@ -87,6 +87,8 @@ pub struct Place {
     pub header: String,
     /// The unit in which its numbers are taken.
     pub unit: String,
+    /// Whether the file or the caller names the unit.
+    pub named: bool,
 }
 
 /// The values of all quantities of a curve of `form` in SI, the columns that hold them, and what was assumed.
@@ -130,8 +132,9 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
             notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));
         }
         values.insert(role, converted);
-        let unit = if unit.is_empty() { taken(role).to_owned() } else { unit };
-        used.push(Place { role, column: column + 1, header: header.clone(), unit });
+        let named = !unit.is_empty();
+        let unit = if named { unit } else { taken(role).to_owned() };
+        used.push(Place { role, column: column + 1, header: header.clone(), unit, named });
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();
     Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })

@@ -21,6 +21,8 @@ pub struct HeldShift {
     pub list: Option<Shift>,
     /// Its constants of the WLF law.
     pub wlf: Option<Shift>,
+    /// Why a list of factors of the file cannot be used.
+    pub refused: Option<String>,
 }
 
 impl HeldShift {
@@ -67,7 +69,14 @@ pub(super) fn held(sheets: &[Sheet]) -> HeldShift {
         }
         if let Ok(table) = &sheet.table {
             let celsius = reference.is_some().then_some("°C");
-            found.list = found.list.or_else(|| factors(table, celsius).ok());
+            match factors(table, celsius) {
+                Ok(shift) => found.list = found.list.or(Some(shift)),
+                Err(_) if !told_by(table) => {}
+                Err(_) => {
+                    let vertical = vertical_free(table).err().map(|fault| fault.message);
+                    found.refused = found.refused.or(vertical);
+                }
+            }
         }
     }
     found
@@ -211,11 +220,9 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
 /// Refuses a table whose moduli shift too, by a column of b_T that holds more than b_T = 1.
 fn vertical_free(table: &Table) -> Result<(), Fault> {
     for (n, Heading { name, base, .. }) in table.headings.iter().enumerate() {
-        let name_only = bare(name);
-        let plain = ["log10", "log", "lg", "ln"].iter().find_map(|prefix| name_only.strip_prefix(prefix));
-        if !["bt", "verticalshift", "verticalshiftfactor", "verticalfactor"]
-            .contains(&plain.unwrap_or(&name_only))
-        {
+        let whole = bare(name);
+        let plain = ["log10", "log", "lg", "ln"].iter().find_map(|prefix| whole.strip_prefix(prefix));
+        if !is_vertical(plain.unwrap_or(&whole)) {
             continue;
         }
         let logarithmic = plain.is_some() || base.is_some();
@@ -224,12 +231,19 @@ fn vertical_free(table: &Table) -> Result<(), Fault> {
             continue;
         }
         return Err(fault(format!(
-            "the table holds vertical factors too (\"{name}\"), which are not read from a file, and without them the moduli \
-             are wrong; take the column out and give --vertical (density or free), or a list in a case, as in \
-             vertical = [[\"0 °C\", 1.05], [\"20 °C\", 1.0]]"
+            "the table holds vertical factors too (\"{name}\"), which are not read from a file, because programs write b_T and one over \
+             it, and without them the moduli are wrong; take the column out and give --vertical (density or free), or a list in a case, \
+             as in vertical = [[\"0 °C\", 1.05], [\"20 °C\", 1.0]]"
         )));
     }
     Ok(())
+}
+
+/// Whether a bare name is that of factors of moduli: "bT", "vertical shift", "v_shift", "modulus factor".
+fn is_vertical(name: &str) -> bool {
+    ["b", "v", "y", "vshift", "yshift"].contains(&name)
+        || ["bt", "vert", "modulus", "moduli", "modul"].iter().any(|start| name.starts_with(start))
+        || name.ends_with("bt")
 }
 
 #[cfg(test)]
@@ -268,6 +282,9 @@ mod tests {
             ("T [°C], log_aT\n0,4\n20,3\n", "all shift factors are above 1"),
             ("T [°C], log_aT, b_T\n0,1,1.05\n20,0,1\n", "vertical factors too (\"b_T\")"),
             ("T [°C], log_aT, log bT\n0,1,0.02\n20,0,0\n", "vertical factors too"),
+            ("T [°C], log_aT, vertical\n0,1,1.05\n20,0,1\n", "vertical factors too"),
+            ("T [°C], log_aT, vertical shift factor b_T\n0,1,1.05\n20,0,1\n", "vertical factors too"),
+            ("T [°C], log_aT, v_shift\n0,1,1.05\n20,0,1\n", "vertical factors too"),
         ] {
             let fault = read(text).unwrap_err();
             assert!(fault.message.contains(words), "{text}: {fault:?}");

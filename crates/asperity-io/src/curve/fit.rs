@@ -2,9 +2,10 @@
 
 use std::f64::consts::LN_10;
 
+use asperity::finding::{self, Finding};
 use asperity::material::{
     Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Moduli, Modulus, ModulusChange,
-    Relaxation, Shift, ShiftFit, VerticalShift, estimate_shift, fit_arrhenius, fit_creep, fit_dma,
+    Relaxation, Reversal, Shift, ShiftFit, VerticalShift, estimate_shift, fit_arrhenius, fit_creep, fit_dma,
     fit_relaxation, fit_wlf, master_curve,
 };
 
@@ -94,6 +95,12 @@ pub struct Fitted {
     pub vertical_factors: Vec<[f64; 3]>,
     /// Temperatures of the sweeps \[K\], where the file holds them.
     pub temperatures: Vec<f64>,
+    /// What the header of the data calls the moduli.
+    pub named: Option<Modulus>,
+    /// Whether the moduli or compliances of the file have no unit.
+    pub unnamed: bool,
+    /// The largest change of the data in a direction that no passive material has.
+    pub reversal: Option<Reversal>,
     /// Points of the file that lack a number and were left out.
     pub left_out: usize,
     /// What was assumed.
@@ -135,10 +142,36 @@ impl Fitted {
         }
     }
 
+    /// What is found about the fit and its data; `name` is the file or the body.
+    pub fn findings(&self, name: &str) -> Vec<Finding> {
+        let Misfit { rms, max, .. } = self.misfit;
+        let other =
+            self.other().and_then(|(column, misfit)| finding::contradiction(name, column, misfit.rms));
+        let kind = self.named.and_then(|named| finding::modulus_kind(name, named, self.material.measure()));
+        let measured = self.data.x.len() + self.left_out;
+        let values = self.data.curves.first().into_iter().flatten().map(|value| match self.series {
+            Series::Relaxation(_) => *value,
+            Series::Creep(_) => 1.0 / value,
+        });
+        let ends =
+            values.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], v| [least.min(v), most.max(v)]);
+        let all = [
+            finding::unlikely_data(name, ends, self.unnamed),
+            finding::misfit(name, rms, max, self.noise),
+            self.reversal.map(|found| finding::reversal(name, found, rms, max)),
+            other,
+            finding::shift_uncertain(name, &self.factors),
+            kind,
+            finding::points_left_out(name, self.left_out, measured),
+        ];
+        all.into_iter().flatten().collect()
+    }
+
     /// A sentence with the numbers where a run from `first` to `last` \[s\] leaves what was measured.
     pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
         let Fitted { misfit, window, noise, .. } = *self;
-        let fit = Fit { function: (), misfit, columns: Vec::new(), window, noise, uncertainty: Vec::new() };
+        let (columns, uncertainty) = (Vec::new(), Vec::new());
+        let fit = Fit { function: (), misfit, columns, window, noise, uncertainty, reversal: self.reversal };
         fit.beyond(first, last)
     }
 }
@@ -153,18 +186,10 @@ const LAW: f64 = 0.1;
 /// No factor is taken to be known better \[decades\]: on the steepest slopes of a modulus this is 2 % of it.
 const FACTOR: f64 = 0.01;
 
-/// Says that the header names another modulus than the one asked for.
-fn contradiction(named: Modulus, taken: Modulus) -> String {
-    let name = |measure| match measure {
-        Modulus::Young => "Young's moduli",
-        Modulus::Shear => "shear moduli",
-    };
-    format!(
-        "the header names {}, but the numbers are taken as {}, as modulus = \"{}\" says: they differ by 2 (1 + Poisson's ratio)",
-        name(named),
-        name(taken),
-        crate::choice::word(&taken)
-    )
+/// The function of a fit, and the rest of the fit.
+fn taken<F>(fit: Fit<F>, series: fn(F) -> Series) -> (Series, Fit<()>) {
+    let Fit { function, misfit, columns, window, noise, uncertainty, reversal } = fit;
+    (series(function), Fit { function: (), misfit, columns, window, noise, uncertainty, reversal })
 }
 
 impl Request {
@@ -179,12 +204,6 @@ impl Request {
 
     fn fitted(&self, curves: &Curves) -> Result<Fitted, Fault> {
         let mut notes = curves.notes.clone();
-        notes.extend(
-            curves
-                .measure
-                .filter(|named| *named != self.measure)
-                .map(|named| contradiction(named, self.measure)),
-        );
         let temperatures: Vec<f64> = curves.sweeps.iter().filter_map(|sweep| sweep.temperature).collect();
         let reference = self.reference(curves);
         let corrected = vertical::corrected(curves, &self.vertical, reference)?;
@@ -212,21 +231,17 @@ impl Request {
         };
         let (options, none) = (&self.options, Vec::new());
         let curve = |n: usize| data.curves.get(n).unwrap_or(&none).as_slice();
-        let (series, misfit, columns, noise, window, uncertainty) = match curves.kind {
-            Kind::Creep => {
-                let fit = fit_creep(&data.x, curve(0), options).map_err(located)?;
-                (Series::Creep(fit.function), fit.misfit, fit.columns, fit.noise, fit.window, fit.uncertainty)
+        let (series, fit) = match curves.kind {
+            Kind::Creep => taken(fit_creep(&data.x, curve(0), options).map_err(located)?, Series::Creep),
+            Kind::Dma => {
+                let fit = fit_dma(&data.x, curve(0), curve(1), options);
+                taken(fit.map_err(located)?, Series::Relaxation)
             }
-            Kind::Relaxation | Kind::Dma => {
-                let fit = match curves.kind {
-                    Kind::Dma => fit_dma(&data.x, curve(0), curve(1), options),
-                    _ => fit_relaxation(&data.x, curve(0), options),
-                };
-                let fit = fit.map_err(located)?;
-                let Fit { function, misfit, columns, noise, window, uncertainty } = fit;
-                (Series::Relaxation(function), misfit, columns, noise, window, uncertainty)
+            Kind::Relaxation => {
+                taken(fit_relaxation(&data.x, curve(0), options).map_err(located)?, Series::Relaxation)
             }
         };
+        let Fit { misfit, columns, noise, window, uncertainty, reversal, .. } = fit;
         let material = match &series {
             Series::Relaxation(relaxation) => Material::prony(self.measure, relaxation.clone()),
             Series::Creep(creep) => Material::generalised_kelvin(self.measure, creep.clone()),
@@ -251,6 +266,9 @@ impl Request {
             vertical,
             vertical_factors,
             temperatures,
+            named: curves.measure,
+            unnamed: curves.columns.iter().any(|place| !place.named && place.role.is_modulus()),
+            reversal,
             left_out: curves.left_out,
             notes,
         })
@@ -259,6 +277,11 @@ impl Request {
     /// The shift of the material.
     fn shift_of(&self, curves: &Curves, notes: &mut Vec<String>) -> Result<Found, Fault> {
         let known = |shift: Option<Shift>| Found { shift, rms: None, factors: Vec::new() };
+        if let (ShiftRequest::None, None, Some(why)) = (&self.shift, &curves.held.list, &curves.held.refused)
+        {
+            let message = format!("the list of shift factors in the file: {why}");
+            return Err(fault(message).remedy(Remedy::KnownShift));
+        }
         match (&self.shift, curves.held.shift()) {
             (ShiftRequest::None, Some(shift)) => {
                 notes.extend(told_of_held(curves, shift));

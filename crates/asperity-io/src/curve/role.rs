@@ -18,6 +18,20 @@ impl Role {
         let name = bare(name);
         self.names().any(|known| known == name)
     }
+
+    /// Whether it is a modulus or a compliance.
+    pub(super) fn is_modulus(self) -> bool {
+        matches!(
+            self,
+            Role::Modulus
+                | Role::Storage
+                | Role::Loss
+                | Role::ComplexModulus
+                | Role::Compliance
+                | Role::StorageCompliance
+                | Role::LossCompliance
+        )
+    }
 }
 
 impl FromStr for Role {

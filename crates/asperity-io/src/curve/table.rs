@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use super::error::{Fault, fault};
-use super::{role, wide};
+use super::{role, units, wide};
 use crate::quantity::unit::Unit;
 use crate::topography::{dialect, is_numbers, to_text};
 
@@ -391,11 +391,14 @@ pub(super) fn cells(line: &str, separator: Option<char>) -> Vec<&str> {
             false => line.split_whitespace().collect(),
         };
     };
-    let (mut quoted, mut begins) = (false, true);
+    let (mut quoted, mut begins, mut closed) = (false, true, false);
     let outside = |c: char| {
         let ends = c == separator && !quoted;
         if c == '"' {
-            quoted = !quoted && begins;
+            // Inside quotes, two of them stand for one.
+            (quoted, closed) = (!quoted && (begins || closed), quoted);
+        } else {
+            closed = false;
         }
         begins = ends || (begins && c.is_whitespace());
         ends
@@ -458,7 +461,7 @@ fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<V
     let line = line.trim_start_matches(['#', '%', '/']);
     let line = if line.contains('\t') { line.trim_end() } else { line.trim() };
     let clean = |cells: Vec<&str>| -> Vec<String> {
-        cells.iter().map(|cell| unquoted(cell.trim()).trim().to_owned()).collect()
+        cells.iter().map(|cell| unquoted(cell.trim()).trim().replace("\"\"", "\"")).collect()
     };
     let spaced = clean(line.split("  ").filter(|cell| !cell.trim().is_empty()).collect());
     let spaced = (separator.is_none() && spaced.len() == columns).then_some(spaced);
@@ -509,9 +512,10 @@ fn bare_unit(cell: &str) -> &str {
 /// Whether a header cell is nothing but a unit (or says that there is none).
 fn is_unit(cell: &str) -> bool {
     let unit = bare_unit(cell);
+    let unit = units::spelled(unit);
     // One letter is rather a name: t, T, f.
-    matches!(unit, "" | "-" | "1" | "s" | "K" | "h" | "°C" | "degC" | "rad/s" | "°")
-        || (unit.chars().count() > 1 && Unit::parse(unit).is_ok())
+    matches!(&*unit, "" | "-" | "1" | "s" | "K" | "h" | "°C" | "degC" | "rad/s" | "mrad/s" | "mrad" | "°")
+        || (unit.chars().count() > 1 && Unit::parse(&unit).is_ok())
 }
 
 /// Name and unit of "load [mN]", "load (mN)", "load/mN", "load, mN", "load in mN", "load_mN" or "load mN".

@@ -1,13 +1,44 @@
 //! Units of columns as programs write them, and numbers in SI.
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use super::role::{self, Role};
 use crate::quantity::unit::Unit;
 use crate::quantity::{Dimension, Quantity, QuantityError, Temperature, dimension, range};
 
+/// A unit of instruments with the capital letters and the words of the SI: "MPA", "Mpa" are MPa, "rad/sec" is rad/s. "mpa" may be
+/// milli- or megapascal and stays.
+pub(super) fn spelled(unit: &str) -> Cow<'_, str> {
+    let lower = unit.to_lowercase();
+    let known = match lower.as_str() {
+        "pa" => "Pa",
+        "hpa" => "hPa",
+        "kpa" => "kPa",
+        "mpa" if unit.starts_with('M') => "MPa",
+        "gpa" => "GPa",
+        "psi" => "psi",
+        "hz" => "Hz",
+        "khz" => "kHz",
+        "mhz" if unit == "MHZ" => "MHz",
+        "rad" | "radian" | "radians" => "rad",
+        "mrad" if unit.starts_with('m') => "mrad",
+        _ => {
+            let Some((angle, time)) = lower.split_once('/') else { return Cow::Borrowed(unit) };
+            let time = matches!(time.trim(), "s" | "sec" | "second" | "seconds");
+            match angle.trim() {
+                "rad" | "rads" | "radian" | "radians" if time => "rad/s",
+                "mrad" if time && unit.starts_with('m') => "mrad/s",
+                _ => return Cow::Borrowed(unit),
+            }
+        }
+    };
+    Cow::Borrowed(known)
+}
+
 /// A unit as programs write it in the way that it is read here.
 pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
+    let unit = &*spelled(unit);
     let bare = role::bare(unit);
     let tidied = match role {
         _ if unit == "-" => "",
@@ -114,8 +145,9 @@ fn degrees(unit: &str, numbers: &[f64]) -> Result<f64, String> {
         "deg" => Ok(std::f64::consts::PI / 180.0),
         "" if most > std::f64::consts::FRAC_PI_2 => Ok(std::f64::consts::PI / 180.0),
         "rad" => Ok(1.0),
+        "mrad" => Ok(1e-3),
         "" => Err("has no unit: give deg or rad".to_owned()),
-        _ => Err(format!("\"{unit}\" is not a unit of an angle (deg, rad)")),
+        _ => Err(format!("\"{unit}\" is not a unit of an angle (deg, rad, mrad)")),
     }
 }
 
@@ -128,11 +160,13 @@ fn frequency(unit: &str) -> Result<f64, String> {
             _ => format!("\"{unit}\" may mean cycles (Hz) or radians (rad/s)"),
         });
     }
+    let (unit, milli) =
+        unit.strip_prefix("mrad").map_or((unit.to_owned(), 1.0), |rest| (format!("rad{rest}"), 1e-3));
     let parsed = Unit::parse(&unit.replace("rad", "1"));
     match parsed {
         Ok(parsed) if parsed.powers == dimension::Frequency::POWERS => {
             let scale = parsed.numerator / parsed.denominator * 10f64.powi(parsed.exponent);
-            Ok(if radians { scale } else { TAU * scale })
+            Ok(if radians { milli * scale } else { TAU * scale })
         }
         _ => Err(format!("\"{unit}\" is not a unit of frequency (Hz, kHz, rad/s)")),
     }

@@ -145,12 +145,23 @@ impl fmt::Display for QuantityError {
 
 impl std::error::Error for QuantityError {}
 
+/// Magnitudes that can be meant, in SI; products of four of them are finite. Times of measured master curves span 60 decades.
+const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
+
 impl<D: Dimension, R: Range> Quantity<D, R> {
     /// A value in SI.
     ///
     /// # Errors
-    /// [`QuantityError`] where it is outside the range `R`, or not a number.
+    /// [`QuantityError`] where it is outside the range `R`, not a number, or of a magnitude that cannot be meant: below 1e-50 or above
+    /// 1e50.
     pub fn new(value: f64) -> Result<Self, QuantityError> {
+        if value != 0.0 && value.is_finite() && !MAGNITUDES.contains(&value.abs()) {
+            let (least, most) = (MAGNITUDES.start(), MAGNITUDES.end());
+            let size = if value.abs() < *least { "small" } else { "large" };
+            let help = format!("no quantity of a contact is that {size}");
+            let expected = format!("{} from {least:e} to {most:e} {}", D::NAME, D::SI).trim_end().to_owned();
+            return Err(QuantityError { code: Code::OutOfRange, expected, help: Some(help) });
+        }
         match R::contains(value) {
             true => Ok(Quantity { value, kind: PhantomData }),
             false => {
@@ -295,6 +306,9 @@ mod tests {
         assert!(message::<dimension::Length, Finite>("1e999 m").contains("too large"));
         assert!(message::<dimension::Length, Finite>("1e99999999999999999999 m").contains("too large"));
         assert!(message::<dimension::Pressure, Finite>("1e305 GPa").contains("too large"));
+        assert!(message::<dimension::Force, Positive>("1e300 N").contains("that large"));
+        assert!(message::<dimension::Length, Positive>("1e-300 m").contains("that small"));
+        assert!(Length::<Positive>::new(1e51).is_err() && Length::<Positive>::new(1e49).is_ok());
         assert_eq!("1e-99999999999999999999 m".parse::<Length>().unwrap().get(), 0.0);
     }
 

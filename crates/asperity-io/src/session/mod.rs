@@ -204,7 +204,10 @@ fn run_inside(
         record.diagnostics = record.diagnostics.of_sweep(streaming.clone());
     }
     if let Some(checkpoint) = &checkpoint {
-        record.diagnostics.resume(earlier.rows.get(..checkpoint.step).unwrap_or_default(), &earlier.findings);
+        let Earlier { rows, frictions, findings } = &earlier;
+        let rows = rows.get(..checkpoint.step).unwrap_or_default();
+        let frictions = frictions.get(..checkpoint.step).unwrap_or_default();
+        record.diagnostics.resume(rows, frictions, findings);
     }
     drive.interrupt_with(options.interrupt.clone());
     let mut maps = Maps::new(case, drive.simulation().grid.shape());

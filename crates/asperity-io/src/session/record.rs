@@ -17,6 +17,8 @@ use crate::stress::Below;
 #[derive(Default)]
 pub(super) struct Earlier {
     pub(super) rows: Vec<Row>,
+    /// Friction of each row; empty where nothing moves.
+    pub(super) frictions: Vec<Friction>,
     pub(super) findings: Vec<Finding>,
 }
 
@@ -24,7 +26,11 @@ impl Earlier {
     /// Those of the result at `path`.
     pub(super) fn read(path: &Path) -> Result<Earlier, StoreError> {
         let reader = Reader::open(path)?;
-        Ok(Earlier { rows: reader.rows()?, findings: reader.findings().to_vec() })
+        Ok(Earlier {
+            rows: reader.rows()?,
+            frictions: reader.frictions()?,
+            findings: reader.findings().to_vec(),
+        })
     }
 }
 /// The result of a run under way, and its diagnostics.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::finding::Finding;
 use asperity::quantities::Quantity;
+use asperity::sliding::Friction;
 use asperity::step::Row;
 use ndarray::Array2;
 use serde_json::{Map, Value};
@@ -353,6 +354,26 @@ impl Reader {
     /// All arrays of the result.
     pub(crate) fn arrays(&self) -> Vec<ArraySpec> {
         self.document.arrays()
+    }
+
+    /// The friction of each row; none where nothing moves.
+    ///
+    /// # Errors
+    /// [`StoreError`] where a column cannot be read or is damaged.
+    pub fn frictions(&self) -> Result<Vec<Friction>> {
+        let stored =
+            |quantity: &Quantity| self.header().quantities.iter().any(|column| column.quantity == *quantity);
+        let columns: Vec<(Quantity, Vec<f64>)> = Quantity::of_motion()
+            .filter(stored)
+            .map(|quantity| Ok((quantity, self.numbers(quantity.name())?)))
+            .collect::<Result<_>>()?;
+        let of_row = |row: usize| {
+            Friction::from_quantities(|quantity| {
+                let (_, numbers) = columns.iter().find(|(name, _)| *name == quantity)?;
+                numbers.get(row).copied()
+            })
+        };
+        Ok((0..self.len()).map_while(of_row).collect())
     }
 
     /// The numbers of an array that holds no maps.

@@ -58,6 +58,7 @@ pub fn verify(path: &Path) -> Result<Verification> {
         found.arrays += 1;
         found.note(documents_agree(&reader, &group, &array))?;
         if array.storage == Storage::Rows {
+            found.note(has_sum(&reader, &array))?;
             found.chunks += array.dimensions[0].1.div_ceil(array.chunk()[0]) as u64;
             found.note(reader.column(&array).map(drop))?;
             continue;
@@ -97,6 +98,16 @@ impl Verification {
         }
         Ok(())
     }
+}
+
+/// Whether the group's document holds the checksum of an array of rows. Results of form 1 have none.
+fn has_sum(reader: &Reader, array: &ArraySpec) -> Result<()> {
+    let document = reader.document();
+    if document.form < 2 || document.progress.sums.contains_key(array.name()) {
+        return Ok(());
+    }
+    let what = format!("its list of checksums lacks the array `{}`", array.name());
+    Err(corrupt(&reader.path().join(NAME), what))
 }
 
 /// Compares the document of an array with what the group's document says of it. Until the run is complete, it may count fewer

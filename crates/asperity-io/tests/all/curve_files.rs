@@ -83,6 +83,19 @@ fn what_instruments_give_in_place_of_the_moduli_becomes_them() {
             ),
             Some(Modulus::Shear),
         ),
+        // A double quote of CSV for the double prime, and units in capital letters.
+        (
+            table("\"f [HZ]\",\"E' [MPA]\",\"E\"\" [MPA]\"", |f, s, l| {
+                format!("{f},{},{}", mega(s), mega(l))
+            }),
+            Some(Modulus::Young),
+        ),
+        (
+            table("omega,E',phase\nrad/sec,MPA,mrad", |f, s, l| {
+                format!("{},{},{}", TAU * f, mega(s), 1e3 * l.atan2(s))
+            }),
+            Some(Modulus::Young),
+        ),
         (
             table("f [Hz];η' [Pa s];η'' [Pa s]", |f, s, l| {
                 format!("{f};{};{}", l / (TAU * f), s / (TAU * f))

@@ -60,6 +60,56 @@ fn a_resumed_run_keeps_its_findings() {
     assert_eq!(Reader::open(&path).unwrap().findings(), whole.findings);
 }
 
+/// A rough line that starts to slide: the first rows, after the jump, have the largest and least certain forces.
+const SLIDING: &str = r#"
+[domain]
+cells = [64]
+size = ["1 mm"]
+boundary = "periodic"
+[[surface]]
+kind = "self-affine"
+hurst = 0.8
+rms_gradient = 0.1
+longest = "1 mm"
+shortest = "0.1 mm"
+seed = 3
+[[body]]
+poisson = 0.5
+material = { model = "zener", shear = "4 MPa", shear_kelvin = "1 MPa", retardation_time = "20 ms" }
+[motion]
+velocity = "10 mm/s"
+[load]
+control = "load"
+history = { kind = "step", value = "0.1 N/mm" }
+[time]
+end = "30 ms"
+steps = 5
+[output]
+fields = []
+checkpoint = true
+"#;
+
+#[test]
+fn friction_of_a_resumed_run_is_judged_over_all_rows() {
+    let case = Case::parse(SLIDING, ".".as_ref(), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    let directory = tempfile::tempdir().unwrap();
+    let options =
+        |name: String| RunOptions { output: Some(directory.path().join(name)), ..RunOptions::default() };
+    let whole = run(&case, &options("whole.zarr".into()), |_| {}).unwrap();
+    assert!(codes(&whole).contains(&"friction-uncertain"), "{:?}", whole.findings);
+    let rows = Reader::open(&directory.path().join("whole.zarr")).unwrap().rows().unwrap();
+    // Stopped in the rows that the finding concerns, and after them.
+    for stop in [2, rows.len() / 2, rows.len() - 2] {
+        let name = format!("{stop}.zarr");
+        let interrupt = Arc::new(AtomicBool::new(false));
+        let stopped = RunOptions { interrupt: interrupt.clone(), ..options(name.clone()) };
+        run(&case, &stopped, |progress| interrupt.store(progress.done >= stop, Ordering::Relaxed)).unwrap();
+        let ended = run(&case, &RunOptions { resume: true, ..options(name.clone()) }, |_| {}).unwrap();
+        assert_eq!((ended.status, &ended.findings), (Status::Complete, &whole.findings), "{stop}");
+        assert_eq!(Reader::open(&directory.path().join(name)).unwrap().rows().unwrap(), rows, "{stop}");
+    }
+}
+
 #[test]
 fn data_files_name_their_units_or_are_asked_for_them() {
     use asperity_io::curve::{Columns, Curves, Kind};

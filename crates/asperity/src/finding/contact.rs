@@ -84,6 +84,12 @@ impl Resolution {
         }
     }
 
+    /// Adds what an earlier session found of a line contact: rows with narrow spots, and the width where the contact was largest.
+    pub(super) fn resume_line(&mut self, narrow: [usize; 2], width: f64) {
+        self.narrow = Some(narrow);
+        self.largest.edges = (2.0 * self.largest.cells / width).round();
+    }
+
     /// Every contact begins with one cell, so the largest contact is checked.
     pub(super) fn findings(&self) -> Vec<Finding> {
         let Counted { cells, .. } = self.largest;

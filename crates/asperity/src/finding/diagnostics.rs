@@ -10,14 +10,14 @@ use super::strain::Strain;
 use super::thin::Widest;
 use super::worst::extend;
 use super::{
-    CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN, STEPS_TOO_LONG, domain, material,
-    strain, surface, thin, time,
+    CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN, SPOTS_UNRESOLVED, STEPS_TOO_LONG,
+    domain, material, plausible, strain, surface, thin, time,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
 use crate::material::Body;
 use crate::simulation::Simulation;
-use crate::sliding::Streaming;
+use crate::sliding::{Friction, Streaming};
 use crate::step::{Row, Step};
 use crate::surface::{Part, Shape};
 
@@ -123,10 +123,13 @@ impl Diagnostics {
         self
     }
 
-    /// Adds the rows that an earlier session of the run stored, with its findings.
-    pub fn resume(&mut self, rows: &[Row], found: &[Finding]) {
+    /// Adds the rows that an earlier session of the run stored, with their friction where anything moves, and its findings.
+    pub fn resume(&mut self, rows: &[Row], frictions: &[Friction], found: &[Finding]) {
         let grid = self.grid;
         rows.iter().enumerate().for_each(|(index, row)| self.take(index, row, Counted::of(&grid, row)));
+        frictions.iter().enumerate().for_each(|(index, friction)| self.slides.see(index, friction));
+        // Which rows had their approach held does not follow from them.
+        self.capped |= self.held.as_ref().is_some_and(|held| found.contains(held));
         // Findings that do not follow from rows alone; later rows are checked again.
         for finding in found {
             let Some([first, last]) = finding.rows.filter(|at| at[0] < rows.len()) else { continue };
@@ -134,6 +137,10 @@ impl Diagnostics {
                 CONTACT_AT_BORDER => {
                     self.border = Some([first, last.min(rows.len() - 1)]);
                     self.needed = finding.limit.unwrap_or(0.0);
+                }
+                SPOTS_UNRESOLVED if grid.is_line() => {
+                    let width = finding.value.unwrap_or(f64::INFINITY);
+                    self.resolution.resume_line([first, last.min(rows.len() - 1)], width);
                 }
                 ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
                 _ => {}
@@ -280,6 +287,7 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     if known.bodies.is_empty() {
         found.extend(material::of_pair(simulation));
     }
+    found.extend(plausible::unlikely_end(simulation));
     found.extend(time::of(simulation));
     found
 }

@@ -4,6 +4,7 @@
 
 use ndarray::Array2;
 
+use super::plausible::SIDES;
 use super::words::{digits, si};
 use super::{CONTACT_AT_BORDER, Finding, GAP_NOT_PERIODIC, ROUGH_ON_FREE_DOMAIN, UNLIKELY_UNIT};
 use crate::grid::Grid;
@@ -15,9 +16,6 @@ const ROUNDING: f64 = 1e-9;
 /// Smallest difference between the gap at the border and the mean gap, over the standard deviation of the gap. A sphere has 1.6,
 /// a cone 1.3, a cylinder 1.1; a rough plane, a wave or a tilted plane has 0.
 const CONFINED: f64 = 0.5;
-
-/// Plausible sides of domains: from atoms to larger than any machine \[m\].
-const SIDES: [f64; 2] = [1e-9, 10.0];
 
 /// A domain of an implausible size.
 pub(super) fn unlikely_size(grid: &Grid) -> Option<Finding> {

@@ -17,11 +17,12 @@ use std::f64::consts::PI;
 use ndarray::Array2;
 
 use super::words::si;
-use super::{Finding, contact, domain, strain, surface};
+use super::{Finding, contact, domain, plausible, strain, surface};
 use crate::contact::Prescribed;
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, Course, Event, Stage};
 use crate::simulation::Simulation;
+use crate::sliding::Streaming;
 use crate::surface::{Part, Punch, Shape};
 
 /// Recommended width of the domain over the radius of the contact.
@@ -67,6 +68,32 @@ enum Form {
 impl Expected {
     /// From the parts of the gap; `None` if there is no contact.
     pub fn of(simulation: &Simulation, parts: &[Part]) -> Option<Expected> {
+        let compliance = [simulation.instantaneous(), simulation.compliance(simulation.times.end())];
+        Expected::with(simulation, parts, compliance)
+    }
+
+    /// The same for steady states of motion at `velocities` \[m/s\]: the compliance is that of a wave which passes the contact at the
+    /// fastest, and at the slowest velocity, |C(v/a)|, with the radius a at rest, where the contact is largest. An empty list gives the
+    /// compliance at rest.
+    pub fn of_sweep(
+        simulation: &Simulation,
+        parts: &[Part],
+        streaming: &Streaming,
+        velocities: &[f64],
+    ) -> Option<Expected> {
+        // Of a rough surface the two limits, as the width of its spots is not known.
+        let limits = [simulation.instantaneous(), streaming.at(0.0).norm()];
+        let at_rest = Expected::with(simulation, parts, limits)?;
+        let Some(Contact::Round([_, radius])) = at_rest.contact else { return Some(at_rest) };
+        let frequency = |v: f64| v.abs() / radius.max(f64::MIN_POSITIVE);
+        let slowest = velocities.iter().map(|v| v.abs()).reduce(f64::min).unwrap_or(0.0);
+        let fastest = velocities.iter().map(|v| v.abs()).fold(0.0, f64::max);
+        let compliance = [fastest, slowest].map(|v| streaming.at(frequency(v)).norm());
+        Expected::with(simulation, parts, compliance)
+    }
+
+    /// With the compliance at the start and at the end \[1/Pa\].
+    fn with(simulation: &Simulation, parts: &[Part], compliance: [f64; 2]) -> Option<Expected> {
         let grid = &simulation.grid;
         let stages = &simulation.loading.stages;
         let cases = stages.iter().filter_map(|stage| largest(simulation, stage));
@@ -75,7 +102,6 @@ impl Expected {
             true => form(grid, &simulation.gap, parts),
             false => None,
         };
-        let compliance = [simulation.instantaneous(), simulation.compliance(simulation.times.end())];
         let size = |(largest, until): &(Prescribed, Option<Event>)| {
             let radius = |c: f64| {
                 let radius = form?.radius(*largest, c, simulation.hardness);
@@ -122,9 +148,21 @@ impl Expected {
 
     /// The findings if the contact is as expected.
     pub fn findings(&self, simulation: &Simulation) -> Vec<Finding> {
-        let Some(Contact::Round([_, radius])) = self.contact else { return vec![] };
         let grid = &simulation.grid;
-        let mut found = vec![];
+        let cells = match self.contact {
+            Some(Contact::Round([_, radius])) if grid.is_line() => Some(2.0 * radius / grid.longest_cell()),
+            Some(Contact::Round([_, radius])) => Some(PI * radius * radius / grid.cell_area()),
+            Some(Contact::Share([_, share])) => Some(share * grid.len() as f64),
+            None => None,
+        };
+        let mut found: Vec<Finding> =
+            plausible::unlikely_load(simulation, self.largest, cells).into_iter().collect();
+        let Some(Contact::Round([_, radius])) = self.contact else {
+            // As the run judges it: the middle of a Hertzian spot with this mean pressure.
+            let hertz = if grid.is_line() { 4.0 / PI } else { 1.5 };
+            found.extend(strain::expected(0.0, hertz * self.strain.unwrap_or(0.0)));
+            return found;
+        };
         if simulation.boundary == Boundary::Free && radius > NEAR * self.room {
             let words = format!("The expected contact, {} across,", si(2.0 * radius, "m"));
             found.push(domain::at_border(grid, true, Some(ROOM * radius), &words));

@@ -1,16 +1,19 @@
 //! Materials: moduli that suggest a wrong unit, and the quality and coverage of fits of measured data.
 
+use super::plausible::{COLD, MODULI, SOFTEST_DATA, TRANSITION};
 use super::words::{digits, si};
-use super::{BEYOND_MATERIAL_DATA, Finding, MATERIAL_MISFIT, POINTS_LEFT_OUT, UNLIKELY_UNIT};
+use super::{
+    AT_REFERENCE_TEMPERATURE, BEYOND_MATERIAL_DATA, DATA_SCATTER, Finding, MATERIAL_MISFIT, MODULUS_KIND,
+    POINTS_LEFT_OUT, SHIFT_UNCERTAIN, UNLIKELY_UNIT,
+};
+use crate::material::{Modulus, Reversal};
 use crate::simulation::Simulation;
 
-/// Plausible moduli of solids: from the softest gels to above diamond \[Pa\].
-const MODULI: [f64; 2] = [150.0, 3e12];
-/// Below this temperature polymers neither creep nor are measured \[K\].
-const COLD: f64 = 100.0;
 /// Largest rms misfit of a fit, and its largest ratio to the scatter of the data.
 const MISFIT: f64 = 0.05;
 const SCATTER: f64 = 2.0;
+/// Largest standard deviation of an estimated shift factor: a factor of two in time \[decades\].
+const FACTOR: f64 = 0.3;
 
 /// A modulus \[Pa\] that no body has; `name` is the name of the modulus.
 pub fn unlikely_modulus(name: &str, modulus: f64) -> Option<Finding> {
@@ -28,6 +31,20 @@ pub fn unlikely_modulus(name: &str, modulus: f64) -> Option<Finding> {
     })
 }
 
+/// Measured moduli from the least to the largest \[Pa\] that are those of a polymer in another unit; `unnamed` if the file names no unit.
+pub fn unlikely_data(name: &str, [least, most]: [f64; 2], unnamed: bool) -> Option<Finding> {
+    let unlikely = most < SOFTEST_DATA && (unnamed || most > TRANSITION * least);
+    unlikely.then(|| {
+        let text = format!(
+            "The largest modulus in the data of {name} is {}{}. Check its unit (Pa, kPa, MPa, GPa): curves of polymers reach MPa to \
+             GPa.",
+            si(most, "Pa"),
+            if unnamed { ", because the file names no unit and its numbers are taken in Pa" } else { "" }
+        );
+        Finding::warning(UNLIKELY_UNIT, most, SOFTEST_DATA, text)
+    })
+}
+
 /// A temperature \[K\] at which no curves of polymers are shifted; `name` is the body.
 pub fn unlikely_temperature(name: &str, kelvin: f64) -> Option<Finding> {
     (kelvin < COLD).then(|| {
@@ -40,6 +57,16 @@ pub fn unlikely_temperature(name: &str, kelvin: f64) -> Option<Finding> {
         );
         Finding::warning(UNLIKELY_UNIT, kelvin, COLD, text)
     })
+}
+
+/// The material of `name` has a shift with this reference temperature \[K\], and the run has no temperature.
+pub fn at_reference(name: &str, reference: f64) -> Finding {
+    let text = format!(
+        "The material of {name} depends on temperature, and the case gives none: the run is at its reference temperature, {} °C. \
+         Give another one as [temperature] history = {{ kind = \"constant\", value = \"... °C\" }}, or `temperature` of the material.",
+        digits(reference - 273.15)
+    );
+    Finding::warning(AT_REFERENCE_TEMPERATURE, reference, f64::NAN, text).as_note()
 }
 
 /// The moduli of the pair.
@@ -75,6 +102,54 @@ pub fn contradiction(name: &str, column: &str, rms: f64) -> Option<Finding> {
             digits(100.0 * rms)
         );
         Finding::warning(MATERIAL_MISFIT, rms, MISFIT, text)
+    })
+}
+
+/// A curve that changes in the wrong direction, and the rms and largest relative misfit of the fit through it.
+pub fn reversal(name: &str, found: Reversal, rms: f64, largest: f64) -> Finding {
+    let text = format!(
+        "The {} of {name} changes by {} % in the direction in which that of a passive material does not: points scatter, or sweeps at \
+         different temperatures do not continue each other. The fit runs through them with a misfit of {} % rms and {} % at most, and \
+         results that depend on the modulus are uncertain by that much. Check the shift factors and the points (asperity material \
+         fit --plot).",
+        found.quantity,
+        digits(100.0 * found.share),
+        digits(100.0 * rms),
+        digits(100.0 * largest)
+    );
+    Finding::warning(DATA_SCATTER, found.share, found.allowed, text)
+}
+
+/// Estimated shift factors, each as temperature \[K\], log10 a_T and standard deviation \[decades\].
+pub fn shift_uncertain(name: &str, factors: &[[f64; 3]]) -> Option<Finding> {
+    let [kelvin, _, decades] = factors.iter().max_by(|a, b| a[2].total_cmp(&b[2]))?;
+    (decades.is_nan() || *decades > FACTOR).then(|| {
+        let text = format!(
+            "The shift factors of {name} were estimated from its sweeps; that of {} °C is uncertain by {} decades (a factor of {} in \
+             time). At temperatures and times that depend on it, results are uncertain by the same factor in time. Give the shift \
+             where it is known, or measure sweeps that overlap more.",
+            digits(kelvin - 273.15),
+            digits(*decades),
+            digits(10f64.powf(*decades))
+        );
+        Finding::warning(SHIFT_UNCERTAIN, *decades, FACTOR, text)
+    })
+}
+
+/// A file whose header names another modulus than the one that its numbers are taken as.
+pub fn modulus_kind(name: &str, named: Modulus, taken: Modulus) -> Option<Finding> {
+    let words = |measure| match measure {
+        Modulus::Young => "Young's moduli (E)",
+        Modulus::Shear => "shear moduli (G)",
+    };
+    (named != taken).then(|| {
+        let text = format!(
+            "The header of the data of {name} names {}, but the numbers are taken as {}, as the case or the command says: these \
+             differ by the factor 2 (1 + Poisson's ratio), about 3 for a rubber. Correct the kind of modulus, or the header.",
+            words(named),
+            words(taken)
+        );
+        Finding::warning(MODULUS_KIND, f64::NAN, f64::NAN, text)
     })
 }
 

@@ -18,6 +18,7 @@
 //! | `leak` | leaks that are unreliable because of gap, grid or fluid pressure |
 //! | `motion` | friction that the grid does not resolve, bodies on their own track |
 //! | `thin` | half-spaces of finite thickness |
+//! | `plausible` | magnitudes that suggest a wrong unit: one table of all |
 //! | `expected` | an estimate of the contact before the run |
 //!
 //! docs/findings.md lists all codes with their limits.
@@ -30,6 +31,7 @@ mod expected;
 mod leak;
 mod material;
 mod motion;
+mod plausible;
 mod strain;
 mod stress;
 mod surface;
@@ -44,7 +46,8 @@ pub use diagnostics::{Diagnostics, Known};
 pub use expected::{Contact, Expected};
 pub use leak::{LeakDiagnostics, LeakState};
 pub use material::{
-    beyond_data, contradiction, misfit, points_left_out, unlikely_modulus, unlikely_temperature,
+    at_reference, beyond_data, contradiction, misfit, modulus_kind, points_left_out, reversal,
+    shift_uncertain, unlikely_data, unlikely_modulus, unlikely_temperature,
 };
 pub use motion::{friction_zero, own_track};
 pub use stress::{stress_at_deepest, stress_times_miss_peak, stress_unresolved, yield_exceeded};
@@ -168,6 +171,14 @@ codes! {
     ALIASED_HISTORY = "aliased-history";
     /// The material does not fit the measured data.
     MATERIAL_MISFIT = "material-misfit";
+    /// Measured values change in a direction in which those of a passive material do not.
+    DATA_SCATTER = "data-scatter";
+    /// Shift factors that were estimated are uncertain.
+    SHIFT_UNCERTAIN = "shift-uncertain";
+    /// A material that depends on temperature in a run without a temperature.
+    AT_REFERENCE_TEMPERATURE = "at-reference-temperature";
+    /// The header of a file names another modulus than the one that its numbers are taken as.
+    MODULUS_KIND = "modulus-kind";
     /// The run needs the material at times that were not measured.
     BEYOND_MATERIAL_DATA = "beyond-material-data";
     /// Measured points without a number.

@@ -2,6 +2,7 @@
 
 use ndarray::Array2;
 
+use super::plausible::{DEEPEST, FLATTEST, LARGEST_RADIUS, SLOPES};
 use super::words::{digits, si};
 use super::{
     Finding, HURST_OUT_OF_RANGE, HURST_UNCERTAIN, LARGE_SLOPE, OUTLIERS, SHORTEST_WAVE_UNRESOLVED,
@@ -17,14 +18,6 @@ pub(super) const CELLS_PER_WAVE: f64 = 4.0;
 pub(super) const STEEPEST: f64 = 0.5;
 /// Kurtosis of the heights: 3 for a Gaussian surface, tens for spikes.
 const OUTLYING: f64 = 20.0;
-/// No machined or measured surface is this steep.
-const UNLIKELY_SLOPE: f64 = 5.0;
-/// Radii this large [m], or this many times the domain, suggest a wrong unit.
-const LARGEST_RADIUS: f64 = 10.0;
-const FLATTEST: f64 = 1000.0;
-/// Largest plausible ratio of the depth of a gap to the width of the domain.
-const DEEPEST: f64 = 100.0;
-
 /// The findings from the parts of a gap.
 pub(super) fn of_part(grid: &Grid, part: &Part) -> Vec<Finding> {
     match part {
@@ -104,14 +97,22 @@ pub fn of_heights(name: &str, surface: &Surface) -> Vec<Finding> {
         );
         found.push(Finding::warning(OUTLIERS, heights.sku, OUTLYING, text));
     }
-    if slope > UNLIKELY_SLOPE {
+    if slope > SLOPES[1] {
         let text = format!(
             "The heights of {name} have an rms slope of {} and span {}: check their unit (height_unit) and the size of \
              the surface.",
             digits(slope),
             si(heights.sz, "m")
         );
-        found.push(Finding::warning(UNLIKELY_UNIT, slope, UNLIKELY_SLOPE, text));
+        found.push(Finding::warning(UNLIKELY_UNIT, slope, SLOPES[1], text));
+    } else if slope > 0.0 && slope < SLOPES[0] {
+        let text = format!(
+            "The heights of {name} have an rms slope of {} and span {}, flatter than any real surface: check their unit \
+             (height_unit) and the size of the surface.",
+            digits(slope),
+            si(heights.sz, "m")
+        );
+        found.push(Finding::warning(UNLIKELY_UNIT, slope, SLOPES[0], text));
     } else {
         found.extend(steep(name, slope));
     }
@@ -142,14 +143,14 @@ pub(super) fn of_given_height(grid: &Grid, gap: &Array2<f64>, parts: &[Part]) ->
     let by_height =
         |part: &Part| matches!(part, Part::SelfAffine(SelfAffine { roughness: Roughness::RmsHeight(_), .. }));
     let slope = parts.iter().any(by_height).then(|| slope(grid, gap, f64::INFINITY))?;
-    if slope <= UNLIKELY_SLOPE {
+    if slope <= SLOPES[1] {
         return steep("gap", slope);
     }
     let text = format!(
         "The gap has an rms slope of {}: check the units of rms_height, of the wavelengths and of domain.size.",
         digits(slope)
     );
-    Some(Finding::warning(UNLIKELY_UNIT, slope, UNLIKELY_SLOPE, text))
+    Some(Finding::warning(UNLIKELY_UNIT, slope, SLOPES[1], text))
 }
 
 /// Number of cells of the wave whose curvature behaves like that of the gap: along an axis, a wave of m cells has second

@@ -447,6 +447,73 @@ fn poor_fits_and_times_beyond_the_data_are_told() {
 }
 
 #[test]
+fn magnitudes_that_no_contact_has_are_told() {
+    let units = |found: &[Finding]| found.iter().filter(|finding| finding.code == UNLIKELY_UNIT).count();
+    // A load in Pa that was meant in MPa, on a rough surface: 0.3 Pa on 1 MPa.
+    let parts = [rough(5e-5, 0.1)];
+    let expected = |pressure: f64| {
+        let simulation = Simulation {
+            boundary: Boundary::Periodic,
+            loading: loaded(Control::Pressure, History::Step { value: pressure }),
+            ..simulation(&parts)
+        };
+        units(&Expected::of(&simulation, &parts).unwrap().findings(&simulation))
+    };
+    assert_eq!([0.3, 0.3e6].map(expected), [1, 0]);
+    // On a sphere the contact of 1e-20 N has less than a cell: a = (3/4 R W C)^(1/3) = 4 nm on cells of 16 um.
+    let parts = [sphere(1e-2)];
+    let light = |load: f64| {
+        let simulation = Simulation { loading: step(load), ..simulation(&parts) };
+        units(&Expected::of(&simulation, &parts).unwrap().findings(&simulation))
+    };
+    assert_eq!([1e-20, 0.01].map(light), [1, 0]);
+    let known = |radius: f64, end: f64| {
+        let parts = [sphere(radius)];
+        let times = TimeGrid::Uniform { end, steps: 2 };
+        let simulation = Simulation { times, ..simulation(&parts) };
+        units(Diagnostics::new(&simulation, Known { parts: &parts, ..Known::default() }).known())
+    };
+    assert_eq!((known(5.0, 1.0), known(0.05, 1.0), known(0.05, 1e12)), (1, 0, 1));
+    // Pa for MPa: a glass of 3 kPa; a gel in kPa that hardly relaxes is none, without a unit it may be.
+    assert!(unlikely_data("it", [3.0, 3e3], false).is_some());
+    assert!(unlikely_data("it", [2e3, 5e3], false).is_none());
+    assert!(unlikely_data("it", [2e3, 5e3], true).is_some());
+    assert!(unlikely_data("it", [1e6, 3e9], true).is_none());
+}
+
+#[test]
+fn a_sweep_expects_the_strain_of_its_slowest_velocity() {
+    // The relaxed body, ten times softer than at once, is what slow motion feels.
+    let parts = [sphere(1e-3)];
+    let creep = Creep {
+        instantaneous: 1e-7,
+        terms: vec![CreepTerm { compliance: 1e-5, retardation_time: 1.0 }],
+        fluidity: 0.0,
+    };
+    let simulation = Simulation { creep, loading: step(0.2), ..simulation(&parts) };
+    let streaming = crate::sliding::Streaming::new(&simulation).unwrap();
+    let strain = |velocities: &[f64]| {
+        Expected::of_sweep(&simulation, &parts, &streaming, velocities).unwrap().strain.unwrap()
+    };
+    // Hertz: 2 a/(pi R) with a^3 = 3/4 R W C, C = C(0) and C(infinity).
+    let hertz = |c: f64| 2.0 / std::f64::consts::PI * (0.75e-3 * 0.2 * c).cbrt() / 1e-3;
+    // At 1e-9 m/s the wave passes in 1e6 s, at 1e6 m/s in 1e-9 s: C is reached to 1e-5.
+    assert!((strain(&[1e-9, 1.0]) / hertz(1.01e-5) - 1.0).abs() < 1e-4);
+    assert!((strain(&[1e6]) / hertz(1e-7) - 1.0).abs() < 1e-4);
+    let found = Expected::of_sweep(&simulation, &parts, &streaming, &[1e-9]).unwrap().findings(&simulation);
+    assert!(codes(&found).contains(&LARGE_STRAIN), "{found:?}");
+    // On a rough surface the mean pressure of the spots over the modulus is about half the rms slope, p C = h'/sqrt(pi) at light loads.
+    for (slope, large) in [(0.1, false), (0.4, true)] {
+        let parts = [rough(1e-4, slope)];
+        let gap = undeformed_gap(&simulation.grid, &parts).unwrap();
+        let (boundary, loading) = (Boundary::Periodic, step(1e-3));
+        let simulation = Simulation { boundary, gap, loading, ..simulation.clone() };
+        let expected = Expected::of_sweep(&simulation, &parts, &streaming, &[1e-3]).unwrap();
+        assert_eq!(codes(&expected.findings(&simulation)).contains(&LARGE_STRAIN), large, "{slope}");
+    }
+}
+
+#[test]
 fn a_resumed_run_finds_what_a_whole_one_does() {
     let parts = [sphere(5e-3)];
     let history = History::Triangle { peak: 0.2, rise: 1.0, fall: 1.0 };
@@ -466,7 +533,7 @@ fn a_resumed_run_finds_what_a_whole_one_does() {
             stored = whole.findings(&simulation);
         }
     }
-    second.resume(&rows[..12], &stored);
+    second.resume(&rows[..12], &[], &stored);
     let mut march = March::new(simulation.clone()).unwrap();
     while let Some(step) = march.advance().unwrap() {
         if step.index() >= 12 {

@@ -11,7 +11,7 @@ const SURE: f64 = 0.5;
 const LIKELY: f64 = 0.1;
 
 /// Implausible radii [m]: a unit is missing.
-const RADII: std::ops::Range<f64> = 1e-9..1.0;
+const RADII: std::ops::Range<f64> = 1e-9..0.5;
 
 /// A radius that looks like one in another unit.
 pub(super) fn unlikely_radius(profile: &MdrProfile) -> Option<String> {

@@ -162,44 +162,76 @@ pub(super) fn thin(xs: &[f64], values: &[f64]) -> Vec<(f64, f64, f64)> {
     bins
 }
 
-/// Refuses a curve that changes in the wrong direction by more than its scatter explains: the distance of the two extremes of N
-/// normal deviates, and at least `limit`, the misfit that a fit may have: sweeps of a master curve often differ by a few per
-/// cent. The scatter of a few points cannot be distinguished from the curvature of their curve.
-pub(super) fn check_trend(words: Words, trend: Trend, xs: &[f64], values: &[f64], limit: f64) -> Result<()> {
+/// A place where a curve changes in the direction in which that of a passive material does not, by more than its own scatter explains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reversal {
+    /// "relaxation modulus", "creep compliance" or "storage modulus".
+    pub quantity: &'static str,
+    /// Largest relative distance of a value from the extreme one before it.
+    pub share: f64,
+    /// The part of it that scatter explains.
+    pub allowed: f64,
+    /// Number of the first point beyond that, from 0.
+    pub point: usize,
+    /// Number of the point with the extreme value before it.
+    pub extreme: usize,
+}
+
+/// The reversal of a curve. Its scatter explains the distance of the two extremes of N normal deviates, and at least `limit`,
+/// the misfit that a fit may have: sweeps of a master curve often differ by a few per cent. The scatter of a few points cannot be
+/// distinguished from the curvature of their curve.
+pub(super) fn reversal(
+    words: Words,
+    trend: Trend,
+    xs: &[f64],
+    values: &[f64],
+    limit: f64,
+) -> Option<Reversal> {
     let extremes = 2.0 * (1.0 + (2.0 * (xs.len() as f64).ln()).sqrt());
-    let scatter = if xs.len() < FEW_POINTS { 0.0 } else { extremes * noise(xs, values) };
+    let scatter = if is_short(xs) { 0.0 } else { extremes * noise(xs, values) };
     // A fall by the whole value is not scatter.
     let allowed = scatter.max(limit.min(0.5));
-    let mut extreme = 0;
-    for (n, value) in values.iter().enumerate() {
-        let reference = values[extreme];
-        let (wrong, further) = match trend {
-            Trend::Falls => (*value > reference * (1.0 + allowed), *value < reference),
-            Trend::Rises => (*value < reference * (1.0 - allowed), *value > reference),
+    let (mut found, mut extreme): (Option<Reversal>, usize) = (None, 0);
+    for (point, value) in values.iter().enumerate() {
+        let share = match trend {
+            Trend::Falls => value / values[extreme] - 1.0,
+            Trend::Rises => 1.0 - value / values[extreme],
         };
-        if wrong {
-            let (not, side) = match trend {
-                Trend::Falls => ("not rise", "above"),
-                Trend::Rises => ("not fall", "below"),
-            };
-            return Err(Error::invalid(
-                words.point(n, xs[n]),
-                words.value(*value),
-                format!(
-                    "not more than {:.1} % {side} the {} at {} {:e} {}: in a passive material it does {not}",
-                    100.0 * allowed,
-                    words.value(reference),
-                    words.abscissa,
-                    xs[extreme],
-                    words.abscissa_unit
-                ),
-            ));
+        if share > allowed {
+            let first = Reversal { quantity: words.ordinate, share, allowed, point, extreme };
+            let found = found.get_or_insert(first);
+            found.share = found.share.max(share);
         }
-        if further {
-            extreme = n;
+        if share < 0.0 {
+            extreme = point;
         }
     }
-    Ok(())
+    found
+}
+
+/// Whether a curve has too few points to determine its scatter.
+pub(super) fn is_short(xs: &[f64]) -> bool {
+    xs.len() < FEW_POINTS
+}
+
+/// The error for a curve with such a reversal.
+pub(super) fn reversed(words: Words, trend: Trend, xs: &[f64], values: &[f64], found: Reversal) -> Error {
+    let (not, side) = match trend {
+        Trend::Falls => ("not rise", "above"),
+        Trend::Rises => ("not fall", "below"),
+    };
+    Error::invalid(
+        words.point(found.point, xs[found.point]),
+        words.value(values[found.point]),
+        format!(
+            "not more than {:.1} % {side} the {} at {} {:e} {}: in a passive material it does {not}",
+            100.0 * found.allowed,
+            words.value(values[found.extreme]),
+            words.abscissa,
+            xs[found.extreme],
+            words.abscissa_unit
+        ),
+    )
 }
 
 /// Refuses a curve from which the best passive material deviates systematically: the mean of up to five neighbouring relative
@@ -277,8 +309,10 @@ mod tests {
     #[test]
     fn few_points_that_rise_are_refused_though_their_scatter_is_unknown() {
         let xs = [0.1, 1.0, 10.0, 100.0, 1000.0];
-        assert!(check_trend(WORDS, Trend::Falls, &xs, &[3.0, 2.0, 1.5, 1.2, 1.1], 0.1).is_ok());
-        let error = check_trend(WORDS, Trend::Falls, &xs, &[3.0, 2.0, 1.5, 1.9, 1.1], 0.1).unwrap_err();
+        assert!(reversal(WORDS, Trend::Falls, &xs, &[3.0, 2.0, 1.5, 1.2, 1.1], 0.1).is_none());
+        let rises = [3.0, 2.0, 1.5, 1.9, 1.1];
+        let found = reversal(WORDS, Trend::Falls, &xs, &rises, 0.1).unwrap();
+        let error = reversed(WORDS, Trend::Falls, &xs, &rises, found);
         assert!(error.to_string().contains("point 4 (time 1e2 s)"), "{error}");
     }
 

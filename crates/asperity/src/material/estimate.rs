@@ -8,8 +8,9 @@
 //!    information: each distance becomes the mean of the measured one and that of the law, weighted by one over their variances,
 //!    where the accuracy of a law is taken as 0.6 decades and 60 % of the distance. Relaxation is faster at higher temperatures,
 //!    so no distance is negative. A law cannot bridge a gap between two curves: the standard deviation is at least the gap.
-//! 3. Distances add up from the reference to each temperature, and so do their variances. A factor that is uncertain by
-//!    more than a decade is refused.
+//! 3. Distances add up from the reference to each temperature, and so do the variances of the measured ones. Where a law is known
+//!    better than the measured distance, the errors of neighbouring pairs are those of one law and add up themselves. A factor that is uncertain by more than a
+//!    decade and by more than half of its decades is refused.
 //! 4. The factors by which moduli change are computed at the distances of the final shift ([`estimate_vertical`]).
 
 use super::align::{self, Distance, Logs, Ordinate};
@@ -43,8 +44,9 @@ pub enum ModulusChange {
     Free,
 }
 
-/// Standard deviation of the logarithm of a factor beyond which it is refused \[decades\].
-const MOST_UNCERTAIN: f64 = 1.0;
+/// Standard deviation of the logarithm of a factor beyond which it is refused: in decades, and as a share of the logarithm. A factor of
+/// twelve decades that is known to two is known; the caller reports its uncertainty.
+const MOST_UNCERTAIN: [f64; 2] = [1.0, 0.5];
 /// Standard deviation of the distance of a pair by a law \[decades\], and per distance.
 const LAW: [f64; 2] = [0.6, 0.6];
 /// Rubbers have lower moduli \[Pa\].
@@ -83,7 +85,7 @@ const FLAT: f64 = 1.0;
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`master_curve`](crate::material::master_curve); for fewer than two isotherms; if a factor is uncertain
-/// by more than a decade, naming the pair of isotherms with the least information.
+/// by more than a decade and half of its decades, naming the pair of isotherms with the least information.
 pub fn estimate_shift(
     isotherms: &[Isotherm],
     abscissa: Abscissa,
@@ -100,20 +102,27 @@ pub fn estimate_shift(
     let measured: Vec<Distance> =
         sorted.windows(2).map(|pair| between(pair[0], pair[1], abscissa, moduli)).collect();
     let found = with_law(&temperatures, &measured);
-    let sums = |of: &dyn Fn(&Distance) -> f64| -> Vec<f64> {
-        std::iter::once(0.0)
-            .chain(found.iter().scan(0.0, |sum, distance| {
-                *sum += of(distance);
-                Some(*sum)
-            }))
-            .collect()
+    let sums = |of: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let sum = (0..found.len()).scan(0.0, |sum, pair| {
+            *sum += of(pair);
+            Some(*sum)
+        });
+        std::iter::once(0.0).chain(sum).collect()
     };
+    let by_law = |pair: usize| measured[pair].deviation > doubt(found[pair].value);
+    let deviation = |pair: usize| found[pair].deviation;
     // Relaxation is faster at higher temperatures: ln a_T falls by the distance from pair to pair.
-    let (moved, variance) = (sums(&|d| d.value), sums(&|d| d.deviation * d.deviation));
-    let points = (0..sorted.len()).map(|k| (temperatures[k], moved[anchor] - moved[k])).collect();
-    let uncertainty: Vec<f64> =
-        variance.iter().map(|sum| (sum - variance[anchor]).abs().sqrt() / LN_10).collect();
-    if uncertainty.iter().any(|decades| decades.is_nan() || *decades > MOST_UNCERTAIN) {
+    let moved = sums(&|pair| found[pair].value);
+    let together = sums(&|pair| if by_law(pair) { deviation(pair) } else { 0.0 });
+    let variance = sums(&|pair| if by_law(pair) { 0.0 } else { deviation(pair) * deviation(pair) });
+    let points: Vec<(f64, f64)> =
+        (0..sorted.len()).map(|k| (temperatures[k], moved[anchor] - moved[k])).collect();
+    let from_anchor = |sums: &[f64], k: usize| (sums[k] - sums[anchor]).abs();
+    let decades = |k: usize| (from_anchor(&together, k).powi(2) + from_anchor(&variance, k)).sqrt() / LN_10;
+    let uncertainty: Vec<f64> = (0..sorted.len()).map(decades).collect();
+    let [most, share] = MOST_UNCERTAIN;
+    let known = |((_, ln), decades): (&(f64, f64), &f64)| *decades <= most.max(share * (ln / LN_10).abs());
+    if !points.iter().zip(&uncertainty).all(known) {
         return Err(uncertain(&sorted, &measured, &uncertainty));
     }
     Ok(ShiftEstimate { shift: Shift::Table { points }, uncertainty })
@@ -283,8 +292,9 @@ fn uncertain(sorted: &[&Isotherm], measured: &[Distance], uncertainty: &[f64]) -
         ),
         format!("uncertain by {}, and shift factors by {}", shown(decades), shown(largest)),
         format!(
-            "known to {MOST_UNCERTAIN} decade: curves with a slope, at temperatures so close that neighbours overlap; measure \
-             between them, leave an isotherm out, or give the shift (a table of factors, or the constants of a law)"
+            "known to {} decade, or to {} of its decades: curves with a slope, at temperatures so close that neighbours overlap; measure \
+             between them, leave an isotherm out, or give the shift (a table of factors, or the constants of a law)",
+            MOST_UNCERTAIN[0], MOST_UNCERTAIN[1]
         ),
     )
 }

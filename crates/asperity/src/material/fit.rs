@@ -6,7 +6,7 @@
 //! fit cannot describe the data, no passive material can: such data are refused, with the position.
 
 use crate::error::{Error, Result, non_negative, positive, require, significant};
-use crate::material::data::{self, Trend, Words};
+use crate::material::data::{self, Reversal, Trend, Words};
 use crate::material::refine;
 use crate::material::spectrum::{Kernel, Problem, Row, Spectrum};
 use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
@@ -98,6 +98,9 @@ pub struct Fit<F> {
     /// the misfit. They are large if neighbouring terms can replace each other, even if the curve is known well. Infinite if the
     /// data do not determine a term.
     pub uncertainty: Vec<[f64; 2]>,
+    /// The largest change of the data in a direction that no passive material has; the fit passes through such scatter, and its
+    /// misfit contains it.
+    pub reversal: Option<Reversal>,
 }
 
 /// Relative distance between data and fit.
@@ -115,8 +118,8 @@ pub struct Misfit {
 impl<F> Fit<F> {
     /// The same fit as a function of another form.
     fn map<G>(self, form: impl FnOnce(F) -> Result<G>) -> Result<Fit<G>> {
-        let Fit { function, misfit, columns, window, noise, uncertainty } = self;
-        Ok(Fit { function: form(function)?, misfit, columns, window, noise, uncertainty })
+        let Fit { function, misfit, columns, window, noise, uncertainty, reversal } = self;
+        Ok(Fit { function: form(function)?, misfit, columns, window, noise, uncertainty, reversal })
     }
 
     /// A sentence with the numbers if a run from `first` to `last` \[s\] leaves the fitted window.
@@ -167,20 +170,20 @@ fn covered(run: [f64; 2], data: [f64; 2]) -> f64 {
 ///
 /// # Errors
 /// [`Error::Invalid`] naming the point: fewer than two points, times out of order or repeated, values that are not positive or
-/// grow with time by more than their scatter, or a misfit of every passive material above `options.limit`.
+/// grow with time by more than their scatter and than a passive material that runs through them explains, or a misfit of every
+/// passive material above `options.limit`.
 pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Result<Fit<Relaxation>> {
     let words = Words::RELAXATION;
     options.validate()?;
     data::check_abscissae(words, times, true)?;
     data::check_values(words, times, moduli, false)?;
-    data::check_trend(words, Trend::Falls, times, moduli, options.limit)?;
     let window = window(times);
     // A term much faster than the first time is invisible there, with a factor exp(-10), and would fit the noise of one point
     // with any size; half the first time is still visible (unless t = 0 is measured).
     let margin = 10f64.powf(options.margin);
     let fastest = if times[0] == 0.0 { margin } else { margin.min(2.0) };
-    let curve =
-        Curve { words, kernel: Kernel::Relaxation, xs: times, values: moduli, floor: 0.0, weight: 1.0 };
+    let (kernel, trend) = (Kernel::Relaxation, Some(Trend::Falls));
+    let curve = Curve { words, kernel, trend, xs: times, values: moduli, floor: 0.0, weight: 1.0 };
     let problem = Problem {
         rows: curve.rows(),
         constant: options.long_time != LongTime::Fluid,
@@ -213,9 +216,9 @@ pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Re
     let from_zero = times[0] == 0.0 && compliances.first() == Some(&0.0);
     let (kept, values) = if from_zero { (&times[1..], &compliances[1..]) } else { (times, compliances) };
     data::check_values(words, kept, values, false)?;
-    data::check_trend(words, Trend::Rises, kept, values, options.limit)?;
     let (window, margin) = (window(times), 10f64.powf(options.margin));
-    let curve = Curve { words, kernel: Kernel::Creep, xs: kept, values, floor: 0.0, weight: 1.0 };
+    let (kernel, trend) = (Kernel::Creep, Some(Trend::Rises));
+    let curve = Curve { words, kernel, trend, xs: kept, values, floor: 0.0, weight: 1.0 };
     let problem = Problem {
         rows: curve.rows(),
         constant: !from_zero,
@@ -276,6 +279,8 @@ impl FitOptions {
                 ),
             ));
         }
+        let reversals = curves.iter().map(|curve| curve.reversal(&spectrum, self.limit));
+        let reversals: Vec<Option<Reversal>> = reversals.collect::<Result<_>>()?;
         for curve in curves {
             data::check_misfit(curve.words, curve.xs, curve.values, &curve.residuals(&spectrum), self.limit)?;
         }
@@ -291,7 +296,8 @@ impl FitOptions {
         )?;
         let noise = curves.iter().map(|curve| data::noise(curve.xs, curve.values)).fold(0.0, f64::max);
         let uncertainty = refine::uncertainty(problem, &spectrum);
-        Ok(Fit { function: spectrum, misfit, columns, window, noise, uncertainty })
+        let reversal = reversals.into_iter().flatten().next();
+        Ok(Fit { function: spectrum, misfit, columns, window, noise, uncertainty, reversal })
     }
 }
 
@@ -310,10 +316,16 @@ fn together(curves: &[Curve], columns: &[Misfit]) -> Misfit {
     all
 }
 
+/// Largest residual of a point where a curve reverses, as a multiple of the misfit that a fit may have (the range of scatter that is
+/// usual for its rms): a point further away is wrong.
+const FARTHEST: f64 = 3.0;
+
 /// One measured curve.
 struct Curve<'a> {
     words: Words,
     kernel: Kernel,
+    /// Where that of a passive material changes in one direction only.
+    trend: Option<Trend>,
     xs: &'a [f64],
     values: &'a [f64],
     /// Smallest scale of a value: residuals are relative to the larger of the two.
@@ -333,6 +345,23 @@ impl Curve<'_> {
             count,
         };
         data::thin(self.xs, self.values).into_iter().map(row).collect()
+    }
+
+    /// The largest change of the curve in the wrong direction.
+    ///
+    /// # Errors
+    /// Where this is no scatter about the spectrum: a point is too far from it, or all of them are, or a few points do not show
+    /// their scatter.
+    fn reversal(&self, spectrum: &Spectrum, limit: f64) -> Result<Option<Reversal>> {
+        let Some(trend) = self.trend else { return Ok(None) };
+        let Some(found) = data::reversal(self.words, trend, self.xs, self.values, limit) else {
+            return Ok(None);
+        };
+        let Misfit { rms, max, .. } = self.misfit(spectrum);
+        match !data::is_short(self.xs) && rms <= limit && max <= FARTHEST * limit {
+            true => Ok(Some(found)),
+            false => Err(data::reversed(self.words, trend, self.xs, self.values, found)),
+        }
     }
 
     fn misfit(&self, spectrum: &Spectrum) -> Misfit {

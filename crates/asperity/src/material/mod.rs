@@ -45,6 +45,7 @@ mod vertical;
 
 pub use body::{Body, Lateral, PoissonCreep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
+pub use data::Reversal;
 pub(crate) use dual::Dual;
 pub use estimate::{ModulusChange, ShiftEstimate, VerticalEstimate, estimate_shift, estimate_vertical};
 pub use fit::{Fit, FitOptions, LongTime, Misfit, Moduli, fit_creep, fit_dma, fit_relaxation};

@@ -97,7 +97,7 @@ macro_rules! forces {
             }
 
             /// From the quantities of a row; `None` where nothing moves.
-            pub(crate) fn from_quantities(of: impl Fn(Quantity) -> Option<f64>) -> Option<Friction> {
+            pub fn from_quantities(of: impl Fn(Quantity) -> Option<f64>) -> Option<Friction> {
                 let known = |quantity| of(quantity).unwrap_or(f64::NAN);
                 of(Quantity::Velocity).map(|_| Friction { $($field: known(Quantity::$quantity)),* })
             }

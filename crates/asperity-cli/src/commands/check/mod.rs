@@ -72,7 +72,7 @@ fn range(case: &Case, [first, last]: [f64; 2], words: impl Fn(f64) -> String) ->
     let [first, last] = [first, last].map(words);
     match (case.axis(), largest_before_the_end(case)) {
         _ if first == last => first,
-        (Axis::Velocity, _) => format!("{first} at very high velocities, {last} at very low ones"),
+        (Axis::Velocity, _) => format!("{first} at high velocities, {last} at low ones"),
         (_, Some(time)) => {
             format!("{first} to {last} under the largest load, at t = {}", quantity(time, "s"))
         }
@@ -289,7 +289,14 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>) -> String {
                 Some(instantaneous) => format!("{instantaneous} instantaneous, {relaxed} relaxed"),
                 None => format!("{relaxed} relaxed, instantaneously rigid"),
             };
-            line("", format!("- {name} wave, {}: {modulus}", quantity(wave.length, "m")));
+            let length = quantity(wave.length, "m");
+            // Of a free domain the contact decides, not its waves: strain and compliance of a contact of radius a are those of q = 1/a.
+            let radius = quantity(wave.length / std::f64::consts::TAU, "m");
+            let place = match d.boundary {
+                "free" => format!("contact of radius {radius}"),
+                _ => format!("{name} wave, {length}"),
+            };
+            line("", format!("- {place}: {modulus}"));
         }
     }
     if !d.retardation_times.is_empty() {

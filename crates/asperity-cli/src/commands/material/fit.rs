@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use asperity::finding::{self, Finding};
 use asperity::material::{Misfit, Modulus, Shift, VerticalShift};
 use asperity_io::curve::{Curves, Fitted, Kind, Request, Series, ShiftRequest};
 use asperity_io::output::write_all;
@@ -43,7 +42,7 @@ impl Verb for Fit {
         });
         let shift = estimated_unless_known(shift, &mut curves);
         let fitted = Request { measure, shift, vertical, window, options }.fit(&curves).map_err(refused)?;
-        let findings = findings(&self.data.display().to_string(), &fitted);
+        let findings = fitted.findings(&self.data.display().to_string());
         let block = fitted.to_toml(&curves);
         if let Some(path) = &self.output {
             write_all(path, self.force, block.as_bytes())?;
@@ -87,13 +86,6 @@ fn estimated_unless_known(shift: ShiftRequest, curves: &mut Curves) -> ShiftRequ
         }
         _ => shift,
     }
-}
-
-fn findings(name: &str, fitted: &Fitted) -> Vec<Finding> {
-    let Misfit { rms, max, .. } = fitted.misfit;
-    let other = fitted.other().and_then(|(column, misfit)| finding::contradiction(name, column, misfit.rms));
-    let left_out = finding::points_left_out(name, fitted.left_out, fitted.data.x.len() + fitted.left_out);
-    finding::misfit(name, rms, max, fitted.noise).into_iter().chain(other).chain(left_out).collect()
 }
 
 fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {

@@ -586,3 +586,34 @@ fn overrides_are_read_as_if_written() {
     assert!(shown.contains("cannot set body[7].name: there is no element 7, the list has 2"), "{shown}");
     assert!(with(&["nonsense"]).unwrap_err().to_string().contains("KEY=VALUE"));
 }
+
+#[test]
+fn a_section_that_is_a_list_is_refused_as_one() {
+    for section in ["domain", "load", "time"] {
+        let text = GOOD.replace(&format!("[{section}]"), &format!("[[{section}]]"));
+        let errors = Case::parse(&text, Path::new("."), &[]).unwrap_err().to_string();
+        let wanted = format!("{section} is");
+        assert!(errors.contains(&wanted) || errors.contains(&format!("{section} must be")), "{errors}");
+        assert!(
+            errors.contains("a table, not a list") && errors.contains(&format!("[{section}]")),
+            "{errors}"
+        );
+    }
+}
+
+#[test]
+fn numbers_that_cannot_be_meant_are_refused_at_their_key() {
+    for (set, key) in [
+        ("domain.size=[\"1e300 m\", \"1 m\"]", "domain.size[0]"),
+        ("domain.size=[\"1 m\", \"1e-300 m\"]", "domain.size[1]"),
+        ("load.history={ kind = \"step\", value = \"1e300 N\" }", "load.history.value"),
+        ("body.0.hardness=1e307 Pa", "body[0].hardness"),
+        ("time.end=1e300 s", "time.end"),
+    ] {
+        let errors = Case::parse(GOOD, Path::new("."), &[set.to_owned()]).unwrap_err().to_string();
+        assert!(
+            errors.contains(key) && errors.contains("no quantity of a contact is that"),
+            "{set}: {errors}"
+        );
+    }
+}

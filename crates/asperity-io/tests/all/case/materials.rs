@@ -225,6 +225,26 @@ fn dma_sweeps_at_several_temperatures_become_one_material() {
 }
 
 #[test]
+fn what_a_fit_knows_of_its_data_is_a_finding_of_the_case() {
+    // Between 30 and 70 °C, by two decades, the sweeps hardly overlap.
+    let wide = sweeps(&[0.0, 10.0, 20.0, 30.0, 70.0]);
+    let dir =
+        files(&[("wide.csv", &wide), ("young.csv", &curve("t [s], E [MPa]", |t| 1e-6 * solid().value(t)))]);
+    let codes = |material: &str| -> Vec<String> {
+        let case = case_in(dir.path(), &body(material), "");
+        case.examine().unwrap().findings.iter().map(|finding| finding.code.to_string()).collect()
+    };
+    let estimated = r#"{ model = "dma", path = "wide.csv", modulus = "young", shift = { model = "estimated", reference = "20 °C" } }"#;
+    let found = codes(estimated);
+    assert!(found.contains(&"shift-uncertain".to_owned()), "{found:?}");
+    let table = |modulus: &str| {
+        format!("{{ model = \"relaxation-table\", path = \"young.csv\", modulus = \"{modulus}\" }}")
+    };
+    assert!(codes(&table("shear")).contains(&"modulus-kind".to_owned()));
+    assert!(!codes(&table("young")).contains(&"modulus-kind".to_owned()));
+}
+
+#[test]
 fn the_loss_factor_stands_for_the_loss_modulus() {
     let mut text = "angular frequency [rad/s], E' [MPa], tan(delta) [-]\n".to_owned();
     for k in 0..40 {
@@ -252,7 +272,7 @@ fn a_constant_temperature_stretches_the_times() {
     let kelvin =
         "[temperature]\nhistory = { kind = \"table\", points = [[0, 308.15], [\"50 s\", \"308.15 K\"]] }\n";
     for (material, more, celsius) in [
-        (shifted(""), "", 20.0),
+        (shifted(""), "", 20.0), // and a note says so, see below
         (shifted(", temperature = \"35 °C\""), "", 35.0),
         (shifted(""), constant, 35.0),
         (shifted(""), kelvin, 35.0),
@@ -260,6 +280,11 @@ fn a_constant_temperature_stretches_the_times() {
         let case = case(&body(&material), more);
         assert!(case.conditions.thermal.is_empty());
         assert!((case.conditions.creep.value(3.0) / at(celsius) - 1.0).abs() < 1e-12, "{material} {more}");
+        let untold: Vec<_> =
+            case.findings.iter().filter(|finding| finding.code == "at-reference-temperature").collect();
+        let told = celsius != 20.0;
+        assert!(untold.len() == usize::from(!told), "{material} {more}: {untold:?}");
+        assert!(untold.iter().all(|finding| !finding.is_warning() && finding.text.contains("20 °C")));
         let factor = case.describe().materials[0].shift_factor.unwrap();
         assert!((factor / wlf().factor(celsius + 273.15).unwrap() - 1.0).abs() < 1e-12);
     }

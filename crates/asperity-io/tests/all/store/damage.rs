@@ -495,6 +495,25 @@ fn a_pipe_in_place_of_a_file_is_refused() {
 }
 
 #[test]
+fn an_array_without_its_checksum_is_damage() {
+    let (_directory, path) = place();
+    write(&path);
+    let whole = fs::read(path.join("zarr.json")).unwrap();
+    for name in ["load", "time", "field_time", "certificate"] {
+        edit(&path, |document| {
+            let sums = document["attributes"]["checksums"].as_str().unwrap();
+            let mut sums: serde_json::Value = serde_json::from_str(sums).unwrap();
+            sums.as_object_mut().unwrap().remove(name).unwrap();
+            document["attributes"]["checksums"] = sums.to_string().into();
+        });
+        let damage = verify(&path).unwrap().damage;
+        assert!(damage.len() == 1 && damage[0].what.contains(&format!("`{name}`")), "{damage:?}");
+        fs::write(path.join("zarr.json"), &whole).unwrap();
+    }
+    assert!(verify(&path).unwrap().damage.is_empty());
+}
+
+#[test]
 fn a_document_of_an_array_that_counts_other_rows_is_damage() {
     let (_directory, path) = place();
     write(&path);

@@ -238,3 +238,27 @@ fn a_glass_whose_sweeps_do_not_overlap_is_refused() {
         estimate_shift(&isotherms, Abscissa::Frequency, 296.15, ModulusChange::Neglected).unwrap_err();
     assert!(refused.to_string().contains("or give the shift"), "{refused}");
 }
+
+#[test]
+fn flat_sweeps_of_a_glass_are_shifted_with_their_uncertainty() {
+    // Sweeps every 8 K, as of instruments: at the coldest the modulus changes by less than its scatter of 1 %.
+    let law = law();
+    let glass: Vec<f64> = (0..10).map(|k| 274.0 + 8.0 * f64::from(k)).collect();
+    let mut random = random(5);
+    let mut scatter = move || 1.0 + 0.01 * (random() + random() + random() + random() - 2.0) * 3f64.sqrt();
+    let sweep = |temperature: &f64| {
+        let a = law.factor(*temperature).unwrap();
+        let x: Vec<f64> = (0..10).map(|k| 0.628 * 10f64.powf(f64::from(k) / 3.0)).collect();
+        let storage = x.iter().map(|w| polymer().complex(w * a).0 * scatter()).collect();
+        Isotherm { temperature: *temperature, x, curves: vec![storage] }
+    };
+    let sweeps: Vec<Isotherm> = glass.iter().map(sweep).collect();
+    let found = estimate_shift(&sweeps, Abscissa::Frequency, 314.0, ModulusChange::Neglected).unwrap();
+    assert!(found.uncertainty.iter().any(|decades| *decades > 1.0), "{found:?}");
+    let zero = law.ln_factor(314.0).unwrap();
+    for (t, uncertainty) in glass.iter().zip(&found.uncertainty) {
+        let error = (found.shift.ln_factor(*t).unwrap() - law.ln_factor(*t).unwrap() + zero) / LN_10;
+        // Three standard deviations.
+        assert!(error.abs() <= 3.0 * uncertainty + 1e-9, "{t} K: {error}, {uncertainty}");
+    }
+}

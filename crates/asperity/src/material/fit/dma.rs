@@ -46,13 +46,28 @@ pub fn fit_dma(
     data::check_abscissae(words, omega, false)?;
     data::check_values(words, omega, storage, false)?;
     data::check_values(loss_words, omega, loss, true)?;
-    data::check_trend(words, Trend::Rises, omega, storage, options.limit)?;
     // A loss below a thousandth of the stored energy is below the accuracy of instruments.
     let floor = 1e-3 * storage.iter().copied().fold(f64::INFINITY, f64::min);
     let weight = options.loss_weight;
     let curves = [
-        Curve { words, kernel: Kernel::Storage, xs: omega, values: storage, floor: 0.0, weight: 1.0 },
-        Curve { words: loss_words, kernel: Kernel::Loss, xs: omega, values: loss, floor, weight },
+        Curve {
+            words,
+            kernel: Kernel::Storage,
+            trend: Some(Trend::Rises),
+            xs: omega,
+            values: storage,
+            floor: 0.0,
+            weight: 1.0,
+        },
+        Curve {
+            words: loss_words,
+            kernel: Kernel::Loss,
+            trend: None,
+            xs: omega,
+            values: loss,
+            floor,
+            weight,
+        },
     ];
     let window = [1.0 / omega[omega.len() - 1], 1.0 / omega[0]];
     let fit = solve(&curves, window, options).map_err(|refusal| match options {
@@ -101,8 +116,8 @@ fn equilibrium(storage: &Curve<'_>, spectrum: &Spectrum) -> f64 {
     (above / below).max(0.0)
 }
 
-/// The error that refuses both moduli together, with the misfit of each fitted separately; `None` if neither can be fitted, or if
-/// both are fitted together except at a few points.
+/// The error that refuses both moduli together, with the misfit of each fitted separately; `None` if neither can be fitted, if
+/// both are fitted together except at a few points, or if the storage modulus falls with frequency.
 fn alone(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Option<Error> {
     let any = FitOptions { limit: f64::MAX, ..*options };
     let both = solve(curves, window, &any).ok()?;
@@ -111,6 +126,11 @@ fn alone(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Option<
         return None;
     }
     let single = |moduli: Moduli| solve(curves, window, &FitOptions { moduli, ..*options }).ok();
+    let Curve { words, xs, values, .. } = curves[0];
+    let falls = data::reversal(words, Trend::Rises, xs, values, options.limit).is_some();
+    if falls && single(Moduli::Storage).is_none() {
+        return None;
+    }
     let shares = |misfit: &Misfit| format!("{:.1} %", 100.0 * misfit.rms);
     let reached: Vec<String> = [(Moduli::Storage, 0, "storage"), (Moduli::Loss, 1, "loss")]
         .into_iter()

@@ -288,3 +288,27 @@ fn the_fewest_terms_hold_a_misfit() {
     let refused = fit_relaxation(&times, &scattered, &options).unwrap_err().to_string();
     assert!(refused.contains("misfit to be held"), "{refused}");
 }
+
+#[test]
+fn sweeps_that_overlap_with_scatter_are_fitted_through_and_told() {
+    // Points of another sweep, 18 % lower, stand between those of a smooth one: the storage modulus falls by more than its scatter.
+    let (truth, omega) = (thirteen(), logspace(1e-6, 1e7, 200));
+    let low = |n: usize| if [100, 102, 104].contains(&n) { 0.82 } else { 1.0 };
+    let storage: Vec<f64> = omega.iter().enumerate().map(|(n, w)| truth.complex(*w).0 * low(n)).collect();
+    let loss: Vec<f64> = omega.iter().map(|w| truth.complex(*w).1).collect();
+    let options = FitOptions { moduli: Moduli::Storage, ..FitOptions::default() };
+    let fit = fit_dma(&omega, &storage, &loss, &options).unwrap();
+    let found = fit.reversal.unwrap();
+    // The modulus rises by up to 8 % from point to point.
+    assert!(found.share > 0.1 && found.share < 0.18 && found.allowed == 0.1, "{found:?}");
+    // Between the two sweeps, and three points in 200 do not move the curve elsewhere.
+    let error = |w: &f64| (fit.function.complex(*w).0 / truth.complex(*w).0 - 1.0).abs();
+    assert!(omega.iter().map(error).fold(0.0, f64::max) < 0.18);
+    assert!(omega[..85].iter().chain(&omega[120..]).map(error).fold(0.0, f64::max) < 0.03);
+    assert!(fit.misfit.max < 0.2 && fit.misfit.rms < 0.05, "{:?}", fit.misfit);
+    // Ten such points in a row belong to no scatter.
+    let lower = |n: usize| if (100..110).contains(&n) { 0.6 } else { 1.0 };
+    let storage: Vec<f64> = omega.iter().enumerate().map(|(n, w)| truth.complex(*w).0 * lower(n)).collect();
+    let refused = fit_dma(&omega, &storage, &loss, &options).unwrap_err().to_string();
+    assert!(refused.contains("passive material"), "{refused}");
+}

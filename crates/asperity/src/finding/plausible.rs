@@ -1,0 +1,85 @@
+//! Magnitudes that no contact has: a unit is wrong.
+//!
+//! | quantity | plausible |
+//! |---|---|
+//! | side of the domain | 1 nm to 10 m |
+//! | radius of a shape | a cell to 2 m, and to 1000 domains |
+//! | rms slope of heights | 1e-6 to 5 |
+//! | depth of the gap | up to 100 domains |
+//! | modulus of a body | 150 Pa to 3 TPa |
+//! | largest modulus of measured data | from 0.1 MPa, if they have no unit or span a glass transition |
+//! | temperature of a material with a shift | from 100 K |
+//! | mean pressure of a load | from 1 Pa; and an expected contact of a tenth of a cell or more |
+//! | end of the run | 1 ns to 100 years |
+//!
+//! Numbers outside of these give the finding `unlikely-unit`.
+
+use super::words::si;
+use super::{Finding, UNLIKELY_UNIT};
+use crate::contact::Prescribed;
+use crate::simulation::Simulation;
+
+/// Sides of domains: from atoms to larger than any machine \[m\].
+pub(super) const SIDES: [f64; 2] = [1e-9, 10.0];
+/// Radii this large \[m\], or this many times the domain.
+pub(super) const LARGEST_RADIUS: f64 = 2.0;
+pub(super) const FLATTEST: f64 = 1000.0;
+/// Rms slopes: the best mirrors have 1e-5, and no machined or measured surface is as steep as the other end.
+pub(super) const SLOPES: [f64; 2] = [1e-6, 5.0];
+/// Ratio of the depth of a gap to the width of the domain.
+pub(super) const DEEPEST: f64 = 100.0;
+/// Moduli of solids: from the softest gels to above diamond \[Pa\].
+pub(super) const MODULI: [f64; 2] = [150.0, 3e12];
+/// Largest modulus of a polymer, at short times: softer ones are gels, which have no glass transition in the range of a DMA and are
+/// measured in kPa \[Pa\].
+pub(super) const SOFTEST_DATA: f64 = 1e5;
+/// Ratio of moduli across a glass transition.
+pub(super) const TRANSITION: f64 = 100.0;
+/// Below this temperature polymers neither creep nor are measured \[K\].
+pub(super) const COLD: f64 = 100.0;
+/// The pressure of a sheet of paper \[Pa\].
+const LIGHTEST: f64 = 1.0;
+/// Cells of the smallest contact that a load is meant to make.
+const LEAST_CONTACT: f64 = 0.1;
+/// The end of a run: from that of an impact of atoms to a century \[s\].
+const ENDS: [f64; 2] = [1e-9, 3.2e9];
+
+/// A load that is too small for a contact: its mean pressure over the periodic domain, or the number of cells of the expected contact.
+pub(super) fn unlikely_load(
+    simulation: &Simulation,
+    largest: Prescribed,
+    cells: Option<f64>,
+) -> Option<Finding> {
+    let Prescribed::Load(load) = largest else { return None };
+    let pressure = load / simulation.grid.area();
+    let periodic = simulation.boundary == crate::Boundary::Periodic;
+    let (value, limit, what) = if periodic && pressure < LIGHTEST {
+        (pressure, LIGHTEST, format!("the largest mean pressure is {}", si(pressure, "Pa")))
+    } else if let Some(cells) = cells.filter(|cells| *cells < LEAST_CONTACT) {
+        let what =
+            format!("the expected contact under the largest load, {}, has {cells:.1e} cells", si(load, "N"));
+        (cells, LEAST_CONTACT, what)
+    } else {
+        return None;
+    };
+    let text = format!(
+        "A contact can hardly be meant that is so light: {what}. Check the unit of load or pressure (Pa, kPa, MPa; m is milli, M is \
+         mega) and those of the moduli."
+    );
+    Some(Finding::warning(UNLIKELY_UNIT, value, limit, text))
+}
+
+/// A run that ends at a time that nobody means.
+pub(super) fn unlikely_end(simulation: &Simulation) -> Option<Finding> {
+    let ([least, most], end) = (ENDS, simulation.times.end());
+    (end > 0.0 && !(least..=most).contains(&end)).then(|| {
+        let limit = if end < least { least } else { most };
+        let text = format!(
+            "The run ends at {}; contacts last from {} to {}. Check the unit of time.end and of the history.",
+            si(end, "s"),
+            si(least, "s"),
+            si(most, "s")
+        );
+        Finding::warning(UNLIKELY_UNIT, end, limit, text)
+    })
+}

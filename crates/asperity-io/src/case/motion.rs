@@ -416,7 +416,7 @@ impl Moving {
         };
         let single = surfaces.iter().any(Surface::is_single);
         let found = (single && boundary == Boundary::Periodic)
-            .then(|| finding::own_track(grid, &velocities, &branches, pair.instantaneous()));
+            .then(|| finding::own_track(grid, self.direction, &velocities, &branches, pair.instantaneous()));
         found.flatten().into_iter().collect()
     }
 }

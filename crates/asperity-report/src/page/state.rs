@@ -16,7 +16,7 @@ use super::{material, stress};
 use crate::figure::Colours;
 use crate::leak::sentence;
 use crate::result::panels::{self, CONTACT_PRESSURE, RowPanel};
-use crate::result::{Options, Rows, look, persson, temperature_at_rows};
+use crate::result::{Options, Rows, look, name_of_theory, persson, temperature_at_rows};
 
 /// The result's title, or its file name.
 pub(super) fn title(reader: &Reader) -> String {
@@ -147,7 +147,7 @@ fn evolution(reader: &Reader, theory: bool) -> Result<Vec<Value>, StoreError> {
     let beside = [("friction_coefficient", PERSSON_FRICTION), ("contact_area", PERSSON_AREA)];
     for (computed, expected) in beside.into_iter().filter(|_| theory) {
         if let Some(panel) = panels.iter_mut().find(|p| p.lines.iter().any(|(_, name)| *name == computed)) {
-            panel.lines.push(("Persson's theory", expected));
+            panel.lines.push((name_of_theory(reader)?, expected));
         }
     }
     Ok(panels.iter().map(panel).collect())

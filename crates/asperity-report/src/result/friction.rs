@@ -46,8 +46,9 @@ pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, Plo
     let mut area = Curves::new("Contact", axis(), Axis::linear("contact over nominal area", ""))
         .with(line(if theory.is_some() { "computed" } else { "" }, "contact_fraction")?);
     if let Some(theory) = theory {
+        let name = name_of_theory(reader)?;
         let curve = |of: fn(&PerssonFriction) -> f64| {
-            Series::new("Persson's theory", Style::Dashed, &x, theory.iter().map(of).collect::<Vec<f64>>())
+            Series::new(name, Style::Dashed, &x, theory.iter().map(of).collect::<Vec<f64>>())
         };
         coefficient = coefficient.with(curve(|at| at.friction_coefficient));
         area = area.with(curve(|at| at.contact_fraction));
@@ -90,4 +91,10 @@ pub(crate) fn persson(reader: &Reader) -> Result<Option<Vec<PerssonFriction>>, S
     });
     // A gap that the theory does not know (flat, or open for ever in places) has no curve.
     Ok(theory.ok())
+}
+
+/// The name of its curve. The theory knows no hardness.
+pub(crate) fn name_of_theory(reader: &Reader) -> Result<&'static str, StoreError> {
+    let is_capped = reader.series("capped_area")?.iter().any(|area| *area > 0.0);
+    Ok(if is_capped { "Persson's theory, without the hardness" } else { "Persson's theory" })
 }

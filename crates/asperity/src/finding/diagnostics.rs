@@ -155,7 +155,7 @@ impl Diagnostics {
         self.see_contact(index, row, step.pressure(), control, compliance);
         self.capped |= row.capped_area > 0.0 && control == Control::Approach;
         if let Some(friction) = step.friction() {
-            self.slides.see(index, &friction);
+            self.slides.see(index, row.coordinate, &friction);
         }
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);

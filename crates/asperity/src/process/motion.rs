@@ -12,7 +12,7 @@ use crate::grid::Boundary;
 use crate::material::Creep;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Scheme, Simulation};
-use crate::sliding::{ContactForces, Direction, Friction, MovingGap, Path, SecondEstimate, Slopes};
+use crate::sliding::{ContactForces, Direction, Friction, MovingGap, Path, Slopes};
 use crate::step::{Interval, Loader, Saver, UndeformedGap};
 
 /// How a contact moves.
@@ -152,9 +152,8 @@ impl Process for Moving {
             velocity: self.motion.path.velocity(row.step.instant.time),
             distance: self.distance,
             shear_stress: self.motion.shear_stress,
-            time_error: time_error.max(self.time_error),
         };
-        let friction = Friction::of(&contact, SecondEstimate::Differences);
+        let friction = Friction::in_time(&contact, time_error.max(self.time_error));
         let before = std::mem::replace(&mut self.before, self.distance);
         row.other_work += 0.5 * (self.friction.force + friction.force) * (self.distance - before);
         (self.friction, self.time_error) = (friction, time_error);

@@ -50,6 +50,25 @@ impl Direction {
         usize::from(self == Direction::Y)
     }
 
+    /// How far a body moves on a periodic domain until it meets its own track \[m\]: the side along the motion, and in an oblique
+    /// direction the way to the first image of the start that it passes within a quarter of the shorter side.
+    pub fn return_length(self, grid: &Grid) -> f64 {
+        let ([lx, ly], [c, s]) = (grid.size(), self.unit());
+        match self {
+            Direction::X => lx,
+            Direction::Y => ly,
+            Direction::Angle(_) => {
+                let near = 0.25 * lx.min(ly);
+                let images = (-IMAGES..=IMAGES).flat_map(|m| (-IMAGES..=IMAGES).map(move |n| [m, n]));
+                images
+                    .map(|image| [f64::from(image[0]) * lx, f64::from(image[1]) * ly])
+                    .map(|[x, y]| [c * x + s * y, c * y - s * x])
+                    .filter(|[along, across]| *along > near && across.abs() <= near)
+                    .fold(f64::INFINITY, |least, [along, _]| least.min(along))
+            }
+        }
+    }
+
     /// Its unit vector.
     pub fn unit(self) -> [f64; 2] {
         match self {
@@ -60,6 +79,9 @@ impl Direction {
     }
 }
 
+/// Images of a periodic domain that are looked at along an axis, to each side.
+const IMAGES: i32 = 32;
+
 /// What a contact in motion does to the bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Friction {
@@ -67,14 +89,13 @@ pub struct Friction {
     pub velocity: f64,
     /// How far the contact has moved \[m\].
     pub distance: f64,
-    /// Force against motion in the direction of motion, Σ p dh/ds \[N\].
+    /// Force against motion in the direction of motion \[N\]: Σ p dh/ds in time, the power lost over the velocity in a steady state.
     pub force: f64,
     /// Force across it, Σ p dh/dn \[N\]; n is s turned by a right angle from x towards y.
     pub side: f64,
     /// Force over load.
     pub coefficient: f64,
-    /// Estimated error over |force|: that of the grid, |force - second estimate| with the second estimate -Σ p du/ds, and in time that of
-    /// the time steps, the relative error of the stress times Σ p |dh/ds|.
+    /// Estimated error over |force|, from other estimates of it, and in time from the error of the stress.
     pub uncertainty: f64,
     /// Moment of the pressure about the centre of the slopes, Σ p s \[N m\]: the resistance to rolling.
     pub moment: f64,
@@ -133,48 +154,49 @@ pub(crate) struct ContactForces<'a> {
     /// How far the contact has moved.
     pub(crate) distance: f64,
     pub(crate) shear_stress: Option<f64>,
-    /// Relative error of the stress because of the time steps.
-    pub(crate) time_error: f64,
-}
-
-/// The second estimate of the force, -Σ p du/ds.
-pub(crate) enum SecondEstimate {
-    /// By differences of the displacement from cell to cell. The power lost is not known.
-    Differences,
-    /// In a steady state, where its work is what is lost; of a periodic domain from the waves \[N\].
-    Steady(Option<f64>),
 }
 
 impl Friction {
-    /// Of a solved contact.
-    pub(crate) fn of(contact: &ContactForces, second: SecondEstimate) -> Friction {
-        let [load, mut force, mut side, moment, off, area, slopes] = contact.sums();
-        if !contact.remembers {
-            (force, side) = (0.0, 0.0);
-        }
+    /// Of a contact that moves in time: the force is the sum over the slopes.
+    ///
+    /// What is unknown of it is what the cells leave open, Σ p Dg at the edges and Σ p (dh/ds - Dh) of waves of a few cells, with D the
+    /// central difference, and what the time steps do to the stress. A wave of wave number q that moves by a cell in a step of
+    /// linear u has between (x/2) cot(x/2) and sin(x)/x of its loss, x = q dx, whatever the material: 1 - sin(x)/x is the error of Dh
+    /// as well.
+    pub(crate) fn in_time(contact: &ContactForces, time_error: f64) -> Friction {
+        let sums = contact.sums();
+        let force = if contact.remembers { sums.slopes } else { 0.0 };
+        let unknown = sums.edges.abs() + sums.waves.abs() + time_error * sums.size;
+        Friction::new(contact, &sums, [force, unknown], f64::NAN)
+    }
+
+    /// Of a steady state, in which `loss` is lost per distance \[N\]: by the balance of power this is the force.
+    ///
+    /// Two other estimates tell what the cells leave open of it. Taken by central differences of the displacement, waves lose
+    /// sin(q dx)/(q dx) of it: t = |loss + Σ p Du|. The sum over the slopes differs by s; at low and at high speed, where it is the
+    /// small difference of large forces, its own error may be much larger. √(t min(s, t)) is unknown.
+    pub(crate) fn steady(contact: &ContactForces, loss: f64) -> Friction {
+        let sums = contact.sums();
+        let [by_differences, by_slopes] =
+            [sums.differences, sums.slopes].map(|estimate| (loss - estimate).abs());
+        let unknown = (by_differences * by_differences.min(by_slopes)).sqrt();
+        Friction::new(contact, &sums, [loss, unknown], loss * contact.velocity)
+    }
+
+    fn new(contact: &ContactForces, sums: &Sums, [force, unknown]: [f64; 2], power: f64) -> Friction {
+        let load = sums.load;
         let coefficient = if load > 0.0 { force / load } else { 0.0 };
-        let (apart, scale, power) = match second {
-            SecondEstimate::Differences => (off, force.abs(), f64::NAN),
-            SecondEstimate::Steady(waves) => {
-                let second = waves.unwrap_or(if contact.remembers { force - off } else { 0.0 });
-                let power = second.max(0.0) * contact.velocity;
-                (force - second, force.abs().max(second.abs()), power)
-            }
-        };
         Friction {
             velocity: contact.velocity,
             distance: contact.distance,
             force,
-            side,
+            side: if contact.remembers { sums.side } else { 0.0 },
             coefficient,
-            uncertainty: match scale > ROUNDING * load {
-                true => (apart.abs() + contact.time_error * slopes) / scale,
-                false => 0.0,
-            },
-            moment,
+            uncertainty: if force.abs() > ROUNDING * load { unknown / force.abs() } else { 0.0 },
+            moment: sums.moment,
             power,
             total: contact.shear_stress.map_or(f64::NAN, |stress| match load > 0.0 {
-                true => coefficient + stress * area / load,
+                true => coefficient + stress * sums.area / load,
                 false => 0.0,
             }),
         }
@@ -184,11 +206,30 @@ impl Friction {
 /// Forces below this share of the load are rounding errors.
 const ROUNDING: f64 = 1e-13;
 
+/// Sums over the cells in contact, times the area of a cell; s is the direction of motion, n across it, D a central difference.
+struct Sums {
+    /// Σ p.
+    load: f64,
+    /// Σ p dh/ds, h of what moves.
+    slopes: f64,
+    /// Σ p dh/dn.
+    side: f64,
+    /// Σ p s.
+    moment: f64,
+    /// Σ 1.
+    area: f64,
+    /// Σ p |dh/ds|.
+    size: f64,
+    /// Σ p Dg, g the gap of the deformed bodies: 0 in contact, so this comes from the edges alone.
+    edges: f64,
+    /// Σ p (dh/ds - Dh), to leading order.
+    waves: f64,
+    /// -Σ p Du.
+    differences: f64,
+}
+
 impl ContactForces<'_> {
-    /// Load, force, side force, moment, Σ p dg/ds with g the gap of the deformed bodies, area in contact, and Σ p |dh/ds|.
-    ///
-    /// g is 0 in contact, so that Σ p dg/ds comes from the edges alone: it is the difference of the two estimates of the force.
-    fn sums(&self) -> [f64; 7] {
+    fn sums(&self) -> Sums {
         let (Simulation { grid, boundary, .. }, [cx, cy]) = (self.simulation, self.direction.unit());
         let ny = grid.cells()[1];
         // On a periodic domain from the nearest image of the centre.
@@ -196,41 +237,58 @@ impl ContactForces<'_> {
             let (x, length) = (x - self.slopes.centre[axis], grid.size()[axis]);
             if *boundary == Boundary::Periodic { x - length * (x / length).round() } else { x }
         };
+        let displacement = |cell: usize| self.compliance * self.state.unit_displacement[cell];
         let of_cell = |cell: usize| {
             let p = self.state.pressure[cell];
             if p <= 0.0 {
-                return [0.0; 7];
+                return [0.0; 9];
             }
             let (i, j) = (cell / ny, cell % ny);
             let (sx, sy) = (self.slopes.x[(i, j)], self.slopes.y[(i, j)]);
+            let (along, across) = (cx * sx + cy * sy, cx * sy - cy * sx);
             let arm = cx * from(grid.x(i), 0) + cy * from(grid.y(j), 1);
-            let edge = self.slope_of_gap(i, j);
-            let along = p * (cx * sx + cy * sy);
-            [p, along, p * (cx * sy - cy * sx), p * arm, p * edge, 1.0, along.abs()]
+            let edge = self.difference((i, j), |cell| self.gap[cell] + displacement(cell));
+            let back = -self.difference((i, j), displacement);
+            let of_force = [along, across, arm, along.abs(), edge, self.missed((i, j)), back];
+            let [slopes, side, moment, size, edges, waves, differences] = of_force.map(|x| p * x);
+            [p, slopes, side, moment, 1.0, size, edges, waves, differences]
         };
-        sums(0..grid.len(), of_cell).map(|sum| grid.cell_area() * sum)
+        let all = sums(0..grid.len(), of_cell).map(|sum| grid.cell_area() * sum);
+        let [load, slopes, side, moment, area, size, edges, waves, differences] = all;
+        Sums { load, slopes, side, moment, area, size, edges, waves, differences }
     }
 
-    /// dg/ds by central differences; 0 beside cells that cannot touch.
-    fn slope_of_gap(&self, i: usize, j: usize) -> f64 {
+    /// The cells before and behind a cell along both axes; at the ends of a free domain the cell itself.
+    fn neighbours(&self, (i, j): (usize, usize)) -> [[(usize, usize); 2]; 2] {
         let Simulation { grid, boundary, .. } = self.simulation;
-        let ([nx, ny], [dx, dy], [cx, cy]) = (grid.cells(), grid.spacing(), self.direction.unit());
-        let step = |n: usize, count: usize, forward: bool| match (boundary, forward) {
-            (Boundary::Periodic, true) => (n + 1) % count,
-            (Boundary::Periodic, false) => (n + count - 1) % count,
-            (Boundary::Free, true) => (n + 1).min(count - 1),
-            (Boundary::Free, false) => n.saturating_sub(1),
+        let [nx, ny] = grid.cells();
+        let next = |n: usize, count: usize| match boundary {
+            Boundary::Periodic => [(n + count - 1) % count, (n + 1) % count],
+            Boundary::Free => [n.saturating_sub(1), (n + 1).min(count - 1)],
         };
-        let gap = |i: usize, j: usize| {
-            let cell = i * ny + j;
-            self.gap[cell] + self.compliance * self.state.unit_displacement[cell]
-        };
-        let along_x = (gap(step(i, nx, true), j) - gap(step(i, nx, false), j)) / (2.0 * dx);
-        let along_y = match ny {
-            1 => 0.0,
-            _ => (gap(i, step(j, ny, true)) - gap(i, step(j, ny, false))) / (2.0 * dy),
-        };
-        let slope = cx * along_x + cy * along_y;
+        [next(i, nx).map(|i| (i, j)), next(j, ny).map(|j| (i, j))]
+    }
+
+    /// D of a field along the motion; 0 beside cells that cannot touch.
+    fn difference(&self, at: (usize, usize), field: impl Fn(usize) -> f64) -> f64 {
+        let grid = &self.simulation.grid;
+        let ([dx, dy], [cx, cy], ny) = (grid.spacing(), self.direction.unit(), grid.cells()[1]);
+        let [along_x, along_y] = self.neighbours(at).map(|cells| {
+            let [before, behind] = cells.map(|(i, j)| field(i * ny + j));
+            0.5 * (behind - before)
+        });
+        let slope = cx * along_x / dx + if ny > 1 { cy * along_y / dy } else { 0.0 };
         if slope.is_finite() { slope } else { 0.0 }
+    }
+
+    /// dh/ds - Dh to leading order, where Dh is dh/ds plus dx²/6 of its second derivative: from the slopes of three cells.
+    fn missed(&self, (i, j): (usize, usize)) -> f64 {
+        let fields = [&self.slopes.x, &self.slopes.y];
+        let missed = |axis: usize, [before, behind]: [(usize, usize); 2]| {
+            let slope = fields[axis];
+            (2.0 * slope[(i, j)] - slope[before] - slope[behind]) / 6.0
+        };
+        let ([along_x, along_y], [cx, cy]) = (self.neighbours((i, j)), self.direction.unit());
+        cx * missed(0, along_x) + cy * missed(1, along_y)
     }
 }

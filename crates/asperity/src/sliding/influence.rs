@@ -9,7 +9,11 @@
 //!
 //! k_j(x_i) = e^(-dx/l) k_j(x_(i+1)) + ∫ e^(-s/l)/l k(x_i + s) ds over 0 < s < dx,
 //!
-//! which is stable. k has kinks x ln|x| at the ends of a cell, ±dx/2, towards which the panels of the quadrature are graded.
+//! which is stable. What is lost per distance is the quadratic form of the even part of
+//!
+//! Σ C_j (k - k_j)/l_j = -∂k_v/∂x + C0 ∂k/∂x,
+//!
+//! since the derivative of k is odd. k has kinks x ln|x| at the ends of a cell, ±dx/2, towards which the panels of the quadrature are graded.
 
 use std::sync::atomic::AtomicBool;
 
@@ -44,8 +48,46 @@ pub(super) struct Branch {
     pub(super) length: f64,
 }
 
-/// Coefficients k_v(i dx, j dy), -N <= i <= N with N = `reach`\[0\], 0 <= j <= `reach`\[1\], in rows of constant j: at
+/// A memory shorter than this share of a cell counts by its first moment alone.
+const SHORT: f64 = 1e-4;
+
+/// C0 and the branches of a body that streams by.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Memory {
+    instantaneous: f64,
+    branches: Vec<Branch>,
+}
+
+impl Memory {
+    /// On cells of length `dx` \[m\]. A branch with l < l* = `SHORT` dx is replaced by one of length l* with the share l/l* of its
+    /// compliance, the rest of which is instantaneous: k_j keeps its first moment, and its error is below l*² k''/4.
+    pub(super) fn new(mut instantaneous: f64, branches: impl Iterator<Item = Branch>, dx: f64) -> Self {
+        let mut short = Branch { compliance: 0.0, length: SHORT * dx };
+        let mut kept = vec![];
+        for branch in branches {
+            if branch.length < short.length {
+                let share = branch.length / short.length;
+                instantaneous += (1.0 - share) * branch.compliance;
+                short.compliance += share * branch.compliance;
+            } else {
+                kept.push(branch);
+            }
+        }
+        kept.extend((short.compliance > 0.0).then_some(short));
+        Memory { instantaneous, branches: kept }
+    }
+}
+
+/// The coefficients at (i dx, j dy), -N <= i <= N with N = `reach`\[0\], 0 <= j <= `reach`\[1\], in rows of constant j: at
 /// `j * (2 N + 1) + i + N`.
+pub(super) struct Influence {
+    /// k_v \[m/Pa\].
+    pub(super) displacement: Vec<f64>,
+    /// Σ C_j (k - k_j)/l_j \[1/Pa\].
+    pub(super) loss: Vec<f64>,
+}
+
+/// The coefficients of a body.
 ///
 /// Of a line contact a constant is free; that of k is chosen here as its value N cells away.
 ///
@@ -54,21 +96,22 @@ pub(super) struct Branch {
 pub(super) fn influence(
     grid: &Grid,
     reach: [usize; 2],
-    instantaneous: f64,
-    branches: &[Branch],
+    memory: &Memory,
     interrupt: Option<&AtomicBool>,
-) -> Result<Vec<f64>> {
+) -> Result<Influence> {
     let [dx, dy] = grid.spacing();
     let (n, rows) = (reach[0], reach[1] + 1);
-    let mut all = vec![0.0; (2 * n + 1) * rows];
+    let mut all = [0, 1].map(|_| vec![0.0; (2 * n + 1) * rows]);
     let far = strip_at(n as f64 * dx, dx);
-    let quadrature = Quadrature::new(dx, branches);
-    all.par_chunks_mut(2 * n + 1).enumerate().try_for_each(|(j, row)| {
+    let quadrature = Quadrature::new(dx, memory);
+    let [displacement, loss] = all.each_mut().map(|all| all.par_chunks_mut(2 * n + 1));
+    displacement.zip(loss).enumerate().try_for_each(|(j, rows)| {
         let y = j as f64 * dy;
         let k = |x: f64| if grid.is_line() { strip_at(x, dx) - far } else { love(x, y, [dx, dy]) };
-        quadrature.fill(row, instantaneous, &k, interrupt)
+        quadrature.fill(rows, &k, interrupt)
     })?;
-    Ok(all)
+    let [displacement, loss] = all;
+    Ok(Influence { displacement, loss })
 }
 
 /// Cells after which an interruption is looked for.
@@ -77,6 +120,7 @@ const WATCH: i64 = 512;
 /// What the integrals over all cells share.
 struct Quadrature<'a> {
     dx: f64,
+    instantaneous: f64,
     branches: &'a [Branch],
     /// Of cells beside the kinks, and of all others.
     rules: [Rule; 2],
@@ -105,16 +149,15 @@ impl Rule {
 }
 
 impl<'a> Quadrature<'a> {
-    fn new(dx: f64, branches: &'a [Branch]) -> Self {
+    fn new(dx: f64, Memory { instantaneous, branches }: &'a Memory) -> Self {
         let rules = [true, false].map(|near| Rule::new(panels(near, dx), branches));
-        Quadrature { dx, branches, rules }
+        Quadrature { dx, instantaneous: *instantaneous, branches, rules }
     }
 
-    /// row = C0 k + Σ C_j k_j.
+    /// C0 k + Σ C_j k_j and Σ C_j (k - k_j)/l_j of a row.
     fn fill(
         &self,
-        row: &mut [f64],
-        instantaneous: f64,
+        (row, loss): (&mut [f64], &mut [f64]),
         k: &impl Fn(f64) -> f64,
         interrupt: Option<&AtomicBool>,
     ) -> Result<()> {
@@ -128,8 +171,9 @@ impl<'a> Quadrature<'a> {
                 stop_at(interrupt)?;
             }
             let x = i as f64 * dx;
-            let to = &mut row[(i + n) as usize];
-            *to = instantaneous * k(x);
+            let (to, lost) = (&mut row[(i + n) as usize], &mut loss[(i + n) as usize]);
+            let own = k(x);
+            *to = self.instantaneous * own;
             let rule = &self.rules[usize::from(!(-1 - NEAR..=NEAR).contains(&i))];
             if i < n && !self.branches.is_empty() {
                 values.clear();
@@ -145,6 +189,7 @@ impl<'a> Quadrature<'a> {
                     ahead[b] = decays[b] * ahead[b] + gained;
                 }
                 *to += compliance * ahead[b];
+                *lost += compliance * (own - ahead[b]) / l;
             }
         }
         Ok(())
@@ -211,6 +256,11 @@ fn gauss(a: f64, b: f64, mut at: impl FnMut(f64, f64)) {
 mod tests {
     use super::*;
 
+    /// A branch of unit compliance.
+    fn one(length: f64, grid: &Grid) -> Memory {
+        Memory::new(0.0, [Branch { compliance: 1.0, length }].into_iter(), grid.spacing()[0])
+    }
+
     /// ∫ e^(-s/l)/l k(x + s) ds by a fine midpoint rule in t = e^(-s/l) away from the kinks.
     fn slow(k: &dyn Fn(f64) -> f64, x: f64, l: f64) -> f64 {
         let n = 400_000;
@@ -222,8 +272,7 @@ mod tests {
         for grid in [Grid::new([8, 8], [8.0, 4.0]).unwrap(), Grid::line(8, 8.0).unwrap()] {
             for l in [0.02, 0.3, 1.0, 7.0, 300.0] {
                 let n = 8;
-                let found =
-                    influence(&grid, [n, 3], 0.0, &[Branch { compliance: 1.0, length: l }], None).unwrap();
+                let found = influence(&grid, [n, 3], &one(l, &grid), None).unwrap().displacement;
                 for (i, j) in [(-8_i64, 0_usize), (-3, 2), (0, 0), (-1, 0), (1, 1), (8, 3)] {
                     let j = if grid.is_line() { 0 } else { j };
                     let dy = grid.spacing()[1];
@@ -243,8 +292,7 @@ mod tests {
     #[test]
     fn a_short_memory_is_the_elastic_body_and_a_long_one_none() {
         let grid = Grid::new([4, 4], [4.0, 4.0]).unwrap();
-        let of =
-            |l: f64| influence(&grid, [4, 0], 0.0, &[Branch { compliance: 1.0, length: l }], None).unwrap();
+        let of = |l: f64| influence(&grid, [4, 0], &one(l, &grid), None).unwrap().displacement;
         let short = of(1e-6);
         assert!((short[4] - love(0.0, 0.0, [1.0, 1.0])).abs() < 1e-5);
         assert!(of(1e9).iter().all(|k| k.abs() < 1e-6));
@@ -253,7 +301,7 @@ mod tests {
     #[test]
     fn an_interruption_is_seen_while_coefficients_are_computed() {
         let (grid, flag) = (Grid::new([4, 4], [4.0, 4.0]).unwrap(), AtomicBool::new(true));
-        let stopped = influence(&grid, [1 << 14, 8], 1.0, &[], Some(&flag));
+        let stopped = influence(&grid, [1 << 14, 8], &one(1.0, &grid), Some(&flag));
         assert!(matches!(stopped, Err(crate::error::Error::Interrupted)));
     }
 }

@@ -19,7 +19,7 @@ mod slopes;
 mod steady;
 mod streaming;
 
-pub(crate) use friction::{ContactForces, SecondEstimate};
+pub(crate) use friction::ContactForces;
 pub use friction::{Direction, Friction};
 pub use moving::MovingGap;
 pub use path::Path;

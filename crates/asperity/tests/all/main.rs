@@ -5,6 +5,7 @@ mod capped;
 mod conditions;
 mod contact;
 mod dents;
+mod friction;
 mod held_approach;
 mod hurst;
 mod indentation;

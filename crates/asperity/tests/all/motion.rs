@@ -110,6 +110,42 @@ fn the_start_of_sliding_in_full_contact_follows_its_closed_form_to_second_order(
 }
 
 #[test]
+fn the_stated_error_holds_that_of_waves_of_a_few_cells() {
+    // Five and eight cells to a wave, each passed in a step: a wave has between (x/2) cot(x/2) and sin(x)/x of its loss, x = q dx,
+    // whatever the material.
+    let (q, amplitude) = (TAU, 1e-3);
+    for (cells, contrast, v) in
+        [(5, 5.0, 0.1), (5, 300.0, 1.0), (5, 3000.0, 10.0), (8, 5.0, 1.0), (8, 300.0, 0.1), (8, 3000.0, 3.0)]
+    {
+        let creep = zener(1.0 / contrast, 1.0 - 1.0 / contrast, 1.0);
+        let w = q * v;
+        let [storage, loss] = [
+            1.0 / contrast + (1.0 - 1.0 / contrast) / (1.0 + w * w),
+            (1.0 - 1.0 / contrast) * w / (1.0 + w * w),
+        ];
+        let exact = 0.25 * q * q * amplitude * amplitude * loss / (storage * storage + loss * loss);
+        let start = 20.0;
+        // Three times of relaxation, or three waves.
+        let end = start + f64::max(3.0, 3.0 / v);
+        let rows = run(simulation(
+            Grid::line(cells, 1.0).unwrap(),
+            Boundary::Periodic,
+            &shape(Shape::Wave { amplitude, wavelength: [1.0, f64::INFINITY] }),
+            creep,
+            10.0,
+            at_speed(v, start),
+            TimeGrid::List(vec![0.2, 2.0, start, end]),
+        ));
+        let friction = rows[rows.len() - 2].1;
+        let x = q / cells as f64;
+        let share = friction.force / exact;
+        let bounds = x.sin() / x - 5e-3..0.5 * x / (0.5 * x).tan() + 5e-3;
+        assert!(bounds.contains(&share), "{cells} {contrast} {v}: {share} {bounds:?}");
+        assert!(friction.uncertainty > (share - 1.0).abs(), "{cells} {contrast} {v}");
+    }
+}
+
+#[test]
 fn a_long_slide_becomes_the_steady_state() {
     let (cells, length) = (128, 8.0);
     let grid = Grid::line(cells, length).unwrap();

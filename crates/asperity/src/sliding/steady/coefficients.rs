@@ -10,14 +10,24 @@
 
 use std::sync::atomic::AtomicBool;
 
+use ndarray::Array2;
+
 use super::operators::Stream;
 use crate::convolution::torus::{Spectrum, Torus};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::sliding::Direction;
-use crate::sliding::influence::{Branch, influence};
+use crate::sliding::influence::{Branch, Influence, Memory, influence};
 
-/// A over the relaxed compliance on a torus of `lengths`, which is longer than the `shortest` along the motion, or equal.
+/// The coefficients of a free domain.
+pub(super) struct OnTorus {
+    /// A over the relaxed compliance on the torus.
+    pub(super) steady: Spectrum,
+    /// The kernel of the loss over the relaxed compliance: its even part, between cells that are (i, j) apart.
+    pub(super) loss: Array2<f64>,
+}
+
+/// The coefficients on a torus of `lengths`, which is longer than the `shortest` along the motion, or equal.
 ///
 /// # Errors
 /// [`Error::Interrupted`](crate::error::Error::Interrupted).
@@ -26,7 +36,7 @@ pub(super) fn on_torus(
     lengths: [usize; 2],
     shortest: [usize; 2],
     interrupt: Option<&AtomicBool>,
-) -> Result<Spectrum> {
+) -> Result<OnTorus> {
     let (grid, unit) = (&stream.simulation.grid, stream.streaming.relaxed());
     let [mx, my] = lengths;
     let along_y = stream.direction == Direction::Y;
@@ -39,12 +49,15 @@ pub(super) fn on_torus(
         .streaming
         .branches()
         .map(|(compliance, time)| Branch { compliance: compliance / unit, length: time * stream.velocity });
-    let (still, moving): (Vec<Branch>, Vec<Branch>) = branches.partition(|b| b.length <= 0.0);
-    let relaxed: f64 = still.iter().map(|b| b.compliance).sum();
+    let memory = Memory::new(stream.streaming.instantaneous() / unit, branches, turned.spacing()[0]);
     let reach = [m / 2, across / 2];
-    let instantaneous = stream.streaming.instantaneous() / unit + relaxed;
-    let k = influence(&turned, reach, instantaneous, &moving, interrupt)?;
-    let row = |j: usize| &k[j * (2 * reach[0] + 1)..][..2 * reach[0] + 1];
+    let Influence { displacement: k, loss } = influence(&turned, reach, &memory, interrupt)?;
+    let even = |i: usize, j: usize| {
+        let row = &loss[j * (m + 1)..][..m + 1];
+        0.5 * (row[m / 2 + i] + row[m / 2 - i])
+    };
+    let loss = Array2::from_shape_fn(grid.shape(), |(i, j)| if along_y { even(j, i) } else { even(i, j) });
+    let row = |j: usize| &k[j * (m + 1)..][..m + 1];
     let least =
         if grid.is_line() { row(0).iter().fold(f64::INFINITY, |least, k| least.min(*k)) } else { 0.0 };
     let seen = match m > shortest[stream.direction.axis()] {
@@ -73,7 +86,7 @@ pub(super) fn on_torus(
             torus[if along_y { j * my + i } else { i * my + j }] = value - least;
         }
     }
-    Ok(Torus::new([mx, my], [mx, my]).transform(&torus))
+    Ok(OnTorus { steady: Torus::new([mx, my], [mx, my]).transform(&torus), loss })
 }
 
 /// From 0 at 0 to 1 at 1, with three derivatives that are 0 at both ends.

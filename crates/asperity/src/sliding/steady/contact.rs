@@ -2,10 +2,12 @@
 
 use std::sync::atomic::AtomicBool;
 
+use ndarray::Array2;
+
 use super::operators::{Operators, Stream};
 use crate::contact::{self, ContactState, Outcome, Problem, Solver, SolverOptions};
 use crate::error::{Error, NotConverged, Result};
-use crate::grid::Grid;
+use crate::grid::{Boundary, Grid};
 use crate::operator::Operator;
 use crate::simulation::Simulation;
 
@@ -31,6 +33,8 @@ pub(super) struct SteadyContact<'a> {
     pub(super) tolerance: f64,
     /// Iterations and convolutions until now, and the rating of the last state.
     pub(super) spent: Outcome,
+    /// The kernel of the loss, of a free domain.
+    loss: Option<Array2<f64>>,
 }
 
 /// Working memory of the iteration.
@@ -45,7 +49,16 @@ impl<'a> SteadyContact<'a> {
     pub(super) fn new(stream: Stream<'a>, problem: Problem<'a>, interrupt: Option<&'a AtomicBool>) -> Self {
         let Simulation { grid, solver: options, .. } = stream.simulation;
         let (options, tolerance) = (*options, options.tolerance);
-        SteadyContact { grid, problem, options, stream, interrupt, tolerance, spent: Outcome::default() }
+        let spent = Outcome::default();
+        SteadyContact { grid, problem, options, stream, interrupt, tolerance, spent, loss: None }
+    }
+
+    /// What a pressure loses per distance \[N\]; NaN where the operators could not be planned.
+    pub(super) fn loss(&self, pressure: &[f64]) -> f64 {
+        match (self.stream.simulation.boundary, &self.loss) {
+            (Boundary::Free, None) => f64::NAN,
+            (_, kernel) => self.stream.loss(pressure, kernel.as_ref()),
+        }
     }
 
     /// Solves the contact from the pressure of `state`, which becomes the best one found.
@@ -60,6 +73,7 @@ impl<'a> SteadyContact<'a> {
             work: [vec![0.0; n], vec![0.0; n]],
         };
         let mut operators = Operators::plan(&self.stream, false, self.interrupt)?;
+        self.loss = operators.loss();
         if self.iterate(&mut operators, &mut fields, STEPS, state)? {
             return Ok(());
         }

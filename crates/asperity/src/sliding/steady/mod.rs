@@ -30,7 +30,7 @@ use std::sync::atomic::AtomicBool;
 
 use self::contact::SteadyContact;
 use self::operators::{Operators, Stream};
-use super::{ContactForces, Direction, Friction, SecondEstimate, Slopes, Streaming};
+use super::{ContactForces, Direction, Friction, Slopes, Streaming};
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem};
 use crate::drive::{Axis, Coordinate, Drive};
 use crate::error::Result;
@@ -192,9 +192,8 @@ impl Steady {
             velocity,
             distance: 0.0,
             shear_stress: self.motion.shear_stress,
-            time_error: 0.0,
         };
-        *friction = Friction::of(&forces, SecondEstimate::Steady(stream.loss(&state.pressure)));
+        *friction = Friction::steady(&forces, contact.loss(&state.pressure));
         solved
     }
 }

@@ -11,9 +11,10 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use ndarray::Array2;
 use rustfft::num_complex::Complex64;
 
-use super::coefficients;
+use super::coefficients::{self, OnTorus};
 use crate::contact::Solver;
 use crate::convolution::Convolution;
 use crate::convolution::torus::{Spectrum, Torus};
@@ -47,6 +48,8 @@ pub(super) struct Operators {
     steady: Spectrum,
     inverse: Spectrum,
     metric: Box<Convolved>,
+    /// Of a free domain.
+    loss: Option<Array2<f64>>,
 }
 
 impl Operators {
@@ -56,13 +59,16 @@ impl Operators {
     /// [`Error::Interrupted`](crate::error::Error::Interrupted).
     pub(super) fn plan(stream: &Stream, long: bool, interrupt: Option<&AtomicBool>) -> Result<Self> {
         let Simulation { grid, boundary, kernel, .. } = stream.simulation;
-        let (torus, steady) = match boundary {
+        let (torus, steady, loss) = match boundary {
             Boundary::Periodic => {
                 let torus = Torus::new(grid.cells(), grid.cells());
                 let steady = stream.periodic(&torus);
-                (torus, steady)
+                (torus, steady, None)
             }
-            Boundary::Free => stream.free(long, interrupt)?,
+            Boundary::Free => {
+                let (torus, OnTorus { steady, loss }) = stream.free(long, interrupt)?;
+                (torus, steady, Some(loss))
+            }
         };
         stop_at(interrupt)?;
         let positive = stream.positive(&torus, &steady);
@@ -78,7 +84,13 @@ impl Operators {
             metric: metric(*grid, *boundary, &positive, torus.lengths(), Arc::new(metric_kernel)),
             torus,
             steady,
+            loss,
         })
+    }
+
+    /// The kernel of the loss of a free domain, for [`Stream::loss`].
+    pub(super) fn loss(&mut self) -> Option<Array2<f64>> {
+        self.loss.take()
     }
 
     /// u = A p.
@@ -113,14 +125,14 @@ impl Operators {
     }
 }
 
-/// Two transforms, four spectra while they are planned, M, and the coefficients of a free domain.
+/// Two transforms, four spectra while they are planned, M, and both kernels of a free domain.
 fn torus_bytes(grid: &Grid, [mx, my]: [usize; 2]) -> usize {
     let half = my / 2 + 1;
     32 * grid.cells()[0] * half
         + 64 * mx * half
         + Convolution::bytes(grid.cells(), [mx, my], 1)
         + 8 * mx * my
-        + 8 * (mx + 1) * half
+        + 16 * (mx + 1) * half
 }
 
 /// Lengths of the shortest torus of a free domain.
@@ -169,16 +181,16 @@ impl Stream<'_> {
     }
 
     /// A on a free domain, on the shortest torus on which its real part is positive, or the longest that is allowed.
-    fn free(&self, long: bool, interrupt: Option<&AtomicBool>) -> Result<(Torus, Spectrum)> {
+    fn free(&self, long: bool, interrupt: Option<&AtomicBool>) -> Result<(Torus, OnTorus)> {
         let (grid, axis) = (&self.simulation.grid, self.direction.axis());
         let mut lengths = shortest(grid);
         let enough = lengths[axis] * if long { LONG } else { 1 };
         loop {
             let longer = lengthened(grid, lengths, self.direction);
             if lengths[axis] >= enough || longer.is_none() {
-                let spectrum = coefficients::on_torus(self, lengths, shortest(grid), interrupt)?;
-                if longer.is_none() || spectrum.0.iter().all(|a| a.re > 0.0) {
-                    return Ok((Torus::new(grid.cells(), lengths), spectrum));
+                let found = coefficients::on_torus(self, lengths, shortest(grid), interrupt)?;
+                if longer.is_none() || found.steady.0.iter().all(|a| a.re > 0.0) {
+                    return Ok((Torus::new(grid.cells(), lengths), found));
                 }
             }
             lengths = longer.unwrap_or(lengths);
@@ -206,27 +218,44 @@ impl Stream<'_> {
         Cow::Owned(Spectrum(spectrum.0.iter().zip(&endless.0).map(raised).collect()))
     }
 
-    /// The second estimate of friction on a periodic domain, Σ (q.s) Im A |p^|² >= 0 \[N\]; `None` on a free one.
-    pub(super) fn loss(&self, pressure: &[f64]) -> Option<f64> {
-        let Simulation { grid, boundary, kernel, .. } = self.simulation;
-        if *boundary != Boundary::Periodic {
-            return None;
-        }
-        let mut torus = Torus::new(grid.cells(), grid.cells());
-        let (unit, fundamental) = (self.direction.unit(), fundamental(grid, grid.size()));
+    /// What is lost per distance in the bodies \[N\]: Σ (q.s) Im A |p^|² on a periodic domain, on a free one the quadratic form of the
+    /// kernel of its operators. It is not negative.
+    pub(super) fn loss(&self, pressure: &[f64], kernel: Option<&Array2<f64>>) -> f64 {
+        let (grid, unit) = (&self.simulation.grid, self.streaming.relaxed());
+        let (mut torus, spectrum) = match kernel {
+            Some(kernel) => on_shortest(grid, kernel),
+            None => self.loss_of_waves(),
+        };
+        unit * torus.energy(&spectrum, pressure) * grid.cell_area()
+    }
+
+    /// (q.s) Im A of a periodic domain.
+    fn loss_of_waves(&self) -> (Torus, Spectrum) {
+        let Simulation { grid, kernel, .. } = self.simulation;
+        let torus = Torus::new(grid.cells(), grid.cells());
+        let (direction, fundamental) = (self.direction.unit(), fundamental(grid, grid.size()));
         let spectrum = torus.spectrum(|kx, ky| {
             let q = |k: i64, axis: usize| k as f64 * fundamental[axis];
             let slope = |k: i64, axis: usize| if alternates(grid, k, axis) { 0.0 } else { q(k, axis) };
-            let along = unit[0] * slope(kx, 0) + unit[1] * slope(ky, 1);
+            let along = direction[0] * slope(kx, 0) + direction[1] * slope(ky, 1);
             if along == 0.0 {
                 return Complex64::ZERO;
             }
-            let compliance = self.streaming.at(along * self.velocity);
-            (along * kernel.symbol(q(kx, 0).abs(), q(ky, 1).abs()) * compliance.im).into()
+            let compliance = self.streaming.at(along * self.velocity).im / self.streaming.relaxed();
+            (along * kernel.symbol(q(kx, 0).abs(), q(ky, 1).abs()) * compliance).into()
         });
-        let energy = torus.energy(&spectrum, pressure);
-        Some(energy * grid.cell_area())
+        (torus, spectrum)
     }
+}
+
+/// An even kernel, given for cells that are (i, j) apart, on the shortest torus.
+fn on_shortest(grid: &Grid, kernel: &Array2<f64>) -> (Torus, Spectrum) {
+    let [mx, my] = shortest(grid);
+    let apart = |n: usize, m: usize| n.min(m - n);
+    let all: Vec<f64> = (0..mx * my)
+        .map(|n| kernel.get((apart(n / my, mx), apart(n % my, my))).copied().unwrap_or(0.0))
+        .collect();
+    (Torus::new(grid.cells(), [mx, my]), Torus::new([mx, my], [mx, my]).transform(&all))
 }
 
 /// The wave numbers of the longest waves along x and y of a period; 0 across a line.
@@ -241,8 +270,6 @@ fn alternates(grid: &Grid, k: i64, axis: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use ndarray::Array2;
-
     use super::*;
     use crate::error::Error;
     use crate::material::{Creep, CreepTerm};
@@ -271,7 +298,8 @@ mod tests {
                 let [short, long] = [1, LONGEST].map(|times| {
                     let mut lengths = shortest(&grid);
                     lengths[direction.axis()] *= times;
-                    let spectrum = coefficients::on_torus(&stream, lengths, shortest(&grid), None).unwrap();
+                    let OnTorus { steady: spectrum, .. } =
+                        coefficients::on_torus(&stream, lengths, shortest(&grid), None).unwrap();
                     let mut u = vec![0.0; p.len()];
                     Torus::new(grid.cells(), lengths).apply_into(&spectrum, &p, &mut u);
                     u

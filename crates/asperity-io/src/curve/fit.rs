@@ -109,6 +109,16 @@ impl Fitted {
         }
     }
 
+    /// Number of moduli (or compliances) and times that were fitted, and number of measured values that they were fitted to.
+    pub fn unknowns(&self) -> [usize; 2] {
+        let ends = match &self.series {
+            Series::Relaxation(relaxation) => usize::from(relaxation.equilibrium > 0.0),
+            Series::Creep(creep) => 1 + usize::from(creep.fluidity > 0.0),
+        };
+        let fitted = if self.moduli == Moduli::Both { self.data.curves.len() } else { 1 };
+        [2 * self.terms() + ends, fitted * self.data.x.len()]
+    }
+
     /// The shift factor a_T of a sweep at this temperature \[K\]: of shift factors in a list that of its temperature. `None` without
     /// a shift, or where it says nothing of that temperature.
     pub fn shift_factor(&self, mut kelvin: f64) -> Option<f64> {

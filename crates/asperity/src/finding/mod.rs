@@ -44,7 +44,8 @@ pub use diagnostics::{Diagnostics, Known};
 pub use expected::{Contact, Expected};
 pub use leak::{LeakDiagnostics, LeakState};
 pub use material::{
-    beyond_data, contradiction, misfit, points_left_out, unlikely_modulus, unlikely_temperature,
+    beyond_data, contradiction, misfit, points_left_out, too_few_points, unlikely_modulus,
+    unlikely_temperature,
 };
 pub use motion::{friction_zero, own_track};
 pub use stress::{stress_at_deepest, stress_times_miss_peak, stress_unresolved, yield_exceeded};
@@ -172,6 +173,8 @@ codes! {
     BEYOND_MATERIAL_DATA = "beyond-material-data";
     /// Measured points without a number.
     POINTS_LEFT_OUT = "points-left-out";
+    /// A fit with as many unknowns as measured numbers.
+    TOO_FEW_POINTS = "too-few-points";
     /// A Hurst exponent outside of (0, 1].
     HURST_OUT_OF_RANGE = "hurst-out-of-range";
     /// A Hurst exponent that is determined by window, levelling or band.

@@ -93,7 +93,14 @@ fn findings(name: &str, fitted: &Fitted) -> Vec<Finding> {
     let Misfit { rms, max, .. } = fitted.misfit;
     let other = fitted.other().and_then(|(column, misfit)| finding::contradiction(name, column, misfit.rms));
     let left_out = finding::points_left_out(name, fitted.left_out, fitted.data.x.len() + fitted.left_out);
-    finding::misfit(name, rms, max, fitted.noise).into_iter().chain(other).chain(left_out).collect()
+    let [unknowns, values] = fitted.unknowns();
+    let few = finding::too_few_points(name, unknowns, values);
+    finding::misfit(name, rms, max, fitted.noise)
+        .into_iter()
+        .chain(other)
+        .chain(left_out)
+        .chain(few)
+        .collect()
 }
 
 fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
@@ -130,7 +137,11 @@ fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
         let hertz = [last, first].map(|time| 1.0 / (std::f64::consts::TAU * time));
         line("frequencies", format!(" {:.3e} Hz to {:.3e} Hz", hertz[0], hertz[1]));
     }
-    line("terms", fitted.terms().to_string());
+    let reason = match args.misfit {
+        Some(_) => "the fewest with the misfit asked for",
+        None => "more do not lower the Bayesian information criterion",
+    };
+    line("terms", format!("{} ({reason})", fitted.terms()));
     let unit = if curves.kind == Kind::Dma { "rad/s" } else { "s" };
     let misfit = |of: &Misfit| {
         let [rms, max] = [of.rms, of.max].map(|share| 100.0 * share);

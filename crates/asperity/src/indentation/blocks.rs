@@ -39,7 +39,8 @@ pub(super) fn blocks(times: &[f64], channels: &[Channel], most: usize) -> Vec<Ra
     let last = times.len() - 1;
     let mut limit = LIMIT;
     loop {
-        let mut blocks = vec![0..1];
+        let first = 0..1;
+        let mut blocks = vec![first];
         for piece in pieces(&sums, 1..last, limit) {
             let parts = if piece.straight { PARTS.min(piece.rows.len()) } else { piece.rows.len() };
             let at = |part: usize| piece.rows.start + part * piece.rows.len() / parts;
@@ -73,7 +74,7 @@ pub(super) fn smoothed(times: &[f64], channel: Channel) -> Vec<f64> {
 }
 
 fn pieces(sums: &[Sums], rows: Range<usize>, limit: f64) -> Vec<Piece> {
-    let straight = |rows: &Range<usize>| sums.iter().all(|sums| !(sums.bend(rows) > limit));
+    let straight = |rows: &Range<usize>| sums.iter().all(|sums| sums.bend(rows) <= limit);
     let mut pieces: Vec<Piece> = vec![];
     for start in rows.clone().step_by(PARTS) {
         let end = (start + PARTS).min(rows.end);

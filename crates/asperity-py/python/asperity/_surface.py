@@ -240,8 +240,8 @@ class Surface(OnGrid):
         return self.process(f"level={form}")
 
     def outliers(self, threshold: float = 6.0, *, radius: int = 2) -> Surface:
-        """Spikes become undefined: points farther from the median of the `radius` cells around them than `threshold`
-        robust standard deviations."""
+        """Spikes become undefined: points beyond the lines through their neighbours at `radius` cells by more than `threshold`
+        robust standard deviations, on the same side in every direction."""
         return self.process(f"outliers threshold={number('threshold of outliers', threshold)!r} radius={count('radius', radius)}")
 
     def fill(self, method: Fill = "harmonic", *, share: float = 0.25) -> Surface:

@@ -14,8 +14,8 @@
 //! summit of a smooth surface.) Steps, ridges and scratches stay: along them e_u is small. A spike may be up to `radius + 1` cells
 //! wide. A tilt has no influence.
 
+use ndarray::ArrayView2;
 use ndarray::parallel::prelude::*;
-use ndarray::{Array2, ArrayView2};
 
 use super::Surface;
 use crate::error::{Result, positive, require};
@@ -131,6 +131,7 @@ fn median(values: &mut [f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::grid::Grid;
+    use ndarray::Array2;
 
     /// A long wave with fine roughness of amplitude 0.01.
     fn wave() -> Array2<f64> {

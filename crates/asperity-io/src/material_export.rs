@@ -131,6 +131,25 @@ fn isotropic(exported: &Exported<'_>, modulus: f64) -> Result<Isotropic, String>
     }
 }
 
+/// Poisson's ratio that stands for 0.5.
+const NEARLY_HALF: f64 = 0.4999;
+
+impl Isotropic {
+    /// The constants with a Poisson's ratio below 0.5, and a remark on it: Abaqus and Ansys refuse 0.5, where the bulk modulus is
+    /// infinite. The shear modulus, which alone is finite there, is kept: E = 2 G (1 + ν).
+    fn compressible(&self, mark: &str) -> (f64, f64, String) {
+        if self.poisson < 0.5 {
+            return (self.young, self.poisson, String::new());
+        }
+        let young = 2.0 * (1.0 + NEARLY_HALF) * self.shear * self.young;
+        let remark = format!(
+            "{mark} Poisson's ratio is 0.5, which the program refuses: {NEARLY_HALF} is written, with the same shear modulus. Use elements \
+             for nearly incompressible materials.\n"
+        );
+        (young, NEARLY_HALF, remark)
+    }
+}
+
 /// (M_i/M(0), tau_i).
 fn fractions(relaxation: &Relaxation) -> Vec<(f64, f64)> {
     let whole = relaxation.instantaneous();
@@ -157,13 +176,14 @@ fn abaqus_number(x: f64) -> String {
 }
 
 fn abaqus(exported: &Exported<'_>, relaxation: &Relaxation, isotropic: &Isotropic) -> String {
+    let (young, poisson, remark) = isotropic.compressible("**");
     let mut text = format!(
-        "** {}: SI units (Pa, s, K).\n** The elastic constants are the instantaneous ones; g_i = G_i/G(0), k_i = K_i/K(0).\n\
+        "** {}: SI units (Pa, s, K).\n{remark}** The elastic constants are the instantaneous ones; g_i = G_i/G(0), k_i = K_i/K(0).\n\
          *MATERIAL, NAME={}\n*ELASTIC, MODULI=INSTANTANEOUS\n{}, {}\n*VISCOELASTIC, TIME=PRONY\n",
         plain(exported.name),
         plain(exported.name),
-        abaqus_number(isotropic.young),
-        abaqus_number(isotropic.poisson)
+        abaqus_number(young),
+        abaqus_number(poisson)
     );
     for (fraction, time) in fractions(relaxation) {
         let bulk = if isotropic.bulk_relaxes { fraction } else { 0.0 };
@@ -192,12 +212,11 @@ fn abaqus(exported: &Exported<'_>, relaxation: &Relaxation, isotropic: &Isotropi
 
 fn ansys(exported: &Exported<'_>, relaxation: &Relaxation, isotropic: &Isotropic) -> String {
     let fractions = fractions(relaxation);
+    let (young, poisson, remark) = isotropic.compressible("!");
     let mut text = format!(
-        "! {}: SI units (Pa, s, K), material 1.\n! The elastic constants are the instantaneous ones; pairs a_i = G_i/G(0) (bulk: \
-         K_i/K(0)), tau_i.\nMP,EX,1,{:e}\nMP,NUXY,1,{:?}\n",
-        plain(exported.name),
-        isotropic.young,
-        isotropic.poisson
+        "! {}: SI units (Pa, s, K), material 1.\n{remark}! The elastic constants are the instantaneous ones; pairs a_i = G_i/G(0) (bulk: \
+         K_i/K(0)), tau_i.\nMP,EX,1,{young:e}\nMP,NUXY,1,{poisson:?}\n",
+        plain(exported.name)
     );
     let tables: &[&str] = if isotropic.bulk_relaxes { &["SHEAR", "BULK"] } else { &["SHEAR"] };
     for table in tables {
@@ -322,6 +341,29 @@ mod tests {
             line.split([',', ' ']).filter(|c| !c.is_empty()).map(|c| c.parse().ok()).collect()
         })
         .collect()
+    }
+
+    #[test]
+    fn an_incompressible_material_is_written_with_what_other_programs_take() {
+        let material = rubber(Modulus::Shear);
+        let of =
+            |poisson: f64, program| text(&exported(&material, Lateral::Poisson(poisson)), program).unwrap();
+        let constants = |text: &str, name: &str| -> f64 {
+            let line = text.lines().find_map(|line| line.strip_prefix(name)).unwrap();
+            line.parse().unwrap()
+        };
+        let shear = material.relaxation().unwrap().instantaneous();
+        let ansys = of(0.5, Program::Ansys);
+        let (young, poisson) = (constants(&ansys, "MP,EX,1,"), constants(&ansys, "MP,NUXY,1,"));
+        assert!(poisson < 0.5 && (young / (2.0 * (1.0 + poisson)) / shear - 1.0).abs() < 1e-12, "{ansys}");
+        assert!(ansys.contains("0.4999 is written"), "{ansys}");
+        let abaqus = of(0.5, Program::Abaqus);
+        let line = abaqus.lines().skip_while(|line| !line.starts_with("*ELASTIC")).nth(1).unwrap();
+        let numbers: Vec<f64> = line.split(", ").map(|number| number.parse().unwrap()).collect();
+        assert!(numbers == [young, poisson] && abaqus.contains("0.4999 is written"), "{abaqus}");
+        for program in [Program::Abaqus, Program::Ansys] {
+            assert!(of(0.49, program).contains("0.49") && !of(0.49, program).contains("is written"));
+        }
     }
 
     fn same(read: &Relaxation, material: &Material) {

@@ -88,10 +88,9 @@ pub fn prepare(surface: Surface, steps: &[Step], domain: Option<[usize; 2]>) -> 
     let mut prepared = Prepared { surface, history: Vec::with_capacity(steps.len()) };
     for (n, step) in steps.iter().enumerate() {
         let done = step.settle(&prepared.surface, domain).and_then(|operation| {
-            let undefined = prepared.surface.undefined();
             check_memory_of(&operation)?;
             let surface = operation.apply(&prepared.surface)?;
-            let sentence = sentence(&operation, undefined, surface.undefined());
+            let sentence = sentence(&operation, &prepared.surface, &surface);
             Ok((surface, sentence))
         });
         let (surface, sentence) = done.map_err(|error| in_step(error, n + 1, steps.len()))?;
@@ -113,11 +112,24 @@ fn check_memory_of(operation: &Operation) -> Result<()> {
     })
 }
 
-/// The operation and, where it changes them, the numbers of undefined points.
-fn sentence(operation: &Operation, before: usize, after: usize) -> String {
+/// The operation and, where it changes them, the numbers of undefined points, with the heights of those that are removed.
+fn sentence(operation: &Operation, before: &Surface, after: &Surface) -> String {
     match operation {
-        Operation::Fill { .. } => format!("{operation}: {} filled", before.saturating_sub(after)),
-        Operation::RemoveOutliers(_) => format!("{operation}: {} removed", after.saturating_sub(before)),
+        Operation::Fill { .. } => {
+            format!("{operation}: {} filled", before.undefined().saturating_sub(after.undefined()))
+        }
+        Operation::RemoveOutliers(_) => {
+            let removed = before.heights().into_iter().zip(after.heights());
+            let removed: Vec<f64> =
+                removed.filter(|(z, now)| now.is_nan() && !z.is_nan()).map(|(z, _)| *z).collect();
+            let low = removed.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = removed.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            match removed.len() {
+                0 => format!("{operation}: 0 removed"),
+                1 => format!("{operation}: 1 removed, its height {high:.3e} m"),
+                n => format!("{operation}: {n} removed, their heights {low:.3e} m to {high:.3e} m"),
+            }
+        }
         _ => operation.to_string(),
     }
 }

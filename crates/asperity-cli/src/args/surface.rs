@@ -108,7 +108,7 @@ pub struct SurfaceGenerate {
 pub struct SurfaceFromProfile {
     #[command(flatten)]
     pub file: SurfaceFile,
-    /// Number of cells along x and y, one number for a square [default: of the spacing of the profile]
+    /// Number of cells along x and y, one number for a square [default: of the spacing of the profile, at most 2048]
     #[arg(long, value_name = "NX,NY")]
     pub cells: Option<String>,
     /// Length of the surface along x and y, one for a square [default: the length of the profile]

@@ -87,8 +87,12 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
     let (taken, fitted, unit) = given(fit);
     line("record", args.record.display().to_string());
     let rows = record.times.len();
-    let every = if fit.rows.len() < rows { format!(" of {rows}") } else { String::new() };
-    line("rows", format!("{}{every}", fit.rows.len()));
+    let means = if fit.rows.len() < rows {
+        format!(", averaged to {} points", fit.rows.len())
+    } else {
+        String::new()
+    };
+    line("rows", format!("{rows}{means}"));
     line("given", format!("{taken}; the {fitted} is fitted"));
     if let Some(thickness) = &args.thickness {
         let interface = if args.interface == Interface::Bonded { "bonded to" } else { "slipping on" };
@@ -97,7 +101,14 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
     }
     let [step, length] = fit.window;
     line("times", format!("steps from {}, {} in all", quantity(step, "s"), quantity(length, "s")));
-    line("terms", format!("{} (probability {:.2})", fit.terms.len(), fit.numbers[fit.terms.len()]));
+    let reason = match args.terms {
+        Some(_) => "as asked for".to_owned(),
+        None => format!(
+            "more do not lower the Bayesian information criterion, or are not determined; probability {:.2}",
+            fit.numbers[fit.terms.len()]
+        ),
+    };
+    line("terms", format!("{} ({reason})", fit.terms.len()));
     line(
         "misfit",
         format!("{} rms, {:.3} % of the largest {fitted}", quantity(fit.rms, unit), 100.0 * fit.relative_rms),

@@ -125,15 +125,19 @@ impl Scalar for Heading {
         match word {
             "x" => Ok(Heading(Direction::X)),
             "y" => Ok(Heading(Direction::Y)),
-            _ => word
-                .parse::<Angle>()
-                .map_err(|_| Self::error())
-                .and_then(|angle| Self::from_number(angle.get())),
+            _ => word.parse::<Angle>().map(|angle| Heading(Direction::Angle(angle.get()))).map_err(Self::of),
         }
     }
 
-    fn from_number(angle: f64) -> Result<Self, QuantityError> {
-        Ok(Heading(Direction::Angle(angle)))
+    fn from_number(number: f64) -> Result<Self, QuantityError> {
+        Angle::from_number(number).map(|angle| Heading(Direction::Angle(angle.get()))).map_err(Self::of)
+    }
+}
+
+impl Heading {
+    /// What is wrong with an angle, among the directions.
+    fn of(error: QuantityError) -> QuantityError {
+        QuantityError { expected: Self::expected(), ..error }
     }
 }
 
@@ -232,7 +236,8 @@ impl Motion {
             let why = "belongs to a contact that slides: this one rolls over both bodies";
             return at.without(&["over"], why, "kind = \"slide\"", "leave `over` out");
         }
-        if bodies.len() < 2 {
+        // One body, or two of which one is refused already.
+        if bodies.len() < 2 || pair.creeps.len() < 2 && pair.layers.is_none() {
             return Some(());
         }
         if pair.layers.is_some() {

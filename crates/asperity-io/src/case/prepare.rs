@@ -131,14 +131,14 @@ pub enum WindowShape {
     Tukey,
 }
 
-/// Points far from the median of their neighbourhood.
+/// Spikes: points far from the lines through their neighbours in every direction.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Outliers {
-    /// Robust standard deviations from the local median; 6 if not given.
+    /// Robust standard deviations from the lines through the neighbours; 6 if not given.
     #[schemars(example = 6)]
     pub threshold: Option<Number<Positive>>,
-    /// Cells of the neighbourhood to each side, 1 to 10; 2 if not given.
+    /// Distance of the neighbours in cells, 1 to 10: spikes up to one cell wider are removed; 2 if not given.
     #[schemars(example = 2)]
     pub radius: Option<Whole<1>>,
 }

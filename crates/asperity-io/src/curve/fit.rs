@@ -116,6 +116,16 @@ impl Fitted {
         }
     }
 
+    /// Number of moduli (or compliances) and times that were fitted, and number of measured values that they were fitted to.
+    pub fn unknowns(&self) -> [usize; 2] {
+        let ends = match &self.series {
+            Series::Relaxation(relaxation) => usize::from(relaxation.equilibrium > 0.0),
+            Series::Creep(creep) => 1 + usize::from(creep.fluidity > 0.0),
+        };
+        let fitted = if self.moduli == Moduli::Both { self.data.curves.len() } else { 1 };
+        [2 * self.terms() + ends, fitted * self.data.x.len()]
+    }
+
     /// The shift factor a_T of a sweep at this temperature \[K\]: of shift factors in a list that of its temperature. `None` without
     /// a shift, or where it says nothing of that temperature.
     pub fn shift_factor(&self, mut kelvin: f64) -> Option<f64> {
@@ -149,6 +159,7 @@ impl Fitted {
             self.other().and_then(|(column, misfit)| finding::contradiction(name, column, misfit.rms));
         let kind = self.named.and_then(|named| finding::modulus_kind(name, named, self.material.measure()));
         let measured = self.data.x.len() + self.left_out;
+        let [unknowns, numbers] = self.unknowns();
         let values = self.data.curves.first().into_iter().flatten().map(|value| match self.series {
             Series::Relaxation(_) => *value,
             Series::Creep(_) => 1.0 / value,
@@ -163,6 +174,7 @@ impl Fitted {
             finding::shift_uncertain(name, &self.factors),
             kind,
             finding::points_left_out(name, self.left_out, measured),
+            finding::too_few_points(name, unknowns, numbers),
         ];
         all.into_iter().flatten().collect()
     }

@@ -1,4 +1,5 @@
-//! Angles: text with its unit, "30 deg" or "0.5 rad", or a bare number in rad.
+//! Angles: text with its unit, "30 deg" or "0.5 rad". Of bare numbers only 0 is accepted: 45 would be taken for degrees by some and for
+//! radians by others.
 
 use std::f64::consts::PI;
 use std::str::FromStr;
@@ -29,6 +30,20 @@ impl Angle {
     fn new(radians: f64) -> Result<Self, QuantityError> {
         if radians.is_finite() { Ok(Angle(radians)) } else { Err(Angle::out_of_range()) }
     }
+
+    fn no_number(text: &str) -> QuantityError {
+        let help = format!("{text:?} is not a number with one of the units deg, rad, mrad");
+        QuantityError { code: Code::WrongUnit, expected: EXPECTED.into(), help: Some(help) }
+    }
+
+    /// A number without a unit.
+    fn bare(number: f64) -> Result<Self, QuantityError> {
+        if number == 0.0 {
+            return Ok(Angle(number));
+        }
+        let help = format!("write the unit: \"{number} deg\" or \"{number} rad\"");
+        Err(QuantityError { code: Code::WrongUnit, expected: EXPECTED.into(), help: Some(help) })
+    }
 }
 
 impl FromStr for Angle {
@@ -36,15 +51,13 @@ impl FromStr for Angle {
 
     fn from_str(text: &str) -> Result<Self, QuantityError> {
         let text = text.trim();
-        const UNITS: [(&str, f64); 5] =
-            [("deg", PI / 180.0), ("\u{b0}", PI / 180.0), ("mrad", 1e-3), ("rad", 1.0), ("", 1.0)];
+        const UNITS: [(&str, f64); 4] =
+            [("deg", PI / 180.0), ("\u{b0}", PI / 180.0), ("mrad", 1e-3), ("rad", 1.0)];
         let known = UNITS.iter().find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, *factor)));
-        let (number, factor) = known.unwrap_or((text, 1.0));
-        let number = number.trim_end().parse::<f64>().map_err(|_| QuantityError {
-            code: Code::WrongUnit,
-            expected: EXPECTED.into(),
-            help: Some(format!("{text:?} is not a number with one of the units deg, rad, mrad")),
-        })?;
+        let Some((number, factor)) = known else {
+            return text.parse::<f64>().map_or_else(|_| Err(Angle::no_number(text)), Angle::bare);
+        };
+        let number = number.trim_end().parse::<f64>().map_err(|_| Angle::no_number(text))?;
         Angle::new(number * factor)
     }
 }
@@ -59,15 +72,15 @@ impl Scalar for Angle {
     }
 
     fn from_number(value: f64) -> Result<Self, QuantityError> {
-        Angle::new(value)
+        Angle::bare(value)
     }
 }
 
 deserialize!(Angle);
 
 schema!(Angle, "Angle", {
-    "description": "An angle: text with its unit (deg, rad, mrad), or a bare number in rad.",
-    "anyOf": [{ "type": "string" }, { "type": "number" }],
+    "description": "An angle: text with its unit (deg, rad, mrad), or 0.",
+    "anyOf": [{ "type": "string" }, { "const": 0 }],
     "examples": ["30 deg"],
 });
 
@@ -77,10 +90,12 @@ mod tests {
 
     #[test]
     fn degrees_and_radians() {
-        for (text, radians) in [("180 deg", PI), ("90\u{b0}", PI / 2.0), ("0.5 rad", 0.5), ("-2", -2.0)] {
+        for (text, radians) in
+            [("180 deg", PI), ("90\u{b0}", PI / 2.0), ("0.5 rad", 0.5), ("-2 rad", -2.0), ("0", 0.0)]
+        {
             assert!((text.parse::<Angle>().unwrap().get() - radians).abs() < 1e-15, "{text}");
         }
-        for text in ["", "deg", "3 m", "inf", "nan rad"] {
+        for text in ["", "deg", "3 m", "inf", "nan rad", "45", "-2"] {
             let error = text.parse::<Angle>().unwrap_err();
             assert!(error.to_string().contains("30 deg"), "{text}: {error}");
         }

@@ -27,7 +27,8 @@ class Moving(Run):
 
     def motion_keys(self) -> dict[str, Any]:
         """The keys of `[motion]` that say how it moves."""
-        keys = {"direction": direction_of(self.direction), "kind": choice("kind", self.kind, get_args(Movement))}
+        direction = direction_of(self.direction)
+        keys = {"direction": direction if isinstance(direction, str) else f"{direction!r} rad", "kind": choice("kind", self.kind, get_args(Movement))}
         return keys if self.shear_stress is None else {**keys, "shear_stress": number("shear_stress", self.shear_stress)}
 
 

@@ -240,8 +240,8 @@ class Surface(OnGrid):
         return self.process(f"level={form}")
 
     def outliers(self, threshold: float = 6.0, *, radius: int = 2) -> Surface:
-        """Spikes become undefined: points farther from the median of the `radius` cells around them than `threshold`
-        robust standard deviations."""
+        """Spikes become undefined: points beyond the lines through their neighbours at `radius` cells by more than `threshold`
+        robust standard deviations, on the same side in every direction."""
         return self.process(f"outliers threshold={number('threshold of outliers', threshold)!r} radius={count('radius', radius)}")
 
     def fill(self, method: Fill = "harmonic", *, share: float = 0.25) -> Surface:
@@ -541,7 +541,9 @@ class Surface(OnGrid):
         >>> round(surface.statistics()["sq"] * 1e6, 12)
         1.0
         """
-        lay = numbers_of({"angle": None if lay_angle is None else angle("lay_angle", lay_angle), "ratio": lay_ratio})
+        lay: dict[str, Any] = dict(numbers_of({"ratio": lay_ratio}))
+        if lay_angle is not None:
+            lay["angle"] = f"{angle('lay_angle', lay_angle)!r} rad"
         distribution = numbers_of({"skewness": skewness, "kurtosis": kurtosis})
         if len(lengths("size", size)) == 1 and (lay or distribution):
             raise CaseError("a profile has no lay, and heights of a normal distribution: leave lay, skewness and kurtosis out")

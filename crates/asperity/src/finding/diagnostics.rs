@@ -127,7 +127,9 @@ impl Diagnostics {
     pub fn resume(&mut self, rows: &[Row], frictions: &[Friction], found: &[Finding]) {
         let grid = self.grid;
         rows.iter().enumerate().for_each(|(index, row)| self.take(index, row, Counted::of(&grid, row)));
-        frictions.iter().enumerate().for_each(|(index, friction)| self.slides.see(index, friction));
+        for (index, (row, friction)) in rows.iter().zip(frictions).enumerate() {
+            self.slides.see(index, row.coordinate, friction);
+        }
         // Which rows had their approach held does not follow from them.
         self.capped |= self.held.as_ref().is_some_and(|held| found.contains(held));
         // Findings that do not follow from rows alone; later rows are checked again.

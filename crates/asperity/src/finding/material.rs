@@ -4,7 +4,7 @@ use super::plausible::{COLD, MODULI, SOFTEST_DATA, TRANSITION};
 use super::words::{digits, si};
 use super::{
     AT_REFERENCE_TEMPERATURE, BEYOND_MATERIAL_DATA, DATA_SCATTER, Finding, MATERIAL_MISFIT, MODULUS_KIND,
-    POINTS_LEFT_OUT, SHIFT_UNCERTAIN, UNLIKELY_UNIT,
+    POINTS_LEFT_OUT, SHIFT_UNCERTAIN, TOO_FEW_POINTS, UNLIKELY_UNIT,
 };
 use crate::material::{Modulus, Reversal};
 use crate::simulation::Simulation;
@@ -160,6 +160,18 @@ pub fn points_left_out(name: &str, left_out: usize, of: usize) -> Option<Finding
             if left_out == 1 { "point lacks a number and is" } else { "points lack a number and are" };
         let text = format!("{name}: {left_out} of {of} measured {points} left out of the fit.");
         Finding::warning(POINTS_LEFT_OUT, left_out as f64, 0.0, text).as_note()
+    })
+}
+
+/// A fit of `unknowns` moduli (or compliances) and times to `numbers` measured ones that leaves none over: its misfit is near 0
+/// whatever the data are.
+pub fn too_few_points(name: &str, unknowns: usize, numbers: usize) -> Option<Finding> {
+    (unknowns >= numbers).then(|| {
+        let text = format!(
+            "The material of {name} has {unknowns} unknowns (moduli and times), fitted to {numbers} measured values: the misfit is near 0 \
+             whatever the values are, and does not show how well the material is known. Measure more points, or use fewer terms."
+        );
+        Finding::warning(TOO_FEW_POINTS, numbers as f64, unknowns as f64 + 1.0, text)
     })
 }
 

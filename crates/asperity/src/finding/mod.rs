@@ -47,7 +47,7 @@ pub use expected::{Contact, Expected};
 pub use leak::{LeakDiagnostics, LeakState};
 pub use material::{
     at_reference, beyond_data, contradiction, misfit, modulus_kind, points_left_out, reversal,
-    shift_uncertain, unlikely_data, unlikely_modulus, unlikely_temperature,
+    shift_uncertain, too_few_points, unlikely_data, unlikely_modulus, unlikely_temperature,
 };
 pub use motion::{friction_zero, own_track};
 pub use stress::{stress_at_deepest, stress_times_miss_peak, stress_unresolved, yield_exceeded};
@@ -183,6 +183,8 @@ codes! {
     BEYOND_MATERIAL_DATA = "beyond-material-data";
     /// Measured points without a number.
     POINTS_LEFT_OUT = "points-left-out";
+    /// A fit with as many unknowns as measured numbers.
+    TOO_FEW_POINTS = "too-few-points";
     /// A Hurst exponent outside of (0, 1].
     HURST_OUT_OF_RANGE = "hurst-out-of-range";
     /// A Hurst exponent that is determined by window, levelling or band.

@@ -64,16 +64,17 @@ pub(super) struct Average {
 }
 
 impl Average {
-    /// Draws about the best fit.
+    /// Draws about the best fit; `whole` are the residuals of all rows of the record.
     pub(super) fn new(
         model: &Model,
         parameters: &Parameters,
         best: &Solution,
+        whole: &[f64],
         options: &IndentationOptions,
     ) -> Result<Self> {
         let [step, length] = model.window();
         let window = [step, BEYOND * length];
-        let spectrum = Spectrum::new(model, parameters, best, window)?;
+        let spectrum = Spectrum::new(model, parameters, best, whole, window)?;
         let stiffest = STIFFEST.map(|times| times * parameters.relaxation(&best.at).instantaneous());
         let touch = match parameters.touch {
             true => {

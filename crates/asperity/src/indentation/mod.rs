@@ -24,6 +24,7 @@
 //! intervals. An interval that spans more than a factor of 10 is reported as "not determined by this record".
 
 mod average;
+mod blocks;
 mod check;
 mod control;
 mod least_squares;
@@ -129,8 +130,8 @@ pub struct Interval {
     pub low: f64,
     /// Upper end; infinite if there is none.
     pub high: f64,
-    /// Whether the record determines it: the ends differ by at most a factor of 10 (or the upper end of an equilibrium modulus is
-    /// below a twentieth of E*(0)). Otherwise `value` is one of many that fit equally well.
+    /// Whether the record determines it: the ends differ by at most a factor of 10, or the upper end of an equilibrium modulus is
+    /// below a twentieth of E*(0); see also [`IndentationFit::equilibrium`]. Otherwise `value` is one of many that fit equally well.
     pub determined: bool,
 }
 
@@ -155,7 +156,8 @@ impl Interval {
 pub struct IndentationFit {
     /// Contact relaxation modulus E*(t) \[Pa\]: E(t)/(1 - ν²), 2 G(t)/(1 - ν).
     pub relaxation: Relaxation,
-    /// E∞ \[Pa\]; 0 for a fluid, with its upper bound.
+    /// E∞ \[Pa\]; 0 for a fluid, with its upper bound. Not determined, with the lower end 0, if the interval of the longest
+    /// relaxation time reaches beyond the end of the record.
     pub equilibrium: Interval,
     /// E*(0) \[Pa\].
     pub instantaneous: Interval,
@@ -165,12 +167,13 @@ pub struct IndentationFit {
     pub touch: Interval,
     /// The channel that was taken as given.
     pub given: Given,
-    /// Model of the other channel at each row that was used \[N or m\]. If the load is given and less than 2 % of the largest, it
+    /// Model of the other channel at each of `rows` \[N or m\]. If the load is given and less than 2 % of the largest, it
     /// is the depth of the surface, which is not compared with that of the indenter.
     pub predicted: Vec<f64>,
-    /// Numbers of the rows that were used: every k-th of a long record.
+    /// Numbers of the rows that `predicted` belongs to: all; of a record of more than 2000 rows, the middle row of each group of rows
+    /// whose mean was fitted.
     pub rows: Vec<usize>,
-    /// Root mean square of model minus measurement \[N or m\].
+    /// Root mean square of model minus measurement \[N or m\], over all rows of the record.
     pub rms: f64,
     /// The same over the largest measured value.
     pub relative_rms: f64,
@@ -185,9 +188,6 @@ pub struct IndentationFit {
     /// Notes for the user, in sentences.
     pub notes: Vec<String>,
 }
-
-/// Longer records are thinned to about this number of rows.
-const MANY: usize = 2000;
 
 /// Fits the contact relaxation modulus of a half-space to a record of its indentation by a rigid body of revolution.
 ///
@@ -224,21 +224,24 @@ pub fn fit_indentation(
 ) -> Result<IndentationFit> {
     check::options(options)?;
     check::record(record)?;
-    let rows = thinned(record.times.len());
-    let pick = |column: &[f64]| rows.iter().map(|row| column[*row]).collect::<Vec<f64>>();
-    let [times, loads, depths] = [record.times, record.loads, record.depths].map(pick);
+    let [times, loads, depths] = [record.times, record.loads, record.depths].map(<[f64]>::to_vec);
     let given = options.given.unwrap_or_else(|| control::controlled(&times, &loads, &depths));
-    let model = Model::new(profile, times, loads, depths, given, options)?;
+    let whole = Model::new(profile, times, loads, depths, given, options)?;
+    let (model, rows) = whole.averaged();
     let (best, parameters) = select::select(&model, options.terms, options.long_time)?;
-    let predicted = model.predict(&parameters, &best.at)?.values;
-    let apart = predicted.iter().zip(model.measured()).map(|(model, measured)| model - measured);
-    let apart = model.of_compared(&apart.collect::<Vec<f64>>());
+    // The means of a long record are fitted; the fit is judged by all its rows.
+    let prediction = whole.predict(&parameters, &best.at)?;
+    let apart = prediction.values.iter().zip(whole.measured()).map(|(model, measured)| model - measured);
+    let apart = apart.collect::<Vec<f64>>();
+    let residuals = apart.iter().zip(whole.weights(&prediction)).map(|(apart, w)| apart * w);
+    let residuals = whole.of_compared(&residuals.collect::<Vec<f64>>());
+    let apart = whole.of_compared(&apart);
     let rms = (apart.iter().map(|x| x * x).sum::<f64>() / apart.len() as f64).sqrt();
     require_fit(rms / model.scale, options.limit)?;
     if options.terms.is_some() {
         require_known(&parameters, &best)?;
     }
-    let average = Average::new(&model, &parameters, &best, options)?;
+    let average = Average::new(&model, &parameters, &best, &residuals, options)?;
 
     let relaxation = parameters.relaxation(&best.at);
     let instantaneous = average.interval(relaxation.instantaneous(), |draw| Some(draw.instantaneous()));
@@ -247,23 +250,29 @@ pub fn fit_indentation(
     let term = |(k, term): (usize, &RelaxationTerm)| {
         [average.term(term.modulus, k, 0), average.term(term.relaxation_time, k, 1)]
     };
+    let terms: Vec<[Interval; 2]> = relaxation.terms.iter().enumerate().map(term).collect();
+    // A body that still relaxes at the end of the record may relax to any smaller modulus.
+    let relaxes = terms.last().is_some_and(|[_, time]| time.high > model.window()[1]);
+    if relaxes {
+        (equilibrium.low, equilibrium.determined) = (0.0, false);
+    }
     let touch = match parameters.touch {
         true => average.interval(best.at[parameters.len() - 1], |draw| Some(draw.touch)),
         false => Interval::new(0.0, [0.0, 0.0]),
     };
     let [value, low, high] = [touch.value, touch.low, touch.high].map(|x| model.depth_scale() * x);
     let mut fit = IndentationFit {
-        terms: relaxation.terms.iter().enumerate().map(term).collect(),
+        terms,
         relaxation,
         equilibrium,
         instantaneous,
         touch: Interval { value, low, high, determined: true },
         given,
-        predicted,
+        predicted: rows.iter().map(|row| prediction.values[*row]).collect(),
         rows,
         rms,
         relative_rms: rms / model.scale,
-        durbin_watson: spectrum::durbin_watson(&best.residuals),
+        durbin_watson: spectrum::durbin_watson(&residuals),
         numbers: average.numbers(),
         window: model.window(),
         notes: vec![],
@@ -298,14 +307,4 @@ fn require_known(parameters: &Parameters, best: &Solution) -> Result<()> {
         format!("too large for the record: {name} is known to {known}"),
         "smaller, or a record that is longer or has more points in the beginning",
     ))
-}
-
-/// Rows of a record that the fit uses: all, or every k-th and the last.
-fn thinned(rows: usize) -> Vec<usize> {
-    let every = rows.div_ceil(MANY).max(1);
-    let mut kept: Vec<usize> = (0..rows).step_by(every).collect();
-    if kept.last() != Some(&(rows - 1)) {
-        kept.push(rows - 1);
-    }
-    kept
 }

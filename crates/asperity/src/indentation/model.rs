@@ -10,6 +10,7 @@
 //! S_k = 2 a_k ∫ E* over the step under a given depth, one over it under a given load; a_k is the radius of the contact. It
 //! changes with the parameters: with a fixed radius, the noise of the given channel would make the body appear too soft.
 
+use super::blocks::{blocks, means};
 use super::check::LARGEST;
 use super::noise;
 use super::parameters::Parameters;
@@ -30,7 +31,11 @@ const LEAST_NOISE: f64 = 1e-4;
 /// Smallest noise (squared) of a row, over the largest of all rows: noise never vanishes completely with the value.
 const LEAST_SHARE: f64 = 0.01;
 
+/// Records of more rows are averaged to at most about this number of blocks.
+const MANY: usize = 2000;
+
 /// A record, and the rule that predicts one of its channels from the other.
+#[derive(Clone)]
 pub(super) struct Model {
     profile: MdrProfile,
     /// The body, if it is a layer.
@@ -49,7 +54,12 @@ pub(super) struct Model {
     compared: Vec<bool>,
     /// Variance of the noise at each row: of the fitted channel, and of the given one.
     fitted_noise: Vec<f64>,
-    given_noise: Vec<f64>,
+    pub(super) given_noise: Vec<f64>,
+    /// Mean variance of the noise of a row of the fitted channel.
+    typical: f64,
+    /// Number of rows whose mean each row is.
+    pub(super) counts: Vec<f64>,
+    window: [f64; 2],
 }
 
 /// The fitted channel according to the model.
@@ -119,6 +129,8 @@ impl Model {
         let least = (LEAST_NOISE * scale).powi(2).max(LEAST_SHARE * most);
         fitted_noise.iter_mut().for_each(|variance| *variance = variance.max(least));
         let (fit_touch, springs) = (options.fit_touch, options.springs);
+        let typical = fitted_noise.iter().sum::<f64>() / fitted_noise.len() as f64;
+        let (counts, window) = (vec![1.0; times.len()], window(&times));
         Ok(Model {
             profile,
             layer,
@@ -133,7 +145,38 @@ impl Model {
             compared,
             fitted_noise,
             given_noise,
+            typical,
+            counts,
+            window,
         })
+    }
+
+    /// The model of the means of the blocks of a long record, and the number of the middle row of each block; of a short record the
+    /// model as it is.
+    pub(super) fn averaged(&self) -> (Self, Vec<usize>) {
+        if self.times.len() <= MANY {
+            return (self.clone(), (0..self.times.len()).collect());
+        }
+        let (fitted, given) =
+            ((self.measured(), &self.fitted_noise[..]), (self.taken(), &self.given_noise[..]));
+        let blocks = blocks(&self.times, &[fitted, given], MANY);
+        let mean = |column: &[f64]| means(column, &blocks);
+        let variance = |column: &[f64]| -> Vec<f64> {
+            mean(column).into_iter().zip(&blocks).map(|(v, rows)| v / rows.len() as f64).collect()
+        };
+        let middle = blocks.iter().map(|rows| (rows.start + rows.end - 1) / 2).collect::<Vec<_>>();
+        let averaged = Model {
+            times: mean(&self.times),
+            loads: mean(&self.loads),
+            depths: mean(&self.depths),
+            compared: middle.iter().map(|row| self.compared[*row]).collect(),
+            fitted_noise: variance(&self.fitted_noise),
+            given_noise: variance(&self.given_noise),
+            counts: blocks.iter().map(|rows| rows.len() as f64).collect(),
+            layer: self.layer.clone(),
+            ..*self
+        };
+        (averaged, middle)
     }
 
     pub(super) fn depth_scale(&self) -> f64 {
@@ -156,12 +199,14 @@ impl Model {
         }
     }
 
-    /// Step and length of the record \[s\]: nine of ten steps are longer.
+    /// Step and length of the record \[s\]: nine of ten steps between its rows are longer.
     pub(super) fn window(&self) -> [f64; 2] {
-        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let tenth = steps.len() / 10;
-        let step = *steps.select_nth_unstable_by(tenth, f64::total_cmp).1;
-        [step, self.times[self.times.len() - 1]]
+        self.window
+    }
+
+    /// Number of rows of the record where model and measurement are compared.
+    pub(super) fn rows(&self) -> f64 {
+        self.of_compared(&self.counts).iter().sum()
     }
 
     /// phi(d) = 2 int_0^a (d - g) dx, the load at the depth d for E* = 1 \[m²\], and its slope 2 a \[m\].
@@ -176,7 +221,7 @@ impl Model {
     }
 
     /// Model minus measurement at each row where they are compared, over the largest measured value, and weighted: rows with more
-    /// noise than the mean of the fitted channel have less weight.
+    /// noise than the mean of the fitted channel have less weight, the mean of n rows has sqrt(n) times that of one.
     pub(super) fn residuals(&self, parameters: &Parameters, at: &[f64]) -> Result<Vec<f64>> {
         let predicted = self.predict(parameters, at)?;
         let apart = predicted.values.iter().zip(self.measured()).map(|(model, measured)| model - measured);
@@ -186,10 +231,9 @@ impl Model {
 
     /// Weights of the residuals of all rows.
     pub(super) fn weights(&self, predicted: &Prediction) -> Vec<f64> {
-        let mean = self.fitted_noise.iter().sum::<f64>() / self.fitted_noise.len() as f64;
         let rows = predicted.slopes.iter().zip(&self.fitted_noise).zip(&self.given_noise);
         rows.map(|((slope, fitted), given)| {
-            (mean / (fitted + slope.min(1e100).powi(2) * given)).sqrt() / self.scale
+            (self.typical / (fitted + slope.min(1e100).powi(2) * given)).sqrt() / self.scale
         })
         .collect()
     }
@@ -263,4 +307,12 @@ fn step_modulus(relaxation: &Relaxation, dt: f64) -> f64 {
     let share = |x: f64| if x > 1e-9 { -(-x).exp_m1() / x } else { 1.0 };
     let terms = relaxation.terms.iter().map(|term| term.modulus * share(dt / term.relaxation_time));
     relaxation.equilibrium + terms.sum::<f64>()
+}
+
+/// Step \[s\], which nine of ten steps exceed, and length of a record.
+fn window(times: &[f64]) -> [f64; 2] {
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let tenth = steps.len() / 10;
+    let step = *steps.select_nth_unstable_by(tenth, f64::total_cmp).1;
+    [step, times[times.len() - 1]]
 }

@@ -73,25 +73,6 @@ pub(super) fn relative(variances: &[f64], values: &[f64]) -> f64 {
     (variances.iter().sum::<f64>() / variances.len() as f64).sqrt() / largest
 }
 
-/// Running straight lines through `2 HALF + 1` rows: the signal without most of its noise.
-pub(super) fn smoothed(times: &[f64], values: &[f64]) -> Vec<f64> {
-    const HALF: usize = 4;
-    let n = values.len();
-    (0..n)
-        .map(|k| {
-            // The same number of rows on either side, so that the ends keep their values.
-            let reach = HALF.min(k).min(n - 1 - k);
-            let rows = k - reach..=k + reach;
-            let count = (2 * reach + 1) as f64;
-            let mean = |f: &dyn Fn(usize) -> f64| rows.clone().map(f).sum::<f64>() / count;
-            let (t, y) = (mean(&|m| times[m]), mean(&|m| values[m]));
-            let spread = mean(&|m| (times[m] - t).powi(2));
-            let slope = if spread > 0.0 { mean(&|m| (times[m] - t) * values[m]) / spread } else { 0.0 };
-            y + slope * (times[k] - t)
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::tests::Noise;
@@ -114,14 +95,5 @@ mod tests {
         );
         assert!((sd(&relative, 600) / 0.01 - 1.0).abs() < 0.15, "{}", sd(&relative, 600));
         assert!(sd(&relative, 25) < 0.004, "{}", sd(&relative, 25));
-    }
-
-    #[test]
-    fn a_straight_line_stays_when_it_is_smoothed() {
-        let times: Vec<f64> = (0..30).map(|k| f64::from(k * k)).collect();
-        let line: Vec<f64> = times.iter().map(|t| 3.0 + 2.0 * t).collect();
-        for (smooth, y) in smoothed(&times, &line).iter().zip(&line) {
-            assert!((smooth / y - 1.0).abs() < 1e-12);
-        }
     }
 }

@@ -10,6 +10,8 @@ const SURE: f64 = 0.5;
 /// Smallest probability of another number that is reported.
 const LIKELY: f64 = 0.1;
 
+const EQUILIBRIUM: &str = "the equilibrium modulus";
+
 /// Implausible radii [m]: a unit is missing.
 const RADII: std::ops::Range<f64> = 1e-9..0.5;
 
@@ -24,15 +26,24 @@ pub(super) fn unlikely_radius(profile: &MdrProfile) -> Option<String> {
 }
 
 pub(super) fn notes(fit: &IndentationFit, options: &IndentationOptions) -> Vec<String> {
-    let mut notes: Vec<String> = undetermined(fit)
-        .into_iter()
-        .map(|what| {
+    let relaxes = fit.terms.last().map(|[_, time]| time.high).filter(|high| *high > fit.window[1]);
+    let mut notes: Vec<String> = relaxes
+        .map(|high| {
             format!(
-                "{what} is not determined by this record: its 95 % interval spans more than a factor of 10, and \
-                 the value of the best fit is one of many that fit as well"
+                "the equilibrium modulus is not determined by this record: the record ends after {:.3e} s, and the longest relaxation \
+                 time may be {high:.3e} s, so the body may relax further; hold it longer",
+                fit.window[1]
             )
         })
+        .into_iter()
         .collect();
+    let open = undetermined(fit).into_iter().filter(|what| relaxes.is_none() || what != EQUILIBRIUM);
+    notes.extend(open.map(|what| {
+        format!(
+            "{what} is not determined by this record: its 95 % interval spans more than a factor of 10, and \
+                 the value of the best fit is one of many that fit as well"
+        )
+    }));
     if options.terms.is_none() {
         notes.extend(number_of_terms(fit));
     }
@@ -63,7 +74,7 @@ pub(super) fn notes(fit: &IndentationFit, options: &IndentationOptions) -> Vec<S
 }
 
 fn undetermined(fit: &IndentationFit) -> Vec<String> {
-    let ends = [("the modulus at once", &fit.instantaneous), ("the equilibrium modulus", &fit.equilibrium)];
+    let ends = [("the modulus at once", &fit.instantaneous), (EQUILIBRIUM, &fit.equilibrium)];
     let ends = ends.into_iter().map(|(name, interval)| (name.to_owned(), interval));
     let terms = fit.terms.iter().enumerate().flat_map(|(k, [modulus, time])| {
         let k = k + 1;

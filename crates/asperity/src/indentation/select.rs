@@ -48,9 +48,9 @@ fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<(Solution
         match found {
             Err(error) => refused = Some(error),
             Ok(solution) => {
-                let better = best
-                    .as_ref()
-                    .is_none_or(|(other, of)| information(&solution, &parameters) < information(other, of));
+                let better = best.as_ref().is_none_or(|(other, of)| {
+                    information(model, &solution, &parameters) < information(model, other, of)
+                });
                 if better {
                     best = Some((solution, parameters));
                 }
@@ -71,7 +71,7 @@ fn as_many_as_needed(model: &Model, long_time: LongTime) -> Result<(Solution, Pa
     for terms in first + 1..=MOST_TERMS {
         let Ok(next) = best_of(model, terms, long_time) else { break };
         let known = next.1.worst(&next.0.deviations).is_none_or(|(_, deviation)| deviation <= UNKNOWN);
-        if !known || information(&next.0, &next.1) >= information(&best.0, &best.1) {
+        if !known || information(model, &next.0, &next.1) >= information(model, &best.0, &best.1) {
             break;
         }
         best = next;
@@ -79,9 +79,8 @@ fn as_many_as_needed(model: &Model, long_time: LongTime) -> Result<(Solution, Pa
     Ok(best)
 }
 
-/// Bayesian information criterion, n ln(Σ r²/n) + k ln n.
-fn information(solution: &Solution, parameters: &Parameters) -> f64 {
-    let n = solution.residuals.len() as f64;
+/// Bayesian information criterion of m residuals, means of n rows in all: m ln(Σ r²/m) + k ln n.
+fn information(model: &Model, solution: &Solution, parameters: &Parameters) -> f64 {
     let mean = solution.rms().powi(2).max(MODEL_ERROR * MODEL_ERROR);
-    n * mean.ln() + parameters.len() as f64 * n.ln()
+    solution.residuals.len() as f64 * mean.ln() + parameters.len() as f64 * model.rows().ln()
 }

@@ -14,10 +14,11 @@
 
 use rayon::prelude::*;
 
+use super::blocks::smoothed;
 use super::least_squares::Solution;
 use super::model::Model;
 use super::parameters::Parameters;
-use super::{noise, select::MODEL_ERROR};
+use super::select::MODEL_ERROR;
 use crate::error::Result;
 use crate::material::{Relaxation, RelaxationTerm, dot};
 
@@ -47,11 +48,14 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
-    /// Linearises around the best fit, for times within `window` \[s\].
+    /// Linearises around the best fit, for times within `window` \[s\]. `whole`: the residuals of all rows of the record, of whose
+    /// means `best` is the fit. The larger of both standard deviations counts: the rows show how neighbours are correlated, their
+    /// means what varies slowly.
     pub(super) fn new(
         model: &Model,
         parameters: &Parameters,
         best: &Solution,
+        whole: &[f64],
         window: [f64; 2],
     ) -> Result<Self> {
         let relaxation = parameters.relaxation(&best.at);
@@ -64,13 +68,13 @@ impl Spectrum {
         let touch = if parameters.touch { best.at[parameters.len() - 1] } else { 0.0 };
         let depth = model.depth_scale();
         // Without its noise, which would make the columns of short times noisy.
-        let history = noise::smoothed(&model.times, model.taken());
+        let history = smoothed(&model.times, (model.taken(), &model.given_noise));
         let respond = |relaxation: &Relaxation, touch: f64| {
             model.respond(relaxation, depth * touch, &history, SPRINGS).map(|prediction| prediction.values)
         };
         let small = SMALL * relaxation.instantaneous();
         let base = respond(&relaxation, touch)?;
-        let sd = deviation(best, parameters);
+        let sd = deviation(&best.residuals, parameters).max(deviation(whole, parameters));
         let weights: Vec<f64> =
             model.weights(&model.predict(parameters, &best.at)?).iter().map(|w| w / sd).collect();
         let column = |changed: Vec<f64>, by: f64| {
@@ -147,10 +151,10 @@ fn add(to: &mut [f64], factor: f64, column: &[f64]) {
 
 /// Standard deviation of a weighted residual. Correlated neighbours contain less information than independent ones: with the
 /// correlation ρ of one row with the next, n rows are equivalent to n (1 - ρ)/(1 + ρ) independent ones.
-fn deviation(best: &Solution, parameters: &Parameters) -> f64 {
-    let (n, k) = (best.residuals.len() as f64, parameters.len() as f64);
-    let alike = (1.0 - 0.5 * durbin_watson(&best.residuals)).clamp(0.0, MOST_ALIKE);
-    let variance = best.rms().powi(2) * n / (n - k) * (1.0 + alike) / (1.0 - alike);
+fn deviation(residuals: &[f64], parameters: &Parameters) -> f64 {
+    let k = parameters.len() as f64;
+    let alike = (1.0 - 0.5 * durbin_watson(residuals)).clamp(0.0, MOST_ALIKE);
+    let variance = dot(residuals, residuals) / (residuals.len() as f64 - k) * (1.0 + alike) / (1.0 - alike);
     variance.sqrt().max(MODEL_ERROR)
 }
 

@@ -63,7 +63,11 @@ impl Growing {
         Growing {
             times: model.times[..end].to_vec(),
             loads: model.loads[..end].iter().map(|load| load.max(0.0)).collect(),
-            weights: pairs.iter().map(|(_, slope)| weight(*slope)).collect(),
+            weights: pairs
+                .iter()
+                .zip(&model.counts)
+                .map(|((_, slope), n)| n.sqrt() * weight(*slope))
+                .collect(),
             unit: pairs.into_iter().map(|(unit, _)| unit).collect(),
             length: model.window()[1],
         }

@@ -181,6 +181,17 @@ fn what_a_record_does_not_determine_is_told() {
 }
 
 #[test]
+fn a_body_that_still_relaxes_has_no_known_equilibrium() {
+    // 20 s, and a term of 100 s that takes half of what is left.
+    let truth = Relaxation::absolute(1e6, &[(3e6, 0.4), (1e6, 100.0)]).unwrap();
+    let (times, loads, depths) = record(SPHERE, &truth, Given::Depth, 1e-4, 500);
+    let loads = noisy(&loads, 0.005, &mut Noise(17));
+    let fit = fit_of(SPHERE, (&times, &loads, &depths), IndentationOptions::default()).unwrap();
+    assert!(!fit.equilibrium.determined && fit.equilibrium.holds(1e6), "{fit:?}");
+    assert!(fit.notes.iter().any(|note| note.contains("the body may relax further")), "{:?}", fit.notes);
+}
+
+#[test]
 fn noise_relative_to_the_value_and_an_unknown_touch_do_no_harm() {
     let mut noise = Noise(3);
     let (times, loads, depths) = record(SPHERE, &one_term(), Given::Depth, 1e-4, 600);

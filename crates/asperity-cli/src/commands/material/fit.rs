@@ -122,7 +122,11 @@ fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
         let hertz = [last, first].map(|time| 1.0 / (std::f64::consts::TAU * time));
         line("frequencies", format!(" {:.3e} Hz to {:.3e} Hz", hertz[0], hertz[1]));
     }
-    line("terms", fitted.terms().to_string());
+    let reason = match args.misfit {
+        Some(_) => "the fewest with the misfit asked for",
+        None => "more do not lower the Bayesian information criterion",
+    };
+    line("terms", format!("{} ({reason})", fitted.terms()));
     let unit = if curves.kind == Kind::Dma { "rad/s" } else { "s" };
     let misfit = |of: &Misfit| {
         let [rms, max] = [of.rms, of.max].map(|share| 100.0 * share);

@@ -1,7 +1,5 @@
 //! Profiles: `asperity surface info` of a file with two columns, and `asperity surface from-profile`.
 
-use std::f64::consts::TAU;
-
 use asperity::Grid;
 use asperity::surface::profile::{ProfileParameters, ProfileSpectrum, roughness};
 use asperity::surface::statistics::Extent;
@@ -156,17 +154,43 @@ impl Verb for SurfaceFromProfile {
             Some(text) => [super::length("--to-size", text)?; 2],
             None => [profile.surface.grid().size()[0]; 2],
         };
-        let cells = cells(self.cells.as_deref(), size, spacing)?;
+        let (cells, wanted) = cells(self.cells.as_deref(), size, spacing)?;
         let grid = Grid::new(cells, size).map_err(&failed)?;
         let made = spectrum.surface(&grid, self.seed).map_err(&failed)?;
         history.push(format!(
             "isotropic surface with the power spectrum of the profile {name}, random phases, seed {}, waves from {} to {}",
             self.seed,
-            quantity(TAU / spectrum.edges[spectrum.edges.len() - 1], "m"),
-            quantity(TAU / spectrum.edges[0], "m"),
+            quantity(made.waves[1], "m"),
+            quantity(made.waves[0], "m"),
         ));
-        let topography = super::roughness(format, made, size, history);
+        let [held, whole] = made.rms_height.map(|height| quantity(height, "m"));
+        let changed = match made.changed_beyond < made.waves[0] {
+            true => format!(
+                "; for it, waves longer than {} have less than half, or more than twice, their power",
+                quantity(made.changed_beyond, "m")
+            ),
+            false => String::new(),
+        };
+        history.push(format!(
+            "rms height {held}, that of these waves in the profile (Rq of all its waves: {whole}){changed}"
+        ));
+        let slope = made.rms_slope;
+        let topography = super::roughness(format, made.heights, size, history);
         super::finish(&self.to, &topography, Extent::Periodic, |summary| summary)?;
+        if let Some(wanted) = wanted {
+            crate::messages::message!(
+                "note: the surface has {} x {} cells; the spacing of the profile would need {} x {}. Waves shorter than two cells are left out: \
+                 the rms slope falls from {:.4} to {:.4} along each direction. --cells {},{} keeps them, --to-size gives a smaller surface",
+                cells[0],
+                cells[1],
+                wanted[0],
+                wanted[1],
+                slope[1],
+                slope[0],
+                wanted[0],
+                wanted[1]
+            );
+        }
         if !self.to.json {
             crate::messages::message!(
                 "assumed: the surface is the same in all directions and its heights are Gaussian; a profile cannot tell a lay"
@@ -176,15 +200,26 @@ impl Verb for SurfaceFromProfile {
     }
 }
 
-/// Cells of the surface: those asked for, or of the spacing of the profile.
-fn cells(given: Option<&str>, size: [f64; 2], spacing: f64) -> Result<[usize; 2], Failure> {
+/// Most cells along a side that are chosen without being asked for.
+const MOST_CELLS: usize = 2048;
+
+/// Cells of the surface: those asked for, or of the spacing of the profile, at most [`MOST_CELLS`] along a side; then also the
+/// number that the spacing needs.
+fn cells(
+    given: Option<&str>,
+    size: [f64; 2],
+    spacing: f64,
+) -> Result<([usize; 2], Option<[usize; 2]>), Failure> {
     let Some(text) = given else {
-        return Ok(size.map(|length| (length / spacing).round().max(1.0) as usize));
+        let wanted = size.map(|length| (length / spacing).round().max(1.0) as usize);
+        let most = wanted[0].max(wanted[1]);
+        let fewer = wanted.map(|n| (n * MOST_CELLS).div_ceil(most));
+        return Ok(if most > MOST_CELLS { (fewer, Some(wanted)) } else { (wanted, None) });
     };
     let numbers: Result<Vec<usize>, _> = text.split(',').map(|n| n.trim().parse::<usize>()).collect();
     match numbers.as_deref() {
-        Ok([n]) => Ok([*n; 2]),
-        Ok([nx, ny]) => Ok([*nx, *ny]),
+        Ok([n]) => Ok(([*n; 2], None)),
+        Ok([nx, ny]) => Ok(([*nx, *ny], None)),
         _ => Err(Failure::input(format!(
             "--cells is \"{text}\", but must be one or two numbers, e.g. --cells 512,512"
         ))),

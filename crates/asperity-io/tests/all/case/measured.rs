@@ -126,7 +126,7 @@ fn keys_are_done_in_their_documented_order_and_recorded() {
         record(dir.path(), "", "outliers = {}"),
         [
             "subtract the plane (least squares)",
-            "remove outliers (beyond 6 deviations from the median over 2 cells around): 1 removed",
+            "remove outliers (beyond 6 deviations from the lines through the points 2 cells around): 1 removed, its height 9.796e-4 m",
             "subtract the plane (least squares)",
             "fill undefined points (harmonic, at most 25 %): 2 filled",
         ]
@@ -299,6 +299,7 @@ fn synthetic_roughness_takes_lay_distribution_and_preset() {
     for (keys, words) in [
         ("lay = { ratio = 0.5 }", vec!["surface[0].lay", "1 or more"]),
         ("lay = { angle = \"3 m\", ratio = 2 }", vec!["surface[0].lay.angle", "30 deg"]),
+        ("lay = { angle = 45, ratio = 2 }", vec!["surface[0].lay.angle", "\"45 deg\" or \"45 rad\""]),
         ("lay = {}", vec!["lay.ratio is missing"]),
         ("distribution = {}", vec!["no key", "path names a measured surface"]),
         ("distribution = { skewness = 3, kurtosis = 4 }", vec!["surface[0].distribution", "well above"]),

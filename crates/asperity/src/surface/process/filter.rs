@@ -13,6 +13,7 @@ use std::fmt;
 use super::super::spectrum;
 use super::Surface;
 use crate::error::{Error, Result, positive};
+use crate::grid::Grid;
 
 /// The ends of the band of a filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -84,8 +85,8 @@ impl Band {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] if a height is undefined, or a wavelength is not positive or the longest is
-/// below the shortest.
+/// [`Error::Invalid`] if a height is undefined, or a wavelength is not positive, the longest is below the shortest, the longest is
+/// above the longer side of the surface, or the shortest below two cells: the surface holds no such waves.
 pub fn filter(surface: &Surface, band: Band) -> Result<Surface> {
     for (name, cut_off) in [("longest wavelength", band.longest), ("shortest wavelength", band.shortest)] {
         if let Some(cut_off) = cut_off {
@@ -102,12 +103,34 @@ pub fn filter(surface: &Surface, band: Band) -> Result<Surface> {
         ));
     }
     let grid = *surface.grid();
+    require_effect(&grid, band)?;
     let mut amplitudes = spectrum::transform(&grid, surface.heights())?;
     amplitudes.indexed_iter_mut().for_each(|(at, a)| {
         let [qx, qy] = spectrum::wave_vector(&grid, at);
         *a *= band.share((qx * qx + qy * qy).sqrt());
     });
     Surface::new(grid, spectrum::inverse(&grid, amplitudes))
+}
+
+/// Refuses a cut-off beyond the waves that the surface holds: it would leave the surface as it is, or take all away.
+fn require_effect(grid: &Grid, band: Band) -> Result<()> {
+    let longest = grid.longest_side();
+    let shortest = 2.0 * grid.cell_sides().fold(f64::INFINITY, f64::min);
+    let known = shortest * (1.0 - 1e-9)..=longest * (1.0 + 1e-9);
+    for (name, cut_off) in [("longest wavelength", band.longest), ("shortest wavelength", band.shortest)] {
+        if let Some(cut_off) = cut_off
+            && !known.contains(&cut_off)
+        {
+            return Err(Error::invalid(
+                name,
+                format!("{cut_off:e} m"),
+                format!(
+                    "between {shortest:e} m (two cells) and {longest:e} m (the longer side): the surface has no waves beyond; leave it out"
+                ),
+            ));
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -159,5 +182,20 @@ mod tests {
         assert!(bad(Some(0.0), None).contains("longest"));
         assert!(bad(None, Some(f64::NAN)).contains("shortest"));
         assert!(bad(Some(1.0), Some(2.0)).contains("at least the shortest"));
+    }
+
+    #[test]
+    fn a_cut_off_beyond_the_waves_of_the_surface_is_refused() {
+        // 3 m x 2.1 m in cells of 0.1 m.
+        let with = |longest: Option<f64>, shortest: Option<f64>| {
+            filter(&surface(), Band { longest, shortest, edge: Edge::Gaussian })
+        };
+        for (longest, shortest) in
+            [(Some(3.01), None), (None, Some(0.19)), (None, Some(3.5)), (Some(0.1), None)]
+        {
+            let error = with(longest, shortest).unwrap_err().to_string();
+            assert!(error.contains("wavelength") && error.contains("two cells"), "{error}");
+        }
+        assert!(with(Some(3.0), Some(0.2)).is_ok());
     }
 }

@@ -177,7 +177,7 @@ impl fmt::Display for Operation {
             Operation::RemoveOutliers(outliers) => {
                 write!(
                     f,
-                    "remove outliers (beyond {} deviations from the median over {} cells around)",
+                    "remove outliers (beyond {} deviations from the lines through the points {} cells around)",
                     outliers.threshold, outliers.radius
                 )
             }

@@ -11,4 +11,4 @@ mod spectrum;
 
 pub use circle::remove_circle;
 pub use parameters::{ProfileParameters, roughness};
-pub use spectrum::ProfileSpectrum;
+pub use spectrum::{ProfileSpectrum, ProfileSurface};

@@ -112,11 +112,21 @@ fn slope(z: &[f64]) -> Option<f64> {
 /// At the ends the weights are those inside, scaled to a sum of 1.
 ///
 /// # Errors
-/// [`Error::Invalid`](crate::Error::Invalid) for undefined heights, or where spacing or cut-off are not positive.
+/// [`Error::Invalid`](crate::Error::Invalid) for undefined heights, or where spacing or cut-off are not positive,
+/// or the cut-off is below two points or above the length of the profile, which has no such waves.
 pub fn roughness(heights: &[f64], spacing: f64, cutoff: f64) -> Result<Vec<f64>> {
     positive("spacing of the profile", spacing, "m")?;
     positive("cut-off of the profile", cutoff, "m")?;
     check(heights, 1)?;
+    let (shortest, longest) = (2.0 * spacing, spacing * heights.len() as f64);
+    require(
+        (shortest * (1.0 - 1e-9)..=longest * (1.0 + 1e-9)).contains(&cutoff),
+        "cut-off of the profile",
+        format!("{cutoff:e} m"),
+        format!(
+            "between {shortest:e} m (two points) and {longest:e} m (the length): the profile has no waves beyond; leave it out"
+        ),
+    )?;
     let width = (LN_2 / PI).sqrt() * cutoff / spacing; // alpha lambda_c, in points
     // Beyond, a weight is below 1e-13 of the largest.
     let reach = ((3.1 * width).ceil() as usize).min(heights.len());

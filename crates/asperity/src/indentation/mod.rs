@@ -137,6 +137,9 @@ pub struct Interval {
 
 /// Largest ratio of the ends of an interval of a determined parameter.
 const DETERMINED: f64 = 10.0;
+/// An interval of the longest time that reaches beyond this number of lengths of the record is cut by the prior, which ends at
+/// three: the record gives no upper end.
+const UNENDING: f64 = 2.0;
 /// An equilibrium modulus below this fraction of E*(0) counts as 0.
 const NEGLIGIBLE: f64 = 0.05;
 
@@ -157,7 +160,7 @@ pub struct IndentationFit {
     /// Contact relaxation modulus E*(t) \[Pa\]: E(t)/(1 - ν²), 2 G(t)/(1 - ν).
     pub relaxation: Relaxation,
     /// E∞ \[Pa\]; 0 for a fluid, with its upper bound. Not determined, with the lower end 0, if the interval of the longest
-    /// relaxation time reaches beyond the end of the record.
+    /// relaxation time reaches beyond twice the length of the record.
     pub equilibrium: Interval,
     /// E*(0) \[Pa\].
     pub instantaneous: Interval,
@@ -251,8 +254,8 @@ pub fn fit_indentation(
         [average.term(term.modulus, k, 0), average.term(term.relaxation_time, k, 1)]
     };
     let terms: Vec<[Interval; 2]> = relaxation.terms.iter().enumerate().map(term).collect();
-    // A body that still relaxes at the end of the record may relax to any smaller modulus.
-    let relaxes = terms.last().is_some_and(|[_, time]| time.high > model.window()[1]);
+    // A body whose longest time has no end within the prior may relax to any smaller modulus.
+    let relaxes = terms.last().is_some_and(|[_, time]| time.high > UNENDING * model.window()[1]);
     if relaxes {
         (equilibrium.low, equilibrium.determined) = (0.0, false);
     }

@@ -1,6 +1,6 @@
 //! Notes that the user should know before relying on a fit.
 
-use super::{IndentationFit, IndentationOptions, Interval};
+use super::{IndentationFit, IndentationOptions, Interval, UNENDING};
 use crate::reference::MdrProfile;
 
 /// Durbin-Watson number below which residuals are correlated.
@@ -26,7 +26,7 @@ pub(super) fn unlikely_radius(profile: &MdrProfile) -> Option<String> {
 }
 
 pub(super) fn notes(fit: &IndentationFit, options: &IndentationOptions) -> Vec<String> {
-    let relaxes = fit.terms.last().map(|[_, time]| time.high).filter(|high| *high > fit.window[1]);
+    let relaxes = fit.terms.last().map(|[_, time]| time.high).filter(|high| *high > UNENDING * fit.window[1]);
     let mut notes: Vec<String> = relaxes
         .map(|high| {
             format!(

@@ -211,6 +211,7 @@ fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> PyResult<Bound
     let factors = |list: &[[f64; 3]]| list.iter().map(|f| (f[0], f[1], f[2])).collect::<Vec<_>>();
     out.set_item("shift_factors", factors(&fitted.factors))?;
     out.set_item("vertical_factors", factors(&fitted.vertical_factors))?;
+    out.set_item("findings", asperity_io::finding::list(&fitted.findings("the material")).to_string())?;
     out.set_item("case_block", fitted.to_toml(curves))?;
     out.set_item("x", fitted.data.x.into_pyarray(py))?;
     let columns: Vec<_> = fitted.data.curves.into_iter().map(|curve| curve.into_pyarray(py)).collect();

@@ -8,6 +8,7 @@ temperatures become a master curve first (J. D. Ferry, Viscoelastic Properties o
 from __future__ import annotations
 
 import html
+import json
 import math
 import os
 from collections.abc import Mapping, Sequence
@@ -20,6 +21,7 @@ import numpy.typing as npt
 from . import _core, _html
 from ._arrays import Floats, count, line, number, pair, plain
 from ._core import CaseError
+from ._findings import Finding, findings_of, warn
 from ._materials import Creep, Material, Prony
 from ._options import arguments_of
 from ._sealed import ReadOnlyArrays
@@ -76,6 +78,8 @@ class Fit(ReadOnlyArrays):
     temperatures: list[float]
     #: What was assumed.
     notes: list[str]
+    #: Where the fit may be off: scatter of the data, misfit, uncertain shift factors, a header that names another modulus.
+    findings: list[Finding]
     #: Reduced times [s] or angular frequencies [rad/s] of the points, at the reference temperature.
     x: Floats
     #: The measured curves at `x`: modulus [Pa] or compliance [1/Pa]; storage and loss of a DMA.
@@ -215,7 +219,9 @@ class Options:
         """The fit of these numbers of the core."""
         body = {key: getattr(self, key) for key in ("poisson", "bulk_modulus", "hardness", "name")}
         lists = {key: tuple(found[key]) for key in ("terms", "curves")}
-        return Fit(**{**found, **lists, "shift": made(found["shift"])}, _body=body)
+        findings = findings_of(json.loads(found["findings"]))
+        warn(findings)
+        return Fit(**{**found, **lists, "findings": findings, "shift": made(found["shift"])}, _body=body)
 
 
 @dataclass(kw_only=True)

@@ -8,7 +8,7 @@ use ndarray::ArrayView2;
 
 use super::words::{digits, rows};
 use super::worst::extend;
-use super::{FEW_CONTACT_CELLS, Finding, SPOTS_UNRESOLVED};
+use super::{FEW_CONTACT_CELLS, Finding, NO_CONTACT, SPOTS_UNRESOLVED};
 use crate::grid::{Boundary, Grid};
 use crate::quantities::contact_edges;
 use crate::step::{PERIMETER_SHARE, Row};
@@ -106,6 +106,13 @@ impl Resolution {
 }
 
 /// A contact of this number of cells.
+/// A run without contact.
+pub(super) fn never() -> Finding {
+    let text = "The bodies never touch. An approach is positive towards the body and 0 at first touch: check its sign, its size and its unit."
+        .to_owned();
+    Finding::warning(NO_CONTACT, 0.0, 0.0, text)
+}
+
 fn few(cells: f64, fewest: f64, has: &str) -> Finding {
     let text = format!(
         "The largest contact {has} {} cells, less than {fewest}: area, pressure and approach are coarse. Refine the grid \

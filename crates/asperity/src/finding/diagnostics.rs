@@ -2,7 +2,7 @@
 
 use ndarray::ArrayView2;
 
-use super::contact::{Counted, Resolution};
+use super::contact::{Counted, Resolution, never};
 use super::energy::Balance;
 use super::expected::{ROOM, radius};
 use super::motion::Slides;
@@ -67,6 +67,8 @@ pub struct Diagnostics {
     border: Option<[usize; 2]>,
     /// Side of the domain that the contact would need \[m\].
     needed: f64,
+    /// Rows so far.
+    rows: usize,
     deepest: f64,
     resolution: Resolution,
     strain: Strain,
@@ -98,6 +100,7 @@ impl Diagnostics {
             radius: if free && kernel.is_half_space() { domain::radius(grid, gap) } else { None },
             border: None,
             needed: 0.0,
+            rows: 0,
             deepest: 0.0,
             resolution: Resolution::default(),
             strain: Strain::new(simulation, radius(grid, known.parts)),
@@ -193,6 +196,7 @@ impl Diagnostics {
     }
 
     fn take(&mut self, index: usize, row: &Row, contact: Counted) {
+        self.rows += 1;
         self.deepest = self.deepest.max(row.approach);
         self.heaviest = self.heaviest.max(row.load);
         if let Some(error) = row.time_error.filter(|error| *error > time::COARSE) {
@@ -222,6 +226,10 @@ impl Diagnostics {
             let needed = (self.needed > 0.0).then_some(self.needed);
             let words = format!("In {} the contact", super::words::rows([first, last]));
             found.push(domain::at_border(&self.grid, self.confined, needed, &words).at([first, last]));
+        }
+        // The first row alone is the start of a ramp.
+        if self.rows > 1 && self.heaviest == 0.0 {
+            found.push(never());
         }
         found.extend(self.resolution.findings());
         found.extend(self.strain.findings());

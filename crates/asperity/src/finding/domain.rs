@@ -135,7 +135,8 @@ pub(super) fn not_periodic(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
         format!(
             "The gap is not continuous across the border of the periodic domain along {name}: it jumps by {}, {} times as much \
              as between neighbouring cells inside, and its slope changes by {}. The jump acts like an edge. Use boundary = \
-             \"free\" for a single body. Level a measured surface and apply a window to it. Let the domain hold whole waves.",
+             \"free\" for a single body. Level a measured surface and apply a window to it; for heights that are periodic as they are \
+             (a generated map), take level = \"none\". Let the domain hold whole waves.",
             si(jump, "m"),
             digits(jump / inside.max(ROUNDING * range)),
             digits(slope)

@@ -157,6 +157,8 @@ codes! {
     SHORTEST_WAVE_UNRESOLVED = "shortest-wave-unresolved";
     /// Contact spots narrower than four cells.
     SPOTS_UNRESOLVED = "spots-unresolved";
+    /// No row has contact.
+    NO_CONTACT = "no-contact";
     /// A contact of only a few cells.
     FEW_CONTACT_CELLS = "few-contact-cells";
     /// Slopes beyond linear theory.

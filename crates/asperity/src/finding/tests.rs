@@ -104,6 +104,18 @@ fn a_sound_contact_is_silent() {
 }
 
 #[test]
+fn bodies_that_never_touch_are_found() {
+    let parts = [sphere(5e-3)];
+    let apart = |value| {
+        let history = History::Step { value };
+        let loading = Loading { control: Control::Approach, history }.into();
+        after(Simulation { loading, ..simulation(&parts) }, &parts)
+    };
+    assert_eq!(codes(&apart(-1e-6)), [NO_CONTACT]);
+    assert!(!codes(&apart(1e-6)).contains(&NO_CONTACT));
+}
+
+#[test]
 fn contact_at_the_border_of_a_free_domain_is_found_with_the_size_needed() {
     let parts = [sphere(5e-3)];
     let heavy = Simulation { loading: step(0.2), ..simulation(&parts) };

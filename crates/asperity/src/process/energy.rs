@@ -8,11 +8,13 @@
 //! ```
 //!
 //! Springs and dashpots are those of the scheme, exactly ([`History::exchange`]). The work is taken from load and approach
-//! alone: the mean of W over the step, on the clock in which u runs, times the change of w.
+//! alone: the mean of W over the step, on the clock in which u runs, times the change of w. Only where that is not known is it what
+//! the bodies take: in a jump, at a first touch, and of elastic bodies, whose steps may have any length.
 
 use super::{Process, Solved};
 use crate::error::Result;
 use crate::history::History;
+use crate::material::Creep;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Simulation};
 use crate::step::{Loader, Saver, UndeformedGap, saved};
@@ -33,6 +35,8 @@ pub(super) struct Energy {
     approach: f64,
     /// Heat per time in the last step \[W\].
     power: f64,
+    /// Whether the load alone works on bodies that remember nothing: ∫ W dw is then the change of their energy, in steps of any length.
+    is_conservative: bool,
 }
 
 impl Energy {
@@ -40,7 +44,10 @@ impl Energy {
     pub(super) fn of(simulation: &Simulation, history: &mut dyn History) -> Option<Self> {
         let is_wanted = |q: &Quantity| q.is_energy() || *q == Quantity::DissipatedPower;
         let wanted = simulation.quantities.list.iter().any(is_wanted);
-        (wanted && history.track_energy()).then(Energy::default)
+        let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
+        let other_work = simulation.motion.is_some() || simulation.traction.is_some();
+        let is_conservative = !other_work && !simulation.parts().any(remembers);
+        (wanted && history.track_energy()).then_some(Energy { is_conservative, ..Energy::default() })
     }
 }
 
@@ -60,7 +67,7 @@ impl Process for Energy {
         // A jump is elastic against what the bodies remember, and the course of W over w at a first touch is not known: there
         // the work is what the bodies take.
         let jump = row.step.length() == 0.0;
-        self.work += match jump || !row.before.touches() {
+        self.work += match jump || !row.before.touches() || self.is_conservative {
             true => cell_area * step.work + flattened,
             false => step.mean_load * (row.now.approach - self.approach),
         };

@@ -99,6 +99,34 @@ pub(super) struct Moving {
     friction: Friction,
     /// Error of the stress of the last row because of the time steps: a short step does not take it back.
     time_error: f64,
+    swing: Swing,
+}
+
+/// The largest error of the force over the last cell of the way.
+///
+/// Between two cells the force swings as cells enter and leave the contact. What a row knows of its error swings too, but it may be
+/// smallest where the error is largest. So a row states the largest error since the start of the cell of the way before.
+#[derive(Clone, Copy, Debug, Default)]
+struct Swing {
+    /// Where this cell of the way began \[m\].
+    start: f64,
+    /// Largest error in this cell and in the one before \[N\].
+    errors: [f64; 2],
+}
+
+impl Swing {
+    /// Takes in the error of a row after a step along `way`; returns what the row states.
+    fn see(&mut self, way: [f64; 2], cell: f64, error: f64) -> f64 {
+        let [before, now] = way;
+        let gone = (now - self.start).abs();
+        if now == before || gone > 2.0 * cell {
+            *self = Swing { start: now, errors: [0.0; 2] };
+        } else if gone > (1.0 - 1e-9) * cell {
+            *self = Swing { start: now, errors: [0.0, self.errors[0]] };
+        }
+        self.errors[0] = self.errors[0].max(error);
+        self.errors[0].max(self.errors[1])
+    }
 }
 
 impl Moving {
@@ -113,6 +141,7 @@ impl Moving {
             before: 0.0,
             friction: Friction::default(),
             time_error: 0.0,
+            swing: Swing::default(),
         }
     }
 
@@ -153,7 +182,10 @@ impl Process for Moving {
             distance: self.distance,
             shear_stress: self.motion.shear_stress,
         };
-        let friction = Friction::in_time(&contact, time_error.max(self.time_error));
+        let (way, cell) = ([self.before, self.distance], self.motion.direction.cell(&row.simulation.grid));
+        let friction = Friction::in_time(&contact, time_error.max(self.time_error), |error| {
+            self.swing.see(way, cell, error)
+        });
         let before = std::mem::replace(&mut self.before, self.distance);
         row.other_work += 0.5 * (self.friction.force + friction.force) * (self.distance - before);
         (self.friction, self.time_error) = (friction, time_error);
@@ -172,6 +204,7 @@ impl Process for Moving {
         to.value("distance", &self.before);
         to.value("force", &self.friction.force);
         to.value("time_error", &self.time_error);
+        to.values("swing", &[&self.swing.start, &self.swing.errors[0], &self.swing.errors[1]]);
     }
 
     fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
@@ -179,7 +212,8 @@ impl Process for Moving {
         self.before = self.distance;
         self.friction.force = from.get("force")?;
         self.time_error = from.get("time_error")?;
-        Ok(())
+        let Swing { start, errors: [now, before] } = &mut self.swing;
+        from.values_into("swing", &mut [start, now, before])
     }
 }
 

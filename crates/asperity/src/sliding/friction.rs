@@ -162,12 +162,16 @@ impl Friction {
     /// What is unknown of it is what the cells leave open, Σ p Dg at the edges and Σ p (dh/ds - Dh) of waves of a few cells, with D the
     /// central difference, and what the time steps do to the stress. A wave of wave number q that moves by a cell in a step of
     /// linear u has between (x/2) cot(x/2) and sin(x)/x of its loss, x = q dx, whatever the material: 1 - sin(x)/x is the error of Dh
-    /// as well.
-    pub(crate) fn in_time(contact: &ContactForces, time_error: f64) -> Friction {
+    /// as well. `held` makes of what this row does not know what it states \[N\].
+    pub(crate) fn in_time(
+        contact: &ContactForces,
+        time_error: f64,
+        held: impl FnOnce(f64) -> f64,
+    ) -> Friction {
         let sums = contact.sums();
         let force = if contact.remembers { sums.slopes } else { 0.0 };
         let unknown = sums.edges.abs() + sums.waves.abs() + time_error * sums.size;
-        Friction::new(contact, &sums, [force, unknown], f64::NAN)
+        Friction::new(contact, &sums, [force, held(unknown)], f64::NAN)
     }
 
     /// Of a steady state, in which `loss` is lost per distance \[N\]: by the balance of power this is the force.

@@ -268,6 +268,41 @@ fn a_contact_whose_load_jumps_as_cells_touch_is_stepped_over() {
 }
 
 #[test]
+fn a_row_states_its_error_where_a_ring_of_cells_touches_a_dashpot() {
+    // A Kelvin-Voigt body under a ramp of the approach. The load jumps where cells touch; in the row after, it is off by up to a third.
+    let terms = vec![CreepTerm { compliance: 1.0, retardation_time: 1.0 }];
+    let creep = Creep { instantaneous: 0.0, terms, fluidity: 0.0 };
+    let history = History::Ramp { value: 0.1, duration: 1.0 };
+    let run = |times| {
+        let loading = Loading { control: Control::Approach, history: history.clone() }.into();
+        rows(Simulation { creep: creep.clone(), loading, times, ..sphere(24) })
+    };
+    for times in [
+        TimeGrid::Uniform { end: 1.0, steps: 10 },
+        TimeGrid::Uniform { end: 1.0, steps: 160 },
+        adaptive(1.0, 1e-2, 0.1),
+    ] {
+        let rows = run(times);
+        let parts = |pair: &[Row]| {
+            let [start, end] = [pair[0].time(), pair[1].time()];
+            (1..=8).map(move |n| if n == 8 { end } else { start + (end - start) * f64::from(n) / 8.0 })
+        };
+        let fine = run(TimeGrid::List(rows.windows(2).flat_map(parts).collect()));
+        let errors = rows.iter().zip(fine.iter().step_by(8)).skip(1).map(|(row, fine)| {
+            assert!((row.time() - fine.time()).abs() < 1e-9);
+            ((row.load / fine.load - 1.0).abs(), row.time_error.unwrap())
+        });
+        let errors: Vec<_> = errors.collect();
+        let worst = errors.iter().map(|row| row.0).fold(0.0, f64::max);
+        assert!(worst > 0.2, "{worst}");
+        // Between two touches u is linear in time, and the rest is the tolerance of the solver.
+        let uncovered: Vec<_> = errors.iter().filter(|(error, stated)| *error > stated.max(1e-5)).collect();
+        println!("{} rows, {} uncovered, largest error {worst:.2}", rows.len(), uncovered.len());
+        assert!(uncovered.is_empty(), "{uncovered:?}");
+    }
+}
+
+#[test]
 fn a_fluid_that_relaxes_to_nothing_takes_few_steps() {
     // A held approach is exact in any step; what is left of the load after a hundred relaxation times is rounding.
     let creep = Creep { instantaneous: 1e-4, terms: vec![], fluidity: 1e-4 };

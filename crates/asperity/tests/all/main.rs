@@ -6,6 +6,7 @@ mod conditions;
 mod contact;
 mod dents;
 mod friction;
+mod friction_error;
 mod held_approach;
 mod hurst;
 mod indentation;

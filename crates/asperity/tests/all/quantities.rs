@@ -93,6 +93,33 @@ fn hertz_stores_two_fifths_of_load_times_approach_and_is_as_stiff_as_its_radius_
 }
 
 #[test]
+fn the_work_on_elastic_bodies_is_that_of_hertz_in_a_few_long_steps() {
+    // W ~ w^1.5, so that the work is (2/5) W w; pressed and released in nine adaptive rows.
+    let top = (4.0 / 3.0) * 0.1_f64.powf(1.5);
+    for (control, peak) in [(Control::Load, top), (Control::Approach, 0.1)] {
+        let rows = run(
+            Simulation {
+                creep: Creep::elastic(1.0),
+                loading: Loading { control, history: History::Triangle { peak, rise: 0.5, fall: 0.5 } }
+                    .into(),
+                times: TimeGrid::Adaptive { end: 1.0, tolerance: 1e-2, first: 0.1 },
+                ..sphere(48, 1.0)
+            },
+            &ENERGIES,
+        );
+        assert!(rows.len() < 20, "{}", rows.len());
+        for row in rows.iter().filter(|row| row.approach > 0.05) {
+            let exact = 0.4 * row.load * row.approach;
+            // 10 cells to the radius and more: at most 1 % of a ring of half cells, as above. (Chords of W over w: 2 %.)
+            assert!((row.get(Quantity::ExternalWork) / exact - 1.0).abs() < 5e-3, "{control:?}");
+        }
+        // All is given back, to the tolerance of the solver.
+        let last = rows.last().unwrap().get(Quantity::ExternalWork);
+        assert!(last.abs() < 1e-8 * top * 0.1, "{control:?}: {last:e}");
+    }
+}
+
+#[test]
 fn the_stiffness_is_the_slope_of_load_over_approach() {
     // Rough, periodic: load over approach is smooth where the set changes by single cells, so that a central
     // difference of 2e-5 in the approach meets the slope to the set's granularity.

@@ -344,10 +344,10 @@ fn adaptive_steps() {
     let text = r#"{ end = "1 min", spacing = "adaptive", tolerance = 1e-4, first = "1 ms" }"#;
     assert_eq!(grid(text), adaptive(1e-4, 1e-3));
     assert_eq!(grid(r#"{ end = "1 min", spacing = "adaptive" }"#), adaptive(1e-3, 0.06));
-    // States at the output times are interpolated: they are no steps.
+    // Steps end at the output times.
     let more = "output = { times = [7] }";
     let case = case(Parts { time: r#"{ end = "1 min", spacing = "adaptive" }"#, more, ..PARTS });
-    assert!(case.conditions.include.is_empty() && case.describe().rows.is_none());
+    assert!(case.conditions.include == [7.0] && case.describe().rows.is_none());
     assert_eq!(case.describe().stored_rows, Some(3));
 }
 

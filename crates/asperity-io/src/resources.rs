@@ -94,9 +94,16 @@ pub fn text(path: &Path, most: u64) -> Result<String, String> {
 /// Why a file cannot be read, in a sentence.
 pub fn why(error: &io::Error) -> String {
     match error.kind() {
-        io::ErrorKind::NotFound => "the file does not exist".to_owned(),
-        io::ErrorKind::IsADirectory | io::ErrorKind::InvalidInput => error.to_string(),
+        io::ErrorKind::NotFound | io::ErrorKind::IsADirectory | io::ErrorKind::InvalidInput => told(error),
         _ => format!("the file cannot be read: {error}"),
+    }
+}
+
+/// What the system says of a file, with what to do where it does not exist.
+pub fn told(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "the file does not exist; check its name and folder".to_owned(),
+        _ => error.to_string(),
     }
 }
 

@@ -126,7 +126,7 @@ impl Stress {
                 out.set_item(format!("max_{name}_y"), grid.y(cell % ny))?;
             }
         }
-        entries!(out, found; mises_by_depth tresca_by_depth tension_by_depth stressed_volume at_the_deepest unresolved);
+        entries!(out, found; mises_by_depth tresca_by_depth tension_by_depth stressed_volume unseen unresolved);
         if let Some(shear) = found.orthogonal_shear {
             out.set_item("orthogonal_shear", shear.largest.value)?;
             out.set_item("orthogonal_shear_depth", shear.largest.depth)?;

@@ -157,7 +157,7 @@ impl History {
         quarters.take_while(|t| *t < end).take(MOST_EXTREMES).collect()
     }
 
-    /// Smallest and largest value over \[0, end\].
+    /// Smallest and largest value over \[0, end\]; of a sine over a whole period.
     pub fn range(&self, end: f64) -> [f64; 2] {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         let mut include = |v: f64| range = [range[0].min(v), range[1].max(v)];
@@ -171,6 +171,18 @@ impl History {
             include(mean + amplitude.abs());
         }
         range
+    }
+
+    /// The first time in \[0, end\] at which the value is the largest.
+    pub fn time_of_largest(&self, end: f64) -> f64 {
+        let value = |t: f64| self.before(t).max(self.after(t));
+        let inside = self.breaks(end).into_iter().chain(self.extremes(end));
+        let mut times: Vec<f64> = std::iter::once(0.0).chain(inside).chain([end]).collect();
+        times.sort_by(f64::total_cmp);
+        times
+            .into_iter()
+            .reduce(|best, t| if value(t) > value(best) + 1e-9 * value(best).abs() { t } else { best })
+            .unwrap_or(end)
     }
 
     /// The argument that sets the largest value, in the words of case files: "peak", "points\[2\]\[1\]".
@@ -251,6 +263,20 @@ fn validate_table(points: &[(f64, f64)]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_largest_value_is_found_at_its_first_time() {
+        // sin is largest after a quarter of a period, -sin after three quarters.
+        let sine = |amplitude| History::Sine { mean: 2.0, amplitude, frequency: 0.05 };
+        assert_eq!(sine(1.5).time_of_largest(100.0), 5.0);
+        assert_eq!(sine(-1.5).time_of_largest(100.0), 15.0);
+        assert_eq!(sine(1.5).time_of_largest(3.0), 3.0);
+        assert_eq!(History::Step { value: 1.0 }.time_of_largest(1.0), 0.0);
+        let history = History::Trapezoid { peak: 1.0, rise: 2.0, hold: 3.0, fall: 4.0 };
+        assert_eq!(history.time_of_largest(9.0), 2.0);
+        let falling = History::Table { points: vec![(0.0, 3.0), (2.0, 1.0)] };
+        assert_eq!(falling.time_of_largest(2.0), 0.0);
+    }
 
     #[test]
     fn a_history_that_ends_at_nothing_ends_there_exactly() {

@@ -176,7 +176,11 @@ fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
     for (n, series) in asked.enumerate() {
         let values = reader.series(series.name)?;
         let value = values.last().copied().unwrap_or(f64::NAN);
-        let words = quantity(value, if series.units == "1" { "" } else { series.units });
+        let words = match series.units {
+            "1" if series.name == Quantity::FrictionUncertainty.name() => percent(value),
+            "1" => quantity(value, ""),
+            units => quantity(value, units),
+        };
         text += &line(if n == 0 { "quantities" } else { "" }, format!("{:<27}{words}", series.name));
     }
     Ok(text)

@@ -164,7 +164,7 @@ fn a_fit_says_what_is_wrong() {
     for (arguments, words) in [
         (&["plain.csv"][..], &["--kind"][..]),
         (&["soft.csv"], &["soft.csv, line 3", "\"x\" is not a finite number"]),
-        (&["none.csv"], &["none.csv", "cannot be read"]),
+        (&["none.csv"], &["none.csv", "does not exist"]),
         (&[rubber, "--wlf", "8.86, 20 °C"], &["--wlf", "8.86, 101.6 K, 20 °C"]),
         (&[rubber, "--wlf", "8.86, 101.6 °C, 20 °C"], &["c2 of --wlf", "difference of temperatures"]),
         (&[rubber, "--estimate-shift", "20"], &["--estimate-shift is \"20\"", "20 °C"]),

@@ -40,6 +40,7 @@
 //! ```
 
 mod assemble;
+mod bare;
 mod body;
 mod cost;
 mod describe;
@@ -93,6 +94,7 @@ use asperity::surface::{Part, undeformed_gap};
 use asperity::{Axis, Error, Scheme, Simulation};
 use ndarray::Array2;
 
+pub use bare::bare_numbers;
 pub use cost::CostEstimate;
 pub use describe::{Description, MaterialReport, Preparation, WaveReport};
 pub use error::{CaseError, CaseErrors};
@@ -377,9 +379,8 @@ fn overridden(name: &str, source: String, overrides: &[String]) -> Result<Overri
     let Ok(mut document) = result.text.parse::<toml_edit::DocumentMut>() else { return Ok(result) };
     for change in overrides {
         let change = Override::parse(change).and_then(|change| change.apply(&mut document).map(|()| change));
-        let change = change.map_err(|reason| {
-            CaseErrors::without_place(Code::Syntax, name, format!("cannot set {reason}"), "KEY=VALUE", None)
-        })?;
+        let change = change
+            .map_err(|reason| CaseErrors::without_place(Code::Syntax, name, reason, "KEY=VALUE", None))?;
         let text = document.to_string();
         let same = text.lines().zip(result.text.lines()).take_while(|(new, old)| new == old).count();
         let more = text.lines().count().saturating_sub(result.text.lines().count());

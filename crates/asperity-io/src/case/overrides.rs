@@ -29,7 +29,7 @@ impl Override {
     /// A sentence.
     pub fn parse(text: &str) -> Result<Self, String> {
         let (key, value) = text.split_once('=').ok_or_else(|| {
-            format!("{text:?} has no \"=\"; write KEY=VALUE, as in domain.cells=[256, 256]")
+            format!("the override {text:?} has no \"=\"; write KEY=VALUE, as in domain.cells=[256, 256]")
         })?;
         let path = path(key.trim())?;
         let value = value.trim();
@@ -51,7 +51,7 @@ impl Override {
     /// A sentence: the path leads through a value, or to an element that the list does not have.
     pub fn apply(&self, document: &mut DocumentMut) -> Result<(), String> {
         set_in_table(document.as_table_mut(), &self.path, &self.value)
-            .map_err(|reason| format!("{}: {reason}", self.key))
+            .map_err(|reason| format!("{} cannot be set: {reason}", self.key))
     }
 }
 
@@ -60,7 +60,9 @@ fn path(key: &str) -> Result<Vec<Step>, String> {
     for part in key.replace('[', ".").replace(']', "").split('.') {
         let part = part.trim();
         if part.is_empty() {
-            return Err(format!("{key:?} is not the path of a key, such as body.0.hardness"));
+            return Err(format!(
+                "the override {key:?} is not the path of a key; write it as in body.0.hardness"
+            ));
         }
         match part.parse() {
             Ok(n) if !steps.is_empty() => steps.push(Step::Index(n)),
@@ -69,7 +71,7 @@ fn path(key: &str) -> Result<Vec<Step>, String> {
     }
     match steps.len() <= DEEPEST {
         true => Ok(steps),
-        false => Err(format!("{key:?} has more parts than any key")),
+        false => Err(format!("the override {key:?} has more parts than any key")),
     }
 }
 

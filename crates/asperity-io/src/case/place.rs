@@ -214,8 +214,10 @@ impl<'c> Place<'c> {
     pub fn file(&self, path: &str) -> Option<PathBuf> {
         let full = self.checks.dir.join(path);
         let Err(error) = open(&full) else { return Some(full) };
-        let message = format!("{}: {}", full.display(), why(&error));
-        self.refuse(Code::File, message, "a file", "paths are relative to the directory of the case file")
+        let message = format!("\"{path}\": {} (looked for {})", why(&error), full.display());
+        let help =
+            "correct the path, which is relative to the directory of the case file, or move the file there";
+        self.refuse(Code::File, message, "a file", help)
     }
 
     /// The values, where each is larger than the one before.

@@ -9,8 +9,8 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 
 use super::error::CaseError;
-use super::text::{MOST_ERRORS, Text, in_order};
-use super::words;
+use super::text::{MOST_ERRORS, Spot, Text, in_order, join};
+use super::{schema, words};
 use crate::Code;
 
 /// A union: where it stands (`[]` for each element of a list), the key that tags it, and keys that all members share.
@@ -142,13 +142,36 @@ impl<'r, 't> Reader<'r, 't> {
     fn read<T: DeserializeOwned>(&mut self, key: &str, value: &Spanned<DeValue<'t>>) -> Option<T> {
         let (mut value, span) = (value.clone(), value.span());
         let mut inside = UNIONS.iter().filter_map(|union| Some((union.0.strip_prefix(key)?, union)));
-        let moved = inside.try_for_each(|(path, union)| self.move_tag(&mut value, path, union));
+        let listed = self.listed(key, &value).map_or(Ok(()), |error| Err(Box::new(error)));
+        let moved =
+            listed.and_then(|()| inside.try_for_each(|(path, union)| self.move_tag(&mut value, path, union)));
         let read = match moved {
             Ok(()) => T::deserialize(ValueDeserializer::from(value))
                 .map_err(|error| words::translate(self.text, &error, span)),
             Err(error) => Err(*error),
         };
         read.map_err(|error| self.errors.push(error)).ok()
+    }
+
+    /// A table below `path` that is written as a list: serde would fill it by the order of its fields.
+    fn listed(&self, path: &str, value: &Spanned<DeValue<'t>>) -> Option<CaseError> {
+        match value.get_ref() {
+            DeValue::Table(table) => {
+                table.iter().find_map(|(key, value)| self.listed(&join(path, key.get_ref()), value))
+            }
+            DeValue::Array(_) if schema::is_table(path) => {
+                let spot = self.text.at(&value.span());
+                let key = spot.key.trim_end_matches("[0]").to_owned();
+                let help =
+                    "write one table in braces, { ... }, or begin it with a line in single brackets, once";
+                Some(self.text.wrong(Code::WrongType, Spot { key, ..spot }, "a table, not a list", help))
+            }
+            DeValue::Array(array) => {
+                let tables = array.iter().filter(|element| element.get_ref().is_table());
+                tables.map(|element| self.listed(&format!("{path}[]"), element)).find_map(|error| error)
+            }
+            _ => None,
+        }
     }
 
     /// Moves the tag of the unions at `path` outwards. What is no table or no list where one should be is left to serde.

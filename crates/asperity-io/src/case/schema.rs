@@ -10,6 +10,7 @@ use schemars::transform::RecursiveTransform;
 use serde_json::{Map, Value};
 
 use super::document::Document;
+use crate::quantity::UNIT;
 
 /// The JSON Schema (draft 2020-12) of a case file: every key with description, unit and example.
 pub fn schema() -> Value {
@@ -85,18 +86,36 @@ fn first_paragraph(schema: &mut Schema) {
 
 /// The schemas of the key at `path` ("body[0].poisson"), more than one where a union's members share it.
 pub fn find(path: &str) -> Vec<Value> {
-    let mut schemas = vec![generated().clone()];
-    for name in path.split('.') {
-        let (name, indices) = match name.split_once('[') {
-            Some((name, rest)) => (name, 1 + rest.matches('[').count()),
-            None => (name, 0),
+    let mut schemas = vec![];
+    for (depth, name) in path.split('.').enumerate() {
+        let mut parts = name.split('[');
+        let name = parts.next().unwrap_or_default();
+        schemas = match depth {
+            0 => property(generated(), name).into_iter().collect(),
+            _ => schemas.iter().flat_map(members).filter_map(|schema| property(&schema, name)).collect(),
         };
-        schemas = schemas.iter().flat_map(members).filter_map(|schema| property(&schema, name)).collect();
-        for _ in 0..indices {
-            schemas = schemas.iter().flat_map(members).filter_map(|schema| items(&schema)).collect();
+        for part in parts {
+            let n = part.trim_end_matches(']').parse().unwrap_or(0);
+            schemas = schemas.iter().flat_map(members).filter_map(|schema| items(&schema, n)).collect();
         }
     }
     schemas
+}
+
+/// Whether the key at `path` takes a table and nothing else.
+pub fn is_table(path: &str) -> bool {
+    let found: Vec<Value> = find(path).iter().flat_map(members).collect();
+    !found.is_empty() && found.iter().all(|schema| schema["type"] == "object")
+}
+
+/// Whether the key at `path` takes a quantity with a unit, also where it is one of several things that the key takes.
+pub fn has_unit(path: &str) -> bool {
+    fn of(schema: &Value) -> bool {
+        let schema = resolve(schema);
+        let union = ["oneOf", "anyOf"].iter().find_map(|key| schema.get(key)?.as_array());
+        schema.get(UNIT).is_some() || union.is_some_and(|union| union.iter().any(of))
+    }
+    find(path).iter().any(of)
 }
 
 /// The words that the key at `path` takes, where it takes words.
@@ -144,8 +163,9 @@ fn property(schema: &Value, name: &str) -> Option<Value> {
     properties.get(name).map(resolve)
 }
 
-fn items(schema: &Value) -> Option<Value> {
-    let tuple = schema.get("prefixItems").and_then(|items| items.get(0));
+/// The schema of element `n` of a list.
+fn items(schema: &Value, n: usize) -> Option<Value> {
+    let tuple = schema.get("prefixItems").and_then(|items| items.get(n));
     schema.get("items").filter(|items| items.is_object()).or(tuple).map(resolve)
 }
 

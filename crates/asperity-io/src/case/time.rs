@@ -104,13 +104,19 @@ impl Times {
         let first = self.first.map(Time::get);
         if spacing == Spacing::Adaptive {
             let why = "cannot be combined with spacing = \"adaptive\", which determines their number";
-            at.without(&["steps"], why, "one of the two", "omit `steps` and set `tolerance`")?;
+            // --set cannot take a key away.
+            let help = format!(
+                "delete `steps` in the case and set `tolerance`; with --set write the whole table: \
+                 --set 'time={{ end = \"{} s\", spacing = \"adaptive\" }}'",
+                words::number(end)
+            );
+            at.without(&["steps"], why, "one of the two", &help)?;
             self.before_end(at, end, 2)?;
             let tolerance = self.tolerance.map_or(TOLERANCE, Number::get);
             let grid = TimeGrid::Adaptive { end, tolerance, first: first.unwrap_or(FIRST * end) };
             return at.core(grid.validate().map(|()| grid));
         }
-        let help = "add spacing = \"adaptive\" in place of steps, or leave it out";
+        let help = "add spacing = \"adaptive\" in place of `steps`, or leave it out";
         at.without(&["tolerance"], "belongs to spacing = \"adaptive\"", "no such key", help)?;
         let steps = self.steps?.count();
         let grid = match spacing {

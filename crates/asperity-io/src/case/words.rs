@@ -134,7 +134,9 @@ pub fn missing_section(text: &Text<'_>, name: &str) -> CaseError {
 /// What a key means and how it is written, from the schema.
 fn wanted(key: &str, name: &str) -> (String, Option<String>) {
     let found = schema::find(key);
-    let expected = found.iter().find_map(description).unwrap_or_else(|| "a value".into());
+    let meaning = found.iter().find_map(description).map(|meaning| inside(&meaning));
+    let meaning = meaning.filter(|meaning| meaning != name);
+    let expected = meaning.map_or_else(|| format!("`{name}`"), |meaning| format!("`{name}`: {meaning}"));
     let example = found.iter().find_map(|schema| schema.get("examples")?.get(0));
     let help = match example {
         Some(example) => Some(format!("add {name} = {}", in_toml(example))),
@@ -144,6 +146,19 @@ fn wanted(key: &str, name: &str) -> (String, Option<String>) {
         },
     };
     (expected, help)
+}
+
+/// A sentence as it is written after a colon: "time to reach it".
+fn inside(sentence: &str) -> String {
+    let sentence = sentence.trim_end_matches('.');
+    let mut letters = sentence.chars();
+    match (letters.next(), letters.next()) {
+        // Not of "DMA" or "R x C".
+        (Some(first), Some(second)) if second.is_lowercase() => {
+            first.to_lowercase().chain(std::iter::once(second)).chain(letters).collect()
+        }
+        _ => sentence.to_owned(),
+    }
 }
 
 /// An example of the schema, as a case file writes it.
@@ -165,7 +180,8 @@ pub fn nearest<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
     }
     let distance = |known: &str| strsim::damerau_levenshtein(&name.to_lowercase(), known);
     let near = known.iter().min_by_key(|known| distance(known))?;
-    if distance(near) <= 1 + near.len().min(name.len()) / 4 {
+    // Two letters of five, at most.
+    if 5 * distance(near) <= 2 * near.len().min(name.len()) {
         return Some(near);
     }
     let initials = |known: &&&str| {
@@ -174,8 +190,11 @@ pub fn nearest<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
     if let Some(known) = known.iter().find(initials) {
         return Some(known);
     }
-    let is_part =
-        |known: &&&str| name.len() > 2 && known.starts_with(name) || name.len() > 3 && known.contains(name);
+    let is_part = |known: &&&str| {
+        let mut words = known.split(['-', '_']);
+        name.len() > 2 && known.starts_with(name)
+            || name.len() > 3 && words.any(|word| word.starts_with(name))
+    };
     known.iter().find(is_part).copied()
 }
 
@@ -231,6 +250,10 @@ mod tests {
         assert_eq!(nearest("bulk", &known), Some("bulk_modulus"));
         assert_eq!(nearest("modulus", &known), Some("bulk_modulus"));
         assert_eq!(nearest("yield", &known), None);
+        // Half of the letters differ, or the word stands inside another.
+        assert_eq!(nearest("time", &["size", "tile_count", "meantimes"]), None);
+        assert_eq!(nearest("sise", &["size"]), Some("size"));
+        assert_eq!(nearest("plain", &["none", "mean", "plane"]), Some("plane"));
         assert_eq!(nearest("sls", &["zener", "standard-linear-solid"]), Some("standard-linear-solid"));
         assert_eq!(nearest(&"x".repeat(100_000), &known), None);
     }

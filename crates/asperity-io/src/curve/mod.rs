@@ -234,7 +234,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>, CurveError> {
     let mut bytes = Vec::new();
     crate::resources::open(path)
         .and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes))
-        .map_err(|error| fault(format!("cannot be read: {error}")).of(path))?;
+        .map_err(|error| fault(crate::resources::why(&error)).of(path))?;
     if bytes.len() as u64 > MOST_BYTES {
         return Err(fault(format!("the file is larger than {} MB", MOST_BYTES >> 20)).of(path));
     }

@@ -29,6 +29,7 @@ use crate::Code;
 pub use angle::Angle;
 use decimal::Decimal;
 use range::{Finite, Range};
+pub(crate) use serial::UNIT;
 pub use serial::{Label, Prescribed, Signed, Whole};
 pub use temperature::Temperature;
 use unit::{Powers, Unit};
@@ -93,7 +94,7 @@ dimensions! {
     /// A length \[m\].
     Length = "a length", "m", "nm, um, mm, m", "0.5 mm", [1, 0, 0, 0, 0];
     /// A pressure, modulus or hardness \[Pa\].
-    Pressure = "a pressure", "Pa", "Pa, kPa, MPa, GPa, N/mm^2", "300 MPa", [-1, 1, -2, 0, 0];
+    Pressure = "a pressure", "Pa", "Pa, kPa, MPa, GPa, bar, N/mm^2", "300 MPa", [-1, 1, -2, 0, 0];
     /// A time \[s\].
     Time = "a time", "s", "us, ms, s, min, h, day", "10 s", [0, 0, 1, 0, 0];
     /// A force \[N\].
@@ -285,7 +286,7 @@ mod tests {
         assert_eq!(
             text,
             "a pressure such as \"300 MPa\"\n\"m\" is the unit of a length; \
-             units of pressure: Pa, kPa, MPa, GPa, N/mm^2"
+             units of pressure: Pa, kPa, MPa, GPa, bar, N/mm^2"
         );
         let text = message::<dimension::Length, Finite>("5 mpa");
         assert!(text.contains("\"mpa\" is not a known unit; units of length: nm, um, mm, m"), "{text}");

@@ -50,10 +50,14 @@ impl<D: Dimension, R: Range> JsonSchema for Quantity<D, R> {
                 ),
                 "anyOf": [{ "type": "string", "pattern": NUMBER_WITH_UNIT }, number],
                 "examples": [example],
+                UNIT: D::SI,
             }),
         }
     }
 }
+
+/// The key of a schema that says the SI unit of a quantity.
+pub(crate) const UNIT: &str = "x-unit";
 
 const NUMBER_WITH_UNIT: &str = r"^\s*[+-]?(inf|[0-9]+\.?[0-9]*|\.[0-9]+)";
 
@@ -105,6 +109,7 @@ schema!(Prescribed, "Prescribed", {
     "description": "A force (on a line a force per length), a pressure or a length with its unit, as load.control says; or a bare number in SI.",
     "anyOf": [{ "type": "string", "pattern": NUMBER_WITH_UNIT }, { "type": "number" }],
     "examples": ["0.5 N", "2 MPa", "1 um"],
+    UNIT: "N, N/m, Pa or m",
 });
 
 /// A whole number, `LEAST` or more.

@@ -5,6 +5,7 @@
 
 use std::str::FromStr;
 
+use super::UNIT;
 use super::scalar::{Scalar, deserialize, schema};
 use super::{Quantity, QuantityError, dimension};
 use crate::Code;
@@ -128,6 +129,7 @@ schema!(Temperature, "Temperature", {
         { "type": "number", "exclusiveMinimum": 0 }
     ],
     "examples": ["20 °C"],
+    UNIT: "K",
 });
 
 #[cfg(test)]

@@ -70,7 +70,7 @@ impl Record<'_> {
             Some(drive) => self.diagnostics.findings(drive.simulation()),
             None => self.diagnostics.known().to_vec(),
         };
-        let of_stress = self.stress.iter().flat_map(|below| below.findings(&self.case.conditions.grid));
+        let of_stress = self.stress.iter().flat_map(|below| below.findings());
         self.case.findings.iter().cloned().chain(of_run).chain(of_stress).collect()
     }
 

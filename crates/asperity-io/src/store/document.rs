@@ -204,7 +204,10 @@ pub(super) fn read_json(root: &Path) -> Result<(PathBuf, Value)> {
     let file = root.join(NAME);
     let length = match fs::metadata(&file) {
         Ok(metadata) => metadata.len(),
-        Err(_) if !root.exists() => return Err(absent("there is no such file or directory".into())),
+        Err(_) if !root.exists() => return Err(absent(
+            "there is no such file or directory; check the path (asperity run writes results as NAME.zarr)"
+                .into(),
+        )),
         Err(_) if !root.is_dir() => return Err(absent("it is a file, a result is a directory".into())),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
             return Err(absent(format!("it has no {NAME}")));

@@ -1,7 +1,7 @@
 //! The stress below the surface at each of the times.
 
 use asperity::finding::Finding;
-use asperity::stress::{Extreme, Survey};
+use asperity::stress::{Extreme, Survey, unseen_depths};
 use asperity::{Grid, finding};
 
 use crate::store::{At, FieldKind, Reader, Result, StressSet};
@@ -31,6 +31,8 @@ pub struct Instant {
 pub struct Below {
     /// What was computed.
     pub set: StressSet,
+    /// The cells of the result.
+    pub grid: Grid,
     /// What was found at each of the times.
     pub instants: Vec<Instant>,
     /// Time \[s\] and load \[N\] of the row with the largest pressure, if all computed times are far from it.
@@ -91,7 +93,7 @@ impl Below {
         };
         let instants: Vec<Instant> = set.instants.iter().map(instant).collect::<Result<_>>()?;
         let missed = missed(reader, instants.iter().map(|instant| instant.row))?;
-        Ok(Some(Below { instants, set: set.clone(), missed }))
+        Ok(Some(Below { grid: reader.header().grid, instants, set: set.clone(), missed }))
     }
 
     /// A number of an instant, by its name in the result; NaN if it is not stored.
@@ -112,26 +114,24 @@ impl Below {
         self.instants.iter().reduce(|a, b| if mises(b) > mises(a) { b } else { a })
     }
 
-    /// The deepest of several depths, where the largest von Mises stress lies there: it may be larger below.
-    pub fn ends_at(&self) -> Option<f64> {
-        let depth = self.number(self.worst()?, "max_mises_depth");
-        match self.set.depths[..] {
-            [_, .., deepest] if depth == deepest => Some(deepest),
-            _ => None,
-        }
+    /// Depths \[m\] between which the von Mises stress may be larger than the largest one found ([`unseen_depths`]); `None` without
+    /// contact.
+    pub fn unseen(&self) -> Option<[f64; 2]> {
+        let worst = self.worst().filter(|worst| self.number(worst, "max_mises") > 0.0)?;
+        unseen_depths(&self.set.depths, self.profile(worst, "mises_by_depth"), self.grid.longest_cell())
     }
 
     /// Where the numbers may be off, and whether the body yields.
-    pub fn findings(&self, grid: &Grid) -> Vec<Finding> {
+    pub fn findings(&self) -> Vec<Finding> {
         let Some(worst) = self.worst() else { return vec![] };
         let mut found = vec![];
         found.extend(
-            self.missed.map(|[time, load]| finding::stress_times_miss_peak(time, load, grid.units("N"))),
+            self.missed.map(|[time, load]| finding::stress_times_miss_peak(time, load, self.grid.units("N"))),
         );
-        let cell = grid.cell_sides().fold(0.0, f64::max);
+        let cell = self.grid.longest_cell();
         let depth = self.number(worst, "max_mises_depth");
-        if let Some(deepest) = self.ends_at() {
-            found.push(finding::stress_at_deepest(deepest).at([worst.row; 2]));
+        if let Some(unseen) = self.unseen() {
+            found.push(finding::stress_depths(depth, unseen).at([worst.row; 2]));
         } else if depth > 0.0 && depth < 2.0 * cell {
             found.push(finding::stress_unresolved(depth, cell).at([worst.row; 2]));
         }

@@ -78,7 +78,7 @@ pub fn of_result(reader: &Reader, plan: &StressPlan, interrupt: &AtomicBool) -> 
     let set = set(reader, plan)?;
     let instants = compute(reader, plan, &set, interrupt, &mut |_, _| (), None)?;
     let missed = missed(reader, instants.iter().map(|instant| instant.row))?;
-    Ok(Below { set, instants, missed })
+    Ok(Below { grid: reader.header().grid, set, instants, missed })
 }
 
 /// Refuses a result of bodies of layers.

@@ -1,5 +1,6 @@
 //! First yield: the load at which the von Mises stress below the surface reaches the yield stress.
 
+use asperity::finding::depths_between;
 use serde_json::{Value, json};
 
 use super::Below;
@@ -17,8 +18,8 @@ pub enum FirstYield {
         times: usize,
         /// Time \[s\] and load \[N\] of the largest pressure, where it is not among them.
         missed: Option<[f64; 2]>,
-        /// The deepest depth \[m\], where the largest stress lies there.
-        deepest: Option<f64>,
+        /// Depths \[m\] between which the stress may be larger: [`Below::unseen`].
+        unseen: Option<[f64; 2]>,
     },
     /// At the first of the times already, or before it: (time \[s\], load \[N\]).
     AtOnce([f64; 2]),
@@ -38,7 +39,7 @@ pub fn first_yield(below: &Below) -> Option<FirstYield> {
             times: mises.len(),
             safety: limit / mises.into_iter().reduce(f64::max)?,
             missed: below.missed,
-            deepest: below.ends_at(),
+            unseen: below.unseen(),
         },
     })
 }
@@ -50,20 +51,25 @@ impl FirstYield {
         let state =
             |[time, load]: [f64; 2]| format!("t = {} (load {})", quantity(time, "s"), quantity(load, unit));
         match self {
-            FirstYield::Never { safety, times, missed, deepest } => {
+            FirstYield::Never { safety, times, missed, unseen } => {
                 let at = match times {
                     1 => "at the one computed time".to_owned(),
                     times => format!("at the {times} computed times"),
                 };
                 let mut sentence = if safety.is_finite() && *safety < 1e6 {
+                    let found = match unseen {
+                        Some(_) => "yield is not excluded",
+                        None => "no yield",
+                    };
                     format!(
-                        "no yield {at}: the yield stress is {safety:.3} times the largest von Mises stress"
+                        "{found} {at}: the yield stress is {safety:.3} times the largest von Mises stress"
                     )
                 } else {
                     format!("no yield {at}: there is no contact, or next to no stress")
                 };
-                if let Some(deepest) = deepest {
-                    sentence += &format!(" down to {}, but it may be larger below", quantity(*deepest, "m"));
+                if let Some(unseen) = unseen {
+                    sentence +=
+                        &format!(" at the computed depths, but it may be larger {}", depths_between(*unseen));
                 }
                 if let Some(missed) = missed {
                     sentence +=
@@ -78,11 +84,12 @@ impl FirstYield {
         }
     }
 
-    /// As an object: `safety`, or `times` and `loads`, the two states that first yield lies between (one: at or before it).
-    pub fn to_json(self) -> Value {
+    /// As an object: `safety`, with the depths between which the stress was not seen (null: no end), or `times` and `loads`, the two states that first yield lies between (one: at or before it).
+    pub fn to_json(self, set: &StressSet) -> Value {
         match self {
-            FirstYield::Never { safety, missed, deepest, .. } => {
-                json!({ "yields": false, "safety": safety, "missed": missed, "deepest": deepest })
+            FirstYield::Never { safety, missed, unseen, .. } => {
+                let deepest = unseen.filter(|[_, below]| below.is_infinite()).and_then(|_| set.depths.last());
+                json!({ "yields": false, "safety": safety, "missed": missed, "deepest": deepest, "unseen": unseen })
             }
             FirstYield::AtOnce([time, load]) => json!({ "yields": true, "times": [time], "loads": [load] }),
             FirstYield::Between([[t0, w0], [t1, w1]]) => {

@@ -22,7 +22,7 @@ pub struct TopographyError {
 #[non_exhaustive]
 pub enum Problem {
     /// The operating system refuses.
-    #[error("{0}")]
+    #[error("{}", crate::resources::told(.0))]
     Io(#[from] std::io::Error),
     /// The file takes more memory than there is.
     #[error("{0}; crop or thin it out first")]

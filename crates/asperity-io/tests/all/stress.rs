@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use asperity::finding::YIELD_EXCEEDED;
+use asperity::finding::{STRESS_AT_DEEPEST, STRESS_DEPTHS_COARSE, YIELD_EXCEEDED};
 use asperity::load::Control;
 use asperity::stress::{Component, StressQuantity, SubsurfaceStress};
 use asperity_io::case::{Case, CaseErrors};
@@ -114,6 +114,40 @@ fn first_yield_lies_between_two_stored_times() {
     // The largest of all times: the contact creeps under a held load, and its stress falls.
     let largest = mises.iter().copied().fold(0.0, f64::max);
     assert!(largest > mises[4] && (safety - 1e6 / largest).abs() < 1e-9 * safety);
+}
+
+#[test]
+fn depths_that_miss_the_largest_stress_do_not_exclude_yield() {
+    let directory = tempfile::tempdir().unwrap();
+    let largest =
+        |reader: &Reader| reader.stress_series("max_mises").unwrap().into_iter().fold(0.0, f64::max);
+    let enclosed = solved(CASE, directory.path());
+    let codes = [STRESS_AT_DEEPEST, STRESS_DEPTHS_COARSE];
+    assert!(enclosed.findings().iter().all(|finding| !codes.contains(&finding.code.as_ref())));
+    let truth = largest(&enclosed);
+    // The body yields at 0.9 of its largest stress, and at none of these depths.
+    let depths = "depths = { from = \"50 um\", to = \"0.8 mm\", count = 6 }";
+    let missing = CASE.replace("50 kPa", &format!("{} Pa", 0.9 * truth));
+    for (list, code, place) in [
+        (r#"["0 um", "0.8 mm", "1.2 mm"]"#, STRESS_DEPTHS_COARSE, "between the surface and 800 µm"),
+        (r#"["0.6 mm", "0.8 mm"]"#, STRESS_DEPTHS_COARSE, "between the surface and 600 µm"),
+        (r#"["0 um", "15 um"]"#, STRESS_AT_DEEPEST, "below 15 µm"),
+        (r#"["0.8 mm"]"#, STRESS_AT_DEEPEST, "at other depths"),
+    ] {
+        let reader = solved(&missing.replace(depths, &format!("depths = {list}")), directory.path());
+        assert!(largest(&reader) < 0.9 * truth, "{list}");
+        let found: Vec<_> = reader.findings().iter().filter(|finding| finding.code == code).collect();
+        assert!(
+            found.len() == 1 && found[0].is_warning() && found[0].text.contains(place),
+            "{list} {found:?}"
+        );
+        let below = Below::of(&reader).unwrap().unwrap();
+        let words = first_yield(&below).unwrap().sentence(&below.set);
+        assert!(
+            words.contains("not excluded") && words.contains(place) && !words.contains("no yield"),
+            "{words}"
+        );
+    }
 }
 
 #[test]

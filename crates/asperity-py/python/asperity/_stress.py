@@ -98,12 +98,14 @@ class Stress(Sealed):
         largest range of the shear stress on planes parallel to the surface along that direction, `orthogonal_shear`,
         `orthogonal_shear_depth` and `orthogonal_shear_by_depth` (Lundberg and Palmgren 1947).
 
-        Warns where the maximum lies at the deepest depth, or nearer to the surface than two cells.
+        Warns where the maximum may lie between the depths or below them, or lies nearer to the surface than two cells.
         """
         limit = None if threshold is None else number("threshold", threshold)
         found = self._core.survey(self.depths.tolist(), limit, rolling)
-        if found.pop("at_the_deepest"):
-            warn_caller("the largest von Mises stress lies at the deepest depth: give deeper ones", UserWarning)
+        if (unseen := found.pop("unseen")) is not None:
+            above, below = unseen
+            place = f"below {above:.4g} m" if below == np.inf else f"between {above:.4g} and {below:.4g} m"
+            warn_caller(f"the von Mises stress may be larger {place}: give more depths there", UserWarning)
         if found.pop("unresolved"):
             warn_caller("the largest von Mises stress lies less than two cells below the surface: the grid is too coarse for it", UserWarning)
         return {name: np.asarray(value) if isinstance(value, list) else value for name, value in found.items()}

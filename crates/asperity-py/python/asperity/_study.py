@@ -176,7 +176,7 @@ def _warn(points: list[Point], done: dict[int, Solved]) -> None:
                 held.setdefault(finding["code"], []).append((point.settings, finding))
     for (settings, finding), *others in held.values():
         place = ", ".join(f"{name} = {value}" for name, value in label_all(settings).items())
-        warn_caller(f"point {place}{f' and {len(others)} others' if others else ''}: {finding}")
+        warn_caller(f"point {place}{f' and {len(others)} more' if others else ''}: {finding}")
 
 
 class _Plan:

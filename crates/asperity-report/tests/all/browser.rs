@@ -52,7 +52,7 @@ fn browser() -> Option<PathBuf> {
 }
 
 /// Steady states at four velocities: they stand where the page has times else.
-const SWEEP: &str = r#"
+pub const SWEEP: &str = r#"
 [domain]
 cells = [32, 32]
 size = ["0.1 mm", "0.1 mm"]
@@ -80,7 +80,7 @@ fn result(directory: &Path) -> Reader {
     solved(CASE, directory)
 }
 
-fn solved(case: &str, directory: &Path) -> Reader {
+pub fn solved(case: &str, directory: &Path) -> Reader {
     let case = Case::parse(case, directory, &[]).unwrap();
     let path = directory.join("result.zarr");
     run(&case, &RunOptions { output: Some(path.clone()), ..RunOptions::default() }, |_| {}).unwrap();

@@ -1,4 +1,5 @@
 //! Pictures and pages, in one program.
 
 mod browser;
+mod friction;
 mod paper;

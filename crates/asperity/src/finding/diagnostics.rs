@@ -240,7 +240,7 @@ impl Diagnostics {
         if lacks(&found, LARGE_SLOPE) {
             found.extend(surface::near(&self.grid, &simulation.gap, self.deepest));
         }
-        if let Some(coarse) = time::coarse(&self.coarse, self.heaviest) {
+        if let Some(coarse) = time::coarse(simulation, &self.coarse, self.heaviest) {
             // What was expected before the run is known now.
             found.retain(|finding| finding.code != STEPS_TOO_LONG);
             found.push(coarse);

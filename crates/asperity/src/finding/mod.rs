@@ -50,7 +50,9 @@ pub use material::{
     shift_uncertain, too_few_points, unlikely_data, unlikely_modulus, unlikely_temperature,
 };
 pub use motion::{friction_zero, own_track};
-pub use stress::{stress_at_deepest, stress_times_miss_peak, stress_unresolved, yield_exceeded};
+pub use stress::{
+    OF_STRESS, depths_between, stress_depths, stress_times_miss_peak, stress_unresolved, yield_exceeded,
+};
 pub use surface::{hurst, of_heights};
 pub use thin::thin_body;
 
@@ -199,6 +201,8 @@ codes! {
     STRESS_UNRESOLVED = "stress-unresolved";
     /// The largest stress lies at the deepest of the given depths.
     STRESS_AT_DEEPEST = "stress-at-deepest";
+    /// The depths around the largest stress are far apart.
+    STRESS_DEPTHS_COARSE = "stress-depths-coarse";
     /// The largest pressure of a run is not among the times at which the stress is computed.
     STRESS_TIMES_MISS_PEAK = "stress-times-miss-peak";
     /// The von Mises stress below the surface exceeds the yield stress.

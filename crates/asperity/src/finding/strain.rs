@@ -2,7 +2,7 @@
 //!
 //! The half-space is linear: it assumes that the contact is small compared with the radius, a/R, and that strains are small. Two
 //! numbers measure this: the approach over the contact radius, w/a, which is a/R of a paraboloid and a measure of the strain of
-//! any compact contact (K. L. Johnson, Contact Mechanics, 1985, section 3.5), and the contact pressure over the relaxed modulus,
+//! any compact contact that has not shrunk (K. L. Johnson, Contact Mechanics, 1985, section 3.5), and the contact pressure over the relaxed modulus,
 //! ε(t) = ∫ C(t - s) dp(s). A Hertzian contact has ε = 2a/(πR), so the two limits agree. The pressure is the largest one, or that
 //! in the middle of a Hertzian contact of the same load and area, 3W/(2A), if that is smaller: at the edge of a punch the largest
 //! pressure is infinite, and depends on the size of the cells. On layers the compliance of a contact of radius a is q K(q)/2
@@ -40,6 +40,8 @@ pub(super) struct Strain {
     time: f64,
     /// Radius of the shapes \[m\], if known.
     radius: Option<f64>,
+    /// Largest contact so far \[m^2\].
+    largest: f64,
     width: Worst,
     pressure: Worst,
 }
@@ -54,6 +56,7 @@ impl Strain {
             waves: simulation.layers.clone(),
             time: 0.0,
             radius,
+            largest: 0.0,
             width: Worst::default(),
             pressure: Worst::default(),
         }
@@ -90,7 +93,11 @@ impl Strain {
                 .sum(),
         };
         self.pressure.above(index, strain, HARDEST);
+        let shrunk = row.contact_area < self.largest;
+        self.largest = self.largest.max(row.contact_area);
         let width = match (contact.is_compact(), self.radius) {
+            // A load that falls leaves an imprint deeper than the contact that remains: w/a is no strain then.
+            (true, _) if shrunk => 0.0,
             (true, Some(radius)) if contact.line => 0.5 * row.contact_area / radius,
             _ if contact.line || row.contact_area <= 0.0 || row.approach <= 0.0 => 0.0,
             (true, _) => row.approach / (row.contact_area / PI).sqrt(),

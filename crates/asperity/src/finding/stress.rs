@@ -1,7 +1,14 @@
-//! Unreliable stress below the surface: a grid too coarse for the maximum, depths that end above it, and a body that yields.
+//! Unreliable stress below the surface: a grid too coarse for the maximum, depths that miss it, and a body that yields.
 
 use super::words::{digits, si};
-use super::{Finding, STRESS_AT_DEEPEST, STRESS_TIMES_MISS_PEAK, STRESS_UNRESOLVED, YIELD_EXCEEDED};
+use super::{
+    Finding, STRESS_AT_DEEPEST, STRESS_DEPTHS_COARSE, STRESS_TIMES_MISS_PEAK, STRESS_UNRESOLVED,
+    YIELD_EXCEEDED,
+};
+
+/// The codes of findings about the stress: a new stress replaces them.
+pub const OF_STRESS: [&str; 5] =
+    [STRESS_UNRESOLVED, STRESS_AT_DEEPEST, STRESS_DEPTHS_COARSE, STRESS_TIMES_MISS_PEAK, YIELD_EXCEEDED];
 
 /// Smallest depth in cells of a maximum that the grid resolves.
 const CELLS: f64 = 2.0;
@@ -28,14 +35,34 @@ pub fn stress_times_miss_peak(time: f64, load: f64, unit: &str) -> Finding {
     Finding::warning(STRESS_TIMES_MISS_PEAK, time, time, text)
 }
 
-/// The largest von Mises stress lies at the deepest of several depths \[m\].
-pub fn stress_at_deepest(deepest: f64) -> Finding {
+/// The largest von Mises stress, found at `depth` \[m\], may be larger between the `unseen` depths \[m\] of
+/// [`unseen_depths`](crate::stress::unseen_depths).
+pub fn stress_depths(depth: f64, unseen: [f64; 2]) -> Finding {
+    let place = depths_between(unseen);
+    if unseen[1].is_infinite() {
+        let text = format!(
+            "The largest von Mises stress lies at the deepest depth, {}: it may be larger {place}. Give deeper depths, or \
+             depths = \"auto\".",
+            si(depth, "m")
+        );
+        return Finding::warning(STRESS_AT_DEEPEST, depth, depth, text);
+    }
     let text = format!(
-        "The largest von Mises stress lies at the deepest depth, {}: it may be larger below. Give deeper depths, or depths = \
-         \"auto\".",
-        si(deepest, "m")
+        "The depths are far apart around the largest von Mises stress, which was found at {}: it may be larger {place}. \
+         Give more depths there, or depths = \"auto\".",
+        si(depth, "m")
     );
-    Finding::warning(STRESS_AT_DEEPEST, deepest, deepest, text)
+    Finding::warning(STRESS_DEPTHS_COARSE, unseen[1], unseen[0], text)
+}
+
+/// Two depths \[m\] in words: "below 20 µm", "between the surface and 20 µm".
+pub fn depths_between([above, below]: [f64; 2]) -> String {
+    match (above > 0.0, below.is_finite()) {
+        (true, true) => format!("between {} and {}", si(above, "m"), si(below, "m")),
+        (true, false) => format!("below {}", si(above, "m")),
+        (false, true) => format!("between the surface and {}", si(below, "m")),
+        (false, false) => "at other depths".to_owned(),
+    }
 }
 
 /// The largest von Mises stress exceeds the yield stress of the body \[Pa\].

@@ -255,6 +255,36 @@ fn large_strains_are_found_before_and_after() {
     assert!(codes(&found).contains(&UNLIKELY_UNIT), "{found:?}");
 }
 
+#[test]
+fn a_contact_that_shrinks_over_its_imprint_is_no_large_strain() {
+    // Held for three retardation times, released in a hundredth of one: the imprint stays while the contact shrinks. By Hertz
+    // a^3 = 3/4 R W C, so a/R is 0.2 at the end of the hold.
+    let parts = [sphere(1e-3)];
+    let terms = vec![CreepTerm { compliance: 1e-6, retardation_time: 10.0 }];
+    let creep = Creep { instantaneous: 1e-8, terms, fluidity: 0.0 };
+    let history = History::Trapezoid { peak: 11e-3, rise: 0.1, hold: 30.0, fall: 0.1 };
+    let times = TimeGrid::Adaptive { end: 30.2, tolerance: 1e-2, first: 1e-2 };
+    let simulation =
+        Simulation { creep, times, loading: loaded(Control::Load, history), ..simulation(&parts) };
+    let mut diagnostics =
+        Diagnostics::new(&simulation, Known { parts: &parts, bodies: &[], thickness: None });
+    let mut march = March::new(simulation).unwrap();
+    let (mut widest, mut deepest) = (0.0_f64, 0.0_f64);
+    while let Some(step) = march.advance().unwrap() {
+        let row = step.row();
+        diagnostics.see(&step, &row);
+        let radius = (row.contact_area / std::f64::consts::PI).sqrt();
+        widest = widest.max(radius / 1e-3);
+        if radius > 0.0 {
+            deepest = deepest.max(row.approach / radius);
+        }
+    }
+    // The run has rows of this kind, and none with a large strain.
+    assert!(deepest > 0.3 && widest < 0.25, "{deepest} {widest}");
+    let found = diagnostics.findings(march.simulation());
+    assert!(!codes(&found).contains(&LARGE_STRAIN), "{found:?}");
+}
+
 /// A thermal body with the terms of [`zener`], warmed from 0 to 40 °C in 10 s.
 fn warming() -> crate::material::ThermalCreep {
     let shift = crate::material::Shift::Wlf { c1: 8.86, c2: 101.6, reference: 293.15 };
@@ -355,6 +385,29 @@ fn steps_too_long_for_a_falling_load_are_found() {
     let times = TimeGrid::Uniform { end: 6.0, steps: 60 };
     let measured = Simulation { loading: measured, times, ..of(Control::Load, 0.01, 1.0, 6) };
     assert_eq!(codes(&before(&measured, &parts)), QUIET);
+}
+
+#[test]
+fn the_number_of_steps_that_is_advised_is_enough() {
+    // A body that yields a hundred times more in 0.1 s, pressed in and out within 2 s.
+    let parts = [sphere(5e-3)];
+    let terms = vec![CreepTerm { compliance: 1e-6, retardation_time: 0.1 }];
+    let of = |steps| Simulation {
+        creep: Creep { instantaneous: 1e-8, terms: terms.clone(), fluidity: 0.0 },
+        loading: loaded(Control::Approach, History::Triangle { peak: 4e-6, rise: 1.0, fall: 1.0 }),
+        times: TimeGrid::Uniform { end: 2.0, steps },
+        ..simulation(&parts)
+    };
+    let advice = |steps: usize| -> Option<usize> {
+        let found = after(of(steps), &parts).into_iter().find(|finding| finding.code == STEPS_TOO_LONG)?;
+        let (number, rest) = found.text.split_once("Take ")?.1.split_once(' ')?;
+        assert!(rest.starts_with(&format!("steps in place of {steps}, or set spacing")), "{}", found.text);
+        number.parse().ok()
+    };
+    let enough = advice(12).unwrap();
+    // The error falls with the square of the step: far more would be wasted.
+    assert!(enough > 12 && enough < 100, "{enough}");
+    assert_eq!(advice(enough), None);
 }
 
 #[test]

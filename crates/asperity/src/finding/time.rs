@@ -10,9 +10,10 @@
 use super::words::{digits, rows, si};
 use super::worst::Worst;
 use super::{ALIASED_HISTORY, Finding, STEPS_TOO_LONG};
+use crate::error::significant;
 use crate::load::{Control, Course, History, Stage};
 use crate::simulation::Simulation;
-use crate::time::{Instant, Plan};
+use crate::time::{Instant, Plan, TimeGrid};
 
 /// Steps per period.
 const PER_PERIOD: f64 = 20.0;
@@ -58,13 +59,13 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
         }
         found.extend(drifting(simulation, &plan, instants, first));
     }
-    found.extend(long.map(|course| too_long(&plan, &course)));
+    found.extend(long.map(|course| too_long(simulation, &plan, &course)));
     found
 }
 
 /// The finding for steps whose estimated error is too large for the largest load of the run. (In the first step of a load that grows from 0
 /// the error is large for the load of that moment, whatever the length of the step.) `rows` are their numbers, errors and loads.
-pub(super) fn coarse(rows: &[(usize, f64, f64)], heaviest: f64) -> Option<Finding> {
+pub(super) fn coarse(simulation: &Simulation, rows: &[(usize, f64, f64)], heaviest: f64) -> Option<Finding> {
     let mut worst = Worst::default();
     for (row, error, _) in rows.iter().filter(|(_, error, load)| error * load > COARSE * heaviest) {
         worst.above(*row, *error, COARSE);
@@ -72,12 +73,58 @@ pub(super) fn coarse(rows: &[(usize, f64, f64)], heaviest: f64) -> Option<Findin
     worst.warning(STEPS_TOO_LONG, |error| {
         format!(
             "The time steps are long for the history and the material{}: the pressures may be off by up to {} % of their sum (load and \
-             approach are often more accurate, single cells less). Take more steps there, or use spacing = \"adaptive\" in place of \
-             steps. If the steps are adaptive already, use a smaller tolerance; if the contact moves, fewer cells_per_step.",
+             approach are often more accurate, single cells less). {}",
             error.place(),
-            digits(100.0 * error.value)
+            digits(100.0 * error.value),
+            shorter(simulation, error.value)
         )
     })
+}
+
+/// What brings an estimated error down to the limit: it falls with the square of the step, and with the tolerance of adaptive steps.
+fn shorter(simulation: &Simulation, error: f64) -> String {
+    let factor = (error / COARSE).sqrt();
+    let advice = match &simulation.times {
+        TimeGrid::Adaptive { tolerance, .. } => {
+            format!(
+                "Use a smaller tolerance: {} in place of {tolerance}.",
+                rounded_down(tolerance / factor.powi(2))
+            )
+        }
+        _ => more_steps(simulation, factor),
+    };
+    match &simulation.motion {
+        Some(motion) => {
+            let cells = rounded_down(motion.cells_per_step / factor);
+            format!("{advice} While the contact moves, cells_per_step = {cells} has the same effect.")
+        }
+        None => advice,
+    }
+}
+
+/// "Take 70 steps in place of 40, ...", for `factor` times as many steps.
+fn more_steps(simulation: &Simulation, factor: f64) -> String {
+    let times = significant((10.0 * factor).ceil() / 10.0, 2);
+    let adaptive = "spacing = \"adaptive\" and leave out";
+    match &simulation.times {
+        _ if simulation.loading.stages.iter().any(|stage| stage.times.is_some()) => {
+            format!("Take {times} times as many steps there, or set {adaptive} `steps`.")
+        }
+        TimeGrid::Uniform { steps, .. } | TimeGrid::Logarithmic { steps, .. } => {
+            let needed = (*steps as f64 * factor).ceil();
+            format!("Take {needed} steps in place of {steps}, or set {adaptive} `steps`.")
+        }
+        TimeGrid::List(_) | TimeGrid::Adaptive { .. } => {
+            format!("Give {times} times as many times there, or set `end`, {adaptive} `times`.")
+        }
+    }
+}
+
+/// One digit, not above the number.
+fn rounded_down(number: f64) -> f64 {
+    let power = 10f64.powf(number.log10().floor());
+    let down = (number / power * (1.0 + 1e-9)).floor() * power;
+    significant(down, 2).parse().unwrap_or(down)
 }
 
 /// The finding for too few steps while an approach is held with cells at the hardness.
@@ -103,7 +150,7 @@ pub(super) fn held_at_hardness(simulation: &Simulation) -> Option<Finding> {
         }
     }
     let long = held.iter().filter(|piece| piece.steps < piece.least && relaxes(simulation, &plan, piece));
-    long.min_by_key(|piece| piece.steps).map(|piece| too_long(&plan, piece))
+    long.min_by_key(|piece| piece.steps).map(|piece| too_long(simulation, &plan, piece))
 }
 
 /// A step in which the temperature changes the rate of a material while the load or approach changes or the other body has
@@ -128,9 +175,10 @@ fn drifting(simulation: &Simulation, plan: &Plan, instants: &[Instant], first: u
         let factor = libm::exp(drift);
         let text = format!(
             "The temperature changes the rate of a material by a factor of {} within one step ({}): load and approach are \
-             off there. Take more steps while the temperature changes, or spacing = \"adaptive\".",
+             off there. {}",
             digits(factor),
-            rows([row; 2])
+            rows([row; 2]),
+            more_steps(simulation, drift / DRIFT)
         );
         Finding::warning(STEPS_TOO_LONG, factor, libm::exp(DRIFT), text).at(plan.exact.then_some([row; 2]))
     })
@@ -227,18 +275,19 @@ fn relaxes(simulation: &Simulation, plan: &Plan, course: &Piece) -> bool {
     })
 }
 
-fn too_long(plan: &Plan, course: &Piece) -> Finding {
+fn too_long(simulation: &Simulation, plan: &Plan, course: &Piece) -> Finding {
     let at = [course.first, course.last];
     let place = if plan.exact { format!(" ({})", rows(at)) } else { String::new() };
     let coarse =
         if course.what == "load rises" { "pressures and energies" } else { "load, approach and energies" };
     let text = format!(
         "Where the {} within {}{place} the run has {}, less than {}, while the material relaxes: {coarse} are coarse \
-         there. Take more steps, or spacing = \"adaptive\".",
+         there. {}",
         course.what,
         si(course.length, "s"),
         if course.steps == 1 { "1 step".to_owned() } else { format!("{} steps", course.steps) },
-        course.least
+        course.least,
+        more_steps(simulation, course.least as f64 / course.steps as f64)
     );
     let finding = Finding::warning(STEPS_TOO_LONG, course.steps as f64, course.least as f64, text);
     let finding = finding.at(plan.exact.then_some(at));

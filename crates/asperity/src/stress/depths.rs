@@ -11,6 +11,11 @@ const DEEPEST: f64 = 1e9;
 const AUTOMATIC: usize = 24;
 /// They reach at least this number of cells.
 const CELLS: f64 = 4.0;
+/// Depths of less than this number of cells are not resolved by the grid.
+pub(super) const RESOLVED: f64 = 2.0;
+/// Largest ratio of neighbouring depths around a maximum: with it the search of the maximum by a parabola misses less than 0.5 % below
+/// a sphere and a cylinder, with Poisson's ratios of 0 to 0.5; with a ratio of 4 up to 2 %.
+const APART: f64 = 3.0;
 /// Largest number of depths of a survey: more are an input error.
 const MOST: usize = 10_000;
 
@@ -54,6 +59,27 @@ pub fn spaced_depths([first, last]: [f64; 2], count: usize, geometric: bool, sur
         }
     };
     surface.then_some(0.0).into_iter().chain((0..count).map(depth)).collect()
+}
+
+/// Depths \[m\] around the largest of the stresses `by_depth` between which the stress may be larger, because no depth is near enough
+/// on one side; infinite if none is deeper. `None` if the depths enclose the maximum: the next depths are at most 3 times deeper or
+/// shallower, or less than two cells deep.
+///
+/// ```
+/// use asperity::stress::unseen_depths;
+/// let depths = [0.0, 1e-6, 2e-6, 5e-6, 50e-6];
+/// assert_eq!(unseen_depths(&depths, &[1.0, 2.0, 3.0, 2.0, 1.0], 1e-6), None);
+/// assert_eq!(unseen_depths(&depths, &[1.0, 2.0, 2.5, 3.0, 1.0], 1e-6), Some([5e-6, 50e-6]));
+/// assert_eq!(unseen_depths(&depths[1..3], &[1.0, 2.0], 1e-6), Some([2e-6, f64::INFINITY]));
+/// ```
+pub fn unseen_depths(depths: &[f64], by_depth: &[f64], cell: f64) -> Option<[f64; 2]> {
+    let best = (0..by_depth.len()).reduce(|best, n| if by_depth[n] > by_depth[best] { n } else { best })?;
+    let far = |above: f64, below: f64| below > (APART * above).max(RESOLVED * cell);
+    let depth = depths[best];
+    let above = best.checked_sub(1).map_or(0.0, |n| depths[n]);
+    let below = depths.get(best + 1).copied().unwrap_or(f64::INFINITY);
+    let open = [far(above, depth), far(depth, below)];
+    open.contains(&true).then_some([if open[0] { above } else { depth }, if open[1] { below } else { depth }])
 }
 
 /// Area of the rectangle around the cells under pressure \[m^2\]; for a line, the width of the contact \[m\]; 0 if there are

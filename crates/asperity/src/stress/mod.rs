@@ -31,7 +31,7 @@ mod survey;
 
 pub use coefficients::{rectangle, strip, wave};
 pub use convolve::SubsurfaceStress;
-pub use depths::{automatic_depths, check_depth, check_depths, contact_box, spaced_depths};
+pub use depths::{automatic_depths, check_depth, check_depths, contact_box, spaced_depths, unseen_depths};
 pub use history::PressureHistory;
 pub use invariants::{Invariants, invariants};
 pub use quantity::StressQuantity;

@@ -1,7 +1,8 @@
 //! The largest stresses: maxima over depths, refined between them, and the profile over depth.
 
+use super::depths::RESOLVED;
 use super::slab::{First, MISES, SHEAR, Slab, TENSION, TRESCA};
-use super::{Component, SubsurfaceStress, check_depths};
+use super::{Component, SubsurfaceStress, check_depths, unseen_depths};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 
@@ -69,8 +70,8 @@ pub struct Survey {
     pub tresca: Extreme,
     /// Largest principal stress, at one of the computed depths.
     pub tension: Extreme,
-    /// True if the largest von Mises stress lies at the deepest depth: the survey should go deeper.
-    pub at_the_deepest: bool,
+    /// Depths \[m\] between which the von Mises stress may be larger than the value found, see [`unseen_depths`].
+    pub unseen: Option<[f64; 2]>,
     /// True if its depth is less than two cells but not 0: the grid is too coarse for it.
     pub unresolved: bool,
     /// Volume with a von Mises stress above the threshold \[m^3\], for a line per length \[m^2\], by the trapezoidal rule over
@@ -120,8 +121,6 @@ pub fn survey_with<E: From<Error>>(
         known.0.push((*depth, Slab::of(&grid, &fields, options)));
     }
     let slabs: Vec<Slab> = known.0.iter().map(|(_, slab)| *slab).collect();
-    let deepest = depths.len() - 1;
-    let at_the_deepest = deepest > 0 && known.best(MISES) == deepest;
     let shear = options.rolling.map(|_| SHEAR);
     for of in [MISES, TRESCA].into_iter().chain(shear) {
         for _ in 0..REFINED {
@@ -131,15 +130,15 @@ pub fn survey_with<E: From<Error>>(
         }
     }
     let by_depth = |of: usize| slabs.iter().map(|slab| slab.maxima[of].value).collect::<Vec<f64>>();
-    let mises = known.largest(MISES);
+    let (mises, mises_by_depth) = (known.largest(MISES), by_depth(MISES));
     Ok(Survey {
         depths: depths.to_vec(),
-        mises_by_depth: by_depth(MISES),
+        unseen: unseen_depths(depths, &mises_by_depth, grid.longest_cell()),
+        mises_by_depth,
         tresca_by_depth: by_depth(TRESCA),
         tension_by_depth: by_depth(TENSION),
         tresca: known.largest(TRESCA),
         tension: known.largest(TENSION),
-        at_the_deepest,
         unresolved: is_unresolved(&grid, mises.depth),
         stressed_volume: options.threshold.map(|_| volume(&grid, depths, &slabs)),
         orthogonal_shear: options
@@ -151,7 +150,7 @@ pub fn survey_with<E: From<Error>>(
 
 /// Whether a maximum at this depth is less than two cells below the surface, but not at the surface.
 fn is_unresolved(grid: &Grid, depth: f64) -> bool {
-    depth > 0.0 && depth < 2.0 * grid.longest_cell()
+    depth > 0.0 && depth < RESOLVED * grid.longest_cell()
 }
 
 /// Trapezoidal rule over the depths.

@@ -231,6 +231,27 @@ fn hertz_off_the_axis() {
 }
 
 #[test]
+fn depths_apart_by_three_find_the_largest_stress_below_a_sphere() {
+    let (grid, p) = hertz(8);
+    let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
+    stress.set_pressure(&p).unwrap();
+    // On the axis the radial stress is (1 + nu) (z atan(1/z) - 1) + 1/2 (1 + z^2)^-1, the normal stress -(1 + z^2)^-1
+    // (Johnson 1985, eq. 3.45); a search over z finds the largest difference.
+    let on_axis = |z: f64| 1.3 * (1.0 - z * (1.0 / z).atan()) - 1.5 / (1.0 + z * z);
+    let exact = (1..400).map(|n| on_axis(0.005 * f64::from(n)).abs()).fold(0.0, f64::max);
+    for first in [0.035, 0.045, 0.06, 0.075, 0.095] {
+        let depths: Vec<f64> = (0..5).map(|n| first * 3f64.powi(n)).collect();
+        let found = survey(&mut stress, &depths, &SurveyOptions::default()).unwrap();
+        assert_eq!(found.unseen, None, "{first}");
+        // 0.5 % from the depths, and 1 % from 8 cells to the radius (second order in the cell).
+        assert!((found.mises.value / exact - 1.0).abs() < 0.015, "{first}: {} {exact}", found.mises.value);
+    }
+    // The surface and a depth of 4 radii tell nothing of what is between them.
+    let found = survey(&mut stress, &[0.0, 4.0], &SurveyOptions::default()).unwrap();
+    assert!(found.mises.value < 0.5 * exact && found.unseen == Some([0.0, 4.0]), "{found:?}");
+}
+
+#[test]
 fn the_largest_shear_under_a_sphere_is_where_hertz_has_it() {
     // 0.3100205 p0 at 0.4808645 a for nu = 0.3 (Johnson 1985, eq. 4.24 and its extreme).
     let mut errors = vec![];
@@ -245,7 +266,7 @@ fn the_largest_shear_under_a_sphere_is_where_hertz_has_it() {
         errors.push((found.tresca.value - 0.310_020_5).abs());
         assert!((found.mises.value - 2.0 * found.tresca.value).abs() < 1e-3, "{found:?}");
         assert!((found.tresca.depth - 0.4808645).abs() < 0.03, "{found:?}");
-        assert!(!found.at_the_deepest && !found.unresolved);
+        assert!(found.unseen.is_none() && !found.unresolved);
         let middle = [n * 2 - 1, n * 2];
         assert!(
             middle.contains(&(found.tresca.cell / (4 * n)))

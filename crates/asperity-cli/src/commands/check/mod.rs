@@ -4,7 +4,7 @@ mod cost;
 
 use asperity::Axis;
 use asperity::load::{Course, Stage};
-use asperity_io::case::{Case, Examination, Inputs, SurfaceInput, Travel};
+use asperity_io::case::{Case, Examination, Inputs, SurfaceInput, Travel, bare_numbers};
 use asperity_io::stress::StressDescription;
 use serde_json::json;
 
@@ -24,6 +24,7 @@ impl Verb for Check {
         let case = Case::read(&self.case, &self.common.set)?;
         // The files are read and the gap is built: what `run` would refuse is refused here.
         let examined = case.examine()?;
+        note_bare_numbers(&case);
         let cost = cost::cost(&case, &examined.description);
         if self.json {
             let mut object = serde_json::to_value(&examined).unwrap_or_default();
@@ -37,6 +38,17 @@ impl Verb for Check {
             crate::print(&summary(&case, &examined, cost.as_ref()))?;
         }
         super::findings::strict(self.strict, &examined.findings)
+    }
+}
+
+/// Lists the keys whose numbers have no unit.
+fn note_bare_numbers(case: &Case) {
+    const SHOWN: usize = 8;
+    let keys = bare_numbers(&case.source);
+    let more = if keys.len() > SHOWN { format!(" and {} more", keys.len() - SHOWN) } else { String::new() };
+    if !keys.is_empty() {
+        let shown = keys[..keys.len().min(SHOWN)].join(", ");
+        crate::messages::message!("note: numbers without a unit are in SI (m, N, Pa, s, K): {shown}{more}");
     }
 }
 
@@ -87,14 +99,9 @@ fn largest_before_the_end(case: &Case) -> Option<f64> {
     else {
         return None;
     };
-    let most = history.range(end)[1];
-    let reached = |time: f64| history.range(time)[1] >= most * (1.0 - 1e-9);
-    let mut bracket = [0.0, end];
-    for _ in 0..60 {
-        let middle = 0.5 * (bracket[0] + bracket[1]);
-        bracket[usize::from(reached(middle))] = middle;
-    }
-    (history.before(end) < 0.99 * most).then_some(bracket[1])
+    let time = history.time_of_largest(end);
+    let largest = history.before(time).max(history.after(time));
+    (history.before(end) < 0.99 * largest).then_some(time)
 }
 
 /// What is prescribed at most, and the contact to be expected: lines of a name and a value.

@@ -4,6 +4,7 @@ pub(super) mod summary;
 
 use std::time::{Duration, Instant};
 
+use asperity::finding::OF_STRESS;
 use asperity::stress::StressQuantity;
 use asperity_io::case::{CaseError, fragment};
 use asperity_io::export::volume;
@@ -73,9 +74,9 @@ impl Verb for Stress {
         }
         let shown = below.instants.iter().find(|instant| instant.index == index).or(below.worst());
         if self.json {
-            return crate::print(&format!("{}\n", summary::object(&reader, &below, &written)));
+            return crate::print(&format!("{}\n", summary::object(&below, &written)));
         }
-        super::findings::print(&below.findings(&reader.header().grid));
+        super::findings::print(&below.findings());
         let drawn = self.plot.is_some() || self.output.is_some();
         let mut text = summary::text(&below, shown, drawn);
         written.iter().for_each(|path| text += &format!("{path}\n"));
@@ -105,16 +106,8 @@ fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
         }
     };
     let below = evaluate(&mut writer, plan, &crate::interrupt::flag(), progress).map_err(ended)?;
-    let reader = Reader::open(&args.result)?;
-    let new = below.findings(&reader.header().grid);
-    let codes = [
-        asperity::finding::STRESS_UNRESOLVED,
-        asperity::finding::STRESS_AT_DEEPEST,
-        asperity::finding::STRESS_TIMES_MISS_PEAK,
-        asperity::finding::YIELD_EXCEEDED,
-    ];
-    let others = writer.findings().iter().filter(|finding| !codes.contains(&finding.code.as_ref())).cloned();
-    let findings = others.chain(new).collect();
+    let others = writer.findings().iter().filter(|finding| !OF_STRESS.contains(&finding.code.as_ref()));
+    let findings = others.cloned().chain(below.findings()).collect();
     writer.note(findings)?;
     Ok(below)
 }

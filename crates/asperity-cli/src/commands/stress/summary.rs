@@ -1,14 +1,13 @@
 //! What `asperity stress` prints.
 
 use asperity_io::finding;
-use asperity_io::store::Reader;
 use asperity_io::stress::{Below, Instant, first_yield};
 use serde_json::{Map, Value, json};
 
 use crate::format::{counted, quantity};
 
 /// The JSON object.
-pub fn object(reader: &Reader, below: &Below, written: &[String]) -> Value {
+pub fn object(below: &Below, written: &[String]) -> Value {
     let set = &below.set;
     let over = |number: &dyn Fn(&Instant) -> Value| below.instants.iter().map(number).collect::<Value>();
     let mut object = Map::new();
@@ -25,8 +24,8 @@ pub fn object(reader: &Reader, below: &Below, written: &[String]) -> Value {
     }
     object.insert("threshold".into(), json!(set.threshold));
     object.insert("yield_stress".into(), json!(set.yield_stress));
-    object.insert("first_yield".into(), first_yield(below).map_or(Value::Null, |first| first.to_json()));
-    object.insert("findings".into(), finding::list(&below.findings(&reader.header().grid)));
+    object.insert("first_yield".into(), first_yield(below).map_or(Value::Null, |first| first.to_json(set)));
+    object.insert("findings".into(), finding::list(&below.findings()));
     object.insert("written".into(), json!(written));
     Value::Object(object)
 }

@@ -21,14 +21,6 @@ impl Verb for SurfaceGenerate {
         let seed = self.seed.to_string();
         // The patch of the challenge has a size of its own.
         let challenge_size = self.preset.is_some().then(|| SelfAffine::CHALLENGE_SIZE.to_string());
-        // A case refuses an angle without a unit.
-        let angle = self.lay_angle.as_deref().map(|text| match text.trim().parse::<f64>() {
-            Ok(_) => {
-                note_unit("--lay-angle", text, "rad");
-                format!("{} rad", text.trim())
-            }
-            Err(_) => text.to_owned(),
-        });
         let given: [(&str, Option<&str>); 15] = [
             ("cells", Some(&self.cells)),
             ("size", self.size.as_deref().or(challenge_size.as_deref())),
@@ -39,7 +31,7 @@ impl Verb for SurfaceGenerate {
             ("longest", self.longest.as_deref()),
             ("shortest", self.shortest.as_deref()),
             ("roll_off", self.roll_off.as_deref()),
-            ("lay.angle", angle.as_deref()),
+            ("lay.angle", self.lay_angle.as_deref()),
             ("lay.ratio", self.lay_ratio.as_deref()),
             ("distribution.skewness", self.skewness.as_deref()),
             ("distribution.kurtosis", self.kurtosis.as_deref()),

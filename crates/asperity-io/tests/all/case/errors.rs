@@ -583,8 +583,27 @@ fn overrides_are_read_as_if_written() {
     assert_eq!(error.key, "body[0].hardnes");
     assert_eq!(error.help.as_deref(), Some("set by an override; did you mean `hardness`?"));
     let shown = with(&["body.7.name=x"]).unwrap_err().to_string();
-    assert!(shown.contains("cannot set body[7].name: there is no element 7, the list has 2"), "{shown}");
+    assert!(shown.contains("body[7].name cannot be set: there is no element 7, the list has 2"), "{shown}");
     assert!(with(&["nonsense"]).unwrap_err().to_string().contains("KEY=VALUE"));
+}
+
+#[test]
+fn a_table_that_is_a_list_is_refused_at_any_depth() {
+    let (start, end) = (GOOD.find("history = ").unwrap(), GOOD.find("[time]").unwrap());
+    for (old, new, key) in [
+        ("[body.material]", "[[body.material]]", "body[1].material"),
+        ("[time]", "[[motion.steady]]\nvelocities = [\"1 m/s\"]\n[time]", "motion.steady"),
+        (&GOOD[start..end], "[[load.history]]\nkind = \"step\"\nvalue = \"1 N\"\n", "load.history"),
+    ] {
+        assert!(GOOD.contains(old));
+        let text = GOOD.replacen(old, new, 1);
+        let errors = Case::parse(&text, Path::new("."), &[]).unwrap_err().errors;
+        let found = errors.iter().find(|error| error.key == key);
+        assert!(
+            found.is_some_and(|error| error.message.contains("a table, not a list")),
+            "{key}: {errors:?}"
+        );
+    }
 }
 
 #[test]

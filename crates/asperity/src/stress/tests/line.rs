@@ -160,7 +160,7 @@ fn the_largest_shear_under_a_cylinder_is_where_hertz_has_it() {
     // Half a cell off the axis, and the place between depths.
     assert!((found.tresca.value - shear).abs() < 1e-3, "{found:?}");
     assert!((found.tresca.depth - depth).abs() < 0.03, "{found:?}");
-    assert!(!found.at_the_deepest && !found.unresolved);
+    assert!(found.unseen.is_none() && !found.unresolved);
     assert!([63, 64].contains(&found.tresca.cell));
     // Between x = +-0.87 a at z = 0.5 a: the range is 0.5 p0 (Johnson 1985, section 4.2(c)).
     let rolling = found.orthogonal_shear.unwrap().largest;

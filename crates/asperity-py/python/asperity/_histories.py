@@ -232,8 +232,8 @@ def log(end: float, steps: int, *, first: float) -> Times:
 def adaptive(end: float, *, tolerance: float = 1e-3, first: float | None = None) -> Times:
     """Steps to `end` [s] as long as their error allows.
 
-    `tolerance` is the largest relative error of the stress; the first step, also after each break of the history, is no longer
-    than `first` [s], a thousandth of `end` by default. Each row has its estimate as `time_error`.
+    `tolerance` is the relative error of the stress that the steps aim at, and that the `time_error` of each row stays within. The first
+    step, also after each break of the history, is no longer than `first` [s], a thousandth of `end` by default.
 
     >>> import asperity as asp, numpy as np
     >>> sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)

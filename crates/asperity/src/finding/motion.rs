@@ -16,8 +16,9 @@ const UNCERTAIN: f64 = 0.1;
 const NONE: f64 = 1e-7;
 /// In time, rows with less than this fraction of the largest force are ignored, because friction changes its sign there.
 const SMALL: f64 = 0.1;
-/// Range of memory length over domain in which the previous contact still has an effect at the next one.
-const REACH: std::ops::Range<f64> = 0.1..10.0;
+/// Memory length over the way back to its own track from which on a body meets what it has left there. Beyond many such ways the whole
+/// track stays relaxed.
+const REACH: f64 = 0.1;
 /// Smallest fraction of the compliance of a relevant branch.
 const SHARE: f64 = 0.05;
 
@@ -72,18 +73,18 @@ pub fn own_track(
     let length = direction.return_length(grid);
     let reaches = |v: f64| {
         let counting = branches.iter().filter(|(compliance, _)| *compliance > SHARE * total);
-        counting.map(|(_, time)| v * time / length).filter(|share| REACH.contains(share)).fold(0.0, f64::max)
+        counting.map(|(_, time)| v * time / length).filter(|share| *share > REACH).fold(0.0, f64::max)
     };
     let worst = velocities.iter().map(|v| reaches(*v)).fold(0.0, f64::max);
     (worst > 0.0).then(|| {
         let text = format!(
-            "On the periodic domain the body meets its own track every {}, before the material has recovered: within its retardation \
-             time it moves by {} of that length. For a single body use boundary = \
+            "On the periodic domain the body meets its own track every {}, before the material has recovered: within a retardation \
+             time it moves {} times that way. For a single body use boundary = \
              \"free\" (a steady state needs no track) or a longer domain. For one of many bodies in a row this is correct.",
             si(length, "m"),
             digits(worst)
         );
-        Finding::warning(OWN_TRACK, worst, REACH.start, text)
+        Finding::warning(OWN_TRACK, worst, REACH, text)
     })
 }
 
@@ -106,6 +107,8 @@ mod tests {
         assert!(found(Direction::X).is_none());
         let along_y = found(Direction::Y).unwrap();
         assert!((along_y.value.unwrap() - 0.15).abs() < 1e-12 && along_y.text.contains("every 2 m"));
+        // A memory of many ways leaves the whole track relaxed.
+        assert!(own_track(&grid, Direction::X, &[1.0], &[(1.0, 1e4)], 1.0).is_some());
         // atan(1/4) is the diagonal; at 45 degrees (8, 8) is the first image on the way, as (0, 2) lies beside it by 1.4; at 80 degrees (0, 2) lies beside it by 0.35.
         let length = |degrees: f64| Direction::Angle(degrees.to_radians()).return_length(&grid);
         let diagonal = f64::hypot(8.0, 2.0);

@@ -287,10 +287,10 @@ impl FitOptions {
         require(
             misfit.rms <= self.limit,
             "rms misfit of the fit",
-            format!("{:.2} % ({:.2} % at {:e})", 100.0 * misfit.rms, 100.0 * misfit.max, misfit.worst),
+            format!("{:.2} % ({:.2} % at {:.4e})", 100.0 * misfit.rms, 100.0 * misfit.max, misfit.worst),
             format!(
                 "at most {:.2} % (the largest misfit allowed): fit a narrower window, allow more terms, leave \
-                     outliers out, or allow a larger misfit",
+                     outliers out, or allow a larger misfit where the data scatter as much",
                 100.0 * self.limit
             ),
         )?;

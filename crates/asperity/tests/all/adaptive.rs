@@ -402,3 +402,29 @@ fn a_surface_that_recovers_and_touches_again_holds_the_tolerance() {
         assert!(found.len() < 400, "{} rows", found.len());
     }
 }
+
+#[test]
+fn a_dashpot_that_begins_to_retreat_makes_no_pressure_of_what_the_solver_leaves() {
+    // C(t) = 1 - exp(-t/0.5): pressed, held and drawn back, with the solver's usual tolerance. The contact opens at once where the
+    // approach begins to fall, so that no step is short enough for its error.
+    let terms = vec![CreepTerm { compliance: 1.0, retardation_time: 0.5 }];
+    let creep = Creep { instantaneous: 0.0, terms, fluidity: 0.0 };
+    let points = vec![(0.0, 0.0), (0.5, 0.03), (1.5, 0.03), (2.0, 0.0)];
+    let loading: Programme =
+        Loading { control: Control::Approach, history: History::Table { points } }.into();
+    let base = Simulation { creep, loading, solver: SolverOptions::default(), ..sphere(24) };
+    let uniform = rows(Simulation { times: TimeGrid::Uniform { end: 2.5, steps: 500 }, ..base.clone() });
+    let largest = |rows: &[Row]| rows.iter().map(|row| row.load).fold(0.0, f64::max);
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let found = rows(Simulation { times: adaptive(2.5, tolerance, 0.1), ..base.clone() });
+        let peak = largest(&found);
+        // The tolerance, and the chord of the uniform steps at the peak.
+        assert!((peak / largest(&uniform) - 1.0).abs() < tolerance + 5e-3, "{tolerance}: {peak}");
+        // While the approach falls, loads are below that of the hold or state that they may not be.
+        let held = found.iter().rfind(|row| row.time() <= 1.5).unwrap().load;
+        for row in found.iter().filter(|row| row.time() > 1.5) {
+            let allowed = held * (1.0 + tolerance) / (1.0 - row.time_error.unwrap().min(0.9));
+            assert!(row.load <= allowed, "{tolerance}: {} {}", row.time(), row.load);
+        }
+    }
+}

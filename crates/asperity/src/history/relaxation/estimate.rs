@@ -17,6 +17,9 @@
 //! The sum of ε goes over those cells and over the cells apart whose undeformed surfaces would overlap, h0 < w: a surface that
 //! has recovered there touches again, and its error then is one of the pressure.
 //!
+//! Where the material has no instantaneous compliance, the error that the solver leaves in u makes an error ζ/x times as large of the
+//! stress. No step is rejected whose estimate is below that: shorter ones would be worse.
+//!
 //! A cell that comes into contact during the step moves with the approach w only from then on, and so faster than u' - u over
 //! the whole step says. Where u runs linearly in time, a quarter of its gap before the step replaces |u\[z0, z1, z2\]| Δz² if it is
 //! larger. (A quarter, because this error does not add up over the steps.)
@@ -56,6 +59,8 @@ pub(super) struct Survey {
     pub(super) largest: f64,
     /// Share of the cells in contact at the start that still are at the end.
     pub(super) staying: f64,
+    /// What the dashpot ζ makes of the error that the solver leaves in u.
+    noise: f64,
 }
 
 impl Relaxation {
@@ -147,13 +152,23 @@ impl Relaxation {
         let mean = if pressure > 0.0 { touching * energy / pressure } else { 0.0 };
         let pressed = if touching > 0.0 { mean.max(least) } else { 0.0 };
         let largest = if pressure > 0.0 { most / pressure } else { 0.0 };
-        Survey { bends, stress: now.max(least), own, pressed, largest, staying }
+        let x = self.rules.length;
+        let noise =
+            if x > 0.0 { self.dual.relaxation.viscosity * self.tolerance * displaced / x } else { 0.0 };
+        Survey { bends, stress: now.max(least), own, pressed, largest, staying, noise }
     }
 
     /// The estimated error of the step that was surveyed, without those of the steps before; 0 where nothing is remembered.
     pub(super) fn estimate(&self, survey: &Survey) -> f64 {
         let is_known = self.reference.is_some() && self.rules.length > 0.0 && survey.stress > 0.0;
-        if is_known { 2.0 * self.defect() * survey.bends / survey.stress } else { 0.0 }
+        let bends = 2.0 * self.defect() * survey.bends;
+        // Shorter steps have less of the one, but more of the other.
+        if is_known && bends > survey.noise { bends / survey.stress } else { 0.0 }
+    }
+
+    /// The error of the stress that the solver leaves, relative.
+    pub(super) fn noise(&self) -> f64 {
+        if self.survey.stress > 0.0 { self.survey.noise / self.survey.stress } else { 0.0 }
     }
 
     /// Σ E_i b(x/τ_i) + ζ/(2x), with what is remembered of the steps before.

@@ -52,7 +52,8 @@ impl Relaxation {
         }
         let pressed = if presses { self.survey.pressed } else { 0.0 };
         let all = if pressed > 0.0 { (MARGIN * sum / pressed).min(self.survey.largest) } else { 0.0 };
+        let noise = if presses { self.noise() } else { 0.0 };
         let TotalError { value, adaptive, .. } = &mut self.total_error;
-        *value = adaptive.map_or(all, |own| all.clamp(LEAST * own, own / SHARE));
+        *value = adaptive.map_or(all, |own| all.clamp(LEAST * own, own / SHARE)).max(noise);
     }
 }

@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 
 use asperity::finding::Diagnostics;
+use asperity::material::{Creep, CreepTerm};
 use asperity::reference::HunterCylinder;
-use asperity::sliding::{Direction, Friction};
+use asperity::sliding::{Direction, Friction, MovingGap, Steady, SteadyMotion};
 use asperity::surface::{Part, Roughness, SelfAffine, Shape};
-use asperity::{Boundary, Drive, Grid};
+use asperity::{Boundary, Control, Drive, Grid, History, Loading, Simulation};
 
 use crate::sliding::{Case, cylinder, shape, zener};
 
@@ -122,4 +123,37 @@ fn a_steady_state_is_judged_by_its_own_force() {
     };
     assert_eq!(rows_of(&[1e-3]), Some([0, 0]));
     assert_eq!(rows_of(&[1e-3, 1.0]).map(|rows| rows[0]), Some(0));
+}
+
+#[test]
+fn single_terms_of_large_contrast_converge_by_exchanges_of_cells() {
+    // Cylinders on a periodic line on which Newton's steps and the continuation go round in circles: C(inf)/C0, the load over pi, cells,
+    // v lambda over the radius.
+    let cases = [
+        (1000.0, 0.25, 128, 6.463),
+        (2000.0, 0.5, 128, 4.403),
+        (3000.0, 0.25, 256, 4.403),
+        (3000.0, 0.25, 128, 9.487),
+    ];
+    for (contrast, load, cells, velocity) in cases {
+        let grid = Grid::line(cells, 8.0).unwrap();
+        let cylinder = Part::Shape { shape: Shape::Cylinder { radius: 1.0 }, center: [0.0, 0.0] };
+        let gap = MovingGap::new(&grid, Boundary::Periodic, &[(cylinder, true)]).unwrap();
+        let (h, slopes) = gap.at(0.0, Direction::X);
+        let term = CreepTerm { compliance: 1.0 - 1.0 / contrast, retardation_time: 1.0 };
+        let simulation = Simulation {
+            boundary: Boundary::Periodic,
+            creep: Creep { instantaneous: 1.0 / contrast, terms: vec![term], fluidity: 0.0 },
+            loading: Loading { control: Control::Load, history: History::Step { value: load * PI } }.into(),
+            ..Simulation::new(grid, h)
+        };
+        let velocities = vec![velocity];
+        let motion = SteadyMotion { direction: Direction::X, velocities, slopes, shear_stress: None };
+        let mut steady = Steady::new(simulation, motion).unwrap();
+        let step = steady.advance().unwrap().unwrap();
+        let (row, friction) = (step.row(), step.friction().unwrap());
+        // The solver's tolerance, and the energy that the bodies lose.
+        assert!(row.residual <= 1e-6 && friction.force > 0.0, "{contrast} {velocity}: {row:?}");
+        println!("{contrast} {load} {cells} {velocity}: {} convolutions", row.convolutions);
+    }
 }

@@ -19,6 +19,8 @@ const STEPS: usize = 60;
 const EASY: f64 = 0.25;
 const FALL: f64 = 1.0 / 3.0;
 const LEAST_FALL: f64 = 0.9;
+/// Exchanges of pivoting before an easier body is tried.
+const PIVOTS: usize = 100;
 /// Tolerance of the contacts on the way.
 const ON_THE_WAY: f64 = 1e-3;
 
@@ -103,10 +105,15 @@ impl<'a> SteadyContact<'a> {
             let stream = Stream { streaming: &easier, ..self.stream };
             self.tolerance =
                 if at_once > own { self.options.tolerance.max(ON_THE_WAY) } else { self.options.tolerance };
-            let most = if fall < LEAST_FALL { STEPS } else { usize::MAX };
             let mut operators = Operators::plan(&stream, true, self.interrupt)?;
-            let found = self.iterate(&mut operators, fields, most, state)?;
+            // Newton's steps mostly find the contact; where they go round in circles, single exchanges end.
+            let most = if fall < LEAST_FALL { PIVOTS } else { usize::MAX };
+            let found = self.iterate(&mut operators, fields, STEPS, state)?
+                || self.pivot(&mut operators, fields, most, state)?;
             tracing::debug!(at_once, found, "continuation");
+            if !found && most == usize::MAX {
+                return Err(self.not_converged());
+            }
             if !found {
                 fall = fall.sqrt();
                 state.pressure.copy_from_slice(&start);

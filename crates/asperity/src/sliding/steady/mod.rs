@@ -10,7 +10,8 @@
 //!         u = A p,  w from the free cells,  r = u + h - w;  stop where the contact conditions hold
 //!         p = contact of the symmetric operator M = |A|²/Re A and the gap h + u - M p    (metric step)
 //!         p = p after Newton's steps on its contact set, where they lower the residual   (newton, gmres)
-//!     where that takes too long, the same for bodies that yield a share s of C(∞) at once, s from 1/4 down to C0/C(∞)
+//!     where that takes too long, the same for bodies that yield a share s of C(∞) at once, s from 1/4 down to C0/C(∞),
+//!     and where one of them takes too long, exchanges of cells between the contact set and the rest  (pivots)
 //! ```
 //!
 //! The metric step contracts by max sin δ < 1 in the norm of M, δ = arg A^, from any start: |1 - A^/M^| = |sin δ|, and the
@@ -24,6 +25,7 @@ mod contact;
 mod gmres;
 mod newton;
 mod operators;
+mod pivots;
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

@@ -1,0 +1,120 @@
+//! Principal pivoting for a contact on which Newton's steps and the metric iteration stall.
+//!
+//! On a set F of cells the pressure is that of w - h - A p = 0 with the load, and 0 elsewhere. Infeasible are the cells of F with p < 0 and
+//! those outside with a negative gap. A moving body loses energy whatever the pressure, so that A is positive definite, and one set is
+//! feasible (Cottle, Pang & Stone, The Linear Complementarity Problem, 1992, section 4.2). All infeasible cells change sides while their
+//! number falls within [`TRIES`] exchanges, else the last one alone (J. J. Júdice & F. M. Pires, Comput. Oper. Res. 21 (1994) 587): that
+//! ends after a finite number of exchanges, which blocks of cells alone need not.
+
+use super::contact::{Fields, SteadyContact};
+use super::gmres::OnSet;
+use super::operators::Operators;
+use crate::contact::{self, ContactState};
+use crate::error::Result;
+
+/// Exchanges of all infeasible cells without fewer of them.
+const TRIES: usize = 10;
+/// Solves on one set: each brings the violations down by a factor.
+const SOLVES: usize = 8;
+/// Violations on the set over those that the contact may have.
+const EXACT: f64 = 0.1;
+
+impl SteadyContact<'_> {
+    /// Exchanges cells from the contact of `state` on until the contact conditions hold. False where that takes more than `most` exchanges or
+    /// too many iterations.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::error::Error::Interrupted).
+    pub(super) fn pivot(
+        &mut self,
+        operators: &mut Operators,
+        fields: &mut Fields,
+        most: usize,
+        state: &mut ContactState,
+    ) -> Result<bool> {
+        let cells = state.pressure.len();
+        let mut inside: Vec<bool> = state.pressure.iter().map(|p| *p > 0.0).collect();
+        let (mut fewest, mut tries) = (usize::MAX, TRIES);
+        let mut exchanges = 0;
+        while self.spent.iterations < self.options.max_iterations && exchanges < most {
+            exchanges += 1;
+            let set: Vec<usize> = (0..cells).filter(|n| inside[*n]).collect();
+            if set.is_empty() {
+                return Ok(false);
+            }
+            let approach = self.solve_on(&set, operators, fields, state)?;
+            let (c, h) = (self.problem.compliance, self.problem.gap);
+            let is_wrong = |n: &usize| match inside[*n] {
+                true => state.pressure[*n] < 0.0,
+                false => h[*n] + c * state.unit_displacement[*n] < approach,
+            };
+            let wrong: Vec<usize> = (0..cells).filter(is_wrong).collect();
+            tracing::debug!(wrong = wrong.len(), set = set.len(), "pivots");
+            let mut trial = state.clone();
+            contact::make_feasible(&self.problem, self.grid, &mut trial)?;
+            operators.apply_into(&trial.pressure, &mut trial.unit_displacement);
+            if self.rate(&mut trial).residual <= self.tolerance {
+                *state = trial;
+                return Ok(true);
+            }
+            if wrong.len() < fewest {
+                (fewest, tries) = (wrong.len(), TRIES);
+            } else {
+                tries = tries.saturating_sub(1);
+            }
+            let change = if tries > 0 { &wrong[..] } else { &wrong[wrong.len().saturating_sub(1)..] };
+            if change.is_empty() {
+                return Ok(false);
+            }
+            change.iter().for_each(|n| inside[*n] = !inside[*n]);
+        }
+        Ok(false)
+    }
+
+    /// The pressure on the set, with the load and 0 elsewhere; returns the approach.
+    fn solve_on(
+        &mut self,
+        set: &[usize],
+        operators: &mut Operators,
+        fields: &mut Fields,
+        state: &mut ContactState,
+    ) -> Result<f64> {
+        let mut pressure = vec![0.0; state.pressure.len()];
+        set.iter().for_each(|n| pressure[*n] = state.pressure[*n]);
+        let lacking = (self.total() - pressure.iter().sum::<f64>()) / set.len() as f64;
+        set.iter().for_each(|n| pressure[*n] += lacking);
+        state.pressure = pressure;
+        let (c, h) = (self.problem.compliance, self.problem.gap);
+        let mut approach = 0.0;
+        for _ in 0..SOLVES {
+            operators.apply_into(&state.pressure, &mut state.unit_displacement);
+            self.spent.convolutions += 1;
+            let gaps: Vec<f64> = set.iter().map(|n| h[*n] + c * state.unit_displacement[*n]).collect();
+            approach = gaps.iter().sum::<f64>() / set.len() as f64;
+            let violations: Vec<f64> = gaps.iter().map(|gap| (gap - approach) / c).collect();
+            let largest = violations.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+            let scale = set.iter().map(|n| state.unit_displacement[*n].abs()).sum::<f64>() / set.len() as f64;
+            if largest <= EXACT * self.tolerance * scale {
+                break;
+            }
+            let [first, second] = &mut fields.work;
+            let interrupt = self.interrupt;
+            let mut on_set =
+                OnSet { operators, cells: set, work: [first, second], convolutions: 0, interrupt };
+            let change = on_set.solve(&violations)?;
+            self.spent.convolutions += on_set.convolutions;
+            self.spent.iterations += 1;
+            set.iter().zip(&change).for_each(|(n, d)| state.pressure[*n] += d);
+        }
+        state.approach = approach;
+        Ok(approach)
+    }
+
+    /// The sum of the pressures that carry the load.
+    fn total(&self) -> f64 {
+        match self.problem.prescribed {
+            contact::Prescribed::Load(load) => load / self.grid.cell_area(),
+            contact::Prescribed::Approach(_) => f64::NAN,
+        }
+    }
+}

@@ -145,7 +145,11 @@ fn the_examples_are_sound_before_they_run() {
             let findings = object(&check)["findings"].clone();
             let warnings =
                 findings.as_array().unwrap().iter().filter(|finding| finding["severity"] == "warning");
-            assert_eq!(warnings.count(), 0, "{}: {findings}", path.display());
+            let codes: Vec<&str> = warnings.filter_map(|finding| finding["code"].as_str()).collect();
+            // Rubber on a rough road is beyond small strains where it is stiff, as every linear theory of it.
+            let expected: &[&str] =
+                if path.ends_with("rubber-friction.toml") { &["large-strain"] } else { &[] };
+            assert_eq!(codes, expected, "{}: {findings}", path.display());
         }
     }
 }

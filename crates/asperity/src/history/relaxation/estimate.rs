@@ -59,8 +59,10 @@ pub(super) struct Survey {
     pub(super) largest: f64,
     /// Share of the cells in contact at the start that still are at the end.
     pub(super) staying: f64,
-    /// What the dashpot ζ makes of the error that the solver leaves in u.
+    /// What the dashpot ζ makes of the errors that the solver leaves in u at both ends.
     noise: f64,
+    /// That error at the end \[m\].
+    pub(super) left: f64,
 }
 
 impl Relaxation {
@@ -153,9 +155,11 @@ impl Relaxation {
         let pressed = if touching > 0.0 { mean.max(least) } else { 0.0 };
         let largest = if pressure > 0.0 { most / pressure } else { 0.0 };
         let x = self.rules.length;
-        let noise =
-            if x > 0.0 { self.dual.relaxation.viscosity * self.tolerance * displaced / x } else { 0.0 };
-        Survey { bends, stress: now.max(least), own, pressed, largest, staying, noise }
+        let noise = match x > 0.0 {
+            true => self.dual.relaxation.viscosity * (self.total_error.solver + left) * touching / x,
+            false => 0.0,
+        };
+        Survey { bends, stress: now.max(least), own, pressed, largest, staying, noise, left }
     }
 
     /// The estimated error of the step that was surveyed, without those of the steps before; 0 where nothing is remembered.

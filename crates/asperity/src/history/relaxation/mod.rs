@@ -124,7 +124,7 @@ impl Relaxation {
             cell_area: simulation.grid.cell_area(),
             is_line: simulation.grid.is_line(),
             survey: Survey::default(),
-            total_error: TotalError { left: vec![0.0; count], value: 0.0, adaptive: None },
+            total_error: TotalError { left: vec![0.0; count], value: 0.0, adaptive: None, solver: 0.0 },
             pair,
             dual,
         })
@@ -206,6 +206,7 @@ saved! {
         "elapsed": elapsed;
         "rules": rules;
         "error_left": total_error.left;
+        "solver_left": total_error.solver;
     }
 }
 

@@ -30,6 +30,8 @@ pub(super) struct TotalError {
     pub(super) value: f64,
     /// The estimate by which the length of an adaptive step was chosen.
     pub(super) adaptive: Option<f64>,
+    /// What the solver leaves in u at the end of the step closed last \[m\].
+    pub(super) solver: f64,
 }
 
 impl Relaxation {
@@ -53,6 +55,7 @@ impl Relaxation {
         let pressed = if presses { self.survey.pressed } else { 0.0 };
         let all = if pressed > 0.0 { (MARGIN * sum / pressed).min(self.survey.largest) } else { 0.0 };
         let noise = if presses { self.noise() } else { 0.0 };
+        self.total_error.solver = if presses { self.survey.left } else { 0.0 };
         let TotalError { value, adaptive, .. } = &mut self.total_error;
         *value = adaptive.map_or(all, |own| all.clamp(LEAST * own, own / SHARE)).max(noise);
     }

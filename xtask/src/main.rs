@@ -312,8 +312,8 @@ The test `time_error` runs 200 random cases: a cylinder or a rough line on a bod
 under a load or an approach that runs straight between 2 to 5 points, in 5 to 500 uniform or logarithmic steps or in adaptive steps with a
 tolerance of 1e-4 to 3e-2, some in motion. The reference takes 16 steps in place of each. A case is covered if the largest `time_error` of
 its rows is at least its largest error of the load, of the largest pressure, and of the stress history of a body whose Poisson's ratio
-changes (or these are below 1e-6, the tolerance of the solver). It is close if the largest `time_error` is at most ten times the largest of these errors and those of the
-pressure fields, or at most 1e-3. The test asserts that 95 of 100 are covered and 90 of 100 are close.
+changes (or these are below 1e-6, the tolerance of the solver). It is close if the largest `time_error` is at most ten times the largest
+of these errors and those of the pressure fields, or at most 1e-3. The test asserts that 95 of 100 are covered and 90 of 100 are close.
 
 | prescribed | cases | covered | close |
 |---|---|---|---|

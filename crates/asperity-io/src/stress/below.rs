@@ -50,7 +50,7 @@ impl Loads {
         Ok(Loads { times: reader.series("time")?, loads: reader.series("load")? })
     }
 
-    /// The load of a stored instant \[N\]. Between adaptive steps fields are interpolated: there it is the sum of the pressure.
+    /// The load of a stored instant \[N\]; the sum of the pressure where the field has a time of its own between two rows.
     pub(super) fn at(&self, reader: &Reader, index: usize) -> Result<f64> {
         let row = reader.field_steps()[index];
         if self.times.get(row) == Some(&reader.field_times()[index]) {

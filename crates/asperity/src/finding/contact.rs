@@ -105,7 +105,6 @@ impl Resolution {
     }
 }
 
-/// A contact of this number of cells.
 /// A run without contact.
 pub(super) fn never() -> Finding {
     let text = "The bodies never touch. An approach is positive towards the body and 0 at first touch: check its sign, its size and its unit."
@@ -113,6 +112,7 @@ pub(super) fn never() -> Finding {
     Finding::warning(NO_CONTACT, 0.0, 0.0, text)
 }
 
+/// A contact of this number of cells.
 fn few(cells: f64, fewest: f64, has: &str) -> Finding {
     let text = format!(
         "The largest contact {has} {} cells, less than {fewest}: area, pressure and approach are coarse. Refine the grid \

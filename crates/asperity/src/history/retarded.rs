@@ -80,9 +80,9 @@ impl Retarded {
         })
     }
 
-    /// Fields of cells that it takes.
+    /// Fields of cells that it takes at most: states of all terms, V and a third V; p in both places of two rows; the gap and none.
     pub(crate) fn fields(f: &Creep, contact: &Creep) -> usize {
-        contact.terms.len() + f.terms.len() + 2 + 2 * 2 + 2
+        contact.terms.len() + f.terms.len() + 8
     }
 
     /// The pressure at a row, `dt` after the last one; 0 of a jump.

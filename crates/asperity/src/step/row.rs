@@ -73,7 +73,8 @@ pub struct Step<'a> {
     /// c: u = c U + g.
     pub(crate) compliance: f64,
     pub(crate) outcome: Outcome,
-    pub(crate) recalled: Recalled<'a>,
+    /// What the past leaves, g; `None` for none.
+    pub(crate) recalled: Option<&'a dyn History>,
     pub(crate) time_error: Option<f64>,
     /// The undeformed gap, where processes may have changed it.
     pub(crate) undeformed: Option<&'a UndeformedGap>,
@@ -82,15 +83,6 @@ pub struct Step<'a> {
     pub(crate) recorder: Option<&'a Recorder>,
     /// The forces of a steady state of motion.
     pub(crate) friction: Option<Friction>,
-}
-
-/// g, the displacement that the past leaves.
-#[derive(Clone, Copy)]
-pub(crate) enum Recalled<'a> {
-    /// Of the step under way.
-    History(&'a dyn History),
-    /// None.
-    Nothing,
 }
 
 impl<'a> Step<'a> {
@@ -112,7 +104,7 @@ impl<'a> Step<'a> {
             gap,
             compliance,
             outcome,
-            recalled: Recalled::Nothing,
+            recalled: None,
             time_error: None,
             undeformed: None,
             processes: &[],
@@ -198,7 +190,7 @@ impl<'a> Step<'a> {
     pub fn displacement_into(&self, displacement: &mut Array2<f64>) {
         let datum = self.datum();
         if let Some(displacement) = displacement.as_slice_mut() {
-            self.recalled.write(displacement);
+            self.recall(displacement);
         }
         let cells = displacement.iter_mut().zip(&self.state.unit_displacement);
         cells.for_each(|(g, u)| *g += self.compliance * u - datum);
@@ -247,6 +239,14 @@ impl<'a> Step<'a> {
         }
     }
 
+    /// Writes g.
+    fn recall(&self, g: &mut [f64]) {
+        match self.recalled {
+            Some(history) => history.recalled(g),
+            None => g.fill(0.0),
+        }
+    }
+
     /// What displacements and approach are measured from \[m\]: where they are known up to a constant, the displacement of the domain's
     /// end, x = L, on the straight line through the last two cells; else 0.
     fn datum(&self) -> f64 {
@@ -254,7 +254,7 @@ impl<'a> Step<'a> {
             return 0.0;
         }
         let mut u = vec![0.0; self.state.unit_displacement.len()];
-        self.recalled.write(&mut u);
+        self.recall(&mut u);
         u.iter_mut().zip(&self.state.unit_displacement).for_each(|(g, unit)| *g += self.compliance * unit);
         match u[..] {
             [.., before, last] => last + 0.5 * (last - before),
@@ -293,19 +293,10 @@ impl Stepper {
     pub(crate) fn row(&self) -> Step<'_> {
         let StepState { now, gap, compliance, undeformed, .. } = &self.state;
         Step {
-            recalled: Recalled::History(&*self.history),
+            recalled: Some(&*self.history),
             undeformed: Some(undeformed),
             processes: &self.processes,
             ..Step::of(&self.simulation, self.contact.hardness(), (now, self.outcome), (gap, *compliance))
-        }
-    }
-}
-
-impl Recalled<'_> {
-    fn write(self, g: &mut [f64]) {
-        match self {
-            Recalled::History(history) => history.recalled(g),
-            Recalled::Nothing => g.fill(0.0),
         }
     }
 }

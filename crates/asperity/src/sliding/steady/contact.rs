@@ -107,11 +107,12 @@ impl<'a> SteadyContact<'a> {
                 if at_once > own { self.options.tolerance.max(ON_THE_WAY) } else { self.options.tolerance };
             let mut operators = Operators::plan(&stream, true, self.interrupt)?;
             // Newton's steps mostly find the contact; where they go round in circles, single exchanges end.
-            let most = if fall < LEAST_FALL { PIVOTS } else { usize::MAX };
+            let is_last = fall >= LEAST_FALL;
+            let most = if is_last { usize::MAX } else { PIVOTS };
             let found = self.iterate(&mut operators, fields, STEPS, state)?
                 || self.pivot(&mut operators, fields, most, state)?;
             tracing::debug!(at_once, found, "continuation");
-            if !found && most == usize::MAX {
+            if !found && is_last {
                 return Err(self.not_converged());
             }
             if !found {

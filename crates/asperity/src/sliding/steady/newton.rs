@@ -90,7 +90,7 @@ impl SteadyContact<'_> {
     }
 }
 
-fn copy(from: &ContactState, to: &mut ContactState) {
+pub(super) fn copy(from: &ContactState, to: &mut ContactState) {
     to.pressure.copy_from_slice(&from.pressure);
     to.unit_displacement.copy_from_slice(&from.unit_displacement);
     to.approach = from.approach;

@@ -8,6 +8,7 @@
 
 use super::contact::{Fields, SteadyContact};
 use super::gmres::OnSet;
+use super::newton::copy;
 use super::operators::Operators;
 use crate::contact::{self, ContactState};
 use crate::error::Result;
@@ -50,11 +51,12 @@ impl SteadyContact<'_> {
             };
             let wrong: Vec<usize> = (0..cells).filter(is_wrong).collect();
             tracing::debug!(wrong = wrong.len(), set = set.len(), "pivots");
-            let mut trial = state.clone();
-            contact::make_feasible(&self.problem, self.grid, &mut trial)?;
+            let trial = &mut fields.trial;
+            copy(state, trial);
+            contact::make_feasible(&self.problem, self.grid, trial)?;
             operators.apply_into(&trial.pressure, &mut trial.unit_displacement);
-            if self.rate(&mut trial).residual <= self.tolerance {
-                *state = trial;
+            if self.rate(trial).residual <= self.tolerance {
+                copy(trial, state);
                 return Ok(true);
             }
             if wrong.len() < fewest {

@@ -1,5 +1,6 @@
 //! The files of asperity: case files in, measured topographies and curves in, results out.
 
+pub mod answer;
 pub mod case;
 pub mod choice;
 mod classic;

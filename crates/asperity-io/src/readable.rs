@@ -32,10 +32,14 @@ const PREFIXED: [(&str, i32, i32); 13] = [
     ("Hz", -2, 3),
 ];
 
+/// Units of long times: from so many seconds on, seconds in it, its name.
+const LONG: [(f64, f64, &str); 3] =
+    [(3.0 * 31_557_600.0, 31_557_600.0, "a"), (2.0 * 86_400.0, 86_400.0, "d"), (3.0 * 3600.0, 3600.0, "h")];
+
 /// The unit to show numbers in whose largest magnitude is `largest` in the SI unit `unit`.
 ///
 /// `unit` is one of m, s, m/s, N m, Pa, N, N/m, N/m2, J, J/m, W, W/m, Hz; the first ones with an exponent (`m2`) or below one (`1/Pa`, `1/m2`), or any other
-/// text, which is shown as it is.
+/// text, which is shown as it is. Times of three hours and more are shown in hours, days or years.
 ///
 /// ```
 /// use asperity_io::readable::shown;
@@ -45,6 +49,11 @@ const PREFIXED: [(&str, i32, i32); 13] = [
 /// assert_eq!(shown("1/Pa", 5e-10).text, "1/GPa");
 /// ```
 pub fn shown(unit: &str, largest: f64) -> Shown {
+    if let Some((_, seconds, text)) =
+        LONG.iter().find(|long| unit == "s" && largest >= long.0 && largest.is_finite())
+    {
+        return Shown { factor: 1.0 / seconds, text: (*text).to_owned() };
+    }
     let (inverse, base) = match unit.strip_prefix("1/") {
         Some(base) => (true, base),
         None => (false, unit),
@@ -159,7 +168,8 @@ mod tests {
         assert_eq!(text("1/m", 5e5), ("1/mm".into(), -3));
         assert_eq!(text("1/m", 5e6), ("1/µm".into(), -6));
         assert_eq!(text("m4", 1e-26), ("nm⁴".into(), 36));
-        assert_eq!(text("s", 5e4), ("s".into(), 0));
+        let long = [1e4, 10800.0, 172_800.0, 1e8].map(|time| shown("s", time).text);
+        assert_eq!(long, ["s", "h", "d", "a"]);
     }
 
     #[test]
@@ -182,7 +192,8 @@ mod tests {
         assert_eq!(quantity(2e-3, "J/m"), "2 mJ/m");
         assert_eq!(quantity(0.0, "m"), "0 m");
         assert_eq!(quantity(f64::NAN, "m"), "NaN m");
-        assert_eq!(quantity(3e8, "s"), "3.000e8 s");
+        assert_eq!(quantity(86400.0, "s"), "24 h");
+        assert_eq!(quantity(3e8, "s"), "9.506 a");
         assert_eq!(quantity(3e-4, "Pa"), "0.3 mPa");
         assert_eq!(quantity(-1.567e-20, "m"), "-1.567e-8 pm");
         assert_eq!(coordinate(Coordinate::Velocity(2e-3)), "v = 2 mm/s");

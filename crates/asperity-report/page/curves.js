@@ -145,10 +145,10 @@ function leakPart() {
   ];
   if (leak.leak_rate) {
     const gas = leak.leak_rate_standard;
-    // kg/s of a gas to mbar l/s: a factor that the gas alone decides.
-    const ratios = gas ? gas.values.map((standard, n) => (10 * standard) / leak.leak_rate.values[n]).filter(isFinite) : [];
-    const factor = ratios.length ? ratios[0] : 1;
-    specs.unshift({ title: "Leak rate", none, zero: none, events, x: rowsAxis(), y: { label: gas ? "leak rate, at 0 °C" : "leak rate", unit: gas ? "mbar l/s" : "m3/s", log: true },
+    // kg/s of a gas to its rate at 0 °C: a factor that the gas alone decides.
+    const ratios = gas ? gas.values.map((standard, n) => standard / leak.leak_rate.values[n]).filter(isFinite) : [];
+    const factor = leak.shown.factor * (ratios.length ? ratios[0] : 1);
+    specs.unshift({ title: "Leak rate", none, zero: none, events, x: rowsAxis(), y: { label: gas ? "leak rate, at 0 °C" : "leak rate", unit: leak.shown.text, log: true },
       series: [line("solved on the grid", "leak_rate", false, factor), line("estimate from the critical constriction", "leak_estimate_junction", true, factor),
         line("estimate from all gaps (effective medium)", "leak_estimate_medium", true, factor)] });
   }

@@ -5,10 +5,15 @@ const PREFIXED = {
   m: [-4, 0], s: [-3, 0], "m/s": [-3, 1], Pa: [-1, 3], Hz: [-2, 3],
   N: [-3, 2], "N m": [-3, 2], "N/m": [-3, 3], "N/m2": [-1, 3], J: [-4, 1], "J/m": [-4, 1], W: [-4, 1], "W/m": [-4, 1],
 };
+// Long times: from so many seconds on, seconds in the unit, its name.
+const LONG = [[3 * 31557600, 31557600, "a"], [2 * 86400, 86400, "d"], [3 * 3600, 3600, "h"]];
 const superscript = (n) => String(n).replace(/[-0-9]/g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]));
 
 /** The unit to show numbers in whose largest magnitude is `largest` in the SI unit `unit`. */
 function shown(unit, largest) {
+  if (unit === "s" && state.time_unit) return state.time_unit;
+  const long = unit === "s" && isFinite(largest) && LONG.find(([from]) => largest >= from);
+  if (long) return { factor: 1 / long[1], text: long[2] };
   const inverse = unit.startsWith("1/");
   const base = inverse ? unit.slice(2) : unit;
   // The prefix of a quotient is that of its first unit, to the first power.
@@ -48,9 +53,7 @@ function rounded(value, of) {
 function words(value, unit) {
   if (!isFinite(value)) return "undefined";
   const { factor, text } = shown(unit, Math.abs(value));
-  const number = digits(value * factor) + (text ? " " + text : "");
-  if (unit !== "s" || Math.abs(value) < 7200) return number;
-  return `${number} (${Math.abs(value) < 86400 ? `${digits(value / 3600)} h` : `${digits(value / 86400)} d`})`;
+  return digits(value * factor) + (text ? " " + text : "");
 }
 
 /** Ticks [{value, text}] between two ends, already in the unit shown. */
@@ -85,9 +88,7 @@ function ticks(low, high, wanted, log) {
   return list;
 }
 
-/** The unit of an axis: long times on a linear axis in hours or days. */
+/** The unit of an axis; decades of time are those of the second. */
 function shownOnAxis(unit, largest, log) {
-  if (unit === "s" && !log && largest >= 2 * 86400) return { factor: 1 / 86400, text: "d" };
-  if (unit === "s" && !log && largest >= 3 * 3600) return { factor: 1 / 3600, text: "h" };
-  return shown(unit, largest);
+  return shown(unit, unit === "s" && log ? Math.min(largest, 1e4) : largest);
 }

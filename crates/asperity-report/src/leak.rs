@@ -1,7 +1,7 @@
 //! Figures of leakage at one state: where the fluid flows, and what is trapped.
 
 use asperity::leakage::{CellKind, flux};
-use asperity_io::leakage::words::rate;
+use asperity_io::answer::Units;
 use asperity_io::leakage::{Leak, Leakage};
 use asperity_io::readable::quantity;
 use ndarray::{Array2, ArrayView2, Zip};
@@ -31,7 +31,7 @@ const DECADES: f64 = 4.0;
 pub fn state(leak: &Leak, found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Figure {
     let caption = format!("{}. {}", sentence(&leak.words()), words(found));
     let maps = maps(found, gap, size);
-    Figure::new(heading(found)).with_all(maps).panel_size([300.0, 260.0]).caption(caption)
+    Figure::new(heading(found, &Units::default())).with_all(maps).panel_size([300.0, 260.0]).caption(caption)
 }
 
 /// Passages, and the flow; where it is tight, the gap of the cells that are open.
@@ -85,11 +85,11 @@ pub(crate) fn sentence(words: &str) -> String {
 }
 
 /// The leak in a few words.
-pub(crate) fn heading(found: &Leakage) -> String {
+pub(crate) fn heading(found: &Leakage, units: &Units) -> String {
     match found.leak_rate {
         _ if !found.percolates => "Tight".to_owned(),
         Some(leak_rate) => {
-            format!("Leak rate {}", typeset(&rate(leak_rate, found.leak_rate_standard).replace("m3", "m³")))
+            format!("Leak rate {}", typeset(&units.rate(leak_rate, found.leak_rate_standard)))
         }
         None => format!("Hydraulic gap {}", quantity(found.hydraulic_gap, "m")),
     }

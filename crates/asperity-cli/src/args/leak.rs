@@ -31,6 +31,9 @@ pub struct Leak {
     /// Times of stored fields, e.g. '1 s,10 s', or fields for all of them [default: those stored, or all]
     #[arg(long, value_name = "LIST", conflicts_with = "gap")]
     pub times: Option<String>,
+    /// Unit for leaks or times, e.g. --unit leak=ml/year --unit time=h [default: that of the case]
+    #[arg(long, value_name = "NAME=UNIT")]
+    pub unit: Vec<String>,
     /// Do not store the leakage in the result
     #[arg(long, conflicts_with = "gap")]
     pub no_store: bool,

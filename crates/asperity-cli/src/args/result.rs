@@ -16,6 +16,9 @@ pub struct ShowResult {
     /// Time of the map, e.g. '500 s'; the nearest stored one is used [default: last]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub time: Option<String>,
+    /// Unit for leaks or times, e.g. --unit leak=ml/year --unit time=h [default: that of the case]
+    #[arg(long, value_name = "NAME=UNIT")]
+    pub unit: Vec<String>,
     /// Print one JSON object: status, rows, work and every number of the last row
     #[arg(long)]
     pub json: bool,
@@ -129,6 +132,9 @@ pub struct Plot {
     /// The title [default: that of the case]
     #[arg(long)]
     pub title: Option<String>,
+    /// Unit for leaks or times, e.g. --unit leak=ml/year --unit time=h [default: that of the case]
+    #[arg(long, value_name = "NAME=UNIT")]
+    pub unit: Vec<String>,
     /// Replace an existing file
     #[arg(long)]
     pub force: bool,

@@ -17,6 +17,9 @@ pub struct Run {
     pub force: bool,
     #[command(flatten)]
     pub common: Common,
+    /// Unit for leaks or times in what is printed and drawn, e.g. --unit leak=ml/year --unit time=h
+    #[arg(long, value_name = "NAME=UNIT")]
+    pub unit: Vec<String>,
     /// Print one JSON object at the end
     #[arg(long)]
     pub json: bool,

@@ -1,6 +1,5 @@
 //! `asperity run`.
 
-use asperity::Axis;
 use asperity::finding::Finding;
 use asperity::step::Row;
 use asperity_io::case::Case;
@@ -11,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::args::Run;
 use crate::failure::Failure;
-use crate::format::{bytes, coordinate, duration, mean_gap, pressures, quantity};
+use crate::format::{bytes, coordinate, duration, quantity};
 use crate::progress::ProgressDisplay;
 use crate::verb::{Threads, Verb};
 
@@ -22,7 +21,9 @@ impl Verb for Run {
 
     /// Runs the case, tells the progress on stderr and a summary on stdout.
     fn run(&self) -> Result<(), Failure> {
-        let case = Case::read(&self.case, &self.common.set)?;
+        let mut set = self.common.set.clone();
+        set.extend(super::answers::keys(&self.unit)?);
+        let case = Case::read(&self.case, &set)?;
         print_materials(self, &case);
         let known = print_findings(self, &case.findings, &[]);
         let options = RunOptions {
@@ -105,7 +106,6 @@ fn print_summary(
     summary: &Summary,
     error: Option<&RunError>,
 ) -> Result<(), Failure> {
-    let grid = &case.conditions.grid;
     if args.json {
         return crate::print(&format!("{}\n", json_object(summary, error)));
     }
@@ -113,41 +113,14 @@ fn print_summary(
         return Ok(());
     }
     let mut text = String::new();
-    let mut line = |name: &str, value: String| text += &format!("{name:<13}{value}\n");
-    if let Some(last) = &summary.last {
-        let (axis, at) = (last.coordinate.axis(), last.coordinate.value());
-        let of = match axis {
-            Axis::Velocity => format!(" (the last of {})", summary.rows),
-            Axis::Time | Axis::None => String::new(),
-        };
-        line(axis.name(), quantity(at, axis.unit()) + &of);
-        line("load", quantity(last.load, grid.units("N")));
-        line("approach", quantity(last.approach, "m"));
-        let area = quantity(last.contact_area, grid.units("m2"));
-        let share = 100.0 * last.contact_fraction;
-        if grid.is_line() {
-            line("contact", format!("{area} ({share:.3} % of the domain)"));
-        } else {
-            let corrected = quantity(last.contact_area_corrected, "m2");
-            let value =
-                format!("{area} ({share:.3} % of the domain; corrected for its perimeter {corrected})");
-            line("contact area", value);
-        }
-        if let Some(friction) = &summary.friction {
-            let (mu, force) = (friction.coefficient, quantity(friction.force, grid.units("N")));
-            line("friction", format!("coefficient {}, force {force}", quantity(mu, "")));
-        }
-        line("mean gap", quantity(mean_gap(last), "m"));
-        if last.capped_area > 0.0 {
-            line("at hardness", quantity(last.capped_area, grid.units("m2")));
-        }
-        line("pressure", pressures(last));
+    let mut line = |name: &str, value: String| text += &super::answers::line(name, value);
+    for [name, value] in super::answers::lines(&summary.answers, &case.output.units) {
+        line(&name, value);
     }
-    if let Some(below) = &summary.stress {
-        super::stress::summary::lines(below).into_iter().for_each(|[name, value]| line(&name, value));
-    }
-    if let Some(leak) = &summary.leak {
-        line("leak", leak.clone());
+    if let Some(row) =
+        super::answers::row(&summary.answers, &case.output.units, summary.last.as_ref(), summary.rows)
+    {
+        line("of the row at", row);
     }
     let memory = summary.peak_memory_bytes.map(|b| format!(", {}", bytes(b as f64))).unwrap_or_default();
     line(
@@ -170,6 +143,7 @@ fn print_summary(
 
 fn json_object(summary: &Summary, error: Option<&RunError>) -> Value {
     let mut object = json!({
+        "answers": summary.answers,
         "status": summary.status.as_str(),
         "steps": summary.rows,
         "wall_s": summary.wall_s,

@@ -3,13 +3,13 @@
 use asperity::quantities::Quantity;
 use asperity::step::Row;
 use asperity::{Axis, Grid};
+use asperity_io::answer::{self, Answer, Units};
 use asperity_io::cycles;
-use asperity_io::leakage::LeakHistory;
 use asperity_io::store::{At, Reader, StoreError};
-use asperity_io::stress::Below;
 use asperity_report::result::{contact, moment, temperatures};
 use serde_json::json;
 
+use super::answers::line;
 use super::instant;
 use crate::args::ShowResult;
 use crate::failure::Failure;
@@ -26,17 +26,25 @@ impl Verb for ShowResult {
     fn run(&self) -> Result<(), Failure> {
         let reader = Reader::open(&self.result)?;
         let at = instant(&reader, self.time.as_deref())?;
-        crate::print(&if self.json { object(&reader)? } else { text(&reader, at)? })
+        let units = Units::of(&reader, &super::answers::units(&self.unit)?);
+        let answers = answer::of(&reader, &units)?;
+        units.check(&answers).map_err(|error| Failure::input(error.to_string()))?;
+        crate::print(&if self.json {
+            object(&reader, &answers)?
+        } else {
+            text(&reader, at, &answers, &units)?
+        })
     }
 }
 
-fn object(reader: &Reader) -> Result<String, StoreError> {
+fn object(reader: &Reader, answers: &[Answer]) -> Result<String, StoreError> {
     let work = reader.work();
     let mut last = serde_json::Map::new();
     for scalar in reader.scalars() {
         last.insert(scalar.name.into(), json!(reader.series(scalar.name)?.last()));
     }
     let object = json!({
+        "answers": answers,
         "title": reader.header().title,
         "status": reader.status().as_str(),
         "lacks_leakage": reader.lacks_leakage(),
@@ -80,14 +88,18 @@ fn domain(grid: &Grid) -> String {
     }
 }
 
-fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
+fn text(reader: &Reader, at: At, answers: &[Answer], units: &Units) -> Result<String, StoreError> {
     let rows = reader.rows()?;
     let mut text = state(reader);
     if rows.is_empty() {
         return Ok(text);
     }
-    text += &course(reader, &rows)?;
-    text += &below_and_through(reader)?;
+    text.extend(super::answers::lines(answers, units).iter().map(|[name, value]| line(name, value)));
+    text.extend(
+        super::answers::row(answers, units, rows.last(), rows.len()).map(|row| line("of the row at", row)),
+    );
+    text.push('\n');
+    text += &course(reader, &rows, units)?;
     text += &work(reader, &rows);
     text += &cycle_table(reader)?;
     if let Some(states) = contact(reader, at)? {
@@ -97,11 +109,6 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         text += &shares(states.mapv(|state| state > 0).view(), COLUMNS, size[1] / size[0]);
     }
     Ok(text)
-}
-
-/// A line of the summary.
-fn line(name: &str, value: impl std::fmt::Display) -> String {
-    format!("{name:<13}{value}\n")
 }
 
 /// Title, status, findings and domain.
@@ -131,21 +138,23 @@ fn state(reader: &Reader) -> String {
 }
 
 /// The last value of each quantity, with its curve over time or velocity.
-fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
+fn course(reader: &Reader, rows: &[Row], units: &Units) -> Result<String, StoreError> {
     let Some(last) = rows.last() else { return Ok(String::new()) };
     let header = reader.header();
     let grid = &header.grid;
-    let (force, area) = (grid.units("N"), grid.units("m2"));
+    let force = grid.units("N");
     let times: Vec<f64> = rows.iter().map(|row| row.coordinate.value()).collect();
     let bars = |values: &[f64]| sparkline(header.axis(), &times, values, SPARKS);
     let curve = |name: &str, value: fn(&Row) -> f64, words: &dyn Fn(f64) -> String| {
         let values: Vec<f64> = rows.iter().map(value).collect();
         let [low, high] = extent(values.iter().copied()).map(words);
-        let ends = if low == high { "unchanged".to_owned() } else { format!("{low} to {high}") };
-        line(name, format!("{:<14}{}  {ends}", words(value(last)), bars(&values)))
+        match low == high {
+            true => line(name, format!("{low}, constant")),
+            false => line(name, format!("{:<14}{}  {low} to {high}", words(value(last)), bars(&values))),
+        }
     };
     let axis = header.axis();
-    let [first, end] = [&rows[0], last].map(|row| quantity(row.coordinate.value(), axis.unit()));
+    let [first, end] = [&rows[0], last].map(|row| units.number(row.coordinate.value(), axis.unit()));
     let mut text = match axis {
         Axis::Velocity => line(axis.name(), format!("{first} to {end}")),
         Axis::Time | Axis::None => line(axis.name(), end),
@@ -161,19 +170,12 @@ fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
     text += &curve("approach", |row| row.approach, &|v| quantity(v, "m"));
     text += &curve("contact", |row| row.contact_fraction, &percent);
     text += &curve("mean gap", mean_gap, &|v| quantity(v, "m"));
-    text += &line(if grid.is_line() { "length" } else { "area" }, quantity(last.contact_area, area));
-    if !grid.is_line() {
-        text += &line("corrected", quantity(last.contact_area_corrected, area));
-    }
-    if last.capped_area > 0.0 {
-        text += &line("at hardness", quantity(last.capped_area, area));
-    }
     text += &line("pressure", pressures(last));
     let asked = reader.scalars().into_iter().filter(|s| {
         let coordinate = axis == Axis::Velocity && s.name == Quantity::Velocity.name();
         Quantity::from_name(s.name).is_some() && !coordinate
     });
-    for (n, series) in asked.enumerate() {
+    for series in asked {
         let values = reader.series(series.name)?;
         let value = values.last().copied().unwrap_or(f64::NAN);
         let words = match series.units {
@@ -181,19 +183,7 @@ fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
             "1" => quantity(value, ""),
             units => quantity(value, units),
         };
-        text += &line(if n == 0 { "quantities" } else { "" }, format!("{:<27}{words}", series.name));
-    }
-    Ok(text)
-}
-
-/// The stress below the surface and the leakage, where the result has them.
-fn below_and_through(reader: &Reader) -> Result<String, StoreError> {
-    let mut text = String::new();
-    if let Some(below) = Below::of(reader)? {
-        text.extend(super::stress::summary::lines(&below).iter().map(|[name, value]| line(name, value)));
-    }
-    if let Some(leaks) = LeakHistory::of(reader)? {
-        text += &line("leak", leaks.sentence());
+        text += &line(series.name, words);
     }
     Ok(text)
 }

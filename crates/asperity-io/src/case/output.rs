@@ -1,6 +1,7 @@
 //! `[solver]` and `[output]`: how each step is solved; what is stored, and where.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use asperity::quantities::{Quantities, Quantity};
@@ -13,6 +14,7 @@ use super::plan::{Output, Rows};
 use super::time;
 use super::words::{nearest, number};
 use crate::Code;
+use crate::answer::Units;
 use crate::store::FieldKind;
 
 /// How each step is solved.
@@ -58,6 +60,10 @@ pub struct OutputKeys {
     /// adaptive the state there is interpolated instead. This or `every`.
     #[schemars(example = ("1 s", "10 s", "100 s"))]
     pub times: Option<Vec<Time<NonNegative>>>,
+    /// Units in which leaks and times are printed and drawn; numbers that are stored and JSON stay SI.
+    #[schemars(example = json!({ "leak": "ml/year", "time": "h" }))]
+    #[serde(default)]
+    units: BTreeMap<String, String>,
     /// Whether a run can be resumed; true if not given.
     #[schemars(example = true)]
     checkpoint: Option<bool>,
@@ -142,6 +148,12 @@ impl OutputKeys {
         if self.path.as_ref().is_some_and(|path| path.trim().is_empty()) {
             return at.key("path").wrong("the path of a directory for the run to create", "");
         }
+        let mut units = Units::default();
+        for (name, unit) in &self.units {
+            if let Err(error) = units.choose(name, unit) {
+                return at.key("units").key(name).fault(&error.to_string(), &error.expected(), "");
+            }
+        }
         let usual = || vec![FieldKind::Pressure, FieldKind::Gap];
         Some(Output {
             path: self.path.as_ref().map_or(default_path, PathBuf::from),
@@ -149,6 +161,7 @@ impl OutputKeys {
             rows: self.rows(at, times?, programme)?,
             all_quantities: self.quantities.contains(&Wanted(None)),
             checkpoint: self.checkpoint.unwrap_or(true),
+            units,
         })
     }
 

@@ -8,6 +8,7 @@ use asperity::sliding::{Direction, MovingGap, Path};
 use asperity::surface::Part;
 
 use super::measured::Measured;
+use crate::answer::Units;
 use crate::store::FieldKind;
 
 /// One part of the undeformed gap.
@@ -72,6 +73,8 @@ pub struct Output {
     pub all_quantities: bool,
     /// Whether the run leaves what it needs to be resumed.
     pub checkpoint: bool,
+    /// Units in which answers are printed.
+    pub units: Units,
 }
 
 /// The rows of a run whose fields are stored; the first and the last always are.

@@ -8,8 +8,8 @@ use serde_json::Value;
 use thiserror::Error;
 
 use super::{Fluid, Leak, words};
+use crate::answer::Units;
 use crate::instants;
-use crate::readable::quantity;
 use crate::store::{At, FieldKind, LeakTable, LeakWriter, Reader, StoreError};
 
 /// Why the leakage of a result was not computed.
@@ -53,23 +53,38 @@ impl LeakHistory {
         Ok(Some(LeakHistory { leak, table, findings: findings.cloned().collect() }))
     }
 
+    /// The numbers of a column; empty if there is none of that name.
+    pub fn column(&self, name: &str) -> &[f64] {
+        self.table.get(name).unwrap_or_default()
+    }
+
+    /// The last number of a column; NaN if there is none.
+    pub fn last(&self, name: &str) -> f64 {
+        self.column(name).last().copied().unwrap_or(f64::NAN)
+    }
+
     /// The last leak and when the seal is tight, in a sentence without its full stop.
-    pub fn sentence(&self) -> String {
-        let column = |name: &str| self.table.get(name).unwrap_or_default();
-        let last = |name: &str| column(name).last().copied().unwrap_or(f64::NAN);
-        let tight = words::tight(column("leak_time"), column("percolates"));
-        let fluid = self.leak.fluid_words();
-        if last("percolates") == 0.0 {
-            return format!("{tight} ({fluid})");
+    pub fn sentence(&self, units: &Units) -> String {
+        if self.last("percolates") == 0.0 {
+            let tight = words::tight(self.column("leak_time"), self.column("percolates"), units);
+            return format!("{tight} ({})", self.leak.fluid_words());
         }
-        let standard = self.table.get("leak_rate_standard").map(|_| last("leak_rate_standard"));
-        let rate = match self.leak.fluid {
-            Some(_) => words::rate(last("leak_rate"), standard),
-            None => format!("hydraulic gap {}", quantity(last("hydraulic_gap"), "m")),
+        let name = match self.leak.fluid {
+            Some(_) if self.table.get("leak_rate_standard").is_some() => "leak_rate_standard",
+            Some(_) => "leak_rate",
+            None => "hydraulic_gap",
         };
-        let doubt = if last("leak_resolved") == 0.0 { ", not resolved: see the findings" } else { "" };
+        let unit = self.table.series().into_iter().find(|series| series.name == name).map_or("", |s| s.units);
+        let time = units.time(self.last("leak_time"));
+        let tight = words::tight(self.column("leak_time"), self.column("percolates"), units);
         let tight = if tight.is_empty() { tight } else { format!("; {tight}") };
-        format!("{rate} at t = {} ({fluid}){doubt}{tight}", quantity(last("leak_time"), "s"))
+        format!("{} at t = {time} ({}){tight}", units.number(self.last(name), unit), self.note())
+    }
+
+    /// What must be known beside the last leak: the fluid, and whether the leak is resolved.
+    pub fn note(&self) -> String {
+        let doubt = if self.last("leak_resolved") == 0.0 { "; not resolved: see the findings" } else { "" };
+        format!("{}{doubt}", self.leak.fluid_words())
     }
 }
 

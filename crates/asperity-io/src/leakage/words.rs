@@ -1,11 +1,10 @@
 //! Leakage in words: the settings, the leak rate, and the times at which the seal is tight.
 
 use super::{Fluid, GasKind, Leak, LeakDirection, ROOM};
+use crate::answer::Units;
 use crate::choice;
 use crate::readable::quantity;
 
-/// Pa m³/s in mbar l/s.
-pub const MBAR_LITRE: f64 = 10.0;
 /// 0 degC \[K\].
 const ICE: f64 = 273.15;
 
@@ -52,17 +51,9 @@ impl Leak {
     }
 }
 
-/// A leak rate with its unit: of a gas in mbar l/s, which count it at 0 °C, of a liquid in m³/s.
-pub fn rate(leak_rate: f64, standard: Option<f64>) -> String {
-    match standard {
-        Some(standard) => format!("{:.3e} mbar l/s (at 0 °C)", MBAR_LITRE * standard),
-        None => format!("{leak_rate:.3e} m3/s"),
-    }
-}
-
 /// When the seal is tight, in a sentence without its full stop; empty if it leaks at all times. Between two of the times nothing is
 /// known, so the sentence names both.
-pub fn tight(times: &[f64], percolates: &[f64]) -> String {
+pub fn tight(times: &[f64], percolates: &[f64], units: &Units) -> String {
     let is_tight: Vec<bool> = percolates.iter().map(|open| *open == 0.0).collect();
     if is_tight.iter().all(|tight| !tight) {
         return String::new();
@@ -71,16 +62,20 @@ pub fn tight(times: &[f64], percolates: &[f64]) -> String {
         return if times.len() > 1 { "tight at all times".into() } else { "tight".into() };
     }
     let changes = (1..is_tight.len()).filter(|n| is_tight[*n] != is_tight[n - 1]).map(|n| {
-        let [before, after] = [times[n - 1], times[n]].map(|time| quantity(time, "s"));
+        let [before, after] = [times[n - 1], times[n]].map(|time| units.time(time));
         format!("{} between t = {before} and {after}", if is_tight[n] { "closes" } else { "opens" })
     });
-    let start = is_tight[0].then(|| format!("tight at t = {}", quantity(times[0], "s")));
+    let start = is_tight[0].then(|| format!("tight at t = {}", units.time(times[0])));
     start.into_iter().chain(changes).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
 mod tests {
-    use super::tight;
+    use super::Units;
+
+    fn tight(times: &[f64], percolates: &[f64]) -> String {
+        super::tight(times, percolates, &Units::default())
+    }
 
     #[test]
     fn times_between_which_the_seal_closes_are_named() {

@@ -24,9 +24,13 @@ pub struct Unit {
     pub powers: Powers,
 }
 
+/// A year of 365.25 days \[s\].
+const YEAR: f64 = 31_557_600.0;
+
 /// Symbols that take SI prefixes: name, power of ten, powers of metre, kilogram, second, kelvin, mole.
 const PREFIXED: &[(&str, i32, Powers)] = &[
     ("m", 0, [1, 0, 0, 0, 0]),
+    ("l", -3, [3, 0, 0, 0, 0]),
     ("g", -3, [0, 1, 0, 0, 0]),
     ("s", 0, [0, 0, 1, 0, 0]),
     ("Hz", 0, [0, 0, -1, 0, 0]),
@@ -45,6 +49,11 @@ const PLAIN: &[(&str, f64, i32, Powers)] = &[
     ("d", 86400.0, 0, [0, 0, 1, 0, 0]),
     ("day", 86400.0, 0, [0, 0, 1, 0, 0]),
     ("days", 86400.0, 0, [0, 0, 1, 0, 0]),
+    ("a", YEAR, 0, [0, 0, 1, 0, 0]),
+    ("year", YEAR, 0, [0, 0, 1, 0, 0]),
+    ("years", YEAR, 0, [0, 0, 1, 0, 0]),
+    // A cubic centimetre per minute of a gas at 0 °C and one atmosphere, as pressure times volume.
+    ("sccm", 1.688_75, -3, [2, 1, -3, 0, 0]),
     ("psi", 6.894_757_293_168_361, 3, [-1, 1, -2, 0, 0]),
     ("ksi", 6.894_757_293_168_361, 6, [-1, 1, -2, 0, 0]),
     ("dyn", 1.0, -5, [1, 1, -2, 0, 0]),
@@ -96,6 +105,11 @@ impl Unit {
             None => Ok(unit),
             Some(c) => Err(format!("\"{text}\" is not a unit: \"{c}\" is out of place")),
         }
+    }
+
+    /// How many SI units it is.
+    pub fn scale(&self) -> f64 {
+        self.numerator / self.denominator * 10f64.powi(self.exponent)
     }
 
     fn symbol(name: &str) -> Result<Unit, String> {
@@ -245,7 +259,7 @@ mod tests {
 
     fn scale(text: &str) -> (f64, Powers) {
         let unit = Unit::parse(text).unwrap();
-        (unit.numerator / unit.denominator * 10f64.powi(unit.exponent), unit.powers)
+        (unit.scale(), unit.powers)
     }
 
     #[test]
@@ -263,6 +277,11 @@ mod tests {
         assert_eq!(scale("kJ/mol"), (1e3, [2, 1, -2, 0, -1]));
         assert_eq!(scale("kcal/mol"), (4184.0, [2, 1, -2, 0, -1]));
         assert_eq!(scale("mK"), (1e-3, [0, 0, 0, 1, 0]));
+        assert_eq!(scale("ml"), (1e-6, [3, 0, 0, 0, 0]));
+        assert_eq!(scale("year"), (365.25 * 86400.0, [0, 0, 1, 0, 0]));
+        // 1 cm³ of 101 325 Pa in 60 s.
+        assert!((scale("sccm").0 / (101_325.0 * 1e-6 / 60.0) - 1.0).abs() < 1e-15);
+        assert_eq!(scale("sccm").1, scale("mbar l/s").1);
         assert_eq!(scale("%"), (1e-2, [0, 0, 0, 0, 0]));
     }
 

@@ -17,12 +17,13 @@ use asperity::step::Row;
 use asperity::{Error, drive};
 use thiserror::Error;
 
+use crate::answer::{self, Answer, Units};
 use crate::case::{Case, CaseErrors};
 use crate::leakage::{self, LeakError};
 use crate::readable::counted;
 use crate::resources::free_disk;
 use crate::store::{Outcome, Reader, SCALARS, Status, StoreError, Work, Writer};
-use crate::stress::{self, Below, StressError};
+use crate::stress::{self, StressError};
 use maps::Maps;
 use record::{Earlier, Record};
 use setup::header;
@@ -83,14 +84,10 @@ pub struct Summary {
     pub result: PathBuf,
     /// The last row stored.
     pub last: Option<Row>,
-    /// Its forces, of a contact in motion.
-    pub friction: Option<Friction>,
+    /// The numbers that the run was made for; none if it failed before its first row.
+    pub answers: Vec<Answer>,
     /// Where its numbers may be off.
     pub findings: Vec<Finding>,
-    /// The stress below the surface, where the case asks for it.
-    pub stress: Option<Below>,
-    /// What leaks, in a few words, where the case asks for it.
-    pub leak: Option<String>,
 }
 
 impl Summary {
@@ -105,10 +102,8 @@ impl Summary {
             peak_memory_bytes: work.peak_memory_bytes,
             result: result.to_owned(),
             last: None,
-            friction: None,
+            answers: vec![],
             findings: vec![],
-            stress: None,
-            leak: None,
         }
     }
 }
@@ -281,7 +276,7 @@ fn leakage(case: &Case, mut summary: Summary, options: &RunOptions) -> Result<Su
     match leakage::store(&summary.result, leak, &options.interrupt, |_, _| {}) {
         Ok(leaks) => {
             summary.findings.extend(leaks.findings.iter().cloned());
-            summary.leak = Some(leaks.sentence());
+            summary.answers = answers(&summary.result, &case.output.units);
             Ok(summary)
         }
         Err(source) => Err(RunError::Leakage { source, summary: Box::new(summary) }),
@@ -290,7 +285,7 @@ fn leakage(case: &Case, mut summary: Summary, options: &RunOptions) -> Result<Su
 
 /// Resuming a complete result: its leakage is computed where it is asked for and missing, else nothing is left to do.
 fn ended(case: &Case, complete: &StoreError, path: &Path, options: &RunOptions) -> Result<Summary, RunError> {
-    let summary = stored(path).map_err(RunError::Output)?;
+    let summary = stored(path, &case.output.units).map_err(RunError::Output)?;
     if Reader::open(path).is_ok_and(|reader| reader.lacks_leakage()) {
         return leakage(case, summary, options);
     }
@@ -298,13 +293,18 @@ fn ended(case: &Case, complete: &StoreError, path: &Path, options: &RunOptions) 
     Ok(summary)
 }
 
+/// The answers of what is stored at `path`. A result that cannot be read back has been reported already where it was written.
+fn answers(path: &Path, units: &Units) -> Vec<Answer> {
+    Reader::open(path).and_then(|reader| answer::of(&reader, units)).unwrap_or_default()
+}
+
 /// What the run did that stored the complete result at `path`.
-fn stored(path: &Path) -> Result<Summary, StoreError> {
+fn stored(path: &Path, units: &Units) -> Result<Summary, StoreError> {
     let reader = Reader::open(path)?;
     Ok(Summary {
         last: reader.rows()?.last().copied(),
         findings: reader.findings().to_vec(),
-        stress: Below::of(&reader)?,
+        answers: answer::of(&reader, units)?,
         ..Summary::of(reader.status(), reader.len(), reader.work(), path)
     })
 }

@@ -111,17 +111,11 @@ impl Record<'_> {
             threads: Some(rayon::current_num_threads()),
             ..outcome
         };
-        let (status, path, last, friction) = (outcome.status, self.path, self.last, self.friction);
-        let stress = self.stress.take();
-        let summary = |status, work: &Work| Summary {
-            last,
-            friction,
-            findings,
-            stress,
-            ..Summary::of(status, rows, work, path)
-        };
+        let (status, path, last, units) = (outcome.status, self.path, self.last, &self.case.output.units);
+        let summary =
+            |status, work: &Work| Summary { last, findings, ..Summary::of(status, rows, work, path) };
         match self.writer.finish(&outcome) {
-            Ok(work) => Ok(summary(status, &work)),
+            Ok(work) => Ok(Summary { answers: super::answers(path, units), ..summary(status, &work) }),
             Err(source) => {
                 Err(RunError::Storage { source, summary: Box::new(summary(Status::Failed, &before)) })
             }

@@ -7,6 +7,7 @@ use asperity::sliding::SteadyMotion;
 use asperity::{Axis, Simulation};
 use serde_json::{Map, Value, json};
 
+use crate::answer::Units;
 use crate::case::Case;
 use crate::store::Header;
 use crate::stress::{self, Ratio, StressBody};
@@ -79,9 +80,11 @@ pub fn setup(case: &Case) -> Map<String, Value> {
             _ => Value::Null,
         };
         setup.insert(stress::POISSON_CREEP.into(), ratios.iter().map(creep).collect());
-        let controls: Vec<Control> =
-            case.conditions.loading.stages.iter().map(|stage| stage.control).collect();
-        setup.insert(stress::CONTROLS.into(), json!(controls));
+    }
+    let controls: Vec<Control> = case.conditions.loading.stages.iter().map(|stage| stage.control).collect();
+    setup.insert(Header::CONTROLS.into(), json!(controls));
+    if !case.output.units.is_empty() {
+        setup.insert(Units::SETUP.into(), json!(case.output.units));
     }
     setup.insert("solver_tolerance".into(), json!(case.conditions.solver.tolerance));
     if let Some(plan) = &case.stress {

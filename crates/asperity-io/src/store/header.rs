@@ -5,7 +5,7 @@ use std::path::Path;
 
 use asperity::finding::Finding;
 use asperity::quantities::{Column, Quantity};
-use asperity::{Axis, Grid};
+use asperity::{Axis, Control, Grid};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
@@ -59,6 +59,15 @@ impl Header {
         let word = self.setup.get("boundary").and_then(Value::as_str)?;
         Some(format!("{} {bodies}", if word == "periodic" { "periodic" } else { "free" }))
     }
+
+    /// What each stage prescribes; empty where the result does not say it.
+    pub fn controls(&self) -> Vec<Control> {
+        let stages = self.setup.get(Header::CONTROLS).cloned();
+        stages.and_then(|stages| serde_json::from_value(stages).ok()).unwrap_or_default()
+    }
+
+    /// The key of [`Header::controls`] in the setup.
+    pub(crate) const CONTROLS: &'static str = "stage_controls";
 
     /// What its rows follow one another in.
     pub fn axis(&self) -> Axis {

@@ -20,8 +20,6 @@ const REFINED: usize = 6;
 pub(crate) const SETUP: &str = "stress_plan";
 /// Functions of Poisson's ratio in the setup of a result, one for each body; null where it is constant.
 pub(crate) const POISSON_CREEP: &str = "poisson_creep";
-/// What is prescribed in each stage, in the setup of a result with such functions.
-pub(crate) const CONTROLS: &str = "stage_controls";
 const NO_POISSON: &str = "it does not say the Poisson's ratio of its first body, or this changes with the temperature; use \
                           asperity stress --poisson NU";
 

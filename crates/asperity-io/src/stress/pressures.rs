@@ -4,8 +4,8 @@
 use asperity::load::Control;
 use asperity::stress::{PressureHistory, SubsurfaceStress};
 
+use super::Ratio;
 use super::evaluate::StressError;
-use super::{CONTROLS, Ratio};
 use crate::store::{At, FieldKind, Reader};
 
 const GAPS: &str = "Poisson's ratio of the body changes with time (constant bulk modulus), so that the stress needs the pressures \
@@ -77,9 +77,7 @@ impl<'a> Pressures<'a> {
 
 /// What is prescribed in the step to each row of a result.
 fn controls(reader: &Reader) -> Result<Vec<Control>, StressError> {
-    let stages = reader.header().setup.get(CONTROLS);
-    let stages: Vec<Control> =
-        stages.and_then(|stages| serde_json::from_value(stages.clone()).ok()).unwrap_or_default();
+    let stages = reader.header().controls();
     let of_stage = |stage: &f64| stages.get(*stage as usize).copied();
     let controls: Option<Vec<Control>> = reader.series("stage")?.iter().map(of_stage).collect();
     controls.ok_or_else(|| StressError::Refused { path: reader.path().to_owned(), why: UNKNOWN })

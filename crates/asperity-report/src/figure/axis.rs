@@ -26,6 +26,8 @@ pub struct Axis {
     pub range: Option<[f64; 2]>,
     /// Names of the values 0, 1, 2 ... in place of numbers; empty for numbers.
     pub names: Vec<String>,
+    /// The unit that it is shown in; `None` for one that suits its range.
+    pub chosen: Option<Shown>,
     /// Whether it counts something: its ticks are whole numbers then.
     pub counts: bool,
 }
@@ -34,6 +36,9 @@ pub struct Axis {
 /// case.
 const DECADES_WITHOUT_PREFIX: f64 = 6.0;
 
+/// Times below this are shown in seconds or less \[s\].
+const SECONDS: f64 = 1e4;
+
 /// Smaller numbers are 0 on a linear axis: the steps between their ticks have no digits left.
 const NOTHING: f64 = 1e-250;
 
@@ -41,7 +46,7 @@ impl Axis {
     /// A linear axis over the range of the data.
     pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Axis {
         let (scale, range, names, counts) = (Scale::Linear, None, vec![], false);
-        Axis { label: label.into(), unit: unit.into(), scale, range, names, counts }
+        Axis { label: label.into(), unit: unit.into(), scale, range, names, counts, chosen: None }
     }
 
     /// A logarithmic axis over the range of the data.
@@ -59,6 +64,11 @@ impl Axis {
     /// The same axis for a number of things, without ticks between whole numbers.
     pub fn counting(self) -> Axis {
         Axis { counts: true, ..self }
+    }
+
+    /// The same axis in a unit that was chosen.
+    pub fn shown_in(self, chosen: Option<Shown>) -> Axis {
+        Axis { chosen, ..self }
     }
 
     /// The same axis between two ends \[SI\].
@@ -200,7 +210,12 @@ fn prefixed(axis: &Axis, [low, high]: [f64; 2]) -> Shown {
     let log = axis.scale == Scale::Log;
     let plain = log && high - low > DECADES_WITHOUT_PREFIX && low < 0.0 && high > 0.0;
     let largest = if log { 10f64.powf(high) } else { low.abs().max(high.abs()) };
-    shown(&axis.unit, if plain { 1.0 } else { largest })
+    match &axis.chosen {
+        Some(chosen) => chosen.clone(),
+        // Decades of time are those of the second.
+        None if log && axis.unit == "s" => shown("s", if plain { 1.0 } else { largest.min(SECONDS) }),
+        None => shown(&axis.unit, if plain { 1.0 } else { largest }),
+    }
 }
 
 /// A unit with a power of ten before it where numbers up to `largest` \[SI\] would have more than five digits.

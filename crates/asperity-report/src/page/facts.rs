@@ -6,17 +6,6 @@ use asperity_io::readable::quantity;
 use asperity_io::store::{Reader, StoreError};
 use serde_json::{Map, Value};
 
-/// A time, with its hours or days beside the seconds where it is long: "86400 s (1 d)".
-pub(super) fn time(seconds: f64) -> String {
-    let [hour, day] = [3600.0, 86400.0];
-    let words = quantity(seconds, "s");
-    match seconds {
-        t if t >= day && t.is_finite() => format!("{words} ({} d)", quantity(t / day, "")),
-        t if t >= 2.0 * hour && t.is_finite() => format!("{words} ({} h)", quantity(t / hour, "")),
-        _ => words,
-    }
-}
-
 /// The case and the work, in words.
 pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     let header = reader.header();
@@ -58,9 +47,9 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         match times[..] {
             [] => "none (elastic)".to_owned(),
             [first, .., last] if times.len() > 4 => {
-                format!("{} from {} to {}", times.len(), time(first), time(last))
+                format!("{} from {} to {}", times.len(), quantity(first, "s"), quantity(last, "s"))
             }
-            _ => times.iter().map(|t| time(*t)).collect::<Vec<_>>().join(", "),
+            _ => times.iter().map(|t| quantity(*t, "s")).collect::<Vec<_>>().join(", "),
         }
     });
     line("Retardation times", times);
@@ -80,7 +69,7 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         }
         Axis::Time | Axis::None => {
             let end = setup.get("end").and_then(Value::as_f64);
-            line("Time", end.map(|end| format!("0 to {}", time(end))));
+            line("Time", end.map(|end| format!("0 to {}", quantity(end, "s"))));
         }
     }
     for [name, words] in last_cycles(reader)? {
@@ -160,17 +149,4 @@ fn last_cycles(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         Some([format!("Last of {} cycles at {}", part.cycles.len(), quantity(part.frequency, "Hz")), words])
     };
     Ok(cycles::of_result(reader)?.iter().filter_map(of_stage).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::time;
-
-    #[test]
-    fn long_times_are_told_in_hours_and_days_too() {
-        assert_eq!(time(7199.0), "7199 s");
-        assert_eq!(time(36000.0), "36000 s (10 h)");
-        assert_eq!(time(86400.0), "86400 s (1 d)");
-        assert_eq!(time(5e-3), "5 ms");
-    }
 }

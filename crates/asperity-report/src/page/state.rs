@@ -1,16 +1,15 @@
 //! What a page knows besides its maps.
 
-use asperity::Coordinate;
 use asperity::cycles::Cycle;
+use asperity_io::answer::{self, Answer, Units};
 use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
-use asperity_io::readable::quantity;
-use asperity_io::store::{FieldKind, Reader, StoreError};
+use asperity_io::store::{FieldKind, Reader, Row, StoreError};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 
-use super::facts::{facts, time};
+use super::facts::facts;
 use super::maps::Maps;
 use super::{material, stress};
 use crate::figure::Colours;
@@ -31,19 +30,21 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     if reader.is_empty() {
         return Err(reader.no_rows());
     }
+    let units = Units::of(reader, &Units::default());
+    let answers = answer::of(reader, &units)?;
     let mut series = Map::new();
-    let mut units = Map::new();
+    let mut units_of = Map::new();
     for scalar in reader.scalars() {
         series.insert(scalar.name.into(), json!(reader.series(scalar.name)?));
-        units.insert(scalar.name.into(), json!(scalar.units));
+        units_of.insert(scalar.name.into(), json!(scalar.units));
     }
     // What the rows follow, of a sweep the velocities.
     series.insert("time".into(), json!(reader.series("time")?));
     series.insert(CONTACT_PRESSURE.into(), json!(panels::values(reader, CONTACT_PRESSURE)?));
-    units.insert(CONTACT_PRESSURE.into(), json!("Pa"));
+    units_of.insert(CONTACT_PRESSURE.into(), json!("Pa"));
     if let Some(temperature) = temperature_at_rows(reader)? {
         series.insert("temperature".into(), json!(temperature));
-        units.insert("temperature".into(), json!("°C"));
+        units_of.insert("temperature".into(), json!("°C"));
     }
     let rows = Rows::of(reader)?;
     let theory = persson(reader)?;
@@ -73,12 +74,14 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "status": status(reader),
         "footer": format!("asperity {}; numbers in SI units with prefixes.", reader.header().version),
         "findings": asperity_io::finding::list(reader.findings()),
-        "headline": headline(reader)?,
+        "headline": headline(&answers, &units, reader.rows()?.last()),
+        "answers": answers,
         "facts": facts(reader)?,
         "case": reader.header().case_text,
         "grid": {"cells": grid.cells(), "size": grid.size(), "line": grid.is_line()},
         "series": series,
-        "units": units,
+        "units": units_of,
+        "time_unit": units.shown("time").map(|shown| json!({"factor": shown.factor, "text": shown.text})),
         "rows": {"label": rows.of.name(), "unit": rows.of.unit(), "symbol": rows.of.symbol(), "log": rows.log},
         "last_cycle": last_cycle(reader)?,
         "cycles": each_cycle(reader)?,
@@ -95,7 +98,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "surface": maps.surface,
         "material": material::curves(reader),
         "stress": stress::curves(reader)?,
-        "leak": leak(reader)?,
+        "leak": leak(reader, &units)?,
     }))
 }
 
@@ -120,15 +123,18 @@ fn each_cycle(reader: &Reader) -> Result<Value, StoreError> {
 }
 
 /// The leaks over time, what was asked for and what was found in words; null where there are none.
-fn leak(reader: &Reader) -> Result<Value, StoreError> {
+fn leak(reader: &Reader, units: &Units) -> Result<Value, StoreError> {
     let Some(history) = LeakHistory::of(reader)? else { return Ok(Value::Null) };
     let mut columns = Map::new();
     for series in history.table.series() {
         let values = history.table.get(series.name);
         columns.insert(series.name.into(), json!({"units": series.units, "values": values}));
     }
+    let gas = history.table.get("leak_rate_standard").is_some();
+    let shown = units.shown_leak(gas);
+    columns.insert("shown".into(), json!({"factor": shown.factor, "text": shown.text}));
     columns.insert("asked".into(), json!(history.leak.words()));
-    columns.insert("found".into(), json!(history.sentence()));
+    columns.insert("found".into(), json!(history.sentence(units)));
     Ok(Value::Object(columns))
 }
 
@@ -144,6 +150,8 @@ fn evolution(reader: &Reader, theory: bool) -> Result<Vec<Value>, StoreError> {
         panels.push(RowPanel { title: "Temperature", label: "temperature", lines, states: &[] });
     }
     panels.extend(panels::of_quantities(reader)?);
+    // The answer of a contact in motion comes first.
+    panels.sort_by_key(|panel| !panel.title.starts_with("Friction"));
     let beside = [("friction_coefficient", PERSSON_FRICTION), ("contact_area", PERSSON_AREA)];
     for (computed, expected) in beside.into_iter().filter(|_| theory) {
         if let Some(panel) = panels.iter_mut().find(|p| p.lines.iter().any(|(_, name)| *name == computed)) {
@@ -188,44 +196,11 @@ fn status(reader: &Reader) -> String {
     format!("{rows}{of} rows; {state}{why}")
 }
 
-/// The state at the end.
-fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
-    let rows = reader.rows()?;
-    let Some(last) = rows.last() else { return Ok(vec![]) };
-    let grid = &reader.header().grid;
-    let (force, area) = (grid.units("N"), grid.units("m2"));
-    let contact = match grid.is_line() {
-        true => "contact length".to_owned(),
-        false => format!("contact area, {} corrected", quantity(last.contact_area_corrected, area)),
-    };
-    let nominal = quantity(last.mean_pressure, "Pa");
-    let pressures = match last.contact_area > 0.0 {
-        true => {
-            let mean = quantity(last.load / last.contact_area, "Pa");
-            format!("largest pressure; mean over the contact {mean}, nominal {nominal}")
-        }
-        false => "largest pressure; nothing touches".to_owned(),
-    };
-    let mut lines = vec![
-        [
-            format!("{} (last of {} rows)", last.coordinate.axis().name(), rows.len()),
-            match last.coordinate {
-                Coordinate::Velocity(velocity) => quantity(velocity, "m/s"),
-                at => time(at.value()),
-            },
-        ],
-        ["load".into(), quantity(last.load, force)],
-        ["approach".into(), quantity(last.approach, "m")],
-        [contact, quantity(last.contact_area, area)],
-        [
-            if grid.is_line() { "of the domain" } else { "of the nominal area" }.into(),
-            format!("{:.2} %", 100.0 * last.contact_fraction),
-        ],
-        ["mean gap".into(), quantity(last.mean_gap, "m")],
-        [pressures, quantity(last.max_pressure, "Pa")],
-    ];
-    if last.capped_area > 0.0 {
-        lines.push(["at the hardness".into(), quantity(last.capped_area, area)]);
-    }
-    Ok(lines)
+/// The answers of the result, and the row that they belong to.
+fn headline(answers: &[Answer], units: &Units, last: Option<&Row>) -> Vec<[String; 2]> {
+    let mut lines: Vec<[String; 2]> =
+        answers.iter().map(|answer| [answer.label(), answer.words(units)]).collect();
+    let at = answers.iter().find_map(|answer| answer.at).or(last.map(|row| row.coordinate));
+    lines.extend(at.map(|at| [at.axis().name().to_owned(), units.number(at.value(), at.axis().unit())]));
+    lines
 }

@@ -1,8 +1,7 @@
 //! Leakage of a result: how it changes over time, and where the fluid flows at an instant.
 
+use asperity_io::answer::Units;
 use asperity_io::leakage::settings;
-use asperity_io::leakage::words::MBAR_LITRE;
-use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader};
 
 use super::{Options, PlotError, Rows};
@@ -10,7 +9,8 @@ use crate::figure::{Axis, Curves, Figure, Map, Series, Style, extent};
 use crate::leak::{heading, maps, words};
 
 /// The leaks of a result as they are stored, over time.
-fn curves(reader: &Reader, log: Option<bool>) -> Result<Vec<Curves>, PlotError> {
+fn curves(reader: &Reader, options: &Options) -> Result<Vec<Curves>, PlotError> {
+    let (units, log) = (Units::of(reader, &options.units), options.log);
     let time = reader.leak("leak_time")?;
     let percolates = reader.leak("percolates")?;
     // A logarithmic axis has no place for t = 0: it is of use where the seal leaks later too.
@@ -21,6 +21,7 @@ fn curves(reader: &Reader, log: Option<bool>) -> Result<Vec<Curves>, PlotError> 
     let last = time.last().copied().unwrap_or(0.0);
     let axis = || {
         let axis = if log_time { Axis::log("time", "s") } else { Axis::linear("time", "s") };
+        let axis = axis.shown_in(units.shown("time"));
         if last > first { axis.between(first, last) } else { axis }
     };
     let line = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
@@ -36,12 +37,16 @@ fn curves(reader: &Reader, log: Option<bool>) -> Result<Vec<Curves>, PlotError> 
         return Ok(all);
     }
     if reader.leak("leak_rate").is_ok() {
-        let label =
-            if gas { Axis::log("leak rate, at 0 °C", "mbar l/s") } else { Axis::log("leak rate", "m3/s") };
+        let shown = units.shown_leak(gas);
+        let label = match gas {
+            true => Axis::log("leak rate, at 0 °C", "Pa m3/s"),
+            false => Axis::log("leak rate", "m3/s"),
+        }
+        .shown_in(Some(shown));
         let standard = if gas { reader.leak("leak_rate_standard")? } else { vec![] };
         let rate = reader.leak("leak_rate")?;
-        // Of a gas every rate in kg/s has the same factor to mbar l/s.
-        let mut ratios = standard.iter().zip(&rate).map(|(standard, rate)| MBAR_LITRE * standard / rate);
+        // Of a gas every rate in kg/s has the same factor to its standard rate.
+        let mut ratios = standard.iter().zip(&rate).map(|(standard, rate)| standard / rate);
         let factor = ratios.rfind(|ratio| ratio.is_finite()).unwrap_or(1.0);
         let scaled = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
             let mut series = line(name, style, column)?;
@@ -89,25 +94,26 @@ fn sealing(mut panel: Curves, time: &[f64], percolates: &[f64]) -> Curves {
 /// Leak rate and gaps over time, and the flow at an instant.
 pub(super) fn over_time(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let window = Rows::within(reader, options)?.axis(options.log).range;
-    let mut curves = curves(reader, options.log)?;
+    let mut curves = curves(reader, options)?;
     for panel in &mut curves {
         panel.x.range = window.or(panel.x.range);
     }
-    let (maps, caption) = flow(reader, options.at, "The maps are of")?;
+    let (maps, caption) = flow(reader, options.at, "The maps are of", &options.units)?;
     Ok(Figure::new("").with_all(curves).with_all(maps).panel_size([300.0, 240.0]).caption(caption))
 }
 
 /// The flow alone, for pages: at the last instant at which the seal leaks.
 pub(crate) fn last_map(reader: &Reader) -> Result<Figure, PlotError> {
-    let (maps, caption) = flow(reader, At::Last, "This is")?;
+    let (maps, caption) = flow(reader, At::Last, "This is", &Units::default())?;
     Ok(Figure::new("").with_all(maps).panel_size([300.0, 260.0]).caption(caption))
 }
 
 /// The maps at an instant and their caption. The last state of a seal that has become tight shows no flow: in its place stands the
 /// last one at which it leaks, and the caption says so.
-fn flow(reader: &Reader, wanted: At, shown: &str) -> Result<(Vec<Map>, String), PlotError> {
+fn flow(reader: &Reader, wanted: At, shown: &str, units: &Units) -> Result<(Vec<Map>, String), PlotError> {
+    let units = Units::of(reader, units);
     let instant = if wanted == At::Last { last_leak(reader) } else { wanted };
-    let (maps, mut caption) = at(reader, instant)?;
+    let (maps, mut caption) = at(reader, instant, &units)?;
     if reader.index(instant)? != reader.index(wanted)? {
         caption += &format!(" {shown} the last stored time at which it leaks.");
     }
@@ -115,7 +121,7 @@ fn flow(reader: &Reader, wanted: At, shown: &str) -> Result<(Vec<Map>, String), 
 }
 
 /// The maps at an instant, computed as the stored leaks were.
-fn at(reader: &Reader, at: At) -> Result<(Vec<Map>, String), PlotError> {
+fn at(reader: &Reader, at: At, units: &Units) -> Result<(Vec<Map>, String), PlotError> {
     let Some(leak) = settings(reader) else {
         return Err(reader.no_leaks().into());
     };
@@ -125,8 +131,8 @@ fn at(reader: &Reader, at: At) -> Result<(Vec<Map>, String), PlotError> {
     let contact = reader.contact_states(at)?;
     let grid = &reader.header().grid;
     let found = leak.of_gap(grid, gap.view(), Some(contact.view()), time)?;
-    let moment = quantity(time, "s");
-    let caption = format!("t = {moment}: {}, {}. {}", heading(&found), leak.words(), words(&found));
+    let moment = units.time(time);
+    let caption = format!("t = {moment}: {}, {}. {}", heading(&found, units), leak.words(), words(&found));
     Ok((maps(&found, gap.view(), grid.size()), caption))
 }
 

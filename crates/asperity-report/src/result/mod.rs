@@ -27,6 +27,7 @@ mod together;
 
 use asperity::Boundary;
 use asperity::material::{Creep, CreepTerm};
+use asperity_io::answer::Units;
 use asperity_io::choice;
 use asperity_io::readable::{coordinate, quantity};
 use asperity_io::store::{At, Reader, StoreError};
@@ -58,6 +59,8 @@ pub struct Options {
     pub line: Line,
     /// Times on a logarithmic axis, or on a linear one; `None`: logarithmic where most of them lie in the first tenth of the run.
     pub log: Option<bool>,
+    /// Units for leaks and times instead of those of the result.
+    pub units: Units,
     /// The title instead of the result's.
     pub title: Option<String>,
     /// First and last time of figures over time \[s\], of a sweep velocity \[m/s\]; of an animation its first and last frame.

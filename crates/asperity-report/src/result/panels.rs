@@ -5,7 +5,7 @@ use asperity_io::store::{Reader, StoreError};
 
 use super::rows::Rows;
 use super::{Options, PlotError, temperature};
-use crate::figure::{Axis, Curves, Figure, Series, Style};
+use crate::figure::{Axis, Curves, Figure, Series, Style, extent};
 
 /// A panel of numbers over the rows.
 pub(crate) struct RowPanel {
@@ -55,7 +55,22 @@ fn of_columns(reader: &Reader, is_of: impl Fn(RowFigure) -> Option<u8>) -> Resul
     Ok(panels)
 }
 
-/// How the contact evolves.
+/// A number is constant if it varies by less than this share.
+const CONSTANT: f64 = 1e-9;
+
+/// Whether a panel shows nothing but what stays the same: a load that is held.
+fn is_constant(reader: &Reader, panel: &RowPanel) -> Result<bool, StoreError> {
+    for (_, name) in &panel.lines {
+        let values = values(reader, name)?;
+        let [low, high] = extent(values.iter().copied());
+        if high - low > CONSTANT * high.abs().max(low.abs()) {
+            return Ok(false);
+        }
+    }
+    Ok(reader.len() > 1)
+}
+
+/// How the contact evolves; what stays the same is left out where anything changes.
 pub(crate) fn of_evolution(reader: &Reader) -> Result<Vec<RowPanel>, StoreError> {
     let mut panels = of_columns(reader, |figure| match figure {
         RowFigure::Evolution(place) => Some(place),
@@ -63,6 +78,15 @@ pub(crate) fn of_evolution(reader: &Reader) -> Result<Vec<RowPanel>, StoreError>
     })?;
     if let Some(pressure) = panels.iter_mut().find(|panel| panel.label == "pressure") {
         pressure.lines.push(("mean over the contact", CONTACT_PRESSURE));
+    }
+    let mut changing = vec![];
+    for panel in &panels {
+        if !is_constant(reader, panel)? {
+            changing.push(panel.title);
+        }
+    }
+    if !changing.is_empty() {
+        panels.retain(|panel| changing.contains(&panel.title));
     }
     Ok(panels)
 }
@@ -103,7 +127,7 @@ impl RowPanel {
     pub(super) fn curves(
         &self,
         reader: &Reader,
-        rows: Rows,
+        rows: &Rows,
         log: Option<bool>,
     ) -> Result<Curves, StoreError> {
         let (up, steps) = match self.states {
@@ -156,6 +180,6 @@ pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, P
 fn over_rows(reader: &Reader, options: &Options, panels: &[RowPanel]) -> Result<Figure, PlotError> {
     super::evolution::times(reader)?;
     let rows = Rows::within(reader, options)?;
-    let curves = panels.iter().map(|panel| panel.curves(reader, rows, options.log));
+    let curves = panels.iter().map(|panel| panel.curves(reader, &rows, options.log));
     Ok(Figure::new("").with_all(curves.collect::<Result<Vec<_>, _>>()?))
 }

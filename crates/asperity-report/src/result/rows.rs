@@ -1,23 +1,27 @@
 //! What the rows of a result follow: time, or the velocities of a sweep.
 
+use asperity_io::answer::Units;
+use asperity_io::readable::Shown;
 use asperity_io::store::{Reader, StoreError};
 
 use super::{Options, PlotError};
 use crate::figure::Axis;
 
 /// The axis of the rows.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Rows {
     pub(crate) of: asperity::Axis,
     /// Whether a logarithmic axis shows them better.
     pub(crate) log: bool,
     /// Ends of the axis; `None` for those of the data.
     range: Option<[f64; 2]>,
+    /// The unit chosen for times.
+    unit: Option<Shown>,
 }
 
 impl Rows {
     pub(crate) fn of(reader: &Reader) -> Result<Rows, StoreError> {
-        Ok(Rows::over(reader.header().axis(), &reader.series("time")?))
+        Ok(Rows::over(reader, &reader.series("time")?, &Units::default()))
     }
 
     /// Those of a window.
@@ -26,16 +30,15 @@ impl Rows {
     /// [`PlotError::Window`] where no row lies in it.
     pub(crate) fn within(reader: &Reader, options: &Options) -> Result<Rows, PlotError> {
         let values = reader.series("time")?;
-        let of = reader.header().axis();
         if options.window == [None, None] {
-            return Ok(Rows::over(of, &values));
+            return Ok(Rows::over(reader, &values, &options.units));
         }
         let inside: Vec<f64> = values.iter().copied().filter(|value| options.shows(*value)).collect();
         let (Some(first), Some(last)) = (inside.first(), inside.last()) else {
             let ends = [values.first(), values.last()].map(|end| super::moment(reader, *end.unwrap_or(&0.0)));
             return Err(PlotError::Window { ends });
         };
-        let rows = Rows::over(of, &inside);
+        let rows = Rows::over(reader, &inside, &options.units);
         // A logarithmic axis begins at the first row after 0.
         let positive = inside.iter().copied().find(|value| *value > 0.0).unwrap_or(*first);
         let start = if options.log.unwrap_or(rows.log) { positive } else { *first };
@@ -43,17 +46,19 @@ impl Rows {
         Ok(Rows { range: Some([from, options.window[1].unwrap_or(*last)]), ..rows })
     }
 
-    fn over(of: asperity::Axis, values: &[f64]) -> Rows {
-        Rows { of, log: is_logarithmic(values, of), range: None }
+    fn over(reader: &Reader, values: &[f64], units: &Units) -> Rows {
+        let of = reader.header().axis();
+        let unit = Units::of(reader, units).shown("time").filter(|_| of == asperity::Axis::Time);
+        Rows { of, log: is_logarithmic(values, of), range: None, unit }
     }
 
     /// The axis of a panel; `log` where that was asked for.
-    pub(crate) fn axis(self, log: Option<bool>) -> Axis {
+    pub(crate) fn axis(&self, log: Option<bool>) -> Axis {
         let axis = match log.unwrap_or(self.log) {
             true => Axis::log(self.of.name(), self.of.unit()),
             false => Axis::linear(self.of.name(), self.of.unit()),
         };
-        Axis { range: self.range, ..axis }
+        Axis { range: self.range, chosen: self.unit.clone(), ..axis }
     }
 }
 

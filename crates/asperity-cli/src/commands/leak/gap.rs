@@ -4,9 +4,10 @@ use std::path::Path;
 
 use asperity::finding::LeakDiagnostics;
 use asperity::{Boundary, Grid};
+use asperity_io::answer::MBAR_LITRE;
 use asperity_io::case::leak as checked;
 use asperity_io::finding;
-use asperity_io::leakage::{Leakage, words};
+use asperity_io::leakage::Leakage;
 use ndarray::Array2;
 use serde_json::{Value, json};
 
@@ -127,7 +128,7 @@ fn text(state: &Leakage) -> String {
         };
         line("leak rate", one(rate));
         if let Some(standard) = state.leak_rate_standard {
-            let mbar = words::MBAR_LITRE * standard;
+            let mbar = MBAR_LITRE * standard;
             line("", format!("{standard:.4e} Pa m3/s at 0 degC, {mbar:.4e} mbar l/s"));
         }
         line("  by one junction", one(state.leak_estimate_junction.unwrap_or(f64::NAN)));

@@ -6,6 +6,7 @@ mod options;
 use std::path::Path;
 
 use asperity::Boundary;
+use asperity_io::answer::Units;
 use asperity_io::case::leak as checked;
 use asperity_io::choice;
 use asperity_io::finding;
@@ -49,6 +50,7 @@ impl Verb for args::Leak {
 fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
     let reader = Reader::open(path)?;
     let leak = asked(args, &reader)?;
+    let units = Units::of(&reader, &super::answers::units(&args.unit)?);
     let history = match LeakHistory::of(&reader)? {
         Some(stored) if stored.leak == leak => stored,
         stored => {
@@ -69,7 +71,7 @@ fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         }
     };
     super::findings::print(&history.findings);
-    let text = if args.json { object(path, &history) } else { text(&history) };
+    let text = if args.json { object(path, &history) } else { text(&history, &units) };
     crate::print(&text)
 }
 
@@ -130,7 +132,7 @@ fn numbers(name: &str, values: &[f64]) -> Value {
 }
 
 /// What was asked for, a table of the times, and when the seal is tight.
-fn text(history: &LeakHistory) -> String {
+fn text(history: &LeakHistory, units: &Units) -> String {
     let table = &history.table;
     let column = |name: &str| table.get(name).unwrap_or_default();
     let times = column("leak_time");
@@ -142,13 +144,13 @@ fn text(history: &LeakHistory) -> String {
     }
     text += &format!("{:>15}{:>15}{:>14}\n", "hydraulic gap", "critical gap", "trapped area");
     for n in 0..table.len() {
-        text += &format!("{:>12}", quantity(times[n], "s"));
+        text += &format!("{:>12}", units.time(times[n]));
         let tight = column("percolates")[n] == 0.0;
         let mark = if column("leak_resolved")[n] == 0.0 { " ?" } else { "  " };
         if fluid {
             let words = match tight {
                 true => "tight".to_owned(),
-                false => words::rate(column("leak_rate")[n], standard.map(|standard| standard[n])),
+                false => units.rate(column("leak_rate")[n], standard.map(|standard| standard[n])),
             };
             text += &format!("{:>34}", words + mark);
         }
@@ -163,7 +165,7 @@ fn text(history: &LeakHistory) -> String {
     if column("leak_resolved").contains(&0.0) {
         text += "? see the findings\n";
     }
-    let tight = words::tight(times, column("percolates"));
+    let tight = words::tight(times, column("percolates"), units);
     if !tight.is_empty() {
         text += &format!("{tight}\n");
     }

@@ -67,6 +67,7 @@ pub(super) fn of(args: &args::Plot, plot: Plot, reader: &Reader) -> Result<Optio
     Ok(Options {
         line: if args.along == "x" { Line::AlongX(place) } else { Line::AlongY(place) },
         log: (args.log_time || args.linear_time).then_some(args.log_time),
+        units: crate::commands::answers::units(&args.unit)?,
         title: args.title.clone(),
         window,
         limits: args.limits.as_deref().map(|text| limits(text, plot, args.log)).transpose()?,

@@ -30,29 +30,6 @@ pub fn object(below: &Below, written: &[String]) -> Value {
     Value::Object(object)
 }
 
-/// The largest stress below the surface, and first yield.
-pub fn lines(below: &Below) -> Vec<[String; 2]> {
-    let Some(worst) = below.worst() else { return vec![] };
-    let [mises, depth] = ["max_mises", "max_mises_depth"].map(|name| below.number(worst, name));
-    if !depth.is_finite() {
-        return vec![["stress".into(), "none: there is no contact at the times of the stress".into()]];
-    }
-    let mut lines = vec![[
-        "stress".to_owned(),
-        format!(
-            "largest von Mises {} at depth {} of {}, t = {}",
-            quantity(mises, "Pa"),
-            quantity(depth, "m"),
-            below.set.body,
-            quantity(worst.time, "s")
-        ),
-    ]];
-    if let Some(first) = first_yield(below) {
-        lines.push(["yield".into(), first.sentence(&below.set)]);
-    }
-    lines
-}
-
 /// Lines of columns, each as wide as its widest word.
 fn table(lines: &[Vec<String>]) -> String {
     let columns = lines.first().map_or(0, Vec::len);

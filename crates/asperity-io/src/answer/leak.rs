@@ -1,0 +1,31 @@
+//! The leak of a seal, and from when on it is tight.
+
+use super::{Answer, Units};
+use crate::leakage::{LeakHistory, words};
+use crate::store::{Reader, Result};
+
+/// The leaks at the last of their times; none where the result holds none.
+pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
+    let Some(leaks) = LeakHistory::of(reader)? else { return Ok(vec![]) };
+    let times = leaks.column("leak_time");
+    let percolates = leaks.column("percolates");
+    let note = leaks.note();
+    let mut answers: Vec<Answer> = leaks
+        .table
+        .series()
+        .into_iter()
+        .filter(|series| ["leak_rate", "leak_rate_standard", "hydraulic_gap"].contains(&series.name))
+        .map(|series| Answer::new(series.name, leaks.last(series.name), series.units))
+        .collect();
+    // The rate that is counted at 0 °C is the usual one of a gas.
+    answers.sort_by_key(|answer| answer.name != "leak_rate_standard");
+    if let Some(first) = answers.first_mut() {
+        first.note = note;
+    }
+    let open = percolates.iter().rposition(|open| *open != 0.0);
+    if let Some(tight) = open.map_or(times.first(), |open| times.get(open + 1)) {
+        let between = words::tight(times, percolates, units);
+        answers.push(Answer::new("tight_from", *tight, "s").with_note(between));
+    }
+    Ok(answers)
+}

@@ -1,0 +1,122 @@
+//! The answers of a result: the few numbers that a contact, a seal, a sweep over velocities or a test is computed for.
+//!
+//! | result | answers |
+//! |---|---|
+//! | with leakage | `leak_rate` (of a gas also `leak_rate_standard`), `hydraulic_gap`, `tight_from` |
+//! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force` |
+//! | with a sine | `loss_angle`, `dissipated_energy`, `dynamic_stiffness` of the last cycle |
+//! | every contact | `contact_area`, `contact_area_corrected`, `contact_fraction`, `max_pressure`, `approach` and `creep` where the load is given, `load` and `relaxation` where the approach is |
+//! | with stress | `max_mises`, `max_mises_depth`, `first_yield_load` |
+//!
+//! They are those of the last row; if nothing touches there, of the row with the largest load; of a sweep, of the velocity with the largest
+//! friction. Summaries, comparisons, reports, error bars and studies all read them here.
+
+mod contact;
+mod leak;
+mod motion;
+mod stress;
+mod units;
+
+use asperity::step::Row;
+use asperity::{Axis, Coordinate};
+use serde::Serialize;
+
+use crate::cycles;
+use crate::store::{Reader, Result};
+
+pub use units::{MBAR_LITRE, UnitError, Units};
+
+/// A number that a result was made for.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Answer {
+    /// Its name: that of a column of the result where it is one.
+    pub name: String,
+    /// Its value, SI; NaN (in JSON null) where there is none.
+    pub value: f64,
+    /// Its SI unit; "1" if it has none.
+    pub unit: &'static str,
+    /// The row that it belongs to.
+    #[serde(skip)]
+    pub at: Option<Coordinate>,
+    /// What a reader must know besides, in a few words.
+    #[serde(skip)]
+    pub note: String,
+}
+
+/// Numbers without a unit that are shown in percent.
+const SHARES: [&str; 2] = ["contact_fraction", "relaxation"];
+
+impl Answer {
+    fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Answer {
+        Answer { name: name.into(), value, unit, at: None, note: String::new() }
+    }
+
+    fn at(self, row: &Row) -> Answer {
+        Answer { at: Some(row.coordinate), ..self }
+    }
+
+    fn with_note(self, note: impl Into<String>) -> Answer {
+        Answer { note: note.into(), ..self }
+    }
+
+    /// Its name for people: "contact area".
+    pub fn label(&self) -> String {
+        self.name.replace('_', " ")
+    }
+
+    /// Whether it is a share, which is shown in percent.
+    pub fn is_share(&self) -> bool {
+        SHARES.contains(&self.name.as_str())
+    }
+
+    /// Its value with a unit that suits it.
+    pub fn words(&self, units: &Units) -> String {
+        units.words(self, self.value)
+    }
+}
+
+/// The answers of a result, the most important first; none without a row.
+///
+/// # Errors
+/// [`StoreError`](crate::store::StoreError) where the result is damaged.
+pub fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
+    let rows = reader.rows()?;
+    let Some(decisive) = decisive(reader, &rows)? else { return Ok(vec![]) };
+    let mut answers = leak::of(reader, units)?;
+    answers.extend(motion::of(reader, &rows, decisive)?);
+    answers.extend(last_cycle(reader)?);
+    answers.extend(contact::of(reader, &rows, decisive));
+    answers.extend(stress::of(reader)?);
+    Ok(answers)
+}
+
+/// The row that the answers belong to.
+fn decisive(reader: &Reader, rows: &[Row]) -> Result<Option<usize>> {
+    let Some(last) = rows.len().checked_sub(1) else { return Ok(None) };
+    let largest = |values: &[f64]| (0..values.len()).reduce(|a, b| if values[b] > values[a] { b } else { a });
+    if reader.header().axis() == Axis::Velocity {
+        return Ok(largest(&motion::coefficients(reader)?));
+    }
+    if rows[last].contact_fraction > 0.0 {
+        return Ok(Some(last));
+    }
+    let loads: Vec<f64> = rows.iter().map(|row| row.load).collect();
+    Ok(largest(&loads).filter(|row| rows[*row].contact_fraction > 0.0).or(Some(last)))
+}
+
+/// Loss angle, loss and stiffness of the last full cycle of a sine.
+fn last_cycle(reader: &Reader) -> Result<Vec<Answer>> {
+    let stages = cycles::of_result(reader)?;
+    let Some((part, cycle)) = stages.iter().rev().find_map(|part| Some((part, part.cycles.last()?))) else {
+        return Ok(vec![]);
+    };
+    let grid = &reader.header().grid;
+    let at = format!("cycle {} at {} Hz", part.cycles.len(), part.frequency);
+    Ok([
+        Answer::new("loss_angle", cycle.loss_angle, "rad"),
+        Answer::new("dissipated_energy", cycle.dissipated_energy, grid.units("J")),
+        Answer::new("dynamic_stiffness", cycle.stiffness, grid.units("N/m")),
+    ]
+    .map(|answer| answer.with_note(at.clone()))
+    .into())
+}

@@ -1,0 +1,44 @@
+//! Friction of a contact in motion.
+
+use asperity::Axis;
+use asperity::quantities::Quantity;
+use asperity::step::Row;
+
+use super::Answer;
+use crate::readable::quantity;
+use crate::store::{Reader, Result};
+
+/// A sweep over at most so many velocities has an answer for each.
+const FEW: usize = 5;
+
+/// The friction coefficient of each row, with the shear stress on the contact where it is given.
+pub(super) fn coefficients(reader: &Reader) -> Result<Vec<f64>> {
+    let total = Quantity::FrictionCoefficientTotal.name();
+    let has_total = reader.scalars().iter().any(|series| series.name == total);
+    reader.series(if has_total { total } else { Quantity::FrictionCoefficient.name() })
+}
+
+/// The answers of the row `n`; none where nothing moves.
+pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>> {
+    let frictions = reader.frictions()?;
+    let Some(friction) = frictions.get(n) else { return Ok(vec![]) };
+    let row = &rows[n];
+    let coefficients = coefficients(reader)?;
+    let sweep = reader.header().axis() == Axis::Velocity;
+    let largest = if sweep && rows.len() > 1 { "the largest of the sweep; " } else { "" };
+    let error = quantity(100.0 * friction.uncertainty, "");
+    let note = format!("{largest}the force is known to {error} %");
+    let mut answers = vec![
+        Answer::new("friction_coefficient", coefficients[n], "1").at(row).with_note(note),
+        Answer::new("friction_force", friction.force, reader.header().grid.units("N")).at(row),
+    ];
+    if sweep && rows.len() > 1 {
+        answers.push(Answer::new("velocity_of_largest_friction", row.coordinate.value(), "m/s"));
+        let few = rows.iter().zip(&coefficients).filter(|_| rows.len() <= FEW);
+        answers.extend(few.map(|(row, coefficient)| {
+            let name = format!("friction_coefficient_at_{}", quantity(row.coordinate.value(), "m/s"));
+            Answer::new(name.replace(' ', "_"), *coefficient, "1")
+        }));
+    }
+    Ok(answers)
+}

@@ -1,0 +1,28 @@
+//! The largest stress below the surface, and the load at which the body yields.
+
+use super::Answer;
+use crate::store::{Reader, Result};
+use crate::stress::{Below, FirstYield, first_yield};
+
+/// The answers at the time of the largest von Mises stress; none where no stress was computed.
+pub(super) fn of(reader: &Reader) -> Result<Vec<Answer>> {
+    let Some(below) = Below::of(reader)? else { return Ok(vec![]) };
+    let Some(worst) = below.worst() else { return Ok(vec![]) };
+    let number = |name: &'static str, unit| Answer::new(name, below.number(worst, name), unit);
+    let rows = reader.rows()?;
+    let note = format!("of {}", below.set.body);
+    let at = rows.get(worst.row).map(|row| row.coordinate);
+    let mut answers: Vec<Answer> =
+        [number("max_mises", "Pa").with_note(note), number("max_mises_depth", "m")]
+            .map(|answer| Answer { at, ..answer })
+            .into();
+    if let Some(first) = first_yield(&below) {
+        let load = match first {
+            FirstYield::Never { .. } => f64::NAN,
+            FirstYield::AtOnce([_, load]) | FirstYield::Between([_, [_, load]]) => load,
+        };
+        let answer = Answer::new("first_yield_load", load, below.grid.units("N"));
+        answers.push(answer.with_note(first.sentence(&below.set)));
+    }
+    Ok(answers)
+}

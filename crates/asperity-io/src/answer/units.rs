@@ -1,0 +1,215 @@
+//! The units that a user wants answers in: leaks and times.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::Answer;
+use crate::quantity::unit::{Powers, Unit};
+use crate::readable::{Shown, quantity};
+use crate::store::Reader;
+
+/// One atmosphere \[Pa\], at which gases are counted as volumes.
+const ATMOSPHERE: f64 = 101_325.0;
+/// Pa m³/s in mbar l/s.
+pub const MBAR_LITRE: f64 = 10.0;
+const VOLUME_RATE: Powers = [3, 0, -1, 0, 0];
+const MASS_RATE: Powers = [0, 1, -1, 0, 0];
+const PV_RATE: Powers = [2, 1, -3, 0, 0];
+const TIME: Powers = [0, 0, 1, 0, 0];
+
+/// What units can be chosen for, with the dimensions that each may have and an example.
+const CHOICES: [(&str, &[Powers], &str); 2] = [
+    ("leak", &[VOLUME_RATE, MASS_RATE, PV_RATE], "ml/min, ml/year, g/year, mbar l/s"),
+    ("time", &[TIME], "s, min, h, day, year"),
+];
+
+/// Why a unit cannot be chosen.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum UnitError {
+    /// Nothing of that name has a unit to choose.
+    #[error("\"{name}\" has no unit to choose; expected leak or time, e.g. leak=ml/year")]
+    Unknown {
+        /// What was named.
+        name: String,
+    },
+    /// The text is no unit of that dimension.
+    #[error("\"{unit}\" is no unit of a {name}{reason}; expected one like {examples}")]
+    Unfit {
+        /// What was named.
+        name: String,
+        /// The text.
+        unit: String,
+        /// Why, where more is known.
+        reason: String,
+        /// Units that fit.
+        examples: &'static str,
+    },
+}
+
+impl UnitError {
+    /// What would be right.
+    pub fn expected(&self) -> String {
+        match self {
+            UnitError::Unknown { .. } => "leak or time".into(),
+            UnitError::Unfit { examples, .. } => format!("one like {examples}"),
+        }
+    }
+}
+
+/// Units by what they are for, as a user wrote them: `leak`, `time`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Units(BTreeMap<String, String>);
+
+impl Units {
+    /// Chooses a unit.
+    ///
+    /// # Errors
+    /// [`UnitError`] if nothing of that name has a unit to choose, or the text is no unit of its dimension.
+    pub fn choose(&mut self, name: &str, unit: &str) -> Result<(), UnitError> {
+        let known = CHOICES.iter().find(|choice| choice.0 == name);
+        let Some((_, dimensions, examples)) = known else {
+            return Err(UnitError::Unknown { name: name.to_owned() });
+        };
+        let unfit = |reason: String| UnitError::Unfit {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            reason,
+            examples,
+        };
+        let parsed = Unit::parse(unit).map_err(|reason| unfit(format!(": {reason}")))?;
+        if !dimensions.contains(&parsed.powers) {
+            return Err(unfit(String::new()));
+        }
+        self.0.insert(name.to_owned(), unit.to_owned());
+        Ok(())
+    }
+
+    /// The units that the case of a result chose, replaced by `these`.
+    pub fn of(reader: &Reader, these: &Units) -> Units {
+        let chosen = reader.header().setup.get(Units::SETUP).cloned();
+        let mut units: Units =
+            chosen.and_then(|units| serde_json::from_value(units).ok()).unwrap_or_default();
+        units.0.extend(these.0.clone());
+        units
+    }
+
+    /// Their key in the setup of a result.
+    pub(crate) const SETUP: &'static str = "units";
+
+    /// Whether the leak of a gas is wanted as a mass.
+    pub fn is_mass_of_gas(&self) -> bool {
+        self.0
+            .get("leak")
+            .and_then(|unit| Unit::parse(unit).ok())
+            .is_some_and(|unit| unit.powers == MASS_RATE)
+    }
+
+    /// Whether none was chosen.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Where a leak can be given in the unit chosen for it; an error if its unit needs a density that is not known.
+    ///
+    /// # Errors
+    /// [`UnitError::Unfit`].
+    pub fn check(&self, answers: &[Answer]) -> Result<(), UnitError> {
+        let Some(unit) = self.0.get("leak") else { return Ok(()) };
+        let leaks: Vec<&Answer> =
+            answers.iter().filter(|answer| answer.name.starts_with("leak_rate")).collect();
+        if leaks.is_empty() || leaks.iter().any(|leak| self.leak(1.0, leak.unit).is_some()) {
+            return Ok(());
+        }
+        Err(UnitError::Unfit {
+            name: "leak".into(),
+            unit: unit.clone(),
+            reason: " of a liquid, whose density is not known".into(),
+            examples: "ml/min, ml/year, mm^3/s",
+        })
+    }
+
+    /// A value of an answer, with the unit chosen for it or one that suits it.
+    pub fn words(&self, answer: &Answer, value: f64) -> String {
+        if value.is_nan() {
+            return "none".into();
+        }
+        match answer.is_share() {
+            true => format!("{} %", quantity(100.0 * value, "")),
+            false => self.number(value, answer.unit),
+        }
+    }
+
+    /// A value in this SI unit, with the unit chosen for it or one that suits it.
+    pub fn number(&self, value: f64, unit: &str) -> String {
+        match unit {
+            "1" => quantity(value, ""),
+            "rad" => format!("{}°", quantity(value.to_degrees(), "")),
+            "s" => self.time(value),
+            "m3/s" | "kg/s" | "Pa m3/s" if value == 0.0 => "none: tight".into(),
+            "m3/s" | "kg/s" | "Pa m3/s" => self.leak(value, unit).unwrap_or_else(|| match unit {
+                "Pa m3/s" => format!("{:.3e} mbar l/s (at 0 °C)", MBAR_LITRE * value),
+                unit => format!("{value:.3e} {}", unit.replace("m3", "m³")),
+            }),
+            unit => quantity(value, unit),
+        }
+    }
+
+    /// A leak rate: of a liquid \[m³/s\], of a gas \[kg/s\] with its `standard` rate \[Pa m³/s\], which counts it at 0 °C.
+    pub fn rate(&self, leak_rate: f64, standard: Option<f64>) -> String {
+        match standard {
+            Some(standard) => {
+                let mass = self.leak(leak_rate, "kg/s");
+                mass.unwrap_or_else(|| self.number(standard, "Pa m3/s"))
+            }
+            None => self.number(leak_rate, "m3/s"),
+        }
+    }
+
+    /// The unit for the leak rates of a liquid or a `gas`, per SI value of the volume rate \[m³/s\] or of the standard rate \[Pa m³/s\].
+    pub fn shown_leak(&self, gas: bool) -> Shown {
+        let usual = || match gas {
+            true => Shown { factor: MBAR_LITRE, text: "mbar l/s".into() },
+            false => Shown { factor: 1.0, text: "m³/s".into() },
+        };
+        let Some(text) = self.0.get("leak") else { return usual() };
+        let Ok(unit) = Unit::parse(text) else { return usual() };
+        let factor = match (gas, unit.powers) {
+            (false, VOLUME_RATE) | (true, PV_RATE) => 1.0 / unit.scale(),
+            (true, VOLUME_RATE) => 1.0 / (ATMOSPHERE * unit.scale()),
+            _ => return usual(),
+        };
+        Shown { factor, text: text.clone() }
+    }
+
+    /// A time in the unit chosen for times.
+    pub fn time(&self, seconds: f64) -> String {
+        match self.shown("time") {
+            Some(Shown { factor, text }) => format!("{} {text}", quantity(seconds * factor, "")),
+            None => quantity(seconds, "s"),
+        }
+    }
+
+    /// The unit chosen for `name`, per SI value; `None` where none is chosen.
+    pub fn shown(&self, name: &str) -> Option<Shown> {
+        let text = self.0.get(name)?;
+        let unit = Unit::parse(text).ok()?;
+        Some(Shown { factor: 1.0 / unit.scale(), text: text.clone() })
+    }
+
+    /// A leak in the unit chosen for leaks, where it can be given in it: a gas as mass, as pressure times volume at 0 °C, or as
+    /// volume at 0 °C and one atmosphere; a liquid as volume.
+    fn leak(&self, value: f64, si: &str) -> Option<String> {
+        let text = self.0.get("leak")?;
+        let unit = Unit::parse(text).ok()?;
+        let (value, conditions) = match (si, unit.powers) {
+            ("m3/s", VOLUME_RATE) | ("kg/s", MASS_RATE) => (value, ""),
+            ("Pa m3/s", PV_RATE) => (value, " (at 0 °C)"),
+            ("Pa m3/s", VOLUME_RATE) => (value / ATMOSPHERE, " (at 0 °C and 1 atm)"),
+            _ => return None,
+        };
+        Some(format!("{} {text}{conditions}", quantity(value / unit.scale(), "")))
+    }
+}

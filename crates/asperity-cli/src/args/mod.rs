@@ -15,7 +15,7 @@ use clap_complete::Shell;
 pub use leak::{FluidOptions, Leak};
 pub use material::{Data, Fit, FitIndentation, Material, MaterialExport, Show};
 pub use result::{Compare, Export, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
-pub use run::{Check, New, Run, Verify};
+pub use run::{Check, Converge, New, Run, Verify};
 pub use stress::Stress;
 pub use surface::{
     Surface, SurfaceConvert, SurfaceFile, SurfaceFromProfile, SurfaceGenerate, SurfaceInfo, SurfaceOutput,
@@ -45,6 +45,8 @@ pub enum Command {
     Run(Run),
     /// Check a case and report what will be solved and how much memory and time it needs
     Check(Check),
+    /// Solve a case with other cells, steps and tolerances too, and print its answers with their errors
+    Converge(Converge),
     /// Write a commented starter case
     New(New),
     /// Compare the solver with exact solutions and print the table of errors
@@ -98,6 +100,7 @@ impl Command {
         match self {
             Command::Run(verb) => verb,
             Command::Check(verb) => verb,
+            Command::Converge(verb) => verb,
             Command::New(verb) => verb,
             Command::Verify(verb) => verb,
             Command::Surface(Surface::Info(verb)) => verb,

@@ -23,6 +23,9 @@ pub struct Run {
     /// Print one JSON object at the end
     #[arg(long)]
     pub json: bool,
+    /// Solve the case with fewer cells, longer steps and a looser tolerance as well, and store and print the errors of the answers
+    #[arg(long)]
+    pub error_bars: bool,
     /// Treat warnings as errors: exit code 1; the result is kept
     #[arg(long)]
     pub strict: bool,
@@ -46,6 +49,26 @@ pub struct Check {
     /// Warnings are errors: exit code 1
     #[arg(long)]
     pub strict: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Converge {
+    /// The case file (TOML)
+    pub case: PathBuf,
+    /// Solve the case with twice the cells along each side as well, and extrapolate the answers to vanishing cells
+    #[arg(long)]
+    pub refine: bool,
+    #[command(flatten)]
+    pub common: Common,
+    /// Unit for leaks or times, e.g. --unit leak=ml/year --unit time=h
+    #[arg(long, value_name = "NAME=UNIT")]
+    pub unit: Vec<String>,
+    /// Print one JSON object: {answers: [{name, value, unit, error, grid, time, solver}], cost, notes}
+    #[arg(long)]
+    pub json: bool,
+    /// Print only errors and the answers
+    #[arg(short, long)]
+    pub quiet: bool,
 }
 
 #[derive(Debug, clap::Args)]

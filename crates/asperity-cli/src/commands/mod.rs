@@ -4,6 +4,7 @@ pub mod answers;
 pub mod check;
 pub mod compare;
 pub mod completions;
+pub mod converge;
 pub mod export;
 pub mod findings;
 pub mod fit_indentation;

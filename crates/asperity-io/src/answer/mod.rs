@@ -41,6 +41,9 @@ pub struct Answer {
     /// What a reader must know besides, in a few words.
     #[serde(skip)]
     pub note: String,
+    /// How much of it the whole cells at the edge of the contact leave open, SI; 0 where it does not count cells.
+    #[serde(skip)]
+    pub resolution: f64,
 }
 
 /// Numbers without a unit that are shown in percent.
@@ -48,7 +51,7 @@ const SHARES: [&str; 2] = ["contact_fraction", "relaxation"];
 
 impl Answer {
     fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Answer {
-        Answer { name: name.into(), value, unit, at: None, note: String::new() }
+        Answer { name: name.into(), value, unit, at: None, note: String::new(), resolution: 0.0 }
     }
 
     fn at(self, row: &Row) -> Answer {
@@ -85,7 +88,7 @@ pub fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     let mut answers = leak::of(reader, units)?;
     answers.extend(motion::of(reader, &rows, decisive)?);
     answers.extend(last_cycle(reader)?);
-    answers.extend(contact::of(reader, &rows, decisive));
+    answers.extend(contact::of(reader, &rows, decisive)?);
     answers.extend(stress::of(reader)?);
     Ok(answers)
 }

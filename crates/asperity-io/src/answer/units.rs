@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::Answer;
+use super::{Answer, SHARES};
+use crate::converge::ErrorBar;
 use crate::quantity::unit::{Powers, Unit};
-use crate::readable::{Shown, quantity};
+use crate::readable::{Shown, quantity, shown};
 use crate::store::Reader;
 
 /// One atmosphere \[Pa\], at which gases are counted as volumes.
@@ -182,6 +183,50 @@ impl Units {
             _ => return usual(),
         };
         Shown { factor, text: text.clone() }
+    }
+
+    /// An answer with its error and what the grid, the steps and the solver cause of it, all in one unit:
+    /// "42.3 % ± 0.8 (grid 0.8, time 0.1, solver 0.0)".
+    pub fn with_error(&self, bar: &ErrorBar) -> String {
+        let Some(value) = bar.value else { return "none".into() };
+        let Shown { factor, text } = self.shown_for(&bar.name, &bar.unit, value);
+        let Some(error) = bar.error else {
+            return format!("{} {text} ± unknown", quantity(factor * value, "")).replace("  ", " ");
+        };
+        // Two digits of the error, or four of the value where the error is less.
+        let digit = |number: f64, digits: f64| (digits - 1.0 - number.abs().log10().floor()).clamp(0.0, 12.0);
+        let places = match (factor * error, factor * value) {
+            (0.0, 0.0) => 0.0,
+            (0.0, value) => digit(value, 4.0),
+            (error, 0.0) => digit(error, 2.0),
+            (error, value) => digit(error, 2.0).max(digit(value, 2.0)).min(digit(value, 5.0)),
+        } as usize;
+        let number = |value: f64| {
+            let value = factor * value;
+            match value == 0.0 || (1e-4..1e6).contains(&value.abs()) || value.abs() < factor * error {
+                true => format!("{value:.places$}"),
+                false => format!("{value:.3e}"),
+            }
+        };
+        let part = |part: Option<f64>| part.map_or("unknown".into(), number);
+        let parts = [("grid", bar.grid), ("time", bar.time), ("solver", bar.solver)];
+        let parts: Vec<String> = parts.map(|(name, share)| format!("{name} {}", part(share))).into();
+        let unit = if text.is_empty() { text } else { format!(" {text}") };
+        format!("{}{unit} ± {} ({})", number(value), number(error), parts.join(", "))
+    }
+
+    /// The unit that an answer is shown in, per SI value.
+    fn shown_for(&self, name: &str, unit: &str, value: f64) -> Shown {
+        let plain = |factor: f64, text: &str| Shown { factor, text: text.to_owned() };
+        match unit {
+            "1" if SHARES.contains(&name) => plain(100.0, "%"),
+            "1" => plain(1.0, ""),
+            "rad" => plain(1f64.to_degrees(), "°"),
+            "s" => self.shown("time").unwrap_or_else(|| shown("s", value.abs())),
+            "m3/s" | "Pa m3/s" => self.shown_leak(unit != "m3/s"),
+            "kg/s" => self.shown("leak").filter(|_| self.is_mass_of_gas()).unwrap_or(plain(1.0, "kg/s")),
+            unit => shown(unit, value.abs()),
+        }
     }
 
     /// A time in the unit chosen for times.

@@ -49,7 +49,8 @@ pub fn of_case(
             message!("solves {what}");
         }
     };
-    converge(case, set, result, &options, &mut observe).map_err(|error| match error {
+    let read = |more: &[String]| Case::read(case, &[set, more].concat());
+    converge(&read, result, &options, &mut observe).map_err(|error| match error {
         ConvergeError::Case(errors) => Failure::Case(errors),
         ConvergeError::Interrupted => Failure::Interrupted("the error bars are not complete".into()),
         ConvergeError::Store(error) => error.into(),

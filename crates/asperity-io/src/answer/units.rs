@@ -185,34 +185,22 @@ impl Units {
         Shown { factor, text: text.clone() }
     }
 
-    /// An answer with its error and what the grid, the steps and the solver cause of it, all in one unit:
+    /// An answer with its error: "42.3 % ± 0.8".
+    pub fn plus_minus(&self, bar: &ErrorBar) -> String {
+        let Some(value) = bar.value else { return "none".into() };
+        let shown = self.shown_for(&bar.name, &bar.unit, value);
+        let unit = if shown.text.is_empty() { String::new() } else { format!(" {}", shown.text) };
+        let error = bar.error.map_or("unknown".to_owned(), |error| rounded(bar, &shown, error));
+        format!("{}{unit} ± {error}", rounded(bar, &shown, value))
+    }
+
+    /// The same with what the grid, the steps and the solver cause of the error, all in one unit:
     /// "42.3 % ± 0.8 (grid 0.8, time 0.1, solver 0.0)".
     pub fn with_error(&self, bar: &ErrorBar) -> String {
-        let Some(value) = bar.value else { return "none".into() };
-        let Shown { factor, text } = self.shown_for(&bar.name, &bar.unit, value);
-        let Some(error) = bar.error else {
-            return format!("{} {text} ± unknown", quantity(factor * value, "")).replace("  ", " ");
-        };
-        // Two digits of the error, or four of the value where the error is less.
-        let digit = |number: f64, digits: f64| (digits - 1.0 - number.abs().log10().floor()).clamp(0.0, 12.0);
-        let places = match (factor * error, factor * value) {
-            (0.0, 0.0) => 0.0,
-            (0.0, value) => digit(value, 4.0),
-            (error, 0.0) => digit(error, 2.0),
-            (error, value) => digit(error, 2.0).max(digit(value, 2.0)).min(digit(value, 5.0)),
-        } as usize;
-        let number = |value: f64| {
-            let value = factor * value;
-            match value == 0.0 || (1e-4..1e6).contains(&value.abs()) || value.abs() < factor * error {
-                true => format!("{value:.places$}"),
-                false => format!("{value:.3e}"),
-            }
-        };
-        let part = |part: Option<f64>| part.map_or("unknown".into(), number);
-        let parts = [("grid", bar.grid), ("time", bar.time), ("solver", bar.solver)];
-        let parts: Vec<String> = parts.map(|(name, share)| format!("{name} {}", part(share))).into();
-        let unit = if text.is_empty() { text } else { format!(" {text}") };
-        format!("{}{unit} ± {} ({})", number(value), number(error), parts.join(", "))
+        let shown = self.shown_for(&bar.name, &bar.unit, bar.value.unwrap_or(0.0));
+        let part = |part: Option<f64>| part.map_or("unknown".into(), |part| rounded(bar, &shown, part));
+        let [grid, time, solver] = [bar.grid, bar.time, bar.solver].map(part);
+        format!("{} (grid {grid}, time {time}, solver {solver})", self.plus_minus(bar))
     }
 
     /// The unit that an answer is shown in, per SI value.
@@ -256,5 +244,75 @@ impl Units {
             _ => return None,
         };
         Some(format!("{} {text}{conditions}", quantity(value / unit.scale(), "")))
+    }
+}
+
+/// A number of an answer in the unit shown: with two digits of the error, or five of the value where the error is less.
+fn rounded(bar: &ErrorBar, shown: &Shown, number: f64) -> String {
+    let value = shown.factor * bar.value.unwrap_or(0.0);
+    let error = bar.error.map(|error| shown.factor * error);
+    let places = |number: f64, digits: f64| match number {
+        0.0 => 0.0,
+        number => (digits - 1.0 - number.abs().log10().floor()).clamp(0.0, 12.0),
+    };
+    let places = match error {
+        None | Some(0.0) => places(value, 4.0),
+        Some(error) if value == 0.0 => places(error, 2.0),
+        Some(error) => places(error, 2.0).max(places(value, 2.0)).min(places(value, 5.0)),
+    } as usize;
+    match value == 0.0 || (1e-4..1e6).contains(&value.abs()) {
+        true => format!("{:.places$}", number * shown.factor),
+        false => format!("{:.3e}", number * shown.factor),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bar(name: &str, unit: &str, value: f64, [grid, time, solver]: [f64; 3]) -> ErrorBar {
+        ErrorBar {
+            name: name.into(),
+            value: Some(value),
+            unit: unit.into(),
+            error: Some((grid * grid + time * time + solver * solver).sqrt()),
+            grid: Some(grid),
+            time: Some(time),
+            solver: Some(solver),
+            order: None,
+            note: String::new(),
+        }
+    }
+
+    #[test]
+    fn answers_are_rounded_to_two_digits_of_their_error() {
+        let units = Units::default();
+        let fraction = bar("contact_fraction", "1", 0.42263, [0.008, 0.001, 1e-6]);
+        assert_eq!(units.with_error(&fraction), "42.26 % ± 0.81 (grid 0.80, time 0.10, solver 0.00)");
+        let approach = bar("approach", "m", 1.021_4e-6, [9.1e-9, 0.0, 0.0]);
+        assert_eq!(units.plus_minus(&approach), "1.0214 µm ± 0.0091");
+        // A time that is known to a day or so keeps two digits.
+        let tight = bar("tight_from", "s", 15_566.0, [0.0, 93_600.0, 0.0]);
+        assert_eq!(units.plus_minus(&tight), "4.3 h ± 26.0");
+        let unknown = ErrorBar { error: None, ..approach };
+        assert_eq!(units.plus_minus(&unknown), "1.021 µm ± unknown");
+    }
+
+    #[test]
+    fn leaks_are_shown_in_the_unit_chosen_for_them() {
+        let mut units = Units::default();
+        units.choose("leak", "ml/year").unwrap();
+        units.choose("time", "min").unwrap();
+        // 1e-12 m³/s is 1e-6 ml/s, times the seconds of a year.
+        assert_eq!(units.number(1e-12, "m3/s"), "31.56 ml/year");
+        // A gas counts at 0 °C and one atmosphere.
+        assert_eq!(units.number(101_325.0 * 1e-12, "Pa m3/s"), "31.56 ml/year (at 0 °C and 1 atm)");
+        assert_eq!(units.time(90.0), "1.5 min");
+        units.choose("leak", "mbar l/s").unwrap();
+        assert_eq!(units.number(1e-7, "Pa m3/s"), "1.000e-6 mbar l/s (at 0 °C)");
+        // A liquid has no rate at 0 °C: SI.
+        assert_eq!(units.number(1e-12, "m3/s"), "1.000e-12 m³/s");
+        assert!(units.choose("leak", "mm").unwrap_err().to_string().contains("no unit of a leak"));
+        assert!(units.choose("load", "N").unwrap_err().to_string().contains("leak or time"));
     }
 }

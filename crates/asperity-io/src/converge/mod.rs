@@ -102,10 +102,12 @@ pub struct ConvergeOptions {
     pub interrupt: Arc<AtomicBool>,
 }
 
+/// Reads the case with these further keys (`KEY=VALUE`).
+pub type Read<'a> = dyn Fn(&[String]) -> Result<Case, CaseErrors> + 'a;
+
 /// The case and its variations on disk.
 struct Work<'a> {
-    path: &'a Path,
-    overrides: &'a [String],
+    read: &'a Read<'a>,
     case: &'a Case,
     options: &'a ConvergeOptions,
     directory: tempfile::TempDir,
@@ -120,21 +122,20 @@ struct Solved {
     convolutions: u64,
 }
 
-/// The error bars of the case file at `path` with `overrides`. `result` is its complete result; without one it is solved first.
-/// `observe` hears what is solved next.
+/// The error bars of the case that `read` reads. `result` is its complete result; without one it is solved first. `observe` hears
+/// what is solved next.
 ///
 /// # Errors
 /// [`ConvergeError`].
 pub fn converge(
-    path: &Path,
-    overrides: &[String],
+    read: &Read<'_>,
     result: Option<&Path>,
     options: &ConvergeOptions,
     observe: &mut dyn FnMut(&str),
 ) -> Result<Convergence, ConvergeError> {
-    let case = Case::read(path, overrides)?;
+    let case = read(&[])?;
     let directory = tempfile::tempdir()?;
-    let mut work = Work { path, overrides, case: &case, options, directory, observe, spent: 0.0 };
+    let mut work = Work { read, case: &case, options, directory, observe, spent: 0.0 };
     let base = match result {
         Some(result) => solved(&Reader::open(result)?)?,
         None => work.solve("the case", &[])?.ok_or(ConvergeError::NoAnswer)?,
@@ -157,6 +158,17 @@ pub fn converge(
     let cost = work.spent / (base.convolutions.max(1) as f64);
     let bars = bars(&base.answers, &runs, options.refine);
     Ok(Convergence { answers: base.answers, bars, notes, cost })
+}
+
+/// What the error bars of a case take, about, over what the case itself takes.
+pub fn expected_cost(case: &Case, read: &Read<'_>) -> f64 {
+    let is_possible = |change: Change| change.overrides(case).is_ok_and(|keys| read(&keys).is_ok());
+    let steps = if Change::LongSteps.overrides(case).is_ok() { 0.5 } else { 0.0 };
+    // A looser tolerance takes less, but never more.
+    match is_possible(Change::HalfCells) {
+        true => 0.25 * (2.0 + steps) + if is_possible(Change::QuarterCells) { 0.0625 } else { 0.0 },
+        false => 4.0 + 1.0 + steps,
+    }
 }
 
 impl Work<'_> {
@@ -196,10 +208,7 @@ impl Work<'_> {
     /// The answers with these further keys.
     fn solve(&mut self, what: &str, more: &[String]) -> Result<Option<Solved>, ConvergeError> {
         (self.observe)(what);
-        let mut overrides = self.overrides.to_vec();
-        overrides.extend_from_slice(more);
-        overrides.push("output.checkpoint=false".into());
-        let case = Case::read(self.path, &overrides)?;
+        let case = (self.read)(&[more, &["output.checkpoint=false".to_owned()]].concat())?;
         let output: PathBuf = self.directory.path().join("run.zarr");
         let options = RunOptions {
             output: Some(output.clone()),

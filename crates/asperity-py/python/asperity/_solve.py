@@ -314,7 +314,7 @@ def run(
             on_row(row, done, total)
 
     try:
-        summary = _core.run(*_source(case), overrides(set), path_of("output", output), force, resume, told)
+        summary = _core.run(*source(case), overrides(set), path_of("output", output), force, resume, told)
     except BaseException as error:
         if output is not None and teller is not None:
             with contextlib.suppress(OSError, CaseError):
@@ -331,11 +331,11 @@ def run(
 def check(case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None) -> dict[str, Any]:
     """What a case (as in :func:`run`) will do, in numbers: cells, rows, moduli, memory [byte], ...; the inputs that a slip
     would hide in, the contact to be expected, and the findings that are known before the run."""
-    out: dict[str, Any] = json.loads(_core.check(*_source(case), overrides(set)))
+    out: dict[str, Any] = json.loads(_core.check(*source(case), overrides(set)))
     return out
 
 
-def _source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str | None]:
+def source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str | None]:
     """The path of a case file; or where the files of a case lie that is given as text or keys, and its text."""
     if isinstance(case, Mapping):
         return os.curdir, _core.case_text(dict(case))

@@ -130,9 +130,13 @@ fn print_summary(
     for [name, value] in super::answers::lines(&summary.answers, &case.output.units) {
         line(&name, value);
     }
-    if let Some(row) =
-        super::answers::row(&summary.answers, &case.output.units, summary.last.as_ref(), summary.rows)
-    {
+    if let Some(row) = super::answers::row(
+        &summary.answers,
+        &case.output.units,
+        &case.conditions.grid,
+        summary.last.as_ref(),
+        summary.rows,
+    ) {
         line("of the row at", row);
     }
     if let Some(bars) = bars {

@@ -97,7 +97,8 @@ fn text(reader: &Reader, at: At, answers: &[Answer], units: &Units) -> Result<St
     }
     text.extend(super::answers::lines(answers, units).iter().map(|[name, value]| line(name, value)));
     text.extend(
-        super::answers::row(answers, units, rows.last(), rows.len()).map(|row| line("of the row at", row)),
+        super::answers::row(answers, units, &reader.header().grid, rows.last(), rows.len())
+            .map(|row| line("of the row at", row)),
     );
     for bar in reader.error_bars() {
         text += &line(&format!("{} ±", bar.name.replace('_', " ")), units.with_error(&bar));

@@ -1,5 +1,6 @@
 //! The command as a user meets it, in one program.
 
+mod answers;
 mod cli;
 mod findings;
 mod indentation;

@@ -279,6 +279,7 @@ mod tests {
             grid: Some(grid),
             time: Some(time),
             solver: Some(solver),
+            at: None,
             order: None,
             note: String::new(),
         }

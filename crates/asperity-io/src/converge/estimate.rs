@@ -80,6 +80,7 @@ fn bar(answer: &Answer, runs: &Runs, extrapolate: bool) -> ErrorBar {
         grid,
         time,
         solver,
+        at: answer.at.map(|at| at.value()),
         order,
         note,
     }

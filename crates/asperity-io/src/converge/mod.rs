@@ -44,6 +44,9 @@ pub struct ErrorBar {
     pub time: Option<f64>,
     /// How much of it the tolerance of the solver causes.
     pub solver: Option<f64>,
+    /// The time \[s\] or velocity \[m/s\] of the row that it belongs to.
+    #[serde(default)]
+    pub at: Option<f64>,
     /// Observed order of convergence with the cells, where three grids show it.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub order: Option<f64>,

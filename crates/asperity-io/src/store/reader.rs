@@ -22,6 +22,7 @@ use super::layout::{ArraySpec, SCALARS, Series, Storage};
 use super::leak::Leaks;
 use super::leftovers;
 use crate::converge::ErrorBar;
+use crate::readable::quantity;
 
 /// A result as it is at the instant of opening; a run that goes on is seen by opening it again.
 #[derive(Clone, Debug)]
@@ -249,18 +250,19 @@ impl Reader {
         found.ok_or_else(|| {
             let axis = self.header().axis();
             let (unit, several) = (axis.unit(), axis.plural());
+            let words = |value: &f64| quantity(*value, unit);
             let what = match at {
                 At::Index(index) => format!("fields of number {index}"),
-                At::Time(time) => format!("fields at {time} {unit}"),
+                At::Time(time) => format!("fields at {}", words(&time)),
                 At::Last => "fields".to_owned(),
             };
             let instead = match times[..] {
                 [] => "no field is stored yet".to_owned(),
                 [first, .., last] => {
                     let count = times.len();
-                    format!("it holds fields at {count} {several} from {first} {unit} to {last} {unit}")
+                    format!("it holds fields at {count} {several} from {} to {}", words(&first), words(&last))
                 }
-                [only] => format!("it holds fields at {only} {unit}"),
+                [only] => format!("it holds fields at {}", words(&only)),
             };
             self.missing(what, instead)
         })

@@ -29,6 +29,8 @@ class ErrorBar(TypedDict, total=False):
     time: float | None
     #: What the tolerance of the solver causes of it.
     solver: float | None
+    #: Time [s] or velocity [m/s] of the row that it belongs to.
+    at: float | None
     #: Observed order of convergence with the cells, with `refine`.
     order: float
     #: What limits the estimate.

@@ -152,7 +152,11 @@ fn evolution(reader: &Reader, theory: bool) -> Result<Vec<Value>, StoreError> {
     }
     panels.extend(panels::of_quantities(reader)?);
     // The answer of a contact in motion comes first.
-    panels.sort_by_key(|panel| !panel.title.starts_with("Friction"));
+    panels.sort_by_key(|panel| match panel.title {
+        "Friction coefficient" => 0,
+        "Friction" => 1,
+        _ => 2,
+    });
     let beside = [("friction_coefficient", PERSSON_FRICTION), ("contact_area", PERSSON_AREA)];
     for (computed, expected) in beside.into_iter().filter(|_| theory) {
         if let Some(panel) = panels.iter_mut().find(|p| p.lines.iter().any(|(_, name)| *name == computed)) {

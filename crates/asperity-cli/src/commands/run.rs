@@ -126,10 +126,14 @@ fn print_summary(
         return Ok(());
     }
     let mut text = String::new();
-    let mut line = |name: &str, value: String| text += &super::answers::line(name, value);
-    for [name, value] in super::answers::lines(&summary.answers, &case.output.units) {
-        line(&name, value);
+    match bars {
+        Some(bars) => text += &super::converge::text(bars, &case.output.units),
+        None => {
+            let answers = super::answers::lines(&summary.answers, &case.output.units);
+            text.extend(answers.iter().map(|[name, value]| super::answers::line(name, value)));
+        }
     }
+    let mut line = |name: &str, value: String| text += &super::answers::line(name, value);
     if let Some(row) = super::answers::row(
         &summary.answers,
         &case.output.units,
@@ -139,10 +143,6 @@ fn print_summary(
     ) {
         line("of the row at", row);
     }
-    if let Some(bars) = bars {
-        text += &format!("\n{}\n", super::converge::text(bars, &case.output.units));
-    }
-    let mut line = |name: &str, value: String| text += &super::answers::line(name, value);
     let memory = summary.peak_memory_bytes.map(|b| format!(", {}", bytes(b as f64))).unwrap_or_default();
     line(
         "work",

@@ -188,6 +188,9 @@ impl Units {
     /// An answer with its error: "42.3 % ± 0.8".
     pub fn plus_minus(&self, bar: &ErrorBar) -> String {
         let Some(value) = bar.value else { return "none".into() };
+        if value == 0.0 && bar.error == Some(0.0) {
+            return self.number(value, &bar.unit);
+        }
         let shown = self.shown_for(&bar.name, &bar.unit, value);
         let unit = if shown.text.is_empty() { String::new() } else { format!(" {}", shown.text) };
         let error = bar.error.map_or("unknown".to_owned(), |error| rounded(bar, &shown, error));
@@ -198,6 +201,9 @@ impl Units {
     /// "42.3 % ± 0.8 (grid 0.8, time 0.1, solver 0.0)".
     pub fn with_error(&self, bar: &ErrorBar) -> String {
         let shown = self.shown_for(&bar.name, &bar.unit, bar.value.unwrap_or(0.0));
+        if bar.value.is_none() || (bar.value, bar.error) == (Some(0.0), Some(0.0)) {
+            return self.plus_minus(bar);
+        }
         let part = |part: Option<f64>| part.map_or("unknown".into(), |part| rounded(bar, &shown, part));
         let [grid, time, solver] = [bar.grid, bar.time, bar.solver].map(part);
         format!("{} (grid {grid}, time {time}, solver {solver})", self.plus_minus(bar))

@@ -25,15 +25,7 @@ pub fn lines(answers: &[Answer], units: &Units) -> Vec<[String; 2]> {
             note => format!("{value} ({note})"),
         }
     };
-    // Of a gas one of its two rates is enough.
-    let gas = answers.iter().any(|answer| answer.name == "leak_rate_standard");
-    let mass = units.is_mass_of_gas();
-    let hidden = |answer: &&Answer| match answer.name.as_str() {
-        "leak_rate" => gas && !mass,
-        "leak_rate_standard" => mass,
-        _ => false,
-    };
-    answers.iter().filter(|answer| !hidden(answer)).map(|answer| [answer.label(), words(answer)]).collect()
+    units.without_second_rate(answers).map(|answer| [answer.label(), words(answer)]).collect()
 }
 
 /// The row that the answers about the contact belong to: "t = 10 s, the last of 20, under 2 N".

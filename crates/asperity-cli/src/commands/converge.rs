@@ -65,11 +65,11 @@ fn object(found: &Convergence) -> Value {
 /// A line for each answer, and what could not be varied.
 pub fn text(found: &Convergence, units: &Units) -> String {
     let mut text = String::new();
-    for bar in &found.bars {
-        let label = bar.name.replace('_', " ");
+    for answer in units.without_second_rate(&found.answers) {
+        let Some(bar) = found.bars.iter().find(|bar| bar.name == answer.name) else { continue };
         let order = bar.order.map_or(String::new(), |order| format!(", order {order:.1}"));
         let note = if bar.note.is_empty() { String::new() } else { format!(", {}", bar.note) };
-        text += &answers::line(&label, units.with_error(bar) + &order + &note);
+        text += &answers::line(&answer.label(), units.with_error(bar) + &order + &note);
     }
     for note in &found.notes {
         text += &answers::line("not varied", note);

@@ -62,9 +62,12 @@ impl Answer {
         Answer { note: note.into(), ..self }
     }
 
-    /// Its name for people: "contact area".
+    /// Its name for people: "contact area", on a line "contact length".
     pub fn label(&self) -> String {
-        self.name.replace('_', " ")
+        match (self.name.as_str(), self.unit) {
+            ("contact_area", "m") => "contact length".into(),
+            (name, _) => name.replace('_', " "),
+        }
     }
 
     /// Whether it is a share, which is shown in percent.

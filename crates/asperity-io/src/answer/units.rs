@@ -100,8 +100,15 @@ impl Units {
     /// Their key in the setup of a result.
     pub(crate) const SETUP: &'static str = "units";
 
-    /// Whether the leak of a gas is wanted as a mass.
-    pub fn is_mass_of_gas(&self) -> bool {
+    /// The answers without the second rate of a gas: the one counted at 0 °C is shown, or the mass where its unit is chosen.
+    pub fn without_second_rate<'a>(&self, answers: &'a [Answer]) -> impl Iterator<Item = &'a Answer> {
+        let gas = answers.iter().any(|answer| answer.name == "leak_rate_standard");
+        let hidden = if self.is_mass() { "leak_rate_standard" } else { "leak_rate" };
+        answers.iter().filter(move |answer| !(gas && answer.name == hidden))
+    }
+
+    /// Whether leaks are wanted as a mass.
+    fn is_mass(&self) -> bool {
         self.0
             .get("leak")
             .and_then(|unit| Unit::parse(unit).ok())
@@ -218,7 +225,7 @@ impl Units {
             "rad" => plain(1f64.to_degrees(), "°"),
             "s" => self.shown("time").unwrap_or_else(|| shown("s", value.abs())),
             "m3/s" | "Pa m3/s" => self.shown_leak(unit != "m3/s"),
-            "kg/s" => self.shown("leak").filter(|_| self.is_mass_of_gas()).unwrap_or(plain(1.0, "kg/s")),
+            "kg/s" => self.shown("leak").filter(|_| self.is_mass()).unwrap_or(plain(1.0, "kg/s")),
             unit => shown(unit, value.abs()),
         }
     }

@@ -207,7 +207,8 @@ fn headline(answers: &[Answer], units: &Units, bars: &[ErrorBar], last: Option<&
         Some(bar) => units.plus_minus(bar),
         None => answer.words(units),
     };
-    let mut lines: Vec<[String; 2]> = answers.iter().map(|answer| [answer.label(), words(answer)]).collect();
+    let mut lines: Vec<[String; 2]> =
+        units.without_second_rate(answers).map(|answer| [answer.label(), words(answer)]).collect();
     let at = answers.iter().find_map(|answer| answer.at).or(last.map(|row| row.coordinate));
     lines.extend(at.map(|at| [at.axis().name().to_owned(), units.number(at.value(), at.axis().unit())]));
     lines

@@ -15,7 +15,7 @@ use clap_complete::Shell;
 pub use leak::{FluidOptions, Leak};
 pub use material::{Data, Fit, FitIndentation, Material, MaterialExport, Show};
 pub use result::{Compare, Export, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
-pub use run::{Check, Converge, New, Run, Verify};
+pub use run::{Check, Converge, New, Purpose, Run, Verify};
 pub use stress::Stress;
 pub use surface::{
     Surface, SurfaceConvert, SurfaceFile, SurfaceFromProfile, SurfaceGenerate, SurfaceInfo, SurfaceOutput,

@@ -81,12 +81,42 @@ pub struct Common {
     pub set: Vec<String>,
 }
 
+/// What a case with own files is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Purpose {
+    /// How much leaks through the gap.
+    Seal,
+    /// Friction over the velocity.
+    Friction,
+    /// Area and pressure of a contact.
+    Contact,
+    /// A ball pressed in.
+    Indentation,
+    /// A contact that sticks.
+    Adhesion,
+}
+
 #[derive(Debug, clap::Args)]
 pub struct New {
-    /// Name of the starter case; without it all are listed
+    /// Name of the starter case; without it all are listed. With --for: the file to write [default: PURPOSE.toml]
     pub template: Option<String>,
     /// The file to write [default: TEMPLATE.toml]
     pub path: Option<PathBuf>,
+    /// What the case is for: a case with your own files in place of a starter case
+    #[arg(long = "for", value_name = "PURPOSE", value_enum, requires = "from", requires = "material")]
+    pub purpose: Option<Purpose>,
+    /// The measured surface; for an indentation also a record of time, load and depth
+    #[arg(long, value_name = "FILE", requires = "purpose")]
+    pub from: Option<PathBuf>,
+    /// The measured material: a table of a DMA, relaxation or creep test, or what `material fit -o` or `fit-indentation -o` wrote
+    #[arg(long, value_name = "FILE", requires = "purpose")]
+    pub material: Option<PathBuf>,
+    /// Size of the surface along x and y, if the file does not state it; one length for a square
+    #[arg(long, value_name = "A,B", requires = "purpose")]
+    pub size: Option<String>,
+    /// Unit of the heights, if the file does not state it
+    #[arg(long, value_name = "U", requires = "purpose")]
+    pub height_unit: Option<String>,
     /// Replace an existing file
     #[arg(long)]
     pub force: bool,

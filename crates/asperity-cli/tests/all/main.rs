@@ -7,6 +7,7 @@ mod indentation;
 mod leak;
 mod line;
 mod material;
+mod new;
 mod peers;
 mod plot;
 mod stress;

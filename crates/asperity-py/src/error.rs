@@ -1,11 +1,13 @@
 //! Errors as Python exceptions, with the same words.
 
+use std::path::Path;
+
 use asperity::Error;
 use asperity_io::case::CaseErrors;
 use asperity_io::session::RunError;
 use asperity_io::topography::{Problem, TopographyError};
 use pyo3::create_exception;
-use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 create_exception!(
@@ -94,7 +96,7 @@ pub fn run(py: Python<'_>, error: RunError) -> PyErr {
 fn spoken(message: &str) -> String {
     const WORDS: [(&str, &str); 9] = [
         ("add shift = { model = \"wlf\", ... }", "give shift=asperity.wlf(...)"),
-        ("histogram = { pressure = \"...\" }", "give largest_pressure"),
+        ("histogram = { pressure = \"...\" }", "give largest_pressure="),
         ("(`size`, --size A,B)", "(size=(Lx, Ly))"),
         ("(`height_unit`, --height-unit U)", "(height_unit= in m)"),
         ("asperity run --resume", "asperity.run(..., resume=True)"),
@@ -110,11 +112,22 @@ fn spoken(message: &str) -> String {
 pub fn topography(error: TopographyError) -> PyErr {
     match &error.problem {
         Problem::Unrecognised | Problem::Foreign { .. } => FormatError::new_err(spoken(&error.to_string())),
-        _ => file(error),
+        _ => match &error.path {
+            Some(path) => of_path(path, &error),
+            None => file(error),
+        },
     }
 }
 
 /// Anything that files do.
 pub fn file(error: impl std::fmt::Display) -> PyErr {
     PyOSError::new_err(spoken(&error.to_string()))
+}
+
+/// An error of reading the file or folder at this path.
+pub fn of_path(path: &Path, error: impl std::fmt::Display) -> PyErr {
+    match path.try_exists() {
+        Ok(false) => PyFileNotFoundError::new_err(spoken(&error.to_string())),
+        _ => file(error),
+    }
 }

@@ -67,10 +67,11 @@ pub fn given(errors: &CaseErrors) -> PyErr {
 
 /// The faults of tables that stand alone, whose keys are parameters: a message begins with the parameter, or with a word for the table.
 pub fn alone(mut errors: CaseErrors) -> PyErr {
-    const TABLES: [(&str, &str); 5] = [
+    const TABLES: [(&str, &str); 6] = [
         ("body[0].material", "the material"),
         ("body[0]", "the body"),
         ("shift", "the shift"),
+        ("load.stages[0]", "what is prescribed"),
         ("surface[0]", "the surface"),
         ("domain", "the domain"),
     ];

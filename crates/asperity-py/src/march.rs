@@ -112,8 +112,7 @@ impl March {
         let keys = table(&keys)?;
         let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
         let line = march.simulation().grid.is_line();
-        let (control, course) =
-            given::prescribed(keys, line).map_err(|errors| crate::error::given(&errors))?;
+        let (control, course) = given::prescribed(keys, line).map_err(crate::error::alone)?;
         march.prescribe(control, course).map_err(|error| raised(py, error))
     }
 

@@ -136,9 +136,8 @@ class Record:
                 "title": self._keep.title,
                 "version": _core.__version__,
                 "status": status,
-                "setup": json.dumps(self._march._setup),
+                "setup": json.dumps({**self._march._setup, **({"prescribed": self.prescribed} if self.prescribed else {})}),
                 **layers_of(self._march._setup),
-                **({"prescribed": json.dumps(self.prescribed)} if self.prescribed else {}),
                 "findings": [dict(finding) for finding in self._march.findings],
             },
         )

@@ -155,7 +155,7 @@ class March(Sealed):
 
         A number is a step, which makes a row of no duration first, as at the start of a :class:`Stage`; ``ramp_to(value, duration=...)``
         goes on from the value reached, which a material without instantaneous compliance needs. The rows of the result have the number
-        of their `stage`, and its attribute "prescribed" lists what was prescribed.
+        of their `stage`, and its attribute "setup" lists what was prescribed, under "prescribed".
 
         A constant contact area, by the load at which a cone has it:
 

@@ -192,8 +192,8 @@ impl Schedule {
     /// Ends the stage under way with the last row, in place of it and of all stages after it begins this one. `false` where there is
     /// no row yet, or none to come.
     pub(crate) fn prescribe(&mut self, stage: Stage) -> bool {
-        let Some(last) = self.last.filter(|last| self.stopped.is_none() && last.time < self.plan.times.end())
-        else {
+        let end = self.plan.times.end() * (1.0 - SAME);
+        let Some(last) = self.last.filter(|last| self.stopped.is_none() && last.time < end) else {
             return false;
         };
         self.steered = Some(stage);

@@ -71,7 +71,7 @@ def converge(
     ... }
     >>> bars = {bar["name"]: bar for bar in asp.converge(case)}
     >>> hertz = (9 * 0.01**2 / (16 * 0.01 * 4e6**2)) ** (1 / 3)  # approach of a sphere [m]
-    >>> abs(bars["approach"]["value"] - hertz) < bars["approach"]["error"] < 0.01 * hertz
+    >>> abs(bars["approach"]["value"] - hertz) < bars["approach"]["error"] < 0.05 * hertz
     True
     """
     found: list[ErrorBar] = json.loads(_core.converge(*source(case), overrides(set), refine))

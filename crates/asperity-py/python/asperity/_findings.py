@@ -20,7 +20,7 @@ _WORDS = {
     "(domain.cells)": "(cells=)",
     "domain.cells": "cells",
     'boundary = "': 'boundary="',
-    "(--longest, --shortest)": "(longest=, shortest=)",
+    "(surface info: --longest, --shortest)": "(longest=, shortest=)",
 }
 
 

@@ -32,6 +32,7 @@ mod leak;
 mod material;
 mod motion;
 mod plausible;
+mod profile;
 mod strain;
 mod stress;
 mod surface;
@@ -50,6 +51,7 @@ pub use material::{
     shift_uncertain, too_few_points, unlikely_data, unlikely_modulus, unlikely_temperature,
 };
 pub use motion::{friction_zero, own_track};
+pub use profile::{of_profile, unlike_profile};
 pub use stress::{
     OF_STRESS, depths_between, stress_depths, stress_times_miss_peak, stress_unresolved, yield_exceeded,
 };
@@ -195,6 +197,8 @@ codes! {
     HURST_UNCERTAIN = "hurst-uncertain";
     /// Heights far from all others.
     OUTLIERS = "outliers";
+    /// A map made from a profile has another height or slope than the profile.
+    UNLIKE_PROFILE = "unlike-profile";
     /// A number that suggests a wrong unit.
     UNLIKELY_UNIT = "unlikely-unit";
     /// The largest stress below the surface lies less than two cells deep.

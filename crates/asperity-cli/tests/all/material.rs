@@ -289,7 +289,25 @@ fn moduli_that_contradict_each_other_are_fitted_one_at_a_time() {
     let dir = tempfile::tempdir().unwrap();
     master(dir.path());
     let fit = |more: &[&str]| asperity(dir.path(), &[&["material", "fit", "master.csv"], more].concat());
-    let refused = fit(&[]);
+    // Both moduli: between them, and told.
+    let object = json(&fit(&["--json"]));
+    let told = object["findings"][0]["text"].as_str().unwrap();
+    for words in
+        ["from the storage modulus by", "from the loss modulus by", "Kramers-Kronig", "--fit storage"]
+    {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    // Far apart: refused.
+    let text = std::fs::read_to_string(dir.path().join("master.csv")).unwrap();
+    let third = |line: &str| {
+        let mut words: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let Ok(loss) = words[2].parse::<f64>() {
+            words[2] = (3.0 * loss).to_string();
+        }
+        words.join(",") + "\n"
+    };
+    std::fs::write(dir.path().join("apart.csv"), text.lines().map(third).collect::<String>()).unwrap();
+    let refused = asperity(dir.path(), &["material", "fit", "apart.csv"]);
     assert_eq!(refused.status.code(), Some(2));
     let words = stderr(&refused);
     for word in ["storage modulus alone is fitted to", "Kramers-Kronig", "--fit storage"] {

@@ -47,8 +47,8 @@ pub use diagnostics::{Diagnostics, Known};
 pub use expected::{Contact, Expected};
 pub use leak::{LeakDiagnostics, LeakState};
 pub use material::{
-    at_reference, beyond_data, contradiction, misfit, modulus_kind, points_left_out, reversal,
-    shift_uncertain, too_few_points, unlikely_data, unlikely_modulus, unlikely_temperature,
+    at_reference, beyond_data, contradiction, misfit, misfit_of_both, modulus_kind, points_left_out,
+    reversal, shift_uncertain, too_few_points, unlikely_data, unlikely_modulus, unlikely_temperature,
 };
 pub use motion::{friction_zero, own_track};
 pub use profile::{of_profile, unlike_profile};

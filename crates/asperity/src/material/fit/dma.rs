@@ -91,7 +91,7 @@ fn both(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Result<F
             // Scatter of the storage modulus is judged by its own fit.
             solve(curves, window, &wide).map(|fit| Fit { reversal: alone.reversal, ..fit })
         });
-        through.or_else(|_| Err(alone(curves, window, options).unwrap_or(refusal)))
+        through.map_err(|_| alone(curves, window, options).unwrap_or(refusal))
     })
 }
 

@@ -168,7 +168,7 @@ fn alone(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Option<
         "rms misfit of storage and loss modulus together",
         format!("{storage} and {loss}"),
         format!(
-            "at most {:.0} %, also at neighbouring points; {}; they contradict each other, no passive material has both (Kramers-Kronig): fit one and look at \
+            "at most {:.0} % at any five neighbouring points; {}; they contradict each other, no passive material has both (Kramers-Kronig): fit one and look at \
              the other",
             100.0 * CONTRADICTION * options.limit,
             reached.join(", ")

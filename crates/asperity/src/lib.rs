@@ -38,6 +38,7 @@ pub mod indentation;
 pub mod kernel;
 pub mod layer;
 pub mod leakage;
+mod linear;
 pub mod load;
 pub mod material;
 pub mod operator;

@@ -117,6 +117,9 @@ pub struct SurfaceFromProfile {
     /// Treat the profile as periodic: compute its spectrum without levelling and window
     #[arg(long)]
     pub periodic: bool,
+    /// A step that prepares the profile, done in the order given, as in `surface process`: --op outliers=6 --op fill=harmonic
+    #[arg(long, value_name = "STEP")]
+    pub op: Vec<String>,
     /// Seed of the random phases
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
@@ -181,7 +184,8 @@ impl SurfaceOutput {
 pub struct SurfaceFile {
     /// The measured surface; its format is detected from the content
     pub file: PathBuf,
-    /// Physical size along x and y, if the file does not state it: --size '1 mm,1 mm'; of a profile its length: --size '4 mm'
+    /// Physical size along x and y, if the file does not state it: --size '1 mm,1 mm'; of a profile its length, the number of points times their spacing:
+    /// --size '4 mm'
     #[arg(long, value_name = "A,B")]
     pub size: Option<String>,
     /// Unit of the heights, if the file does not state it: --height-unit um

@@ -161,3 +161,57 @@ fn a_profile_is_described_and_makes_a_surface() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("two columns"));
 }
+
+#[test]
+fn a_map_of_a_profile_tells_its_height_and_slope_beside_those_of_the_profile() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    // Heights alone: a wave of 50 points, 3000 points long, with a spike.
+    let height =
+        |i: u32| 1e3 * (std::f64::consts::TAU * f64::from(i) / 50.0).sin() + if i == 700 { 3e4 } else { 0.0 };
+    let points: String = (0..3000).map(|i| format!("{}\n", height(i))).collect();
+    std::fs::write(path.join("heights.txt"), format!("z [nm]\n{points}")).unwrap();
+    let output = asperity(path, &["surface", "info", "heights.txt"]);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.code() == Some(2) && told.contains("3000 heights") && told.contains("--size"),
+        "{told}"
+    );
+    let made = |options: &[&str]| {
+        let start = [
+            "surface",
+            "from-profile",
+            "heights.txt",
+            "--size",
+            "3 mm",
+            "-o",
+            "map.npz",
+            "--force",
+            "--json",
+        ];
+        let output = asperity(path, &[&start[..], options].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let findings = object["findings"].as_array().unwrap();
+        let codes: Vec<String> = findings.iter().map(|f| f["code"].as_str().unwrap().to_owned()).collect();
+        (object["history"].to_string(), codes, String::from_utf8(output.stderr).unwrap())
+    };
+    let (_, codes, _) = made(&["--cells", "500"]);
+    assert!(codes.contains(&"outliers".to_owned()), "{codes:?}");
+    let (history, codes, note) = made(&["--op", "outliers=6", "--op", "fill=harmonic", "--to-size", "1 mm"]);
+    assert!(codes == ["unlike-profile"] && note.is_empty(), "{codes:?} {note}");
+    // 1 um q / 2^(1/2) = 0.0889, to the width of a ring.
+    for words in
+        ["removed", "the surface: rms height", "all waves of the profile: rms height 707", "direction 0.09"]
+    {
+        assert!(history.contains(words), "{words}: {history}");
+    }
+    // The wave is far above two cells: nothing is said to fall.
+    let (_, _, note) = made(&["--op", "outliers=6", "--op", "fill=harmonic"]);
+    assert!(note.contains("would need 3000 x 3000") && !note.contains("fall"), "{note}");
+    std::fs::write(path.join("heights.txt"), "z [nm]\n".to_owned() + &"5\n".repeat(100)).unwrap();
+    let output =
+        asperity(path, &["surface", "from-profile", "heights.txt", "--size", "3 mm", "-o", "flat.npz"]);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && told.contains("straight profile"), "{told}");
+}

@@ -289,7 +289,30 @@ fn moduli_that_contradict_each_other_are_fitted_one_at_a_time() {
     let dir = tempfile::tempdir().unwrap();
     master(dir.path());
     let fit = |more: &[&str]| asperity(dir.path(), &[&["material", "fit", "master.csv"], more].concat());
-    let refused = fit(&[]);
+    // The loss moduli of the file times a factor.
+    let text = std::fs::read_to_string(dir.path().join("master.csv")).unwrap();
+    let write = |name: &str, factor: f64| {
+        let line = |line: &str| {
+            let mut words: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if let Ok(loss) = words[2].parse::<f64>() {
+                words[2] = (factor * loss).to_string();
+            }
+            words.join(",") + "\n"
+        };
+        std::fs::write(dir.path().join(name), text.lines().map(line).collect::<String>()).unwrap();
+    };
+    // 1.3 times that of the material: between both moduli, and told.
+    write("between.csv", 1.3 / 1.5);
+    let object = json(&asperity(dir.path(), &["material", "fit", "between.csv", "--json"]));
+    let told = object["findings"][0]["text"].as_str().unwrap();
+    for words in
+        ["from the storage modulus by", "from the loss modulus by", "Kramers-Kronig", "--fit storage"]
+    {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    // 4.5 times: refused.
+    write("apart.csv", 3.0);
+    let refused = asperity(dir.path(), &["material", "fit", "apart.csv"]);
     assert_eq!(refused.status.code(), Some(2));
     let words = stderr(&refused);
     for word in ["storage modulus alone is fitted to", "Kramers-Kronig", "--fit storage"] {

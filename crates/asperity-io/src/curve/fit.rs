@@ -152,6 +152,18 @@ impl Fitted {
         }
     }
 
+    /// Whether the fit is far from its data; of a fit of both moduli, how far from each.
+    fn misfit_found(&self, name: &str) -> Option<Finding> {
+        let Misfit { rms, max, .. } = self.misfit;
+        match (self.moduli, self.columns.as_slice()) {
+            (Moduli::Both, [(_, storage), (_, loss)]) => {
+                let found = finding::misfit_of_both(name, rms, [*storage, *loss], self.noise)?;
+                Some(Finding { text: unsure(found.text, &self.factors), ..found })
+            }
+            _ => finding::misfit(name, rms, max, self.noise),
+        }
+    }
+
     /// What is found about the fit and its data; `name` is the file or the body.
     pub fn findings(&self, name: &str) -> Vec<Finding> {
         let Misfit { rms, max, .. } = self.misfit;
@@ -168,7 +180,7 @@ impl Fitted {
             values.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], v| [least.min(v), most.max(v)]);
         let all = [
             finding::unlikely_data(name, ends, self.unnamed),
-            finding::misfit(name, rms, max, self.noise),
+            self.misfit_found(name),
             self.reversal.map(|found| finding::reversal(name, found, rms, max)),
             other,
             finding::shift_uncertain(name, &self.factors),
@@ -181,7 +193,15 @@ impl Fitted {
 }
 
 /// What the contradiction of both moduli may also come from.
-const UNSURE: &str = "; wrong shift factors do the same: they were estimated from these sweeps, so give the shift where it is known";
+const UNSURE: &str = "wrong shift factors do the same: they were estimated from these sweeps, so give the shift where it is known";
+
+/// A sentence about moduli that contradict each other, with what else that may come from if their shift factors were estimated.
+fn unsure(text: String, factors: &[[f64; 3]]) -> String {
+    match factors {
+        [] => text,
+        _ => format!("{text}; {UNSURE}"),
+    }
+}
 
 /// A law replaces estimated shift factors where it meets them within this (rms) and twice the standard deviation of each
 /// \[decades\].
@@ -225,8 +245,7 @@ impl Request {
         let located = |error: asperity::Error| {
             let message = error.to_string();
             if message.contains("Kramers-Kronig") {
-                let wrong_shift = if factors.is_empty() { "" } else { UNSURE };
-                return fault(format!("{message}{wrong_shift}")).remedy(Remedy::Moduli);
+                return fault(unsure(message, &factors)).remedy(Remedy::Moduli);
             }
             match point(&message).and_then(|n| lines.get(n.checked_sub(1)?)) {
                 Some(line) => fault(message).at(*line),
@@ -252,8 +271,7 @@ impl Request {
         };
         let material = material.map_err(|error| fault(error.to_string()))?;
         let columns: Vec<(&str, Misfit)> = curves.kind.columns().iter().copied().zip(columns).collect();
-        let unsure = if factors.is_empty() { "" } else { UNSURE };
-        notes.extend(left_out(self.options.moduli, &columns).map(|note| format!("{note}{unsure}")));
+        notes.extend(left_out(self.options.moduli, &columns).map(|note| unsure(note, &factors)));
         Ok(Fitted {
             material,
             series,

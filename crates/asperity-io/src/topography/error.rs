@@ -51,6 +51,12 @@ pub enum Problem {
         /// What it holds instead.
         detail: String,
     },
+    /// A profile of so many heights has neither positions nor a length.
+    #[error(
+        "the file holds {0} heights without their positions; give the length of the profile, {0} times the spacing of its points \
+         (`size = [\"4 mm\"]`, --size '4 mm'), or a file with two columns, position and height"
+    )]
+    MissingLength(usize),
     /// The file states no unit of the heights, or a unit that is not a length.
     #[error(
         "the {format} file holds no unit of length for its heights{detail}; give it (`height_unit`, --height-unit U)"

@@ -2,7 +2,8 @@
 //!
 //! Two columns of text or CSV, position and height, below any header: of Dektak ("Lateral um, Total Profile A"), with units in
 //! brackets ("x [mm]; z [µm]"), or bare, with the units as options. Points that are not evenly spaced are resampled to as many
-//! that are, straight in between; the history of the profile says so.
+//! that are, straight in between; the history of the profile says so. Or one column of evenly spaced heights, with the length of the
+//! profile as an option.
 
 use std::path::Path;
 
@@ -28,9 +29,9 @@ pub struct Profile {
     pub metadata: Vec<(String, String)>,
 }
 
-/// The profile of a file, or `None` where its content is none (two columns of text).
+/// The profile of a file, or `None` where its content is none (one or two columns of text).
 ///
-/// `options.size[0]` is the length of the profile \[m\], `options.height_unit` the unit of its heights and, where the file states no
+/// `options.size[0]` is the length of the profile \[m\], its number of points times their spacing; `options.height_unit` the unit of its heights and, where the file states no
 /// unit at all, of its positions.
 ///
 /// # Errors
@@ -66,7 +67,7 @@ pub fn profile_of(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Topogr
 
 fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Problem> {
     let columns = read_columns(bytes)?;
-    let count = columns.positions.len();
+    let count = columns.heights.len();
     if count < 2 {
         return Err(Problem::malformed("the number of points of the profile", count, "2 at least"));
     }
@@ -77,7 +78,11 @@ fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Problem> {
     };
     let missing = || Problem::MissingHeightUnit { format: Format::Text, detail };
     let height_unit = options.height_unit.or(stated).ok_or_else(missing)?;
-    let (mut x, mut z) = (columns.positions, columns.heights);
+    if columns.positions.is_none() && options.size.is_none() {
+        return Err(Problem::MissingLength(count));
+    }
+    let even = || (0..count).map(|n| n as f64).collect();
+    let (mut x, mut z) = (columns.positions.unwrap_or_else(even), columns.heights);
     let mut history = vec![];
     if x[0] > x[count - 1] {
         x.reverse();
@@ -192,6 +197,22 @@ mod tests {
     }
 
     #[test]
+    fn heights_alone_are_a_profile_of_the_given_length() {
+        let long = ReadOptions { size: Some([3e-6, 1.0]), ..ReadOptions::default() };
+        for text in ["z [nm]\n1\n2\n0.5\n", "# height (nm)\n1.0\n2.0\n0.5\n", "z [nm]\n1,0\n2,0\n0,5\n"] {
+            let profile =
+                profile_of(text.as_bytes(), &long).unwrap_or_else(|error| panic!("{error}:\n{text}"));
+            assert_eq!(profile.surface.grid().cells(), [3, 1], "{text}");
+            assert!((profile.surface.grid().spacing()[0] / 1e-6 - 1.0).abs() < 1e-12, "{text}");
+            for (n, wanted) in [1e-9, 2e-9, 0.5e-9].into_iter().enumerate() {
+                assert!((profile.surface.heights()[[n, 0]] / wanted - 1.0).abs() < 1e-12, "{text}");
+            }
+        }
+        assert!(message("1\n2\n", &ReadOptions::default()).contains("--height-unit"));
+        assert!(message("z [nm]\n1\n2\n", &ReadOptions::default()).contains("--size '4 mm'"));
+    }
+
+    #[test]
     fn uneven_points_are_resampled_and_the_history_says_so() {
         // On a straight line resampling changes nothing.
         let profile = read("x [mm]; z [mm]\n0; 0\n1; 2\n1.5; 3\n4; 8\n");
@@ -215,6 +236,7 @@ mod tests {
             ("0 1\nnan 2\n2 3\n", "position 2"),
             ("0 1\n", "number of points"),
             ("1 2 3\n4 5 6\n", "3 numbers"),
+            ("z [um]\n4\n5\n6\n", "3 heights without their positions"),
             ("header only\n", "no line of numbers"),
             ("x [s]; z [V]\n0; 1\n1; 2\n", ""),
         ] {
@@ -223,7 +245,7 @@ mod tests {
         }
         assert!(!is_profile(b"1 2 3\n4 5 6\n") && !is_profile(b"\x89PNG\x00"));
         assert!(!is_profile(b"# Width: 2 um\n1 2\n3 4\n"), "a matrix of two columns");
-        assert!(is_profile(b"1 2\n3 4\n"));
+        assert!(is_profile(b"1 2\n3 4\n") && is_profile(b"1\n2\n"));
     }
 
     #[test]

@@ -22,7 +22,7 @@ _WORDS = {
     'boundary = "': 'boundary="',
     "output.histogram.pressure": "largest_pressure=",
     "output.histogram.gap": "largest_gap=",
-    "(--longest, --shortest)": "(longest=, shortest=)",
+    "(surface info: --longest, --shortest)": "(longest=, shortest=)",
 }
 
 

@@ -6,12 +6,13 @@ use super::{
     AT_REFERENCE_TEMPERATURE, BEYOND_MATERIAL_DATA, DATA_SCATTER, Finding, MATERIAL_MISFIT, MODULUS_KIND,
     POINTS_LEFT_OUT, SHIFT_UNCERTAIN, TOO_FEW_POINTS, UNLIKELY_UNIT,
 };
-use crate::material::{Modulus, Reversal};
+use crate::material::{Misfit, Modulus, Reversal};
 use crate::simulation::Simulation;
 
-/// Largest rms misfit of a fit, and its largest ratio to the scatter of the data.
+/// Largest rms misfit of a fit, its largest ratio to the scatter of the data, and the misfit that is told whatever the scatter is.
 const MISFIT: f64 = 0.05;
 const SCATTER: f64 = 2.0;
+const LARGE: f64 = 0.1;
 /// Largest standard deviation of an estimated shift factor: a factor of two in time \[decades\].
 const FACTOR: f64 = 0.3;
 
@@ -80,7 +81,7 @@ pub(super) fn of_pair(simulation: &Simulation) -> Option<Finding> {
 
 /// A fit with this rms and largest relative misfit to data of this relative scatter; `name` states what was fitted.
 pub fn misfit(name: &str, rms: f64, largest: f64, scatter: f64) -> Option<Finding> {
-    let limit = MISFIT.max(SCATTER * scatter);
+    let limit = (SCATTER * scatter).clamp(MISFIT, LARGE);
     (rms.is_nan() || rms > limit).then(|| {
         let text = format!(
             "The material of {name} deviates from its data by {} % rms and {} % at most: contact area and approach have errors \
@@ -89,6 +90,32 @@ pub fn misfit(name: &str, rms: f64, largest: f64, scatter: f64) -> Option<Findin
             digits(100.0 * largest)
         );
         Finding::warning(MATERIAL_MISFIT, rms, limit, text)
+    })
+}
+
+/// A fit of storage and loss modulus together, with the misfit of each, to data of this relative scatter. `together` is the rms over
+/// both.
+pub fn misfit_of_both(
+    name: &str,
+    together: f64,
+    [storage, loss]: [Misfit; 2],
+    scatter: f64,
+) -> Option<Finding> {
+    let limit = (SCATTER * scatter).clamp(MISFIT, LARGE);
+    (together.is_nan() || together > limit).then(|| {
+        let words = |misfit: Misfit| {
+            let place = digits(misfit.worst);
+            format!("{} % rms and {} % at most (at {place} rad/s)", digits(100.0 * misfit.rms), digits(100.0 * misfit.max))
+        };
+        let text = format!(
+            "The material of {name} lies between its storage and loss modulus: it deviates from the storage modulus by {} and from the \
+             loss modulus by {}. No linear viscoelastic material has both (Kramers-Kronig), or the points scatter; contact area, approach \
+             and friction have errors of that order. If the storage modulus is the one to rely on, fit it alone (moduli = \"storage\", \
+             --fit storage)",
+            words(storage),
+            words(loss)
+        );
+        Finding::warning(MATERIAL_MISFIT, together, limit, text)
     })
 }
 

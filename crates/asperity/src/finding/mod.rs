@@ -34,6 +34,7 @@ mod leak;
 mod material;
 mod motion;
 mod plausible;
+mod profile;
 mod strain;
 mod stress;
 mod surface;
@@ -48,10 +49,11 @@ pub use diagnostics::{Diagnostics, Known};
 pub use expected::{Contact, Expected};
 pub use leak::{LeakDiagnostics, LeakState};
 pub use material::{
-    at_reference, beyond_data, contradiction, misfit, modulus_kind, points_left_out, reversal,
-    shift_uncertain, too_few_points, unlikely_data, unlikely_modulus, unlikely_temperature,
+    at_reference, beyond_data, contradiction, misfit, misfit_of_both, modulus_kind, points_left_out,
+    reversal, shift_uncertain, too_few_points, unlikely_data, unlikely_modulus, unlikely_temperature,
 };
 pub use motion::{friction_zero, own_track};
+pub use profile::{of_profile, unlike_profile};
 pub use stress::{
     OF_STRESS, depths_between, stress_depths, stress_times_miss_peak, stress_unresolved, yield_exceeded,
 };
@@ -199,6 +201,8 @@ codes! {
     HURST_UNCERTAIN = "hurst-uncertain";
     /// Heights far from all others.
     OUTLIERS = "outliers";
+    /// A map made from a profile has another height or slope than the profile.
+    UNLIKE_PROFILE = "unlike-profile";
     /// A number that suggests a wrong unit.
     UNLIKELY_UNIT = "unlikely-unit";
     /// The largest stress below the surface lies less than two cells deep.

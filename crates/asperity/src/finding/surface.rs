@@ -237,7 +237,7 @@ pub fn hurst(fit: &SelfAffineFit) -> Option<Finding> {
     const MISFIT: f64 = 0.7;
     let text = |what: String| {
         format!(
-            "{what} Fit a range of wavelengths in which the spectrum is straight (--longest, --shortest)."
+            "{what} Fit a range of wavelengths in which the spectrum is straight (surface info: --longest, --shortest)."
         )
     };
     if !(fit.hurst > 0.0 && fit.hurst <= 1.0) {

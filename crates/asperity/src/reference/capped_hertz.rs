@@ -23,9 +23,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::HertzSphere;
 use super::elliptic::elliptic;
-use super::linear::solve;
 use super::quadrature::{fixed_rule, integrate_to, root};
 use crate::error::{Result, positive};
+use crate::linear::solve;
 
 /// Degree of the Chebyshev polynomial: 28 and 32 agree to 1e-12.
 const DEGREE: usize = 32;

@@ -16,9 +16,10 @@
 use std::f64::consts::{FRAC_2_PI, PI};
 use std::sync::Arc;
 
-use super::{MdrProfile, linear};
+use super::MdrProfile;
 use crate::error::{Result, positive, require};
 use crate::layer::{Base, Interface, Layer, Stack};
+use crate::linear;
 
 /// Radii of the table.
 const RADII: usize = 48;

@@ -27,7 +27,6 @@ mod hertz;
 mod hunter;
 mod layer_contact;
 mod line_hertz;
-mod linear;
 mod mdr;
 mod persson;
 mod quadrature;

@@ -134,6 +134,10 @@ fn single_terms_of_large_contrast_converge_by_exchanges_of_cells() {
         (2000.0, 0.5, 128, 4.403),
         (3000.0, 0.25, 256, 4.403),
         (3000.0, 0.25, 128, 9.487),
+        // Sets on which GMRES stalls.
+        (3000.0, 0.5, 512, 0.948_683),
+        (3000.0, 0.5, 512, 1.392_477),
+        (2000.0, 0.5, 512, 1.392_477),
     ];
     for (contrast, load, cells, velocity) in cases {
         let grid = Grid::line(cells, 8.0).unwrap();

@@ -12,6 +12,8 @@ use std::path::Path;
 use asperity::Grid;
 use asperity::surface::Surface as Map;
 use asperity::surface::statistics::Extent;
+use asperity_io::case::fragment;
+use asperity_io::preparation::{Prepared, Step, prepare};
 use asperity_io::quantity::Length;
 use asperity_io::quantity::range::Positive;
 use asperity_io::topography::{Format, ReadOptions, Topography, read, write};
@@ -87,6 +89,24 @@ fn roughness(format: Format, heights: Array2<f64>, size: [f64; 2], history: Vec<
     let mut made = Topography { format, heights, size, channel, channels: Vec::new(), metadata: Vec::new() };
     made.record(history);
     made
+}
+
+/// The steps of --op.
+fn steps(op: &[String]) -> Result<Vec<Step>, Failure> {
+    let step =
+        |words: &String| fragment::step(words).map_err(|reason| Failure::input(format!("--op {reason}")));
+    op.iter().map(step).collect()
+}
+
+/// Does the steps of --op; `name` is what messages call the surface.
+fn prepared(name: &str, surface: Map, steps: &[Step]) -> Result<Prepared, Failure> {
+    prepare(surface, steps, None).map_err(|error| {
+        // There is no domain here.
+        let reason = error
+            .to_string()
+            .replace("as `cells` of the step or as `domain.cells` of the case", "cells=NX,NY");
+        Failure::input(format!("{name}: {reason}"))
+    })
 }
 
 /// "1 mm,2 mm", or "1 mm" for a square, in metres.

@@ -1,6 +1,7 @@
-//! Profiles: `asperity surface info` of a file with two columns, and `asperity surface from-profile`.
+//! Profiles: `asperity surface info` of a file with one or two columns, and `asperity surface from-profile`.
 
 use asperity::Grid;
+use asperity::finding;
 use asperity::surface::profile::{ProfileParameters, ProfileSpectrum, roughness};
 use asperity::surface::statistics::Extent;
 use asperity::surface::{Fill, Level, Operation};
@@ -73,6 +74,7 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
     let (heights, spacing, history) = prepared(&name, profile, args)?;
     let found = ProfileParameters::of(&heights, spacing).map_err(&failed)?;
     let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(&failed)?;
+    let told = finding::of_profile("the profile", &stored);
     let [low, high] = extent(stored.heights().iter().copied());
     if let Some(path) = &args.plot {
         crate::commands::picture::write(&figure(&name, &heights, spacing, &spectrum), path, args.force)?;
@@ -84,6 +86,7 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
             "ra": found.ra, "rq": found.rq, "rz": found.rz, "rt": found.rt, "rsk": found.rsk, "rku": found.rku,
             "rsm": found.rsm, "rdq": found.rdq,
             "wave_number": spectrum.wave_numbers(), "power": spectrum.power,
+            "findings": asperity_io::finding::list(told.as_slice()),
         });
         return crate::print(&format!("{object}\n"));
     }
@@ -111,6 +114,9 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
     line("Rdq", or_none(found.rdq, ""), "rms slope");
     if args.cutoff.is_none() {
         text += "  without --cutoff: the parameters of the primary profile (Pa, Pq, ...)\n";
+    }
+    if let Some(finding) = told {
+        text += &format!("  {finding}\n");
     }
     crate::print(&text)
 }
@@ -142,17 +148,20 @@ impl Verb for SurfaceFromProfile {
         let failed = Failure::about(&name);
         let Some(profile) = open(&self.file)? else {
             return Err(Failure::input(format!(
-                "{name} is no profile: it needs two columns of text, position and height"
+                "{name} is no profile: it needs two columns of text, position and height, or one column of heights with --size LENGTH"
             )));
         };
-        let spacing = profile.surface.grid().spacing()[0];
         let mut history = profile.history;
-        let heights: Vec<f64> = profile.surface.heights().iter().copied().collect();
+        let done = super::prepared(&name, profile.surface, &super::steps(&self.op)?)?;
+        history.extend(done.history);
+        let profile = done.surface;
+        let spacing = profile.grid().spacing()[0];
+        let heights: Vec<f64> = profile.heights().iter().copied().collect();
         let spectrum = ProfileSpectrum::of(&heights, spacing, self.periodic, PER_DECADE).map_err(&failed)?;
         let size = match self.to_size.as_deref() {
             Some(text) if text.contains(',') => super::size("--to-size", text)?,
             Some(text) => [super::length("--to-size", text)?; 2],
-            None => [profile.surface.grid().size()[0]; 2],
+            None => [profile.grid().size()[0]; 2],
         };
         let (cells, wanted) = cells(self.cells.as_deref(), size, spacing)?;
         let grid = Grid::new(cells, size).map_err(&failed)?;
@@ -163,7 +172,6 @@ impl Verb for SurfaceFromProfile {
             quantity(made.waves[1], "m"),
             quantity(made.waves[0], "m"),
         ));
-        let [held, whole] = made.rms_height.map(|height| quantity(height, "m"));
         let changed = match made.changed_beyond < made.waves[0] {
             true => format!(
                 "; for it, waves longer than {} have less than half, or more than twice, their power",
@@ -171,24 +179,28 @@ impl Verb for SurfaceFromProfile {
             ),
             false => String::new(),
         };
-        history.push(format!(
-            "rms height {held}, that of these waves in the profile (Rq of all its waves: {whole}){changed}"
-        ));
-        let slope = made.rms_slope;
+        let row = |words: &str, height: f64, slope: f64| {
+            format!(
+                "{words}: rms height {}, rms slope along each direction {}",
+                quantity(height, "m"),
+                quantity(slope, "")
+            )
+        };
+        let ([held, whole], [slope, whole_slope]) = (made.rms_height, made.rms_slope);
+        history.push(row("the surface", held, made.slope) + &changed);
+        history.push(row("the same waves of the profile", held, slope));
+        history.push(row("all waves of the profile", whole, whole_slope));
+        let told =
+            finding::of_profile("the profile", &profile).into_iter().chain(finding::unlike_profile(&made));
+        let told = told.collect();
         let topography = super::roughness(format, made.heights, size, history);
-        super::finish(&self.to, &topography, Extent::Periodic, |summary| summary)?;
-        if let Some(wanted) = wanted {
+        super::finish(&self.to, &topography, Extent::Periodic, |summary| summary.told(told))?;
+        if let Some([x, y]) = wanted {
             crate::messages::message!(
-                "note: the surface has {} x {} cells; the spacing of the profile would need {} x {}. Waves shorter than two cells are left out: \
-                 the rms slope falls from {:.4} to {:.4} along each direction. --cells {},{} keeps them, --to-size gives a smaller surface",
+                "note: the surface has {} x {} cells, the most that are chosen unasked; the spacing of the profile would need {x} x {y}: \
+                 --cells {x},{y}. --to-size gives a smaller surface",
                 cells[0],
                 cells[1],
-                wanted[0],
-                wanted[1],
-                slope[1],
-                slope[0],
-                wanted[0],
-                wanted[1]
             );
         }
         if !self.to.json {

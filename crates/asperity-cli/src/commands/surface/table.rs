@@ -25,6 +25,8 @@ pub struct SurfaceSummary<'a> {
     extent: Extent,
     summary: Summary,
     bearing: BearingCurve,
+    /// What is known beside the heights.
+    told: Vec<Finding>,
 }
 
 impl<'a> SurfaceSummary<'a> {
@@ -34,7 +36,12 @@ impl<'a> SurfaceSummary<'a> {
         let failed = Failure::about(name);
         let summary = Summary::of(&map, extent).map_err(&failed)?;
         let bearing = BearingCurve::of(&map, LEVELS).map_err(failed)?;
-        Ok(SurfaceSummary { name, topography, map, extent, summary, bearing })
+        Ok(SurfaceSummary { name, topography, map, extent, summary, bearing, told: vec![] })
+    }
+
+    /// With findings that the heights alone do not show.
+    pub fn told(self, told: Vec<Finding>) -> Self {
+        SurfaceSummary { told, ..self }
     }
 
     /// Fits the Hurst exponent to the waves between two lengths \[m\] only; no fit where there are too few.
@@ -120,11 +127,15 @@ impl<'a> SurfaceSummary<'a> {
         })
     }
 
-    /// What was found about the heights and the fit.
+    /// What was found about the heights and the fit, and what is known beside them.
     fn findings(&self) -> Vec<Finding> {
         let fit = self.summary.waves.as_ref().and_then(|waves| waves.fit.as_ref());
         let of_fit = fit.and_then(finding::hurst);
-        finding::of_heights("the surface", &self.map).into_iter().chain(of_fit).collect()
+        finding::of_heights("the surface", &self.map)
+            .into_iter()
+            .chain(of_fit)
+            .chain(self.told.iter().cloned())
+            .collect()
     }
 
     fn table(&self) -> String {

@@ -1,4 +1,4 @@
-//! Two columns of text: position and height along a line.
+//! One or two columns of text: heights along a line, with their positions or without.
 
 use super::parse::{columns, table};
 use super::{Block, Text, decode, encoding};
@@ -6,10 +6,10 @@ use crate::topography::finish::Unit;
 use crate::topography::unit::{LoneA, metres};
 use crate::topography::{Format, Problem};
 
-/// What a file of two columns holds.
+/// What the columns hold.
 pub(crate) struct Columns {
-    /// Positions, in the file's unit.
-    pub positions: Vec<f64>,
+    /// Positions, in the file's unit; `None` where there is only a column of heights.
+    pub positions: Option<Vec<f64>>,
     /// Heights, in the file's unit; NaN where undefined.
     pub heights: Vec<f64>,
     /// Metres per unit of the positions, where the file states it.
@@ -20,15 +20,15 @@ pub(crate) struct Columns {
     pub metadata: Vec<(String, String)>,
 }
 
-/// Whether the bytes are text whose first block of numbers has two columns, and no header of a matrix.
+/// Whether the bytes are text whose longest block of numbers has one or two columns, and no header of a matrix.
 pub(crate) fn is_profile(bytes: &[u8]) -> bool {
     let Some(text) = encoding::utf8(bytes) else { return false };
     let Ok(text) = Text::split(&text) else { return false };
     let longest = longest(&text);
-    longest.is_some_and(|block| columns(text.dialect, block.data) == 2 && !block.header.says_matrix())
+    longest.is_some_and(|block| columns(text.dialect, block.data) <= 2 && !block.header.says_matrix())
 }
 
-/// Reads the two columns.
+/// Reads the column or the two columns.
 pub(crate) fn read_columns(bytes: &[u8]) -> Result<Columns, Problem> {
     let bytes = decode(bytes)?;
     let text = Text::split(&bytes)?;
@@ -36,23 +36,26 @@ pub(crate) fn read_columns(bytes: &[u8]) -> Result<Columns, Problem> {
         return Err(Problem::NoHeights { format: Format::Text, detail: "no line of numbers".into() });
     };
     let table = table(text.dialect, block)?;
-    if table.columns != 2 {
+    if table.columns > 2 {
         let detail = format!(
-            "its lines have {} numbers; a profile has two columns, position and height",
+            "its lines have {} numbers; a profile has one column of heights or two columns, position and height",
             table.columns
         );
         return Err(Problem::NoHeights { format: Format::Text, detail });
     }
-    let (positions, heights) = table.lines().map(|line| (line[0], line[1])).unzip();
-    let (lateral, mut unit) = block.header.point_units([0, 0, 1]);
+    // The column of the heights; that of the positions is the one before it.
+    let of_heights = table.columns - 1;
+    let heights = table.lines().map(|line| line[of_heights]).collect();
+    let positions = (of_heights > 0).then(|| table.lines().map(|line| line[0]).collect());
+    let (lateral, mut unit) = block.header.point_units([0, 0, of_heights]);
     let named = block.header.columns();
     // "Lateral um": the unit as the last word of the name.
     let of_name = |column: usize| {
-        let name = named.get(column).filter(|_| named.len() == 2)?;
+        let name = named.get(column).filter(|_| named.len() == table.columns)?;
         metres(name.name.split_whitespace().next_back()?, LoneA::Angstrom)
     };
     match &unit {
-        Unit::Unstated => unit = of_name(1).map_or(Unit::Unstated, Unit::Metres),
+        Unit::Unstated => unit = of_name(of_heights).map_or(Unit::Unstated, Unit::Metres),
         // Heights in "A" are angstroms.
         Unit::Other(label) => {
             if let Some(angstrom) = metres(label, LoneA::Angstrom) {

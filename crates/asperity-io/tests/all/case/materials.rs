@@ -732,19 +732,25 @@ fn shift_factors_stand_in_a_file_and_one_modulus_is_fitted() {
     let factor = |t: f64| format!("{t},{:?}\n", -8.86 * (t - 20.0) / (101.6 + t - 20.0));
     let factors: String = temperatures.iter().rev().map(|t| factor(*t)).collect();
     // A loss modulus that is half as large again.
-    let contradicting: String = sweeps(&temperatures)
-        .lines()
-        .map(|line| match line.rsplit_once('\t') {
-            Some((before, loss)) => match loss.replace(',', ".").parse::<f64>() {
-                Ok(value) => format!("{before}\t{}\n", format!("{:.9e}", 1.5 * value).replace('.', ",")),
-                Err(_) => format!("{line}\n"),
-            },
-            None => format!("{line}\n"),
-        })
-        .collect();
+    // The loss moduli times this factor.
+    let contradicting = |factor: f64| -> String {
+        sweeps(&temperatures)
+            .lines()
+            .map(|line| match line.rsplit_once('\t') {
+                Some((before, loss)) => match loss.replace(',', ".").parse::<f64>() {
+                    Ok(value) => {
+                        format!("{before}\t{}\n", format!("{:.9e}", factor * value).replace('.', ","))
+                    }
+                    Err(_) => format!("{line}\n"),
+                },
+                None => format!("{line}\n"),
+            })
+            .collect()
+    };
     let dir = files(&[
         ("five.csv", &sweeps(&temperatures)),
-        ("half.csv", &contradicting),
+        ("half.csv", &contradicting(1.5)),
+        ("apart.csv", &contradicting(4.0)),
         ("shift.csv", &format!("T,log_aT\nC,-\n{factors}")),
     ]);
     let shift = "shift = { model = \"table\", path = \"shift.csv\" }";
@@ -765,7 +771,14 @@ fn shift_factors_stand_in_a_file_and_one_modulus_is_fitted() {
         let contradictions = case.findings.iter().filter(|finding| finding.text.contains("Kramers-Kronig"));
         assert_eq!(contradictions.count(), findings, "{material}");
     }
-    says(dir.path(), &half.replace("\"storage\"", "\"both\""), "body[0].material.path", "data", &[]);
+    let both = half.replace("\"storage\"", "\"both\"");
+    let case = case_in(dir.path(), &body(&both), "");
+    assert!(
+        case.findings.iter().any(|finding| finding.text.contains("from the loss modulus by")),
+        "{:?}",
+        case.findings
+    );
+    says(dir.path(), &both.replace("half.csv", "apart.csv"), "body[0].material.path", "data", &[]);
     let both = five
         .replace("path = \"shift.csv\"", "path = \"shift.csv\", points = [[\"0 °C\", 1], [\"20 °C\", 0]]");
     says(dir.path(), &both, "body[0].material.shift", "conflict", &[]);

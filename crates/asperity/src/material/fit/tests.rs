@@ -290,6 +290,46 @@ fn the_fewest_terms_hold_a_misfit() {
 }
 
 #[test]
+fn a_fit_of_moduli_that_contradict_each_other_lies_between_them() {
+    // E' = w^n and E'' = tan(n pi/2) w^n of a power law, with a loss modulus k times too high. The law times
+    // c = (1 + 1/k)/(1 + 1/k^2) is a passive material and minimises (c - 1)^2 + (c/k - 1)^2 among its multiples: a fit is at least as close.
+    let (n, omega) = (0.2, logspace(1e-6, 1e6, 241));
+    let tangent = (n * std::f64::consts::FRAC_PI_2).tan();
+    let storage: Vec<f64> = omega.iter().map(|w| 1e7 * w.powf(n)).collect();
+    let both = |k: f64| {
+        let loss: Vec<f64> = storage.iter().map(|value| k * tangent * value).collect();
+        fit_dma(&omega, &storage, &loss, &FitOptions::default())
+    };
+    for k in [1.0, 1.3, 1.5, 0.7] {
+        let fit = both(k).unwrap();
+        let c = (1.0 + 1.0 / k) / (1.0 + 1.0 / (k * k));
+        let multiple = (((c - 1.0).powi(2) + (c / k - 1.0).powi(2)) / 2.0).sqrt();
+        // The discrete spectrum follows a power law to 2 %.
+        assert!(fit.misfit.rms < multiple + 0.02, "{k}: {:?} {multiple}", fit.misfit);
+        // In the middle, far from the ends, which bend, it lies between both moduli.
+        for (w, law) in omega.iter().zip(&storage).filter(|(w, _)| (1e-3..1e3).contains(*w)) {
+            let (found, lost) = fit.function.complex(*w);
+            let [least, most] = [k.min(1.0) - 0.03, k.max(1.0) + 0.03];
+            for ratio in [found / law, lost / law / tangent] {
+                assert!(ratio > least && ratio < most, "{k} {w}: {ratio}");
+            }
+        }
+    }
+    // A loss modulus with a scatter of a factor of 1.35 beside: fitted through, and above what a fit of one curve may have.
+    let mut normal = normal(3);
+    let loss: Vec<f64> = storage.iter().map(|value| 1.2 * tangent * value * (0.3 * normal()).exp()).collect();
+    let fit = fit_dma(&omega, &storage, &loss, &FitOptions::default()).unwrap();
+    assert!(
+        fit.columns[0].rms < 0.1 && fit.columns[1].rms > 0.2 && fit.misfit.rms > 0.1,
+        "{:?}",
+        fit.columns
+    );
+    // c/k - 1 is -50 %.
+    let refused = both(2.6).unwrap_err().to_string();
+    assert!(refused.contains("30 %") && refused.contains("the storage modulus alone is fitted"), "{refused}");
+}
+
+#[test]
 fn sweeps_that_overlap_with_scatter_are_fitted_through_and_told() {
     // Points of another sweep, 18 % lower, stand between those of a smooth one: the storage modulus falls by more than its scatter.
     let (truth, omega) = (thirteen(), logspace(1e-6, 1e7, 200));

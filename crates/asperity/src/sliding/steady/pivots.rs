@@ -4,7 +4,8 @@
 //! those outside with a negative gap. A moving body loses energy whatever the pressure, so that A is positive definite, and one set is
 //! feasible (Cottle, Pang & Stone, The Linear Complementarity Problem, 1992, section 4.2). All infeasible cells change sides while their
 //! number falls within [`TRIES`] exchanges, else the last one alone (J. J. Júdice & F. M. Pires, Comput. Oper. Res. 21 (1994) 587): that
-//! ends after a finite number of exchanges, which blocks of cells alone need not.
+//! ends after a finite number of exchanges, which blocks of cells alone need not. It ends only if each set is solved well enough to judge it:
+//! where GMRES does not do that, elimination does.
 
 use super::contact::{Fields, SteadyContact};
 use super::gmres::OnSet;
@@ -12,13 +13,17 @@ use super::newton::copy;
 use super::operators::Operators;
 use crate::contact::{self, ContactState};
 use crate::error::Result;
+use crate::linear;
+use crate::sliding::stop_at;
 
 /// Exchanges of all infeasible cells without fewer of them.
 const TRIES: usize = 10;
-/// Solves on one set: each brings the violations down by a factor.
+/// Solves on one set by GMRES: each brings the violations down by a factor.
 const SOLVES: usize = 8;
 /// Violations on the set over those that the contact may have.
 const EXACT: f64 = 0.1;
+/// Largest set, in cells, that is solved by elimination where these solves are not enough: a set of this size takes less than a second.
+const DENSE: usize = 1024;
 
 impl SteadyContact<'_> {
     /// Exchanges cells from the contact of `state` on until the contact conditions hold. False where that takes more than `most` exchanges or
@@ -87,29 +92,75 @@ impl SteadyContact<'_> {
         set.iter().for_each(|n| pressure[*n] += lacking);
         state.pressure = pressure;
         let (c, h) = (self.problem.compliance, self.problem.gap);
-        let mut approach = 0.0;
-        for _ in 0..SOLVES {
+        let mut solves = 0;
+        loop {
             operators.apply_into(&state.pressure, &mut state.unit_displacement);
             self.spent.convolutions += 1;
             let gaps: Vec<f64> = set.iter().map(|n| h[*n] + c * state.unit_displacement[*n]).collect();
-            approach = gaps.iter().sum::<f64>() / set.len() as f64;
+            let approach = gaps.iter().sum::<f64>() / set.len() as f64;
             let violations: Vec<f64> = gaps.iter().map(|gap| (gap - approach) / c).collect();
             let largest = violations.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
             let scale = set.iter().map(|n| state.unit_displacement[*n].abs()).sum::<f64>() / set.len() as f64;
-            if largest <= EXACT * self.tolerance * scale {
-                break;
+            if largest <= EXACT * self.tolerance * scale || solves > SOLVES {
+                state.approach = approach;
+                return Ok(approach);
             }
-            let [first, second] = &mut fields.work;
-            let interrupt = self.interrupt;
-            let mut on_set =
-                OnSet { operators, cells: set, work: [first, second], convolutions: 0, interrupt };
-            let change = on_set.solve(&violations)?;
-            self.spent.convolutions += on_set.convolutions;
-            self.spent.iterations += 1;
-            set.iter().zip(&change).for_each(|(n, d)| state.pressure[*n] += d);
+            if solves == SOLVES && set.len() <= DENSE {
+                self.eliminate(set, operators, fields, state)?;
+            } else {
+                let [first, second] = &mut fields.work;
+                let interrupt = self.interrupt;
+                let mut on_set =
+                    OnSet { operators, cells: set, work: [first, second], convolutions: 0, interrupt };
+                let change = on_set.solve(&violations)?;
+                self.spent.convolutions += on_set.convolutions;
+                self.spent.iterations += 1;
+                set.iter().zip(&change).for_each(|(n, d)| state.pressure[*n] += d);
+            }
+            solves += 1;
         }
-        state.approach = approach;
-        Ok(approach)
+    }
+
+    /// The same by elimination: sum_j A_ij p_j - d/c = -h_i/c on the set, sum_j p_j = the total. A_ij is the displacement at the distance from
+    /// j to i of a pressure of 1 in that corner of the domain from which this distance stays inside.
+    fn eliminate(
+        &mut self,
+        set: &[usize],
+        operators: &mut Operators,
+        fields: &mut Fields,
+        state: &mut ContactState,
+    ) -> Result<()> {
+        let [nx, ny] = self.grid.cells();
+        let mut from_corner = |right: bool, top: bool| {
+            let [unit, response] = &mut fields.work;
+            unit.fill(0.0);
+            let (x, y) = (if right { nx - 1 } else { 0 }, if top { ny - 1 } else { 0 });
+            unit[x * ny + y] = 1.0;
+            operators.apply_into(unit, response);
+            response.clone()
+        };
+        let responses = [false, true].map(|right| [false, true].map(|top| from_corner(right, top)));
+        self.spent.convolutions += 4;
+        self.spent.iterations += 1;
+        stop_at(self.interrupt)?;
+        let (c, h) = (self.problem.compliance, self.problem.gap);
+        let influence = |i: usize, j: usize| {
+            let index = |to: usize, from: usize, n: usize| match to >= from {
+                true => (false, to - from),
+                false => (true, n - 1 + to - from),
+            };
+            let (right, x) = index(i / ny, j / ny, nx);
+            let (top, y) = index(i % ny, j % ny, ny);
+            responses[usize::from(right)][usize::from(top)][x * ny + y]
+        };
+        let row = |i: &usize| {
+            let row = set.iter().map(|j| influence(*i, *j));
+            row.chain([-1.0, -h[*i] / c]).collect::<Vec<f64>>()
+        };
+        let load = set.iter().map(|_| 1.0).chain([0.0, self.total()]).collect();
+        let [pressure] = linear::solve(set.iter().map(row).chain([load]).collect());
+        set.iter().zip(&pressure).for_each(|(n, p)| state.pressure[*n] = *p);
+        Ok(())
     }
 
     /// The sum of the pressures that carry the load.

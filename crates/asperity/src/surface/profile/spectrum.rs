@@ -57,8 +57,10 @@ pub struct ProfileSurface {
     pub heights: Array2<f64>,
     /// Rms height of the profile \[m\]: of its waves that the grid holds, and of all.
     pub rms_height: [f64; 2],
-    /// Rms slope of the profile, of its waves that the grid holds, and of all.
+    /// Rms slope of the profile: of its waves that the grid holds, and of all.
     pub rms_slope: [f64; 2],
+    /// Rms slope of the surface along a direction, the mean over all directions: (sum of q^2 <z^2>/2 over its waves)^(1/2).
+    pub slope: f64,
     /// Longest and shortest wave of the surface \[m\].
     pub waves: [f64; 2],
     /// Waves longer than this \[m\] have less than half the power that the profile's spectrum gives them (or more than twice, where it
@@ -68,6 +70,8 @@ pub struct ProfileSurface {
 
 /// Iterations of the likelihood: later ones follow the scatter.
 const ITERATIONS: usize = 300;
+/// A profile whose rms height is less than this share of its largest height is straight: the rest is rounding.
+const STRAIGHT: f64 = 1e-10;
 
 impl ProfileSpectrum {
     /// From evenly spaced heights \[m\], with about this number of rings per decade. A profile that is not periodic is levelled
@@ -81,7 +85,9 @@ impl ProfileSpectrum {
         let n = heights.len();
         let mut z = if periodic { heights.to_vec() } else { levelled(heights) };
         let mean = z.iter().sum::<f64>() / n as f64;
+        let largest = heights.iter().fold(0.0, |most: f64, z| most.max(z.abs()));
         let square = z.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / n as f64;
+        let square = if square.sqrt() > STRAIGHT * largest { square } else { 0.0 };
         if !periodic {
             fade(&mut z);
         }
@@ -175,9 +181,15 @@ impl ProfileSpectrum {
     /// the grid holds: up to its longer side, and down to two of its wider cells.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) for a line of cells, and for a grid without any of the waves.
+    /// [`Error::Invalid`](crate::Error::Invalid) for a line of cells, a profile without roughness, and a grid without any of the waves.
     pub fn surface(&self, grid: &Grid, seed: u64) -> Result<ProfileSurface> {
         require(!grid.is_line(), "grid of the surface", "a line of cells", "a plane")?;
+        require(
+            self.square > 0.0,
+            "rms height of the profile about its straight line",
+            "0 m",
+            "greater than 0: a straight profile has no waves to make a surface of; check the column of the heights and their unit",
+        )?;
         let sides = grid.size().map(|length| TAU / length);
         let longest = sides[0].min(sides[1]);
         let nyquist = grid.spacing().map(|cell| PI / cell);
@@ -248,6 +260,7 @@ impl ProfileSpectrum {
         };
         let a = root(|a| (total(a) > target) == lower, lowest, 1e3 * highest);
         let scale = target / total(a);
+        let mut slope_square = 0.0;
         for (ky, kx) in vectors(&columns) {
             let wave = &mut columns[ky][kx.rem_euclid(grid.cells()[0] as i64) as usize];
             let q = length(ky, kx);
@@ -259,6 +272,8 @@ impl ProfileSpectrum {
             };
             // The phase of the wave is random, its mean square is not.
             let size = wave.norm();
+            // Both waves of the pair.
+            slope_square += q * q * square;
             *wave *= if size > 0.0 { square.sqrt() / size } else { 0.0 };
         }
         let all: f64 =
@@ -267,6 +282,7 @@ impl ProfileSpectrum {
             heights: waves.sum(&mut columns, 1.0),
             rms_height: [target.sqrt(), self.square.sqrt()],
             rms_slope: [(slope * all).sqrt(), all.sqrt()],
+            slope: slope_square.sqrt(),
             waves: [TAU / lowest.max(longest), TAU / highest],
             changed_beyond: TAU / a,
         })
@@ -398,6 +414,14 @@ mod tests {
         let rms = statistics::rms_height(made.heights.view()).unwrap();
         assert!((rms / made.rms_height[0] - 1.0).abs() < 1e-9 && made.rms_height[0] <= made.rms_height[1]);
         assert!(spectrum.surface(&Grid::new([64, 64], [1e-6; 2]).unwrap(), 1).is_err());
+        // A constant, and a straight line: only rounding is left.
+        for tilt in [0.0, 1e-3] {
+            let straight: Vec<f64> = (0..500).map(|i| 0.1 + tilt * f64::from(i)).collect();
+            let spectrum = ProfileSpectrum::of(&straight, 1e-6, false, 16).unwrap();
+            let error =
+                spectrum.surface(&Grid::new([64, 64], [1e-4; 2]).unwrap(), 1).unwrap_err().to_string();
+            assert!(error.contains("rms height of the profile"), "{error}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Linear systems by Gaussian elimination with partial pivoting.
 
 /// The solutions for `K` right-hand sides, with which each row ends.
-pub(super) fn solve<const K: usize>(mut rows: Vec<Vec<f64>>) -> [Vec<f64>; K] {
+pub(crate) fn solve<const K: usize>(mut rows: Vec<Vec<f64>>) -> [Vec<f64>; K] {
     let n = rows.len();
     for k in 0..n {
         let pivot = (k..n).max_by(|a, b| rows[*a][k].abs().total_cmp(&rows[*b][k].abs())).unwrap_or(k);

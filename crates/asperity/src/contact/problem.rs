@@ -53,7 +53,7 @@ impl Problem<'_> {
     }
 
     /// The sum of p that the load asks for \[Pa\]; `None` under approach control.
-    pub(super) fn sum(&self, cell_area: f64) -> Option<f64> {
+    pub(crate) fn sum(&self, cell_area: f64) -> Option<f64> {
         match self.prescribed {
             Prescribed::Load(load) => Some(load / cell_area),
             Prescribed::Approach(_) => None,

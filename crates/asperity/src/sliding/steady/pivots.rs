@@ -6,10 +6,8 @@
 //! number falls within [`TRIES`] exchanges, else the last one alone (J. J. Júdice & F. M. Pires, Comput. Oper. Res. 21 (1994) 587): that
 //! ends after a finite number of exchanges, which blocks of cells alone need not.
 
-use super::contact::{Fields, SteadyContact};
-use super::gmres::OnSet;
+use super::contact::{SteadyContact, Workspace};
 use super::newton::copy;
-use super::operators::Operators;
 use crate::contact::{self, ContactState};
 use crate::error::Result;
 
@@ -28,8 +26,7 @@ impl SteadyContact<'_> {
     /// [`Error::Interrupted`](crate::error::Error::Interrupted).
     pub(super) fn pivot(
         &mut self,
-        operators: &mut Operators,
-        fields: &mut Fields,
+        on: &mut Workspace,
         most: usize,
         state: &mut ContactState,
     ) -> Result<bool> {
@@ -43,18 +40,18 @@ impl SteadyContact<'_> {
             if set.is_empty() {
                 return Ok(false);
             }
-            let approach = self.solve_on(&set, operators, fields, state)?;
+            self.solve_on(&set, on, state)?;
             let (c, h) = (self.problem.compliance, self.problem.gap);
             let is_wrong = |n: &usize| match inside[*n] {
                 true => state.pressure[*n] < 0.0,
-                false => h[*n] + c * state.unit_displacement[*n] < approach,
+                false => h[*n] + c * state.unit_displacement[*n] < state.approach,
             };
             let wrong: Vec<usize> = (0..cells).filter(is_wrong).collect();
             tracing::debug!(wrong = wrong.len(), set = set.len(), "pivots");
-            let trial = &mut fields.trial;
+            let trial = &mut on.trial;
             copy(state, trial);
             contact::make_feasible(&self.problem, self.grid, trial)?;
-            operators.apply_into(&trial.pressure, &mut trial.unit_displacement);
+            on.operators.apply_into(&trial.pressure, &mut trial.unit_displacement);
             if self.rate(trial).residual <= self.tolerance {
                 copy(trial, state);
                 return Ok(true);
@@ -73,50 +70,29 @@ impl SteadyContact<'_> {
         Ok(false)
     }
 
-    /// The pressure on the set, with the load and 0 elsewhere; returns the approach.
-    fn solve_on(
-        &mut self,
-        set: &[usize],
-        operators: &mut Operators,
-        fields: &mut Fields,
-        state: &mut ContactState,
-    ) -> Result<f64> {
+    /// The pressure on the set, with the load and 0 elsewhere, and the approach.
+    fn solve_on(&mut self, set: &[usize], on: &mut Workspace, state: &mut ContactState) -> Result<()> {
         let mut pressure = vec![0.0; state.pressure.len()];
         set.iter().for_each(|n| pressure[*n] = state.pressure[*n]);
-        let lacking = (self.total() - pressure.iter().sum::<f64>()) / set.len() as f64;
+        let total = self.problem.sum(self.grid.cell_area()).unwrap_or(f64::NAN);
+        let lacking = (total - pressure.iter().sum::<f64>()) / set.len() as f64;
         set.iter().for_each(|n| pressure[*n] += lacking);
         state.pressure = pressure;
         let (c, h) = (self.problem.compliance, self.problem.gap);
-        let mut approach = 0.0;
         for _ in 0..SOLVES {
-            operators.apply_into(&state.pressure, &mut state.unit_displacement);
+            on.operators.apply_into(&state.pressure, &mut state.unit_displacement);
             self.spent.convolutions += 1;
             let gaps: Vec<f64> = set.iter().map(|n| h[*n] + c * state.unit_displacement[*n]).collect();
-            approach = gaps.iter().sum::<f64>() / set.len() as f64;
-            let violations: Vec<f64> = gaps.iter().map(|gap| (gap - approach) / c).collect();
+            state.approach = gaps.iter().sum::<f64>() / set.len() as f64;
+            let violations: Vec<f64> = gaps.iter().map(|gap| (gap - state.approach) / c).collect();
             let largest = violations.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
             let scale = set.iter().map(|n| state.unit_displacement[*n].abs()).sum::<f64>() / set.len() as f64;
             if largest <= EXACT * self.tolerance * scale {
                 break;
             }
-            let [first, second] = &mut fields.work;
-            let interrupt = self.interrupt;
-            let mut on_set =
-                OnSet { operators, cells: set, work: [first, second], convolutions: 0, interrupt };
-            let change = on_set.solve(&violations)?;
-            self.spent.convolutions += on_set.convolutions;
-            self.spent.iterations += 1;
+            let change = self.change_on(set, &violations, on)?;
             set.iter().zip(&change).for_each(|(n, d)| state.pressure[*n] += d);
         }
-        state.approach = approach;
-        Ok(approach)
-    }
-
-    /// The sum of the pressures that carry the load.
-    fn total(&self) -> f64 {
-        match self.problem.prescribed {
-            contact::Prescribed::Load(load) => load / self.grid.cell_area(),
-            contact::Prescribed::Approach(_) => f64::NAN,
-        }
+        Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::{Axis, Coordinate, Drive};
+use super::{Coordinate, Drive};
 use crate::error::{Error, Result};
 use crate::simulation::Simulation;
 use crate::step::{Checkpoint, Loader, Proposal, Recorder, Saver, Schedule, Step, Stepper, Summary, Verdict};
@@ -135,10 +135,6 @@ impl Drive for March {
 
     fn simulation(&self) -> &Simulation {
         &self.simulation
-    }
-
-    fn axis(&self) -> Axis {
-        Axis::Time
     }
 
     fn planned(&self) -> Vec<f64> {

@@ -34,7 +34,7 @@ use self::contact::SteadyContact;
 use self::operators::{Operators, Stream};
 use super::{ContactForces, Direction, Friction, Slopes, Streaming};
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem};
-use crate::drive::{Axis, Coordinate, Drive};
+use crate::drive::{Coordinate, Drive};
 use crate::error::Result;
 use crate::simulation::Simulation;
 use crate::step::{Checkpoint, Loader, Recorder, Saver, Step};
@@ -220,10 +220,6 @@ impl Drive for Steady {
 
     fn simulation(&self) -> &Simulation {
         &self.simulation
-    }
-
-    fn axis(&self) -> Axis {
-        Axis::Velocity
     }
 
     fn planned(&self) -> Vec<f64> {

@@ -31,7 +31,7 @@ pub(crate) use start::Start;
 pub use state::ContactState;
 pub use workspace::ProjectedCg;
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::{Error, NotConverged, Result, require};
 use crate::grid::{Boundary, Grid};
@@ -216,7 +216,10 @@ pub(crate) fn not_converged(method: &'static str, options: &SolverOptions, outco
     })
 }
 
-/// True where somebody asked to stop.
-fn interrupted(interrupt: Option<&AtomicBool>) -> bool {
-    interrupt.is_some_and(|flag| flag.load(std::sync::atomic::Ordering::Relaxed))
+/// [`Error::Interrupted`] where somebody asked to stop.
+pub(crate) fn stop_at(interrupt: Option<&AtomicBool>) -> Result<()> {
+    match interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        true => Err(Error::Interrupted),
+        false => Ok(()),
+    }
 }

@@ -13,8 +13,8 @@ use gradient::Progress;
 use super::bounds::clip;
 use super::residual::{ResidualReport, find_approach};
 use super::start::{make_feasible, set_sum};
-use super::{ContactState, Outcome, Prescribed, Problem, Task, interrupted, not_converged};
-use crate::error::{Error, Result};
+use super::{ContactState, Outcome, Prescribed, Problem, Task, not_converged, stop_at};
+use crate::error::Result;
 use crate::grid::Grid;
 use asperity_sweep::{each, each_with_sums, sums};
 
@@ -70,9 +70,7 @@ impl PolonskyKeer {
             if iteration == options.max_iterations {
                 return Err(not_converged("polonsky-keer", options, &outcome));
             }
-            if interrupted(interrupt) {
-                return Err(Error::Interrupted);
-            }
+            stop_at(interrupt)?;
             iteration += 1;
             let stalled = progress.has_stalled(outcome.residual) || report.no_cell_is_free();
             tracing::debug!(

@@ -14,8 +14,8 @@ use super::step::{Slope, Step, StepKind};
 use super::sweeps::direction::{Centre, Steepest};
 use super::sweeps::residual::FindWorking;
 use super::sweeps::step::{Advance, Curvature, FindStep};
-use super::{ContactState, Outcome, Problem, ProjectedCg, Task, interrupted, not_converged};
-use crate::error::{Error, Result};
+use super::{ContactState, Outcome, Problem, ProjectedCg, Task, not_converged, stop_at};
+use crate::error::Result;
 use asperity_sweep::{Min, Set, SetMut, run};
 
 /// Iterations without a halving of the residual before a gradient step.
@@ -40,9 +40,7 @@ impl ProjectedCg {
             if iterations == options.max_iterations {
                 return Err(not_converged("projected-cg", options, &outcome));
             }
-            if interrupted(interrupt) {
-                return Err(Error::Interrupted);
-            }
+            stop_at(interrupt)?;
             if converged {
                 search.convolve();
                 continue;

@@ -8,8 +8,8 @@ use asperity_sweep::{dot, each, sum, sweep};
 
 use super::contact::{SteadyContact, Workspace};
 use super::operators::Operators;
+use crate::contact::stop_at;
 use crate::error::Result;
-use crate::sliding::stop_at;
 
 /// The residual falls by this factor, in at most so many vectors.
 const REDUCTION: f64 = 0.02;

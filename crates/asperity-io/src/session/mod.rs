@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use asperity::finding::{Diagnostics, Finding, Known};
 use asperity::sliding::Friction;
 use asperity::step::Row;
-use asperity::{Error, drive};
+use asperity::{Drive, Error, drive};
 use thiserror::Error;
 
 use crate::answer::{self, Answer, Units};
@@ -25,7 +25,7 @@ use crate::resources::free_disk;
 use crate::store::{Outcome, Reader, SCALARS, Status, StoreError, Work, Writer};
 use crate::stress::{self, StressError};
 use maps::Maps;
-use record::{Earlier, Record};
+use record::{Earlier, Record, Stop};
 use setup::header;
 pub use setup::setup;
 
@@ -193,7 +193,7 @@ fn run_inside(
     };
     let mut drive = match drive {
         Ok(drive) => drive,
-        Err(source) => return Err(record.fail(None, source)),
+        Err(source) => return record.stop(None, source.into()),
     };
     if let Some(streaming) = drive.streaming() {
         record.diagnostics = record.diagnostics.of_sweep(streaming.clone());
@@ -205,6 +205,22 @@ fn run_inside(
         record.diagnostics.resume(rows, frictions, findings);
     }
     drive.interrupt_with(options.interrupt.clone());
+    if let Err(stop) = rows(case, options, &mut *drive, &mut record, observe) {
+        return record.stop(Some(&*drive), stop);
+    }
+    let summary = record.end(Some(&*drive), Outcome::new(Status::Complete))?;
+    drop(drive);
+    leakage(case, summary, options)
+}
+
+/// Stores the rows of a drive, and the stress below the surface where the case asks for it.
+fn rows(
+    case: &Case,
+    options: &RunOptions,
+    drive: &mut dyn Drive,
+    record: &mut Record,
+    observe: &mut (dyn FnMut(Progress) + Send),
+) -> Result<(), Stop> {
     let mut maps = Maps::new(case, drive.simulation().grid.shape());
     let course = Progress {
         row: &Row::default(),
@@ -216,34 +232,20 @@ fn run_inside(
         finished: false,
         stress: None,
     };
-    loop {
-        let row = match drive.advance().map(|step| step.is_some()) {
-            Ok(false) => break,
-            Ok(true) => match record.store(&mut maps, &*drive) {
-                Ok(Some(row)) => row,
-                Ok(None) => break,
-                Err(source) => return Err(record.stop_storing(&*drive, source)),
-            },
-            Err(Error::Interrupted) => {
-                // The step under way is lost: a resumed run repeats what came after the last checkpoint.
-                return record.end(Some(&*drive), Outcome::new(Status::Interrupted));
-            }
-            Err(source) => return Err(record.fail(Some(&*drive), source)),
-        };
+    // A step that is interrupted is lost: a resumed run repeats what came after the last checkpoint.
+    while drive.advance()?.is_some() {
+        let Some(row) = record.store(&mut maps, drive)? else { break };
         let finished = drive.finished();
-        let due = case.output.checkpoint && !finished && record.writer.checkpoint_due();
-        if due && let Err(source) = record.checkpoint(&*drive) {
-            return Err(record.stop_storing(&*drive, source));
+        if case.output.checkpoint && !finished && record.writer.checkpoint_due() {
+            record.checkpoint(drive)?;
         }
         observe(Progress { row: &row, friction: record.friction, done: drive.done(), finished, ..course });
         // Between two rows nothing is lost.
         if options.interrupt.load(Ordering::Relaxed) && !finished {
-            if case.output.checkpoint
-                && let Err(source) = record.checkpoint(&*drive)
-            {
-                return Err(record.stop_storing(&*drive, source));
+            if case.output.checkpoint {
+                record.checkpoint(drive)?;
             }
-            return record.end(Some(&*drive), Outcome::new(Status::Interrupted));
+            return Err(Error::Interrupted.into());
         }
     }
     if let (Some(plan), Some(row)) = (&case.stress, record.last) {
@@ -251,23 +253,15 @@ fn run_inside(
         let tell = |times, of| {
             observe(Progress { row: &row, done, finished: true, stress: Some([times, of]), ..course });
         };
-        match stress::evaluate(&mut record.writer, plan, &options.interrupt, tell) {
-            Ok(below) => record.stress = Some(below),
-            Err(StressError::Solve(Error::Interrupted)) => {
-                return record.end(Some(&*drive), Outcome::new(Status::Interrupted));
-            }
-            Err(StressError::Solve(source)) => return Err(record.fail(Some(&*drive), source)),
-            Err(StressError::Store(source)) => return Err(record.stop_storing(&*drive, source)),
+        let below = stress::evaluate(&mut record.writer, plan, &options.interrupt, tell);
+        record.stress = Some(below.map_err(|error| match error {
+            StressError::Solve(source) => Stop::Solve(source),
+            StressError::Store(source) => Stop::Store(source),
             // The case would have been refused.
-            Err(error @ (StressError::Refused { .. } | StressError::NoContact { .. })) => {
-                let source = Error::invalid("[stress]", error, "left out");
-                return Err(record.fail(Some(&*drive), source));
-            }
-        }
+            error => Stop::Solve(Error::invalid("[stress]", error, "left out")),
+        })?);
     }
-    let summary = record.end(Some(&*drive), Outcome::new(Status::Complete))?;
-    drop(drive);
-    leakage(case, summary, options)
+    Ok(())
 }
 
 /// The leakage that a case asks for, computed and stored once all rows are.

@@ -33,6 +33,17 @@ impl Earlier {
         })
     }
 }
+/// Why a run stops early.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Stop {
+    /// The user interrupted it, its drive could not be made, or a step was not solved.
+    #[error(transparent)]
+    Solve(#[from] Error),
+    /// A step could not be stored.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
 /// The result of a run under way, and its diagnostics.
 pub(super) struct Record<'a> {
     pub(super) case: &'a Case,
@@ -48,11 +59,7 @@ pub(super) struct Record<'a> {
 
 impl Record<'_> {
     /// Stores the last row, with its fields where they are asked for.
-    pub(super) fn store(
-        &mut self,
-        maps: &mut Maps<'_>,
-        drive: &dyn Drive,
-    ) -> Result<Option<Row>, StoreError> {
+    pub(super) fn store(&mut self, maps: &mut Maps, drive: &dyn Drive) -> Result<Option<Row>, StoreError> {
         let Some(step) = drive.last() else { return Ok(None) };
         let (row, stored) = (step.row(), &self.case.output.rows);
         let at = row.coordinate.value();
@@ -80,25 +87,24 @@ impl Record<'_> {
         self.writer.checkpoint(&drive.checkpoint())
     }
 
-    /// Ends a run whose step was not solved, or whose drive could not be made.
-    pub(super) fn fail(self, drive: Option<&dyn Drive>, source: Error) -> RunError {
-        let best = drive.and_then(|drive| drive.last()).map(|step| Box::new(step.row()));
-        let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
-        match self.end(drive, outcome) {
-            Ok(summary) => RunError::Solve { source, summary: Box::new(summary), best },
-            Err(error) => error,
+    /// Ends a run that stopped early. If the end of one whose step could not be stored cannot be stored either, the first error is
+    /// reported.
+    pub(super) fn stop(self, drive: Option<&dyn Drive>, stop: Stop) -> Result<Summary, RunError> {
+        if let Stop::Solve(Error::Interrupted) = stop {
+            return self.end(drive, Outcome::new(Status::Interrupted));
         }
-    }
-
-    /// Ends a run whose step could not be stored. If the end cannot be stored either, the first error is reported.
-    pub(super) fn stop_storing(self, drive: &dyn Drive, source: StoreError) -> RunError {
-        let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
-        let summary = match self.end(Some(drive), outcome) {
-            Ok(summary) => Box::new(summary),
-            Err(RunError::Storage { summary, .. }) => summary,
-            Err(error) => return error,
-        };
-        RunError::Storage { source, summary }
+        let best = drive.and_then(|drive| drive.last()).map(|step| Box::new(step.row()));
+        let outcome = Outcome { message: Some(stop.to_string()), ..Outcome::new(Status::Failed) };
+        Err(match (stop, self.end(drive, outcome)) {
+            (Stop::Solve(source), Ok(summary)) => {
+                RunError::Solve { source, summary: Box::new(summary), best }
+            }
+            (Stop::Store(source), Ok(summary)) => RunError::Storage { source, summary: Box::new(summary) },
+            (Stop::Store(source), Err(RunError::Storage { summary, .. })) => {
+                RunError::Storage { source, summary }
+            }
+            (_, Err(error)) => error,
+        })
     }
 
     /// Ends the result.

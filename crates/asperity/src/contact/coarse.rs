@@ -4,14 +4,11 @@
 //! Long waves cost the same number of iterations on every grid, and a quarter for each halving: the fine grid is
 //! left with what only it can see. Whatever goes wrong on a coarse grid only costs the start.
 
-use std::sync::atomic::AtomicBool;
-
 use rayon::prelude::*;
 
-use super::{ContactState, Hardness, Problem, Solver, SolverOptions};
+use super::{ContactState, Hardness, Problem, Solver, SolverOptions, Task};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::operator::Operator;
 
 /// Fewest cells along a side of a coarse grid.
 const FEWEST_CELLS: usize = 64;
@@ -25,13 +22,8 @@ const COARSE_ITERATIONS: usize = 30;
 ///
 /// # Errors
 /// [`Error::Interrupted`].
-pub(super) fn start(
-    operator: &dyn Operator,
-    problem: &Problem,
-    options: &SolverOptions,
-    state: &mut ContactState,
-    interrupt: Option<&AtomicBool>,
-) -> Result<f64> {
+pub(super) fn start(task: &mut Task) -> Result<f64> {
+    let Task { operator, problem, options, state, interrupt } = task;
     let Some(grid) = coarser(operator.grid()) else {
         return Ok(0.0);
     };
@@ -49,21 +41,18 @@ pub(super) fn start(
     let options = SolverOptions {
         tolerance: options.tolerance.max(COARSE_TOLERANCE),
         max_iterations: COARSE_ITERATIONS,
-        ..*options
+        ..**options
     };
-    let problem = Problem { gap: &gap, hardness, ..*problem };
-    match solver.solve(&mut *coarse_operator, &problem, &options, &mut coarse, interrupt) {
-        Ok(outcome) => {
-            prolong(&grid, &coarse.pressure, &mut state.pressure);
-            Ok(outcome.convolutions as f64 / 4.0)
-        }
-        Err(Error::NotConverged(report)) => {
-            prolong(&grid, &coarse.pressure, &mut state.pressure);
-            Ok(report.iterations as f64 / 4.0)
-        }
-        Err(Error::Interrupted) => Err(Error::Interrupted),
-        Err(_) => Ok(0.0),
-    }
+    let problem = Problem { gap: &gap, hardness, ..**problem };
+    let convolutions = match solver.solve(&mut *coarse_operator, &problem, &options, &mut coarse, *interrupt)
+    {
+        Ok(outcome) => outcome.convolutions,
+        Err(Error::NotConverged(report)) => report.iterations,
+        Err(Error::Interrupted) => return Err(Error::Interrupted),
+        Err(_) => return Ok(0.0),
+    };
+    prolong(&grid, &coarse.pressure, &mut state.pressure);
+    Ok(convolutions as f64 / 4.0)
 }
 
 /// The grid of half as many cells along each side.

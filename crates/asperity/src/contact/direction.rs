@@ -1,20 +1,17 @@
 //! The conjugate direction on the working set, after Polak and Ribiere, from the preconditioned residual.
 
 use super::ProjectedCg;
+use super::search::Search;
 use super::sweeps::direction::{Conjugate, Products};
 use asperity_sweep::{Set, run};
 
 impl ProjectedCg {
-    /// d <- z + beta d on S, beta = max(0, <z, r - r_old> / <z_old, r_old>), 0 where `product_old` = <z_old, r_old> is not known.
-    /// Returns <z, r>, or `None`, with d as it was, where z is no descent direction.
+    /// d <- z + beta d on S, a set of so many `cells`; beta = max(0, <z, r - r_old> / <z_old, r_old>), 0 where `search.product` =
+    /// <z_old, r_old> is not known, which becomes <z, r>. `None`, with d as it was, where z is no descent direction.
     ///
-    /// Where the load is given (`mean_free`, on so many `cells`), z and d have their means over S removed; r comes without.
-    pub(super) fn make_conjugate(
-        &mut self,
-        product_old: Option<f64>,
-        mean_free: bool,
-        cells: f64,
-    ) -> Option<f64> {
+    /// Where the load is given, z and d have their means over S removed; r comes without.
+    pub(super) fn make_conjugate(&mut self, search: &mut Search, cells: f64) -> Option<()> {
+        let mean_free = search.sum.is_some();
         let ProjectedCg { residual: r, residual_old: r_old, preconditioned: z, direction: d, .. } = self;
         let (set, set_old) = (&self.working, &self.working_old);
         let [sum_z, zr, zr_old, sum_r_old, sum_d_old] =
@@ -23,12 +20,13 @@ impl ProjectedCg {
         if zr <= 0.0 || zr.is_nan() {
             return None;
         }
-        let beta = match product_old {
+        let beta = match search.product {
             Some(old) => ((zr - (zr_old - mean_z * sum_r_old)) / old).max(0.0),
             None => 0.0,
         };
         let mean = if mean_free { mean_z + beta * sum_d_old / cells } else { 0.0 };
         run(Conjugate { d, z, set: Set(set), set_old: Set(set_old), beta, mean });
-        Some(zr)
+        search.product = Some(zr);
+        Some(())
     }
 }

@@ -31,7 +31,7 @@ pub(crate) use start::Start;
 pub use state::ContactState;
 pub use workspace::ProjectedCg;
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::{Error, NotConverged, Result, require};
 use crate::grid::{Boundary, Grid};
@@ -155,34 +155,35 @@ impl Solver {
         state: &mut ContactState,
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
-        self.solve_from(Start::Pressure, operator, problem, options, state, interrupt)
+        self.solve_from(Start::Pressure, Task { operator, problem, options, state, interrupt })
     }
 
     /// See [`Self::solve`]. Polonsky and Keer's method computes U afresh.
-    pub(crate) fn solve_from(
-        &mut self,
-        start: Start,
-        operator: &mut dyn Operator,
-        problem: &Problem,
-        options: &SolverOptions,
-        state: &mut ContactState,
-        interrupt: Option<&AtomicBool>,
-    ) -> Result<Outcome> {
-        if let Some(outcome) = problem.trivial_solution(operator, state)? {
+    pub(crate) fn solve_from(&mut self, start: Start, mut task: Task) -> Result<Outcome> {
+        if let Some(outcome) = task.problem.trivial_solution(task.operator, task.state)? {
             return Ok(outcome);
         }
         match self {
             Solver::ProjectedCg(solver) => {
-                let cold = matches!(start, Start::Pressure) && sum(&state.pressure) <= 0.0;
-                let before =
-                    if cold { coarse::start(operator, problem, options, state, interrupt)? } else { 0.0 };
-                let solver = solver.get_or_insert_with(|| Box::new(ProjectedCg::new(operator)));
-                let outcome = solver.solve(start, operator, problem, options, state, interrupt)?;
+                let cold = matches!(start, Start::Pressure) && sum(&task.state.pressure) <= 0.0;
+                let before = if cold { coarse::start(&mut task)? } else { 0.0 };
+                let solver = solver.get_or_insert_with(|| Box::new(ProjectedCg::new(task.operator)));
+                let outcome = solver.solve(start, task)?;
                 Ok(Outcome { convolutions: outcome.convolutions + before.ceil() as usize, ..outcome })
             }
-            Solver::PolonskyKeer(solver) => solver.solve(operator, problem, options, state, interrupt),
+            Solver::PolonskyKeer(solver) => solver.solve(task),
         }
     }
+}
+
+/// One contact to solve: on which operator, what is asked, how precisely, from which state, which becomes the solution, and what stops
+/// it early.
+pub(crate) struct Task<'a> {
+    pub(crate) operator: &'a mut dyn Operator,
+    pub(crate) problem: &'a Problem<'a>,
+    pub(crate) options: &'a SolverOptions,
+    pub(crate) state: &'a mut ContactState,
+    pub(crate) interrupt: Option<&'a AtomicBool>,
 }
 
 /// How far a state with this pressure and this U, of whatever operator, is from the contact of `problem`; sets its approach. The
@@ -215,7 +216,10 @@ pub(crate) fn not_converged(method: &'static str, options: &SolverOptions, outco
     })
 }
 
-/// True where somebody asked to stop.
-fn interrupted(interrupt: Option<&AtomicBool>) -> bool {
-    interrupt.is_some_and(|flag| flag.load(std::sync::atomic::Ordering::Relaxed))
+/// [`Error::Interrupted`] where somebody asked to stop.
+pub(crate) fn stop_at(interrupt: Option<&AtomicBool>) -> Result<()> {
+    match interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        true => Err(Error::Interrupted),
+        false => Ok(()),
+    }
 }

@@ -8,17 +8,14 @@
 
 mod gradient;
 
-use std::sync::atomic::AtomicBool;
-
 use gradient::Progress;
 
 use super::bounds::clip;
-use super::residual::ResidualReport;
+use super::residual::{ResidualReport, find_approach};
 use super::start::{make_feasible, set_sum};
-use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
-use crate::error::{Error, Result};
+use super::{ContactState, Outcome, Prescribed, Problem, Task, not_converged, stop_at};
+use crate::error::Result;
 use crate::grid::Grid;
-use crate::operator::Operator;
 use asperity_sweep::{each, each_with_sums, sums};
 
 /// The method's working memory: 24 bytes per cell and a set of cells.
@@ -47,14 +44,8 @@ impl PolonskyKeer {
     }
 
     /// See [`super::Solver::solve`]; the trivial cases are answered there.
-    pub(super) fn solve(
-        &mut self,
-        operator: &mut dyn Operator,
-        problem: &Problem,
-        options: &SolverOptions,
-        state: &mut ContactState,
-        interrupt: Option<&AtomicBool>,
-    ) -> Result<Outcome> {
+    pub(super) fn solve(&mut self, task: Task) -> Result<Outcome> {
+        let Task { operator, problem, options, state, interrupt } = task;
         let grid = *operator.grid();
         let stiffness = 1.0 / (problem.compliance * operator.self_influence());
         make_feasible(problem, grid.cell_area(), state, &mut self.touchable)?;
@@ -68,9 +59,8 @@ impl PolonskyKeer {
         let mut memory = 0.0;
         let mut iteration = 0;
         loop {
-            let w = ResidualReport::of(problem, state, 0.0).approach(problem.prescribed);
-            state.approach = w;
-            let report = ResidualReport::of(problem, state, w);
+            state.approach = find_approach(problem, state);
+            let report = ResidualReport::of(problem, state, state.approach);
             let rated = report.outcome(problem, &grid, options.tolerance);
             let outcome = Outcome { iterations: iteration, convolutions, ..rated };
             if outcome.residual <= options.tolerance {
@@ -80,9 +70,7 @@ impl PolonskyKeer {
             if iteration == options.max_iterations {
                 return Err(not_converged("polonsky-keer", options, &outcome));
             }
-            if interrupted(interrupt) {
-                return Err(Error::Interrupted);
-            }
+            stop_at(interrupt)?;
             iteration += 1;
             let stalled = progress.has_stalled(outcome.residual) || report.no_cell_is_free();
             tracing::debug!(

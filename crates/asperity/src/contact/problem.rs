@@ -1,6 +1,7 @@
 //! What is asked of one elastic contact, and the questions that have an answer without iterations, or none.
 
-use super::sweeps::feasible::{LargestGap, Limits};
+use super::residual::find_approach;
+use super::sweeps::feasible::Limits;
 use super::{ContactState, Hardness, Outcome};
 use crate::error::{Error, Result, require};
 use crate::operator::Operator;
@@ -52,7 +53,7 @@ impl Problem<'_> {
     }
 
     /// The sum of p that the load asks for \[Pa\]; `None` under approach control.
-    pub(super) fn sum(&self, cell_area: f64) -> Option<f64> {
+    pub(crate) fn sum(&self, cell_area: f64) -> Option<f64> {
         match self.prescribed {
             Prescribed::Load(load) => Some(load / cell_area),
             Prescribed::Approach(_) => None,
@@ -69,19 +70,10 @@ impl Problem<'_> {
         state: &mut ContactState,
     ) -> Result<Option<Outcome>> {
         let extent = self.extent();
-        match self.prescribed {
-            Prescribed::Load(load) => self.trivial_under_load(load, &extent, operator, state),
-            Prescribed::Approach(approach) => self.trivial_at_approach(approach, &extent, operator, state),
-        }
-    }
-
-    fn trivial_under_load(
-        &self,
-        load: f64,
-        extent: &Extent,
-        operator: &mut dyn Operator,
-        state: &mut ContactState,
-    ) -> Result<Option<Outcome>> {
+        let load = match self.prescribed {
+            Prescribed::Load(load) => load,
+            Prescribed::Approach(w) => return self.trivial_at_approach(w, &extent, operator, state),
+        };
         let sound = load >= 0.0 && load.is_finite();
         require(sound, "load", format_args!("{load} N"), "finite and not negative")?;
         if load == 0.0 {
@@ -100,8 +92,7 @@ impl Problem<'_> {
         });
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
         state.rounding = 1.0;
-        let (u, gap, compliance) = (&state.unit_displacement[..], self.gap, self.compliance);
-        state.approach = run(LargestGap { u, gap, compliance }).0;
+        state.approach = find_approach(self, state);
         Ok(Some(Outcome { convolutions: 1, saturated: true, ..Outcome::default() }))
     }
 
@@ -109,7 +100,7 @@ impl Problem<'_> {
         &self,
         approach: f64,
         extent: &Extent,
-        operator: &mut dyn Operator,
+        operator: &dyn Operator,
         state: &mut ContactState,
     ) -> Result<Option<Outcome>> {
         require(approach.is_finite(), "approach", format_args!("{approach} m"), "finite")?;

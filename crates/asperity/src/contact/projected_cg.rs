@@ -6,8 +6,6 @@
 //! gradient step with exact minimisation is taken instead: by the spacer-step theorem (Luenberger & Ye, Linear and
 //! Nonlinear Programming, section 7.11) the method converges from any start.
 
-use std::sync::atomic::AtomicBool;
-
 use super::projection::Trial;
 use super::residual::{ResidualReport, find_approach};
 use super::search::Search;
@@ -16,11 +14,8 @@ use super::step::{Slope, Step, StepKind};
 use super::sweeps::direction::{Centre, Steepest};
 use super::sweeps::residual::FindWorking;
 use super::sweeps::step::{Advance, Curvature, FindStep};
-use super::{
-    ContactState, Outcome, Prescribed, Problem, ProjectedCg, SolverOptions, interrupted, not_converged,
-};
-use crate::error::{Error, Result};
-use crate::operator::Operator;
+use super::{ContactState, Outcome, Problem, ProjectedCg, Task, not_converged, stop_at};
+use crate::error::Result;
 use asperity_sweep::{Min, Set, SetMut, run};
 
 /// Iterations without a halving of the residual before a gradient step.
@@ -28,17 +23,11 @@ const PATIENCE: usize = 10;
 
 impl ProjectedCg {
     /// See [`super::Solver::solve`]; [`Problem::trivial_solution`] has answered the trivial cases.
-    pub(super) fn solve(
-        &mut self,
-        start: Start,
-        operator: &mut dyn Operator,
-        problem: &Problem,
-        options: &SolverOptions,
-        state: &mut ContactState,
-        interrupt: Option<&AtomicBool>,
-    ) -> Result<Outcome> {
-        let grid = *operator.grid();
-        let mut search = self.start(start, operator, problem, state)?;
+    pub(super) fn solve(&mut self, start: Start, task: Task) -> Result<Outcome> {
+        let Task { problem, options, interrupt, .. } = task;
+        let grid = *task.operator.grid();
+        let mut search = Search::new(task);
+        self.start(start, &mut search)?;
         loop {
             let report = self.residual_report(&mut search);
             let rated = report.outcome(problem, &grid, options.tolerance);
@@ -51,9 +40,7 @@ impl ProjectedCg {
             if iterations == options.max_iterations {
                 return Err(not_converged("projected-cg", options, &outcome));
             }
-            if interrupted(interrupt) {
-                return Err(Error::Interrupted);
-            }
+            stop_at(interrupt)?;
             if converged {
                 search.convolve();
                 continue;
@@ -80,10 +67,7 @@ impl ProjectedCg {
     /// The report of the state for the approach that fits it best; finds the working set and the residual on it.
     pub(super) fn residual_report(&mut self, search: &mut Search) -> ResidualReport {
         let Search { problem, state, .. } = search;
-        let w = match (problem.prescribed, search.free_gap.take()) {
-            (Prescribed::Approach(w), _) | (Prescribed::Load(_), Some(w)) => w,
-            (Prescribed::Load(_), None) => find_approach(problem, state),
-        };
+        let w = search.free_gap.take().unwrap_or_else(|| find_approach(problem, state));
         state.approach = w;
         let (p, u) = (&state.pressure[..], &state.unit_displacement[..]);
         let Problem { gap, compliance, hardness, .. } = **problem;
@@ -104,8 +88,7 @@ impl ProjectedCg {
         let mean = if search.sum.is_some() { report.working_mean() } else { 0.0 };
         run(Centre { r: &mut self.residual, set: Set(&self.working), mean, unit: search.unit });
         self.preconditioner.apply_on_set_into(&self.residual, &self.working, &mut self.preconditioned);
-        let product = self.make_conjugate(search.product, search.sum.is_some(), cells)?;
-        search.product = Some(product);
+        self.make_conjugate(search, cells)?;
         let length = search.length * self.preconditioner.unit() * search.unit / search.problem.compliance;
         let sum = search.sum.map(|sum| sum - report.pressure[0] + report.working[2]);
         Step::conjugate(self.trial(search, length), sum, cells)
@@ -164,7 +147,7 @@ impl ProjectedCg {
         let (s, image, set) = (&self.step[..], &self.image[..], Set(&self.working));
         let Problem { gap, compliance, hardness, .. } = *search.problem;
         let [sum, cells] = run(Advance { p, u, s, image, gap, set, hardness, t, compliance });
-        search.free_gap = (cells > 0.0).then(|| sum / cells);
+        search.free_gap = (search.sum.is_some() && cells > 0.0).then(|| sum / cells);
         search.state.rounding += 1.0;
         search.iterations += 1;
         std::mem::swap(&mut self.residual, &mut self.residual_old);

@@ -4,7 +4,7 @@
 //! working set S holds the cells that violate them or are free to move. Under load control w is the mean of g over the free
 //! cells D = {0 < p < H}, or where there are none, between what the cells at the two bounds allow.
 
-use super::sweeps::residual::{FindResidual, FreeGap};
+use super::sweeps::residual::FindResidual;
 use super::{ContactState, Prescribed, Problem};
 use asperity_sweep::{Merge, larger, run, smaller};
 
@@ -87,15 +87,8 @@ impl ResidualReport {
 
 /// The approach that fits a state best, see [`ResidualReport::approach`].
 pub(super) fn find_approach(problem: &Problem, state: &ContactState) -> f64 {
-    if let Prescribed::Approach(w) = problem.prescribed {
-        return w;
-    }
-    let Problem { gap, compliance, hardness, .. } = *problem;
-    let (p, u) = (&state.pressure[..], &state.unit_displacement[..]);
-    let [sum, cells] = run(FreeGap { p, u, gap, hardness, compliance });
-    if cells > 0.0 {
-        sum / cells
-    } else {
-        ResidualReport::of(problem, state, 0.0).approach(problem.prescribed)
+    match problem.prescribed {
+        Prescribed::Approach(w) => w,
+        load => ResidualReport::of(problem, state, 0.0).approach(load),
     }
 }

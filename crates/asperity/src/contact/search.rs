@@ -1,7 +1,7 @@
 //! What an iteration of projected conjugate gradients tells the next, in one solve.
 
 use super::step::StepKind;
-use super::{ContactState, Problem};
+use super::{ContactState, Problem, Task};
 use crate::operator::Operator;
 
 /// The length a of the first trial step.
@@ -30,12 +30,8 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Begins at a state whose U is known; see [`super::ProjectedCg::start`].
-    pub(super) fn new(
-        operator: &'a mut dyn Operator,
-        problem: &'a Problem<'a>,
-        state: &'a mut ContactState,
-    ) -> Self {
+    /// Before the first step; see [`super::ProjectedCg::start`].
+    pub(super) fn new(Task { operator, problem, state, .. }: Task<'a>) -> Self {
         Search {
             sum: problem.sum(operator.grid().cell_area()),
             free_gap: None,

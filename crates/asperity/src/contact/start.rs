@@ -5,7 +5,6 @@ use super::search::Search;
 use super::sweeps::feasible::Clip;
 use super::{ContactState, Hardness, Problem, ProjectedCg};
 use crate::error::{Error, Result};
-use crate::operator::Operator;
 use asperity_sweep::{Set, SetMut, each, each_with_sums, run, sums};
 
 /// What is known of the state that a solve starts from.
@@ -19,28 +18,22 @@ pub(crate) enum Start {
 }
 
 impl ProjectedCg {
-    /// Begins a search from a feasible state whose U is known.
-    pub(super) fn start<'a>(
-        &mut self,
-        start: Start,
-        operator: &'a mut dyn Operator,
-        problem: &'a Problem,
-        state: &'a mut ContactState,
-    ) -> Result<Search<'a>> {
+    /// Gives a search a feasible state whose U is known.
+    pub(super) fn start(&mut self, start: Start, search: &mut Search) -> Result<()> {
         // Fields hold what an earlier solve left: the first kernels overwrite all of it.
         self.working.fill(u8::MAX);
         self.working_old.fill(u8::MAX);
-        let mut search = Search::new(operator, problem, state);
         match start {
             Start::Displacement { feasible: true } => {}
-            Start::Displacement { feasible: false } if self.step_onto_bounds(&mut search) => {}
+            Start::Displacement { feasible: false } if self.step_onto_bounds(search) => {}
             _ => {
-                make_feasible(problem, search.operator.grid().cell_area(), search.state, &mut self.working)?;
+                let cell_area = search.operator.grid().cell_area();
+                make_feasible(search.problem, cell_area, search.state, &mut self.working)?;
                 self.working.fill(u8::MAX);
                 search.convolve();
             }
         }
-        Ok(search)
+        Ok(())
     }
 
     /// One step from a pressure outside its bounds, taken whole, which makes it feasible; false where there is none.

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::{Axis, Drive};
+use super::Drive;
 use crate::contact::{ContactState, Outcome, Start};
 use crate::error::{Error, Result};
 use crate::load::{Control, History, Loading};
@@ -114,10 +114,6 @@ impl Drive for Elastic {
 
     fn simulation(&self) -> &Simulation {
         &self.simulation
-    }
-
-    fn axis(&self) -> Axis {
-        Axis::None
     }
 
     fn planned(&self) -> Vec<f64> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::{Axis, Coordinate, Drive};
+use super::{Coordinate, Drive};
 use crate::error::{Error, Result, require};
 use crate::load::{Control, Course, Stage};
 use crate::simulation::Simulation;
@@ -136,10 +136,6 @@ impl Drive for March {
 
     fn simulation(&self) -> &Simulation {
         &self.simulation
-    }
-
-    fn axis(&self) -> Axis {
-        Axis::Time
     }
 
     fn planned(&self) -> Vec<f64> {

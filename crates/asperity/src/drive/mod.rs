@@ -42,9 +42,6 @@ pub trait Drive: Send {
     /// What is simulated.
     fn simulation(&self) -> &Simulation;
 
-    /// What its rows follow one another in.
-    fn axis(&self) -> Axis;
-
     /// The coordinates of all rows, as far as they are known beforehand.
     fn planned(&self) -> Vec<f64>;
 

@@ -51,15 +51,6 @@ impl HereditarySum {
         self.creep.value(end.time - start.time) + thermal.sum::<f64>()
     }
 
-    /// Ends the step under way `dt` after its start; returns c.
-    fn shorten(&mut self, dt: f64) -> f64 {
-        let Some([start, _]) = self.open.take() else { return self.creep.value(dt) };
-        let end = self.moment(start.time + dt);
-        let thermal: f64 = self.thermal.iter().map(|body| body.value(start.time, end.time)).sum();
-        self.open = Some([start, end]);
-        self.creep.value(dt) + thermal
-    }
-
     /// u = sum_k C(t - s_k) (U_k - U_(k-1)) = sum_k [C(t - s_k) - C(t - s_(k+1))] U_k + C(dt) U_new.
     fn add_history(&self, gap: &mut [f64]) {
         let Some([open, end]) = &self.open else { return };
@@ -75,20 +66,22 @@ impl HereditarySum {
 
 impl History for HereditarySum {
     fn open(&mut self, step: &Interval, last: &ContactState, rigid: &[f64], gap: &mut [f64]) -> Result<Law> {
-        let (time, dt) = (step.instant.time, step.length());
-        let [start, end] = [self.moment(time - dt), self.moment(time)];
-        let thermal: f64 = self.thermal.iter().map(|body| body.value(start.time, time)).sum();
+        let time = step.instant.time;
+        let [start, end] = [self.moment(time - step.length()), self.moment(time)];
         if let Some([start, _]) = self.open.replace([start, end]) {
             self.starts.push(start);
             self.past.push(last.unit_displacement.clone());
         }
-        gap.copy_from_slice(rigid);
-        self.add_history(gap);
-        Ok(Law::of(self.creep.value(dt) + thermal))
+        self.reopen(step, rigid, gap)
     }
 
     fn reopen(&mut self, step: &Interval, rigid: &[f64], gap: &mut [f64]) -> Result<Law> {
-        let compliance = self.shorten(step.length());
+        let (end, dt) = (self.moment(step.instant.time), step.length());
+        let mut compliance = self.creep.value(dt);
+        if let Some([start, own]) = &mut self.open {
+            compliance += self.thermal.iter().map(|body| body.value(start.time, end.time)).sum::<f64>();
+            *own = end;
+        }
         gap.copy_from_slice(rigid);
         self.add_history(gap);
         Ok(Law::of(compliance))

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use super::backend::{Backend, ConvolutionPlan};
-use super::{ApproximateInverse, Operator, plan_on};
+use super::{ApproximateInverse, Operator, mean, plan_on};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
 
@@ -30,13 +30,9 @@ pub(crate) struct Body {
 }
 
 impl Convolved {
-    /// With these eigenvalues on a torus of `lengths`, those of a quarter of the waves, and K00.
-    pub(crate) fn new(
-        body: Body,
-        lengths: [usize; 2],
-        eigenvalues: &Array2<f64>,
-        self_influence: f64,
-    ) -> Box<Self> {
+    /// With these eigenvalues on a torus of `lengths`, those of a quarter of the waves.
+    pub(crate) fn new(body: Body, lengths: [usize; 2], eigenvalues: &Array2<f64>) -> Box<Self> {
+        let self_influence = mean(lengths, eigenvalues.view());
         let convolution = body.backend.plan(body.grid.cells(), lengths, eigenvalues.view());
         let determines_mean = body.boundary == Boundary::Free || eigenvalues[(0, 0)] > 0.0;
         Box::new(Convolved { body, convolution, self_influence, determines_mean })

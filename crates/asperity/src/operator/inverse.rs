@@ -72,8 +72,7 @@ impl ApproximateInverse {
 
     /// z = M r / [`unit`](Self::unit).
     pub fn apply_into(&mut self, r: &[f32], z: &mut [f32]) {
-        let unit = self.unit();
-        self.wide.planned(&*self.backend, &self.grid, &*self.kernel, unit).apply_into(r, z);
+        self.planned(false).apply_into(r, z);
     }
 
     /// z, roughly the inverse of K restricted to a set of cells (bits, eight in a byte) times r, over [`unit`](Self::unit); r is
@@ -84,9 +83,28 @@ impl ApproximateInverse {
 
     /// The plan for pressures on a set of cells.
     fn around(&mut self, set: &[u8]) -> &mut dyn InversePlan {
+        self.planned(self.is_separate(set))
+    }
+
+    /// The plan on the close torus or on the wide one.
+    fn planned(&mut self, is_close: bool) -> &mut dyn InversePlan {
         let unit = self.unit();
-        let torus = if self.is_separate(set) { &mut self.close } else { &mut self.wide };
-        torus.planned(&*self.backend, &self.grid, &*self.kernel, unit)
+        let ApproximateInverse { grid, backend, kernel, close, wide } = self;
+        let Torus { lengths, plan } = if is_close { close } else { wide };
+        let plan = plan.get_or_insert_with(|| {
+            let [dx, dy] = grid.spacing();
+            let size = [dx * lengths[0] as f64, dy * lengths[1] as f64];
+            // Where a uniform pressure has no displacement of its own: half of M at the longest wave.
+            let longest = std::f64::consts::TAU / if grid.is_line() { size[0] } else { size[0].max(size[1]) };
+            let own = kernel.uniform().filter(|uniform| *uniform > 0.0);
+            let uniform = own.map_or(0.5 / kernel.symbol(longest, 0.0), |u| 1.0 / u);
+            let inverse =
+                wave_spectrum(*lengths, size, uniform / unit, |qx, qy| 1.0 / (kernel.symbol(qx, qy) * unit));
+            let least = minimum(inverse.as_slice().unwrap_or_default());
+            let screened = inverse.mapv(|s| (least + SCREENING) / (s + SCREENING));
+            backend.plan_inverse(grid.cells(), *lengths, inverse.view(), screened.view())
+        });
+        &mut **plan
     }
 
     /// True where the close torus differs from the wide one and keeps the ends of the set apart.
@@ -104,32 +122,6 @@ fn lengths(grid: &Grid, boundary: Boundary, separation: usize) -> [usize; 2] {
         Boundary::Free if grid.is_line() => [Convolution::good_length(grid.cells()[0] + separation), 1],
         Boundary::Free => grid.cells().map(|n| Convolution::good_length(n + separation)),
         Boundary::Periodic => grid.cells(),
-    }
-}
-
-impl Torus {
-    fn planned(
-        &mut self,
-        backend: &dyn Backend,
-        grid: &Grid,
-        kernel: &dyn Kernel,
-        unit: f64,
-    ) -> &mut dyn InversePlan {
-        let lengths = self.lengths;
-        let plan = self.plan.get_or_insert_with(|| {
-            let [dx, dy] = grid.spacing();
-            let size = [dx * lengths[0] as f64, dy * lengths[1] as f64];
-            // Where a uniform pressure has no displacement of its own: half of M at the longest wave.
-            let longest = std::f64::consts::TAU / if grid.is_line() { size[0] } else { size[0].max(size[1]) };
-            let own = kernel.uniform().filter(|uniform| *uniform > 0.0);
-            let uniform = own.map_or(0.5 / kernel.symbol(longest, 0.0), |u| 1.0 / u);
-            let inverse =
-                wave_spectrum(lengths, size, uniform / unit, |qx, qy| 1.0 / (kernel.symbol(qx, qy) * unit));
-            let least = minimum(inverse.as_slice().unwrap_or_default());
-            let screened = inverse.mapv(|s| (least + SCREENING) / (s + SCREENING));
-            backend.plan_inverse(grid.cells(), lengths, inverse.view(), screened.view())
-        });
-        &mut **plan
     }
 }
 

@@ -89,25 +89,18 @@ pub fn plan_on(
     boundary: Boundary,
     kernel: Arc<dyn Kernel>,
 ) -> Result<Box<dyn Operator>> {
-    let eigenvalues = match boundary {
-        Boundary::Free => {
-            return Ok(of_influence(backend, grid, kernel.clone(), &free::influence(&grid, &*kernel)?));
-        }
-        Boundary::Periodic => eigenvalues(&grid, boundary, &*kernel)?,
-    };
-    Ok(of_eigenvalues(backend, grid, boundary, kernel, &eigenvalues))
+    let eigenvalues = eigenvalues(&grid, boundary, &*kernel)?;
+    Ok(of_eigenvalues(Body { grid, boundary, backend, kernel, has_coarser: true }, &eigenvalues))
 }
 
 /// The operator of the elastic half-space.
 pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
+    let eigenvalues = match boundary {
+        Boundary::Free => even_spectrum(&free::influence_of_half_space(&grid), free::padded(&grid)),
+        Boundary::Periodic => periodic_eigenvalues(&grid, &HalfSpace),
+    };
     let (backend, kernel) = (default_backend(), Arc::new(HalfSpace));
-    match boundary {
-        Boundary::Free => of_influence(backend, grid, kernel, &free::influence_of_half_space(&grid)),
-        Boundary::Periodic => {
-            let eigenvalues = periodic_eigenvalues(&grid, &HalfSpace);
-            of_eigenvalues(backend, grid, boundary, kernel, &eigenvalues)
-        }
-    }
+    of_eigenvalues(Body { grid, boundary, backend, kernel, has_coarser: true }, &eigenvalues)
 }
 
 /// The eigenvalues of K on the torus that its convolution works on, those of a quarter of the waves, \[kx\]\[ky\] \[m\].
@@ -135,29 +128,10 @@ pub(crate) fn torus(grid: &Grid, boundary: Boundary) -> [usize; 2] {
     }
 }
 
-/// The operator of a free domain with these influence coefficients.
-fn of_influence(
-    backend: Arc<dyn Backend>,
-    grid: Grid,
-    kernel: Arc<dyn Kernel>,
-    influence: &Array2<f64>,
-) -> Box<dyn Operator> {
-    let lengths = free::padded(&grid);
-    let body = Body { grid, boundary: Boundary::Free, backend, kernel, has_coarser: true };
-    Convolved::new(body, lengths, &even_spectrum(influence, lengths), influence[(0, 0)])
-}
-
-/// The operator with these [`eigenvalues`]; `kernel` stands for it where an approximate inverse is asked for.
-pub(crate) fn of_eigenvalues(
-    backend: Arc<dyn Backend>,
-    grid: Grid,
-    boundary: Boundary,
-    kernel: Arc<dyn Kernel>,
-    eigenvalues: &Array2<f64>,
-) -> Box<dyn Operator> {
-    let lengths = torus(&grid, boundary);
-    let body = Body { grid, boundary, backend, kernel, has_coarser: true };
-    Convolved::new(body, lengths, eigenvalues, mean(lengths, eigenvalues.view()))
+/// The operator with these [`eigenvalues`]; the kernel of the body stands for it where an approximate inverse is asked for.
+pub(crate) fn of_eigenvalues(body: Body, eigenvalues: &Array2<f64>) -> Box<dyn Operator> {
+    let lengths = torus(&body.grid, body.boundary);
+    Convolved::new(body, lengths, eigenvalues)
 }
 
 /// The mean of an even spectrum over all waves, of which the array has those of a quarter: the response to a unit where it is.

@@ -12,9 +12,10 @@
 //! of single precision, restricted to S; unlike that of the contact solver it has no Schur complement. Each iteration adds
 //! α <r, z> to Σ q, which rises to its limit as the square of the error in the energy norm.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use crate::error::{Error, NotConverged, Result};
+use crate::contact::stop_at;
+use crate::error::{NotConverged, Result};
 use crate::grid::{Boundary, Grid};
 use crate::operator::{ApproximateInverse, Operator};
 use asperity_sweep::{dot, each, sums};
@@ -71,7 +72,7 @@ impl ContactStiffness {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Interrupted`] where `interrupt` becomes true; [`Error::NotConverged`].
+    /// [`Error::Interrupted`](crate::Error::Interrupted) where `interrupt` becomes true; [`Error::NotConverged`](crate::Error::NotConverged).
     pub fn of(
         &mut self,
         operator: &mut dyn Operator,
@@ -94,9 +95,7 @@ impl ContactStiffness {
         self.direction.fill(0.0);
         let (mut sum, mut product) = (0.0, f64::INFINITY);
         for iteration in 1..=MOST_ITERATIONS {
-            if interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-                return Err(Error::Interrupted);
-            }
+            stop_at(interrupt)?;
             self.single.iter_mut().zip(&self.residual).for_each(|(single, r)| *single = *r as f32);
             self.inverse.apply_into(&self.single, &mut self.image);
             let last = std::mem::replace(
@@ -179,6 +178,6 @@ mod tests {
         assert_eq!(stiffness.of(&mut *periodic, 0.0, |k| k == 1, None).unwrap(), (f64::INFINITY, 0));
         let flag = AtomicBool::new(true);
         let stopped = stiffness.of(&mut *periodic, 1.0, |k| k == 1, Some(&flag));
-        assert!(matches!(stopped, Err(Error::Interrupted)));
+        assert!(matches!(stopped, Err(crate::Error::Interrupted)));
     }
 }

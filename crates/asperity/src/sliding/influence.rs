@@ -19,7 +19,7 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 
-use super::stop_at;
+use crate::contact::stop_at;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::kernel::{love, strip_at};

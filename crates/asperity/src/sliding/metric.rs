@@ -9,7 +9,7 @@ use crate::convolution::torus::Spectrum;
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
-use crate::operator::{Body, Convolved, default_backend, mean};
+use crate::operator::{Body, Convolved, default_backend};
 
 /// M from the spectrum of A on a torus of these lengths; `kernel` is near M on an endless plane.
 pub(super) fn metric(
@@ -25,7 +25,7 @@ pub(super) fn metric(
     };
     let quarter = Array2::from_shape_fn((mx / 2 + 1, my / 2 + 1), of);
     let body = Body { grid, boundary, backend: default_backend(), kernel, has_coarser: false };
-    Convolved::new(body, [mx, my], &quarter, mean([mx, my], quarter.view()))
+    Convolved::new(body, [mx, my], &quarter)
 }
 
 /// The symbol of M on an endless plane, for the preconditioner.

@@ -26,15 +26,3 @@ pub use path::Path;
 pub use slopes::Slopes;
 pub use steady::{Steady, SteadyMotion};
 pub use streaming::Streaming;
-
-use std::sync::atomic::{AtomicBool, Ordering};
-
-use crate::error::{Error, Result};
-
-/// [`Error::Interrupted`] where somebody asked to stop.
-fn stop_at(interrupt: Option<&AtomicBool>) -> Result<()> {
-    match interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-        true => Err(Error::Interrupted),
-        false => Ok(()),
-    }
-}

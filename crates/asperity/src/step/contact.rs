@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver, SolverOptions, Start};
+use crate::contact::{
+    ContactState, Hardness, Outcome, Prescribed, Problem, Solver, SolverOptions, Start, Task,
+};
 use crate::error::Result;
 use crate::operator::Operator;
 use crate::simulation::Simulation;
@@ -86,9 +88,10 @@ impl StepContact {
     ) -> Result<Outcome> {
         let problem = Problem { gap, compliance, hardness: self.hardness.lent(), prescribed };
         let (operator, options, interrupt) = (&mut *self.operator, &self.options, self.interrupt.as_deref());
+        let task = Task { operator, problem: &problem, options, state, interrupt };
         match &mut self.traction {
-            None => self.solver.solve_from(start, operator, &problem, options, state, interrupt),
-            Some(traction) => traction.solve(&mut self.solver, operator, &problem, options, state, interrupt),
+            None => self.solver.solve_from(start, task),
+            Some(traction) => traction.solve(&mut self.solver, task),
         }
     }
 

@@ -13,7 +13,7 @@ use super::{Interval, Stepper};
 use crate::contact::{ContactState, Hardness, Prescribed, SAME_LOAD, Start};
 use crate::grid::Boundary;
 use crate::process::roll;
-use asperity_sweep::{Merge, kernel, run, sum};
+use asperity_sweep::{kernel, run, sum};
 
 /// Least and largest f.
 const REACH: std::ops::Range<f64> = -4.0..4.0;
@@ -180,7 +180,9 @@ impl Stepper {
         let ContactState { pressure: p, unit_displacement: u, .. } = &mut self.state.now;
         let ContactState { pressure: p_last, unit_displacement: u_last, .. } = &self.state.before;
         let (p, u, p_last, u_last) = (&mut p[..], &mut u[..], &p_last[..], &u_last[..]);
-        let pair = run(Products { p: &*p, u: &*u, p_last, u_last, gap: &self.state.gap, hardness });
+        let products = run(Products { p: &*p, u: &*u, p_last, u_last, gap: &self.state.gap, hardness });
+        let [xx, xd, dd, hx, hd, sx, sd, size, capped] = products;
+        let pair = Pair { energy: [xx, xd, dd], work: [hx, hd], sum: [sx, sd], size, capped };
         let combination = pair.best(&Wanted {
             compliance: self.state.compliance,
             prescribed,
@@ -210,17 +212,16 @@ impl Stepper {
 }
 
 kernel! {
-    /// The numbers of [`Pair`], for x = p_last and d = p_last - p.
+    /// The numbers of [`Pair`] in their order, for x = p_last and d = p_last - p.
     struct Products<'a> {
         cells {
             p: &'a [f64], u: &'a [f64], p_last: &'a [f64], u_last: &'a [f64],
             gap: &'a [f64], hardness: Hardness<'a>,
         }
     }
-    fn run<V>(self) -> Pair {
+    fn run<V>(self) -> [f64; 9] {
         let zero = V::splat(0.0);
-        let (mut energy, mut work, mut sum) = ([zero; 3], [zero; 2], [zero; 2]);
-        let (mut size, mut at_cut_off) = (zero, zero);
+        let mut sums = [zero; 9];
         for n in (0..self.p.len()).step_by(8) {
             let (p, x) = (V::load(self.p, n, 0.0), V::load(self.p_last, n, 0.0));
             let d = x - p;
@@ -231,31 +232,11 @@ kernel! {
             let (u, ux) = (V::load(self.u, n, 0.0), V::load(self.u_last, n, 0.0));
             // Infinite where a cell cannot touch.
             let h = V::load(self.gap, n, 0.0).only(touches);
-            energy = [energy[0] + x * ux, energy[1] + d * ux, energy[2] + d * (ux - u)];
-            work = [work[0] + x * h, work[1] + d * h];
-            sum = [sum[0] + x, sum[1] + d];
-            size = size + d.abs();
-            at_cut_off = at_cut_off + V::count(touches & !x.less(self.hardness.load(n)));
+            let capped = V::count(touches & !x.less(self.hardness.load(n)));
+            let terms = [x * ux, d * ux, d * (ux - u), x * h, d * h, x, d, d.abs(), capped];
+            sums = std::array::from_fn(|k| sums[k] + terms[k]);
         }
-        Pair {
-            energy: energy.map(V::sum),
-            work: work.map(V::sum),
-            sum: sum.map(V::sum),
-            size: size.sum(),
-            capped: at_cut_off.sum(),
-        }
-    }
-}
-
-impl Merge for Pair {
-    fn merge(self, next: Self) -> Self {
-        Pair {
-            energy: self.energy.merge(next.energy),
-            work: self.work.merge(next.work),
-            sum: self.sum.merge(next.sum),
-            size: self.size + next.size,
-            capped: self.capped + next.capped,
-        }
+        sums.map(V::sum)
     }
 }
 

@@ -36,44 +36,31 @@ impl Extrapolation {
         }
     }
 
-    /// Weights of sum 1 whose combination of the f is least.
+    /// Weights of sum 1 whose combination of the f is least: 1 for the latest, less what those of the passes before it take.
     fn weights(&self) -> Vec<f64> {
-        let count = self.passes.len();
+        let last = self.passes.len() - 1;
         let product = |i: usize, j: usize| dot(&self.passes[i][1], &self.passes[j][1]);
-        let mut plain = vec![0.0; count];
-        if let Some(last) = plain.last_mut() {
-            *last = 1.0;
-        }
         // Differences from the latest f: at most two unknowns.
-        let last = count - 1;
         let own = product(last, last);
-        let columns: Vec<usize> = (0..last).collect();
         let matrix = |i: usize, j: usize| product(i, j) - product(i, last) - product(last, j) + own;
         let right = |i: usize| own - product(i, last);
-        let found = match columns[..] {
-            [] => vec![],
-            [i] => vec![right(i) / matrix(i, i)],
+        let mut weights = match last {
+            0 => vec![],
+            1 => vec![right(0) / matrix(0, 0)],
             _ => {
-                let [i, j] = [last - 2, last - 1];
-                let (a, b, d) = (matrix(i, i), matrix(i, j), matrix(j, j));
+                let (a, b, d) = (matrix(0, 0), matrix(0, 1), matrix(1, 1));
+                let (x, y) = (right(0), right(1));
                 let determinant = a * d - b * b;
                 match determinant > 1e-12 * a * d {
-                    true => vec![
-                        (right(i) * d - right(j) * b) / determinant,
-                        (right(j) * a - right(i) * b) / determinant,
-                    ],
-                    false => vec![0.0, right(j) / d],
+                    true => vec![(x * d - y * b) / determinant, (y * a - x * b) / determinant],
+                    false => vec![0.0, y / d],
                 }
             }
         };
-        if found.iter().any(|weight| !weight.is_finite()) {
-            return plain;
+        if weights.iter().any(|weight| !weight.is_finite()) {
+            weights.fill(0.0);
         }
-        let rest: f64 = 1.0 - found.iter().sum::<f64>();
-        let offset = last - found.len();
-        let mut weights = vec![0.0; count];
-        found.iter().enumerate().for_each(|(n, weight)| weights[offset + n] = *weight);
-        weights[last] = rest;
+        weights.push(1.0 - weights.iter().sum::<f64>());
         weights
     }
 }

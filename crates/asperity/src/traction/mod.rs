@@ -22,7 +22,7 @@ mod tests;
 use std::sync::atomic::AtomicBool;
 
 use crate::contact::{
-    ContactState, Outcome, Prescribed, Problem, Solver, SolverOptions, Start, not_converged,
+    ContactState, Outcome, Prescribed, Problem, Solver, SolverOptions, Task, not_converged,
 };
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -114,15 +114,8 @@ impl TractionSolver {
     ///
     /// # Errors
     /// [`Error::NotConverged`], and those of the contact and of the law.
-    pub(crate) fn solve(
-        &mut self,
-        solver: &mut Solver,
-        operator: &mut dyn Operator,
-        problem: &Problem,
-        options: &SolverOptions,
-        state: &mut ContactState,
-        interrupt: Option<&AtomicBool>,
-    ) -> Result<Outcome> {
+    pub(crate) fn solve(&mut self, solver: &mut Solver, task: Task) -> Result<Outcome> {
+        let Task { operator, problem, options, state, interrupt } = task;
         let mut run = Run { own: self, solver, operator, options, interrupt, total: Outcome::default() };
         match problem.prescribed {
             Prescribed::Approach(_) => run.solve(problem)?,
@@ -195,8 +188,7 @@ impl Run<'_> {
         let options =
             SolverOptions { tolerance: (INNER * self.options.tolerance).max(1e-14), ..*self.options };
         let (solver, state) = (&mut *self.solver, &mut own.contact);
-        let outcome =
-            solver.solve_from(Start::Pressure, self.operator, &inner, &options, state, self.interrupt)?;
+        let outcome = solver.solve(self.operator, &inner, &options, state, self.interrupt)?;
         let w = own.contact.approach;
         let fields = (&own.shifted[..], &own.contact.unit_displacement[..]);
         each(&mut own.gap, fields, |to, (h, u)| *to = (h + c * u - w).max(0.0));

@@ -3,7 +3,7 @@
 use asperity_sweep::simd::Mask;
 
 use crate::contact::Hardness;
-use asperity_sweep::{Max, Min, SetMut, kernel};
+use asperity_sweep::{Min, SetMut, kernel};
 
 kernel! {
     /// Number of cells that can touch, the sum of H over them, and the least gap.
@@ -21,24 +21,6 @@ kernel! {
             least = h.smaller(least);
         }
         ([touchable, most].map(V::sum), Min(least.least()))
-    }
-}
-
-kernel! {
-    /// The largest c U + h of the cells that can touch.
-    pub(in crate::contact) struct LargestGap<'a> {
-        cells { u: &'a [f64], gap: &'a [f64] }
-        numbers { compliance: f64 }
-    }
-    fn run<V>(self) -> Max {
-        let (compliance, none) = (V::splat(self.compliance), V::splat(f64::NEG_INFINITY));
-        let mut largest = none;
-        for n in (0..self.gap.len()).step_by(8) {
-            let h = V::load(self.gap, n, f64::INFINITY);
-            let g = h + compliance * V::load(self.u, n, 0.0);
-            largest = V::select(h.less(V::splat(f64::INFINITY)), g, none).larger(largest);
-        }
-        Max(largest.largest())
     }
 }
 

@@ -1,5 +1,5 @@
-//! Kernels of the residual report: the mean gap of the free cells, and for an approach w the residual r = c U + h - w, the working
-//! set, and the sums and extremes of [`ResidualReport`].
+//! Kernels of the residual report: for an approach w the residual r = c U + h - w, the working set, and the sums and extremes of
+//! [`ResidualReport`].
 
 use asperity_sweep::simd::{F64x8, Mask};
 
@@ -7,25 +7,6 @@ use crate::contact::Hardness;
 use crate::contact::bounds::Interval;
 use crate::contact::residual::ResidualReport;
 use asperity_sweep::{SetMut, kernel};
-
-kernel! {
-    /// Sum of g = c U + h over the free cells 0 < p < H, and their number.
-    pub(in crate::contact) struct FreeGap<'a> {
-        cells { p: &'a [f64], u: &'a [f64], gap: &'a [f64], hardness: Hardness<'a> }
-        numbers { compliance: f64 }
-    }
-    fn run<V>(self) -> [f64; 2] {
-        let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
-        let c = V::splat(self.compliance);
-        for n in (0..self.p.len()).step_by(8) {
-            let free = self.hardness.interval::<V>(n).is_free(V::load(self.p, n, 0.0));
-            let g = c * V::load(self.u, n, 0.0) + V::load(self.gap, n, f64::INFINITY);
-            sum = sum + g.only(free);
-            cells = cells + V::count(free);
-        }
-        [sum.sum(), cells.sum()]
-    }
-}
 
 kernel! {
     /// The report of a state for the approach w.

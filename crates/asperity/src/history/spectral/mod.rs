@@ -21,9 +21,8 @@ use crate::contact::ContactState;
 use crate::convolution::torus::{Spectrum, Torus};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
-use crate::kernel::Kernel;
 use crate::layer::NonseparableLayers;
-use crate::operator::{self, Operator, of_eigenvalues, wide};
+use crate::operator::{self, Body, Operator, of_eigenvalues, wide};
 use crate::simulation::Simulation;
 use crate::step::{Interval, Load, Loader, Piece, Saver, saved};
 use mean::{Mean, Run, linear};
@@ -34,9 +33,7 @@ use waves::{Table, Waves, Width};
 const PARTS: i32 = 16;
 
 pub(super) struct Spectral {
-    grid: Grid,
-    boundary: Boundary,
-    kernel: Arc<dyn Kernel>,
+    body: Body,
     layers: Arc<NonseparableLayers>,
     torus: Torus,
     waves: Waves,
@@ -74,9 +71,13 @@ impl Spectral {
         let count = waves.count();
         let still = Table(vec![]);
         Ok(Spectral {
-            grid: simulation.grid,
-            boundary: simulation.boundary,
-            kernel: simulation.kernel.clone(),
+            body: Body {
+                grid: simulation.grid,
+                boundary: simulation.boundary,
+                backend: operator::default_backend(),
+                kernel: simulation.kernel.clone(),
+                has_coarser: true,
+            },
             layers: layers.clone(),
             torus: Torus::new(simulation.grid.cells(), waves.lengths()),
             own,
@@ -151,9 +152,9 @@ impl Spectral {
         let unit = &self.compliance / self.scale();
         let unit = match self.waves.width() {
             Width::Narrow => unit,
-            Width::Wide => wide::narrowed(&self.grid, &unit),
+            Width::Wide => wide::narrowed(&self.body.grid, &unit),
         };
-        of_eigenvalues(operator::default_backend(), self.grid, self.boundary, self.kernel.clone(), &unit)
+        of_eigenvalues(self.body.clone(), &unit)
     }
 
     /// The law of the step that is set, with `gap` = `rigid` + g.
@@ -250,7 +251,7 @@ impl History for Spectral {
         }
         let all: Vec<f64> = self.states.iter().chain(&self.displacement).flat_map(|z| [z.re, z.im]).collect();
         // The complex numbers of the states and of u, in as many fields as hold them.
-        let cells = self.grid.len();
+        let cells = self.body.grid.len();
         for (k, part) in all.chunks(cells).enumerate() {
             let mut field = part.to_vec();
             field.resize(cells, 0.0);
@@ -270,7 +271,7 @@ impl History for Spectral {
             from.within("mean", |from| if from.is_empty() { Ok(None) } else { Mean::load(from).map(Some) });
         self.mean = mean?;
         let count = 2 * (self.states.len() + self.displacement.len());
-        let fields = (0..count.div_ceil(self.grid.len())).map(|k| from.field(&format!("waves_{k}")));
+        let fields = (0..count.div_ceil(self.body.grid.len())).map(|k| from.field(&format!("waves_{k}")));
         let fields = fields.collect::<Result<Vec<_>>>()?;
         let mut all = fields.iter().flatten().copied();
         for z in self.states.iter_mut().chain(&mut self.displacement) {

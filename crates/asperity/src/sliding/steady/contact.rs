@@ -10,6 +10,7 @@ use crate::error::{Error, NotConverged, Result};
 use crate::grid::{Boundary, Grid};
 use crate::operator::Operator;
 use crate::simulation::Simulation;
+use asperity_sweep::zeros;
 
 /// Metric steps without Newton's steps after some of those that were rejected, at most.
 const SKIP: usize = 3;
@@ -39,12 +40,28 @@ pub(super) struct SteadyContact<'a> {
     loss: Option<Array2<f64>>,
 }
 
-/// Working memory of the iteration.
-pub(super) struct Fields {
+/// The operators of one velocity, the solver of metric steps, and the fields of the iteration.
+pub(super) struct Workspace {
+    pub(super) operators: Operators,
+    solver: Solver,
     pub(super) trial: ContactState,
     pub(super) best: ContactState,
     /// The gap of the metric step, and the image of the pressure.
     pub(super) work: [Vec<f64>; 2],
+}
+
+impl Workspace {
+    fn plan(stream: &Stream, long: bool, interrupt: Option<&AtomicBool>) -> Result<Self> {
+        let Simulation { grid, solver, .. } = stream.simulation;
+        let mut operators = Operators::plan(stream, long, interrupt)?;
+        Ok(Workspace {
+            solver: Solver::new(solver.method, operators.metric()),
+            operators,
+            trial: ContactState::new(grid.len()),
+            best: ContactState::new(grid.len()),
+            work: [zeros(grid.len()), zeros(grid.len())],
+        })
+    }
 }
 
 impl<'a> SteadyContact<'a> {
@@ -68,19 +85,13 @@ impl<'a> SteadyContact<'a> {
     /// # Errors
     /// [`Error::NotConverged`], [`Error::Infeasible`], [`Error::Interrupted`].
     pub(super) fn solve(&mut self, state: &mut ContactState) -> Result<()> {
-        let n = self.grid.len();
-        let mut fields = Fields {
-            trial: ContactState::new(n),
-            best: ContactState::new(n),
-            work: [vec![0.0; n], vec![0.0; n]],
-        };
-        let mut operators = Operators::plan(&self.stream, false, self.interrupt)?;
-        self.loss = operators.loss();
-        if self.iterate(&mut operators, &mut fields, STEPS, state)? {
+        let mut on = Workspace::plan(&self.stream, false, self.interrupt)?;
+        self.loss = on.operators.loss();
+        if self.iterate(&mut on, state)? {
             return Ok(());
         }
-        drop(operators);
-        let found = self.continue_from_easier(&mut fields, state);
+        drop(on);
+        let found = self.continue_from_easier(state);
         if let Err(Error::NotConverged(_)) = found {
             // The pressure of an easier body is no contact of this one.
             let mut operators = Operators::plan(&self.stream, false, self.interrupt)?;
@@ -94,7 +105,7 @@ impl<'a> SteadyContact<'a> {
 
     /// Continuation in the instantaneous compliance: from a body that yields a quarter at once, on which the iteration contracts
     /// well, down to the body itself, each contact from the one before.
-    fn continue_from_easier(&mut self, fields: &mut Fields, state: &mut ContactState) -> Result<()> {
+    fn continue_from_easier(&mut self, state: &mut ContactState) -> Result<()> {
         let streaming = self.stream.streaming;
         let own = streaming.instantaneous() / streaming.relaxed();
         let (mut solved, mut fall) = (None, FALL);
@@ -105,12 +116,11 @@ impl<'a> SteadyContact<'a> {
             let stream = Stream { streaming: &easier, ..self.stream };
             self.tolerance =
                 if at_once > own { self.options.tolerance.max(ON_THE_WAY) } else { self.options.tolerance };
-            let mut operators = Operators::plan(&stream, true, self.interrupt)?;
+            let mut on = Workspace::plan(&stream, true, self.interrupt)?;
             // Newton's steps mostly find the contact; where they go round in circles, single exchanges end.
             let is_last = fall >= LEAST_FALL;
             let most = if is_last { usize::MAX } else { PIVOTS };
-            let found = self.iterate(&mut operators, fields, STEPS, state)?
-                || self.pivot(&mut operators, fields, most, state)?;
+            let found = self.iterate(&mut on, state)? || self.pivot(&mut on, most, state)?;
             tracing::debug!(at_once, found, "continuation");
             if !found && is_last {
                 return Err(self.not_converged());
@@ -127,19 +137,12 @@ impl<'a> SteadyContact<'a> {
         }
     }
 
-    /// The metric iteration with Newton's steps. False where so many metric steps are not enough.
-    fn iterate(
-        &mut self,
-        operators: &mut Operators,
-        fields: &mut Fields,
-        steps: usize,
-        state: &mut ContactState,
-    ) -> Result<bool> {
-        let mut solver = Solver::new(self.options.method, operators.metric());
-        self.begin(operators, state)?;
+    /// The metric iteration with Newton's steps. False where [`STEPS`] metric steps are not enough.
+    fn iterate(&mut self, on: &mut Workspace, state: &mut ContactState) -> Result<bool> {
+        self.begin(on, state)?;
         let (mut rejected, mut skip) = (0, 0);
-        for _ in 0..=steps {
-            operators.apply_into(&state.pressure, &mut state.unit_displacement);
+        for _ in 0..=STEPS {
+            on.operators.apply_into(&state.pressure, &mut state.unit_displacement);
             let residual = self.rate(state).residual;
             tracing::debug!(
                 iterations = self.spent.iterations,
@@ -154,27 +157,20 @@ impl<'a> SteadyContact<'a> {
             if self.spent.iterations >= self.options.max_iterations {
                 return Err(self.not_converged());
             }
-            self.metric_step(operators, &mut solver, fields, residual, state)?;
+            self.metric_step(on, residual, state)?;
             if skip > 0 {
                 skip -= 1;
                 continue;
             }
-            rejected = if self.newton(operators, fields, residual, state)? { 0 } else { rejected + 1 };
+            rejected = if self.newton(on, residual, state)? { 0 } else { rejected + 1 };
             skip = SKIP.min(rejected);
         }
         Ok(false)
     }
 
     /// p = the contact of M and the gap h + u - M p.
-    fn metric_step(
-        &mut self,
-        operators: &mut Operators,
-        solver: &mut Solver,
-        fields: &mut Fields,
-        residual: f64,
-        state: &mut ContactState,
-    ) -> Result<()> {
-        let [gap, image] = &mut fields.work;
+    fn metric_step(&mut self, on: &mut Workspace, residual: f64, state: &mut ContactState) -> Result<()> {
+        let Workspace { operators, solver, work: [gap, image], .. } = on;
         operators.metric().apply_into(&state.pressure, image);
         let displacements = state.unit_displacement.iter().zip(&*image);
         for ((to, h), (u, mp)) in gap.iter_mut().zip(self.problem.gap).zip(displacements) {
@@ -197,14 +193,13 @@ impl<'a> SteadyContact<'a> {
     }
 
     /// Makes the pressure of the state feasible; where there is none, it is that of the contact of M.
-    fn begin(&mut self, operators: &mut Operators, state: &mut ContactState) -> Result<()> {
+    fn begin(&mut self, on: &mut Workspace, state: &mut ContactState) -> Result<()> {
         if state.pressure.iter().any(|p| *p > 0.0) {
             return contact::make_feasible(&self.problem, self.grid, state);
         }
         let rough = SolverOptions { tolerance: self.options.tolerance.max(1e-3), ..self.options };
-        let metric = operators.metric();
-        let mut solver = Solver::new(rough.method, metric);
-        let outcome = solver.solve(metric, &self.problem, &rough, state, self.interrupt)?;
+        let metric = on.operators.metric();
+        let outcome = on.solver.solve(metric, &self.problem, &rough, state, self.interrupt)?;
         self.spent.iterations += outcome.iterations;
         self.spent.convolutions += outcome.convolutions;
         Ok(())

@@ -4,13 +4,12 @@
 //! The unknown is a change d of the pressure on D of zero sum. With P the projection that takes the mean over D away, the
 //! equation is P A d = -P r, and P F⁻¹[1/A^] the preconditioner.
 
-use std::sync::atomic::AtomicBool;
-
 use asperity_sweep::{dot, each, sum, sweep};
 
+use super::contact::{SteadyContact, Workspace};
 use super::operators::Operators;
+use crate::contact::stop_at;
 use crate::error::Result;
-use crate::sliding::stop_at;
 
 /// The residual falls by this factor, in at most so many vectors.
 const REDUCTION: f64 = 0.02;
@@ -18,34 +17,37 @@ const VECTORS: usize = 40;
 /// Fields that a solve takes, were all cells in contact.
 pub(super) const FIELDS: usize = 2 * VECTORS;
 
-/// The operator A on a set of cells, and its approximate inverse.
-pub(super) struct OnSet<'a> {
-    pub(super) operators: &'a mut Operators,
-    /// Numbers of the cells of D.
-    pub(super) cells: &'a [usize],
-    /// Two fields of work.
-    pub(super) work: [&'a mut [f64]; 2],
-    pub(super) convolutions: usize,
-    pub(super) interrupt: Option<&'a AtomicBool>,
-}
-
-impl OnSet<'_> {
-    fn apply(&mut self, apply_into: fn(&mut Operators, &[f64], &mut [f64]), x: &[f64]) -> Vec<f64> {
-        let [input, output] = &mut self.work;
+impl SteadyContact<'_> {
+    /// P A x on the cells of D, or the approximate inverse of it.
+    fn apply_on(
+        &mut self,
+        apply_into: fn(&mut Operators, &[f64], &mut [f64]),
+        cells: &[usize],
+        x: &[f64],
+        on: &mut Workspace,
+    ) -> Vec<f64> {
+        let [input, output] = &mut on.work;
         input.fill(0.0);
-        self.cells.iter().zip(x).for_each(|(cell, x)| input[*cell] = *x);
-        apply_into(self.operators, input, output);
-        self.convolutions += 1;
-        let mut y: Vec<f64> = self.cells.iter().map(|cell| output[*cell]).collect();
+        cells.iter().zip(x).for_each(|(cell, x)| input[*cell] = *x);
+        apply_into(&mut on.operators, input, output);
+        // The preconditioner costs as much as the operator on the torus.
+        self.spent.convolutions += 1;
+        let mut y: Vec<f64> = cells.iter().map(|cell| output[*cell]).collect();
         centre(&mut y);
         y
     }
 
-    /// d of zero sum with P A d = -P `residual`, roughly.
+    /// d of zero sum on the cells of D with P A d = -P `residual`, roughly.
     ///
     /// # Errors
     /// [`Error::Interrupted`](crate::error::Error::Interrupted).
-    pub(super) fn solve(&mut self, residual: &[f64]) -> Result<Vec<f64>> {
+    pub(super) fn change_on(
+        &mut self,
+        cells: &[usize],
+        residual: &[f64],
+        on: &mut Workspace,
+    ) -> Result<Vec<f64>> {
+        self.spent.iterations += 1;
         let mut v: Vec<f64> = residual.iter().map(|r| -r).collect();
         centre(&mut v);
         let size = norm(&v);
@@ -60,8 +62,8 @@ impl OnSet<'_> {
         let mut right = vec![size];
         for k in 0..VECTORS.min(residual.len()) {
             stop_at(self.interrupt)?;
-            let z = self.apply(Operators::invert_into, &basis[k]);
-            let mut y = self.apply(Operators::apply_into, &z);
+            let z = self.apply_on(Operators::invert_into, cells, &basis[k], on);
+            let mut y = self.apply_on(Operators::apply_into, cells, &z, on);
             preconditioned.push(z);
             let mut column = Vec::with_capacity(k + 2);
             for v in &basis {

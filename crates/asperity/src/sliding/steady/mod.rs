@@ -34,7 +34,7 @@ use self::contact::SteadyContact;
 use self::operators::{Operators, Stream};
 use super::{ContactForces, Direction, Friction, Slopes, Streaming};
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem};
-use crate::drive::{Axis, Coordinate, Drive};
+use crate::drive::{Coordinate, Drive};
 use crate::error::Result;
 use crate::simulation::Simulation;
 use crate::step::{Checkpoint, Loader, Recorder, Saver, Step};
@@ -89,19 +89,13 @@ pub struct Steady {
     /// The pressure of the last velocity done, from which the next is solved.
     start: Vec<f64>,
     done: usize,
-    last: SteadyState,
-    recorder: Recorder,
-    interrupt: Option<Arc<AtomicBool>>,
-}
-
-/// The last state, good or not.
-struct SteadyState {
-    /// Number of its velocity.
+    /// The last state, good or not, and the number of its velocity.
     index: usize,
-    velocity: f64,
     state: ContactState,
     outcome: Outcome,
     friction: Friction,
+    recorder: Recorder,
+    interrupt: Option<Arc<AtomicBool>>,
 }
 
 impl Steady {
@@ -114,19 +108,15 @@ impl Steady {
         motion.validate(&simulation)?;
         simulation.validate()?;
         let (cells, load) = (simulation.grid.len(), checks::held_load(&simulation)?);
-        let last = SteadyState {
-            index: 0,
-            velocity: 0.0,
-            state: ContactState::new(cells),
-            outcome: Outcome::default(),
-            friction: Friction::default(),
-        };
         Ok(Steady {
             streaming: Streaming::new(&simulation)?,
             load,
             start: vec![0.0; cells],
             done: 0,
-            last,
+            index: 0,
+            state: ContactState::new(cells),
+            outcome: Outcome::default(),
+            friction: Friction::default(),
             recorder: Recorder::new(simulation.columns()?),
             interrupt: None,
             simulation,
@@ -146,9 +136,8 @@ impl Steady {
             return Err(from.foreign(format!("{} velocities", checkpoint.step)));
         }
         from.field_into("pressure", &mut steady.start)?;
-        steady.last.index = steady.done.saturating_sub(1);
-        steady.last.velocity = steady.motion.velocities[steady.last.index];
-        steady.last.state.pressure.copy_from_slice(&steady.start);
+        steady.index = steady.done.saturating_sub(1);
+        steady.state.pressure.copy_from_slice(&steady.start);
         Ok(steady)
     }
 
@@ -179,15 +168,14 @@ impl Steady {
             prescribed: Prescribed::Load(self.load),
         };
         let mut contact = SteadyContact::new(stream, problem, self.interrupt.as_deref());
-        let SteadyState { state, outcome, friction, .. } = &mut self.last;
-        state.pressure.copy_from_slice(&self.start);
-        let solved = contact.solve(state);
-        *outcome = contact.spent;
+        self.state.pressure.copy_from_slice(&self.start);
+        let solved = contact.solve(&mut self.state);
+        self.outcome = contact.spent;
         let forces = ContactForces {
             simulation: &self.simulation,
             direction: self.motion.direction,
             slopes: &self.motion.slopes,
-            state,
+            state: &self.state,
             gap: problem.gap,
             compliance: problem.compliance,
             remembers: self.streaming.branches().next().is_some(),
@@ -195,35 +183,43 @@ impl Steady {
             distance: 0.0,
             shear_stress: self.motion.shear_stress,
         };
-        *friction = Friction::steady(&forces, contact.loss(&state.pressure));
+        self.friction = Friction::steady(&forces, contact.loss(&self.state.pressure));
         solved
+    }
+
+    fn row(&self) -> Step<'_> {
+        let hardness = Hardness::Uniform(self.simulation.hardness);
+        let bodies = (gap(&self.simulation), self.streaming.relaxed());
+        Step {
+            index: self.index,
+            coordinate: Coordinate::Velocity(self.motion.velocities[self.index]),
+            recorder: Some(&self.recorder),
+            friction: Some(self.friction),
+            ..Step::of(&self.simulation, hardness, (&self.state, self.outcome), bodies)
+        }
     }
 }
 
 impl Drive for Steady {
     fn advance(&mut self) -> Result<Option<Step<'_>>> {
         let Some(velocity) = self.motion.velocities.get(self.done).copied() else { return Ok(None) };
-        (self.last.index, self.last.velocity) = (self.done, velocity);
+        self.index = self.done;
         let solved = self.solve(velocity);
-        let row = self.last.row(&self.simulation, &self.streaming, None);
-        row.record(&mut self.recorder);
+        let mut recorder = std::mem::take(&mut self.recorder);
+        self.row().record(&mut recorder);
+        self.recorder = recorder;
         solved?;
-        self.start.copy_from_slice(&self.last.state.pressure);
+        self.start.copy_from_slice(&self.state.pressure);
         self.done += 1;
         Ok(self.last())
     }
 
     fn last(&self) -> Option<Step<'_>> {
-        let touches = self.last.state.pressure.iter().any(|p| *p > 0.0);
-        touches.then(|| self.last.row(&self.simulation, &self.streaming, Some(&self.recorder)))
+        self.state.touches().then(|| self.row())
     }
 
     fn simulation(&self) -> &Simulation {
         &self.simulation
-    }
-
-    fn axis(&self) -> Axis {
-        Axis::Velocity
     }
 
     fn planned(&self) -> Vec<f64> {
@@ -256,26 +252,6 @@ impl Drive for Steady {
 
     fn streaming(&self) -> Option<&Streaming> {
         Some(&self.streaming)
-    }
-}
-
-impl SteadyState {
-    /// As a row, with its quantities where they are recorded.
-    fn row<'a>(
-        &'a self,
-        simulation: &'a Simulation,
-        streaming: &Streaming,
-        recorder: Option<&'a Recorder>,
-    ) -> Step<'a> {
-        let hardness = Hardness::Uniform(simulation.hardness);
-        let bodies = (gap(simulation), streaming.relaxed());
-        Step {
-            index: self.index,
-            coordinate: Coordinate::Velocity(self.velocity),
-            recorder,
-            friction: Some(self.friction),
-            ..Step::of(simulation, hardness, (&self.state, self.outcome), bodies)
-        }
     }
 }
 

@@ -7,9 +7,7 @@
 //!     p = p within its bounds, with the load
 //! ```
 
-use super::contact::{Fields, SteadyContact};
-use super::gmres::OnSet;
-use super::operators::Operators;
+use super::contact::{SteadyContact, Workspace};
 use crate::contact::{self, ContactState};
 use crate::error::Result;
 
@@ -29,46 +27,37 @@ impl SteadyContact<'_> {
     /// [`Error::Interrupted`](crate::error::Error::Interrupted).
     pub(super) fn newton(
         &mut self,
-        operators: &mut Operators,
-        fields: &mut Fields,
+        on: &mut Workspace,
         before: f64,
         state: &mut ContactState,
     ) -> Result<bool> {
-        let Fields { trial, best, work } = fields;
-        copy(state, trial);
+        copy(state, &mut on.trial);
         let (mut least, mut stalled) = (f64::INFINITY, 0);
         for _ in 0..=STEPS {
-            operators.apply_into(&trial.pressure, &mut trial.unit_displacement);
-            let residual = self.rate(trial).residual;
+            on.operators.apply_into(&on.trial.pressure, &mut on.trial.unit_displacement);
+            let residual = self.rate(&mut on.trial).residual;
             // The set may change a few times before the residual falls.
             stalled = if residual < PROGRESS * least { 0 } else { stalled + 1 };
             if residual < least {
                 least = residual;
-                copy(trial, best);
+                copy(&on.trial, &mut on.best);
             }
             if residual <= self.tolerance || stalled > PATIENCE {
                 break;
             }
-            let (cells, violations) = self.free_cells(trial);
+            let (cells, violations) = self.free_cells(&on.trial);
             if cells.is_empty() {
                 break;
             }
-            let [first, second] = work;
-            let interrupt = self.interrupt;
-            let mut on_set =
-                OnSet { operators, cells: &cells, work: [first, second], convolutions: 0, interrupt };
-            let change = on_set.solve(&violations)?;
-            // The preconditioner costs as much as the operator on the torus.
-            self.spent.convolutions += on_set.convolutions;
-            self.spent.iterations += 1;
-            cells.iter().zip(&change).for_each(|(n, d)| trial.pressure[*n] += d);
-            if contact::make_feasible(&self.problem, self.grid, trial).is_err() {
+            let change = self.change_on(&cells, &violations, on)?;
+            cells.iter().zip(&change).for_each(|(n, d)| on.trial.pressure[*n] += d);
+            if contact::make_feasible(&self.problem, self.grid, &mut on.trial).is_err() {
                 break;
             }
         }
         let better = least < ENOUGH * before;
         if better {
-            std::mem::swap(state, best);
+            std::mem::swap(state, &mut on.best);
         }
         Ok(better)
     }

@@ -16,6 +16,7 @@ use rustfft::num_complex::Complex64;
 
 use super::coefficients::{self, OnTorus};
 use crate::contact::Solver;
+use crate::contact::stop_at;
 use crate::convolution::Convolution;
 use crate::convolution::torus::{Spectrum, Torus};
 use crate::error::Result;
@@ -23,7 +24,6 @@ use crate::grid::{Boundary, Grid};
 use crate::operator::Convolved;
 use crate::simulation::Simulation;
 use crate::sliding::metric::{MetricKernel, metric};
-use crate::sliding::stop_at;
 use crate::sliding::{Direction, Streaming};
 
 /// The torus of a free domain along the motion over the shortest one, at most, and the memory that makes it longer at most \[bytes\].

@@ -7,14 +7,11 @@
 //! ends after a finite number of exchanges, which blocks of cells alone need not. It ends only if each set is solved well enough to judge it:
 //! where GMRES does not do that, elimination does.
 
-use super::contact::{Fields, SteadyContact};
-use super::gmres::OnSet;
+use super::contact::{SteadyContact, Workspace};
 use super::newton::copy;
-use super::operators::Operators;
-use crate::contact::{self, ContactState};
+use crate::contact::{self, ContactState, stop_at};
 use crate::error::Result;
 use crate::linear;
-use crate::sliding::stop_at;
 
 /// Exchanges of all infeasible cells without fewer of them.
 const TRIES: usize = 10;
@@ -33,8 +30,7 @@ impl SteadyContact<'_> {
     /// [`Error::Interrupted`](crate::error::Error::Interrupted).
     pub(super) fn pivot(
         &mut self,
-        operators: &mut Operators,
-        fields: &mut Fields,
+        on: &mut Workspace,
         most: usize,
         state: &mut ContactState,
     ) -> Result<bool> {
@@ -48,18 +44,18 @@ impl SteadyContact<'_> {
             if set.is_empty() {
                 return Ok(false);
             }
-            let approach = self.solve_on(&set, operators, fields, state)?;
+            self.solve_on(&set, on, state)?;
             let (c, h) = (self.problem.compliance, self.problem.gap);
             let is_wrong = |n: &usize| match inside[*n] {
                 true => state.pressure[*n] < 0.0,
-                false => h[*n] + c * state.unit_displacement[*n] < approach,
+                false => h[*n] + c * state.unit_displacement[*n] < state.approach,
             };
             let wrong: Vec<usize> = (0..cells).filter(is_wrong).collect();
             tracing::debug!(wrong = wrong.len(), set = set.len(), "pivots");
-            let trial = &mut fields.trial;
+            let trial = &mut on.trial;
             copy(state, trial);
             contact::make_feasible(&self.problem, self.grid, trial)?;
-            operators.apply_into(&trial.pressure, &mut trial.unit_displacement);
+            on.operators.apply_into(&trial.pressure, &mut trial.unit_displacement);
             if self.rate(trial).residual <= self.tolerance {
                 copy(trial, state);
                 return Ok(true);
@@ -78,43 +74,31 @@ impl SteadyContact<'_> {
         Ok(false)
     }
 
-    /// The pressure on the set, with the load and 0 elsewhere; returns the approach.
-    fn solve_on(
-        &mut self,
-        set: &[usize],
-        operators: &mut Operators,
-        fields: &mut Fields,
-        state: &mut ContactState,
-    ) -> Result<f64> {
+    /// The pressure on the set, with the load and 0 elsewhere, and the approach.
+    fn solve_on(&mut self, set: &[usize], on: &mut Workspace, state: &mut ContactState) -> Result<()> {
         let mut pressure = vec![0.0; state.pressure.len()];
         set.iter().for_each(|n| pressure[*n] = state.pressure[*n]);
-        let lacking = (self.total() - pressure.iter().sum::<f64>()) / set.len() as f64;
+        let total = self.problem.sum(self.grid.cell_area()).unwrap_or(f64::NAN);
+        let lacking = (total - pressure.iter().sum::<f64>()) / set.len() as f64;
         set.iter().for_each(|n| pressure[*n] += lacking);
         state.pressure = pressure;
         let (c, h) = (self.problem.compliance, self.problem.gap);
         let mut solves = 0;
         loop {
-            operators.apply_into(&state.pressure, &mut state.unit_displacement);
+            on.operators.apply_into(&state.pressure, &mut state.unit_displacement);
             self.spent.convolutions += 1;
             let gaps: Vec<f64> = set.iter().map(|n| h[*n] + c * state.unit_displacement[*n]).collect();
-            let approach = gaps.iter().sum::<f64>() / set.len() as f64;
-            let violations: Vec<f64> = gaps.iter().map(|gap| (gap - approach) / c).collect();
+            state.approach = gaps.iter().sum::<f64>() / set.len() as f64;
+            let violations: Vec<f64> = gaps.iter().map(|gap| (gap - state.approach) / c).collect();
             let largest = violations.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
             let scale = set.iter().map(|n| state.unit_displacement[*n].abs()).sum::<f64>() / set.len() as f64;
             if largest <= EXACT * self.tolerance * scale || solves > SOLVES {
-                state.approach = approach;
-                return Ok(approach);
+                return Ok(());
             }
             if solves == SOLVES && set.len() <= DENSE {
-                self.eliminate(set, operators, fields, state)?;
+                self.eliminate(set, total, on, state)?;
             } else {
-                let [first, second] = &mut fields.work;
-                let interrupt = self.interrupt;
-                let mut on_set =
-                    OnSet { operators, cells: set, work: [first, second], convolutions: 0, interrupt };
-                let change = on_set.solve(&violations)?;
-                self.spent.convolutions += on_set.convolutions;
-                self.spent.iterations += 1;
+                let change = self.change_on(set, &violations, on)?;
                 set.iter().zip(&change).for_each(|(n, d)| state.pressure[*n] += d);
             }
             solves += 1;
@@ -126,17 +110,17 @@ impl SteadyContact<'_> {
     fn eliminate(
         &mut self,
         set: &[usize],
-        operators: &mut Operators,
-        fields: &mut Fields,
+        total: f64,
+        on: &mut Workspace,
         state: &mut ContactState,
     ) -> Result<()> {
         let [nx, ny] = self.grid.cells();
         let mut from_corner = |right: bool, top: bool| {
-            let [unit, response] = &mut fields.work;
+            let [unit, response] = &mut on.work;
             unit.fill(0.0);
             let (x, y) = (if right { nx - 1 } else { 0 }, if top { ny - 1 } else { 0 });
             unit[x * ny + y] = 1.0;
-            operators.apply_into(unit, response);
+            on.operators.apply_into(unit, response);
             response.clone()
         };
         let responses = [false, true].map(|right| [false, true].map(|top| from_corner(right, top)));
@@ -157,17 +141,9 @@ impl SteadyContact<'_> {
             let row = set.iter().map(|j| influence(*i, *j));
             row.chain([-1.0, -h[*i] / c]).collect::<Vec<f64>>()
         };
-        let load = set.iter().map(|_| 1.0).chain([0.0, self.total()]).collect();
+        let load = set.iter().map(|_| 1.0).chain([0.0, total]).collect();
         let [pressure] = linear::solve(set.iter().map(row).chain([load]).collect());
         set.iter().zip(&pressure).for_each(|(n, p)| state.pressure[*n] = *p);
         Ok(())
-    }
-
-    /// The sum of the pressures that carry the load.
-    fn total(&self) -> f64 {
-        match self.problem.prescribed {
-            contact::Prescribed::Load(load) => load / self.grid.cell_area(),
-            contact::Prescribed::Approach(_) => f64::NAN,
-        }
     }
 }

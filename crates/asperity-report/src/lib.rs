@@ -7,6 +7,7 @@
 //! - [`leak`] draws the flow through a gap.
 //! - [`material`] shows materials and fits.
 //! - [`paper`] makes the figures of the paper that the method comes from.
+//! - [`study`] draws the answers of a study.
 //! - [`surface`] draws a surface with its statistics.
 
 pub mod animation;
@@ -18,4 +19,5 @@ pub mod page;
 pub mod paper;
 pub mod pictures;
 pub mod result;
+pub mod study;
 pub mod surface;

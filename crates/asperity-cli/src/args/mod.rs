@@ -5,6 +5,7 @@ mod material;
 mod result;
 mod run;
 mod stress;
+mod study;
 mod surface;
 
 use asperity_io::choice::{self as choices, Choice};
@@ -17,6 +18,7 @@ pub use material::{Data, Fit, FitIndentation, Material, MaterialExport, Show};
 pub use result::{Compare, Export, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
 pub use run::{Check, New, Run, Verify};
 pub use stress::Stress;
+pub use study::{Study, StudyAction, StudyFolder};
 pub use surface::{
     Surface, SurfaceConvert, SurfaceFile, SurfaceFromProfile, SurfaceGenerate, SurfaceInfo, SurfaceOutput,
     SurfaceProcess,
@@ -43,6 +45,8 @@ pub struct Args {
 pub enum Command {
     /// Run a case; the result is a Zarr directory
     Run(Run),
+    /// Run a case for several values of some of its keys: all results in one folder, with one table and one figure
+    Study(Study),
     /// Check a case and report what will be solved and how much memory and time it needs
     Check(Check),
     /// Write a commented starter case
@@ -97,6 +101,7 @@ impl Command {
     pub fn verb(&self) -> &dyn Verb {
         match self {
             Command::Run(verb) => verb,
+            Command::Study(verb) => verb,
             Command::Check(verb) => verb,
             Command::New(verb) => verb,
             Command::Verify(verb) => verb,

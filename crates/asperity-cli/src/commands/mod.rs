@@ -18,6 +18,7 @@ pub mod run;
 pub mod schema;
 pub mod show;
 pub mod stress;
+pub mod study;
 pub mod surface;
 pub mod verify;
 pub mod verify_result;

@@ -9,4 +9,5 @@ mod material;
 mod peers;
 mod plot;
 mod stress;
+mod study;
 mod surface;

@@ -55,7 +55,7 @@ fn a_run_that_stops_before_its_leakage_says_so_and_is_resumed_to_the_same_number
 
     let resumed = run(&case, &RunOptions { resume: true, ..options("parts.zarr") }, |_| ()).unwrap();
     assert_eq!((resumed.status, resumed.rows), (Status::Complete, whole.rows));
-    assert_eq!((&resumed.leak, &resumed.findings), (&whole.leak, &whole.findings));
+    assert_eq!((&resumed.answers, &resumed.findings), (&whole.answers, &whole.findings));
     let table = |name: &str| LeakHistory::of(&open(name)).unwrap().unwrap().table;
     assert_eq!(table("parts.zarr"), table("whole.zarr"));
     assert!(!open("parts.zarr").lacks_leakage());

@@ -15,7 +15,7 @@ use clap_complete::Shell;
 
 pub use leak::{FluidOptions, Leak};
 pub use material::{Data, Fit, FitIndentation, Material, MaterialExport, Show};
-pub use result::{Compare, Export, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
+pub use result::{Compare, Export, Labels, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
 pub use run::{Check, New, Run, Verify};
 pub use stress::Stress;
 pub use study::{Study, StudyAction, StudyFolder};
@@ -60,13 +60,13 @@ pub enum Command {
     Show(ShowResult),
     /// Compare every number of a result with its checksum and list what is damaged; exit code 1 where anything is
     VerifyResult(VerifyResult),
-    /// Write a result as one HTML page with maps, curves and numbers; it needs no network
+    /// Write a result, or several side by side, as one HTML page with curves and numbers, of one with maps; it needs no network
     Report(Report),
     /// View a result in the browser with maps at full resolution, also while it is being written
     View(View),
     /// Draw a figure of a result, or of several results together, as PNG, SVG or PDF, or an animation
     Plot(Plot),
-    /// List what differs between two results: in their cases, at their ends, and at the times that both have
+    /// List what differs between results: in their cases and answers, and of two at their ends and at the times that both have
     Compare(Compare),
     /// Compute the stress below the surface of a result: largest values with places, profile over depth, first yield
     Stress(Stress),

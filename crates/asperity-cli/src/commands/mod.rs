@@ -7,6 +7,7 @@ pub mod completions;
 pub mod export;
 pub mod findings;
 pub mod fit_indentation;
+pub mod labels;
 pub mod leak;
 pub mod material;
 pub mod new;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use asperity_io::answer::Units;
 use asperity_io::store::Reader;
 use asperity_io::study::{Event, Options, Outcome, Row, State, Study, StudyError, Table};
+use asperity_report::sheet::Sheet;
 use serde_json::{Value, json};
 
 use crate::args::{self, StudyAction, StudyFolder};
@@ -52,7 +53,7 @@ impl args::Study {
             }
         };
         let Outcome { table, interrupted } = study.work(&options, &mut tell).map_err(failure)?;
-        draw(&study, &table)?;
+        draw(&study, &table, &units)?;
         print(&study, &table, self.json, &units)?;
         let (done, failed) = (table.count("done"), table.count("failed"));
         if interrupted {
@@ -103,16 +104,21 @@ fn collect(args: &StudyFolder) -> Result<(), Failure> {
     let units = super::answers::units(&args.unit)?;
     let study = Study::open(&args.folder).map_err(failure)?;
     let table = study.collect().map_err(failure)?;
-    draw(&study, &table)?;
+    draw(&study, &table, &units)?;
     print(&study, &table, args.json, &units)
 }
 
-/// Writes the figure, where there is something to draw.
-fn draw(study: &Study, table: &Table) -> Result<(), Failure> {
-    match asperity_report::study::figure(&study.plan, table) {
-        Some(figure) => super::picture::write(&figure, &study.folder.join("study.png"), true),
-        None => Ok(()),
+/// Writes the figure, where there is something to draw, and the page.
+fn draw(study: &Study, table: &Table, units: &Units) -> Result<(), Failure> {
+    let name = study.folder.canonicalize().ok();
+    let name = name.and_then(|folder| Some(folder.file_name()?.to_string_lossy().into_owned()));
+    let mut sheet = Sheet::new(name.unwrap_or_else(|| "study".into()));
+    if let Some(figure) = asperity_report::study::figure(&study.plan, table) {
+        super::picture::write(&figure, &study.folder.join("study.png"), true)?;
+        sheet = sheet.figure("Answer", &figure);
     }
+    sheet = sheet.table("Runs", &lines(study, table, units, usize::MAX));
+    Ok(sheet.write(&study.folder.join("study.html"), true)?)
 }
 
 fn print(study: &Study, table: &Table, as_json: bool, units: &Units) -> Result<(), Failure> {
@@ -135,8 +141,17 @@ fn object(study: &Study, table: &Table) -> Value {
             "result": study.result(&row.run).to_string_lossy(),
         })
     };
+    let keys = table.keys.iter().zip(&study.plan.vary).map(|(key, varied)| {
+        let value = |value: &asperity_io::study::Value| match (key.unit, value.number()) {
+            (Some(_), Some((number, _))) => json!(number),
+            _ => json!(value.text()),
+        };
+        json!({ "key": key.name, "unit": key.unit, "values": varied.values.iter().map(value).collect::<Vec<_>>() })
+    });
     json!({
         "study": study.folder.to_string_lossy(),
+        "zip": study.plan.zip,
+        "keys": keys.collect::<Vec<_>>(),
         "counts": STATES.map(|word| (word, table.count(word))).into_iter().collect::<std::collections::BTreeMap<_, _>>(),
         "runs": table.rows.iter().map(run).collect::<Vec<_>>(),
     })
@@ -148,12 +163,13 @@ const ANSWERS: usize = 4;
 /// Letters of an error in it.
 const LONGEST: usize = 90;
 
-fn text(study: &Study, table: &Table, units: &Units) -> String {
+/// The cells of the table, with so many answers.
+fn lines(study: &Study, table: &Table, units: &Units, most: usize) -> Vec<Vec<String>> {
     // The case may have chosen units.
     let done = table.rows.iter().find(|row| row.state == State::Done);
     let reader = done.and_then(|row| Reader::open(&study.result(&row.run)).ok());
     let units = reader.map_or_else(|| units.clone(), |reader| Units::of(&reader, units));
-    let shown: Vec<&str> = table.answers.iter().map(|column| column.name.as_str()).take(ANSWERS).collect();
+    let shown: Vec<&str> = table.answers.iter().map(|column| column.name.as_str()).take(most).collect();
     let keys = study.plan.vary.iter().map(|varied| study.plan.short(&varied.key).to_owned());
     let head = keys.chain(["status".into()]).chain(shown.iter().map(|name| name.replace('_', " ")));
     let mut lines: Vec<Vec<String>> = vec![head.collect()];
@@ -173,6 +189,11 @@ fn text(study: &Study, table: &Table, units: &Units) -> String {
         }
         lines.push(line);
     }
+    lines
+}
+
+fn text(study: &Study, table: &Table, units: &Units) -> String {
+    let lines = lines(study, table, units, ANSWERS);
     let columns = lines[0].len();
     let is_error = |n: usize, column: usize| {
         n > 0 && matches!(table.rows[n - 1].state, State::Failed(_)) && column > study.plan.vary.len()

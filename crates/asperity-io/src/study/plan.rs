@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::StudyError;
 use super::values::{self, Value};
 use crate::case::study::{Base, Written};
+use crate::compare::short;
 use crate::digest::md5;
 use crate::readable::counted;
 
@@ -164,13 +165,8 @@ impl Plan {
 
     /// The shortest end of a key that no other key of the study has: "value" of "load.history.value".
     pub fn short<'k>(&self, key: &'k str) -> &'k str {
-        let clash = |end: &str| {
-            let others = self.vary.iter().filter(|varied| varied.key != key);
-            others.into_iter().any(|other| other.key == end || other.key.ends_with(&format!(".{end}")))
-        };
-        let ends = key.rmatch_indices('.').map(|(n, _)| &key[n + 1..]);
-        let named = ends.filter(|end| end.starts_with(|c: char| c.is_alphabetic()));
-        named.into_iter().find(|end| !clash(end)).unwrap_or(key)
+        let all: Vec<&str> = self.vary.iter().map(|varied| varied.key.as_str()).collect();
+        short(key, &all)
     }
 
     /// The name of the result with these values: readable, and, by its digest, of no other values.

@@ -55,6 +55,8 @@ pub struct Outcome {
 
 /// How long a worker waits before it looks again whether it is to stop.
 const PAUSE: Duration = Duration::from_millis(100);
+/// The table is written after a run, unless that would take more than one part in so many of the time: studies of many thousand runs.
+const TABLE: u32 = 20;
 /// The share of the free memory that runs may take.
 const SHARE: f64 = 0.9;
 
@@ -67,6 +69,8 @@ struct Shared<'a> {
     working: usize,
     ended: usize,
     known: Vec<Option<Row>>,
+    /// The table is not written before then.
+    rest: Instant,
     /// Why the study stops.
     failure: Option<StudyError>,
     observe: &'a mut (dyn FnMut(&Event<'_>) + Send),
@@ -92,7 +96,16 @@ impl Study {
         let known =
             before.iter().map(|row| Some(row.clone()).filter(|row| row.state == State::Done)).collect();
         let ended = own.len() - left.len();
-        let shared = Mutex::new(Shared { left, taken: 0, working: 0, ended, known, failure: None, observe });
+        let shared = Mutex::new(Shared {
+            left,
+            taken: 0,
+            working: 0,
+            ended,
+            known,
+            rest: Instant::now(),
+            failure: None,
+            observe,
+        });
         let changed = Condvar::new();
         let budget = (SHARE * available_memory() as f64) as u64;
         thread::scope(|scope| {
@@ -216,8 +229,12 @@ impl Study {
         {
             shared.failure.get_or_insert(StudyError::Input(error.to_string()));
         }
-        if let Err(error) = self.write_table(&mut shared.known) {
-            shared.failure.get_or_insert(error);
+        let now = Instant::now();
+        if now >= shared.rest {
+            if let Err(error) = self.write_table(&mut shared.known) {
+                shared.failure.get_or_insert(error);
+            }
+            shared.rest = Instant::now() + TABLE * now.elapsed();
         }
         if interrupt.load(Ordering::Relaxed) {
             return;

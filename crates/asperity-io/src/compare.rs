@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::answer::{self, Answer, Units};
+use crate::readable::quantity;
 use crate::store::{At, FieldKind, Reader, StoreError};
 
 /// The differences of a second result from a first one.
@@ -61,8 +62,13 @@ impl Answers {
             _ if values[n].is_nan() => "-".to_owned(),
             change if n == 0 || !change.is_finite() => answer.words(units),
             0.0 => format!("{} (same)", answer.words(units)),
-            change if change >= FACTOR => format!("{} ({:.4} times)", answer.words(units), 1.0 + change),
-            change => format!("{} ({:+.3} %)", answer.words(units), 100.0 * change),
+            change if change >= FACTOR => {
+                format!("{} ({} times)", answer.words(units), quantity(1.0 + change, ""))
+            }
+            change => {
+                let sign = if change < 0.0 { "-" } else { "+" };
+                format!("{} ({sign}{} %)", answer.words(units), quantity(100.0 * change.abs(), ""))
+            }
         }
     }
 }
@@ -261,6 +267,14 @@ mod tests {
     fn rows_at_the_same_times_are_paired_and_those_of_a_jump_in_order() {
         let times = [vec![0.0, 1.0, 2.0, 2.0, 3.0], vec![0.0, 0.5, 1.0 + 1e-14, 2.0, 2.0, 2.5]];
         assert_eq!(common(&times), [[0, 0], [1, 2], [2, 3], [3, 4]]);
+    }
+
+    #[test]
+    fn changes_have_four_digits() {
+        let (values, changes) = (vec![1.0; 5], vec![0.0, 0.0, 0.12345678, -0.5, 66.54321]);
+        let answers = Answers { name: "max_pressure".into(), unit: "Pa", values, changes };
+        let words: Vec<String> = (0..5).map(|n| answers.words(n, &Units::default())).collect();
+        assert_eq!(words, ["1 Pa", "1 Pa (same)", "1 Pa (+12.35 %)", "1 Pa (-50 %)", "1 Pa (67.54 times)"]);
     }
 
     #[test]

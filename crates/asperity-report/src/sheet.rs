@@ -17,7 +17,7 @@ pub struct Sheet {
 
 /// What the pages of results do not need.
 const TABLES: &str = ".wide { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }\
-    th, td { text-align: left; padding: 4px 14px 4px 0; border-bottom: 1px solid var(--rule); vertical-align: top; }\
+    th, td { text-align: left; padding: 4px 14px 4px 0; border-bottom: 1px solid var(--rule); white-space: nowrap; }\
     th { color: var(--soft); font-weight: 500; } img { max-width: 100%; height: auto; background: #fff; }";
 
 impl Sheet {

@@ -58,7 +58,12 @@ fn sheet(readers: Vec<Reader>, labels: &[String]) -> Result<Sheet, Failure> {
     let mut rows = vec![head("key")];
     for (key, values) in cases(&readers.iter().collect::<Vec<_>>()) {
         rows.push(
-            [key].into_iter().chain(values.into_iter().map(|value| value.unwrap_or("-".into()))).collect(),
+            [key]
+                .into_iter()
+                .chain(
+                    values.into_iter().map(|value| value.unwrap_or("-".into()).trim_matches('"').to_owned()),
+                )
+                .collect(),
         );
     }
     sheet = match rows.len() {

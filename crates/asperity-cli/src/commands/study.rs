@@ -77,7 +77,6 @@ fn usual(case: &Path) -> PathBuf {
 fn failure(error: StudyError) -> Failure {
     match error {
         StudyError::Case(errors) => Failure::Case(errors),
-        StudyError::Io { .. } => Failure::System(error.to_string()),
         error => error.into(),
     }
 }

@@ -208,6 +208,10 @@ fn keys_and_values_are_checked_before_the_first_run() {
         assert!(words.iter().all(|word| told.contains(word)), "{vary:?}: {told}");
         assert!(!path.join("s").exists(), "{vary:?}");
     }
+    let file = study(path, &["-o", "ball.toml"]);
+    let told = String::from_utf8_lossy(&file.stderr);
+    assert_eq!(file.status.code(), Some(2));
+    assert!(told.contains("-o ball.toml is no folder"), "{told}");
     let zip = study(path, &["--zip", "-o", "s"]);
     let told = String::from_utf8_lossy(&zip.stderr);
     assert_eq!(zip.status.code(), Some(2));

@@ -74,6 +74,10 @@ impl Study {
         }
         let (form, asperity) = (FORM, env!("CARGO_PKG_VERSION").to_owned());
         let stored = Stored { form, asperity, case: base.text()?, plan: plan.clone(), files };
+        if folder.exists() && !folder.is_dir() {
+            let message = format!("-o {} is no folder; name a folder for the results", folder.display());
+            return Err(StudyError::Input(message));
+        }
         fs::create_dir_all(folder).map_err(failed("make", folder))?;
         let study = Study { folder: folder.to_owned(), plan, runs, base: Some(base), memory };
         let _held = study.lock();

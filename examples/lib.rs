@@ -40,8 +40,10 @@ templates!(
     "rough-pmma",
     "warming-rubber",
     "seal",
+    "lip-seal",
     "gasket",
-    "coated-steel"
+    "coated-steel",
+    "gel-on-glass"
 );
 
 /// Cases of the figures of Spinu and Cerlinca (2017), which `asperity reproduce` computes.

@@ -305,6 +305,19 @@ implementations (dense matrix, Gauss-Seidel, full hereditary sum, one-dimensiona
 
 ";
 
+const ERROR_BARS: &str = "
+## Stated against true errors of answers
+
+The test `error_bars` finds the error bars of 100 random cases with closed forms (32 to 80 cells a side, 64 to 320 on lines), as
+`asperity converge` does: spheres under a load (Hertz) and under one that rises and falls (Ting, 8 to 80 steps), waves in partial contact
+(Westergaard), a cylinder that slides on a viscoelastic body (Hunter), and the flow along the furrows of a wave in contact. An answer is
+covered if its stated error is at least its true one; it is close if its stated error is at most ten times the true one, or at most 1e-3 of
+the answer. The test asserts that 95 of 100 answers are covered.
+
+| case | answers | covered | close |
+|---|---|---|---|
+";
+
 const TIME_ERRORS: &str = "\
 ## Stated against true errors of the time steps
 
@@ -328,15 +341,22 @@ fn verification() -> Done {
     if !output.status.success() {
         return Err(String::from_utf8_lossy(&output.stderr).into_owned());
     }
-    let found = cargo(&["test", "-p", "asperity", "--test", "all", "time_error", "--", "--nocapture"])
+    let times = rows_of_test("asperity", "time_error")?;
+    let bars = rows_of_test("asperity-io", "error_bars::the_stated")?;
+    let cases = String::from_utf8_lossy(&output.stdout);
+    let text = format!("{VERIFICATION}{cases}{TIME_ERRORS}{times}\n{ERROR_BARS}{bars}\n");
+    std::fs::write(root().join("docs/verification.md"), text).map_err(|error| error.to_string())
+}
+
+/// The rows of the table that a test prints.
+fn rows_of_test(package: &str, test: &str) -> Result<String, String> {
+    let found = cargo(&["test", "-p", package, "--test", "all", test, "--", "--nocapture"])
+        .env("ASPERITY_ERROR_BARS", "100")
         .output()
         .map_err(|error| error.to_string())?;
-    if !found.status.success() {
-        return Err(String::from_utf8_lossy(&found.stdout).into_owned());
+    let text = String::from_utf8_lossy(&found.stdout);
+    match found.status.success() {
+        true => Ok(text.lines().filter(|line| line.starts_with("| ")).collect::<Vec<_>>().join("\n")),
+        false => Err(text.into_owned()),
     }
-    let found = String::from_utf8_lossy(&found.stdout);
-    let rows: Vec<&str> = found.lines().filter(|line| line.starts_with("| ")).collect();
-    let cases = String::from_utf8_lossy(&output.stdout);
-    let text = format!("{VERIFICATION}{cases}{TIME_ERRORS}{}\n", rows.join("\n"));
-    std::fs::write(root().join("docs/verification.md"), text).map_err(|error| error.to_string())
 }

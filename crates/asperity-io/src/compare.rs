@@ -57,7 +57,7 @@ impl Answers {
     /// Its value in a result, with a unit that suits it, and, of all but the first, the change: "43 % (+2.1 %)".
     pub fn words(&self, n: usize, units: &Units) -> String {
         let Answers { name, unit, values, changes } = self;
-        let answer = Answer { name: name.clone(), value: values[n], unit, at: None, note: String::new() };
+        let answer = Answer::new(name.clone(), values[n], unit);
         match changes[n] {
             _ if values[n].is_nan() => "-".to_owned(),
             change if n == 0 || !change.is_finite() => answer.words(units),

@@ -6,6 +6,7 @@ pub mod choice;
 mod classic;
 mod code;
 pub mod compare;
+pub mod converge;
 pub mod curve;
 pub mod cycles;
 mod digest;

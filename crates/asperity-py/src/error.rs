@@ -1,11 +1,13 @@
 //! Errors as Python exceptions, with the same words.
 
+use std::path::Path;
+
 use asperity::Error;
 use asperity_io::case::CaseErrors;
 use asperity_io::session::RunError;
 use asperity_io::topography::{Problem, TopographyError};
 use pyo3::create_exception;
-use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 create_exception!(
@@ -65,10 +67,11 @@ pub fn given(errors: &CaseErrors) -> PyErr {
 
 /// The faults of tables that stand alone, whose keys are parameters: a message begins with the parameter, or with a word for the table.
 pub fn alone(mut errors: CaseErrors) -> PyErr {
-    const TABLES: [(&str, &str); 5] = [
+    const TABLES: [(&str, &str); 6] = [
         ("body[0].material", "the material"),
         ("body[0]", "the body"),
         ("shift", "the shift"),
+        ("load.stages[0]", "what is prescribed"),
         ("surface[0]", "the surface"),
         ("domain", "the domain"),
     ];
@@ -94,7 +97,7 @@ pub fn run(py: Python<'_>, error: RunError) -> PyErr {
 fn spoken(message: &str) -> String {
     const WORDS: [(&str, &str); 9] = [
         ("add shift = { model = \"wlf\", ... }", "give shift=asperity.wlf(...)"),
-        ("histogram = { pressure = \"...\" }", "give largest_pressure"),
+        ("histogram = { pressure = \"...\" }", "give largest_pressure="),
         ("(`size`, --size A,B)", "(size=(Lx, Ly))"),
         ("(`height_unit`, --height-unit U)", "(height_unit= in m)"),
         ("asperity run --resume", "asperity.run(..., resume=True)"),
@@ -110,11 +113,22 @@ fn spoken(message: &str) -> String {
 pub fn topography(error: TopographyError) -> PyErr {
     match &error.problem {
         Problem::Unrecognised | Problem::Foreign { .. } => FormatError::new_err(spoken(&error.to_string())),
-        _ => file(error),
+        _ => match &error.path {
+            Some(path) => of_path(path, &error),
+            None => file(error),
+        },
     }
 }
 
 /// Anything that files do.
 pub fn file(error: impl std::fmt::Display) -> PyErr {
     PyOSError::new_err(spoken(&error.to_string()))
+}
+
+/// An error of reading the file or folder at this path.
+pub fn of_path(path: &Path, error: impl std::fmt::Display) -> PyErr {
+    match path.try_exists() {
+        Ok(false) => PyFileNotFoundError::new_err(spoken(&error.to_string())),
+        _ => file(error),
+    }
 }

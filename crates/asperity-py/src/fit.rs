@@ -14,7 +14,7 @@ use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, file};
+use crate::error::{CaseError, of_path};
 use crate::given::{choose, dictionary, entries};
 use crate::material::{shift, shift_keys};
 use crate::wait::detached;
@@ -82,7 +82,7 @@ impl Options<'_> {
 fn unreadable(error: CurveError) -> PyErr {
     match error.path.is_file() {
         true => CaseError::new_err(error.told(Remedy::in_python)),
-        false => file(error),
+        false => of_path(&error.path, &error),
     }
 }
 

@@ -41,7 +41,7 @@ mod _core {
         march::March,
         material::{Body, layer_compliance, shift_factor, vertical_shift_factor},
         registry::{histogram_coordinates, registry},
-        session::{case_text, check, report, run},
+        session::{case_text, check, converge, report, run},
         sliding::Persson,
         store::{Store, derive_again},
         stress::{Stress, stress_transverse},

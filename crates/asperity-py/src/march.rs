@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use asperity::finding::{Diagnostics, Finding, Known};
 use asperity::{Drive, drive, process, step};
-use asperity_io::case::{Case, CaseErrors};
+use asperity_io::case::{Case, CaseErrors, given};
 use asperity_io::session;
 use asperity_io::store::{FieldKind, SCALARS};
 use numpy::{IntoPyArray, PyReadonlyArray2};
@@ -105,6 +105,15 @@ impl March {
             }
             raised
         })
+    }
+
+    /// From the last row on this is prescribed: the keys `control` and `history` of a stage.
+    fn prescribe(&mut self, py: Python<'_>, keys: Bound<'_, PyDict>) -> PyResult<()> {
+        let keys = table(&keys)?;
+        let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let line = march.simulation().grid.is_line();
+        let (control, course) = given::prescribed(keys, line).map_err(crate::error::alone)?;
+        march.prescribe(control, course).map_err(|error| raised(py, error))
     }
 
     /// The run in numbers, as JSON: the attribute `setup` of its result.

@@ -1,7 +1,8 @@
 //! Materials, bodies of layers and shifts, from the keys of a case.
 
-use asperity::material::{Shift, VerticalShift};
+use asperity::material::{Creep, Shift, VerticalShift};
 use asperity_io::case::{Pair, given};
+use asperity_io::choice;
 use asperity_io::curve::{ShiftRequest, VerticalRequest};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -9,7 +10,7 @@ use pyo3::types::PyDict;
 use toml::{Table, Value};
 
 use crate::error::{self, CaseError, raised};
-use crate::given::table;
+use crate::given::{choose, table};
 
 type Curve<'py> = Bound<'py, PyArray1<f64>>;
 
@@ -39,24 +40,42 @@ impl Body {
         Ok(Body { inner, error })
     }
 
-    /// Creep compliance at times: 1/Pa, of the modulus that the material was given in.
-    fn creep<'py>(&self, py: Python<'py>, times: PyReadonlyArray1<'_, f64>) -> Curve<'py> {
-        map(py, times, |t| self.inner.material.creep().value(t))
+    /// "young" or "shear": the modulus that the material was given in.
+    #[getter]
+    fn measure(&self) -> &'static str {
+        choice::word(&self.inner.material.measure())
     }
 
-    /// Relaxation modulus at times: Pa.
-    fn relaxation<'py>(&self, py: Python<'py>, times: PyReadonlyArray1<'_, f64>) -> PyResult<Curve<'py>> {
-        let relaxation = self.inner.material.relaxation().map_err(|error| raised(py, error))?;
+    /// Creep compliance at times: 1/Pa, of the modulus `measure`.
+    fn creep<'py>(
+        &self,
+        py: Python<'py>,
+        times: PyReadonlyArray1<'_, f64>,
+        measure: &str,
+    ) -> PyResult<Curve<'py>> {
+        let creep = self.of(py, measure)?;
+        Ok(map(py, times, |t| creep.value(t)))
+    }
+
+    /// Relaxation modulus `measure` at times: Pa.
+    fn relaxation<'py>(
+        &self,
+        py: Python<'py>,
+        times: PyReadonlyArray1<'_, f64>,
+        measure: &str,
+    ) -> PyResult<Curve<'py>> {
+        let relaxation = self.of(py, measure)?.to_relaxation().map_err(|error| raised(py, error))?;
         Ok(map(py, times, |t| relaxation.value(t)))
     }
 
-    /// Storage and loss modulus at angular frequencies: Pa.
+    /// Storage and loss modulus of the modulus `measure` at angular frequencies: Pa.
     fn complex<'py>(
         &self,
         py: Python<'py>,
         omega: PyReadonlyArray1<'_, f64>,
+        measure: &str,
     ) -> PyResult<(Curve<'py>, Curve<'py>)> {
-        let creep = self.inner.material.creep();
+        let creep = self.of(py, measure)?;
         let (storage, loss): (Vec<f64>, Vec<f64>) =
             omega.as_array().iter().map(|w| creep.modulus(*w)).unzip();
         Ok((storage.into_pyarray(py), loss.into_pyarray(py)))
@@ -86,6 +105,13 @@ impl Body {
         let relaxation = self.inner.material.relaxation().map_err(|error| raised(py, error))?;
         let terms = relaxation.terms.iter().map(|term| (term.modulus, term.relaxation_time)).collect();
         Ok((relaxation.equilibrium, terms))
+    }
+}
+
+impl Body {
+    /// The creep function of the modulus `measure`.
+    fn of(&self, py: Python<'_>, measure: &str) -> PyResult<Creep> {
+        self.inner.creep(choose("measure", measure)?).map_err(|error| raised(py, error))
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use asperity_io::case::Case;
+use asperity_io::converge::{ConvergeError, ConvergeOptions};
 use asperity_io::session::{self, RunOptions};
 use asperity_io::store::Reader;
 use asperity_report::page;
@@ -74,6 +75,35 @@ pub fn run<'py>(
     out.set_item("steps", summary.rows)?;
     entries!(out, summary; wall_s convolutions iterations peak_memory_bytes result);
     Ok(out)
+}
+
+/// The answers of a case with their errors, as JSON.
+#[pyfunction]
+#[pyo3(signature = (path, text, overrides, refine))]
+pub fn converge(
+    py: Python<'_>,
+    path: PathBuf,
+    text: Option<String>,
+    overrides: Vec<String>,
+    refine: bool,
+) -> PyResult<String> {
+    let interrupt = Arc::new(AtomicBool::new(false));
+    let options = ConvergeOptions { refine, interrupt: interrupt.clone() };
+    let of = |more: &[String]| {
+        let keys = [&overrides, more].concat();
+        match &text {
+            Some(text) => Case::parse(text, &path, &keys),
+            None => Case::read(&path, &keys),
+        }
+    };
+    let found =
+        without_python(py, &interrupt, || asperity_io::converge::converge(&of, None, &options, &mut |_| {}))?;
+    let found = found.map_err(|failed| match failed {
+        ConvergeError::Case(errors) => error::case(errors),
+        ConvergeError::Run { source, .. } => error::run(py, *source),
+        other => error::file(other),
+    })?;
+    serde_json::to_string(&found.bars).map_err(error::file)
 }
 
 /// What a case will do, and what was found about it, as JSON.

@@ -11,7 +11,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, file};
+use crate::error::{CaseError, file, of_path};
 use crate::given::choose;
 use crate::wait::detached;
 
@@ -51,7 +51,7 @@ impl Store {
 impl Store {
     #[new]
     fn new(path: PathBuf) -> PyResult<Store> {
-        let reader = Reader::open(&path).map_err(file)?;
+        let reader = Reader::open(&path).map_err(|error| of_path(&path, error))?;
         Ok(Store {
             #[cfg(unix)]
             directory: std::fs::File::open(&path).map_err(file)?,

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use asperity::Grid;
 use asperity::surface::profile::{self, ProfileParameters};
 use asperity::surface::statistics::{
-    Autocorrelation, BearingCurve, Extent, RadialSpectrum, Rings, SelfAffineFit, Summary, height_distribution,
+    Autocorrelation, BearingCurve, Extent, PowerSpectrum, Rings, SelfAffineFit, Summary, height_distribution,
 };
 use asperity::surface::{Part, Surface, undeformed_gap};
 use asperity_io::case::{fragment, given};
@@ -199,9 +199,10 @@ impl Heights {
     }
 
     /// Wavenumbers and radially averaged power spectrum.
-    fn power_spectrum<'py>(&self, py: Python<'py>, per_decade: u32) -> PyResult<Curve<'py>> {
+    fn power_spectrum<'py>(&self, py: Python<'py>, per_decade: u32, periodic: bool) -> PyResult<Curve<'py>> {
         let rings = if per_decade == 0 { Rings::Linear } else { Rings::PerDecade(per_decade) };
-        let spectrum = self.found(py, |surface| RadialSpectrum::of(&surface, rings))?;
+        let spectrum =
+            self.found(py, |surface| PowerSpectrum::within(&surface, extent(periodic))?.radial(rings))?;
         Ok((spectrum.wave_number.into_pyarray(py), spectrum.power.into_pyarray(py)))
     }
 

@@ -57,8 +57,31 @@ def test_a_contact_has_what_a_row_has(rough, tmp_path):
     again = pickle.loads(pickle.dumps(contact))
     assert np.array_equal(again.pressure, contact.pressure) and not again.pressure.flags.writeable
     assert repr(copy.copy(contact)) == repr(contact) and len(repr(contact)) < 200
+    # A copy plans the same contact again: the same bits.
+    assert again.stiffness == contact.stiffness == copy.deepcopy(contact).stiffness
+    assert not again.initial_gap.flags.writeable and asp.elastic(rough, E, load=contact.load, boundary="periodic", start=again)._planned is again._planned
     data = pytest.importorskip("xarray") and contact.to_xarray()
     assert data.pressure.dims == ("x", "y") and float(data.contact_fraction) == contact.contact_fraction
+
+
+def test_a_curve_is_indexed_by_what_was_prescribed():
+    xarray = pytest.importorskip("xarray")
+    pressures = [1e5, 3e5, 1e6]
+    surfaces = [
+        asp.Surface.self_affine(cells=(32, 32), size=(1e-3, 1e-3), hurst=0.8, rms_gradient=0.1, longest=5e-4, shortest=1e-4, seed=seed)
+        for seed in range(3)
+    ]
+    curves = [asp.elastic(surface, E, pressure=pressures, boundary="periodic") for surface in surfaces]
+    data = xarray.concat([curve.to_xarray() for curve in curves], dim="seed", join="outer")
+    assert data.mean_pressure.values.tolist() == pressures and data.sizes["seed"] == 3 and data.mean_pressure.attrs["units"] == "Pa"
+    assert np.isfinite(data.contact_fraction).all() and data.pressure.dims == ("seed", "mean_pressure", "x", "y")
+    # The load is what was computed, and meets the pressure to the tolerance of the solver.
+    assert np.allclose(data["load"] / 1e-6, pressures, rtol=1e-6)
+    assert curves[0][1:].to_xarray().mean_pressure.values.tolist() == pressures[1:]
+    loads = asp.elastic(surfaces[0], E, load=[0.1, 0.3], boundary="periodic").to_xarray()
+    assert loads["load"].values.tolist() == [0.1, 0.3] and loads.contact_area.dims == ("load",)
+    heights = asp.elastic(surfaces[0], E, approach=[1e-7, 3e-7], boundary="periodic").to_xarray()
+    assert heights.approach.values.tolist() == [1e-7, 3e-7] and heights["load"].dims == ("approach",)
 
 
 def test_controls_agree(rough):

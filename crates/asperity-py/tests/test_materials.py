@@ -25,6 +25,23 @@ def test_a_standard_linear_solid_is_the_zener_solid_of_the_same_relaxation():
     assert np.allclose(maxwell.creep_compliance(T), zener.creep_compliance(T), rtol=1e-12, atol=0)
 
 
+def test_a_material_gives_the_modulus_that_is_asked_for():
+    # E = 2 (1 + nu) G; with a bulk modulus B, 1/E = 1/(3 G) + 1/(9 B) for creep functions. Only rounding and the conversion differ, 1e-12.
+    glass = asp.Maxwell(shear=1e9, relaxation_time=2.0, poisson=0.3)
+    assert glass.measure == "shear" and asp.Prony(**PMMA, poisson=0.3).measure == "young"
+    assert np.allclose(glass.relaxation_modulus(T, measure="young"), 2.6e9 * np.exp(-T / 2), rtol=1e-12, atol=0)
+    assert np.allclose(glass.relaxation_modulus(T, measure="shear"), glass.relaxation_modulus(T), rtol=0, atol=0)
+    assert np.allclose(glass.creep_compliance(T, measure="young") * 2.6, glass.creep_compliance(T), rtol=1e-12, atol=0)
+    resin = asp.Zener(shear=1e9, shear_kelvin=1e9, retardation_time=2.0, bulk_modulus=5e9)
+    young = resin.creep_compliance(T, measure="young")
+    assert np.allclose(young, resin.creep_compliance(T) / 3 + 1 / 45e9, rtol=1e-12, atol=0)
+    storage, loss = resin.storage_loss(1 / T, measure="young")
+    shear = np.array([1, 1j]) @ resin.storage_loss(1 / T)
+    assert np.allclose(storage + 1j * loss, 9 * 5e9 * shear / (15e9 + shear), rtol=1e-12, atol=0)
+    # Young's modulus of an elastic end: 9 B G/(3 B + G).
+    assert float(resin.relaxation_modulus(0.0, measure="young")) == pytest.approx(45e9 / 16, rel=1e-12)
+
+
 def test_a_relaxation_test_gives_the_material_back():
     pmma = asp.Prony(**PMMA, poisson=0.38)
     fit = asp.fit_relaxation(T, pmma.relaxation_modulus(T), poisson=0.38, hardness=300e6, name="PMMA")
@@ -88,6 +105,46 @@ def test_a_file_is_fitted_as_the_command_does(tmp_path):
         asp.fit_file(tmp_path / "bad.csv")
     with pytest.raises(asp.CaseError, match="stress"):
         asp.fit_file(path, columns={"stress": 1})
+
+
+def test_the_material_of_a_fit_knows_the_times_of_its_data(tmp_path):
+    pmma = asp.Prony(**PMMA, poisson=0.38)
+    table = np.column_stack([T, pmma.relaxation_modulus(T)])
+    np.savetxt(tmp_path / "pmma.csv", table, delimiter=",", header="t/s,E(t)/Pa", comments="")
+    fit = asp.fit_file(tmp_path / "pmma.csv", poisson=0.38)
+    assert fit.material.window == fit.window and fit.material.window == pytest.approx((T[0], T[-1]))
+    sphere = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=5e-3)
+    case = """
+domain = { cells = [16, 16], size = ["1 mm", "1 mm"] }
+surface = [{ kind = "sphere", radius = "5 mm" }]
+load = { control = "load", history = { kind = "step", value = "0.1 N" } }
+time = { end = "1e5 s", steps = 4 }
+
+[[body]]
+poisson = 0.38
+"""
+    (tmp_path / "file.toml").write_text(case + 'material = { model = "relaxation-table", modulus = "young", path = "pmma.csv" }')
+    (tmp_path / "block.toml").write_text(case + fit.case_block)
+
+    def told(findings):
+        return [(one["value"], one["limit"]) for one in findings if one["code"] == "beyond-material-data"]
+
+    # A run of 1e5 s needs times that were not measured: the same finding by file, by the printed block and in Python.
+    expected = told(asp.check(tmp_path / "file.toml")["findings"])
+    assert expected == [(1e5, pytest.approx(T[-1]))]
+    assert told(asp.check(tmp_path / "block.toml")["findings"]) == expected
+    for material in (fit.material, pickle.loads(pickle.dumps(fit.material)), fit.with_body(poisson=0.38)):
+        with pytest.warns(asp.ResultWarning, match="beyond-material-data"):
+            result = asp.solve(sphere, material, load=0.1, times=asp.uniform(1e5, 4))
+        assert told(result.findings) == expected
+    assert not told(asp.solve(sphere, fit.material, load=0.1, times=asp.uniform(100.0, 4)).findings)
+    # A fractional model is a sum of exponentials, that holds only where it was fitted.
+    springpot = asp.Springpot(shear=1e6, time=1.0, order=0.3, window=(1e-2, 1e3), poisson=0.5)
+    with pytest.warns(asp.ResultWarning, match="beyond-material-data"):
+        asp.solve(sphere, springpot, load=1e-3, times=asp.uniform(1e5, 4))
+    with pytest.raises(asp.CaseError, match="window"):
+        asp.Prony(**PMMA, poisson=0.38, window=(2.0, 1.0))
+    assert asp.Prony(**PMMA, poisson=0.38, window=(1.0, 2.0)) != pmma
 
 
 def test_the_header_of_a_file_says_which_modulus_it_holds(tmp_path):

@@ -262,3 +262,25 @@ def test_the_stress_below_a_line(tmp_path):
     assert np.allclose(below.yy, 0.3 * (below.xx + below.zz), atol=1e-12) and not below.xy.any()
     with pytest.raises(asp.CaseError, match="one length"):
         asp.stress(pressure, size=(1.0, 1.0), poisson=0.3)
+
+
+def test_a_histogram_that_ends_too_low_says_what_it_leaves_out():
+    sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=5e-3)
+    body = asp.Elastic(young=1e9, poisson=0.5)
+
+    def solve(**ends):
+        return asp.solve(sphere, body, load=0.5, times=[1.0], quantities=["pressure_histogram", "gap_histogram"], bins=7, **ends)
+
+    with pytest.warns(asp.ResultWarning, match="beyond-histogram"):
+        low = solve(largest_pressure=1e7)
+    found = {finding.text.split()[0]: finding for finding in low.findings if finding.code == "beyond-histogram"}
+    pressure = low.field("pressure", time=1.0)
+    # The share is counted in the field; sums over seven bins round.
+    assert found["pressure_histogram"].value == pytest.approx(np.mean(pressure[pressure > 0] > 1e7), rel=1e-9)
+    assert found["pressure_histogram"].limit == 1e7 and "largest_pressure=" in found["pressure_histogram"].text
+    assert set(found) == {"pressure_histogram"}
+    with pytest.warns(asp.ResultWarning, match="largest_gap="):
+        solve(largest_pressure=1e10, largest_gap=1e-6)
+    assert not [one for one in solve(largest_pressure=1e10).findings if one.code == "beyond-histogram"]
+    with pytest.raises(asp.CaseError, match="largest_pressure"):
+        asp.solve(sphere, body, load=0.5, times=[1.0], quantities=["pressure_histogram"])

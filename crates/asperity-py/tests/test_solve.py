@@ -1,5 +1,6 @@
 """The package against closed forms and against the command: physics, bits, and what it says of wrong input."""
 
+import json
 import math
 import os
 import pickle
@@ -514,3 +515,41 @@ def test_an_elastic_contact_takes_a_hardness_for_each_cell():
 def test_more_steps_than_there_may_be_are_refused_before_memory_is_taken(sphere):
     with pytest.raises(asp.CaseError, match="steps is 1000000000000"):
         asp.solve(sphere, asp.Zener(**ZENER), load=1.0, times=asp.uniform(1.0, 10**12))
+
+
+def test_a_march_is_steered_between_rows(tmp_path):
+    sphere = asp.Surface.sphere(cells=(24, 24), size=(1e-3, 1e-3), radius=10e-3)
+    zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+    times = asp.uniform(4.0, 16)
+    run = asp.march(sphere, zener, load=asp.ramp(2e-3, duration=1.0), times=times)
+    with pytest.raises(asp.CaseError, match="after the first row"):
+        run.prescribe(load=1e-3)
+    for row in run:
+        if row.time == 2.0 and row.stage == 0:
+            run.prescribe(approach=asp.hold())
+        if row.time == 3.0 and row.stage == 1:
+            with pytest.raises(asp.CaseError, match="^history.value is -0.001, but must be a force not less than 0"):
+                run.prescribe(load=-1e-3)
+            with pytest.raises(asp.CaseError, match="exactly one"):
+                run.prescribe(load=1e-3, approach=1e-6)
+            run.prescribe(pressure=1e-3 / 1e-6)
+    steered = run.result()
+    # The same as stages that end at these times, to the last bit.
+    planned = asp.solve(sphere, zener, times=times, progress=False, stages=[
+        asp.Stage(load=asp.ramp(2e-3, duration=1.0), duration=2.0),
+        asp.Stage(approach=asp.hold(), duration=1.0),
+        asp.Stage(pressure=1e-3 / 1e-6),
+    ])
+    for name in ("time", "load", "approach", "stage", "contact_area"):
+        assert np.array_equal(getattr(steered, name), getattr(planned, name)), name
+    steered.save(tmp_path / "steered.zarr")
+    told = json.loads(asp.open(tmp_path / "steered.zarr").attributes["setup"])["prescribed"]
+    assert [(one["row"], one["control"], one["history"]["kind"]) for one in told] == [(9, "approach", "hold"), (13, "pressure", "step")]
+    assert steered.attributes["status"] == "complete" and len(run) == len(steered)
+    with pytest.raises(asp.CaseError, match="before its last one"):
+        run.prescribe(load=1e-3)
+    # A line contact takes a load per length.
+    line = asp.march(asp.Surface.cylinder(cells=64, size=2e-3, radius=10e-3), zener, load=1.0, times=[0.5, 1.0])
+    next(line)
+    line.prescribe(load=asp.ramp_to(2.0, duration=0.5))
+    assert [row.load for row in line] == pytest.approx([2.0, 2.0], rel=1e-9)

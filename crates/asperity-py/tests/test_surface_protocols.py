@@ -1,5 +1,7 @@
 """Surfaces as numbers: arithmetic, arrays, equality, xarray, and files that numpy wrote."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,25 @@ import asperity as asp
 @pytest.fixture(scope="module")
 def rough():
     return asp.Surface.self_affine(cells=(24, 20), size=(1e-3, 8e-4), hurst=0.8, rms_height=1e-6, longest=5e-4, shortest=2e-4, seed=3)
+
+
+RUBBER = asp.Elastic(young=1e6, poisson=0.5)
+
+
+class LineScan:
+    """As a NonuniformLineScan of SurfaceTopography: heights at positions with any distances."""
+
+    unit, is_uniform, is_periodic, info = "mm", False, False, {"instrument": "stylus"}
+
+    def __init__(self, positions, heights):
+        self.at, self.values = np.asarray(positions), np.asarray(heights)
+        self.physical_sizes = (self.at[-1] - self.at[0],)
+
+    def positions(self):
+        return self.at
+
+    def heights(self):
+        return self.values
 
 
 class Topography:
@@ -55,7 +76,15 @@ def test_a_surface_is_an_array_and_equals_another(rough):
 def test_a_topography_and_a_labelled_array_are_surfaces(rough):
     measured = asp.Surface(Topography(rough))
     assert np.allclose(measured.heights, rough.heights, rtol=1e-12) and measured.size == pytest.approx(rough.size, rel=1e-12)
-    # What does not repeat is not taken as periodic.
+    # What does not repeat is not taken as periodic; what does is not pressed as a single body without a word.
+    repeating = Topography(rough)
+    repeating.is_periodic = True
+    for press in (lambda **how: asp.elastic(repeating, 1e9, load=0.1, **how), lambda **how: asp.solve(repeating, RUBBER, load=1e-3, times=[1.0], **how)):
+        with pytest.warns(asp.ResultWarning, match='boundary="periodic"'):
+            press()
+        with warnings.catch_warnings():
+            warnings.filterwarnings("error", message=".*topography is periodic")
+            press(boundary="periodic")
     assert measured._repeats(None) is False and (measured * 2)._repeats(None) is False and (measured + rough)._repeats(None) is False
     pytest.importorskip("xarray")
     assert asp.Surface(rough.to_xarray()).size == pytest.approx(rough.size, rel=1e-12)
@@ -94,6 +123,36 @@ def test_spectra_keep_the_variance(rough):
     assert np.sum(c) * q[0] / np.pi == pytest.approx(1e-12, rel=1e-9)
     with pytest.raises(asp.CaseError, match="fill"):
         asp.Surface(np.where(rough.heights > 1e-6, np.nan, rough.heights), size=rough.size).power_spectrum_2d()
+
+
+def check_line_scan(scan):
+    """A ridge at 0.1 mm of 1 mm, whose flanks rise by 0.01 per length, measured finely there and coarsely elsewhere."""
+    with pytest.warns(asp.ResultWarning, match="not evenly spaced.*6 points"):
+        profile = asp.Surface(scan)
+    # Cells as long as the shortest distance, 0.05 mm; the highest ones lie half a cell beside the ridge.
+    assert profile.cells == (20,) and profile.size == pytest.approx((1e-3,)) and "6 points" in profile.history[0]
+    assert profile.x[np.argmax(profile.heights)] == pytest.approx(0.1e-3, abs=0.026e-3)
+    exact = np.maximum(0.0, 1e-6 - 0.01 * np.abs(profile.x - 0.1e-3))
+    assert np.allclose(profile.heights, exact, atol=1e-15)
+    assert not profile._repeats(None)
+    return profile
+
+
+def test_a_line_scan_of_uneven_distances_keeps_its_positions():
+    positions = [0.0, 0.05, 0.1, 0.15, 0.2, 1.0]
+    heights = [0.0, 0.5e-3, 1e-3, 0.5e-3, 0.0, 0.0]
+    assert check_line_scan(LineScan(positions, heights)).metadata["metadata"] == [("instrument", "stylus")]
+    with pytest.warns(asp.ResultWarning, match="not resolved"):
+        assert asp.Surface(LineScan([0.0, 1e-6, 1.0], [0.0, 0.0, 1e-3])).cells == (30,)
+    with pytest.raises(asp.CaseError, match="rise"):
+        asp.Surface(LineScan([0.0, 0.5, 0.5, 1.0], [0.0, 0.0, 1e-3, 0.0]))
+    with pytest.raises(asp.CaseError, match="leave size out"):
+        asp.Surface(LineScan(positions, heights), size=2e-3)
+    package = pytest.importorskip("SurfaceTopography")
+    check_line_scan(package.NonuniformLineScan(np.array(positions), np.array(heights), unit="mm"))
+    topography = package.Topography(np.eye(8), (1.0, 1.0), periodic=True, unit="mm")
+    with pytest.warns(asp.ResultWarning, match='boundary="periodic"'):
+        asp.elastic(topography, 1e9, load=0.1)
 
 
 def test_names_and_words():

@@ -1,7 +1,7 @@
 """Misspelt words and values of the wrong kind are told at once, with what was meant."""
 
-import copy
 import inspect
+import pathlib
 import warnings
 
 import numpy as np
@@ -36,13 +36,17 @@ def test_words_get_a_hint(ball, zener):
         (lambda: asp.solve(ball, zener, fields=["presure"], **solve), "did you mean 'pressure'"),
         (lambda: asp.solve(ball, zener, quantities=["contact_spot"], **solve), "did you mean 'contact_spots'"),
         (lambda: contact.to_result().field("presure"), "did you mean 'pressure'"),
+        (lambda: asp.elastic("rough.sur", 1e9, load=1.0), r"Surface\.read\('rough.sur'\)"),
+        (lambda: asp.solve(pathlib.Path("rough.sur"), zener, **solve), r"Surface\.read\('rough.sur'\)"),
+        (lambda: zener.relaxation_modulus(1.0, measure="bulk"), "'young' or 'shear'"),
         (lambda: asp.Stage(load=1.0, until="contact-los"), "'contact-lost'"),
+        (lambda: asp.Stage(load=1.0, until=lambda row: row.load > 1.0), "until is <function.*'contact-lost'"),
+        (lambda: asp.Stage(load=1.0, until=("load", 1.0, 2.0)), "'contact-lost'"),
         (lambda: asp.Stage(load=1.0, until=("aproach", 1.0)), "did you mean 'approach'"),
         (lambda: asp.Layer(thickness=1.0, material=zener, interface="glued"), "'bonded' or 'slip'"),
         (lambda: asp.persson_friction(ball, zener, pressure=1.0, velocities=[1.0], correction="persn"), "'yang-persson' or 'none'"),
         (lambda: asp.solve(ball, zener, on_step=5, **solve), "on_step is 5"),
         (lambda: asp.run({}, set={"load.history.value": object()}), "load.history.value is .*as text"),
-        (lambda: copy.deepcopy(contact).stiffness, "not by a copy"),
     ):
         with pytest.raises(asp.CaseError, match=told):
             wrong()
@@ -124,3 +128,9 @@ def test_counts_stay_whole_numbers_on_disk(ball, zener, tmp_path):
     held = asp.solve(ball, zener, load=1e-3, times=[1.0])
     for name in ("iterations", "convolutions", "stage"):
         assert getattr(result, name).dtype == getattr(held, name).dtype == np.int64
+
+
+def test_a_missing_file_is_one(tmp_path):
+    for read in (asp.Surface.read, asp.fit_file, asp.open, asp.shift_table, asp.run, asp.check):
+        with pytest.raises(FileNotFoundError, match="none"):
+            read(tmp_path / "none.x3p")

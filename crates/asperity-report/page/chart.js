@@ -11,15 +11,18 @@ function suited(low, high) {
   return decades > 3 ? Math.sqrt(low * high) : high;
 }
 
-/** Ends of an axis for values from `low` to `high`: `room` on both sides, but none below or above zero. */
+/** Room between the curves and the frame, as shares of what the axes show. */
+const ROOM = { x: 0.02, y: 0.05 };
+
+/** Ends of an axis for values from `low` to `high`, with `room` on both sides. */
 function ends(low, high, log, room) {
   // What differs by rounding only is one value.
   if (high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high))) {
     if (log) return [low / 2, high * 2];
-    return low === 0 ? [0, 1] : [low - 0.1 * Math.abs(low), high + 0.1 * Math.abs(high)];
+    return low === 0 ? [-room, 1] : [low - 0.1 * Math.abs(low), high + 0.1 * Math.abs(high)];
   }
   if (log) return [low * Math.pow(low / high, room), high * Math.pow(high / low, room)];
-  return [low === 0 ? 0 : low - room * (high - low), high === 0 ? 0 : high + room * (high - low)];
+  return [low - room * (high - low), high + room * (high - low)];
 }
 
 /** A curve whose x goes back and forth. */
@@ -49,6 +52,8 @@ class Chart {
     this.pick = pick;
     this.chosen = {};
     this.hidden = new Set();
+    // Ends of the axes of a zoom; null for all of the curves.
+    this.view = { x: null, y: null };
     this.heading = make("h3");
     this.switches = make("span", { class: "switches", role: "group", "aria-label": "Axes" });
     this.legend = make("div", { class: "legend", "aria-live": "polite" });
@@ -77,9 +82,7 @@ class Chart {
     this.plot.setAttribute("aria-label", `${spec.title || spec.y.label} over ${spec.x.label}; arrow keys read values`);
     if (!this.uplot || this.words() || this.drawn !== this.form()) return this.build();
     this.notes();
-    const zoomed = this.zoomed();
-    this.uplot.setData(this.data(), !zoomed);
-    if (zoomed) this.uplot.redraw();
+    this.uplot.setData(this.data());
   }
 
   /** The note of the chart, and what a logarithmic axis leaves out. */
@@ -104,9 +107,29 @@ class Chart {
 
   /** Shows x from `low` to `high`; all of it without ends. */
   window(low, high) {
-    if (!this.uplot) return;
-    const [from, to] = low === undefined ? this.whole : [low, high];
-    this.uplot.setScale("x", { min: from, max: to });
+    this.zoom(low === undefined ? { x: null, y: null } : { x: [low, high], y: null });
+  }
+
+  /** Shows what lies between these ends of x and y; all of an axis whose ends are null. */
+  zoom(view) {
+    this.view = view;
+    this.uplot?.setData(this.uplot.data);
+  }
+
+  /** The charts that have one zoom along x with this one, itself among them. */
+  group() {
+    return this.shared ? charts.filter((chart) => chart.shared === this.shared) : [this];
+  }
+
+  /** Shows what a drag has selected; a drag along one axis leaves the other as it is. */
+  selected(u) {
+    const { left, top, width, height } = u.select;
+    if (Chart.dragged !== this || !(width > 0 && height > 0)) return;
+    const across = width < u.over.clientWidth - 1, up = height < u.over.clientHeight - 1;
+    const x = across ? [u.posToVal(left, "x"), u.posToVal(left + width, "x")] : this.view.x;
+    const y = up ? [u.posToVal(top + height, "y"), u.posToVal(top, "y")] : this.view.y;
+    u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    this.group().forEach((chart) => chart.zoom({ x, y: chart === this ? y : chart.view.y }));
   }
 
   isLog(key) {
@@ -129,14 +152,6 @@ class Chart {
     return [x, y, ...this.spec.series.map((series) => series.name)].join();
   }
 
-  /** The ends of the zoomed axes that the chart still has once it is built again. */
-  zoom() {
-    if (!this.uplot) return {};
-    const now = this.axes(), whole = { x: this.whole, y: this.up };
-    const isKept = ([key, { min, max }]) => now[key] === this.drawnAxes[key] && (min !== whole[key][0] || max !== whole[key][1]);
-    return Object.fromEntries(["x", "y"].map((key) => [key, this.uplot.scales[key]]).filter(isKept).map(([key, { min, max }]) => [key, { min, max }]));
-  }
-
   /** What stands in place of the curves: null where there is something to draw. */
   words() {
     const { series, zero, none, x } = this.spec;
@@ -154,7 +169,7 @@ class Chart {
     const x = Array.from(series[0].x, (value) => place(value, logX));
     const y = series.map((one) => Array.from(one.y, (value) => place(value, logY)));
     const shown = x.filter((value) => value !== null);
-    this.whole = ends(shown.reduce((a, b) => Math.min(a, b), Infinity), shown.reduce((a, b) => Math.max(a, b), -Infinity), logX, 0);
+    this.whole = ends(shown.reduce((a, b) => Math.min(a, b), Infinity), shown.reduce((a, b) => Math.max(a, b), -Infinity), logX, ROOM.x);
     if (free) return [null, ...y.map((values) => [x, values])];
     return [x, ...y].map((values) => values.filter((_, n) => x[n] !== null));
   }
@@ -211,8 +226,8 @@ class Chart {
     return {
       ...this.size(), mode: free ? 2 : 1, padding: [8, 14, 0, 0], pxAlign: 0,
       scales: {
-        x: { time: false, distr: this.isLog("x") ? 3 : 1, range: (u, low, high) => this.across(u, low, high) },
-        y: { distr: this.isLog("y") ? 3 : 1, range: (u, low, high) => (this.up = y.states ? [-0.2, y.states.length - 0.8] : low === null ? [1, 10] : ends(low, high, this.isLog("y"), 0.05)) },
+        x: { time: false, distr: this.isLog("x") ? 3 : 1, range: () => this.view.x ?? this.whole },
+        y: { distr: this.isLog("y") ? 3 : 1, range: (u, low, high) => this.view.y ?? (y.states ? [-0.2, y.states.length - 0.8] : low === null ? [1, 10] : ends(low, high, this.isLog("y"), ROOM.y)) },
       },
       axes: [this.axis("x"), this.axis("y")],
       series: [free ? {} : { label: x.label, value: (u, v) => (v === null || v === undefined ? "" : words(v, x.unit || "")) }, ...series],
@@ -222,35 +237,30 @@ class Chart {
       },
       cursor: {
         y: false, points: { size: 8, width: 0, stroke: (u, k) => css(`--c${(k - 1) % 4}`), fill: (u, k) => css(`--c${(k - 1) % 4}`) },
-        drag: { x: true, y: true, uni: 24, dist: 4 },
+        // The ends of a zoom are kept here: uPlot does not take ends that lie less than 1e-16 apart, as those of leak rates do.
+        drag: { x: true, y: true, uni: 24, dist: 4, setScale: false },
+        bind: { dblclick: () => () => this.group().forEach((chart) => chart.window()) },
         ...(free ? { dataIdx: (u, k) => this.nearest(u, k) } : {}),
         ...(this.shared ? { sync: { key: this.shared, scales: ["x", null] } } : {}),
       },
       hooks: {
         setSeries: [(u, k) => { if (k === null) return; const { name } = spec.series[k - 1]; u.series[k].show ? this.hidden.delete(name) : this.hidden.add(name); }],
+        setSelect: [(u) => this.selected(u)],
         draw: [() => { this.lines(); this.back && (this.back.hidden = !this.zoomed()); }],
       },
     };
   }
 
-  /** The ends of x: those of a zoom, or all of it where uPlot asks for the first and the last point. */
-  across(u, low, high) {
-    if (this.spec.free) return this.whole;
-    const first = u.data[0][0], last = u.data[0].at(-1);
-    return first === last || (low === first && high === last) || !(low < high) ? this.whole : [low, high];
-  }
-
   zoomed() {
-    if (!this.uplot) return false;
-    const { x, y } = this.uplot.scales;
-    return x.min !== this.whole[0] || x.max !== this.whole[1] || y.min !== this.up[0] || y.max !== this.up[1];
+    return Boolean(this.view.x || this.view.y);
   }
 
   build() {
-    const zoom = this.zoom();
     this.uplot?.destroy();
     this.uplot = null;
-    [this.drawn, this.drawnAxes] = [this.form(), this.axes()];
+    const now = this.axes();
+    for (const key of ["x", "y"]) if (this.drawnAxes?.[key] !== now[key]) this.view[key] = null;
+    [this.drawn, this.drawnAxes] = [this.form(), now];
     const words = this.words();
     this.notes();
     this.buttons(words ? [] : ["x", "y"]);
@@ -258,7 +268,7 @@ class Chart {
     if (words) return this.legend.replaceChildren();
     this.uplot = new uPlot(this.options(), this.data(), this.plot);
     this.reserve();
-    for (const [key, ends] of Object.entries(zoom)) this.uplot.setScale(key, ends);
+    this.uplot.over.addEventListener("mousedown", () => (Chart.dragged = this));
     this.uplot.over.addEventListener("click", () => this.pick?.(this.uplot.posToVal(this.uplot.cursor.left, "x")));
     for (const name of this.legend.querySelectorAll("tr:not(:first-child) th, .u-series:only-child th")) {
       name.tabIndex = 0;
@@ -287,8 +297,7 @@ class Chart {
     this.back = make("button", { type: "button", class: "small back" }, "show all");
     this.back.hidden = true;
     this.back.addEventListener("click", () => {
-      const group = this.shared ? charts.filter((chart) => chart.shared === this.shared) : [this];
-      group.forEach((chart) => chart.window());
+      this.group().forEach((chart) => chart.window());
     });
     this.switches.replaceChildren(this.back, ...keys.filter((key) => this.canLog(key)).map(one));
   }

@@ -34,14 +34,26 @@ function robust(map, contact) {
 function robustLog(map, contact) {
   const values = sorted(map, contact).filter((value) => value > 0), most = values[values.length - 1];
   if (!values.length) return [0.1, 1];
-  return [Math.max(values[Math.ceil(OUTLIERS * (values.length - 1))], most * Math.pow(10, -DECADES)), most];
+  return [Math.max(values[Math.ceil(OUTLIERS * (values.length - 1))], most * Math.pow(10, -DECADES)), map.most ?? most];
 }
 
 /** The ends of one map of a field. */
 function endsOf(map, kind, log, contact) {
   if (kind.colours === "states") return [0, 2];
   if (log) return robustLog(map, contact);
-  return kind.colours === "pressure" ? [0, map.max] : robust(map, contact);
+  return kind.colours === "pressure" ? [0, fence(map)] : robust(map, contact);
+}
+
+/**
+ * The greatest pressure that the colours show: the outer fence Q3 + 3 (Q3 - Q1) of the positive values where those beyond it take
+ * more than a third of their range (the edge of a punch, a single asperity), else the greatest value. Tukey, Exploratory Data Analysis, 1977.
+ */
+function fence(map) {
+  const values = sorted(map), first = values.findIndex((value) => value > 0), count = values.length - first;
+  const most = map.most ?? map.max;
+  if (first < 0 || count < 100) return most;
+  const [low, high] = [1, 3].map((n) => values[first + Math.floor((n * count) / 4)]);
+  return most > 1.5 * (high + 3 * (high - low)) ? high + 3 * (high - low) : most;
 }
 
 /** Least and greatest value of a map, without contact where its states are given; null where none is left. */

@@ -98,8 +98,10 @@ function mapsPart() {
   if ($("maps").hidden) return;
   fieldControls();
   $("map-note").textContent = state.note;
-  chosen.instant = state.instants.length - 1;
-  $("instant").max = chosen.instant;
+  // The last maps with contact: without, they are empty.
+  const touching = state.running ? -1 : state.instants.findLastIndex(({ row }) => state.series.contact_area[row] > 0);
+  chosen.instant = touching < 0 ? state.instants.length - 1 : touching;
+  $("instant").max = state.instants.length - 1;
   $("instant").addEventListener("input", () => {
     chosen.instant = Number($("instant").value);
     showMap();

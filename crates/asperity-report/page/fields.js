@@ -21,6 +21,13 @@ const CELLS = 3e7;
 const fromRows = (kind) => state.live && kind.colours === "pressure" && !limitsOf(kind).log;
 const canShare = (kind) => !state.live || fromRows(kind) || state.instants.length * state.grid.cells.reduce((a, b) => a * b) <= CELLS;
 
+/** The map of a stored time; `most` is its greatest value, also where the map holds means over blocks of cells. */
+async function mapOf(kind, n) {
+  const map = await load(`${kind.name}-${n}`);
+  if (map && kind.name === "pressure") map.most = Math.max(map.max, state.series.max_pressure[state.instants[n].row] ?? 0);
+  return map;
+}
+
 /** Ends that are common to all instants. */
 async function commonEnds(kind, log) {
   if (fromRows(kind)) return [0, Math.max(...state.instants.map(({ row }) => state.series.max_pressure[row] ?? 0))];
@@ -28,7 +35,7 @@ async function commonEnds(kind, log) {
   for (let n = 0; n < state.instants.length; n++) {
     const key = `${kind.name} ${log} ${n}`;
     if (!single.has(key)) {
-      const map = await load(`${kind.name}-${n}`);
+      const map = await mapOf(kind, n);
       single.set(key, map && (map.max > 0 || !log) ? endsOf(map, kind, log, await contactOf(kind, n)) : [Infinity, -Infinity]);
     }
     const [a, b] = single.get(key);
@@ -50,7 +57,7 @@ async function coloured(kind, map, contact) {
   if (low === high) high = low === 0 ? 1 : low + Math.abs(low);
   const swatches = kind.colours === "pressure" ? [[OPEN, "no contact"]] : contact ? [[TOUCHING, "contact"]] : [];
   if (map.holes) swatches.push([UNDEFINED, "undefined"]);
-  const inside = extent(map, contact), [least, most] = inside ?? [low, high], states = kind.colours === "states";
+  const inside = extent(map, contact), [least, most] = inside ? [inside[0], map.most ?? inside[1]] : [low, high], states = kind.colours === "states";
   // Less than half of a colour beyond an end is rounding.
   const past = (value) => Math.max(-share(value, low, high, log), share(value, low, high, log) - 1) > 0.5 / 256;
   const beyond = [!states && kind.colours !== "pressure" && least < low && !(log && least <= 0) && past(least), !states && most > high && past(most)];
@@ -65,7 +72,7 @@ async function showMap() {
   if (!kind || !state.instants.length) return;
   const instant = state.instants[chosen.instant], index = chosen.instant;
   const stale = () => kind !== field() || instant !== state.instants[chosen.instant];
-  const map = await load(`${kind.name}-${index}`);
+  const map = await mapOf(kind, index);
   if (!map || stale()) return;
   const touches = ["pressure", "contact"].includes(kind.name) ? map.max > 0 : state.series.contact_area[instant.row] > 0;
   $("map-title").textContent = `${kind.title} at ${moment(instant)}${touches ? "" : ": no contact"}`;

@@ -58,7 +58,7 @@ pub fn picture(
     let shares: Vec<f64> = bearing.share.iter().map(|share| 100.0 * share).collect();
     let curve = Curves::new(
         "Bearing area",
-        Axis::linear("share of the surface above [%]", "").between(0.0, 100.0),
+        Axis::linear("share of the surface above [%]", "").spanning(0.0, 100.0),
         Axis::linear("height", "m"),
     )
     .with(Series::new("", Style::Line, shares, &bearing.heights));

@@ -16,7 +16,7 @@ use clap_complete::Shell;
 pub use leak::{FluidOptions, Leak};
 pub use material::{Data, Fit, FitIndentation, Material, MaterialExport, Show};
 pub use result::{Compare, Export, Labels, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
-pub use run::{Check, New, Run, Verify};
+pub use run::{Check, Converge, New, Purpose, Run, Verify};
 pub use stress::Stress;
 pub use study::{Study, StudyAction, StudyFolder};
 pub use surface::{
@@ -49,6 +49,8 @@ pub enum Command {
     Study(Study),
     /// Check a case and report what will be solved and how much memory and time it needs
     Check(Check),
+    /// Solve a case with other cells, steps and tolerances too, and print its answers with their errors
+    Converge(Converge),
     /// Write a commented starter case
     New(New),
     /// Compare the solver with exact solutions and print the table of errors
@@ -103,6 +105,7 @@ impl Command {
             Command::Run(verb) => verb,
             Command::Study(verb) => verb,
             Command::Check(verb) => verb,
+            Command::Converge(verb) => verb,
             Command::New(verb) => verb,
             Command::Verify(verb) => verb,
             Command::Surface(Surface::Info(verb)) => verb,

@@ -23,6 +23,9 @@ pub struct Run {
     /// Print one JSON object at the end
     #[arg(long)]
     pub json: bool,
+    /// Solve the case with fewer cells, longer steps and a looser tolerance as well, and store and print the errors of the answers
+    #[arg(long)]
+    pub error_bars: bool,
     /// Treat warnings as errors: exit code 1; the result is kept
     #[arg(long)]
     pub strict: bool,
@@ -49,6 +52,26 @@ pub struct Check {
 }
 
 #[derive(Debug, clap::Args)]
+pub struct Converge {
+    /// The case file (TOML)
+    pub case: PathBuf,
+    /// Solve the case with twice the cells along each side as well, and extrapolate the answers to vanishing cells
+    #[arg(long)]
+    pub refine: bool,
+    #[command(flatten)]
+    pub common: Common,
+    /// Unit for leaks or times, e.g. --unit leak=ml/year --unit time=h
+    #[arg(long, value_name = "NAME=UNIT")]
+    pub unit: Vec<String>,
+    /// Print one JSON object: {answers: [{name, value, unit, error, grid, time, solver}], cost, notes}
+    #[arg(long)]
+    pub json: bool,
+    /// Print only errors and the answers
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, clap::Args)]
 pub struct Common {
     /// Threads to use [default: one per core]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -58,12 +81,42 @@ pub struct Common {
     pub set: Vec<String>,
 }
 
+/// What a case with own files is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Purpose {
+    /// How much leaks through the gap.
+    Seal,
+    /// Friction over the velocity.
+    Friction,
+    /// Area and pressure of a contact.
+    Contact,
+    /// A ball pressed in.
+    Indentation,
+    /// A contact that sticks.
+    Adhesion,
+}
+
 #[derive(Debug, clap::Args)]
 pub struct New {
-    /// Name of the starter case; without it all are listed
+    /// Name of the starter case; without it all are listed. With --for: the file to write [default: PURPOSE.toml]
     pub template: Option<String>,
     /// The file to write [default: TEMPLATE.toml]
     pub path: Option<PathBuf>,
+    /// What the case is for: a case with your own files in place of a starter case
+    #[arg(long = "for", value_name = "PURPOSE", value_enum, requires = "from", requires = "material")]
+    pub purpose: Option<Purpose>,
+    /// The measured surface; for an indentation also a record of time, load and depth
+    #[arg(long, value_name = "FILE", requires = "purpose")]
+    pub from: Option<PathBuf>,
+    /// The measured material: a table of a DMA, relaxation or creep test, or what `material fit -o` or `fit-indentation -o` wrote
+    #[arg(long, value_name = "FILE", requires = "purpose")]
+    pub material: Option<PathBuf>,
+    /// Size of the surface along x and y, if the file does not state it; one length for a square
+    #[arg(long, value_name = "A,B", requires = "purpose")]
+    pub size: Option<String>,
+    /// Unit of the heights, if the file does not state it
+    #[arg(long, value_name = "U", requires = "purpose")]
+    pub height_unit: Option<String>,
     /// Replace an existing file
     #[arg(long)]
     pub force: bool,

@@ -1,10 +1,11 @@
 //! Answers on the terminal, and the option --unit.
 
-use asperity::Axis;
 use asperity::step::Row;
+use asperity::{Axis, Grid};
 use asperity_io::answer::{Answer, Units};
 
 use crate::failure::Failure;
+use crate::format::quantity;
 
 /// Letters of the first column of a summary.
 const WIDTH: usize = 27;
@@ -24,27 +25,27 @@ pub fn lines(answers: &[Answer], units: &Units) -> Vec<[String; 2]> {
             note => format!("{value} ({note})"),
         }
     };
-    // Of a gas one of its two rates is enough.
-    let gas = answers.iter().any(|answer| answer.name == "leak_rate_standard");
-    let mass = units.is_mass_of_gas();
-    let hidden = |answer: &&Answer| match answer.name.as_str() {
-        "leak_rate" => gas && !mass,
-        "leak_rate_standard" => mass,
-        _ => false,
-    };
-    answers.iter().filter(|answer| !hidden(answer)).map(|answer| [answer.label(), words(answer)]).collect()
+    units.without_second_rate(answers).map(|answer| [answer.label(), words(answer)]).collect()
 }
 
-/// The row that the answers about the contact belong to: "t = 10 s, the last of 20".
-pub fn row(answers: &[Answer], units: &Units, last: Option<&Row>, rows: usize) -> Option<String> {
+/// The row that the answers about the contact belong to: "t = 10 s, the last of 20, under 2 N".
+pub fn row(
+    answers: &[Answer],
+    units: &Units,
+    grid: &Grid,
+    last: Option<&Row>,
+    rows: usize,
+) -> Option<String> {
     let at = answers.iter().find(|answer| answer.name == "contact_area")?.at?;
-    let why = match (at.axis(), last) {
-        (_, Some(last)) if last.coordinate == at => format!("the last of {rows}"),
-        (Axis::Velocity, _) => "with the largest friction".into(),
-        _ => "with the largest load; nothing touches at the end".into(),
-    };
     let axis = at.axis();
-    Some(format!("{} = {}, {why}", axis.symbol(), units.number(at.value(), axis.unit())))
+    let place = format!("{} = {}", axis.symbol(), units.number(at.value(), axis.unit()));
+    Some(match (axis, last) {
+        (_, Some(last)) if last.coordinate == at => {
+            format!("{place}, the last of {rows}, under {}", quantity(last.load, grid.units("N")))
+        }
+        (Axis::Velocity, _) => format!("{place}, with the largest friction"),
+        _ => format!("{place}, with the largest load; nothing touches at the end"),
+    })
 }
 
 /// The units of the options `--unit leak=ml/year`.

@@ -4,6 +4,7 @@ pub mod answers;
 pub mod check;
 pub mod compare;
 pub mod completions;
+pub mod converge;
 pub mod export;
 pub mod findings;
 pub mod fit_indentation;
@@ -33,12 +34,22 @@ use asperity_io::quantity::{Time, Velocity};
 use asperity_io::store::{At, Reader};
 
 use crate::failure::Failure;
+use crate::format::coordinate;
 use crate::input::read;
 
 /// The instant of an option --time: a time, of a sweep a velocity; the last one where the option is not given.
 pub fn instant(reader: &Reader, text: Option<&str>) -> Result<At, Failure> {
-    Ok(moment(reader, "--time", text)?.map_or(At::Last, At::Time))
+    let Some(wanted) = moment(reader, "--time", text)? else { return Ok(At::Last) };
+    let taken = reader.field_times()[reader.index(At::Time(wanted))?];
+    if (taken - wanted).abs() > NEAR * wanted.abs() {
+        let [wanted, taken] = [wanted, taken].map(|value| coordinate(reader.header().axis().at(value)));
+        crate::messages::message!("note: no map is stored at {wanted}; this is the nearest one, at {taken}");
+    }
+    Ok(At::Time(wanted))
 }
+
+/// A stored map is that of the time asked for if it is as near as this share.
+const NEAR: f64 = 1e-2;
 
 /// An option that names a time \[s\], of a sweep a velocity \[m/s\].
 fn moment(reader: &Reader, option: &str, text: Option<&str>) -> Result<Option<f64>, Failure> {

@@ -3,9 +3,10 @@
 use asperity::finding::Finding;
 use asperity::step::Row;
 use asperity_io::case::Case;
+use asperity_io::converge::Convergence;
 use asperity_io::leakage::LeakError;
 use asperity_io::session::{RunError, RunOptions, Summary, run as run_case};
-use asperity_io::store::Status;
+use asperity_io::store::{Status, store_error_bars};
 use serde_json::{Value, json};
 
 use crate::args::Run;
@@ -38,7 +39,11 @@ impl Verb for Run {
         match done {
             Ok(summary) => {
                 print_findings(self, &summary.findings, &known);
-                print_summary(self, &case, &summary, None)?;
+                let bars = match self.error_bars && summary.status == Status::Complete {
+                    true => Some(error_bars(self, &set, &summary)?),
+                    false => None,
+                };
+                print_summary(self, &case, &summary, bars.as_ref(), None)?;
                 if summary.status != Status::Interrupted {
                     return super::findings::strict(self.strict, &summary.findings);
                 }
@@ -62,7 +67,7 @@ impl Verb for Run {
                 | RunError::Leakage { summary, .. } = &error
                 {
                     print_findings(self, &summary.findings, &known);
-                    print_summary(self, &case, summary, Some(&error))?;
+                    print_summary(self, &case, summary, None, Some(&error))?;
                 }
                 Err(Failure::Solve(message))
             }
@@ -100,26 +105,42 @@ fn best_state(best: &Row, case: &Case) -> String {
     )
 }
 
+/// The errors of the answers, stored in the result.
+fn error_bars(args: &Run, set: &[String], summary: &Summary) -> Result<Convergence, Failure> {
+    let found = super::converge::of_case(&args.case, set, Some(&summary.result), false, args.quiet)?;
+    store_error_bars(&summary.result, json!(found.bars))?;
+    Ok(found)
+}
+
 fn print_summary(
     args: &Run,
     case: &Case,
     summary: &Summary,
+    bars: Option<&Convergence>,
     error: Option<&RunError>,
 ) -> Result<(), Failure> {
     if args.json {
-        return crate::print(&format!("{}\n", json_object(summary, error)));
+        return crate::print(&format!("{}\n", json_object(summary, bars, error)));
     }
     if summary.status != Status::Complete {
         return Ok(());
     }
     let mut text = String::new();
-    let mut line = |name: &str, value: String| text += &super::answers::line(name, value);
-    for [name, value] in super::answers::lines(&summary.answers, &case.output.units) {
-        line(&name, value);
+    match bars {
+        Some(bars) => text += &super::converge::text(bars, &case.output.units),
+        None => {
+            let answers = super::answers::lines(&summary.answers, &case.output.units);
+            text.extend(answers.iter().map(|[name, value]| super::answers::line(name, value)));
+        }
     }
-    if let Some(row) =
-        super::answers::row(&summary.answers, &case.output.units, summary.last.as_ref(), summary.rows)
-    {
+    let mut line = |name: &str, value: String| text += &super::answers::line(name, value);
+    if let Some(row) = super::answers::row(
+        &summary.answers,
+        &case.output.units,
+        &case.conditions.grid,
+        summary.last.as_ref(),
+        summary.rows,
+    ) {
         line("of the row at", row);
     }
     let memory = summary.peak_memory_bytes.map(|b| format!(", {}", bytes(b as f64))).unwrap_or_default();
@@ -141,7 +162,7 @@ fn print_summary(
     crate::print(&text)
 }
 
-fn json_object(summary: &Summary, error: Option<&RunError>) -> Value {
+fn json_object(summary: &Summary, bars: Option<&Convergence>, error: Option<&RunError>) -> Value {
     let mut object = json!({
         "answers": summary.answers,
         "status": summary.status.as_str(),
@@ -153,6 +174,9 @@ fn json_object(summary: &Summary, error: Option<&RunError>) -> Value {
         "result": summary.result.to_string_lossy(),
         "findings": asperity_io::finding::list(&summary.findings),
     });
+    if let Some(bars) = bars {
+        object["error_bars"] = json!(bars.bars);
+    }
     if let Some(error) = error {
         object["error"] = json!(error.to_string());
     }

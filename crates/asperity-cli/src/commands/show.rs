@@ -45,6 +45,7 @@ fn object(reader: &Reader, answers: &[Answer]) -> Result<String, StoreError> {
     }
     let object = json!({
         "answers": answers,
+        "error_bars": reader.error_bars(),
         "title": reader.header().title,
         "status": reader.status().as_str(),
         "lacks_leakage": reader.lacks_leakage(),
@@ -96,8 +97,12 @@ fn text(reader: &Reader, at: At, answers: &[Answer], units: &Units) -> Result<St
     }
     text.extend(super::answers::lines(answers, units).iter().map(|[name, value]| line(name, value)));
     text.extend(
-        super::answers::row(answers, units, rows.last(), rows.len()).map(|row| line("of the row at", row)),
+        super::answers::row(answers, units, &reader.header().grid, rows.last(), rows.len())
+            .map(|row| line("of the row at", row)),
     );
+    for bar in reader.error_bars() {
+        text += &line(&format!("{} ±", bar.name.replace('_', " ")), units.with_error(&bar));
+    }
     text.push('\n');
     text += &course(reader, &rows, units)?;
     text += &work(reader, &rows);

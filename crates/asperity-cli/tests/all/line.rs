@@ -55,7 +55,7 @@ fn a_line_contact_is_checked_run_and_shown_per_length() {
     let told = done(path, &["check", "roller.toml"]);
     assert!(told.contains("a line of 96 cells") && told.contains("500 N/m at most"), "{told}");
     let told = done(path, &["run", "roller.toml"]);
-    assert!(told.contains("load         500 N/m"), "{told}");
+    assert!(told.contains("the last of 9, under 500 N/m"), "{told}");
     let told = done(path, &["show", "roller.zarr"]);
     assert!(told.contains("a line of 96 cells, 8 mm") && told.contains("500 N/m"), "{told}");
     let object: Value = serde_json::from_str(&done(path, &["check", "roller.toml", "--json"])).unwrap();

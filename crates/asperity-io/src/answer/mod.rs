@@ -41,14 +41,17 @@ pub struct Answer {
     /// What a reader must know besides, in a few words.
     #[serde(skip)]
     pub note: String,
+    /// How much of it the whole cells at the edge of the contact leave open, SI; 0 where it does not count cells.
+    #[serde(skip)]
+    pub resolution: f64,
 }
 
 /// Numbers without a unit that are shown in percent.
 const SHARES: [&str; 2] = ["contact_fraction", "relaxation"];
 
 impl Answer {
-    fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Answer {
-        Answer { name: name.into(), value, unit, at: None, note: String::new() }
+    pub(crate) fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Answer {
+        Answer { name: name.into(), value, unit, at: None, note: String::new(), resolution: 0.0 }
     }
 
     fn at(self, row: &Row) -> Answer {
@@ -59,9 +62,12 @@ impl Answer {
         Answer { note: note.into(), ..self }
     }
 
-    /// Its name for people: "contact area".
+    /// Its name for people: "contact area", on a line "contact length".
     pub fn label(&self) -> String {
-        self.name.replace('_', " ")
+        match (self.name.as_str(), self.unit) {
+            ("contact_area", "m") => "contact length".into(),
+            (name, _) => name.replace('_', " "),
+        }
     }
 
     /// Whether it is a share, which is shown in percent.
@@ -85,7 +91,7 @@ pub fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     let mut answers = leak::of(reader, units)?;
     answers.extend(motion::of(reader, &rows, decisive)?);
     answers.extend(last_cycle(reader)?);
-    answers.extend(contact::of(reader, &rows, decisive));
+    answers.extend(contact::of(reader, &rows, decisive)?);
     answers.extend(stress::of(reader)?);
     Ok(answers)
 }

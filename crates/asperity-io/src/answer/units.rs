@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::Answer;
+use super::{Answer, SHARES};
+use crate::converge::ErrorBar;
 use crate::quantity::unit::{Powers, Unit};
-use crate::readable::{Shown, quantity};
+use crate::readable::{Shown, quantity, shown};
 use crate::store::Reader;
 
 /// One atmosphere \[Pa\], at which gases are counted as volumes.
@@ -99,8 +100,15 @@ impl Units {
     /// Their key in the setup of a result.
     pub(crate) const SETUP: &'static str = "units";
 
-    /// Whether the leak of a gas is wanted as a mass.
-    pub fn is_mass_of_gas(&self) -> bool {
+    /// The answers without the second rate of a gas: the one counted at 0 °C is shown, or the mass where its unit is chosen.
+    pub fn without_second_rate<'a>(&self, answers: &'a [Answer]) -> impl Iterator<Item = &'a Answer> {
+        let gas = answers.iter().any(|answer| answer.name == "leak_rate_standard");
+        let hidden = if self.is_mass() { "leak_rate_standard" } else { "leak_rate" };
+        answers.iter().filter(move |answer| !(gas && answer.name == hidden))
+    }
+
+    /// Whether leaks are wanted as a mass.
+    fn is_mass(&self) -> bool {
         self.0
             .get("leak")
             .and_then(|unit| Unit::parse(unit).ok())
@@ -184,6 +192,44 @@ impl Units {
         Shown { factor, text: text.clone() }
     }
 
+    /// An answer with its error: "42.3 % ± 0.8".
+    pub fn plus_minus(&self, bar: &ErrorBar) -> String {
+        let Some(value) = bar.value else { return "none".into() };
+        if value == 0.0 && bar.error == Some(0.0) {
+            return self.number(value, &bar.unit);
+        }
+        let shown = self.shown_for(&bar.name, &bar.unit, value);
+        let unit = if shown.text.is_empty() { String::new() } else { format!(" {}", shown.text) };
+        let error = bar.error.map_or("unknown".to_owned(), |error| rounded(bar, &shown, error));
+        format!("{}{unit} ± {error}", rounded(bar, &shown, value))
+    }
+
+    /// The same with what the grid, the steps and the solver cause of the error, all in one unit:
+    /// "42.3 % ± 0.8 (grid 0.8, time 0.1, solver 0.0)".
+    pub fn with_error(&self, bar: &ErrorBar) -> String {
+        let shown = self.shown_for(&bar.name, &bar.unit, bar.value.unwrap_or(0.0));
+        if bar.value.is_none() || (bar.value, bar.error) == (Some(0.0), Some(0.0)) {
+            return self.plus_minus(bar);
+        }
+        let part = |part: Option<f64>| part.map_or("unknown".into(), |part| rounded(bar, &shown, part));
+        let [grid, time, solver] = [bar.grid, bar.time, bar.solver].map(part);
+        format!("{} (grid {grid}, time {time}, solver {solver})", self.plus_minus(bar))
+    }
+
+    /// The unit that an answer is shown in, per SI value.
+    fn shown_for(&self, name: &str, unit: &str, value: f64) -> Shown {
+        let plain = |factor: f64, text: &str| Shown { factor, text: text.to_owned() };
+        match unit {
+            "1" if SHARES.contains(&name) => plain(100.0, "%"),
+            "1" => plain(1.0, ""),
+            "rad" => plain(1f64.to_degrees(), "°"),
+            "s" => self.shown("time").unwrap_or_else(|| shown("s", value.abs())),
+            "m3/s" | "Pa m3/s" => self.shown_leak(unit != "m3/s"),
+            "kg/s" => self.shown("leak").filter(|_| self.is_mass()).unwrap_or(plain(1.0, "kg/s")),
+            unit => shown(unit, value.abs()),
+        }
+    }
+
     /// A time in the unit chosen for times.
     pub fn time(&self, seconds: f64) -> String {
         match self.shown("time") {
@@ -211,5 +257,76 @@ impl Units {
             _ => return None,
         };
         Some(format!("{} {text}{conditions}", quantity(value / unit.scale(), "")))
+    }
+}
+
+/// A number of an answer in the unit shown: with two digits of the error, or five of the value where the error is less.
+fn rounded(bar: &ErrorBar, shown: &Shown, number: f64) -> String {
+    let value = shown.factor * bar.value.unwrap_or(0.0);
+    let error = bar.error.map(|error| shown.factor * error);
+    let places = |number: f64, digits: f64| match number {
+        0.0 => 0.0,
+        number => (digits - 1.0 - number.abs().log10().floor()).clamp(0.0, 12.0),
+    };
+    let places = match error {
+        None | Some(0.0) => places(value, 4.0),
+        Some(error) if value == 0.0 => places(error, 2.0),
+        Some(error) => places(error, 2.0).max(places(value, 2.0)).min(places(value, 5.0)),
+    } as usize;
+    match value == 0.0 || (1e-4..1e6).contains(&value.abs()) {
+        true => format!("{:.places$}", number * shown.factor),
+        false => format!("{:.3e}", number * shown.factor),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bar(name: &str, unit: &str, value: f64, [grid, time, solver]: [f64; 3]) -> ErrorBar {
+        ErrorBar {
+            name: name.into(),
+            value: Some(value),
+            unit: unit.into(),
+            error: Some((grid * grid + time * time + solver * solver).sqrt()),
+            grid: Some(grid),
+            time: Some(time),
+            solver: Some(solver),
+            at: None,
+            order: None,
+            note: String::new(),
+        }
+    }
+
+    #[test]
+    fn answers_are_rounded_to_two_digits_of_their_error() {
+        let units = Units::default();
+        let fraction = bar("contact_fraction", "1", 0.42263, [0.008, 0.001, 1e-6]);
+        assert_eq!(units.with_error(&fraction), "42.26 % ± 0.81 (grid 0.80, time 0.10, solver 0.00)");
+        let approach = bar("approach", "m", 1.021_4e-6, [9.1e-9, 0.0, 0.0]);
+        assert_eq!(units.plus_minus(&approach), "1.0214 µm ± 0.0091");
+        // A time that is known to a day or so keeps two digits.
+        let tight = bar("tight_from", "s", 15_566.0, [0.0, 93_600.0, 0.0]);
+        assert_eq!(units.plus_minus(&tight), "4.3 h ± 26.0");
+        let unknown = ErrorBar { error: None, ..approach };
+        assert_eq!(units.plus_minus(&unknown), "1.021 µm ± unknown");
+    }
+
+    #[test]
+    fn leaks_are_shown_in_the_unit_chosen_for_them() {
+        let mut units = Units::default();
+        units.choose("leak", "ml/year").unwrap();
+        units.choose("time", "min").unwrap();
+        // 1e-12 m³/s is 1e-6 ml/s, times the seconds of a year.
+        assert_eq!(units.number(1e-12, "m3/s"), "31.56 ml/year");
+        // A gas counts at 0 °C and one atmosphere.
+        assert_eq!(units.number(101_325.0 * 1e-12, "Pa m3/s"), "31.56 ml/year (at 0 °C and 1 atm)");
+        assert_eq!(units.time(90.0), "1.5 min");
+        units.choose("leak", "mbar l/s").unwrap();
+        assert_eq!(units.number(1e-7, "Pa m3/s"), "1.000e-6 mbar l/s (at 0 °C)");
+        // A liquid has no rate at 0 °C: SI.
+        assert_eq!(units.number(1e-12, "m3/s"), "1.000e-12 m³/s");
+        assert!(units.choose("leak", "mm").unwrap_err().to_string().contains("no unit of a leak"));
+        assert!(units.choose("load", "N").unwrap_err().to_string().contains("leak or time"));
     }
 }

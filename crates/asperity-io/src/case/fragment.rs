@@ -265,7 +265,7 @@ mod tests {
             ("filter longest=1um,2um", "a length"),
             ("flip", "axis is missing"),
             ("rotate=0.5", "a whole number"),
-            ("window share=0.3", "Tukey"),
+            ("window=hann share=0.3", "Tukey"),
             ("level plane", "KEY=VALUE"),
         ] {
             let error = step(words).unwrap_err();

@@ -8,12 +8,13 @@ use std::path::Path;
 
 use asperity::surface::Part;
 use asperity::time::{Instant, Plan};
-use asperity::{Control, Grid};
+use asperity::{Control, Course, Grid};
 use ndarray::Array2;
 use toml::Table;
 
 use super::document::{self, Document};
 use super::error::CaseError;
+use super::load::Load;
 use super::material::Dependence;
 use super::place::Checks;
 use super::read::Reader;
@@ -94,6 +95,24 @@ pub fn surface(keys: &Table) -> Result<(Grid, Part), CaseErrors> {
             (Some(grid), Some(part), false) => Ok((grid, part)),
             _ => Err(checks.into_errors()),
         }
+    })
+}
+
+/// What the keys `control` and `history` of a stage prescribe; on a `line` loads are per length.
+///
+/// # Errors
+/// [`CaseErrors`] with what is wrong.
+pub fn prescribed(keys: Table, line: bool) -> Result<(Control, Course), CaseErrors> {
+    let load = Table::from_iter([("stages".to_owned(), toml::Value::Array(vec![keys.into()]))]);
+    let keys = Table::from_iter([("load".to_owned(), load.into())]);
+    from_keys(&keys, &Arrays::new(), |text| {
+        let mut reader = Reader::new(text);
+        let load = reader.required::<Load>("load");
+        let load = reader.finish(load)?;
+        let checks = Checks::new(text, Path::new(""));
+        let made = load.programme(&checks.at("load"), line, &|_, _| 0.0);
+        let stage = made.and_then(|(mut programme, _)| programme.stages.pop());
+        stage.map(|stage| (stage.control, stage.course)).ok_or_else(|| checks.into_errors())
     })
 }
 

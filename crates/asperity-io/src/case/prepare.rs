@@ -108,11 +108,11 @@ pub struct Filter {
     pub edge: Option<Edge>,
 }
 
-/// A window along each axis, scaled to mean square 1.
+/// A window along each axis, from 1 in the middle to 0 at the edges.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Window {
-    /// "hann" or "tukey"; "hann" if not given.
+    /// "tukey" or "hann"; "tukey" if not given.
     #[serde(default)]
     pub shape: WindowShape,
     /// Share of the length over which Tukey's window rises and falls; 0.1 if not given.
@@ -125,9 +125,9 @@ pub struct Window {
 #[serde(rename_all = "kebab-case")]
 pub enum WindowShape {
     /// (1 - cos(2 pi x/L))/2.
-    #[default]
     Hann,
     /// Hann's flanks over a share of the length, flat in between.
+    #[default]
     Tukey,
 }
 

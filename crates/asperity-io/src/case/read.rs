@@ -17,7 +17,7 @@ use crate::Code;
 struct Union(&'static str, &'static str, &'static [&'static str]);
 
 const SURFACE: &[&str] = &["moves"];
-const MATERIAL: &[&str] = &["shift", "temperature"];
+const MATERIAL: &[&str] = &["shift", "temperature", "window"];
 const SHIFT: &[&str] = &["vertical"];
 
 /// Inner unions come before those that hold them.

@@ -1,6 +1,6 @@
 //! Materials at the temperature of the run, and where they come from.
 
-use asperity::material::{Material, ReducedTime, Shift, TemperatureFactors, VerticalShift};
+use asperity::material::{self, Material, ReducedTime, Shift, TemperatureFactors, VerticalShift};
 use asperity::time::Plan;
 
 use super::describe::MaterialReport;
@@ -115,7 +115,10 @@ fn reference(
 ) -> Option<(Material, MaterialReport, Option<String>)> {
     let report = MaterialReport { model: sample.name, ..MaterialReport::default() };
     match &sample.model {
-        Model::Known(material) => Some((material.clone(), report, None)),
+        Model::Known(material) => {
+            let report = MaterialReport { window: sample.window, ..report };
+            Some((material.clone(), report, outside(sample, sample.window, window)))
+        }
         Model::Fractional { measure, model, time, tolerance } => {
             // Without the times of the run, which are wrong, only the model's own numbers can be checked.
             let [first, last] = window.unwrap_or([1e-2 * time, 1e2 * time]);
@@ -125,9 +128,7 @@ fn reference(
             Some((material, MaterialReport { error: Some(sum.error), window: Some(window), ..report }, None))
         }
         Model::Fitted { fitted, file, .. } => {
-            let beyond = window.and_then(|[first, last]| fitted.beyond(first, last));
-            let clock = if sample.shift.is_some() { " (times at the reference temperature)" } else { "" };
-            let warning = beyond.map(|words| words + clock);
+            let warning = outside(sample, Some(fitted.window), window);
             let report = MaterialReport {
                 max_misfit: Some(fitted.misfit.max),
                 rms_misfit: Some(fitted.misfit.rms),
@@ -149,6 +150,12 @@ fn reference(
             Some((fitted.material.clone(), report, warning))
         }
     }
+}
+
+/// Whether a run over the times `run` \[s\] goes beyond the `known` ones, in words.
+fn outside(sample: &Sample, known: Option<[f64; 2]>, run: Option<[f64; 2]>) -> Option<String> {
+    let clock = if sample.shift.is_some() { " (times at the reference temperature)" } else { "" };
+    material::beyond(known?, run?).map(|words| words + clock)
 }
 
 /// The vertical shift in words.

@@ -78,6 +78,7 @@ impl Fitted {
         if fluidity > 0.0 {
             let _ = write!(text, ", fluidity = \"{fluidity:e} 1/(Pa s)\"");
         }
+        let _ = write!(text, ", window = [\"{first:e} s\", \"{last:e} s\"]");
         if let Some(shift) = &self.shift {
             let vertical = self.vertical.as_ref().map_or(String::new(), vertical);
             let _ = write!(text, ", shift = {}{vertical} }}", law(shift));

@@ -178,14 +178,6 @@ impl Fitted {
         ];
         all.into_iter().flatten().collect()
     }
-
-    /// A sentence with the numbers where a run from `first` to `last` \[s\] leaves what was measured.
-    pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
-        let Fitted { misfit, window, noise, .. } = *self;
-        let (columns, uncertainty) = (Vec::new(), Vec::new());
-        let fit = Fit { function: (), misfit, columns, window, noise, uncertainty, reversal: self.reversal };
-        fit.beyond(first, last)
-    }
 }
 
 /// What the contradiction of both moduli may also come from.

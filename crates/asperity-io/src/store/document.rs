@@ -23,6 +23,8 @@ use crate::finding;
 use crate::resources;
 
 pub(super) const NAME: &str = "zarr.json";
+/// The attribute of the group with the error bars of its answers.
+pub(super) const ERROR_BARS: &str = "error_bars";
 /// Where documents are written first; that of the group in an array's directory, where no reader of the
 /// hierarchy looks.
 pub(super) const PARTIAL: &str = "zarr.json.partial";
@@ -41,6 +43,8 @@ pub(super) struct Document {
     pub(super) stress: Option<StressSet>,
     /// Leaks that were computed from its fields.
     pub(super) leaks: Option<Leaks>,
+    /// Its answers with their errors, as they were stored.
+    pub(super) error_bars: Option<Value>,
 }
 
 /// The documents as JSON, kept between steps: only a few numbers of them change.
@@ -147,7 +151,8 @@ impl Document {
             }
         };
         let leaks = Leaks::of(attributes, metadata);
-        let document = Document { form, header, progress, stress, leaks };
+        let error_bars = attributes.get(ERROR_BARS).cloned();
+        let document = Document { form, header, progress, stress, leaks, error_bars };
         for array in document.arrays() {
             if metadata.get(array.name()).is_none_or(|stored| !same_form(stored, &array.document())) {
                 let what = format!("the array `{}` is missing or not of the form of a result", array.name());
@@ -157,6 +162,22 @@ impl Document {
         checksum::check(attributes, &document.progress).map_err(|what| corrupt(&file, what))?;
         Ok(document)
     }
+}
+
+/// Stores the error bars of the answers of a complete result.
+///
+/// # Errors
+/// [`StoreError::Io`] where the system refuses.
+pub fn store_error_bars(root: &Path, bars: Value) -> Result<()> {
+    exchange_arrays(
+        root,
+        |_| false,
+        &[],
+        |attributes| {
+            attributes.insert(ERROR_BARS.into(), bars);
+        },
+    )?;
+    Ok(())
 }
 
 /// Whether the directory is marked as a result, of any version.

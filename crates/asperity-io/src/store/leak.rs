@@ -300,6 +300,8 @@ impl LeakWriter {
             let all: Vec<Finding> = kept.chain(findings.iter().cloned()).collect();
             attributes.insert("findings".into(), finding::list(&all));
             attributes.insert(ATTRIBUTE.into(), json!(settings.to_string()));
+            // They were those of the earlier leaks.
+            attributes.shift_remove(document::ERROR_BARS);
         };
         let dropped = document::exchange_arrays(&self.root, owns, &specs, add_findings)?;
         dropped.into_iter().try_for_each(|name| remove(&self.root.join(name)))

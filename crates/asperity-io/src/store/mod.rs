@@ -75,6 +75,7 @@ mod verify;
 mod writer;
 
 pub use asperity::step::{Checkpoint, Row};
+pub use document::store_error_bars;
 pub use error::{Result, StoreError};
 pub use field_kind::FieldKind;
 pub use header::{Header, Status, Work};

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
+use asperity::Axis;
 use asperity::finding::Finding;
 use asperity::quantities::Quantity;
 use asperity::sliding::Friction;
@@ -13,13 +14,15 @@ use serde_json::{Map, Value};
 use super::chunks::Chunks;
 use super::codec::Number;
 use super::column;
-use super::document::Document;
+use super::document::{Document, ERROR_BARS};
 use super::error::{Result, StoreError, corrupt};
 use super::field_kind::FieldKind;
 use super::header::{self, Header, Status, Work};
 use super::layout::{ArraySpec, SCALARS, Series, Storage};
 use super::leak::Leaks;
 use super::leftovers;
+use crate::converge::ErrorBar;
+use crate::readable::quantity;
 
 /// A result as it is at the instant of opening; a run that goes on is seen by opening it again.
 #[derive(Clone, Debug)]
@@ -82,7 +85,14 @@ impl Reader {
         let mut attributes = header::attributes(self.header(), self.document.form);
         header::put_progress(&mut attributes, &self.document.progress);
         attributes.extend(self.document.stress_attribute());
+        attributes.extend(self.document.error_bars.clone().map(|bars| (ERROR_BARS.to_owned(), bars)));
         attributes
+    }
+
+    /// The error bars of its answers; none where they were not computed.
+    pub fn error_bars(&self) -> Vec<ErrorBar> {
+        let bars = self.document.error_bars.clone();
+        bars.and_then(|bars| serde_json::from_value(bars).ok()).unwrap_or_default()
     }
 
     /// The findings of the run so far.
@@ -240,18 +250,19 @@ impl Reader {
         found.ok_or_else(|| {
             let axis = self.header().axis();
             let (unit, several) = (axis.unit(), axis.plural());
+            let words = |value: &f64| quantity(*value, unit);
             let what = match at {
                 At::Index(index) => format!("fields of number {index}"),
-                At::Time(time) => format!("fields at {time} {unit}"),
+                At::Time(time) => format!("fields at {}", words(&time)),
                 At::Last => "fields".to_owned(),
             };
             let instead = match times[..] {
                 [] => "no field is stored yet".to_owned(),
                 [first, .., last] => {
                     let count = times.len();
-                    format!("it holds fields at {count} {several} from {first} {unit} to {last} {unit}")
+                    format!("it holds fields at {count} {several} from {} to {}", words(&first), words(&last))
                 }
-                [only] => format!("it holds fields at {only} {unit}"),
+                [only] => format!("it holds fields at {}", words(&only)),
             };
             self.missing(what, instead)
         })
@@ -363,10 +374,13 @@ impl Reader {
     pub fn frictions(&self) -> Result<Vec<Friction>> {
         let stored =
             |quantity: &Quantity| self.header().quantities.iter().any(|column| column.quantity == *quantity);
-        let columns: Vec<(Quantity, Vec<f64>)> = Quantity::of_motion()
+        let mut columns: Vec<(Quantity, Vec<f64>)> = Quantity::of_motion()
             .filter(stored)
             .map(|quantity| Ok((quantity, self.numbers(quantity.name())?)))
             .collect::<Result<_>>()?;
+        if self.header().axis() == Axis::Velocity {
+            columns.push((Quantity::Velocity, self.series("time")?));
+        }
         let of_row = |row: usize| {
             Friction::from_quantities(|quantity| {
                 let (_, numbers) = columns.iter().find(|(name, _)| *name == quantity)?;

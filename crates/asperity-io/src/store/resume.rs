@@ -70,7 +70,7 @@ impl Writer {
             kept.version = format!("{}, {}", kept.version, header.version);
         }
         kept.rows_expected = header.rows_expected;
-        let document = Document { form, header: kept, progress, stress: None, leaks: None };
+        let document = Document { form, header: kept, progress, stress: None, leaks: None, error_bars: None };
         let mut pages = Pages::new(&document);
         // First: the documents of the arrays never count more than that of the group.
         pages.write_arrays(path, Way::Safe)?;

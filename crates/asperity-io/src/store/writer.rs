@@ -162,7 +162,8 @@ impl Writer {
             return Err(input("fields of the result", format!("{kind} twice"), "each named once"));
         }
         let (header, progress) = (header.clone(), Progress::default());
-        let document = Document { form: SCHEMA, header, progress, stress: None, leaks: None };
+        let document =
+            Document { form: SCHEMA, header, progress, stress: None, leaks: None, error_bars: None };
         let lock = create::publish(path, force, |root| {
             create::write_constants(root, &document, initial_gap)?;
             let mut pages = Pages::new(&document);
@@ -364,7 +365,8 @@ impl Writer {
         }
         let leaks = Document::read(&self.root)?.leaks;
         let (form, header, progress) = (self.form, self.header.clone(), self.progress.clone());
-        let document = Document { form, header, progress, stress, leaks };
+        // The errors of what it had before are those of other answers.
+        let document = Document { form, header, progress, stress, leaks, error_bars: None };
         self.pages = stress::publish(&self.root, &document)?;
         Ok(())
     }

@@ -5,6 +5,7 @@ mod changed_data;
 mod common;
 mod curve_files;
 mod curve_hostile;
+mod error_bars;
 mod export;
 mod findings;
 mod golden;

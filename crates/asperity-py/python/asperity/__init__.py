@@ -23,6 +23,7 @@ from ._contact import (
     ElasticCurve as ElasticCurve,
     elastic as elastic,
 )
+from ._converge import ErrorBar as ErrorBar, converge as converge
 from ._findings import Finding as Finding, ResultWarning as ResultWarning
 from ._fit import Fit as Fit, fit_creep as fit_creep, fit_dma as fit_dma, fit_file as fit_file, fit_relaxation as fit_relaxation
 from ._histories import *

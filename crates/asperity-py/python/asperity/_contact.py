@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 import os
@@ -24,7 +25,7 @@ from ._problem import hardness_of
 from ._result import Result
 from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
-from ._surface import Surface, surface_of
+from ._surface import Surface, check_boundary, surface_of
 from ._units import bare, is_labelled
 from ._words import Boundary, Method
 
@@ -67,21 +68,28 @@ class _Planned:
     """The contact of one surface, planned for any number of loads."""
 
     def __init__(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> None:
-        gap = surface.gap()
-        self.gap: Floats = frozen(gap)
+        self.gap: Floats = frozen(surface.gap())
         self.size = surface.size
         self.keys = {"contact_modulus": modulus, **keys}
-        cells = isinstance(hardness, np.ndarray)
         # The array of the caller may change.
-        self.kernel, self.hardness = kernel, np.array(hardness) if cells else hardness
-        self.core = _core.Elastic(
-            gap=as_plane(gap),
-            size=list(surface.size),
-            hardness=math.inf if hardness is None or cells else hardness,
-            hardness_map=as_plane(hardness) if cells else None,
-            kernel=kernel,
+        self.kernel = kernel
+        self.hardness: Any = np.array(hardness) if isinstance(hardness, np.ndarray) else hardness
+
+    @functools.cached_property
+    def core(self) -> _core.Elastic:
+        """The plan; a copy makes its own when it needs one."""
+        cells = self.hardness if isinstance(self.hardness, np.ndarray) else None
+        return _core.Elastic(
+            gap=as_plane(self.gap),
+            size=list(self.size),
+            hardness=self.hardness if isinstance(self.hardness, float) else math.inf,
+            hardness_map=None if cells is None else as_plane(cells),
+            kernel=self.kernel,
             **self.keys,
         )
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "core"}
 
     def is_for(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> bool:
         """Whether it was planned for this."""
@@ -140,7 +148,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         history: ConvergenceHistory | None,
         lent: dict[str, Floats],
     ) -> None:
-        self._planned: _Planned | None = planned
+        self._planned = planned
         self._row = row
         self._stiffness: float | None = None
         # Fields in arrays of the caller, which may change: each with its checksum.
@@ -191,8 +199,6 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         Computed when it is first asked for.
         """
         if self._stiffness is None:
-            if self._planned is None:
-                raise CaseError("the stiffness is computed by the contact that was solved, and not by a copy: ask for it before the contact is copied or sent to another process")
             self._whole("the stiffness")
             self._stiffness = self._planned.core.stiffness(np.array(as_plane(self.pressure)))
         return self._stiffness
@@ -222,10 +228,10 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         return self.to_result().plot
 
     def __getstate__(self) -> dict[str, Any]:
-        # What is planned stays where it is; the copy has fields of its own.
+        # The copy has fields of its own.
         self._whole("a copy")
         own = {name: np.array(values) for name, (values, _) in self._lent.items()}
-        return {**self.__dict__, "_planned": None, "_lent": {}, **own}
+        return {**self.__dict__, "_lent": {}, **own}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -256,8 +262,10 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
     ``curve[n]`` is a contact with its fields; `load`, `approach`, `contact_area`, ... are arrays over all of them.
     """
 
-    def __init__(self, contacts: list[ElasticContact]) -> None:
+    def __init__(self, contacts: list[ElasticContact], control: str, prescribed: Sequence[float]) -> None:
         self._contacts = contacts
+        # "load", "pressure" or "approach", and its values [N, Pa or m] as they were given.
+        self._control, self._prescribed = control, tuple(prescribed)
 
     def _column(self, name: str) -> Floats:
         values: Floats = frozen(np.array([contact._row[name] for contact in self._contacts]))
@@ -280,7 +288,9 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
     @overload
     def __getitem__(self, index: slice) -> ElasticCurve: ...
     def __getitem__(self, index: int | slice) -> ElasticContact | ElasticCurve:
-        return ElasticCurve(self._contacts[index]) if isinstance(index, slice) else self._contacts[index]
+        if isinstance(index, slice):
+            return ElasticCurve(self._contacts[index], self._control, self._prescribed[index])
+        return self._contacts[index]
 
     def __len__(self) -> int:
         return len(self._contacts)
@@ -295,13 +305,16 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
         return pandas.DataFrame({name: np.array(self._column(name)) for name in OF_CONTACT})
 
     def to_xarray(self) -> Any:
-        """The numbers and the pressures as xarray.Dataset over `load`."""
+        """The numbers and the pressures as xarray.Dataset over what was prescribed, `load`, `mean_pressure` or `approach`, with the values
+        as they were given: curves of other surfaces under the same values have the same index."""
         import xarray
 
+        index = {"pressure": "mean_pressure"}.get(self._control, self._control)
         rows = _result(self._contacts, False).to_xarray().drop_vars(["time_error", "stage", "field_time"])
-        rows = rows.swap_dims(time="load").set_coords("load").drop_vars("time")
+        prescribed = xarray.Variable(("time",), np.array(self._prescribed), rows[index].attrs)
+        rows = rows.assign_coords({index: prescribed}).swap_dims(time=index).drop_vars("time")
         pressures = np.array([contact.pressure for contact in self._contacts])
-        return rows.assign(pressure=xarray.Variable(("load", *self._contacts[0]._axes), pressures, FIELDS["pressure"].attributes()))
+        return rows.assign(pressure=xarray.Variable((index, *self._contacts[0]._axes), pressures, FIELDS["pressure"].attributes()))
 
     @property
     def plot(self) -> CurvePlots:
@@ -458,6 +471,7 @@ def elastic(
     """
     boundary, method = choice("boundary", boundary, get_args(Boundary)), choice("method", method, get_args(Method))
     shape = surface_of(surface, gap, size)
+    check_boundary(shape, boundary)
     if contact_modulus is None and kernel is None:
         raise CaseError("give contact_modulus, E* [Pa] in (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*")
     modulus = 1.0 if contact_modulus is None else number("contact_modulus", contact_modulus)
@@ -478,7 +492,7 @@ def elastic(
     scale = math.prod(shape.size) if what == "pressure" else 1.0
     given = bare(what, list(values) if isinstance(values, Iterator) else values, unit)
     several = np.ndim(given) > 0
-    numbers = [number(what, one, unit) * scale for one in (given if several else [given])]
+    numbers = [number(what, one, unit) for one in (given if several else [given])]
     if not numbers:
         raise CaseError(f"{what} holds no number, but must hold one at least")
     receives = _receivers(out, shape)
@@ -494,13 +508,13 @@ def elastic(
     try:
         for value in numbers:
             control = "approach" if what == "approach" else "load"
-            contacts.append(planned.solve(control, value, contacts[-1].pressure if contacts else first, history, receives))
+            contacts.append(planned.solve(control, value * scale, contacts[-1].pressure if contacts else first, history, receives))
     except BaseException as error:
         if contacts:
-            error.result = ElasticCurve(contacts)  # type: ignore[attr-defined]
+            error.result = ElasticCurve(contacts, what, numbers[: len(contacts)])  # type: ignore[attr-defined]
         raise
     warn({finding["code"]: finding for contact in contacts for finding in contact.findings}.values())
-    return ElasticCurve(contacts) if several else contacts[0]
+    return ElasticCurve(contacts, what, numbers) if several else contacts[0]
 
 
 def _receivers(out: Any, shape: Surface) -> dict[str, Floats]:

@@ -20,6 +20,8 @@ _WORDS = {
     "(domain.cells)": "(cells=)",
     "domain.cells": "cells",
     'boundary = "': 'boundary="',
+    "output.histogram.pressure": "largest_pressure=",
+    "output.histogram.gap": "largest_gap=",
     "(--longest, --shortest)": "(longest=, shortest=)",
 }
 

@@ -104,9 +104,10 @@ class Fit(ReadOnlyArrays):
         name: str | None = None,
         temperature: float | None = None,
     ) -> Material:
-        """The material with this Poisson's ratio or bulk modulus [Pa], hardness [Pa], and constant temperature [K]."""
+        """The material with this Poisson's ratio or bulk modulus [Pa], hardness [Pa], and constant temperature [K]; it knows the times
+        that the data cover."""
         rest: dict[str, Any] = dict(
-            poisson=poisson, bulk_modulus=bulk_modulus, hardness=hardness, name=name, shift=self.shift, temperature=temperature
+            poisson=poisson, bulk_modulus=bulk_modulus, hardness=hardness, name=name, shift=self.shift, temperature=temperature, window=self.window
         )
         if self.equilibrium is not None:
             return Prony(equilibrium=self.equilibrium, terms=self.terms, modulus=self.modulus, **rest)

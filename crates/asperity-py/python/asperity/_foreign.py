@@ -50,17 +50,23 @@ def read(path: str, size: list[float] | None, height_unit: float | None, channel
         size = [float(length) * unit for length in topography.physical_sizes]
     heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
     scale = height_unit if height_unit is not None else unit if unit is not None else 1.0
-    metadata = [(str(key), str(value)) for key, value in (topography.info or {}).items() if isinstance(value, (str, int, float))]
     return {
+        **told(topography),
+        **({"repeats": True} if topography.is_periodic else {}),
         "format": str(reader.format()),
         "reader": f"SurfaceTopography {other.__version__}",
         "history": [],
         "size": size,
         "channel": names[index],
         "channels": names,
-        "metadata": metadata,
         "heights": np.ascontiguousarray(heights * scale),
     }
+
+
+def told(topography: Any) -> dict[str, Any]:
+    """What a topography of SurfaceTopography says about itself, as metadata of a surface."""
+    info = getattr(topography, "info", None) or {}
+    return {"metadata": [(str(key), str(value)) for key, value in info.items() if isinstance(value, (str, int, float))]}
 
 
 def _choose(names: list[str], default: int, wanted: str | None, path: str) -> int:

@@ -182,10 +182,8 @@ class Stage:
             object.__setattr__(self, "times", as_times(self.times))
         if isinstance(self.until, list):
             object.__setattr__(self, "until", tuple(self.until))
-        if isinstance(self.until, str) and self.until != "contact-lost":
-            raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or a pair as in ('load', 0.1)")
-        if isinstance(self.until, tuple):
-            if len(self.until) != 2:
+        if self.until is not None and self.until != "contact-lost":
+            if not isinstance(self.until, tuple) or len(self.until) != 2:
                 raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or a pair as in ('load', 0.1)")
             choice("the event of until", self.until[0], ("approach", "load", "pressure"))
 

@@ -177,5 +177,6 @@ def fit_indentation(
         poisson=nu,
         hardness=hardness,
         name=name,
+        window=found["window"],
     )
     return IndentationFit(**{**found, **own}, material=material)

@@ -6,7 +6,8 @@ which the pressure is cut off. Moduli in Pa, compliances in 1/Pa, times in s. A 
 
 With a `shift` (:func:`asperity.wlf`, ...) its numbers hold at the reference temperature of the shift, and its times scale with
 the temperature of the run, or with its own where `temperature` [K] is given; then its functions are those at that
-temperature.
+temperature. `window` are the first and last time [s] for which the material is known, at its reference temperature, as of the
+data that it was fitted to: a run that needs other times gets the finding "beyond-material-data".
 
 Sources: N. W. Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior (1989); K. L. Johnson, Contact
 Mechanics (1985), section 3.2, for the contact compliance.
@@ -18,13 +19,13 @@ import functools
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, array, each, line, number, points
+from ._arrays import Floats, array, choice, each, line, number, points
 from ._core import CaseError
 from ._sealed import Sealed
 from ._shifts import Shift
@@ -47,6 +48,7 @@ class Material(Sealed):
     name: str | None = None
     shift: Shift | None = None
     temperature: float | None = None
+    window: tuple[float, float] | None = None
 
     #: The keys of a `[[body]]`, and what the core makes of them.
     _keys: dict[str, Any] = field(init=False)
@@ -72,6 +74,8 @@ class Material(Sealed):
         """A parameter without its unit."""
         if key in ("name", "modulus", "compliance", "shift"):
             return value
+        if key == "window":
+            return _window(value)
         found = number(key, value)
         return value if type(value) in (int, float) else found
 
@@ -113,22 +117,40 @@ class Material(Sealed):
 
     __hash__ = None  # type: ignore[assignment]
 
-    def creep_compliance(self, t: npt.ArrayLike) -> Floats:
-        """Creep compliance [1/Pa] at times `t` [s], of the modulus that the material was given in.
+    @property
+    def measure(self) -> Measure:
+        """"young" or "shear": the modulus that the material was given in."""
+        return self._body.measure
+
+    def _of(self, measure: Measure | None) -> Measure:
+        found: Measure = self.measure if measure is None else choice("measure", measure, get_args(Measure))
+        return found
+
+    def creep_compliance(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+        """Creep compliance [1/Pa] at times `t` [s] of the modulus `measure`, "young" or "shear"; by default the one that the material was
+        given in (:attr:`measure`).
 
         >>> import asperity as asp
         >>> zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=2.0, poisson=0.5)
         >>> float(zener.creep_compliance(0.0)), float(zener.creep_compliance(1e9))
         (1e-06, 2e-06)
         """
-        return each(self._body.creep, "times", t)
+        return each(lambda times: self._body.creep(times, self._of(measure)), "times", t)
 
-    def relaxation_modulus(self, t: npt.ArrayLike) -> Floats:
-        """Relaxation modulus [Pa] at times `t` [s], of the modulus that the material was given in."""
-        return each(self._body.relaxation, "times", t)
+    def relaxation_modulus(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+        """Relaxation modulus [Pa] at times `t` [s]: Young's modulus with ``measure="young"``, the shear modulus with "shear"; by default the
+        one that the material was given in (:attr:`measure`).
 
-    def storage_loss(self, omega: npt.ArrayLike) -> tuple[Floats, Floats]:
-        """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s] (quantities may be in Hz or rpm).
+        >>> import asperity as asp
+        >>> rubber = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=2.0, poisson=0.5)
+        >>> rubber.measure, float(rubber.relaxation_modulus(0.0)), round(float(rubber.relaxation_modulus(0.0, measure="young")))
+        ('shear', 1000000.0, 3000000)
+        """
+        return each(lambda times: self._body.relaxation(times, self._of(measure)), "times", t)
+
+    def storage_loss(self, omega: npt.ArrayLike, *, measure: Measure | None = None) -> tuple[Floats, Floats]:
+        """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s] (quantities may be in Hz or rpm) of the modulus `measure`,
+        as :meth:`relaxation_modulus`.
 
         >>> import asperity as asp
         >>> maxwell = asp.Maxwell(shear=1e6, relaxation_time=1.0, poisson=0.5)
@@ -137,7 +159,7 @@ class Material(Sealed):
         (500000, 500000)
         """
         at = array("angular frequencies", frequency("angular frequencies", omega, angular=True))
-        storage, loss = self._body.complex(line("angular frequencies", at.reshape(-1)))
+        storage, loss = self._body.complex(line("angular frequencies", at.reshape(-1)), self._of(measure))
         return storage.reshape(at.shape), loss.reshape(at.shape)
 
     def contact_compliance(self, t: npt.ArrayLike) -> Floats:
@@ -298,6 +320,15 @@ class Creep(Material):
         return {**super()._material(), "terms": [{"compliance": amount, "time": time} for amount, time in self.terms]}
 
 
+def _window(value: Any) -> tuple[float, float]:
+    """The first and last time [s]."""
+    try:
+        first, last = value
+    except (TypeError, ValueError):
+        raise CaseError(f"window is {value!r}, but must be (first, last) time in s") from None
+    return number("first time of the window", first), number("last time of the window", last)
+
+
 def _pairs(terms: Sequence[tuple[float, float]], units: tuple[str, str]) -> list[tuple[float, float]]:
     """The terms of a series."""
     listed = terms if hasattr(terms, "__len__") else list(terms)
@@ -316,19 +347,11 @@ class _Fractional(Material):
     #: The sum of its model alone.
     _sum: _core.Body = field(init=False)
 
-    def _plain(self, key: str, value: Any) -> Any:
-        if key != "window":
-            return super()._plain(key, value)
-        try:
-            first, last = value
-        except (TypeError, ValueError):
-            raise CaseError(f"window is {value!r}, but must be (first, last) time in s") from None
-        return number("first time of the window", first), number("last time of the window", last)
-
     def _material(self) -> dict[str, Any]:
         own = super()._material()
         window = own.pop("window")
-        thermal: dict[str, Any] = {key: own.pop(key) for key in ("shift", "temperature") if key in own}
+        # The sum stands for the model where it was fitted.
+        known: dict[str, Any] = {"window": window, **{key: own.pop(key) for key in ("shift", "temperature") if key in own}}
         self._hold(_sum=_core.Body({"poisson": 0.5, "material": own}, window))
         instantaneous, terms, fluidity = self._sum.creep_terms()
         return {
@@ -337,7 +360,7 @@ class _Fractional(Material):
             "instantaneous": instantaneous,
             "terms": [{"compliance": amount, "time": time} for amount, time in terms],
             "fluidity": fluidity,
-            **thermal,
+            **known,
         }
 
     @property

@@ -17,7 +17,7 @@ from ._layers import Body
 from ._materials import Material
 from ._rows import Quantity
 from ._shifts import temperature_keys
-from ._surface import Surface, surface_of
+from ._surface import Surface, check_boundary, surface_of
 from ._units import bare
 from ._words import Boundary, Field, Method, Plasticity, Scheme
 
@@ -63,6 +63,7 @@ class Problem:
         for what, words in (("boundary", Boundary), ("method", Method), ("plasticity", Plasticity)):
             choice(what, getattr(self, what), get_args(words))
         shape = surface_of(self.surface, self.gap, self.size)
+        check_boundary(shape, self.boundary)
         check_places("hardness", self.hardness, self.surface if self.gap is None else self.gap)
         bodies = [dict(body._keys) for body in bodies_of(self.material)]
         arrays = {"heights": as_plane(shape.heights)}

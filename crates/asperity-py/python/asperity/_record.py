@@ -50,6 +50,8 @@ class Record:
         self._march, self._keep = march, keep
         self._edges: dict[str, Floats] = {name: np.array(ends) for name, ends in core.columns()}
         self._rows: list[dict[str, Any]] = []
+        #: What was prescribed between two rows: the number of the row that followed, control and history.
+        self.prescribed: list[dict[str, Any]] = []
         # The fields that are kept, by the number of their row; with an output only those that are not yet on disk.
         self._maps: dict[int, dict[str, Any]] = {}
         # Adaptive steps find their rows as they go.
@@ -134,7 +136,7 @@ class Record:
                 "title": self._keep.title,
                 "version": _core.__version__,
                 "status": status,
-                "setup": json.dumps(self._march._setup),
+                "setup": json.dumps({**self._march._setup, **({"prescribed": self.prescribed} if self.prescribed else {})}),
                 **layers_of(self._march._setup),
                 "findings": [dict(finding) for finding in self._march.findings],
             },

@@ -25,6 +25,7 @@ from ._units import written
 from ._words import Field, Flow, Sides
 
 if TYPE_CHECKING:
+    from ._converge import ErrorBar
     from collections.abc import Sequence
 
     from ._stress import Stress
@@ -169,6 +170,11 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
     def attributes(self) -> dict[str, Any]:
         """Title, version, status, the case and the work."""
         return copy.deepcopy(self._attributes)
+
+    @property
+    def error_bars(self) -> list[ErrorBar]:
+        """The answers with their errors (``asperity run --error-bars``); empty where they were not computed."""
+        return copy.deepcopy(self._attributes.get("error_bars", []))
 
     @property
     def findings(self) -> list[Finding]:
@@ -359,7 +365,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             for place, unit, words, ends in places:
                 coordinates[place] = (place, ends, {"units": written(unit), "long_name": words})
         # Text, as all other attributes, so that the dataset can be written.
-        attributes = {**self._attributes, "findings": json.dumps(self._attributes.get("findings", []))}
+        lists = {name: json.dumps(self._attributes[name]) for name in ("findings", "error_bars") if name in self._attributes}
+        attributes = {**self._attributes, "findings": "[]", **lists}
         whole = xarray.Dataset(data, coords=coordinates, attrs=attributes)
         if not self._leaks:
             return whole

@@ -17,6 +17,7 @@ from ._arrays import cells_of, path_of
 from ._columns import HISTOGRAMS, Number
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
+from ._histories import History, as_history, one_of
 from ._options import arguments_of
 from ._problem import InStages, Problem, Run, Solve
 from ._progress import Progress
@@ -145,6 +146,37 @@ class March(Sealed):
             step = self._step(self._core.done - 1)
             self._record.see(step)
             return step
+
+    def prescribe(
+        self, *, load: History | float | None = None, pressure: History | float | None = None, approach: History | float | None = None
+    ) -> None:
+        """From the last row on this load [N], mean pressure [Pa] or approach [m] is prescribed, in place of what was to come: a stage that
+        begins here and lasts to the end of the run, with its times.
+
+        A number is a step, which makes a row of no duration first, as at the start of a :class:`Stage`; ``ramp_to(value, duration=...)``
+        goes on from the value reached, which a material without instantaneous compliance needs. The rows of the result have the number
+        of their `stage`, and its attribute "setup" lists what was prescribed, under "prescribed".
+
+        A constant contact area, by the load at which a cone has it:
+
+        >>> import asperity as asp
+        >>> cone = asp.Surface.cone(cells=(64, 64), size=(1e-3, 1e-3), slope=0.1)
+        >>> rubber = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+        >>> run = asp.march(cone, rubber, load=5e-3, times=asp.uniform(2.0, 40))
+        >>> areas = []
+        >>> for row in run:
+        ...     areas.append(row.contact_area)
+        ...     if row.time < 2.0:
+        ...         run.prescribe(load=asp.ramp_to(row.load * areas[0] / row.contact_area, duration=0.05))
+        >>> bool(abs(areas[-1] / areas[0] - 1) < 0.05), bool(run.result().load[-1] < 3.5e-3)
+        (True, True)
+        """
+        control, value = one_of({"load": load, "pressure": pressure, "approach": approach}, "prescribe")
+        unit = ("N/m" if len(self.size) == 1 else "N") if control == "load" else None
+        keys = {"control": control, "history": as_history(control, value, unit)._keys}
+        with self._turn:
+            self._core.prescribe(keys)
+            self._record.prescribed.append({"row": len(self._record), **keys})
 
     def _step(self, index: int) -> Step:
         return Step(self, self._core.row(), index)
@@ -314,7 +346,7 @@ def run(
             on_row(row, done, total)
 
     try:
-        summary = _core.run(*_source(case), overrides(set), path_of("output", output), force, resume, told)
+        summary = _core.run(*source(case), overrides(set), path_of("output", output), force, resume, told)
     except BaseException as error:
         if output is not None and teller is not None:
             with contextlib.suppress(OSError, CaseError):
@@ -331,11 +363,11 @@ def run(
 def check(case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None) -> dict[str, Any]:
     """What a case (as in :func:`run`) will do, in numbers: cells, rows, moduli, memory [byte], ...; the inputs that a slip
     would hide in, the contact to be expected, and the findings that are known before the run."""
-    out: dict[str, Any] = json.loads(_core.check(*_source(case), overrides(set)))
+    out: dict[str, Any] = json.loads(_core.check(*source(case), overrides(set)))
     return out
 
 
-def _source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str | None]:
+def source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str | None]:
     """The path of a case file; or where the files of a case lie that is given as text or keys, and its text."""
     if isinstance(case, Mapping):
         return os.curdir, _core.case_text(dict(case))

@@ -30,7 +30,7 @@ from ._histories import one_of
 from ._motion import slide, steady
 from ._units import UNITS, bare, carries, has_unit, is_labelled, unit_among
 from ._result import Result
-from ._solve import _source, overrides, solve
+from ._solve import overrides, solve, source
 from ._study_folder import study_in_folder
 from ._surface import Surface
 
@@ -283,7 +283,7 @@ def _common(case: Any, names: list[str]) -> dict[str, Any]:
         function = None if case is solve else case
         return {"function": function, "base": base_of(None, "", function, {})}
     try:
-        path, text = _source(case)
+        path, text = source(case)
     except FileNotFoundError as error:
         raise CaseError(f"the case {error.filename} cannot be read: {error.strerror}") from None
     directory = path

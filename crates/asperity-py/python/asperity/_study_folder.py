@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._core import CaseError
-from ._solve import _source, _toml
+from ._solve import _toml, source
 
 if TYPE_CHECKING:
     import xarray
@@ -52,7 +52,7 @@ def study_in_folder(
 def _case_file(case: Any, directory: Any) -> str:
     """The file of a case; one that is given as text or keys is written into the folder."""
     try:
-        path, text = _source(case)
+        path, text = source(case)
     except FileNotFoundError as error:
         raise CaseError(f"the case {error.filename} cannot be read: {error.strerror}") from None
     if text is None:

@@ -233,6 +233,8 @@ class Surface(OnGrid):
         heights, size, done = self._compiled.process([str(step) for step in steps])
         heights = heights[:, 0] if self.is_line else heights
         metadata = {**self.metadata, "history": [*self.history, *done]}
+        if any("crop" in step for step in done):
+            metadata.pop("repeats", None)
         return Surface(heights, size=size, metadata=metadata)
 
     def level(self, form: Form = "plane") -> Surface:
@@ -296,11 +298,11 @@ class Surface(OnGrid):
         """Heights of the other sign: a replica."""
         return self.process("invert")
 
-    def window(self, shape: Window = "hann", *, share: float | None = None) -> Surface:
-        """Faded to zero at the edges by a "hann" window, or a "tukey" one that rises over a `share` of the length (0.1).
+    def window(self, shape: Window = "tukey", *, share: float | None = None) -> Surface:
+        """Faded to zero at the edges by a "tukey" window that rises over a `share` of the length (0.1), or a "hann" one.
 
-        The window is scaled to mean square 1, as spectra need it: heights in the middle of a map grow 2.7 times by "hann" and 1.07
-        times by "tukey". Before a contact take "tukey".
+        The window is 1 in the middle, and no height grows: for contacts. For the spectrum of a surface that is not periodic see
+        :meth:`power_spectrum`.
         """
         words = f"window shape={shape}"
         return self.process(words if share is None else f"{words} share={number('share', share)!r}")
@@ -344,15 +346,18 @@ class Surface(OnGrid):
         warn(findings_of(json.loads(found.pop("findings", "[]"))))
         return found
 
-    def power_spectrum(self, per_decade: int = 16) -> tuple[Floats, Floats]:
+    def power_spectrum(self, per_decade: int = 16, *, periodic: bool = True) -> tuple[Floats, Floats]:
         """Wavenumbers [1/m] and radially averaged power spectrum C(q) [m^4]; 0 rings per decade: linear rings.
 
-        The surface is taken as periodic, so that the mean of z^2 is the integral of C d^2q / (2 pi)^2. Of a profile it is
-        :meth:`power_spectrum_1d`.
+        The surface is taken as periodic, so that the mean of z^2 is the integral of C d^2q / (2 pi)^2. With ``periodic=False`` it is
+        levelled, filled, and multiplied by Hann's window of mean square 1, which keeps the power of the waves; :meth:`window`,
+        which is for contacts, does not. Of a profile it is :meth:`power_spectrum_1d`.
         """
         if self.is_line:
+            if not periodic:
+                raise CaseError("a profile has no `periodic`: its spectrum is that of the profile as it is")
             return self.power_spectrum_1d()
-        return self._compiled.power_spectrum(count("per_decade", per_decade, 0, 1000))
+        return self._compiled.power_spectrum(count("per_decade", per_decade, 0, 1000), bool(periodic))
 
     def power_spectrum_1d(self, direction: Axis = "x") -> tuple[Floats, Floats]:
         """Wavenumbers q > 0 [1/m] and power spectrum C1(q) [m^3] of the profiles along "x" or "y", their mean.
@@ -480,6 +485,11 @@ class Surface(OnGrid):
         level, fill : as the methods of that name; by default the heights are as measured, undefined points NaN
         transpose : whether the lines of a text matrix run along y, as ``np.savetxt(path, surface.heights)`` writes them; by default
             they run along x, as instruments write them
+
+        Raises
+        ------
+        FileNotFoundError : there is no such file; another OSError where it cannot be read
+        CaseError : it does not say what is needed, such as its size
 
         Warns
         -----
@@ -659,6 +669,12 @@ def as_surface(value: Any, size: float | Sequence[float] | None) -> Surface:
     return value if isinstance(value, Surface) and size is None else Surface(value, size=size)
 
 
+def check_boundary(surface: Surface, boundary: str) -> None:
+    """Warns where a topography that says that it repeats is pressed on a free half-space."""
+    if surface.metadata.get("repeats") and boundary == "free":
+        warn_caller('the topography is periodic, but boundary is "free", so that its edges are edges of the contact: give boundary="periodic", or a topography that is not periodic')
+
+
 def surface_of(surface: Any, gap: Any, size: float | Sequence[float] | None) -> Surface:
     """The surface that is given by its heights, or by the undeformed gap that it leaves."""
     if (surface is None) == (gap is None):
@@ -676,6 +692,8 @@ def surface_of(surface: Any, gap: Any, size: float | Sequence[float] | None) -> 
 
 def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict[str, Any]]:
     """Heights [m], size [m] and metadata of a surface, or of an object that describes one."""
+    if isinstance(value, (str, os.PathLike)):
+        raise CaseError(f"the {'surface' if what == 'heights' else what} is the path {os.fspath(value)!r}: read it with asperity.Surface.read({os.fspath(value)!r})")
     value = variable_of(what, value)
     held = getattr(value, "magnitude", None)
     if isinstance(held, Surface):  # a quantity of pint, which multiplies objects of any kind
@@ -695,14 +713,45 @@ def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict
 
 
 def _of_topography(topography: Any, size: Any) -> tuple[Any, Any, dict[str, Any]]:
+    if getattr(topography, "is_domain_decomposed", False):
+        raise CaseError("the topography holds only the part of one process of MPI: gather it first")
     unit = getattr(topography, "unit", None)
     if unit is None:
         raise CaseError("the topography has no unit: give it one, as in topography.to_unit('m') or unit='m'")
     factor = factor_of("topography", unit, "m")
+    heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan) * factor
+    if not getattr(topography, "is_uniform", True):
+        heights, extent, resampled = _even(np.asarray(topography.positions(), dtype=float) * factor, heights, size)
+        return heights, extent, {**resampled, **_foreign.told(topography)}
     extent = [length * factor for length in topography.physical_sizes] if size is None else size
     # What was measured does not repeat beyond its edges.
-    known = {} if getattr(topography, "is_periodic", True) else {"format": "SurfaceTopography"}
-    return np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan) * factor, extent, known
+    known: dict[str, Any] = {"repeats": True} if getattr(topography, "is_periodic", False) else {"format": "SurfaceTopography"}
+    return heights, extent, {**known, **_foreign.told(topography)}
+
+
+#: An unevenly measured profile gets at most this many times as many cells as it has points.
+_FINEST = 10
+
+
+def _even(places: Floats, heights: Floats, size: Any) -> tuple[Floats, list[float], dict[str, Any]]:
+    """A profile of heights [m] at rising places [m] on equal cells, linear between the points: cells as long as the shortest distance
+    of neighbours, where that makes no more than ten times as many cells as points. They cover the profile from its first to its last point."""
+    steps, length = np.diff(places), float(places[-1] - places[0])
+    if len(steps) == 0 or not np.all(steps > 0.0):
+        raise CaseError("the positions of the line scan must be two at least, and rise")
+    if size is not None and not np.allclose(lengths("size", size), [length], rtol=1e-9, atol=0.0):
+        raise CaseError(f"size is {size!r} m, but the positions of the line scan tell {length:.6g} m: leave size out")
+    finest = int(np.ceil(length / steps.min() * (1.0 - 1e-9)))
+    cells = min(finest, _FINEST * len(places))
+    middles = places[0] + (np.arange(cells) + 0.5) * (length / cells)
+    words = (
+        f"resampled from {len(places)} points, {steps.min():.3g} m to {steps.max():.3g} m apart, to {cells} cells of {length / cells:.3g} m, "
+        "linear between the points"
+    )
+    lost = f"; distances below {length / cells:.3g} m are not resolved" if cells < finest else ""
+    warn_caller(f"the line scan is not evenly spaced: {words}{lost}")
+    known = {"format": "SurfaceTopography", "history": [words]}
+    return np.interp(middles, places, heights), [length], known
 
 
 def _of_labelled(what: str, given: Any, size: Any) -> tuple[Any, Any, dict[str, Any]]:

@@ -469,9 +469,10 @@ class SurfacePlots:
         _bar(ax, image, "height", "m")
         return ax
 
-    def power_spectrum(self, *, per_decade: int = 16, ax: Axes | None = None, **style: Any) -> Axes:
-        """Radially averaged power spectrum over wavenumber, both logarithmic; of a profile its own."""
-        q, c = self._surface.power_spectrum(per_decade)
+    def power_spectrum(self, *, per_decade: int = 16, periodic: bool = True, ax: Axes | None = None, **style: Any) -> Axes:
+        """Radially averaged power spectrum over wavenumber, both logarithmic; of a profile its own. `periodic` as in
+        :meth:`Surface.power_spectrum`."""
+        q, c = self._surface.power_spectrum(per_decade, periodic=periodic)
         return _spectrum(q, c, "C1 [m³]" if self._surface.is_line else "C [m⁴]", ax, style)
 
     def power_spectrum_1d(self, *, direction: Axis = "x", ax: Axes | None = None, **style: Any) -> Axes:

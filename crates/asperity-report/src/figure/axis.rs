@@ -22,8 +22,10 @@ pub struct Axis {
     pub unit: String,
     /// How values become places.
     pub scale: Scale,
-    /// Ends of the axis \[SI\]; `None` for those of the data.
+    /// Ends of what the axis shows \[SI\]; `None` for those of the data.
     pub range: Option<[f64; 2]>,
+    /// Whether the frame is at these ends; else there is room between them and the frame.
+    pub exact: bool,
     /// Names of the values 0, 1, 2 ... in place of numbers; empty for numbers.
     pub names: Vec<String>,
     /// The unit that it is shown in; `None` for one that suits its range.
@@ -45,8 +47,8 @@ const NOTHING: f64 = 1e-250;
 impl Axis {
     /// A linear axis over the range of the data.
     pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Axis {
-        let (scale, range, names, counts) = (Scale::Linear, None, vec![], false);
-        Axis { label: label.into(), unit: unit.into(), scale, range, names, counts, chosen: None }
+        let (scale, range, exact, names, counts) = (Scale::Linear, None, false, vec![], false);
+        Axis { label: label.into(), unit: unit.into(), scale, range, exact, names, counts, chosen: None }
     }
 
     /// A logarithmic axis over the range of the data.
@@ -71,9 +73,14 @@ impl Axis {
         Axis { chosen, ..self }
     }
 
-    /// The same axis between two ends \[SI\].
+    /// The same axis with its frame at these ends \[SI\].
     pub fn between(self, from: f64, to: f64) -> Axis {
-        Axis { range: Some([from, to]), ..self }
+        Axis { range: Some([from, to]), exact: true, ..self }
+    }
+
+    /// The same axis for values between these \[SI\], whatever the data are, and room beyond them.
+    pub fn spanning(self, from: f64, to: f64) -> Axis {
+        Axis { range: Some([from, to]), exact: false, ..self }
     }
 }
 
@@ -180,8 +187,11 @@ fn ends(axis: &Axis, data: [f64; 2], margin: f64) -> [f64; 2] {
     let forward = |v: f64| if log { v.log10() } else { v };
     let [low, high] = axis.range.unwrap_or(data).map(forward);
     let largest = high.abs().max(low.abs());
-    if !(low.is_finite() && high.is_finite()) || (!log && largest < NOTHING) {
+    if !(low.is_finite() && high.is_finite()) {
         return [0.0, 1.0];
+    }
+    if !log && largest < NOTHING {
+        return [-margin, 1.0];
     }
     if high - low <= 1e-9 * largest {
         let room = match (log, axis.counts) {
@@ -191,13 +201,8 @@ fn ends(axis: &Axis, data: [f64; 2], margin: f64) -> [f64; 2] {
         };
         return [low - room, high + room];
     }
-    if axis.range.is_some() {
-        return [low, high];
-    }
-    let room = margin * (high - low);
-    // An axis that starts at zero stays there.
-    let keeps_zero = |end: f64, moved: f64| if !log && end == 0.0 { 0.0 } else { moved };
-    [keeps_zero(low, low - room), keeps_zero(high, high + room)]
+    let room = if axis.exact { 0.0 } else { margin * (high - low) };
+    [low - room, high + room]
 }
 
 /// Whether a tick is a whole number but for rounding.

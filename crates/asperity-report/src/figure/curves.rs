@@ -8,12 +8,15 @@ use super::drawing::{Anchor, Drawing, GRID, INK, Paint, Pen};
 use super::font;
 use super::legend::Legend;
 use super::scale::{Bar, ColourScale};
-use super::series::{Series, Style, dots, marks, sign, spacing};
+use super::series::{Series, Style, dots, sign, spacing};
 use super::{EDGE, Margins, Place, SMALL, TEXT};
 
 /// Colours that people with any kind of colour vision tell apart (Okabe & Ito 2008), dark ones first.
 pub(crate) const COLOURS: [&str; 7] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#222222"];
+
+/// Room between the data and the frame, as shares of what the axes x and y show: no curve and no sign of a point lies on the frame.
+const ROOM: [f64; 2] = [0.03, 0.06];
 
 /// A panel of curves.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,18 +112,16 @@ impl Curves {
         self
     }
 
-    /// What the panel needs of its margins: width of the numbers at the vertical axis, and height of a legend above the frame,
-    /// where no corner inside is free of curves. Beside the frame are the `sides` at least: those of the panels above and below.
-    pub(crate) fn needs(&self, size: [f64; 2], sides: Margins) -> Margins {
-        let labels = self.rulers(size, Margins::default()).1.widest().max(sides.labels);
-        let own = Margins { labels, beside: sides.beside, legend: 0.0, head: super::head(&self.title) };
-        let layout = self.layout(&Place { corner: [0.0, 0.0], size, margins: own });
+    /// What the panel needs of its margins where it has these already: width of the numbers at the vertical axis, and height of a
+    /// legend above the frame, where no corner inside is free of curves.
+    pub(crate) fn needs(&self, size: [f64; 2], given: Margins) -> Margins {
+        let labels = self.rulers(size, given).1.widest();
+        let layout = self.layout(&Place { corner: [0.0, 0.0], size, margins: given });
         let legend = Legend::of(self);
-        if legend.is_empty() || self.corner(&legend, &layout).is_some() {
-            return own;
-        }
         let [left, _, right, _] = layout.area;
-        Margins { legend: legend.height_above(right - left), ..own }
+        let is_above = !legend.is_empty() && self.corner(&legend, &layout).is_none();
+        let legend = if is_above { legend.height_above(right - left) } else { 0.0 };
+        Margins { labels, beside: 0.0, legend, head: super::head(&self.title) }
     }
 
     /// Where the names stand inside of the frame; `None` above it.
@@ -193,10 +194,6 @@ impl Curves {
             }
             drawing.clipped([left, top], [right - left, bottom - top], |drawing| {
                 series.draw(drawing, colour, &at, bottom, layout.y.place(0.0));
-                if let Some(mark) = series.mark {
-                    let places = marks(series.points().map(at));
-                    places.into_iter().for_each(|place| sign(drawing, mark, place, colour));
-                }
             });
         }
         match corner {
@@ -259,15 +256,14 @@ impl Curves {
         }
         let foot = TEXT + SMALL + 12.0;
         let head = margins.head + margins.legend + self.height_beside();
-        let margin = if bars || self.x.scale == Scale::Linear { 0.0 } else { 0.01 };
-        let x = Ruler::new(&self.x, across, margin, (width - margins.labels - TEXT - 25.0) / 48.0);
+        let x = Ruler::new(&self.x, across, ROOM[0], (width - margins.labels - TEXT - 25.0) / 48.0);
         // A density over a length in µm is one per µm.
         let inverse = (self.y.unit == format!("1/{}", self.x.unit))
             .then(|| Shown { factor: 1.0 / x.unit.factor, text: format!("1/{}", x.unit.text) });
         let wanted = (height - foot - head) / 32.0;
         let y = match inverse {
-            Some(unit) => Ruler::in_unit(&self.y, up, 0.06, wanted, unit),
-            None => Ruler::new(&self.y, up, 0.06, wanted),
+            Some(unit) => Ruler::in_unit(&self.y, up, ROOM[1], wanted, unit),
+            None => Ruler::new(&self.y, up, ROOM[1], wanted),
         };
         (x, y, [head, foot])
     }
@@ -350,4 +346,64 @@ pub(super) fn frame(drawing: &mut Drawing, x: &Ruler, y: &Ruler, area: [f64; 4],
     drawing.rect([left, top], [right - left, bottom - top], Paint::outline(Pen::new(INK, 0.8)));
     drawing.text([0.5 * (left + right), titles[1]], TEXT, Anchor::Middle, &x.title);
     drawing.upward_text([titles[0], 0.5 * (top + bottom)], TEXT, &y.title);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Half of a sign, and more than half of a line \[points\].
+    const SIGN: f64 = 2.0;
+
+    fn place(panel: &Curves) -> Place {
+        super::super::Figure::new("").with(panel.clone()).places().remove(0)
+    }
+
+    #[test]
+    fn no_point_lies_on_the_frame() {
+        let x = [0.0, 1.0, 3.0, 100.0];
+        for y in [[0.0, 0.0, 5.0, 0.0], [-3.0, 0.0, 0.0, 0.0], [1e-9, 1e-7, 1e-8, 1e-9]] {
+            for (log_x, log_y) in [(false, false), (true, false), (false, true), (true, true)] {
+                let axis = |log: bool| if log { Axis::log("a", "s") } else { Axis::linear("a", "s") };
+                for across in [axis(log_x), axis(log_x).spanning(1.0, 100.0)] {
+                    let panel =
+                        Curves::new("", across, axis(log_y)).with(Series::new("", Style::Points, x, y));
+                    let layout = panel.layout(&place(&panel));
+                    let [left, top, right, bottom] = layout.area;
+                    // Places before a window are not drawn.
+                    let seen = |p: &[f64; 2]| panel.x.range.is_none_or(|ends| p[0] >= ends[0]);
+                    for [x, y] in panel.series[0].points().filter(seen).filter_map(|point| layout.at(point)) {
+                        assert!(x > left + SIGN && x < right - SIGN, "{panel:?}");
+                        assert!(y > top + SIGN && y < bottom - SIGN, "{panel:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn names_stand_where_no_curve_comes_near_or_above_the_frame() {
+        let x: Vec<f64> = (0..=400).map(|k| f64::from(k) / 400.0).collect();
+        for k in 0..60 {
+            let turn = f64::from(k) / 9.0;
+            let panel = ["a curve", "another one with a long name"].iter().zip([0.0, 0.6]).fold(
+                Curves::new("", Axis::linear("x", "m"), Axis::linear("y", "m")),
+                |panel, (name, shift)| {
+                    panel.with(Series::of(*name, Style::Line, &x, |x| (turn * x + turn + shift).sin()))
+                },
+            );
+            let place = place(&panel);
+            let (layout, legend) = (panel.layout(&place), Legend::of(&panel));
+            let Some([left, top]) = panel.corner(&legend, &layout) else {
+                assert!(place.margins.legend > 0.0, "{k}");
+                continue;
+            };
+            let [width, height] = legend.size();
+            for [x, y] in panel.series.iter().flat_map(Series::points).filter_map(|point| layout.at(point)) {
+                let apart =
+                    x + SIGN < left || x - SIGN > left + width || y + SIGN < top || y - SIGN > top + height;
+                assert!(apart, "{k}: {x} {y} {left} {top} {width} {height}");
+            }
+        }
+    }
 }

@@ -152,5 +152,5 @@ fn colours(map: &Map, place: &Place) -> (Option<Bar>, [Option<String>; 2]) {
         return (None, [None, None]);
     }
     let told = |value: Option<f64>| value.map(|value| typeset(&quantity(value, unit)).replace('-', "−"));
-    (Some(Bar::new(scale, label, unit, place)), scale.beyond(&map.values).map(told))
+    (Some(Bar::new(scale, label, unit, place)), scale.beyond(&map.values, map.whole).map(told))
 }

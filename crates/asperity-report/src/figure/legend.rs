@@ -9,7 +9,7 @@ use super::words;
 
 /// Room of the sign before a name \[points\].
 const SIGN: f64 = 26.0;
-/// Distance of the legend to the frame.
+/// Distance of the legend to the frame, and at least to the curves \[points\]: more than half of a line or of a sign.
 const GAP: f64 = 4.0;
 
 /// The series that have a name, with their colours.
@@ -35,7 +35,7 @@ impl<'a> Legend<'a> {
     }
 
     /// Width and height as a column of names.
-    fn size(&self) -> [f64; 2] {
+    pub(super) fn size(&self) -> [f64; 2] {
         let text = self.named.iter().map(|(s, _)| font::width(&s.name, SMALL)).fold(0.0, f64::max);
         [text + SIGN + 4.0, Self::ROW * self.named.len() as f64 + 5.0]
     }
@@ -51,7 +51,8 @@ impl<'a> Legend<'a> {
             [left + GAP, bottom - height - GAP],
         ];
         let free = |[x, y]: &[f64; 2]| {
-            let under = |p: [f64; 2]| p[0] > *x && p[0] < x + width && p[1] > *y && p[1] < y + height;
+            let beside = |at: f64, from: f64, length: f64| at > from - GAP && at < from + length + GAP;
+            let under = |p: [f64; 2]| beside(p[0], *x, width) && beside(p[1], *y, height);
             *x > left
                 && x + width < right
                 && *y > top
@@ -114,7 +115,8 @@ fn wide(name: &str) -> f64 {
 fn covers(series: &Series, layout: &Layout, under: &impl Fn([f64; 2]) -> bool) -> bool {
     let places: Vec<[f64; 2]> = series.points().filter_map(|point| layout.at(point)).collect();
     let between = |from: [f64; 2], to: [f64; 2]| {
-        (0..=16).any(|k| under([0, 1].map(|i| from[i] + (to[i] - from[i]) * f64::from(k) / 16.0)))
+        let parts = (f64::hypot(to[0] - from[0], to[1] - from[1]) / GAP).ceil().max(1.0);
+        (0..=parts as usize).any(|k| under([0, 1].map(|i| from[i] + (to[i] - from[i]) * k as f64 / parts)))
     };
     match series.style {
         Style::Bars => places.iter().any(|place| between(*place, [place[0], layout.area[3]])),
@@ -132,9 +134,6 @@ fn draw(drawing: &mut Drawing, (series, colour): (&Series, &str), [x, middle]: [
         style if style.is_of_points() => sign(drawing, style, [x + 13.0, middle], colour),
         style => {
             drawing.line([x + 5.0, middle], [x + 21.0, middle], pen(style, colour, 0.0));
-            if let Some(mark) = series.mark {
-                sign(drawing, mark, [x + 13.0, middle], colour);
-            }
         }
     }
     let name = words::shortened(&series.name, SMALL, right + 4.0 - x - SIGN);

@@ -9,7 +9,7 @@ use super::drawing::{Anchor, Drawing, INK, Paint, Pen, Pixels};
 use super::font;
 use super::frame::{Layout, NAMES};
 use super::raster::{self, BLANK};
-use super::scale::ColourScale;
+use super::scale::{ColourScale, extent};
 use super::{Place, SMALL, TEXT};
 
 /// A state of a cell: its name and its colour.
@@ -38,6 +38,8 @@ pub struct Map {
     pub title: String,
     /// Values at the cell centres (axes x and y: x to the right, y upwards).
     pub values: Array2<f64>,
+    /// Least and greatest of the values of all cells, also of those that are shown as means over blocks.
+    pub whole: [f64; 2],
     /// What they are.
     pub meaning: Values,
     /// Values at the ends of the colour bar of a quantity; `None` for the least and the greatest.
@@ -87,12 +89,25 @@ impl Map {
         size: [f64; 2],
     ) -> Map {
         let meaning = Values::Quantity { label: label.into(), unit: unit.into(), colours };
-        Map::of(title.into(), raster::means(values, raster::block(values)), meaning, size)
+        let whole = extent(values.iter().copied());
+        Map { whole, ..Map::of(title.into(), raster::means(values, raster::block(values)), meaning, size) }
     }
 
     fn of(title: String, values: Array2<f64>, meaning: Values, size: [f64; 2]) -> Map {
-        let (axes, marks) = (Axes::Area, vec![]);
-        Map { title, values, meaning, range: None, size, axes, marks, line: None, palette: None, log: false }
+        let (axes, marks, whole) = (Axes::Area, vec![], extent(values.iter().copied()));
+        Map {
+            title,
+            values,
+            whole,
+            meaning,
+            range: None,
+            size,
+            axes,
+            marks,
+            line: None,
+            palette: None,
+            log: false,
+        }
     }
 
     /// The same map of something over lags in both directions.
@@ -140,7 +155,7 @@ impl Map {
     /// How its values become colours; `None` for states.
     pub(super) fn scale(&self) -> Option<ColourScale> {
         let Values::Quantity { colours, .. } = self.meaning else { return None };
-        Some(ColourScale::of(&self.values, colours, self.palette, self.range, self.log))
+        Some(ColourScale::of(&self.values, self.whole, colours, self.palette, self.range, self.log))
     }
 
     /// The values at the ends of its colours; `None` for states, for the pressure where nothing touches and the gap where everything does.
@@ -212,8 +227,9 @@ impl Map {
     pub(super) fn thumbnail(&self) -> Map {
         let mut small = Map::of(self.title.clone(), Array2::zeros((1, 1)), self.meaning.clone(), self.size);
         if let (Some(ends), Some(scale)) = (self.ends(), self.scale()) {
-            let [low, high] = scale.beyond(&self.values);
-            small.values = ndarray::array![[low.unwrap_or(ends[0])], [high.unwrap_or(ends[1])]];
+            let [low, high] = scale.beyond(&self.values, self.whole);
+            small.whole = [low.unwrap_or(ends[0]), high.unwrap_or(ends[1])];
+            small.values = ndarray::arr2(&[[small.whole[0]], [small.whole[1]]]);
             small.range = Some(ends);
         } else {
             small.range = self.range;

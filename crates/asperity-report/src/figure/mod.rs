@@ -115,6 +115,18 @@ pub(crate) struct Margins {
     pub(crate) head: f64,
 }
 
+impl Margins {
+    /// The larger one of each.
+    fn or(self, other: Margins) -> Margins {
+        Margins {
+            labels: self.labels.max(other.labels),
+            beside: self.beside.max(other.beside),
+            legend: self.legend.max(other.legend),
+            head: self.head.max(other.head),
+        }
+    }
+}
+
 /// Height of a panel's title above its frame \[points\].
 fn head(title: &str) -> f64 {
     if title.is_empty() { 8.0 } else { TEXT + 9.0 }
@@ -216,31 +228,36 @@ impl Figure {
         rows.collect()
     }
 
-    /// The margins of each panel: what its column and its row need.
+    /// The margins of each panel: what its column and its row need. Where a legend fits depends on the margins, so they grow until
+    /// every panel has what it needs within them.
     fn margins(&self) -> Vec<Margins> {
-        let needs = |n: usize, sides: Margins| match &self.panels[n] {
-            Panel::Curves(curves) => curves.needs(self.panel, sides),
-            Panel::Map(map) => map.needs(self.panel),
-        };
         let count = self.panels.len();
-        let mut columns = vec![Margins::default(); self.columns.min(count)];
-        let mut rows = vec![Margins::default(); count.div_ceil(self.columns)];
-        for n in 0..count {
-            let (own, column) = (needs(n, Margins::default()), &mut columns[n % self.columns]);
-            column.labels = column.labels.max(own.labels);
-            column.beside = column.beside.max(own.beside);
+        let mut all = vec![Margins::default(); count];
+        loop {
+            let own: Vec<Margins> = (0..count).map(|n| self.needs(n, all[n]).or(all[n])).collect();
+            let of = |n: usize| {
+                let rest = |other: &usize| other % self.columns == n % self.columns;
+                let column = (0..count).filter(rest).fold(Margins::default(), |most, k| most.or(own[k]));
+                let row = n / self.columns * self.columns;
+                let row = own[row..count.min(row + self.columns)].iter();
+                let row = row.fold(Margins::default(), |most, one| most.or(*one));
+                Margins { labels: column.labels, beside: column.beside, ..row }
+            };
+            let grown: Vec<Margins> = (0..count).map(of).collect();
+            if grown == all {
+                return all;
+            }
+            all = grown;
         }
-        // How many rows a legend takes depends on the width that is left.
-        for n in 0..count {
-            let (own, row) = (needs(n, columns[n % self.columns]), &mut rows[n / self.columns]);
-            row.legend = row.legend.max(own.legend);
-            row.head = row.head.max(own.head);
+    }
+
+    /// What a panel needs of its margins where it has these already.
+    fn needs(&self, n: usize, given: Margins) -> Margins {
+        let size = [self.panel[0], self.panel[1] + given.legend];
+        match &self.panels[n] {
+            Panel::Curves(curves) => curves.needs(size, given),
+            Panel::Map(map) => map.needs(self.panel),
         }
-        let of = |n: usize| {
-            let Margins { labels, beside, .. } = columns[n % self.columns];
-            Margins { labels, beside, ..rows[n / self.columns] }
-        };
-        (0..count).map(of).collect()
     }
 }
 

@@ -50,15 +50,13 @@ pub struct Series {
     pub style: Style,
     /// Its colour, "#rrggbb"; `None` for the next one of the panel.
     pub colour: Option<String>,
-    /// A sign at some places of a line, which tells it from another line of the same colour.
-    pub mark: Option<Style>,
 }
 
 impl Series {
     /// A series of places and values.
     pub fn new(name: impl Into<String>, style: Style, x: impl AsRef<[f64]>, y: impl AsRef<[f64]>) -> Series {
         let [x, y] = [x.as_ref(), y.as_ref()].map(<[f64]>::to_vec);
-        Series { name: name.into(), x, y, style, colour: None, mark: None }
+        Series { name: name.into(), x, y, style, colour: None }
     }
 
     /// A series of points (place, value).
@@ -83,7 +81,7 @@ impl Series {
             steps.extend(steps.last().map(|last| [x, last[1]]));
             steps.push([x, y]);
         }
-        Series { colour: self.colour, mark: self.mark, ..Series::through(self.name, self.style, steps) }
+        Series { colour: self.colour, ..Series::through(self.name, self.style, steps) }
     }
 
     /// The same in a colour of its own, "#rrggbb".
@@ -136,28 +134,6 @@ pub(super) fn dots(points: impl Iterator<Item = Option<[f64; 2]>>) -> Vec<[f64; 
     let places: Vec<Option<[f64; 2]>> = points.collect();
     let parts = places.split(|place| place.is_none()).filter(|part| !part.is_empty());
     parts.filter(|part| length(part.iter().copied()) < SHORT).filter_map(|part| part[0]).collect()
-}
-
-/// Places of the marks of a line: evenly along it as it is drawn.
-pub(super) fn marks(points: impl Iterator<Item = Option<[f64; 2]>>) -> Vec<[f64; 2]> {
-    /// Distance of marks along a line \[points\].
-    const APART: f64 = 45.0;
-    let (mut places, mut missing) = (vec![], 0.5 * APART);
-    let mut last: Option<[f64; 2]> = None;
-    for now in points {
-        if let (Some([a, b]), Some([c, d])) = (last, now) {
-            let length = f64::hypot(c - a, d - b);
-            let mut done = missing;
-            while done <= length {
-                let share = done / length;
-                places.push([a + share * (c - a), b + share * (d - b)]);
-                done += APART;
-            }
-            missing = done - length;
-        }
-        last = now;
-    }
-    places
 }
 
 /// The sign of a series of points at a place.
@@ -226,11 +202,5 @@ mod tests {
         ];
         assert_eq!(dots(line.into_iter()), [[7.0, 2.0], [9.0, 3.0]]);
         assert!(dots([None, None].into_iter()).is_empty());
-    }
-
-    #[test]
-    fn marks_lie_evenly_along_a_line_and_not_in_its_gaps() {
-        let line = [Some([0.0, 0.0]), Some([30.0, 0.0]), Some([30.0, 60.0]), None, Some([0.0, 0.0])];
-        assert_eq!(marks(line.into_iter()), [[22.5, 0.0], [30.0, 37.5]]);
     }
 }

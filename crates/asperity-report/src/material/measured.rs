@@ -19,16 +19,24 @@ pub fn isotherms(title: &str, measured: &Measured) -> Figure {
     let panels = match measured.kind {
         Kind::Relaxation => vec![("Relaxation", Axis::log("relaxation modulus", "Pa"))],
         Kind::Creep => vec![("Creep", Axis::log("creep compliance", "1/Pa"))],
-        Kind::Dma => {
-            vec![("Storage", Axis::log("storage modulus", "Pa")), ("Loss", Axis::log("loss modulus", "Pa"))]
-        }
+        Kind::Dma => vec![
+            ("Storage", Axis::log("storage modulus", "Pa")),
+            ("Loss", Axis::log("loss modulus", "Pa")),
+            ("Loss factor", Axis::log("tan delta", "")),
+        ],
     };
     let key = key(measured.sweeps.iter().filter_map(|sweep| sweep.temperature));
     let panels = panels.iter().enumerate().map(|(n, (title, y))| {
         let mut panel = Curves::new(*title, x.clone(), y.clone());
         for sweep in &measured.sweeps {
             let places: Vec<f64> = sweep.x.iter().map(|x| x / scale).collect();
-            let values = sweep.curves.get(n).cloned().unwrap_or_default();
+            let values = match (sweep.curves.get(n), sweep.curves.as_slice()) {
+                (Some(values), _) => values.clone(),
+                (None, [storage, loss]) => {
+                    loss.iter().zip(storage).map(|(loss, storage)| loss / storage).collect()
+                }
+                _ => vec![],
+            };
             let colour = match (&key, sweep.temperature) {
                 (Some(key), Some(kelvin)) => key.colour(celsius(kelvin)),
                 _ => PLAIN.to_owned(),

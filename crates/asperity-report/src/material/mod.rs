@@ -19,7 +19,7 @@ const PER_DECADE: f64 = 20.0;
 /// Longest curve.
 const MOST: f64 = 4000.0;
 
-/// Relaxation modulus, creep compliance, storage and loss modulus, and tan delta of materials, over times from
+/// Relaxation modulus, creep compliance, storage and loss modulus, and tan delta (unless all are elastic) of materials, over times from
 /// `window[0]` to `window[1]` \[s\] and the angular frequencies 1/t \[rad/s\].
 ///
 /// ```
@@ -45,8 +45,7 @@ pub fn functions(title: &str, materials: &[(&str, &Material)], window: [f64; 2])
     let mut creeping = Curves::new("Creep", time(), Axis::log(format!("creep {compliance}"), "1/Pa"));
     let hertz = |panel: Curves| panel.beside("Hz", 1.0 / TAU);
     let mut dynamic = hertz(Curves::new("Storage and loss", frequency(), Axis::log("modulus", "Pa")));
-    let mut factor = hertz(Curves::new("Loss factor", frequency(), Axis::log("tan delta", "")))
-        .or_say("elastic: the loss factor is 0");
+    let mut factor = hertz(Curves::new("Loss factor", frequency(), Axis::log("tan delta", "")));
     for (name, material) in materials {
         let relaxation = material.relaxation()?;
         let storage = |w: f64| relaxation.complex(w).0;
@@ -58,7 +57,11 @@ pub fn functions(title: &str, materials: &[(&str, &Material)], window: [f64; 2])
             .with(Series::of(format!("{name}, loss"), Style::Dashed, &frequencies, loss));
         factor = factor.with(Series::of(*name, Style::Line, &frequencies, |w| loss(w) / storage(w)));
     }
-    Ok(Figure::new(title).with(relaxing).with(creeping).with(dynamic).with(factor))
+    // Elastic bodies have a loss factor of 0, which a logarithmic axis cannot show.
+    let lossy = materials
+        .iter()
+        .any(|(_, material)| !material.creep().terms.is_empty() || material.creep().fluidity > 0.0);
+    Ok(Figure::new(title).with(relaxing).with(creeping).with(dynamic).with_all(lossy.then_some(factor)))
 }
 
 /// q C(q) of bodies of layers, and the contact modulus 2/(q C) of the equivalent half-space, over the wavelength.

@@ -2,6 +2,7 @@
 
 use asperity::cycles::Cycle;
 use asperity_io::answer::{self, Answer, Units};
+use asperity_io::converge::ErrorBar;
 use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
 use asperity_io::store::{FieldKind, Reader, Row, StoreError};
@@ -74,7 +75,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "status": status(reader),
         "footer": format!("asperity {}; numbers in SI units with prefixes.", reader.header().version),
         "findings": asperity_io::finding::list(reader.findings()),
-        "headline": headline(&answers, &units, reader.rows()?.last()),
+        "headline": headline(&answers, &units, &reader.error_bars(), reader.rows()?.last()),
         "answers": answers,
         "facts": facts(reader)?,
         "case": reader.header().case_text,
@@ -151,7 +152,11 @@ fn evolution(reader: &Reader, theory: bool) -> Result<Vec<Value>, StoreError> {
     }
     panels.extend(panels::of_quantities(reader)?);
     // The answer of a contact in motion comes first.
-    panels.sort_by_key(|panel| !panel.title.starts_with("Friction"));
+    panels.sort_by_key(|panel| match panel.title {
+        "Friction coefficient" => 0,
+        "Friction" => 1,
+        _ => 2,
+    });
     let beside = [("friction_coefficient", PERSSON_FRICTION), ("contact_area", PERSSON_AREA)];
     for (computed, expected) in beside.into_iter().filter(|_| theory) {
         if let Some(panel) = panels.iter_mut().find(|p| p.lines.iter().any(|(_, name)| *name == computed)) {
@@ -197,9 +202,13 @@ fn status(reader: &Reader) -> String {
 }
 
 /// The answers of the result, and the row that they belong to.
-fn headline(answers: &[Answer], units: &Units, last: Option<&Row>) -> Vec<[String; 2]> {
+fn headline(answers: &[Answer], units: &Units, bars: &[ErrorBar], last: Option<&Row>) -> Vec<[String; 2]> {
+    let words = |answer: &Answer| match bars.iter().find(|bar| bar.name == answer.name) {
+        Some(bar) => units.plus_minus(bar),
+        None => answer.words(units),
+    };
     let mut lines: Vec<[String; 2]> =
-        answers.iter().map(|answer| [answer.label(), answer.words(units)]).collect();
+        units.without_second_rate(answers).map(|answer| [answer.label(), words(answer)]).collect();
     let at = answers.iter().find_map(|answer| answer.at).or(last.map(|row| row.coordinate));
     lines.extend(at.map(|at| [at.axis().name().to_owned(), units.number(at.value(), at.axis().unit())]));
     lines

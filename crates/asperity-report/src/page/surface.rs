@@ -1,7 +1,7 @@
 //! The undeformed surface: heights without form, their spectrum and statistics.
 
 use asperity::Boundary;
-use asperity::surface::process::{Window, window};
+use asperity::surface::process::window_for_spectrum;
 use asperity::surface::statistics::{HeightStatistics, RadialSpectrum, Rings, SlopeStatistics};
 use asperity::surface::{Level, Surface, level};
 use asperity_io::readable::quantity;
@@ -46,13 +46,8 @@ pub(super) fn surface(reader: &Reader) -> Result<Option<(Array2<f64>, Value)>, S
         lines.push(("Sdq, rms slope", quantity(slopes.sdq, "")));
         lines.push(("Sdr, developed area ratio", format!("{} %", quantity(100.0 * slopes.sdr, ""))));
     }
-    let spectrum = match (map.undefined(), periodic) {
-        (0, true) => RadialSpectrum::of(&map, Rings::PerDecade(16)).ok(),
-        (0, false) => {
-            window(&map, Window::Hann).and_then(|map| RadialSpectrum::of(&map, Rings::PerDecade(16))).ok()
-        }
-        _ => None,
-    };
+    let seen = if periodic { map } else { window_for_spectrum(&map) };
+    let spectrum = RadialSpectrum::of(&seen, Rings::PerDecade(16)).ok();
     let note = format!(
         "Heights: the undeformed gap upside down, less its {words}.{}",
         if spectrum.is_some() && !periodic {

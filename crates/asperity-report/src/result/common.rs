@@ -3,7 +3,7 @@
 use asperity_io::store::{At, Reader};
 
 use super::{Options, Plot, PlotError, figure};
-use crate::figure::{Curves, Figure, Map, Margins, Panel, Scale, Values};
+use crate::figure::{Curves, Figure, Map, Margins, Panel, Values};
 
 /// What figures of the same panels have in common.
 #[derive(Clone, Debug, Default)]
@@ -71,10 +71,7 @@ impl Common {
                 Panel::Curves(curves) => {
                     curves.names_above |= shared.names_above;
                     curves.x.range = range_of(shared.across).or(curves.x.range);
-                    // Ends that the figures set have their room already.
-                    let own = curves.y.range.is_some() || curves.y.scale != Scale::Linear;
-                    let room = if own { 0.0 } else { 0.06 };
-                    curves.y.range = range_of(shared.up).map(|ends| with_room(ends, room)).or(curves.y.range);
+                    curves.y.range = range_of(shared.up).or(curves.y.range);
                 }
             }
         }
@@ -103,12 +100,6 @@ fn label(panel: &Panel) -> &str {
 
 fn range_of(ends: [f64; 2]) -> Option<[f64; 2]> {
     (ends[0] < ends[1] && ends.iter().all(|end| end.is_finite())).then_some(ends)
-}
-
-/// A little more than the data take; an axis that begins or ends at zero stays there.
-fn with_room([low, high]: [f64; 2], share: f64) -> [f64; 2] {
-    let room = share * (high - low);
-    [if low == 0.0 { 0.0 } else { low - room }, if high == 0.0 { 0.0 } else { high + room }]
 }
 
 /// The ends of the colours that hold the values of all stored instants of all results; `None` where nothing is stored.

@@ -13,16 +13,16 @@ fn curves(reader: &Reader, options: &Options) -> Result<Vec<Curves>, PlotError> 
     let (units, log) = (Units::of(reader, &options.units), options.log);
     let time = reader.leak("leak_time")?;
     let percolates = reader.leak("percolates")?;
-    // A logarithmic axis has no place for t = 0: it is of use where the seal leaks later too.
+    // A logarithmic axis has no place for t = 0: without being asked for it is of use where the seal leaks later too.
     let leaks_later = time.iter().zip(&percolates).any(|(time, open)| *time > 0.0 && *open > 0.0);
-    let log_time = log.unwrap_or(Rows::of(reader)?.log) && leaks_later;
+    let log_time = log.unwrap_or(Rows::of(reader)?.log && leaks_later);
     // All of the run, also where the seal is tight.
     let first = time.iter().copied().find(|time| *time > 0.0 || !log_time).unwrap_or(0.0);
     let last = time.last().copied().unwrap_or(0.0);
     let axis = || {
         let axis = if log_time { Axis::log("time", "s") } else { Axis::linear("time", "s") };
         let axis = axis.shown_in(units.shown("time"));
-        if last > first { axis.between(first, last) } else { axis }
+        if last > first { axis.spanning(first, last) } else { axis }
     };
     let line = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
         // A tight seal has no place on a logarithmic axis.
@@ -70,20 +70,12 @@ fn curves(reader: &Reader, options: &Options) -> Result<Vec<Curves>, PlotError> 
     Ok(all)
 }
 
-/// Leaks of up to this many times are marked: a line through one of them cannot be seen.
-const FEW: usize = 4;
-
 /// The panel over whole decades, with a vertical line at each time from which on the seal is tight after it has leaked.
 fn sealing(mut panel: Curves, time: &[f64], percolates: &[f64]) -> Curves {
     let values = panel.series.iter().flat_map(|series| series.y.iter().copied()).filter(|y| *y > 0.0);
     let [low, high] = extent(values);
     let ends = [10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil())];
-    panel.y = panel.y.between(ends[0], ends[1]);
-    if percolates.iter().filter(|open| **open > 0.0).count() <= FEW {
-        for (series, sign) in panel.series.iter_mut().zip(Style::SIGNS.iter().cycle()) {
-            series.style = *sign;
-        }
-    }
+    panel.y = panel.y.spanning(ends[0], ends[1]);
     let moments = (1..time.len()).filter(|n| percolates[n - 1] > 0.0 && percolates[*n] == 0.0);
     moments.enumerate().fold(panel, |panel, (k, n)| {
         let name = if k == 0 { "tight from here" } else { "" };

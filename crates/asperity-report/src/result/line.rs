@@ -118,6 +118,7 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
     let columns = reader.header().grid.cells()[0].div_ceil(block);
     let mut picture = Array2::zeros((columns, ROWS));
     let mut held: Option<(usize, Array2<f64>)> = None;
+    let mut whole = [f64::INFINITY, f64::NEG_INFINITY];
     for k in 0..ROWS {
         let time = first + (k as f64 + 0.5) / ROWS as f64 * (last - first);
         let index = reader.index(At::Time(time))?;
@@ -125,6 +126,7 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
             Some((of, values)) if of == index => values,
             _ => {
                 let values = one(reader, kind, At::Index(index))?;
+                whole = extent(values.iter().copied().chain(whole));
                 if kind == FieldKind::Contact {
                     states(values.view(), block)
                 } else {
@@ -140,7 +142,7 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
         (_, None) => Map::states("", CONTACT_STATES, picture.view(), size),
         (label, Some(colours)) => Map::new("", [label, kind.units()], colours, picture.view(), size),
     };
-    Ok(Some(map.over_time(first)))
+    Ok(Some(Map { whole, ..map.over_time(first) }))
 }
 
 /// Centres of the cells \[m\].

@@ -129,14 +129,14 @@ pub enum PlotError {
         /// First and last row in words.
         ends: [String; 2],
     },
-    /// More results than a figure can tell apart.
-    #[error("the figure {figure} of {given} results: {most} have colours and marks of their own; give fewer")]
+    /// More results than a figure has room for.
+    #[error("the figure {figure} is for at most {most} results, but {given} are given; give fewer")]
     Many {
         /// Its name.
         figure: &'static str,
         /// Number of results.
         given: usize,
-        /// Number of looks.
+        /// Results in it at most.
         most: usize,
     },
     /// The figure is too large or too small.
@@ -204,7 +204,11 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
             _ => {}
         }
     }
-    let mut figure = plot.draw(reader, options)?;
+    let at = if plot.shows_contact() { with_contact(reader, options.at)? } else { options.at };
+    let mut figure = plot.draw(reader, &Options { at, ..options.clone() })?;
+    if at != options.at {
+        figure.caption += IN_PLACE;
+    }
     if plot.is_of_the_load() && nothing_touches(reader, options)? {
         figure.caption += match options.window {
             [None, None] => " Nothing touches at any time.",
@@ -220,6 +224,26 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
         figure.caption += " Light: not above 0.";
     }
     Ok(figure)
+}
+
+/// What captions say of the last instant with contact in place of the last one.
+const IN_PLACE: &str = " This is the last stored time with contact.";
+
+/// The last stored instant with contact in place of the last one, where nothing touches at that; else the instant itself.
+fn with_contact(reader: &Reader, at: At) -> Result<At, StoreError> {
+    let touches = |index: &usize| -> Result<bool, StoreError> {
+        Ok(reader.contact_states(At::Index(*index))?.iter().any(|state| *state > 0))
+    };
+    let count = reader.field_times().len();
+    if at != At::Last || count == 0 || reader.contact_kind().is_none() || touches(&(count - 1))? {
+        return Ok(at);
+    }
+    for index in (0..count - 1).rev() {
+        if touches(&index)? {
+            return Ok(At::Index(index));
+        }
+    }
+    Ok(at)
 }
 
 /// Whether the contact area is zero in all rows of the window.
@@ -243,7 +267,9 @@ fn colour(panel: &mut Panel, plot: Plot, options: &Options) {
             map.log |= options.log_values;
         }
         Panel::Curves(curves) if plot.unit() == Some(curves.y.unit.as_str()) && plot != Plot::Stress => {
-            curves.y.range = options.limits.or(curves.y.range);
+            if let Some([low, high]) = options.limits {
+                curves.y = curves.y.clone().between(low, high);
+            }
             if options.log_values {
                 curves.y.scale = Scale::Log;
             }

@@ -141,6 +141,16 @@ impl RowPanel {
             let line = Series::new(*name, Style::Line, &time, values(reader, series)?);
             curves = curves.with(if steps { line.stepped() } else { line });
         }
+        // The errors of answers stand at the rows that they belong to.
+        let mut legend = "error of the answer";
+        for bar in
+            reader.error_bars().iter().filter(|bar| self.lines.iter().any(|(_, name)| *name == bar.name))
+        {
+            let (Some(at), Some(value), Some(error)) = (bar.at, bar.value, bar.error) else { continue };
+            curves =
+                curves.with(Series::new(legend, Style::Reference, [at; 2], [value - error, value + error]));
+            legend = "";
+        }
         Ok(curves)
     }
 

@@ -149,6 +149,14 @@ impl Plot {
         matches!(self.declaration().shows, Shows::Rows | Shows::Load | Shows::Both)
     }
 
+    /// Whether it shows the contact at an instant, and is empty where nothing touches.
+    pub(super) fn shows_contact(self) -> bool {
+        matches!(
+            self.declaration().shows,
+            Shows::Instant | Shows::Field(FieldKind::Pressure | FieldKind::Contact)
+        )
+    }
+
     /// Whether it shows numbers over the rows that are zero where nothing touches.
     pub(super) fn is_of_the_load(self) -> bool {
         self.declaration().shows == Shows::Load

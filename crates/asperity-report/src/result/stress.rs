@@ -1,11 +1,11 @@
 //! The stress below the surface: sections through its largest value, the map there, and the profile over depth.
 
 use asperity_io::readable::quantity;
-use asperity_io::store::{At, FieldKind, Reader};
+use asperity_io::store::{At, Reader};
 use asperity_io::stress::{Below, Instant, Section, StressError, StressPlan, below_at, section};
 use ndarray::{Array2, s};
 
-use super::{Options, PlotError, caption, moment};
+use super::{IN_PLACE, Options, PlotError, caption, moment, with_contact};
 use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style};
 
 /// A section is this many times as wide as deep, unless the domain ends before.
@@ -17,33 +17,16 @@ pub(super) fn stress(reader: &Reader, options: &Options) -> Result<Figure, PlotE
     let plan = StressPlan::for_result(reader)?;
     let stored = Below::of(reader)?;
     let last = reader.index(options.at)?;
-    let index = match options.at {
-        At::Last => last_with_contact(reader)?.ok_or_else(|| StressError::NoContact {
-            path: reader.path().to_owned(),
-            when: "any stored time".to_owned(),
-        })?,
-        _ => last,
-    };
+    let index = reader.index(with_contact(reader, options.at)?)?;
     let mut figure = match stored.filter(|below| below.instants.iter().any(|instant| instant.index == index))
     {
         Some(below) => stress_figure(reader, &below, index)?,
         None => stress_figure(reader, &below_at(reader, &plan, At::Index(index))?, index)?,
     };
     if index != last {
-        figure.caption += " This is the last stored time with contact.";
+        figure.caption += IN_PLACE;
     }
     Ok(figure)
-}
-
-/// The last stored instant with a pressure.
-fn last_with_contact(reader: &Reader) -> Result<Option<usize>, PlotError> {
-    for index in (0..reader.field_times().len()).rev() {
-        let pressure = reader.field(FieldKind::Pressure, At::Index(index))?;
-        if pressure.iter().any(|pressure| *pressure > 0.0) {
-            return Ok(Some(index));
-        }
-    }
-    Ok(None)
 }
 
 /// The figure of a stored instant, by its number, of what was found; without a title.
@@ -131,7 +114,7 @@ fn profile(below: &Below, instant: &Instant, found: &Section) -> Curves {
         least = below.profile(instant, "tension_by_depth").iter().copied().fold(0.0, f64::min);
     }
     // Room for the legend above the curves.
-    let up = Axis::linear("stress", "Pa").between(least, 1.4 * found.largest);
+    let up = Axis::linear("stress", "Pa").spanning(least, 1.4 * found.largest);
     let mut panel = Curves::new("Largest at each depth", Axis::linear("depth", "m"), up);
     for (name, key) in lines {
         panel = panel.with(Series::new(name, Style::Line, depths, below.profile(instant, key)));

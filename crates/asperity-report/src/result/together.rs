@@ -6,7 +6,7 @@ use asperity_io::store::{At, Reader};
 
 use super::{NO_CONTACT, Options, Plot, PlotError, finished, panels};
 use crate::figure::{
-    Axis, COLOURS, Curves, Figure, FigureError, INK, PANELS, Panel, Scale, Series, Style, Values,
+    Axis, COLOURS, Curves, Figure, FigureError, INK, PANELS, Palette, Panel, Scale, Series, Style, Values,
 };
 
 /// The figure of each result with its name and instant, put together. Panels of curves with the same title become one, with a
@@ -23,7 +23,7 @@ pub fn together(
     let mut captions = vec![];
     let mut all: Vec<Together> = vec![];
     for (n, (name, reader, at)) in results.iter().enumerate() {
-        let look = Look::of(n);
+        let colour = colour(n, results.len());
         let own = panels(reader, plot, &Options { at: *at, ..options.clone() })?;
         let maps = own.panels.iter().filter(|panel| matches!(panel, Panel::Map(_))).count() * results.len();
         if maps > PANELS {
@@ -41,13 +41,13 @@ pub fn together(
                         curves.title.clear();
                     }
                     match all.iter_mut().find(|other| other.is_like(&curves)) {
-                        Some(other) => other.add(curves, name, look),
+                        Some(other) => other.add(curves, name, &colour),
                         None => {
                             // A place in the figure, which is filled when all results are in.
                             let empty = Curves { series: vec![], ..curves.clone() };
                             let mut new = Together::new(empty, whole.panels.len());
                             whole.panels.push(new.panel.clone().into());
-                            new.add(curves, name, look);
+                            new.add(curves, name, &colour);
                             all.push(new);
                         }
                     }
@@ -61,9 +61,8 @@ pub fn together(
         }
     }
     for one in all {
-        let most = one.most();
-        if one.results.len() > most {
-            return Err(PlotError::Many { figure: plot.name(), given: one.results.len(), most });
+        if one.results.len() > MOST {
+            return Err(PlotError::Many { figure: plot.name(), given: one.results.len(), most: MOST });
         }
         let place = one.place;
         whole.panels[place] = one.finished().into();
@@ -104,22 +103,19 @@ fn alike(whole: &mut Figure) -> &'static str {
     " The maps have the same colours."
 }
 
-/// What tells the curves of a result from those of others: a colour and, where all colours are taken, a mark on the lines.
-#[derive(Clone, Copy)]
-struct Look {
-    colour: &'static str,
-    mark: Option<Style>,
-}
+/// Results in one panel at most: of more the names take more room than the curves.
+const MOST: usize = 48;
 
-/// Results in one panel at most: so many have a look of their own.
-const MOST: usize = COLOURS.len() * (1 + Style::SIGNS.len());
-
-impl Look {
-    /// That of a result by its number.
-    fn of(n: usize) -> Look {
-        let mark = (n / COLOURS.len()).checked_sub(1).and_then(|round| Style::SIGNS.get(round)).copied();
-        Look { colour: COLOURS[n % COLOURS.len()], mark }
+/// The colour of a result by its number among `count`: one that nobody mixes up with another or, of more results than there are such
+/// colours, one of a scale from the first result (dark) to the last (bright).
+fn colour(n: usize, count: usize) -> String {
+    /// The brightest colours are hard to see on white.
+    const BRIGHTEST: f64 = 0.9;
+    if count <= COLOURS.len() {
+        return COLOURS[n % COLOURS.len()].to_owned();
     }
+    let [r, g, b] = Palette::Viridis.at(BRIGHTEST * n as f64 / (count - 1) as f64);
+    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// A panel of curves of several results.
@@ -127,8 +123,8 @@ struct Together {
     panel: Curves,
     /// Its number in the figure.
     place: usize,
-    /// Names and looks of the results in it.
-    results: Vec<(String, Look)>,
+    /// Names and colours of the results in it.
+    results: Vec<(String, String)>,
     /// Names and styles of the quantities.
     quantities: Vec<(String, Style)>,
 }
@@ -144,21 +140,15 @@ impl Together {
         self.panel.title == curves.title && same(&self.panel.x, &curves.x) && same(&self.panel.y, &curves.y)
     }
 
-    /// How many results it can show: only lines carry marks.
-    fn most(&self) -> usize {
-        let is_line = |series: &Series| !series.style.is_of_points() && series.style != Style::Bars;
-        if self.panel.series.iter().all(is_line) { MOST } else { COLOURS.len() }
-    }
-
     /// Adds the curves of a result.
-    fn add(&mut self, curves: Curves, name: &str, look: Look) {
+    fn add(&mut self, curves: Curves, name: &str, colour: &str) {
         join(&mut self.panel.x, &curves.x);
         join(&mut self.panel.y, &curves.y);
-        self.results.push((name.to_owned(), look));
+        self.results.push((name.to_owned(), colour.to_owned()));
         for series in curves.series {
             let style = self.style(&series);
-            let plain = Series { name: String::new(), style, mark: look.mark, ..series };
-            self.panel.series.push(plain.in_colour(look.colour));
+            let plain = Series { name: String::new(), style, ..series };
+            self.panel.series.push(plain.in_colour(colour));
         }
     }
 
@@ -185,16 +175,14 @@ impl Together {
 
     /// The panel with its legend: the results in their colours and, where there are several quantities, their styles in black.
     fn finished(self) -> Curves {
-        let entry = |name: String, style, look: Look| {
-            Series { mark: look.mark, ..Series::new(name, style, vec![], vec![]) }.in_colour(look.colour)
-        };
+        let entry =
+            |name: String, style, colour: &str| Series::new(name, style, vec![], vec![]).in_colour(colour);
         let several = self.quantities.len() > 1;
         let only = self.panel.series.first().map_or(Style::Line, |series| series.style);
         let of_result = if several { Style::Line } else { only };
-        let results = self.results.into_iter().map(|(name, look)| entry(name, of_result, look));
+        let results = self.results.into_iter().map(|(name, colour)| entry(name, of_result, &colour));
         let quantities = self.quantities.into_iter().filter(|_| several);
-        let black = Look { colour: INK, mark: None };
-        let quantities = quantities.map(|(name, style)| entry(name, style, black));
+        let quantities = quantities.map(|(name, style)| entry(name, style, INK));
         let legend: Vec<Series> = results.chain(quantities).collect();
         legend.into_iter().fold(self.panel, Curves::with)
     }
@@ -211,6 +199,7 @@ fn join(own: &mut Axis, new: &Axis) {
         let first = [a, c].into_iter().filter(|end| shows(*end)).fold(f64::INFINITY, f64::min);
         [first, b.max(d)]
     });
+    own.exact &= own.range.is_some();
 }
 
 #[cfg(test)]
@@ -226,8 +215,8 @@ mod tests {
     #[test]
     fn a_result_has_one_colour_and_a_quantity_one_style() {
         let mut both = Together::new(panel(&[]), 0);
-        both.add(panel(&["mean", "largest"]), "a", Look::of(0));
-        both.add(panel(&["largest", "least"]), "b", Look::of(1));
+        both.add(panel(&["mean", "largest"]), "a", COLOURS[0]);
+        both.add(panel(&["largest", "least"]), "b", COLOURS[1]);
         assert!(both.is_like(&panel(&[])));
         let series = both.finished().series;
         let drawn: Vec<(&str, Style)> =
@@ -242,8 +231,8 @@ mod tests {
     #[test]
     fn results_with_one_quantity_have_no_styles_to_tell() {
         let mut both = Together::new(panel(&[]), 0);
-        both.add(panel(&[""]), "a", Look::of(0));
-        both.add(panel(&[""]), "b", Look::of(1));
+        both.add(panel(&[""]), "a", COLOURS[0]);
+        both.add(panel(&[""]), "b", COLOURS[1]);
         let names: Vec<String> = both.finished().series.into_iter().map(|s| s.name).collect();
         assert_eq!(names, ["", "", "a", "b"]);
     }
@@ -251,11 +240,12 @@ mod tests {
     #[test]
     fn every_result_of_a_panel_looks_different() {
         let mut all = Together::new(panel(&[]), 0);
-        (0..MOST).for_each(|n| all.add(panel(&["mean", "largest"]), &n.to_string(), Look::of(n)));
-        assert_eq!(all.most(), MOST);
+        (0..MOST).for_each(|n| all.add(panel(&["mean", "largest"]), &n.to_string(), &colour(n, MOST)));
         let legend = all.finished().series.split_off(2 * MOST);
-        let looks: Vec<_> = legend[..MOST].iter().map(|s| (s.colour.clone(), s.mark)).collect();
-        assert!((1..MOST).all(|n| !looks[..n].contains(&looks[n])));
+        let colours: Vec<_> = legend[..MOST].iter().map(|s| s.colour.clone()).collect();
+        assert!((1..MOST).all(|n| !colours[..n].contains(&colours[n])));
+        // Few results have colours that nobody mixes up.
+        assert!((0..7).all(|n| colour(n, 7) == COLOURS[n]));
     }
 
     #[test]

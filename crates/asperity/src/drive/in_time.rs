@@ -4,7 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::{Axis, Coordinate, Drive};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
+use crate::load::{Control, Course, Stage};
 use crate::simulation::Simulation;
 use crate::step::{Checkpoint, Loader, Proposal, Recorder, Saver, Schedule, Step, Stepper, Summary, Verdict};
 use crate::time::Instant;
@@ -145,10 +146,18 @@ impl Drive for March {
         self.simulation.plan().instants.iter().map(|instant| instant.time).collect()
     }
 
-    /// Without events and adaptive steps.
+    fn prescribe(&mut self, control: Control, course: Course) -> Result<()> {
+        let stage = Stage::new(control, course);
+        self.simulation.validate_prescribed(&stage)?;
+        let time = self.row.map_or(0.0, |(_, instant, _)| instant.time);
+        let expected = "after the first row of a run, and before its last one";
+        require(self.schedule.prescribe(stage), "time of what is prescribed", format!("{time} s"), expected)
+    }
+
+    /// Without events, adaptive steps, and stages prescribed between rows.
     fn rows_expected(&self) -> Option<usize> {
         let plan = self.simulation.plan();
-        plan.exact.then_some(plan.instants.len())
+        (plan.exact && !self.schedule.is_steered()).then_some(plan.instants.len())
     }
 
     fn done(&self) -> usize {

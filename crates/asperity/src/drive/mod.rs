@@ -20,7 +20,8 @@ pub use in_time::March;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::load::{Control, Course};
 use crate::simulation::Simulation;
 use crate::sliding::{Steady, SteadyMotion, Streaming};
 use crate::step::{Checkpoint, Step};
@@ -55,6 +56,42 @@ pub trait Drive: Send {
 
     /// Whether the last row is done.
     fn finished(&self) -> bool;
+
+    /// From the last row on this is prescribed, in place of what was to come: a stage that begins here and lasts to the end of the run,
+    /// with its times.
+    ///
+    /// ```
+    /// use asperity::{drive::{Drive, March}, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
+    /// // A feedback: the load is chosen from row to row such that the approach of a creeping contact stays at 3 um.
+    /// let grid = Grid::new([32, 32], [2e-3, 2e-3])?;
+    /// let sphere = Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] };
+    /// let creep = Creep { instantaneous: 1e-8, terms: vec![asperity::material::CreepTerm { compliance: 1e-8, retardation_time: 1.0 }], fluidity: 0.0 };
+    /// let mut march = March::new(Simulation {
+    ///     loading: Loading { control: Control::Load, history: History::Step { value: 1.0 } }.into(), creep,
+    ///     times: TimeGrid::Uniform { end: 4.0, steps: 40 },
+    ///     ..Simulation::new(grid, undeformed_gap(&grid, &[sphere])?)
+    /// })?;
+    /// let mut approach = 0.0;
+    /// while let Some(row) = march.advance()?.map(|step| step.row()) {
+    ///     approach = row.approach;
+    ///     if row.coordinate.value() < 4.0 {
+    ///         // W is proportional to w^(3/2).
+    ///         let value = row.load * (3e-6 / approach).powf(1.5);
+    ///         march.prescribe(Control::Load, History::Step { value }.into())?;
+    ///         march.advance()?;
+    ///     }
+    /// }
+    /// assert!((approach / 3e-6 - 1.0).abs() < 0.01);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) by the rules of a stage; before the first row and after the last; where rows do not
+    /// follow one another in time.
+    fn prescribe(&mut self, control: Control, _course: Course) -> Result<()> {
+        let expected = "a march in time: other rows do not follow one another";
+        Err(Error::invalid("prescribed quantity", format!("{control:?}").to_lowercase(), expected))
+    }
 
     /// Stops, within one iteration of the solver, when `flag` becomes true.
     fn interrupt_with(&mut self, flag: Arc<AtomicBool>);

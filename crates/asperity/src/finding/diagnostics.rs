@@ -5,13 +5,14 @@ use ndarray::ArrayView2;
 use super::contact::{Counted, Resolution, never};
 use super::energy::Balance;
 use super::expected::{ROOM, radius};
+use super::histogram::Beyond;
 use super::motion::Slides;
 use super::strain::Strain;
 use super::thin::Widest;
 use super::worst::extend;
 use super::{
-    CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN, SPOTS_UNRESOLVED, STEPS_TOO_LONG,
-    domain, material, plausible, strain, surface, thin, time,
+    BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN,
+    SPOTS_UNRESOLVED, STEPS_TOO_LONG, domain, material, plausible, strain, surface, thin, time,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -74,6 +75,7 @@ pub struct Diagnostics {
     strain: Strain,
     slides: Slides,
     balance: Balance,
+    beyond: Beyond,
     /// The finding for a held approach with cells at the hardness, and whether there were such cells.
     held: Option<Finding>,
     capped: bool,
@@ -106,6 +108,7 @@ impl Diagnostics {
             strain: Strain::new(simulation, radius(grid, known.parts)),
             slides: Slides::default(),
             balance: Balance::default(),
+            beyond: Beyond::default(),
             held: time::held_at_hardness(simulation)
                 .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
             capped: false,
@@ -147,6 +150,7 @@ impl Diagnostics {
                     let width = finding.value.unwrap_or(f64::INFINITY);
                     self.resolution.resume_line([first, last.min(rows.len() - 1)], width);
                 }
+                BEYOND_HISTOGRAM => self.beyond.resume(finding),
                 ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
                 _ => {}
             }
@@ -156,6 +160,7 @@ impl Diagnostics {
     /// Checks a row.
     pub fn see(&mut self, step: &Step<'_>, row: &Row) {
         let index = step.index();
+        self.beyond.see(index, step);
         let (control, compliance) = (step.control(), step.simulation().compliance(row.coordinate.value()));
         self.see_contact(index, row, step.pressure(), control, compliance);
         self.capped |= row.capped_area > 0.0 && control == Control::Approach;
@@ -232,6 +237,7 @@ impl Diagnostics {
             found.push(never());
         }
         found.extend(self.resolution.findings());
+        found.extend(self.beyond.findings());
         found.extend(self.strain.findings());
         let lacks = |found: &[Finding], code: &str| found.iter().all(|finding| finding.code != code);
         if lacks(&found, LARGE_STRAIN) {

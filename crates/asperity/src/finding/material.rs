@@ -175,7 +175,7 @@ pub fn too_few_points(name: &str, unknowns: usize, numbers: usize) -> Option<Fin
     })
 }
 
-/// A run that needs the material of `name` from the first to the last time \[s\], but the data cover only `window` \[s\]; `words`
+/// A run that needs the material of `name` from the first to the last time \[s\], but it is known only over `window` \[s\]; `words`
 /// describe the data.
 pub fn beyond_data(name: &str, [first, last]: [f64; 2], window: [f64; 2], words: &str) -> Finding {
     let text = format!("{name}: {words}. Measure these times too, or regard the run as an estimate there.");

@@ -10,6 +10,7 @@
 //! | `domain` | the border of the domain: contact there, gaps that are not periodic, surfaces that do not end before it |
 //! | `surface` | waves that the grid does not resolve, slopes, outliers, sizes that suggest a wrong unit |
 //! | `contact` | contacts and contact spots of a few cells |
+//! | `histogram` | histograms that end below the largest value |
 //! | `strain` | deformations and slopes beyond linear theory |
 //! | `material` | moduli, and the quality and coverage of fits of measured data |
 //! | `stress` | the stress below the surface: its resolution, and yielding |
@@ -28,6 +29,7 @@ mod diagnostics;
 mod domain;
 mod energy;
 mod expected;
+mod histogram;
 mod leak;
 mod material;
 mod motion;
@@ -161,6 +163,8 @@ codes! {
     SPOTS_UNRESOLVED = "spots-unresolved";
     /// No row has contact.
     NO_CONTACT = "no-contact";
+    /// A histogram ends below the largest value.
+    BEYOND_HISTOGRAM = "beyond-histogram";
     /// A contact of only a few cells.
     FEW_CONTACT_CELLS = "few-contact-cells";
     /// Slopes beyond linear theory.

@@ -160,7 +160,7 @@ impl Programme {
 }
 
 impl Stage {
-    fn validate(&self, last: bool) -> Result<()> {
+    pub(crate) fn validate(&self, last: bool) -> Result<()> {
         self.course.validate()?;
         if let Some(duration) = self.duration {
             positive("duration", duration, "s")?;

@@ -170,6 +170,33 @@ impl Body {
         }
     }
 
+    /// D(t) or J(t), the creep function of Young's or of the shear modulus \[1/Pa\]. From J(t) with a constant Poisson's ratio nu it is
+    /// D = J/(2 (1 + nu)), with a bulk modulus B it is D = J/3 + 1/(9 B), which is 1/E = 1/(3 G) + 1/(9 B).
+    ///
+    /// ```
+    /// use asperity::material::{Body, Lateral, Material, Modulus};
+    /// let material = Material::elastic(Modulus::Shear, 1e9)?;
+    /// let body = Body { name: "resin".into(), material, lateral: Lateral::BulkModulus(5e9), hardness: None };
+    /// let young = 9.0 * 5e9 * 1e9 / (3.0 * 5e9 + 1e9);
+    /// assert!((body.creep(Modulus::Young)?.instantaneous * young - 1.0).abs() < 1e-15);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the bulk modulus is too small for the Young's moduli (9 B > E(0) is needed).
+    pub fn creep(&self, measure: Modulus) -> Result<Creep> {
+        let own = self.material.creep();
+        match (measure, self.lateral) {
+            _ if measure == self.material.measure() => Ok(own.clone()),
+            (Modulus::Shear, _) => self.shear(),
+            (Modulus::Young, Lateral::Poisson(nu)) => Ok(own.scaled(0.5 / (1.0 + nu))),
+            (Modulus::Young, Lateral::BulkModulus(bulk)) => {
+                let third = own.scaled(1.0 / 3.0);
+                Ok(Creep { instantaneous: third.instantaneous + 1.0 / (9.0 * bulk), ..third })
+            }
+        }
+    }
+
     /// J(t), the shear creep function.
     pub(crate) fn shear(&self) -> Result<Creep> {
         match (self.lateral, self.material.measure()) {

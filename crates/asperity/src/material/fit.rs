@@ -132,17 +132,22 @@ impl<F> Fit<F> {
     /// # Ok::<(), asperity::Error>(())
     /// ```
     pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
-        let [start, end] = self.window;
-        // Rounding of 1/omega is not extrapolation.
-        (first < start * (1.0 - 1e-9) || last > end * (1.0 + 1e-9)).then(|| {
-            let covered = 100.0 * covered([first, last], [start, end]);
-            let [first, last, start, end] = [first, last, start, end].map(|time| significant(time, 4));
-            format!(
-                "the run needs the material from {first} s to {last} s, but the data cover only \
-                 {start} s to {end} s ({covered:.0} % of these decades); beyond them the fit is an extrapolation"
-            )
-        })
+        beyond(self.window, [first, last])
     }
+}
+
+/// A sentence with the numbers if a `run` between two times \[s\] leaves the `window` for which a material is known.
+pub fn beyond(window: [f64; 2], run: [f64; 2]) -> Option<String> {
+    // Rounding of 1/omega is not extrapolation.
+    (run[0] < window[0] * (1.0 - 1e-9) || run[1] > window[1] * (1.0 + 1e-9)).then(|| {
+        let covered = 100.0 * covered(run, window);
+        let [first, last, start, end] =
+            [run[0], run[1], window[0], window[1]].map(|time| significant(time, 4));
+        format!(
+            "the run needs the material from {first} s to {last} s, but it is known only from \
+             {start} s to {end} s ({covered:.0} % of these decades); beyond them it is an extrapolation"
+        )
+    })
 }
 
 /// The fraction of the decades from `run[0]` to `run[1]` that is inside `data`.

@@ -48,7 +48,7 @@ pub use creep::{Creep, CreepTerm};
 pub use data::Reversal;
 pub(crate) use dual::Dual;
 pub use estimate::{ModulusChange, ShiftEstimate, VerticalEstimate, estimate_shift, estimate_vertical};
-pub use fit::{Fit, FitOptions, LongTime, Misfit, Moduli, fit_creep, fit_dma, fit_relaxation};
+pub use fit::{Fit, FitOptions, LongTime, Misfit, Moduli, beyond, fit_creep, fit_dma, fit_relaxation};
 pub use fractional::{Approximation, Fractional};
 pub use master::{Abscissa, Isotherm, MasterCurve, master_curve};
 pub use models::{Material, Modulus};

@@ -3,7 +3,7 @@
 use super::{Plasticity, Scheme, Simulation};
 use crate::error::{Error, Result, require};
 use crate::grid::Boundary;
-use crate::load::{Control, Course, Event, History, of_stage};
+use crate::load::{Control, Course, Event, History, Programme, Stage, of_stage};
 use crate::material::Creep;
 use crate::quantities::Quantity;
 use crate::time::{Instant, SAME};
@@ -50,10 +50,30 @@ impl Simulation {
         ];
         let stages = 0..self.loading.stages.len();
         checks.extend(stages.flat_map(|n| {
-            let checks = [self.validate_history(n), self.validate_steps(n, &instants), self.validate_load(n)];
+            let stage = &self.loading.stages[n];
+            let own = instants.iter().filter(|instant| instant.stage == n);
+            let checks =
+                [self.validate_history(stage), self.validate_steps(stage, own), self.validate_load(stage)];
             checks.map(|checked| self.of_stage(n, checked))
         }));
         checks.into_iter().filter_map(Result::err).collect()
+    }
+
+    /// Checks a stage that is prescribed between two rows, by the rules of the stages of the run.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate), for this stage.
+    pub(crate) fn validate_prescribed(&self, stage: &Stage) -> Result<()> {
+        stage.validate(true)?;
+        self.validate_control(stage)?;
+        self.validate_history(stage)?;
+        let instants = Programme::new(vec![stage.clone()]).plan(&self.times, &[]).instants;
+        self.validate_steps(stage, instants.iter())?;
+        self.validate_load(stage)?;
+        let jumps = instants.iter().any(|instant| instant.jump && instant.time > 0.0);
+        let expected =
+            "a course without jumps: the bodies have no instantaneous compliance, so no contact follows one";
+        require(!jumps || self.instantaneous() > 0.0, "history", "with a jump", expected)
     }
 
     /// Whether rows can have this quantity.
@@ -184,20 +204,26 @@ impl Simulation {
         }
         require(self.grid.len() > 1, "number of cells of a free line contact", 1, "2 at least")
             .map_err(|error| error.of("domain.cells"))?;
-        for (n, stage) in self.loading.stages.iter().enumerate() {
-            let expected = "a load or a pressure. Under a load on a line a half-space moves endlessly, so the approach is known up \
-                            to a constant that depends on the domain; a periodic domain (boundary = \"periodic\") has no such limit, \
-                            nor have layers on a rigid base";
-            let of_approach = [
-                ("until", "event", matches!(stage.until, Some(Event::Approach(_)))),
-                ("control", "control", stage.control == Control::Approach),
-            ];
-            for (key, what, found) in of_approach {
-                let checked = require(!found, format!("{what} of a free line contact"), "approach", expected);
-                self.of_stage(n, checked.map_err(|error| error.of(key)))?;
-            }
+        (0..self.loading.stages.len())
+            .try_for_each(|n| self.of_stage(n, self.validate_control(&self.loading.stages[n])))
+    }
+
+    /// Where displacements are known up to a constant, no approach can be prescribed or waited for.
+    fn validate_control(&self, stage: &Stage) -> Result<()> {
+        if !self.is_up_to_a_constant() {
+            return Ok(());
         }
-        Ok(())
+        let expected = "a load or a pressure. Under a load on a line a half-space moves endlessly, so the approach is known up \
+                        to a constant that depends on the domain; a periodic domain (boundary = \"periodic\") has no such limit, \
+                        nor have layers on a rigid base";
+        let of_approach = [
+            ("until", "event", matches!(stage.until, Some(Event::Approach(_)))),
+            ("control", "control", stage.control == Control::Approach),
+        ];
+        of_approach.into_iter().try_for_each(|(key, what, found)| {
+            require(!found, format!("{what} of a free line contact"), "approach", expected)
+                .map_err(|error| error.of(key))
+        })
     }
 
     /// The error names the stage, if there are several.
@@ -207,8 +233,8 @@ impl Simulation {
     }
 
     /// Times of a history must be apart.
-    fn validate_history(&self, n: usize) -> Result<()> {
-        let Course::Given(history) = &self.loading.stages[n].course else { return Ok(()) };
+    fn validate_history(&self, stage: &Stage) -> Result<()> {
+        let Course::Given(history) = &stage.course else { return Ok(()) };
         let end = self.times.end();
         let close = |pair: &&[f64]| pair[1] > pair[0] && pair[1] - pair[0] <= SAME * end;
         let times: Vec<f64> = std::iter::once(0.0).chain(history.breaks(end)).collect();
@@ -220,11 +246,9 @@ impl Simulation {
     }
 
     /// Steps must follow a sine.
-    fn validate_steps(&self, n: usize, instants: &[Instant]) -> Result<()> {
-        let stage = &self.loading.stages[n];
+    fn validate_steps<'a>(&self, stage: &Stage, instants: impl Iterator<Item = &'a Instant>) -> Result<()> {
         let Course::Given(History::Sine { amplitude, frequency, .. }) = stage.course else { return Ok(()) };
-        let of_stage = instants.iter().filter(|instant| instant.stage == n);
-        let longest = of_stage.map(|instant| instant.dt).fold(0.0, f64::max);
+        let longest = instants.map(|instant| instant.dt).fold(0.0, f64::max);
         let grid = stage.times.as_ref().unwrap_or(&self.times);
         let follows =
             amplitude == 0.0 || grid.is_adaptive() || longest * frequency <= 1.001 / LEAST_PER_PERIOD;
@@ -238,8 +262,8 @@ impl Simulation {
             .map_err(|error| error.of("history"))
     }
 
-    fn validate_load(&self, n: usize) -> Result<()> {
-        let (end, stage) = (self.times.end(), &self.loading.stages[n]);
+    fn validate_load(&self, stage: &Stage) -> Result<()> {
+        let end = self.times.end();
         let (factor, what, unit) = match stage.control {
             Control::Approach => return Ok(()),
             Control::Load => (1.0, "smallest load", "N"),

@@ -12,6 +12,8 @@
 //! An adaptive step is tried shorter until its error is small enough; then a stage that ends at an event is cut where the event
 //! happens.
 
+mod steered;
+
 use std::sync::Arc;
 
 use super::event::{Enclosure, MET};
@@ -105,8 +107,10 @@ struct Plan {
 
 pub(crate) struct Schedule {
     plan: Plan,
-    /// The stage under way, and the value that its quantity had when it began.
+    /// The number of the stage under way, and the value that its quantity had when it began.
     stage: usize,
+    /// The stage under way, where it was prescribed between two rows: it lasts to the end of the run.
+    steered: Option<Stage>,
     started_from: f64,
     course: Course,
     stops: Vec<Stop>,
@@ -152,6 +156,7 @@ impl Schedule {
         let mut schedule = Schedule {
             plan,
             stage: 0,
+            steered: None,
             started_from: 0.0,
             course,
             stops: vec![],
@@ -176,7 +181,24 @@ impl Schedule {
     }
 
     fn stage(&self) -> &Stage {
-        &self.plan.stages[self.stage.min(self.plan.stages.len() - 1)]
+        self.steered.as_ref().unwrap_or(&self.plan.stages[self.stage.min(self.plan.stages.len() - 1)])
+    }
+
+    /// Whether a stage was prescribed between two rows.
+    pub(crate) fn is_steered(&self) -> bool {
+        self.steered.is_some()
+    }
+
+    /// Ends the stage under way with the last row, in place of it and of all stages after it begins this one. `false` where there is
+    /// no row yet, or none to come.
+    pub(crate) fn prescribe(&mut self, stage: Stage) -> bool {
+        let end = self.plan.times.end() * (1.0 - SAME);
+        let Some(last) = self.last.filter(|last| self.stopped.is_none() && last.time < end) else {
+            return false;
+        };
+        self.steered = Some(stage);
+        self.begin(self.stage + 1, last.time, self.reached);
+        true
     }
 
     /// The smooth piece that begins with the next step, where steps are adaptive and one begins.
@@ -407,28 +429,33 @@ impl Schedule {
 
     /// Begins a stage where the quantities have the values `reached`.
     fn enter(&mut self, stage: usize, time: f64, reached: Response) {
-        self.is_smooth = false;
         let end = self.plan.times.end();
-        let next = self.plan.stages.get(stage).filter(|_| time < end * (1.0 - SAME));
-        let Some(control) = next.map(|next| next.control) else {
+        if self.is_steered() || stage >= self.plan.stages.len() || time >= end * (1.0 - SAME) {
             self.stopped = Some(StopReason::Complete);
             return;
-        };
-        let reached = match control {
+        }
+        self.begin(stage, time, reached);
+    }
+
+    /// The first row of a stage: a jump, unless it goes on from the values reached.
+    fn begin(&mut self, stage: usize, time: f64, reached: Response) {
+        self.is_smooth = false;
+        self.stage = stage;
+        let reached = match self.stage().control {
             Control::Load => reached.load,
             Control::Pressure => reached.load / self.plan.area,
             Control::Approach => reached.approach,
         };
-        self.arrive(stage, time, reached);
+        self.arrive(time, reached);
         let first = self.course.history.after(0.0);
         self.jump = (stage == 0 || !agree(first, reached)).then_some(first);
         self.side = 0.0;
     }
 
-    /// The stops of a stage that starts at `start`.
-    fn arrive(&mut self, stage: usize, start: f64, reached: f64) {
+    /// The stops of the stage under way, that started at `start`.
+    fn arrive(&mut self, start: f64, reached: f64) {
         let Plan { stages, times, include, kinks, .. } = &self.plan;
-        let next = &stages[stage];
+        let next = self.steered.as_ref().unwrap_or_else(|| &stages[self.stage]);
         let run_end = times.end();
         let end = next.duration.map_or(run_end, |duration| (start + duration).min(run_end));
         let history = next.course.resolve(reached);
@@ -448,11 +475,14 @@ impl Schedule {
         };
         let [least, most] = history.range(end - start);
         self.course = Course { history: Arc::new(history), start, scale: least.abs().max(most.abs()) };
-        (self.stage, self.started_from) = (stage, reached);
+        self.started_from = reached;
     }
 
     pub(crate) fn save<'a>(&'a self, to: &mut Saver<'a>) {
         to.values("stage", &[&self.stage, &self.course.start, &self.started_from, &self.next]);
+        if let Some(stage) = &self.steered {
+            to.value("steered", &steered::numbers(stage));
+        }
         self.save_own(to);
         if let Some(Instant { time, dt, value, jump, .. }) = &self.last {
             to.values("last", &[time, dt, value, jump]);
@@ -471,10 +501,17 @@ impl Schedule {
     pub(crate) fn load(&mut self, from: &mut Loader<'_>) -> Result<()> {
         let (mut stage, mut start, mut reached, mut next) = (0_usize, 0.0_f64, 0.0_f64, 0_usize);
         from.values_into("stage", &mut [&mut stage, &mut start, &mut reached, &mut next])?;
-        if stage >= self.plan.stages.len() || !(start.is_finite() && start >= 0.0 && reached.is_finite()) {
+        if let Ok(numbers) = from.numbers("steered") {
+            let known = steered::stage(numbers).filter(|stage| stage.validate(true).is_ok());
+            self.steered = Some(known.ok_or_else(|| from.foreign("another prescribed stage"))?);
+        }
+        if !self.is_steered() && stage >= self.plan.stages.len()
+            || !(start.is_finite() && start >= 0.0 && reached.is_finite())
+        {
             return Err(from.foreign("stages of another programme"));
         }
-        self.arrive(stage, start, reached);
+        self.stage = stage;
+        self.arrive(start, reached);
         self.next = next;
         if self.next > self.stops.len() {
             return Err(from.foreign("times of another programme"));

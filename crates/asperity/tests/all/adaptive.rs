@@ -224,6 +224,117 @@ fn events_and_adaptive_steps_resumed_from_any_row_give_the_same_bits() {
     }
 }
 
+/// Prescribes the control and course once as many rows are done as each says, and gives all rows.
+fn steered(march: &mut March, plan: &[(usize, Control, Course)], mut see: impl FnMut(&March)) -> Vec<Row> {
+    let mut rows: Vec<Row> = vec![];
+    while let Some(row) = march.advance().unwrap().map(|step| step.row()) {
+        rows.push(row);
+        let done = march.done();
+        for (_, control, course) in plan.iter().filter(|(after, ..)| *after == done) {
+            march.prescribe(*control, course.clone()).unwrap();
+        }
+        see(march);
+    }
+    rows
+}
+
+#[test]
+fn what_is_prescribed_between_rows_is_a_stage() {
+    let ramp = || History::Ramp { value: 0.02, duration: 1.0 };
+    let times = TimeGrid::Uniform { end: 10.0, steps: 20 };
+    let stage = |control, course: Course, duration| Stage { duration, ..Stage::new(control, course) };
+    let down = || Course::RampTo { value: 0.01, duration: 1.0 };
+    let programme = Programme::new(vec![
+        stage(Control::Load, ramp().into(), Some(2.0)),
+        stage(Control::Approach, Course::Hold, Some(3.0)),
+        stage(Control::Pressure, History::Step { value: 0.015 }.into(), Some(2.0)),
+        stage(Control::Approach, down(), None),
+    ]);
+    let planned = rows(Simulation { loading: programme, times: times.clone(), ..sphere(24) });
+    let simulation = Simulation { loading: load(ramp()), times, ..sphere(24) };
+    let mut march = March::new(simulation).unwrap();
+    // Rows: 0+ and one each half second, one more for the jump of the pressure at 5 s.
+    let plan = [
+        (5, Control::Approach, Course::Hold),
+        (11, Control::Pressure, History::Step { value: 0.015 }.into()),
+        (16, Control::Approach, down()),
+    ];
+    // The same steps of the same solver: the same bits.
+    assert_eq!(steered(&mut march, &plan, |_| ()), planned);
+    assert!(planned[11].time() == 5.0 && planned[11].stage == 2 && planned.last().unwrap().stage == 3);
+    assert!(march.finished() && march.rows_expected().is_none());
+}
+
+#[test]
+fn a_steered_march_resumed_from_any_row_gives_the_same_bits() {
+    let plan = [
+        (4, Control::Approach, Course::Hold),
+        (9, Control::Load, History::Sine { mean: 0.01, amplitude: 0.005, frequency: 0.5 }.into()),
+        (15, Control::Load, Course::RampTo { value: 0.02, duration: 1.0 }),
+    ];
+    for times in [adaptive(20.0, 1e-2, 1e-2), TimeGrid::Uniform { end: 20.0, steps: 400 }] {
+        let ramp = load(History::Ramp { value: 0.02, duration: 1.0 });
+        let simulation = Simulation { loading: ramp, times, ..sphere(16) };
+        let mut march = March::new(simulation.clone()).unwrap();
+        let mut checkpoints: Vec<Checkpoint> = vec![];
+        let rows = steered(&mut march, &plan, |march| checkpoints.push(march.checkpoint().into_owned()));
+        assert!(rows.len() > 20 && rows.last().unwrap().stage == 3, "{} rows", rows.len());
+        for at in [3, 4, 5, 9, 10, 14, 15, 16, rows.len()] {
+            let mut resumed = March::resume(simulation.clone(), &checkpoints[at - 1]).unwrap();
+            assert_eq!(steered(&mut resumed, &plan, |_| ()), rows[at..], "from row {at}");
+        }
+    }
+}
+
+#[test]
+fn what_is_prescribed_keeps_the_rules_of_stages() {
+    let simulation = Simulation {
+        loading: load(History::Step { value: 0.01 }),
+        times: TimeGrid::Uniform { end: 1.0, steps: 10 },
+        hardness: 1.0,
+        ..sphere(16)
+    };
+    let mut march = March::new(simulation.clone()).unwrap();
+    let told = |march: &mut March, control, course: Course| {
+        march.prescribe(control, course).unwrap_err().to_string()
+    };
+    let step = |value| Course::from(History::Step { value });
+    assert!(told(&mut march, Control::Load, step(0.02)).contains("after the first row"));
+    march.advance().unwrap();
+    assert!(told(&mut march, Control::Load, step(-0.02)).contains("not negative"));
+    assert!(told(&mut march, Control::Load, step(f64::NAN)).contains("NaN"));
+    // A hardness of 1 over the domain of 1 carries no more than 1.
+    assert!(told(&mut march, Control::Pressure, step(1.5)).contains("1.5"));
+    let fast = History::Sine { mean: 0.01, amplitude: 0.005, frequency: 10.0 };
+    assert!(told(&mut march, Control::Load, fast.into()).contains("sine"));
+    // What is refused changes nothing.
+    let mut other = March::new(simulation).unwrap();
+    other.advance().unwrap();
+    assert_eq!(steered(&mut march, &[], |_| ()), steered(&mut other, &[], |_| ()));
+    assert!(told(&mut march, Control::Load, step(0.02)).contains("before its last one"));
+    // Nothing follows a jump without instantaneous compliance; the ramp from the value reached does.
+    let soft = Simulation {
+        creep: Creep { instantaneous: 0.0, ..creep() },
+        loading: load(History::Ramp { value: 0.01, duration: 1.0 }),
+        times: TimeGrid::Uniform { end: 2.0, steps: 8 },
+        ..sphere(16)
+    };
+    let mut march = March::new(soft.clone()).unwrap();
+    march.advance().unwrap();
+    let table = History::Table { points: vec![(0.0, 0.0), (0.5, 0.01), (0.5, 0.02)] };
+    assert!(told(&mut march, Control::Load, table.into()).contains("no instantaneous compliance"));
+    for _ in 0..4 {
+        march.advance().unwrap();
+    }
+    march.prescribe(Control::Load, step(0.02)).unwrap();
+    let Err(error) = march.advance() else { panic!("followed a jump") };
+    assert!(error.to_string().contains("jump"), "{error}");
+    let mut march = March::new(soft).unwrap();
+    let rows =
+        steered(&mut march, &[(5, Control::Load, Course::RampTo { value: 0.02, duration: 0.5 })], |_| ());
+    assert!((rows.last().unwrap().load / 0.02 - 1.0).abs() < 1e-12);
+}
+
 #[test]
 fn adaptive_steps_belong_to_the_linear_scheme() {
     let simulation = Simulation { scheme: Scheme::Constant, times: adaptive(1.0, 1e-3, 1e-3), ..sphere(8) };

@@ -5,6 +5,7 @@ mod cost;
 use asperity::Axis;
 use asperity::load::{Course, Stage};
 use asperity_io::case::{Case, Examination, Inputs, SurfaceInput, Travel, bare_numbers};
+use asperity_io::converge::expected_cost;
 use asperity_io::stress::StressDescription;
 use serde_json::json;
 
@@ -35,7 +36,9 @@ impl Verb for Check {
             object["estimated_convolutions"] = json!(cost.as_ref().map(|cost| cost.estimate.convolutions));
             crate::print(&format!("{object}\n"))?;
         } else {
-            crate::print(&summary(&case, &examined, cost.as_ref()))?;
+            let read = |more: &[String]| Case::read(&self.case, &[&self.common.set, more].concat());
+            let error_bars = expected_cost(&case, &read);
+            crate::print(&summary(&case, &examined, cost.as_ref(), error_bars))?;
         }
         super::findings::strict(self.strict, &examined.findings)
     }
@@ -225,7 +228,7 @@ fn lengths(sides: &[f64]) -> String {
     sides.join(" x ")
 }
 
-fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>) -> String {
+fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>, error_bars: f64) -> String {
     let (d, inputs) = (&examined.description, &examined.inputs);
     let title = d.title.as_deref().unwrap_or(&case.name);
     let mut text = format!("{title}\n");
@@ -380,16 +383,22 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>) -> String {
     if let Some(cost) = cost {
         let threads = counted(rayon::current_num_threads(), "thread");
         let found = cost.estimate;
+        let after = cost::seconds_after(case, d);
+        let whole = match after > 0.1 * cost.seconds {
+            true => format!("; {} with what comes after it", roughly(cost.seconds + after)),
+            false => String::new(),
+        };
         line(
             "run time",
             format!(
-                "roughly {} on {threads}: about {} and {} (estimated on a coarse grid)",
+                "roughly {} on {threads}: about {} and {} (estimated on a coarse grid){whole}",
                 roughly(cost.seconds),
                 counted(found.rows, "row"),
                 counted(found.convolutions, "convolution")
             ),
         );
     }
+    line("error bars", format!("--error-bars takes about {error_bars:.1} times the run more"));
     for finding in &examined.findings {
         line(finding.severity.as_str(), format!("{} [{}]", finding.text, finding.code));
     }

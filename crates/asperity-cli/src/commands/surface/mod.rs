@@ -30,6 +30,16 @@ pub(super) fn open(file: &SurfaceFile) -> Result<Topography, Failure> {
     Ok(read(&file.file, &options)?)
 }
 
+/// Whether the file holds a profile: two columns of text.
+pub(super) fn is_profile(file: &SurfaceFile) -> Result<bool, Failure> {
+    Ok(profile::open(file)?.is_some())
+}
+
+/// The name of a file without its folder.
+pub(super) fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
 /// The heights on their grid; `name` is what messages call them.
 fn map(name: &str, topography: &Topography) -> Result<Map, Failure> {
     let failed = Failure::about(name);
@@ -79,13 +89,14 @@ fn roughness(format: Format, heights: Array2<f64>, size: [f64; 2], history: Vec<
     made
 }
 
-/// "1 mm,2 mm" in metres.
+/// "1 mm,2 mm", or "1 mm" for a square, in metres.
 fn size(option: &str, text: &str) -> Result<[f64; 2], Failure> {
     let lengths: Vec<_> = text.split(',').map(|side| length(option, side)).collect::<Result<_, _>>()?;
     match lengths[..] {
         [x, y] if x > 0.0 && y > 0.0 => Ok([x, y]),
+        [side] if side > 0.0 => Ok([side; 2]),
         _ => Err(Failure::input(format!(
-            "{option} is \"{text}\", but must be two lengths greater than 0, e.g. {option} '1 mm,1 mm'"
+            "{option} is \"{text}\", but must be one length (of a square) or two, greater than 0, e.g. {option} '1 mm,1 mm'"
         ))),
     }
 }

@@ -43,6 +43,10 @@ pub struct Material {
     /// others. Not of an elastic material.
     #[schemars(example = "60 °C")]
     temperature: Option<Temperature>,
+    /// First and last time for which the material is known, at its reference temperature: those of the measurement that it was fitted
+    /// to. A run that needs other times gets a warning. Not of an elastic, a fractional or a measured material.
+    #[schemars(example = serde_json::json!(["0.1 s", "1000 s"]))]
+    window: Option<Two<Time<NonNegative>>>,
     #[schemars(flatten)]
     model: Laws,
 }
@@ -144,6 +148,8 @@ pub struct Sample {
     pub vertical: Option<VerticalShift>,
     /// Its own constant temperature [K].
     pub temperature: Option<f64>,
+    /// First and last time for which it is known, at its reference temperature \[s\]; `None`: all times, or those of its model.
+    pub window: Option<[f64; 2]>,
 }
 
 impl Sample {
@@ -177,9 +183,8 @@ impl Material {
     pub fn sample(&self, at: &Place<'_>) -> Option<Sample> {
         let law = self.model.law();
         if let Laws::Elastic(_) = self.model {
-            let why =
-                "belongs to a material with times: an elastic one has no key `shift` and no `temperature`";
-            at.without(&["shift", "temperature"], why, "no such key", "leave it out")?;
+            let why = "belongs to a material with times: an elastic one has no `shift`, no `temperature` and no `window`";
+            at.without(&["shift", "temperature", "window"], why, "no such key", "leave it out")?;
         }
         let vertical = law.fit().and_then(|fit| fit.vertical);
         let dependence = shift::dependence(at, self.shift.as_ref(), vertical)?;
@@ -200,7 +205,23 @@ impl Material {
             self.without_temperature(at)?;
         }
         let temperature = self.temperature.map(Temperature::get);
-        Some(Sample { model, name: self.model.name(), shift, vertical, temperature })
+        let window = self.window(at, &model)?;
+        Some(Sample { model, name: self.model.name(), shift, vertical, temperature, window })
+    }
+
+    /// The times for which it is known, where they are given \[s\].
+    fn window(&self, at: &Place<'_>, model: &Model) -> Option<Option<[f64; 2]>> {
+        let Some(window) = &self.window else { return Some(None) };
+        let why = match model {
+            Model::Known(_) => {
+                let [first, last] = window.map(Time::get);
+                return at.key("window").increasing([first, last].into_iter()).map(|_| Some([first, last]));
+            }
+            Model::Fractional { .. } => "is that of the run for a fractional model, which holds at all times",
+            Model::Fitted { .. } => "is that of the file, whose part that is fitted is `fit.window`",
+        };
+        at.without(&["window"], why, "no such key", "leave it out")?;
+        Some(None)
     }
 
     fn without_temperature(&self, at: &Place<'_>) -> Option<()> {

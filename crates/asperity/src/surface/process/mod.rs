@@ -16,7 +16,7 @@ pub use filter::{Band, Edge, filter};
 pub use orient::{Axis, flip, invert, rotate};
 pub use outliers::{Outliers, remove_outliers};
 pub use resample::{Resampling, resample};
-pub use window::{Window, window};
+pub use window::{Window, window, window_for_spectrum};
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! Windows: a measured surface is not periodic, and the jump from edge to edge would dominate the spectrum as q^-2. A window
-//! reduces the heights to zero towards the edges before the spectrum is computed.
+//! Windows: opposite edges of a measured surface do not match. A window reduces the heights to zero towards the edges, so that
+//! the surface can be continued periodically, in a contact or in a spectrum, where the jump would dominate as q^-2.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -30,9 +30,8 @@ impl fmt::Display for Window {
     }
 }
 
-/// Heights times the window, which is scaled to mean square 1 so that the power of a random surface is
-/// kept (T. D. B. Jacobs et al., Surf. Topogr.: Metrol. Prop. 5 (2017) 013001, section 3.4). Level the
-/// surface first: a window turns a mean or a tilt into long waves.
+/// Heights times the window, whose largest value is 1: no height grows. Level the surface first: a window turns a mean or a tilt
+/// into long waves.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the share of Tukey's window is not in \[0, 1\].
@@ -42,15 +41,30 @@ pub fn window(surface: &Surface, shape: Window) -> Result<Surface> {
     {
         return Err(Error::invalid("share of the Tukey window", share, "between 0 and 1"));
     }
-    let [along_x, along_y] = surface.grid().cells().map(|n| weights(shape, n));
+    Ok(times(surface, |n| weights(shape, n)))
+}
+
+/// Heights times Hann's window, scaled to mean square 1 so that the power of a random surface is kept (T. D. B. Jacobs et al.,
+/// Surf. Topogr.: Metrol. Prop. 5 (2017) 013001, section 3.4). For spectra only: heights in the middle grow 8/3 times.
+pub fn window_for_spectrum(surface: &Surface) -> Surface {
+    times(surface, |n| {
+        let weights = weights(Window::Hann, n);
+        let rms = (weights.iter().map(|w| w * w).sum::<f64>() / n as f64).sqrt();
+        weights.into_iter().map(|w| w / rms).collect()
+    })
+}
+
+/// Heights times the weights of n cells along each axis.
+fn times(surface: &Surface, weights: impl Fn(usize) -> Vec<f64>) -> Surface {
+    let [along_x, along_y] = surface.grid().cells().map(weights);
     let mut windowed = surface.clone();
     windowed.heights.outer_iter_mut().into_par_iter().zip(along_x).for_each(|(mut row, at_x)| {
         row.iter_mut().zip(&along_y).for_each(|(z, at_y)| *z *= at_x * at_y);
     });
-    Ok(windowed)
+    windowed
 }
 
-/// The window at n cell centres, mean square 1.
+/// The window at n cell centres.
 fn weights(shape: Window, n: usize) -> Vec<f64> {
     let at = |i: usize| {
         let x = (i as f64 + 0.5) / n as f64;
@@ -62,10 +76,7 @@ fn weights(shape: Window, n: usize) -> Vec<f64> {
             }
         }
     };
-    let mut weights: Vec<f64> = (0..n).map(at).collect();
-    let rms = (weights.iter().map(|w| w * w).sum::<f64>() / n as f64).sqrt();
-    weights.iter_mut().for_each(|w| *w /= rms);
-    weights
+    (0..n).map(at).collect()
 }
 
 #[cfg(test)]
@@ -74,26 +85,41 @@ mod tests {
     use crate::grid::Grid;
     use ndarray::Array2;
 
+    fn flat(cells: [usize; 2], height: f64) -> Surface {
+        Surface::new(Grid::new(cells, [1.0, 1.0]).unwrap(), Array2::from_elem(cells, height)).unwrap()
+    }
+
     #[test]
-    fn windows_keep_the_mean_square_and_fade() {
+    fn windows_fade_and_let_no_height_grow() {
         for n in [1, 2, 7, 64] {
             for shape in [Window::Hann, Window::Tukey { share: 0.25 }, Window::Tukey { share: 0.0 }] {
                 let w = weights(shape, n);
-                let square: f64 = w.iter().map(|w| w * w).sum::<f64>() / n as f64;
-                assert!((square - 1.0).abs() < 1e-14 && w[0] <= w[n / 2]);
+                assert!(w.iter().all(|w| (0.0..=1.0).contains(w)) && w[0] <= w[n / 2]);
                 assert!((w[0] - w[n - 1]).abs() < 1e-14);
             }
         }
-        // The mean square of Hann's window is 3/8.
-        assert!((weights(Window::Hann, 1000)[499] - (8.0f64 / 3.0).sqrt()).abs() < 1e-5);
+        // Tukey's window is 1 between its flanks: the first 8 of 64 cells and the last 8.
+        let tukey = weights(Window::Tukey { share: 0.25 }, 64);
+        assert!(tukey[8..56].iter().all(|&w| w == 1.0) && tukey[7] < 1.0 && tukey[56] < 1.0);
         let (tukey, hann) = (weights(Window::Tukey { share: 1.0 }, 9), weights(Window::Hann, 9));
         assert!(tukey.iter().zip(&hann).all(|(a, b)| (a - b).abs() < 1e-14));
     }
 
     #[test]
+    fn the_window_of_a_spectrum_keeps_the_mean_square() {
+        for cells in [[1, 1], [2, 1], [7, 5], [64, 48]] {
+            let faded = window_for_spectrum(&flat(cells, 1.0));
+            let square = faded.heights().iter().map(|z| z * z).sum::<f64>() / faded.grid().len() as f64;
+            assert!((square - 1.0).abs() < 1e-14);
+        }
+        // The mean square of Hann's window is 3/8 along each axis; half a cell from the middle it is lower by (pi/1000)^2 / 4.
+        let middle = window_for_spectrum(&flat([1000, 1000], 1.0)).heights()[[499, 499]];
+        assert!((middle - 8.0 / 3.0).abs() < 1e-4);
+    }
+
+    #[test]
     fn a_windowed_surface_is_the_product() {
-        let grid = Grid::new([8, 6], [1.0, 1.0]).unwrap();
-        let surface = Surface::new(grid, Array2::from_elem((8, 6), 2.0)).unwrap();
+        let surface = flat([8, 6], 2.0);
         let faded = window(&surface, Window::Hann).unwrap();
         let (wx, wy) = (weights(Window::Hann, 8), weights(Window::Hann, 6));
         assert_eq!(faded.heights()[[3, 1]], 2.0 * (wx[3] * wy[1]));

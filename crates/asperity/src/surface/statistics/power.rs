@@ -14,17 +14,23 @@
 //! m0 = <z^2>,   m2 = <|grad z|^2> / 2,   m4 = (3/8) <(laplace z)^2>,   alpha = m0 m4 / m2^2
 //! ```
 //!
-//! The surface is taken as periodic; level and window a measured one first.
+//! The surface is taken as periodic. One that does not repeat is levelled, and Hann's window makes it so without changing the power
+//! of its waves on average: [`Extent::Finite`].
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use ndarray::{Array2, ArrayView2, Zip};
 use rayon::prelude::*;
 
-use super::super::Surface;
+use super::super::process::window_for_spectrum;
 use super::super::spectrum::{count, transform, wave_vector};
+use super::super::{Fill, Level, Surface, fill, level};
+use super::Extent;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
+
+/// Largest share of undefined points that are filled for a spectrum.
+pub const MOST_FILLED: f64 = 0.25;
 
 /// The rings over which a spectrum is averaged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -82,6 +88,27 @@ impl PowerSpectrum {
     /// [`Error::Invalid`] if a point is undefined.
     pub fn of(surface: &Surface) -> Result<Self> {
         PowerSpectrum::of_heights(surface.grid(), surface.heights())
+    }
+
+    /// The spectrum of a surface that repeats beyond its edges, or not: then it is levelled by its plane, and multiplied by Hann's
+    /// window of mean square 1, so that its edges do not count as roughness. Undefined points are filled (harmonic).
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if more than [`MOST_FILLED`] of the points are undefined.
+    pub fn within(surface: &Surface, extent: Extent) -> Result<Self> {
+        let grid = *surface.grid();
+        let flat = match extent {
+            Extent::Periodic => surface.clone(),
+            Extent::Finite => Surface::new(grid, level(surface.heights(), Level::Plane)?)?,
+        };
+        let whole = match flat.undefined() {
+            0 => flat,
+            _ => Surface::new(grid, fill(&grid, flat.heights(), Fill::Harmonic, MOST_FILLED)?)?,
+        };
+        match extent {
+            Extent::Periodic => PowerSpectrum::of(&whole),
+            Extent::Finite => PowerSpectrum::of(&window_for_spectrum(&whole)),
+        }
     }
 
     fn of_heights(grid: &Grid, heights: ArrayView2<f64>) -> Result<Self> {

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::super::process::{Window, window};
-use super::super::{Fill, Level, Surface, fill, level};
+use super::super::Surface;
+use super::power::MOST_FILLED;
 use super::{
     Extent, HeightStatistics, PowerSpectrum, RadialSpectrum, Rings, SelfAffineFit, SlopeStatistics,
     SpectralLay, SpectralMoments,
@@ -12,8 +12,6 @@ use crate::error::Result;
 
 /// Rings per decade of wave numbers in the spectrum of a [`Summary`].
 const RINGS: u32 = 20;
-/// Largest fraction of undefined points that are filled for a spectrum.
-const MOST_FILLED: f64 = 0.25;
 
 /// Statistics of a surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,9 +39,7 @@ pub struct Waves {
 }
 
 impl Summary {
-    /// From the defined points. For the waves, a finite surface is levelled by its plane, its undefined points are filled
-    /// (harmonic), and it is multiplied by Hann's window, so that its edges do not count as roughness. A periodic surface is used
-    /// as it is, and filled if necessary.
+    /// From the defined points; the waves as by [`PowerSpectrum::within`].
     ///
     /// ```
     /// use asperity::{Grid, surface::{Roughness, SelfAffine, Surface}};
@@ -73,7 +69,7 @@ impl Summary {
         let points = surface.grid().len();
         let undefined = points - heights.defined;
         let waves = match undefined as f64 <= MOST_FILLED * points as f64 {
-            true => Some(Waves::of(surface, extent, undefined)?),
+            true => Some(Waves::of(surface, extent)?),
             false => None,
         };
         Ok(Summary { heights, slopes, waves })
@@ -81,20 +77,8 @@ impl Summary {
 }
 
 impl Waves {
-    fn of(surface: &Surface, extent: Extent, undefined: usize) -> Result<Self> {
-        let grid = *surface.grid();
-        let whole = |surface: &Surface| match undefined {
-            0 => Ok(surface.clone()),
-            _ => Surface::new(grid, fill(&grid, surface.heights(), Fill::Harmonic, 1.0)?),
-        };
-        let power = match extent {
-            Extent::Periodic if undefined == 0 => PowerSpectrum::of(surface)?,
-            Extent::Periodic => PowerSpectrum::of(&whole(surface)?)?,
-            Extent::Finite => {
-                let flat = Surface::new(grid, level(surface.heights(), Level::Plane)?)?;
-                PowerSpectrum::of(&window(&whole(&flat)?, Window::Hann)?)?
-            }
-        };
+    fn of(surface: &Surface, extent: Extent) -> Result<Self> {
+        let power = PowerSpectrum::within(surface, extent)?;
         let lay = power.lay();
         let rings = Rings::PerDecade(RINGS);
         let spectrum = if lay.is_clear() { power.along(&lay, rings)? } else { power.radial(rings)? };

@@ -1,4 +1,6 @@
-//! `asperity new`: a starter case.
+//! `asperity new`: a starter case, or a case with one's own files.
+
+mod own;
 
 use std::path::PathBuf;
 
@@ -7,6 +9,7 @@ use asperity_io::output::write_all;
 
 use crate::args::New;
 use crate::failure::Failure;
+use crate::files::Files;
 use crate::input::meant;
 use crate::verb::{Threads, Verb};
 
@@ -15,8 +18,15 @@ impl Verb for New {
         Threads::None
     }
 
-    /// Writes the starter case, or lists them.
+    fn files(&self) -> Files {
+        Files::default().reads(self.from.iter().chain(&self.material))
+    }
+
+    /// Writes the starter case, or lists them; or writes a case with own files.
     fn run(&self) -> Result<(), Failure> {
+        if let (Some(purpose), Some(from), Some(material)) = (self.purpose, &self.from, &self.material) {
+            return own::write(self, purpose, from, material);
+        }
         let Some(name) = &self.template else {
             let width = TEMPLATES.iter().map(|t| t.name.len()).max().unwrap_or(0);
             let list: String =

@@ -1,0 +1,380 @@
+//! A commented case with one's own files: what the files say is filled in; what only the user knows has an example value and
+//! the remark [`YOURS`].
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use asperity::material::Modulus;
+use asperity_io::curve::{Columns, Curves, Indentation, Kind};
+use asperity_io::output::write_all;
+use asperity_io::topography::Topography;
+
+use crate::args::{New, Purpose, SurfaceFile};
+use crate::commands::surface;
+use crate::failure::Failure;
+use crate::format::{extent, quantity};
+
+/// The remark behind a value that only the user knows.
+const YOURS: &str = "# YOUR VALUE: ";
+/// Cells along a side of a case at most; a finer surface is resampled.
+const MOST_CELLS: usize = 512;
+
+/// Writes the case.
+pub(super) fn write(args: &New, purpose: Purpose, from: &Path, material: &Path) -> Result<(), Failure> {
+    if purpose == Purpose::Adhesion {
+        return Err(Failure::input(
+            "--for is \"adhesion\", but contacts that stick are not computed yet; choose seal, friction, contact or indentation",
+        ));
+    }
+    if args.path.is_some() {
+        return Err(Failure::input(
+            "with --for give one PATH, that of the case; a template has no own files",
+        ));
+    }
+    let name = format!("{purpose:?}").to_lowercase();
+    let path = args.template.as_ref().map_or_else(|| PathBuf::from(format!("{name}.toml")), PathBuf::from);
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let material = Material::of(material, &folder)?;
+    let record = match purpose {
+        Purpose::Indentation => Indentation::read(from, &Columns::default()).ok(),
+        _ => None,
+    };
+    let text = match record {
+        Some(record) => indentation_of(&record, from, &material),
+        None => of_surface(args, purpose, from, &folder, &material)?,
+    };
+    write_all(&path, args.force, text.as_bytes())?;
+    let missing = marked(&text);
+    let shown = path.display();
+    crate::messages::message!(
+        "wrote {shown}; example values that only you know, marked \"YOUR VALUE\": {}. Then: asperity check {shown}",
+        missing.join(", ")
+    );
+    Ok(())
+}
+
+/// The keys of the marked lines, with their tables: "load.history".
+fn marked(text: &str) -> Vec<String> {
+    let mut table = "";
+    let mut keys = vec![];
+    for line in text.lines() {
+        if line.starts_with('[') {
+            table = line.split(']').next().unwrap_or_default().trim_matches(['[', ']']);
+        }
+        if let Some((key, _)) = line.split_once('=').filter(|_| line.contains(YOURS)) {
+            keys.push(format!("{table}.{}", key.trim()));
+        }
+    }
+    keys
+}
+
+/// What a case needs to know of the material.
+struct Material {
+    /// Lines of the body.
+    text: String,
+    /// Least and greatest time of the data \[s\].
+    times: Option<[f64; 2]>,
+    /// The reference temperature in words, where the times depend on the temperature.
+    reference: Option<String>,
+}
+
+impl Material {
+    fn of(path: &Path, folder: &Path) -> Result<Material, Failure> {
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+            return Material::written(path);
+        }
+        let kind = Curves::kind_of(path, None)?;
+        let curves = Curves::read(path, kind, &Columns::default())?;
+        let ends = extent(curves.sweeps.iter().flat_map(|sweep| sweep.x.iter().copied()));
+        let (model, measure_key, range, times) = match kind {
+            Kind::Dma => {
+                let hertz = ends.map(|omega| quantity(omega / TAU, "Hz"));
+                ("dma", "modulus", hertz, [1.0 / ends[1], 1.0 / ends[0]])
+            }
+            Kind::Relaxation => ("relaxation-table", "modulus", ends.map(|t| quantity(t, "s")), ends),
+            Kind::Creep => ("creep-table", "compliance", ends.map(|t| quantity(t, "s")), ends),
+        };
+        let celsius: Vec<f64> =
+            curves.sweeps.iter().filter_map(|sweep| Some(sweep.temperature? - 273.15)).collect();
+        let [coldest, warmest] = extent(celsius.iter().copied());
+        let at = match celsius.len() {
+            0 => String::new(),
+            1 => format!(" at {coldest:.1} °C"),
+            n => format!(" at {n} temperatures, {coldest:.1} °C to {warmest:.1} °C"),
+        };
+        let mut text = format!("# {} points from {} to {}{at}.\n", curves.points(), range[0], range[1]);
+        let (measure, unknown) = match curves.measure {
+            Some(Modulus::Shear) => ("shear", String::new()),
+            Some(Modulus::Young) => ("young", String::new()),
+            None => ("young", format!("   {YOURS}\"young\" (tension, bending) or \"shear\"")),
+        };
+        let _ = writeln!(
+            text,
+            "poisson = 0.5           {YOURS}0.5 rubber and gel, 0.3 to 0.4 plastics and metals"
+        );
+        let _ = writeln!(text, "[body.material]\nmodel = \"{model}\"");
+        let _ = writeln!(text, "path = {}", toml(&relative(path, folder)));
+        let _ = writeln!(text, "{measure_key} = \"{measure}\"{unknown}");
+        let mut reference = None;
+        if celsius.len() > 1 {
+            // The middle one of the temperatures: its neighbours overlap on both sides.
+            let middle = format!("{:.2} °C", celsius[celsius.len() / 2]);
+            let _ = writeln!(
+                text,
+                "shift = {{ model = \"estimated\", reference = \"{middle}\" }}   # or your WLF: {{ model = \"wlf\", c1 = 8.86, c2 = \"101.6 K\", reference = \"{middle}\" }}"
+            );
+            reference = Some(middle);
+        }
+        Ok(Material { text, times: (times[0] > 0.0).then_some(times), reference })
+    }
+
+    /// What `material fit -o` or `fit-indentation -o` wrote.
+    fn written(path: &Path) -> Result<Material, Failure> {
+        let shown = path.display();
+        let mut text = std::fs::read_to_string(path)
+            .map_err(|error| Failure::input(format!("cannot read {shown}: {error}")))?;
+        let has = |text: &str, key: &str| text.lines().any(|line| line.trim_start().starts_with(key));
+        if has(&text, "[") || !has(&text, "material") {
+            return Err(Failure::input(format!(
+                "{shown} must hold the material of a body as `material fit -o` writes it, `material = {{ ... }}`, and no tables in brackets; \
+                 give that file, or the measured data"
+            )));
+        }
+        if !has(&text, "poisson") && !has(&text, "bulk_modulus") {
+            let line = format!(
+                "poisson = 0.5           {YOURS}0.5 rubber and gel, 0.3 to 0.4 plastics and metals\n"
+            );
+            text.insert_str(0, &line);
+        }
+        let reference = text.contains("shift =").then(|| "20 °C".to_owned());
+        Ok(Material { text: text.trim_end().to_owned() + "\n", times: None, reference })
+    }
+
+    fn body(&self) -> String {
+        let mut text = format!("\n[[body]]\n{}", self.text);
+        if let Some(reference) = &self.reference {
+            let _ = write!(
+                text,
+                "\n[temperature]\nhistory = {{ kind = \"constant\", value = \"{reference}\" }}   {YOURS}of the contact\n"
+            );
+        }
+        text
+    }
+
+    /// The last time of a run: that of the data to one digit, so that the material is known throughout.
+    fn end(&self) -> f64 {
+        self.times.map_or(100.0, |[_, last]| one_digit(last))
+    }
+}
+
+/// The largest number of one digit that is not above a value: 2e3 of 2.9e3.
+fn one_digit(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    // Rounded in decimal, so that it reads "0.3" and not "0.30000000000000004".
+    format!("{:.0e}", (value / power + 1e-9).floor() * power).parse().unwrap_or(value)
+}
+
+/// A case over a measured surface.
+fn of_surface(
+    args: &New,
+    purpose: Purpose,
+    from: &Path,
+    folder: &Path,
+    material: &Material,
+) -> Result<String, Failure> {
+    let file = SurfaceFile {
+        file: from.to_owned(),
+        size: args.size.clone(),
+        height_unit: args.height_unit.clone(),
+        channel: None,
+    };
+    if surface::is_profile(&file)? {
+        return Err(Failure::input(format!(
+            "{} is a profile, and the case needs a surface; make one: asperity surface from-profile {} -o surface.npz, then --from surface.npz",
+            from.display(),
+            from.display()
+        )));
+    }
+    let topography = surface::open(&file)?;
+    let title = match purpose {
+        Purpose::Seal => "Leak of a seal",
+        Purpose::Friction => "Friction over the velocity",
+        Purpose::Indentation => "Ball with a rough surface",
+        _ => "Contact of a rough surface",
+    };
+    let mut text = String::from(
+        "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n",
+    );
+    let _ = writeln!(
+        text,
+        "# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved."
+    );
+    let _ = writeln!(text, "title = {}\n", toml(&format!("{title}: {}", surface::name(from))));
+    text += &domain(&topography, purpose);
+    text += &surface_part(args, &topography, &relative(from, folder), purpose);
+    if purpose == Purpose::Indentation {
+        let _ = write!(
+            text,
+            "\n[[surface]]\nkind = \"sphere\"\nradius = \"{}\"   {YOURS}of the ball\n",
+            plain(10.0 * topography.size[0], "m")
+        );
+    }
+    text += &material.body();
+    text += &match purpose {
+        Purpose::Friction => friction(&topography, material),
+        _ => in_time(purpose, material),
+    };
+    Ok(text)
+}
+
+fn domain(topography: &Topography, purpose: Purpose) -> String {
+    let shape: [usize; 2] = topography.heights.dim().into();
+    let longest = shape[0].max(shape[1]);
+    let boundary = if purpose == Purpose::Indentation {
+        "boundary = \"free\"\n"
+    } else {
+        "boundary = \"periodic\"                 # a part of a larger surface; its border is windowed\n"
+    };
+    let cells = if longest > MOST_CELLS {
+        let fewer = shape.map(|n| (n * MOST_CELLS).div_ceil(longest).max(8));
+        format!(
+            "cells = [{}, {}]                    # of the {} x {} points of the file; all of them cost more\n",
+            fewer[0], fewer[1], shape[0], shape[1]
+        )
+    } else {
+        String::new()
+    };
+    format!(
+        "[domain]                              # its size is that of the surface, {} x {}\n{cells}{boundary}",
+        quantity(topography.size[0], "m"),
+        quantity(topography.size[1], "m")
+    )
+}
+
+fn surface_part(args: &New, topography: &Topography, path: &str, purpose: Purpose) -> String {
+    let [low, high] = extent(topography.heights.iter().copied());
+    let (nx, ny) = topography.heights.dim();
+    let holes = topography.heights.iter().filter(|height| !height.is_finite()).count();
+    let mut text = format!(
+        "\n[[surface]]                           # {nx} x {ny} points, heights from {} to {} as stored\nkind = \"file\"\npath = {}\n",
+        quantity(low, "m"),
+        quantity(high, "m"),
+        toml(path)
+    );
+    if args.size.is_some() {
+        let [x, y] = topography.size.map(|side| plain(side, "m"));
+        let _ = writeln!(text, "size = [\"{x}\", \"{y}\"]");
+    }
+    if let Some(unit) = &args.height_unit {
+        let _ = writeln!(text, "height_unit = {}", toml(unit));
+    }
+    text += "level = \"plane\"                       # the sample may be tilted under the instrument\n";
+    if holes > 0 {
+        let _ = writeln!(text, "fill = \"harmonic\"                     # {holes} points are undefined");
+    }
+    if purpose != Purpose::Indentation {
+        text += "window = { shape = \"tukey\", share = 0.1 }   # opposite borders match\n";
+    }
+    if nx.max(ny) > MOST_CELLS {
+        text += "resample = \"band-limited\"             # to the cells of the domain\n";
+    }
+    text
+}
+
+/// Load, times and output of a run in time.
+fn in_time(purpose: Purpose, material: &Material) -> String {
+    let end = material.end();
+    let mut text = match purpose {
+        Purpose::Indentation => format!(
+            "\n[load]\ncontrol = \"load\"\nhistory = {{ kind = \"ramp\", value = \"1 mN\", duration = \"{} s\" }}   {YOURS}load, and time to reach it\n",
+            one_digit(end / 10.0)
+        ),
+        _ => format!(
+            "\n[load]\ncontrol = \"pressure\"                  # mean over the surface\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure\n"
+        ),
+    };
+    let _ = write!(
+        text,
+        "\n[time]\nend = \"{end} s\"   {YOURS}length of the run; the data of the material reach {}\nsteps = 40\nspacing = \"log\"\nfirst = \"{} s\"\n",
+        material.times.map_or("as far as was fitted".to_owned(), |[_, last]| quantity(last, "s")),
+        one_digit(end / 1000.0),
+    );
+    if purpose == Purpose::Seal {
+        let _ = write!(
+            text,
+            "\n[solver]\ntolerance = 1e-8                      # narrow gaps need it\n\n[leakage]\ndirection = \"x\"                       {YOURS}from inlet to outlet: \"x\" or \"y\"\npressure_drop = \"0.1 bar\"             {YOURS}between inlet and outlet\nviscosity = \"1 mPa s\"                 {YOURS}water 1 mPa s, oil 100 mPa s; of a gas: gas, inlet and outlet in place of both\n"
+        );
+    }
+    text + "\n[output]\nfields = [\"pressure\", \"gap\"]\nevery = 4\n"
+}
+
+/// Velocities at which the material is known: v = f λ with the frequencies f of the data, and waves λ a tenth as long as the surface.
+fn friction(topography: &Topography, material: &Material) -> String {
+    let length = 0.1 * topography.size[0];
+    let [from, to] =
+        material.times.map_or([1e-3, 1.0], |[first, last]| [length / (TAU * last), length / (TAU * first)]);
+    let decades = (to / from).log10().max(1.0);
+    let count = (3.0 * decades).ceil() as usize + 1;
+    format!(
+        "\n[load]\ncontrol = \"pressure\"                  # nominal\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure\n\n[motion]\ndirection = \"x\"                       {YOURS}of sliding: \"x\", \"y\" or an angle\n\n[motion.steady]                       # these velocities deform waves of {} within the data of the material\nvelocities = {{ from = \"{:.3e} m/s\", to = \"{:.3e} m/s\", count = {count}, spacing = \"log\" }}   {YOURS}velocities\n\n[solver]\ntolerance = 1e-4\n\n[output]\nfields = [\"pressure\"]\nevery = 7\n",
+        quantity(length, "m"),
+        from,
+        to.max(10.0 * from),
+    )
+}
+
+/// An indentation by the loads of a record.
+fn indentation_of(record: &Indentation, from: &Path, material: &Material) -> String {
+    /// Points of the load in the case.
+    const POINTS: usize = 40;
+    let start = record.times.first().copied().unwrap_or_default();
+    let every = record.times.len().div_ceil(POINTS).max(1);
+    let last = record.times.len().saturating_sub(1);
+    let peak = (0..=last).max_by(|a, b| record.loads[*a].total_cmp(&record.loads[*b]));
+    let mut points: Vec<String> = vec![];
+    for n in (0..=last).filter(|n| n % every == 0 || *n == last || Some(*n) == peak) {
+        points.push(format!(
+            "  [\"{:.6e} s\", \"{:.6e} N\"],",
+            record.times[n] - start,
+            record.loads[n].max(0.0)
+        ));
+    }
+    let deepest = record.depths.iter().copied().fold(0.0, f64::max).max(1e-9);
+    // A ball whose contact radius, sqrt(R d), is a tenth of its own radius.
+    let radius = one_digit(100.0 * deepest);
+    let size = one_digit(8.0 * (radius * deepest).sqrt()).max(1e-9);
+    let [low, high] = [0.0, record.loads.iter().copied().fold(0.0, f64::max)];
+    format!(
+        "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved.\n\
+         title = {}\n\n[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n\n[[surface]]\nkind = \"sphere\"\nradius = \"{radius:e} m\"   {YOURS}of the ball\n{}\n[load]                                # {} rows of the record, {} to {}, depth up to {}\ncontrol = \"load\"\nhistory = {{ kind = \"table\", points = [\n{}\n] }}\n\n[time]\nend = \"{:.6e} s\"\nsteps = 80\n\n[output]\nfields = [\"pressure\", \"displacement\"]\nevery = 10\n",
+        toml(&format!("Indentation: {}", surface::name(from))),
+        material.body(),
+        record.times.len(),
+        quantity(low, "N"),
+        quantity(high, "N"),
+        quantity(deepest, "m"),
+        points.join("\n"),
+        record.times.get(last).copied().unwrap_or(1.0) - start,
+    )
+}
+
+/// A number with its unit in full digits, to be read again.
+fn plain(value: f64, unit: &str) -> String {
+    format!("{value:e} {unit}")
+}
+
+/// A text in quotes.
+fn toml(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+/// A path as a case in this folder names it: below the folder relative to it, else as it is from the root.
+fn relative(path: &Path, folder: &Path) -> String {
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let shown = |path: &Path| path.display().to_string();
+    match (path.canonicalize(), here.canonicalize()) {
+        (Ok(path), Ok(folder)) => shown(path.strip_prefix(&folder).unwrap_or(&path)),
+        _ => shown(path),
+    }
+}

@@ -1,0 +1,116 @@
+//! `asperity new`: a case with one's own files.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn asperity(folder: &Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_asperity")).args(words).current_dir(folder).output().unwrap()
+}
+
+fn told(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A surface of 24 by 16 points on 60 by 40 um, a relaxation test, a DMA at one temperature, and an indentation.
+fn files() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let made = asperity(
+        folder.path(),
+        &[
+            "surface",
+            "generate",
+            "--cells",
+            "24,16",
+            "--size",
+            "60 um,40 um",
+            "--hurst",
+            "0.8",
+            "--rms-height",
+            "0.2 um",
+            "--longest",
+            "40 um",
+            "--shortest",
+            "10 um",
+            "-o",
+            &at("face.npz"),
+        ],
+    );
+    assert!(made.status.success(), "{}", told(&made));
+    // E(t) = 2 MPa + 3 MPa exp(-t/1 s), its storage and loss modulus: 2 + 3 w²/(1 + w²) and 3 w/(1 + w²) MPa.
+    let times = (0..25).map(|k| 10f64.powf(-2.0 + f64::from(k) / 6.0));
+    let relaxation: String = times.map(|t| format!("{t}; {}\n", 2.0 + 3.0 * (-t).exp())).collect();
+    std::fs::write(at("relaxation.csv"), format!("t [s]; E [MPa]\n{relaxation}")).unwrap();
+    let dma: String = (0..25)
+        .map(|k| 10f64.powf(-2.0 + f64::from(k) / 6.0))
+        .map(|f| (f, std::f64::consts::TAU * f))
+        .map(|(f, w)| format!("{f}; {}; {}\n", 2.0 + 3.0 * w * w / (1.0 + w * w), 3.0 * w / (1.0 + w * w)))
+        .collect();
+    std::fs::write(at("dma.csv"), format!("f [Hz]; E' [MPa]; E'' [MPa]\n{dma}")).unwrap();
+    let record: String = (0..=50)
+        .map(|k| format!("{}; {}; {}\n", 0.1 * f64::from(k), 0.02 * f64::from(k), 0.1 * f64::from(k)))
+        .collect();
+    std::fs::write(at("record.csv"), format!("t [s]; P [mN]; h [um]\n{record}")).unwrap();
+    folder
+}
+
+#[test]
+fn a_case_with_own_files_passes_the_check_and_says_what_is_missing() {
+    let folder = files();
+    for (purpose, from, material) in [
+        ("seal", "face.npz", "relaxation.csv"),
+        ("friction", "face.npz", "dma.csv"),
+        ("contact", "face.npz", "dma.csv"),
+        ("indentation", "face.npz", "relaxation.csv"),
+        ("indentation", "record.csv", "relaxation.csv"),
+    ] {
+        let words = ["new", "--from", from, "--material", material, "--for", purpose, "own.toml", "--force"];
+        let made = asperity(folder.path(), &words);
+        assert!(made.status.success() && told(&made).contains("body.poisson"), "{purpose}: {}", told(&made));
+        let text = std::fs::read_to_string(folder.path().join("own.toml")).unwrap();
+        assert!(
+            text.contains(material) && text.contains("E") && text.lines().all(|line| line.len() <= 180),
+            "{text}"
+        );
+        let checked = asperity(folder.path(), &["check", "own.toml"]);
+        let words = String::from_utf8_lossy(&checked.stdout).into_owned();
+        assert!(checked.status.success(), "{purpose}: {}\n{text}", told(&checked));
+        assert_eq!(words.contains("24 x 16 cells"), from == "face.npz", "{words}");
+        // The fit finds the material of the file: E*(0) = (2 + 3) MPa/(1 - 0.25), to the three digits that a fit to exact data has.
+        assert!(words.contains("5 MPa") || words.contains("4.99") || words.contains("5.00"), "{words}");
+    }
+}
+
+#[test]
+fn what_no_case_can_be_made_of_is_refused() {
+    let folder = files();
+    let new = |from: &str, material: &str, purpose: &str| {
+        let made = asperity(
+            folder.path(),
+            &["new", "--from", from, "--material", material, "--for", purpose, "no.toml"],
+        );
+        assert_eq!(made.status.code(), Some(2), "{}", told(&made));
+        assert!(!folder.path().join("no.toml").exists());
+        told(&made)
+    };
+    assert!(new("face.npz", "dma.csv", "adhesion").contains("--for is \"adhesion\""));
+    std::fs::write(folder.path().join("profile.txt"), "0 0\n1 1\n2 0\n3 2\n4 0\n").unwrap();
+    new("profile.txt", "dma.csv", "seal");
+    std::fs::write(folder.path().join("case.toml"), "[[body]]\npoisson = 0.5\n").unwrap();
+    assert!(new("face.npz", "case.toml", "seal").contains("material fit -o"));
+    new("face.npz", "missing.csv", "seal");
+    let alone = asperity(folder.path(), &["new", "--for", "seal"]);
+    assert_eq!(alone.status.code(), Some(2));
+}
+
+#[test]
+fn a_square_has_one_length() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("heights.txt"), "0 1 2\n3 4 5\n6 7 9\n").unwrap();
+    let words = ["surface", "info", "heights.txt", "--size", "3 um", "--height-unit", "nm", "--json"];
+    let output = asperity(folder.path(), &words);
+    assert!(output.status.success(), "{}", told(&output));
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // 3 um is 3e-6 to the last digit.
+    assert_eq!(found["size"], serde_json::json!([3e-6, 3e-6]));
+}

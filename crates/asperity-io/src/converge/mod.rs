@@ -1,0 +1,239 @@
+//! Error bars of answers: the same case solved with other cells, other steps and another tolerance.
+//!
+//! Three things limit an answer Q: the size of the cells h, the length of the steps, and the tolerance of the solver. Each is made
+//! coarser on its own ([`variation`]), and an answer's error is estimated from how much it moves ([`estimate`]):
+//!
+//! - **grid**: half and, where possible, a quarter of the cells along each side. Where the cells cannot be halved (roughness whose
+//!   shortest wave has too few cells then) the grid is refined instead.
+//! - **time**: steps twice as long.
+//! - **solver**: ten times the tolerance.
+//!
+//! The second and the third are measured on the coarser grid, where they cost little. All together take less than the run itself where
+//! the grid is coarsened. P. J. Roache, J. Fluids Eng. 116 (1994) 405.
+
+mod estimate;
+mod variation;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use serde::{Deserialize, Serialize};
+
+use crate::answer::{self, Answer, Units};
+use crate::case::{Case, CaseErrors};
+use crate::session::{RunError, RunOptions, run};
+use crate::store::{Reader, Status, StoreError};
+use estimate::{Runs, bars};
+pub use variation::Change;
+
+/// An answer with its error.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorBar {
+    /// Its name.
+    pub name: String,
+    /// Its value, SI; extrapolated where the grid was refined for that.
+    pub value: Option<f64>,
+    /// Its SI unit; "1" if it has none.
+    pub unit: String,
+    /// Its estimated error, SI; `None` where it is not known.
+    pub error: Option<f64>,
+    /// How much of it the grid causes; `None` where no other grid gave the answer.
+    pub grid: Option<f64>,
+    /// How much of it the steps in time cause.
+    pub time: Option<f64>,
+    /// How much of it the tolerance of the solver causes.
+    pub solver: Option<f64>,
+    /// The time \[s\] or velocity \[m/s\] of the row that it belongs to.
+    #[serde(default)]
+    pub at: Option<f64>,
+    /// Observed order of convergence with the cells, where three grids show it.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub order: Option<f64>,
+    /// What limits the estimate, in words; empty if nothing does.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
+}
+
+/// The error bars of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Convergence {
+    /// Its answers.
+    pub answers: Vec<Answer>,
+    /// The same with their errors.
+    pub bars: Vec<ErrorBar>,
+    /// What was solved in addition to the case, and what could not be, in words.
+    pub notes: Vec<String>,
+    /// Convolutions of the additional runs, each counted as a share of one of the case's size: over those of the case.
+    pub cost: f64,
+}
+
+/// Why there are no error bars.
+#[derive(Debug, thiserror::Error)]
+pub enum ConvergeError {
+    /// The case is wrong.
+    #[error(transparent)]
+    Case(#[from] CaseErrors),
+    /// A run failed.
+    #[error("{change}: {source}")]
+    Run {
+        /// Which one.
+        change: String,
+        /// Why.
+        source: Box<RunError>,
+    },
+    /// A result cannot be read or written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// A temporary directory cannot be made.
+    #[error("no temporary directory: {0}")]
+    Temporary(#[from] std::io::Error),
+    /// The user asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+    /// The run has no answer.
+    #[error("the run has no row, and so no answer")]
+    NoAnswer,
+}
+
+/// How error bars are found.
+#[derive(Clone, Debug, Default)]
+pub struct ConvergeOptions {
+    /// Solve a grid of half the cell size as well and extrapolate.
+    pub refine: bool,
+    /// Stops the work when it becomes true.
+    pub interrupt: Arc<AtomicBool>,
+}
+
+/// Reads the case with these further keys (`KEY=VALUE`).
+pub type Read<'a> = dyn Fn(&[String]) -> Result<Case, CaseErrors> + 'a;
+
+/// The case and its variations on disk.
+struct Work<'a> {
+    read: &'a Read<'a>,
+    case: &'a Case,
+    options: &'a ConvergeOptions,
+    directory: tempfile::TempDir,
+    observe: &'a mut dyn FnMut(&str),
+    /// Convolutions over all variations, in units of a convolution of the case.
+    spent: f64,
+}
+
+/// What a run answers, and what it took.
+struct Solved {
+    answers: Vec<Answer>,
+    convolutions: u64,
+}
+
+/// The error bars of the case that `read` reads. `result` is its complete result; without one it is solved first. `observe` hears
+/// what is solved next.
+///
+/// # Errors
+/// [`ConvergeError`].
+pub fn converge(
+    read: &Read<'_>,
+    result: Option<&Path>,
+    options: &ConvergeOptions,
+    observe: &mut dyn FnMut(&str),
+) -> Result<Convergence, ConvergeError> {
+    let case = read(&[])?;
+    let directory = tempfile::tempdir()?;
+    let mut work = Work { read, case: &case, options, directory, observe, spent: 0.0 };
+    let base = match result {
+        Some(result) => solved(&Reader::open(result)?)?,
+        None => work.solve("the case", &[])?.ok_or(ConvergeError::NoAnswer)?,
+    };
+    work.spent = 0.0;
+    let mut notes = vec![];
+    let mut runs = Runs::default();
+    runs.half = work.vary(&[Change::HalfCells], &mut notes)?;
+    if runs.half.is_some() {
+        // No second note: a quarter is only a refinement of the estimate.
+        runs.quarter = work.vary(&[Change::QuarterCells], &mut vec![])?;
+    }
+    if options.refine || runs.half.is_none() {
+        runs.double = work.vary(&[Change::DoubleCells], &mut notes)?;
+    }
+    let coarse: &[Change] = if runs.half.is_some() { &[Change::HalfCells] } else { &[] };
+    let with = |change| [coarse, &[change]].concat();
+    runs.long = work.vary(&with(Change::LongSteps), &mut notes)?;
+    runs.loose = work.vary(&with(Change::LooseSolver), &mut notes)?;
+    let cost = work.spent / (base.convolutions.max(1) as f64);
+    let bars = bars(&base.answers, &runs, options.refine);
+    Ok(Convergence { answers: base.answers, bars, notes, cost })
+}
+
+/// What the error bars of a case take, about, over what the case itself takes.
+pub fn expected_cost(case: &Case, read: &Read<'_>) -> f64 {
+    let is_possible = |change: Change| change.overrides(case).is_ok_and(|keys| read(&keys).is_ok());
+    let steps = if Change::LongSteps.overrides(case).is_ok() { 0.5 } else { 0.0 };
+    // A looser tolerance takes less, but never more.
+    match is_possible(Change::HalfCells) {
+        true => 0.25 * (2.0 + steps) + if is_possible(Change::QuarterCells) { 0.0625 } else { 0.0 },
+        false => 4.0 + 1.0 + steps,
+    }
+}
+
+impl Work<'_> {
+    /// The answers with these changes; `None` and a note where the case does not allow them.
+    fn vary(
+        &mut self,
+        changes: &[Change],
+        notes: &mut Vec<String>,
+    ) -> Result<Option<Vec<Answer>>, ConvergeError> {
+        let names: Vec<&str> = changes.iter().map(|change| change.name()).collect();
+        let mut overrides = vec![];
+        for change in changes {
+            match change.overrides(self.case) {
+                Ok(more) => overrides.extend(more),
+                Err(why) => {
+                    notes.push(format!("{}: {why}", change.name()));
+                    return Ok(None);
+                }
+            }
+        }
+        let what = names.join(", ");
+        match self.solve(&what, &overrides) {
+            Ok(solved) => Ok(solved.map(|solved| solved.answers)),
+            Err(ConvergeError::Case(errors)) => {
+                let why = errors.errors.first().map_or(String::new(), |error| error.message.clone());
+                notes.push(format!("{what}: not possible: {why}"));
+                Ok(None)
+            }
+            Err(ConvergeError::Run { source, .. }) if matches!(*source, RunError::Solve { .. }) => {
+                notes.push(format!("{what}: {source}"));
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The answers with these further keys.
+    fn solve(&mut self, what: &str, more: &[String]) -> Result<Option<Solved>, ConvergeError> {
+        (self.observe)(what);
+        let case = (self.read)(&[more, &["output.checkpoint=false".to_owned()]].concat())?;
+        let output: PathBuf = self.directory.path().join("run.zarr");
+        let options = RunOptions {
+            output: Some(output.clone()),
+            force: true,
+            resume: false,
+            interrupt: self.options.interrupt.clone(),
+        };
+        let summary = run(&case, &options, |_| {}).map_err(|source| match source {
+            RunError::Case(errors) => ConvergeError::Case(errors),
+            source => ConvergeError::Run { change: what.to_owned(), source: Box::new(source) },
+        })?;
+        if summary.status == Status::Interrupted {
+            return Err(ConvergeError::Interrupted);
+        }
+        let solved = solved(&Reader::open(&output)?)?;
+        let share = case.conditions.grid.len() as f64 / self.case.conditions.grid.len() as f64;
+        self.spent += share * solved.convolutions as f64;
+        Ok(Some(solved).filter(|solved| !solved.answers.is_empty()))
+    }
+}
+
+fn solved(reader: &Reader) -> Result<Solved, ConvergeError> {
+    let answers = answer::of(reader, &Units::default())?;
+    Ok(Solved { answers, convolutions: reader.work().convolutions })
+}

@@ -1,0 +1,280 @@
+//! Error bars of answers against the true errors: random cases with closed forms.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+
+use asperity::History;
+use asperity::reference::{HertzSphere, HunterCylinder, Ting, Westergaard};
+use asperity_io::case::Case;
+use asperity_io::converge::{ConvergeOptions, Convergence, ErrorBar, converge};
+
+use super::common::noise;
+
+/// A random case and the exact values of its answers.
+struct Known {
+    kind: &'static str,
+    text: String,
+    exact: fn(&Case, &[f64]) -> Vec<(&'static str, f64)>,
+    numbers: Vec<f64>,
+}
+
+/// Random numbers of one case.
+struct Random(usize);
+
+impl Random {
+    fn between(&mut self, from: f64, to: f64) -> f64 {
+        self.0 += 1;
+        from + (to - from) * noise(self.0)
+    }
+
+    fn log(&mut self, from: f64, to: f64) -> f64 {
+        self.between(from.ln(), to.ln()).exp()
+    }
+}
+
+const ELASTIC: &str = "[[body]]\npoisson = 0.3\nmaterial = { model = \"elastic\", young = \"1 MPa\" }\n";
+const ZENER: &str = "[[body]]\npoisson = 0.5\nmaterial = { model = \"zener\", shear = \"1 MPa\", shear_kelvin = \"0.2 MPa\", retardation_time = \"1 s\" }\n";
+
+/// The case of number `seed`: spheres, waves, spheres pressed and released, sliding cylinders and seals in turn.
+fn case(seed: usize) -> Known {
+    let mut random = Random(1000 * seed);
+    let cells = 4 * (8.0 * random.log(1.0, 2.5)) as usize;
+    match seed % 5 {
+        0 => {
+            // A contact of a quarter to nearly all of the half side.
+            let (radius, reach) = (0.1, random.between(0.25, 0.9));
+            let modulus = 1e6 / (1.0 - 0.09);
+            let load = 4.0 / 3.0 * modulus * (reach * 0.5e-3_f64).powi(3) / radius;
+            let text = format!(
+                "domain = {{ cells = [{cells}, {cells}], size = [1e-3, 1e-3] }}\nsurface = [{{ kind = \"sphere\", radius = {radius} }}]\nload = {{ control = \"load\", history = {{ kind = \"step\", value = {load:e} }} }}\ntime = {{ times = [1.0] }}\n{ELASTIC}"
+            );
+            Known { kind: "sphere (Hertz)", text, exact: hertz, numbers: vec![radius, load] }
+        }
+        1 => {
+            let (amplitude, length) = (1e-6, 1e-3);
+            let cells = 2 * cells;
+            let modulus = 1e6 / (1.0 - 0.09);
+            let pressure = random.between(0.05, 0.9) * PI * modulus * amplitude / length;
+            let text = format!(
+                "domain = {{ cells = [{cells}], size = [{length}], boundary = \"periodic\" }}\nsurface = [{{ kind = \"wave\", amplitude = {amplitude}, wavelength = [{length}] }}]\nload = {{ control = \"pressure\", history = {{ kind = \"step\", value = {pressure:e} }} }}\ntime = {{ times = [1.0] }}\n{ELASTIC}"
+            );
+            Known {
+                kind: "wave (Westergaard)",
+                text,
+                exact: westergaard,
+                numbers: vec![amplitude, length, pressure],
+            }
+        }
+        2 => {
+            let (radius, reach) = (0.1, random.between(0.3, 0.8));
+            let load = 8.0 / 3.0 * 0.4e6 * (reach * 0.5e-3_f64).powi(3) / radius;
+            let (rise, steps) = (random.log(0.1, 3.0), random.log(8.0, 80.0) as usize);
+            let end = rise * random.between(0.5, 1.8);
+            let text = format!(
+                "domain = {{ cells = [{cells}, {cells}], size = [1e-3, 1e-3] }}\nsurface = [{{ kind = \"sphere\", radius = {radius} }}]\nload = {{ control = \"load\", history = {{ kind = \"triangle\", peak = {load:e}, rise = {rise}, fall = {rise} }} }}\ntime = {{ end = {end}, steps = {steps} }}\n{ZENER}"
+            );
+            Known { kind: "sphere in time (Ting)", text, exact: ting, numbers: vec![radius, load, rise, end] }
+        }
+        3 => {
+            let radius = 0.01;
+            let reach = random.between(0.3, 0.7);
+            let cells = 4 * cells;
+            let load = PI * (reach * 0.5e-3_f64).powi(2) / (4.0 * radius) * 4e6 / 6.0;
+            let velocity = random.log(1e-5, 1e-2);
+            let text = format!(
+                "domain = {{ cells = [{cells}], size = [1e-3] }}\nsurface = [{{ kind = \"cylinder\", radius = {radius} }}]\nload = {{ control = \"load\", history = {{ kind = \"step\", value = {load:e} }} }}\nmotion = {{ steady = {{ velocities = [{velocity:e}] }} }}\n{ZENER}"
+            );
+            Known {
+                kind: "sliding cylinder (Hunter)",
+                text,
+                exact: hunter,
+                numbers: vec![radius, velocity, load],
+            }
+        }
+        _ => {
+            let (amplitude, length) = (1e-6, 1e-3);
+            let modulus = 1e6 / (1.0 - 0.09);
+            let pressure = random.between(0.05, 0.7) * PI * modulus * amplitude / length;
+            let text = format!(
+                "domain = {{ cells = [{cells}, {cells}], size = [{length}, {length}], boundary = \"periodic\" }}\nsurface = [{{ kind = \"wave\", amplitude = {amplitude}, wavelength = [inf, {length}] }}]\nload = {{ control = \"pressure\", history = {{ kind = \"step\", value = {pressure:e} }} }}\ntime = {{ times = [1.0] }}\nleakage = {{ direction = \"x\", pressure_drop = 1e5, viscosity = 1e-3 }}\n{ELASTIC}"
+            );
+            Known { kind: "seal channel", text, exact: channel, numbers: vec![amplitude, length, pressure] }
+        }
+    }
+}
+
+/// 1/C of an elastic case.
+fn modulus(case: &Case) -> f64 {
+    1.0 / case.conditions.creep.long_time()
+}
+
+fn area_of(radius: f64) -> [(&'static str, f64); 2] {
+    let area = PI * radius * radius;
+    [("contact_area", area), ("contact_area_corrected", area)]
+}
+
+fn hertz(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
+    let [radius, load] = numbers else { unreachable!() };
+    let exact = HertzSphere::under_load(*radius, modulus(case), *load).unwrap();
+    let more = [("approach", exact.approach), ("max_pressure", exact.peak_pressure)];
+    area_of(exact.contact_radius).into_iter().chain(more).collect()
+}
+
+fn westergaard(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
+    let [amplitude, length, pressure] = numbers else { unreachable!() };
+    let exact = Westergaard::under_pressure(*amplitude, *length, modulus(case), *pressure).unwrap();
+    vec![
+        ("contact_fraction", exact.contact_fraction()),
+        ("contact_area", 2.0 * exact.half_width()),
+        ("max_pressure", exact.pressure(0.0)),
+        ("approach", exact.approach()),
+    ]
+}
+
+fn ting(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
+    let [radius, peak, rise, end] = *numbers else { unreachable!() };
+    let history = History::Triangle { peak, rise, fall: rise };
+    let exact = Ting::new(radius, &case.conditions.creep, &history, end).unwrap().at(end).unwrap();
+    let more = [("approach", exact.approach), ("max_pressure", exact.peak_pressure)];
+    area_of(exact.contact_radius).into_iter().chain(more).collect()
+}
+
+fn hunter(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
+    let [radius, velocity, load] = *numbers else { unreachable!() };
+    let exact = HunterCylinder::under_load(radius, &case.conditions.creep, velocity, load).unwrap();
+    vec![
+        ("friction_coefficient", exact.friction_coefficient()),
+        ("friction_force", load * exact.friction_coefficient()),
+        ("contact_area", 2.0 * exact.half_width),
+        ("max_pressure", exact.peak().1),
+    ]
+}
+
+/// The flow along the furrows of a wave in contact: dp/(12 mu Lx) times the integral of h³ over y. The gap beside a strip of contact
+/// follows from the slope dh/dy = 4 p cos(psi) sqrt(sin² psi - sin² psi_a)/(E* sin² psi_a) with psi = pi y/l, whose pressure under the
+/// strip is Westergaard's.
+fn channel(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
+    let [amplitude, length, pressure] = *numbers else { unreachable!() };
+    let modulus = modulus(case);
+    let exact = Westergaard::under_pressure(amplitude, length, modulus, pressure).unwrap();
+    let edge = (PI * exact.half_width() / length).sin();
+    let gap = |y: f64| {
+        let s = (PI * y / length).sin();
+        let root = ((s - edge) * (s + edge)).sqrt();
+        let integral = 0.5 * (s * root - edge * edge * ((s + root) / edge).ln());
+        4.0 * pressure * length / (PI * modulus * edge * edge) * integral
+    };
+    // Simpson's rule; the gap rises from the edge as a power of 3/2.
+    let (from, to, n) = (exact.half_width(), length / 2.0, 2000);
+    let step = (to - from) / n as f64;
+    let weight = |k: usize| if k == 0 || k == n { 1.0 } else { [2.0, 4.0][k % 2] };
+    let sum: f64 = (1..=n).map(|k| weight(k) * gap(from + step * k as f64).powi(3)).sum();
+    let cubes = 2.0 * sum * step / 3.0;
+    vec![
+        ("leak_rate", 1e5 * cubes / (12.0 * 1e-3 * length)),
+        ("hydraulic_gap", (cubes / length).cbrt()),
+        ("contact_fraction", exact.contact_fraction()),
+    ]
+}
+
+/// Stated and true error of each answer of a case whose exact value is known.
+fn errors(known: &Known) -> Vec<(&'static str, f64, f64)> {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("case.toml");
+    // Inline tables stand before the sections.
+    std::fs::write(&path, &known.text).unwrap();
+    let case = Case::read(&path, &[]).unwrap_or_else(|error| panic!("{error}\n{}", known.text));
+    let options = ConvergeOptions::default();
+    let read = |keys: &[String]| Case::read(&path, keys);
+    let found = converge(&read, None, &options, &mut |_| {}).unwrap();
+    let bar = |name: &str| -> &ErrorBar { found.bars.iter().find(|bar| bar.name == name).unwrap() };
+    let exact = (known.exact)(&case, &known.numbers);
+    let stated = exact.into_iter().map(|(name, exact)| {
+        let bar = bar(name);
+        (name, bar.error.unwrap() / exact.abs(), (bar.value.unwrap() - exact).abs() / exact.abs())
+    });
+    stated.collect()
+}
+
+/// How many random cases: more where the table of the documentation is written.
+fn count() -> usize {
+    std::env::var("ASPERITY_ERROR_BARS").ok().and_then(|text| text.parse().ok()).unwrap_or(20)
+}
+
+#[test]
+fn the_stated_error_of_answers_covers_the_true_one() {
+    let mut table: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
+    let mut missed = String::new();
+    for seed in 0..count() {
+        let known = case(seed);
+        let errors = errors(&known);
+        // Of a case the answer is the first one.
+        for (name, stated, off) in &errors {
+            if off > stated {
+                writeln!(missed, "{} {seed}: {name} is off by {off:.1e}, stated {stated:.1e}", known.kind)
+                    .unwrap();
+            }
+            let row = table.entry(known.kind).or_default();
+            row[0] += 1;
+            row[1] += usize::from(off <= stated);
+            // Below 1e-3 nobody asks how large an error is.
+            row[2] += usize::from(*stated <= (10.0 * off).max(1e-3));
+        }
+    }
+    let mut sum = [0; 3];
+    for (kind, row) in &table {
+        let [answers, within, close] = row;
+        println!("| {kind} | {answers} | {within} | {close} |");
+        sum.iter_mut().zip(row).for_each(|(sum, number)| *sum += number);
+    }
+    let [all, covered, close] = sum;
+    println!("| all | {all} | {covered} | {close} |");
+    println!("{missed}");
+    // 95 of 100.
+    assert!(20 * covered >= 19 * all, "{covered} of {all}\n{missed}");
+}
+
+fn found(text: &str, refine: bool) -> Convergence {
+    let read = |keys: &[String]| Case::parse(text, "case.toml".as_ref(), keys);
+    let options = ConvergeOptions { refine, ..ConvergeOptions::default() };
+    converge(&read, None, &options, &mut |_| {}).unwrap()
+}
+
+const SPHERE: &str = r#"
+domain = { cells = [48, 48], size = [1e-3, 1e-3] }
+surface = [{ kind = "sphere", radius = 0.1 }]
+body = [{ poisson = 0.5, material = { model = "zener", shear = "1 MPa", shear_kelvin = "0.2 MPa", retardation_time = "1 s" } }]
+load = { control = "load", history = { kind = "ramp", value = 1e-4, duration = 1.0 } }
+time = { end = 2.0, steps = 16 }
+"#;
+
+#[test]
+fn refined_grids_extrapolate_and_coarser_ones_cost_less_than_the_run() {
+    let (coarse, fine) = (found(SPHERE, false), found(SPHERE, true));
+    assert!(coarse.cost < 1.0 && coarse.notes.is_empty(), "{} {:?}", coarse.cost, coarse.notes);
+    assert!(fine.cost > 4.0, "twice the cells are four times as many: {}", fine.cost);
+    let of =
+        |found: &Convergence, name: &str| found.bars.iter().find(|bar| bar.name == name).unwrap().clone();
+    let case = Case::parse(SPHERE, "case.toml".as_ref(), &[]).unwrap();
+    let history = History::Ramp { value: 1e-4, duration: 1.0 };
+    let exact = Ting::new(0.1, &case.conditions.creep, &history, 2.0).unwrap().at(2.0).unwrap().approach;
+    let [rough, extrapolated] = [&coarse, &fine].map(|found| of(found, "approach"));
+    let off = |bar: &ErrorBar| (bar.value.unwrap() - exact).abs();
+    assert!(off(&extrapolated) < 0.5 * off(&rough), "{} {}", off(&extrapolated), off(&rough));
+    assert!(extrapolated.order.is_some() && off(&extrapolated) <= extrapolated.error.unwrap());
+    // A held load creeps: the steps matter to it.
+    assert!(of(&coarse, "creep").time.unwrap() > 0.0);
+}
+
+#[test]
+fn a_grid_that_cannot_be_halved_is_refined() {
+    let text = SPHERE.replace(
+        "surface = [{ kind = \"sphere\", radius = 0.1 }]",
+        "surface = [{ kind = \"self-affine\", hurst = 0.8, rms_gradient = 0.05, longest = 5e-4, shortest = 6e-5, seed = 1 }]",
+    );
+    let found = found(&text, false);
+    assert!(found.notes[0].starts_with("half the cells along each side: not possible"), "{:?}", found.notes);
+    assert!(found.cost > 4.0, "{}", found.cost);
+    assert!(found.bars.iter().all(|bar| bar.error.is_some()), "{:?}", found.bars);
+}

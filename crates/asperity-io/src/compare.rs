@@ -1,9 +1,11 @@
-//! What differs between two results: in their cases, at their ends, and at the times that both have.
+//! What differs between results: in their cases, in their answers, and, of two, at their ends and at the times that both have.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::answer::{self, Answer, Units};
+use crate::readable::quantity;
 use crate::store::{At, FieldKind, Reader, StoreError};
 
 /// The differences of a second result from a first one.
@@ -31,6 +33,117 @@ pub struct Number {
     pub last: [f64; 2],
     /// Largest difference at a common time, relative to the largest magnitude of the first result there; `None` without common times.
     pub largest_difference: Option<f64>,
+}
+
+/// An answer of several results.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Answers {
+    /// Its name.
+    pub name: String,
+    /// Its SI unit; "1" if it has none.
+    pub unit: &'static str,
+    /// Its value in each result, SI; NaN (in JSON null) where a result does not have it.
+    pub values: Vec<f64>,
+    /// Each value over that of the first result, less 1; NaN (in JSON null) where that says nothing.
+    pub changes: Vec<f64>,
+}
+
+impl Answers {
+    /// Its name for people.
+    pub fn label(&self) -> String {
+        self.name.replace('_', " ")
+    }
+
+    /// Its value in a result, with a unit that suits it, and, of all but the first, the change: "43 % (+2.1 %)".
+    pub fn words(&self, n: usize, units: &Units) -> String {
+        let Answers { name, unit, values, changes } = self;
+        let answer = Answer::new(name.clone(), values[n], unit);
+        match changes[n] {
+            _ if values[n].is_nan() => "-".to_owned(),
+            change if n == 0 || !change.is_finite() => answer.words(units),
+            0.0 => format!("{} (same)", answer.words(units)),
+            change if change >= FACTOR => {
+                format!("{} ({} times)", answer.words(units), quantity(1.0 + change, ""))
+            }
+            change => {
+                let sign = if change < 0.0 { "-" } else { "+" };
+                format!("{} ({sign}{} %)", answer.words(units), quantity(100.0 * change.abs(), ""))
+            }
+        }
+    }
+}
+
+/// A change of this much is shown as a factor.
+pub const FACTOR: f64 = 9.0;
+
+/// The answers of results side by side, in the order in which the first result that has one lists it.
+///
+/// # Errors
+/// [`StoreError`] where a result is damaged.
+pub fn answers(readers: &[Reader], units: &Units) -> Result<Vec<Answers>, StoreError> {
+    let mut all: Vec<Answers> = vec![];
+    for (n, reader) in readers.iter().enumerate() {
+        for Answer { name, value, unit, .. } in answer::of(reader, &Units::of(reader, units))? {
+            let place = all.iter().position(|known| known.name == name && known.unit == unit);
+            let place = place.unwrap_or_else(|| {
+                let none = vec![f64::NAN; readers.len()];
+                all.push(Answers { name, unit, values: none.clone(), changes: none });
+                all.len() - 1
+            });
+            all[place].values[n] = value;
+        }
+    }
+    for Answers { values, changes, .. } in &mut all {
+        let first = values[0];
+        let change = |value: &f64| if *value == first { 0.0 } else { value / first - 1.0 };
+        *changes = values
+            .iter()
+            .map(change)
+            .map(|change| if change.is_finite() { change } else { f64::NAN })
+            .collect();
+    }
+    Ok(all)
+}
+
+/// Keys that say how a case is called and what is kept, not what is computed.
+const OF_THE_RESULT: [&str; 3] = ["title", "output.", "study."];
+/// More keys than this make no label.
+const MOST_KEYS: usize = 4;
+
+/// What tells results from each other, for legends: the keys of their cases that differ, with their values. Where nothing differs, or
+/// too much, it is the name of the result, which is also added where two would be called the same.
+pub fn labels(readers: &[Reader], names: &[String]) -> Vec<String> {
+    let all: Vec<&Reader> = readers.iter().collect();
+    let found = cases(&all);
+    let differ: Vec<(&String, &Vec<Option<String>>)> =
+        found.iter().filter(|(key, _)| !OF_THE_RESULT.iter().any(|other| key.starts_with(other))).collect();
+    if differ.is_empty() || differ.len() > MOST_KEYS {
+        return names.to_vec();
+    }
+    let keys: Vec<&str> = differ.iter().map(|(key, _)| key.as_str()).collect();
+    let word = |key: &str, value: &Option<String>| match value {
+        Some(value) => format!("{} = {}", short(key, &keys), value.trim_matches('"')),
+        None => format!("no {}", short(key, &keys)),
+    };
+    let label =
+        |n: usize| differ.iter().map(|(key, values)| word(key, &values[n])).collect::<Vec<_>>().join(", ");
+    let labels: Vec<String> = (0..readers.len()).map(label).collect();
+    let is_twice = |label: &String| labels.iter().filter(|other| *other == label).count() > 1;
+    let named = |(label, name): (&String, &String)| {
+        if is_twice(label) { format!("{label} ({name})") } else { label.clone() }
+    };
+    labels.iter().zip(names).map(named).collect()
+}
+
+/// The shortest end of a key that no other of these keys has: "value" of "load.history.value".
+pub fn short<'k>(key: &'k str, all: &[&str]) -> &'k str {
+    let clash = |end: &str| {
+        let mut others = all.iter().filter(|other| **other != key);
+        others.any(|other| *other == end || other.ends_with(&format!(".{end}")))
+    };
+    let ends = key.rmatch_indices('.').map(|(n, _)| &key[n + 1..]);
+    let named = ends.filter(|end| end.starts_with(|c: char| c.is_alphabetic()));
+    named.into_iter().find(|end| !clash(end)).unwrap_or(key)
 }
 
 /// Rows are at the same time within this share of it: rounding of times that were computed differently.
@@ -66,7 +179,10 @@ pub fn compare(first: &Reader, second: &Reader) -> Result<Comparison, StoreError
             largest_difference: (!common.is_empty()).then_some(share),
         });
     }
-    Ok(Comparison { case: cases(readers), numbers, common_rows: common.len(), pressure: pressure(readers)? })
+    let pair =
+        |values: Vec<Option<String>>| [values.first().cloned().flatten(), values.last().cloned().flatten()];
+    let case = cases(&readers).into_iter().map(|(key, values)| (key, pair(values))).collect();
+    Ok(Comparison { case, numbers, common_rows: common.len(), pressure: pressure(readers)? })
 }
 
 /// Rows of both at the same times; of the two rows of a jump the first ones and the second ones.
@@ -99,21 +215,22 @@ fn pressure(readers: [&Reader; 2]) -> Result<Option<f64>, StoreError> {
     Ok(Some(if off == 0.0 { 0.0 } else { off / largest }))
 }
 
-/// Keys with different values: of the case files, or, where a result was not made from one, of what results say of their case.
-fn cases(readers: [&Reader; 2]) -> BTreeMap<String, [Option<String>; 2]> {
-    let texts = readers.map(|reader| reader.header().case_text.parse::<toml::Table>().ok());
-    let keys = match texts {
-        [Some(a), Some(b)] if !a.is_empty() && !b.is_empty() => [a, b].map(|table| {
-            let value = serde_json::to_value(table).unwrap_or_default();
-            flat(&value)
-        }),
-        _ => readers.map(|reader| flat(&serde_json::Value::Object(reader.header().setup.clone()))),
+/// Keys with different values, with that of each result: of the case files, or, where a result was not made from one, of what
+/// results say of their case.
+pub fn cases(readers: &[&Reader]) -> BTreeMap<String, Vec<Option<String>>> {
+    let text = |reader: &&Reader| {
+        let table =
+            reader.header().case_text.parse::<toml::Table>().ok().filter(|table| !table.is_empty())?;
+        Some(flat(&serde_json::to_value(table).unwrap_or_default()))
     };
+    let texts: Option<Vec<_>> = readers.iter().map(text).collect();
+    let setup = |reader: &&Reader| flat(&serde_json::Value::Object(reader.header().setup.clone()));
+    let keys = texts.unwrap_or_else(|| readers.iter().map(setup).collect());
     let mut found = BTreeMap::new();
-    for key in keys[0].keys().chain(keys[1].keys()) {
-        let pair = [0, 1].map(|n| keys[n].get(key).cloned());
-        if pair[0] != pair[1] {
-            found.insert(key.clone(), pair);
+    for key in keys.iter().flat_map(BTreeMap::keys) {
+        let values: Vec<Option<String>> = keys.iter().map(|own| own.get(key).cloned()).collect();
+        if values.iter().any(|value| *value != values[0]) {
+            found.insert(key.clone(), values);
         }
     }
     found
@@ -150,6 +267,31 @@ mod tests {
     fn rows_at_the_same_times_are_paired_and_those_of_a_jump_in_order() {
         let times = [vec![0.0, 1.0, 2.0, 2.0, 3.0], vec![0.0, 0.5, 1.0 + 1e-14, 2.0, 2.0, 2.5]];
         assert_eq!(common(&times), [[0, 0], [1, 2], [2, 3], [3, 4]]);
+    }
+
+    #[test]
+    fn changes_have_four_digits() {
+        let (values, changes) = (vec![1.0; 5], vec![0.0, 0.0, 0.12345678, -0.5, 66.54321]);
+        let answers = Answers { name: "max_pressure".into(), unit: "Pa", values, changes };
+        let words: Vec<String> = (0..5).map(|n| answers.words(n, &Units::default())).collect();
+        assert_eq!(words, ["1 Pa", "1 Pa (same)", "1 Pa (+12.35 %)", "1 Pa (-50 %)", "1 Pa (67.54 times)"]);
+    }
+
+    #[test]
+    fn a_key_is_shortened_as_far_as_it_stays_its_own() {
+        let all = [
+            "load.history.value",
+            "temperature.history.value",
+            "surface[0].seed",
+            "surface[1].seed",
+            "time.end",
+        ];
+        let shorts = all.map(|key| short(key, &all));
+        assert_eq!(
+            shorts,
+            ["load.history.value", "temperature.history.value", "surface[0].seed", "surface[1].seed", "end"]
+        );
+        assert_eq!(short("surface.0.seed", &["surface.0.seed", "load.value"]), "seed");
     }
 
     #[test]

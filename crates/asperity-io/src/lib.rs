@@ -24,6 +24,7 @@ pub mod resources;
 pub mod session;
 pub mod store;
 pub mod stress;
+pub mod study;
 pub mod topography;
 mod xml;
 

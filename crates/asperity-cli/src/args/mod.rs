@@ -5,6 +5,7 @@ mod material;
 mod result;
 mod run;
 mod stress;
+mod study;
 mod surface;
 
 use asperity_io::choice::{self as choices, Choice};
@@ -14,9 +15,10 @@ use clap_complete::Shell;
 
 pub use leak::{FluidOptions, Leak};
 pub use material::{Data, Fit, FitIndentation, Material, MaterialExport, Show};
-pub use result::{Compare, Export, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
+pub use result::{Compare, Export, Labels, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
 pub use run::{Check, Converge, New, Purpose, Run, Verify};
 pub use stress::Stress;
+pub use study::{Study, StudyAction, StudyFolder};
 pub use surface::{
     Surface, SurfaceConvert, SurfaceFile, SurfaceFromProfile, SurfaceGenerate, SurfaceInfo, SurfaceOutput,
     SurfaceProcess,
@@ -43,6 +45,8 @@ pub struct Args {
 pub enum Command {
     /// Run a case; the result is a Zarr directory
     Run(Run),
+    /// Run a case for several values of some of its keys: all results in one folder, with one table and one figure
+    Study(Study),
     /// Check a case and report what will be solved and how much memory and time it needs
     Check(Check),
     /// Solve a case with other cells, steps and tolerances too, and print its answers with their errors
@@ -58,13 +62,13 @@ pub enum Command {
     Show(ShowResult),
     /// Compare every number of a result with its checksum and list what is damaged; exit code 1 where anything is
     VerifyResult(VerifyResult),
-    /// Write a result as one HTML page with maps, curves and numbers; it needs no network
+    /// Write a result, or several side by side, as one HTML page with curves and numbers, of one with maps; it needs no network
     Report(Report),
     /// View a result in the browser with maps at full resolution, also while it is being written
     View(View),
     /// Draw a figure of a result, or of several results together, as PNG, SVG or PDF, or an animation
     Plot(Plot),
-    /// List what differs between two results: in their cases, at their ends, and at the times that both have
+    /// List what differs between results: in their cases and answers, and of two at their ends and at the times that both have
     Compare(Compare),
     /// Compute the stress below the surface of a result: largest values with places, profile over depth, first yield
     Stress(Stress),
@@ -99,6 +103,7 @@ impl Command {
     pub fn verb(&self) -> &dyn Verb {
         match self {
             Command::Run(verb) => verb,
+            Command::Study(verb) => verb,
             Command::Check(verb) => verb,
             Command::Converge(verb) => verb,
             Command::New(verb) => verb,

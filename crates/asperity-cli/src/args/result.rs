@@ -35,9 +35,12 @@ pub struct VerifyResult {
 
 #[derive(Debug, clap::Args)]
 pub struct Report {
-    /// The result (a Zarr directory)
-    pub result: PathBuf,
-    /// The page to write [default: the result's name with .html]
+    /// The result (a Zarr directory); several: what differs, their answers side by side, their curves in the same panels
+    #[arg(required = true, value_name = "RESULT")]
+    pub results: Vec<PathBuf>,
+    #[command(flatten)]
+    pub labels: Labels,
+    /// The page to write [default: the result's name with .html; of several report.html]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
     /// Largest size of the maps in the page, in megabytes; larger maps are averaged over blocks of cells
@@ -64,11 +67,22 @@ pub struct View {
 }
 
 #[derive(Debug, clap::Args)]
+pub struct Labels {
+    /// What a result is called, once for each, in their order [default: the keys of the cases that differ, with their values]
+    #[arg(long = "label", value_name = "TEXT")]
+    pub label: Vec<String>,
+}
+
+#[derive(Debug, clap::Args)]
 pub struct Compare {
-    /// The result (a Zarr directory)
-    pub first: PathBuf,
-    /// The result to compare with it
-    pub second: PathBuf,
+    /// The results (Zarr directories), two or more; changes are against the first
+    #[arg(required = true, num_args = 2.., value_name = "RESULT")]
+    pub results: Vec<PathBuf>,
+    #[command(flatten)]
+    pub labels: Labels,
+    /// Unit for leaks or times, e.g. --unit leak=ml/year --unit time=h [default: that of the case]
+    #[arg(long, value_name = "NAME=UNIT")]
+    pub unit: Vec<String>,
     /// Print one JSON object, in SI units
     #[arg(long)]
     pub json: bool,
@@ -81,6 +95,8 @@ pub struct Plot {
     pub results: Vec<PathBuf>,
     #[arg(help = format!("What to draw: {}", Figure::names()))]
     pub what: String,
+    #[command(flatten)]
+    pub labels: Labels,
     /// The file to write; its extension selects the format: png, svg or pdf [default: RESULT-WHAT.png]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,

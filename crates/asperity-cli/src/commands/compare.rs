@@ -1,8 +1,10 @@
-//! `asperity compare`: what differs between two results.
+//! `asperity compare`: what differs between results.
 
 use asperity::Axis;
-use asperity_io::compare::{Comparison, compare};
+use asperity_io::answer::Units;
+use asperity_io::compare::{self, Answers, Comparison, FACTOR, answers, cases};
 use asperity_io::store::Reader;
+use serde_json::json;
 
 use crate::args;
 use crate::failure::Failure;
@@ -10,11 +12,12 @@ use crate::format::{counted, quantity};
 use crate::verb::Verb;
 
 impl Verb for args::Compare {
-    /// Prints the table.
+    /// Prints the tables.
     fn run(&self) -> Result<(), Failure> {
-        let [first, second] = [Reader::open(&self.first)?, Reader::open(&self.second)?];
+        let readers = self.results.iter().map(|path| Reader::open(path)).collect::<Result<Vec<_>, _>>()?;
         let kind = |reader: &Reader| (reader.header().grid.is_line(), reader.header().axis());
-        if kind(&first) != kind(&second) {
+        let first = &readers[0];
+        if let Some(other) = readers.iter().find(|reader| kind(reader) != kind(first)) {
             let words = |reader: &Reader| match kind(reader) {
                 (_, Axis::Velocity) => "a sweep over velocities",
                 (true, _) => "a line contact",
@@ -22,21 +25,80 @@ impl Verb for args::Compare {
             };
             return Err(Failure::input(format!(
                 "{} is {}, and {} is {}: their numbers have different units",
-                self.first.display(),
-                words(&first),
-                self.second.display(),
-                words(&second)
+                first.path().display(),
+                words(first),
+                other.path().display(),
+                words(other)
             )));
         }
-        let found = compare(&first, &second)?;
+        let units = Units::of(first, &super::answers::units(&self.unit)?);
+        let labels = super::labels::of(&self.labels, &readers)?;
+        let answers = answers(&readers, &units)?;
+        let others = readers[1..].iter().map(|other| compare::compare(first, other));
+        let found = others.collect::<Result<Vec<Comparison>, _>>()?;
         if self.json {
-            return crate::print(&format!("{}\n", serde_json::to_string(&found)?));
+            return crate::print(&format!("{}\n", object(&readers, &labels, &answers, &found)?));
         }
-        crate::print(&text(&found, &first))
+        crate::print(&match &found[..] {
+            [found] => case(found) + &side_by_side(&answers, &labels, &units) + &text(found, first),
+            _ => cases_of(&readers, &labels) + &side_by_side(&answers, &labels, &units),
+        })
     }
 }
 
-fn text(found: &Comparison, first: &Reader) -> String {
+/// Of two results the comparison, of more each with the first.
+fn object(
+    readers: &[Reader],
+    labels: &[String],
+    answers: &[Answers],
+    found: &[Comparison],
+) -> Result<serde_json::Value, Failure> {
+    let mut object = match found {
+        [found] => serde_json::to_value(found)?,
+        _ => json!({ "case": cases(&readers.iter().collect::<Vec<_>>()), "comparisons": found }),
+    };
+    object["results"] = readers.iter().map(|reader| reader.path().to_string_lossy()).collect();
+    object["labels"] = json!(labels);
+    object["answers"] = json!(answers);
+    Ok(object)
+}
+
+/// Columns of words, the first line its head.
+fn columns(rows: &[Vec<String>]) -> String {
+    let width = |n: usize| rows.iter().filter_map(|row| Some(row.get(n)?.chars().count())).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+        format!("{}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
+    };
+    rows.iter().map(line).collect()
+}
+
+fn side_by_side(answers: &[Answers], labels: &[String], units: &Units) -> String {
+    let mut rows = vec![[&["answers".to_owned()], labels].concat()];
+    for answer in answers {
+        let values = (0..labels.len()).map(|n| answer.words(n, units));
+        rows.push([answer.label()].into_iter().chain(values).collect());
+    }
+    format!("\n{}", columns(&rows))
+}
+
+/// The keys that differ, of several results.
+fn cases_of(readers: &[Reader], labels: &[String]) -> String {
+    let found = cases(&readers.iter().collect::<Vec<_>>());
+    if found.is_empty() {
+        return "The cases are the same.\n".to_owned();
+    }
+    let mut rows = vec![[&["case".to_owned()], labels].concat()];
+    for (key, values) in found {
+        let words = values.into_iter().map(|value| shortened(&value.unwrap_or("-".into()), 24));
+        rows.push([key].into_iter().chain(words).collect());
+    }
+    columns(&rows)
+}
+
+/// The keys that differ, of two.
+fn case(found: &Comparison) -> String {
     let mut text = String::new();
     if found.case.is_empty() {
         text += "The cases are the same.\n";
@@ -48,8 +110,13 @@ fn text(found: &Comparison, first: &Reader) -> String {
             text += &format!("{key:<width$}{:<26}{}\n", shortened(&word(a), 24), shortened(&word(b), 40));
         }
     }
-    text +=
-        &format!("\n{:<28}{:<16}{:<16}{:<14}largest difference\n", "at the end", "first", "second", "change");
+    text
+}
+
+/// The last rows of two, and what differs at the times that both have.
+fn text(found: &Comparison, first: &Reader) -> String {
+    let mut text =
+        format!("\n{:<28}{:<16}{:<16}{:<14}largest difference\n", "at the end", "first", "second", "change");
     let axis = first.header().axis();
     for number in &found.numbers {
         let units = if number.units == "1" { "" } else { number.units.as_str() };
@@ -82,9 +149,6 @@ fn text(found: &Comparison, first: &Reader) -> String {
     }
     text
 }
-
-/// A change of this much is shown as a factor.
-const FACTOR: f64 = 9.0;
 
 /// A relative difference.
 fn apart(share: f64) -> String {

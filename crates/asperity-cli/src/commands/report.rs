@@ -1,28 +1,87 @@
-//! `asperity report`: a result as one page.
+//! `asperity report`: a result, or several side by side, as one page.
 
-use asperity_io::store::Reader;
+use std::path::PathBuf;
+
+use asperity::Axis;
+use asperity_io::answer::Units;
+use asperity_io::compare::{answers, cases};
+use asperity_io::store::{At, Reader};
 use asperity_report::page::{Options, write};
+use asperity_report::result::{self, Plot, together};
+use asperity_report::sheet::Sheet;
 
 use crate::args::Report;
 use crate::failure::Failure;
 use crate::files::Files;
+use crate::format::counted;
 use crate::verb::Verb;
 
 impl Verb for Report {
     fn files(&self) -> Files {
-        Files::default().reads([&self.result]).writes(&self.output).force(self.force)
+        Files::default().reads(&self.results).writes(&self.output).force(self.force)
     }
 
     /// Writes the page and prints where it is.
     fn run(&self) -> Result<(), Failure> {
-        let output = self.output.clone().unwrap_or_else(|| self.result.with_extension("html"));
-        let options = Options {
-            bytes: self.megabytes as usize * 1_000_000,
-            instants: self.instants as usize,
-            force: self.force,
+        let output = match &self.results[..] {
+            [result] => self.output.clone().unwrap_or_else(|| result.with_extension("html")),
+            _ => self.output.clone().unwrap_or_else(|| PathBuf::from("report.html")),
         };
-        let reader = Reader::open(&self.result)?;
-        write(&reader, &output, &options)?;
+        let readers = self.results.iter().map(|path| Reader::open(path)).collect::<Result<Vec<_>, _>>()?;
+        let labels = super::labels::of(&self.labels, &readers)?;
+        match &readers[..] {
+            [reader] => {
+                let options = Options {
+                    bytes: self.megabytes as usize * 1_000_000,
+                    instants: self.instants as usize,
+                    force: self.force,
+                };
+                write(reader, &output, &options)?;
+            }
+            _ => sheet(readers, &labels)?.write(&output, self.force)?,
+        }
         crate::print(&format!("{}\n", output.display()))
     }
+}
+
+/// Several results: what differs, their answers, their curves.
+fn sheet(readers: Vec<Reader>, labels: &[String]) -> Result<Sheet, Failure> {
+    let mut sheet = Sheet::new(counted(readers.len(), "result"));
+    let head = |first: &str| [&[first.to_owned()], labels].concat();
+    let units = Units::of(&readers[0], &Units::default());
+    let mut rows = vec![head("")];
+    for answer in answers(&readers, &units)? {
+        let values = (0..readers.len()).map(|n| answer.words(n, &units));
+        rows.push([answer.label()].into_iter().chain(values).collect());
+    }
+    sheet = sheet.table("Answers", &rows).note("In brackets: the change against the first result.");
+    let mut rows = vec![head("key")];
+    for (key, values) in cases(&readers.iter().collect::<Vec<_>>()) {
+        rows.push(
+            [key]
+                .into_iter()
+                .chain(
+                    values.into_iter().map(|value| value.unwrap_or("-".into()).trim_matches('"').to_owned()),
+                )
+                .collect(),
+        );
+    }
+    sheet = match rows.len() {
+        1 => sheet.note("The cases are the same."),
+        _ => sheet.table("What differs in the cases", &rows),
+    };
+    let plots = match readers[0].header().axis() {
+        Axis::Velocity => vec![Plot::Friction],
+        _ => vec![Plot::Evolution],
+    };
+    let all: Vec<(String, Reader, At)> =
+        labels.iter().cloned().zip(readers).map(|(label, reader)| (label, reader, At::Last)).collect();
+    for plot in plots {
+        // A page without the curves is still a page.
+        sheet = match together(&all, plot, &result::Options::default()) {
+            Ok(figure) => sheet.figure("Curves", &figure),
+            Err(error) => sheet.note(&error.to_string()),
+        };
+    }
+    Ok(sheet)
 }

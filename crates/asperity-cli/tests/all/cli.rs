@@ -711,6 +711,40 @@ fn a_result_is_served_to_those_who_know_its_address() {
 }
 
 #[test]
+fn several_results_are_compared_and_reported() {
+    let (_keep, dir) = small();
+    for (load, seed, name) in [("0.5 N", 4, "a.zarr"), ("0.25 N", 4, "b.zarr"), ("0.25 N", 5, "c.zarr")] {
+        let set = [format!("load.history.peak={load}"), format!("surface.1.seed={seed}")];
+        let output =
+            asperity(&dir, &["run", "small.toml", "-q", "-o", name, "--set", &set[0], "--set", &set[1]]);
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    let all = ["compare", "a.zarr", "b.zarr", "c.zarr"];
+    let output = asperity(&dir, &[&all[..], &["--json"]].concat());
+    let object: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(object["case"]["surface[1].seed"], serde_json::json!(["4", "4", "5"]));
+    assert_eq!(object["labels"][2], "peak = 0.25 N, seed = 5");
+    assert_eq!(object["comparisons"].as_array().unwrap().len(), 2);
+    assert_eq!(object["answers"][0]["values"].as_array().unwrap().len(), 3);
+    let text = stdout(&asperity(&dir, &all));
+    assert!(text.contains("surface[1].seed") && text.contains("contact area"), "{text}");
+
+    let report = asperity(&dir, &["report", "a.zarr", "b.zarr", "c.zarr"]);
+    assert!(report.status.success(), "{}", stderr(&report));
+    let page = std::fs::read_to_string(dir.join("report.html")).unwrap();
+    for words in [
+        "<th>peak = 0.25 N, seed = 5</th>",
+        "<td>contact area</td>",
+        "<td>load.history.peak</td>",
+        "data:image/svg",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    let again = asperity(&dir, &["report", "a.zarr", "b.zarr"]);
+    assert_eq!(again.status.code(), Some(2), "{}", stderr(&again));
+}
+
+#[test]
 fn two_results_are_compared_and_drawn_together() {
     let (_keep, dir) = small();
     for (load, name) in [("0.5 N", "a.zarr"), ("0.25 N", "b.zarr")] {
@@ -730,6 +764,12 @@ fn two_results_are_compared_and_drawn_together() {
     // Half of the load in every row; nothing touches at the end.
     assert!((number("load")["largest_difference"].as_f64().unwrap() - 0.5).abs() < 1e-12);
     assert_eq!(number("load")["last"], serde_json::json!([0.0, 0.0]));
+    // The answers stand side by side; both answer for the end of the peak.
+    let answers = object["answers"].as_array().unwrap();
+    let pressure = answers.iter().find(|answer| answer["name"] == "max_pressure").unwrap();
+    let [a, b] = [0, 1].map(|n| pressure["values"][n].as_f64().unwrap());
+    assert!((pressure["changes"][1].as_f64().unwrap() - (b / a - 1.0)).abs() < 1e-15 && a > b, "{pressure}");
+    assert_eq!(object["labels"], serde_json::json!(["peak = 0.5 N", "peak = 0.25 N"]));
     let same = asperity(&dir, &["compare", "a.zarr", "a.zarr"]);
     assert!(stdout(&same).starts_with("The cases are the same."), "{}", stdout(&same));
     assert!(stdout(&same).lines().filter(|line| line.ends_with("none")).count() > 5, "{}", stdout(&same));
@@ -745,10 +785,16 @@ fn two_results_are_compared_and_drawn_together() {
     let output = asperity(&dir, &["plot", "a.zarr", "b.zarr", "evolution", "-o", "both.svg"]);
     assert!(output.status.success(), "{}", stderr(&output));
     let figure = std::fs::read_to_string(dir.join("both.svg")).unwrap();
-    // Four panels, as of one result; each tells which curve is whose.
-    assert_eq!(figure.matches(">a<").count(), 4);
-    assert_eq!(figure.matches(">b<").count(), 4);
+    // Four panels, as of one result; each tells which curve is whose, by what differs.
+    assert_eq!(figure.matches(">peak = 0.5 N<").count(), 4);
+    assert_eq!(figure.matches(">peak = 0.25 N<").count(), 4);
     assert_eq!(figure.matches(">time [s]<").count(), 4);
+    let named = ["plot", "a.zarr", "b.zarr", "evolution", "-o", "named.svg", "--label", "heavy", "--label"];
+    assert!(asperity(&dir, &[&named[..], &["light"]].concat()).status.success());
+    assert_eq!(std::fs::read_to_string(dir.join("named.svg")).unwrap().matches(">heavy<").count(), 4);
+    let few = asperity(&dir, &["compare", "a.zarr", "b.zarr", "--label", "heavy"]);
+    assert_eq!(few.status.code(), Some(2));
+    assert!(stderr(&few).contains("there are 1 label, but 2 results"), "{}", stderr(&few));
     let maps = asperity(&dir, &["plot", "a.zarr", "b.zarr", "pressure"]);
     assert!(maps.status.success() && dir.join("a-b-pressure.png").is_file(), "{}", stderr(&maps));
     let none = asperity(&dir, &["plot", "evolution"]);

@@ -11,4 +11,5 @@ mod new;
 mod peers;
 mod plot;
 mod stress;
+mod study;
 mod surface;

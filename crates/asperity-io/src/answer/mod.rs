@@ -50,7 +50,7 @@ pub struct Answer {
 const SHARES: [&str; 2] = ["contact_fraction", "relaxation"];
 
 impl Answer {
-    fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Answer {
+    pub(crate) fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Answer {
         Answer { name: name.into(), value, unit, at: None, note: String::new(), resolution: 0.0 }
     }
 

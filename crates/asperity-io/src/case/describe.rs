@@ -187,7 +187,7 @@ const STORED: usize = 4;
 
 impl Case {
     /// The memory that a run takes at its peak \[bytes\]: what its plans say, and what storing takes.
-    pub(super) fn memory_of_run(&self) -> u64 {
+    pub(crate) fn memory_of_run(&self) -> u64 {
         let (conditions, cells) = (&self.conditions, self.conditions.grid.len());
         let mut quantities = conditions.quantities.clone();
         if self.output.all_quantities {

@@ -16,6 +16,7 @@ use super::motion::Motion;
 use super::output::{OutputKeys, Solver};
 use super::read::Reader;
 use super::stress::Stress;
+use super::study::Study;
 use super::surface::Surface;
 use super::temperature::Temperature;
 use super::text::Text;
@@ -37,6 +38,7 @@ const SECTIONS: &[&str] = &[
     "solver",
     "output",
     "stress",
+    "study",
 ];
 
 /// Keys of a `[[body]]` that may stand next to a material of its own file: `fit-indentation` writes `poisson`.
@@ -80,6 +82,10 @@ pub struct Document {
     /// The stress below the surface, from the stored pressures; not computed if not given.
     #[schemars(example = serde_json::json!({ "depths": "auto", "yield_stress": "110 MPa" }))]
     pub stress: Option<Stress>,
+    /// What `asperity study` varies; a single run ignores it.
+    #[schemars(example = serde_json::json!({ "vary": { "surface.0.seed": "1..10" } }))]
+    #[expect(dead_code, reason = "it is checked; `study` below reads it")]
+    pub study: Option<Study>,
 }
 
 /// What was read, or the faults found.
@@ -107,6 +113,7 @@ impl Document {
             solver: reader.table("solver").unwrap_or_default(),
             output: reader.table("output").unwrap_or_default(),
             stress: reader.table("stress"),
+            study: reader.table("study"),
         };
         reader.finish(Some(document))
     }
@@ -138,6 +145,13 @@ pub fn stress(text: &Text<'_>) -> Read<Stress> {
     let mut reader = Reader::new(text);
     let stress = reader.required("stress");
     reader.finish(stress)
+}
+
+/// The section `[study]` of a document that may have nothing else; one without it varies nothing.
+pub fn study(text: &Text<'_>) -> Read<Study> {
+    let mut reader = Reader::new(text);
+    let study = if text.root.contains_key("study") { reader.table("study") } else { Some(Study::default()) };
+    reader.finish(study)
 }
 
 /// The material of a file that holds the lines of a body, `material = { ... }` at least, or the faults that it has.

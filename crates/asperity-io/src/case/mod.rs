@@ -75,6 +75,7 @@ mod shift;
 mod specimen;
 mod stored_times;
 mod stress;
+pub(crate) mod study;
 mod surface;
 mod temperature;
 mod text;

@@ -151,7 +151,7 @@ impl OutputKeys {
         let mut units = Units::default();
         for (name, unit) in &self.units {
             if let Err(error) = units.choose(name, unit) {
-                return at.key("units").key(name).fault(&error.to_string(), &error.expected(), "");
+                return at.key("units").key(name).fault(error.to_string(), &error.expected(), "");
             }
         }
         let usual = || vec![FieldKind::Pressure, FieldKind::Gap];

@@ -80,6 +80,11 @@ macro_rules! dimensions {
                 }
             )*
 
+            /// The SI unit of the dimension with these powers, where it has one here.
+            pub(super) fn unit(powers: Powers) -> Option<&'static str> {
+                [$(($type::POWERS, $type::SI)),*].into_iter().find(|known| known.0 == powers).map(|known| known.1)
+            }
+
             /// The name of the dimension with these powers, where it has one here.
             pub(super) fn name(powers: Powers) -> Option<&'static str> {
                 [$(($type::POWERS, $name)),*].into_iter().find(|known| known.0 == powers).map(|known| known.1)
@@ -234,6 +239,29 @@ impl<D: Dimension, R: Range> FromStr for Quantity<D, R> {
             return Err(Self::error(Code::OutOfRange, Some(format!("{text} is too large a number"))));
         }
         Self::new(value)
+    }
+}
+
+/// A text that is a quantity of any dimension: its value in SI, and the SI unit, empty for a pure number.
+///
+/// ```
+/// use asperity_io::quantity::in_si;
+/// assert_eq!(in_si("300 MPa"), Some((300e6, "Pa")));
+/// assert_eq!(in_si("20 °C"), Some((293.15, "K")));
+/// assert_eq!(in_si("7"), Some((7.0, "")));
+/// assert_eq!(in_si("steel"), None);
+/// ```
+pub fn in_si(text: &str) -> Option<(f64, &'static str)> {
+    let (number, rest) = Decimal::split(text.trim())?;
+    match Unit::parse(rest) {
+        Ok(unit) => {
+            let value = number.scaled(unit.exponent) * unit.numerator / unit.denominator;
+            Some((value, dimension::unit(unit.powers)?))
+        }
+        Err(_) => {
+            let kelvin = text.parse::<Temperature>().map(|temperature| (temperature.get(), "K"));
+            kelvin.or_else(|_| text.parse::<Angle>().map(|angle| (angle.get(), "rad"))).ok()
+        }
     }
 }
 

@@ -31,6 +31,7 @@ from ._motion import slide, steady
 from ._units import UNITS, bare, carries, has_unit, is_labelled, unit_among
 from ._result import Result
 from ._solve import overrides, solve, source
+from ._study_folder import study_in_folder
 from ._surface import Surface
 
 if TYPE_CHECKING:
@@ -43,8 +44,10 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\
 
 def study(
     case: str | os.PathLike[str] | Mapping[str, Any] | Callable[..., Result],
-    over: Mapping[str, Any] | Sequence[Mapping[str, Any]],
+    over: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
     *,
+    vary: Mapping[str, Any] | None = None,
+    directory: str | os.PathLike[str] | None = None,
     zip: bool = False,
     folder: str | os.PathLike[str] | None = None,
     fields: Sequence[str] = (),
@@ -64,6 +67,10 @@ def study(
     over : values by parameter; the study solves every combination. Parameters of a case are dotted keys,
         ``{"load.history.value": ["0.1 N", "0.5 N"]}``. Give values that are neither numbers nor text (materials,
         surfaces) with labels: ``{"material": {"soft": ..., "hard": ...}}``. Or a list of points, each a dictionary.
+    vary : values by key of a case, in place of `over`: the study is that of the command ``asperity study``, with its folder. A list of
+        values, or a text as the command takes it, ``"1..10"`` or ``"0.1 N:10 N:5:log"``
+    directory : the folder of such a study; without `vary` the case says in ``[study]`` what varies. The dataset holds the answers of
+        each run, with a dimension for each key
     zip : combine the first values of all parameters to the first point, and so on, instead of every combination
     folder : where the result of every point is stored. When a study is called again, finished points are read from it,
         stopped ones continue, and new ones are solved. Without a folder only the dataset is kept.
@@ -111,6 +118,12 @@ def study(
         import xarray  # noqa: F401
     except ImportError:
         raise ImportError("a study gives an xarray.Dataset: pip install xarray (or asperity[xarray])") from None
+    if vary is not None or directory is not None:
+        if over is not None or folder is not None or client is not None:
+            raise CaseError("vary and directory make a study of the command: leave out over, folder and client")
+        return study_in_folder(case, vary, directory, zip, workers, threads, not progress)
+    if over is None:
+        raise CaseError("over is missing: give the values of the parameters, as in over={'load': [0.1, 0.5]}")
     plan = _Plan(over, zip)
     distinct("fields", fields, list(FIELDS))
     for what, number in (("workers", workers), ("threads", threads)):
@@ -122,6 +135,8 @@ def study(
     place = None if folder is None else os.path.abspath(os.fspath(folder))
     if place is not None:
         os.makedirs(place, exist_ok=True)
+        if os.path.exists(os.path.join(place, "study.csv")):
+            raise CaseError(f"{place} is the folder of a study of the command; give it as directory= with vary=, or choose another folder")
     points = [
         Point(**common, settings=settings, folder=place, fields=tuple(fields), threads=None if client is None else threads)
         for settings in plan.points

@@ -22,7 +22,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 const PAGE: &str = include_str!("../../page/page.html");
-const STYLE: &str = include_str!("../../page/style.css");
+pub(crate) const STYLE: &str = include_str!("../../page/style.css");
 /// In the order in which they use one another; all are one script.
 const SCRIPT: [&str; 10] = [
     include_str!("../../page/units.js"),
@@ -151,7 +151,7 @@ fn element(name: &str, data: &[u8]) -> String {
 }
 
 /// A text as HTML, in which control characters are replacement characters: pages with them are not valid.
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let shown = |c: char| if c.is_control() && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c };
     let text: String = text.chars().map(shown).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")

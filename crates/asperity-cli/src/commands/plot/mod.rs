@@ -61,10 +61,9 @@ impl Verb for args::Plot {
             });
         };
         options::check(self, plot)?;
-        let mut all = vec![];
-        for (path, name) in self.results.iter().zip(names(&self.results)) {
-            all.push((name, Reader::open(path)?));
-        }
+        let readers = self.results.iter().map(|path| Reader::open(path)).collect::<Result<Vec<_>, _>>()?;
+        let all: Vec<(String, Reader)> =
+            super::labels::of(&self.labels, &readers)?.into_iter().zip(readers).collect();
         match &self.animate {
             Some(path) => animate(self, plot, &all, path),
             None => draw(self, plot, all),
@@ -80,15 +79,6 @@ impl args::Plot {
         let is_drawn = self.animate.is_none() && Plot::from_name(&self.what).is_some();
         is_drawn.then(|| self.output.clone().unwrap_or_else(usual))
     }
-}
-
-/// What the results are called: by their file names or, where two have the same, by their paths.
-fn names(results: &[PathBuf]) -> Vec<String> {
-    let short = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let is_twice = |name: &String| results.iter().filter(|path| short(path) == *name).count() > 1;
-    let name =
-        |path| Some(short(path)).filter(|name| !is_twice(name)).unwrap_or_else(|| path.display().to_string());
-    results.iter().map(name).collect()
 }
 
 fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(), Failure> {

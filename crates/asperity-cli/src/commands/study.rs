@@ -1,0 +1,216 @@
+//! `asperity study`: a case for several values of some of its keys.
+
+use std::path::{Path, PathBuf};
+
+use asperity_io::answer::Units;
+use asperity_io::store::Reader;
+use asperity_io::study::{Event, Options, Outcome, Row, State, Study, StudyError, Table};
+use asperity_report::sheet::Sheet;
+use serde_json::{Value, json};
+
+use crate::args::{self, StudyAction, StudyFolder};
+use crate::failure::Failure;
+use crate::format::{counted, duration};
+use crate::verb::{Threads, Verb};
+
+impl Verb for args::Study {
+    fn threads(&self) -> Threads {
+        match self.action {
+            None => Threads::of(self.common.threads),
+            Some(_) => Threads::Default,
+        }
+    }
+
+    /// Computes what is missing, tells each run on stderr, and prints the table.
+    fn run(&self) -> Result<(), Failure> {
+        match (&self.action, &self.case) {
+            (Some(StudyAction::Status(folder)), _) => status(folder),
+            (Some(StudyAction::Collect(folder)), _) => collect(folder),
+            (None, Some(case)) => self.work(case),
+            (None, None) => Err(Failure::input("name a case file")),
+        }
+    }
+}
+
+impl args::Study {
+    fn work(&self, case: &Path) -> Result<(), Failure> {
+        let units = super::answers::units(&self.unit)?;
+        let folder = self.output.clone().unwrap_or_else(|| usual(case));
+        let zip = (self.zip || self.product).then_some(self.zip);
+        let study = Study::new(case, &self.vary, zip, &self.common.set, &folder).map_err(failure)?;
+        let options = Options {
+            jobs: self.jobs.map(usize::from),
+            threads: None,
+            shard: self.shard,
+            interrupt: crate::interrupt::flag(),
+        };
+        if !self.quiet {
+            crate::messages::message!("{} in {}", counted(study.runs.len(), "run"), folder.display());
+        }
+        let mut tell = |event: &Event<'_>| {
+            if !self.quiet {
+                crate::messages::message!("{}", told(event, &units));
+            }
+        };
+        let Outcome { table, interrupted } = study.work(&options, &mut tell).map_err(failure)?;
+        draw(&study, &table, &units)?;
+        print(&study, &table, self.json, &units)?;
+        let (done, failed) = (table.count("done"), table.count("failed"));
+        if interrupted {
+            return Err(Failure::Interrupted(format!(
+                "{done} of {} are done; the same command goes on",
+                counted(study.runs.len(), "run")
+            )));
+        }
+        match failed {
+            0 => Ok(()),
+            failed => Err(Failure::Solve(format!("{failed} of {} failed", counted(study.runs.len(), "run")))),
+        }
+    }
+}
+
+/// "gel-study" for "gel.toml".
+fn usual(case: &Path) -> PathBuf {
+    format!("{}-study", case.file_stem().unwrap_or_default().to_string_lossy()).into()
+}
+
+fn failure(error: StudyError) -> Failure {
+    match error {
+        StudyError::Case(errors) => Failure::Case(errors),
+        error => error.into(),
+    }
+}
+
+/// A run that has ended, on one line.
+fn told(event: &Event<'_>, units: &Units) -> String {
+    let came = match &event.row.state {
+        State::Done => {
+            let first = event.row.answers.first();
+            first.map_or("done".into(), |answer| format!("{} {}", answer.label(), answer.words(units)))
+        }
+        State::Failed(why) => format!("failed: {why}"),
+        state => state.word().to_owned(),
+    };
+    format!("{}/{}  {}: {came} ({})", event.ended, event.of, event.label, duration(event.seconds))
+}
+
+fn status(args: &StudyFolder) -> Result<(), Failure> {
+    let study = Study::open(&args.folder).map_err(failure)?;
+    print(&study, &study.table(study.rows()), args.json, &super::answers::units(&args.unit)?)
+}
+
+fn collect(args: &StudyFolder) -> Result<(), Failure> {
+    let units = super::answers::units(&args.unit)?;
+    let study = Study::open(&args.folder).map_err(failure)?;
+    let table = study.collect().map_err(failure)?;
+    draw(&study, &table, &units)?;
+    print(&study, &table, args.json, &units)
+}
+
+/// Writes the figure, where there is something to draw, and the page.
+fn draw(study: &Study, table: &Table, units: &Units) -> Result<(), Failure> {
+    let name = study.folder.canonicalize().ok();
+    let name = name.and_then(|folder| Some(folder.file_name()?.to_string_lossy().into_owned()));
+    let mut sheet = Sheet::new(name.unwrap_or_else(|| "study".into()));
+    if let Some(figure) = asperity_report::study::figure(&study.plan, table) {
+        super::picture::write(&figure, &study.folder.join("study.png"), true)?;
+        sheet = sheet.figure("Answer", &figure);
+    }
+    sheet = sheet.table("Runs", &lines(study, table, units, usize::MAX));
+    Ok(sheet.write(&study.folder.join("study.html"), true)?)
+}
+
+fn print(study: &Study, table: &Table, as_json: bool, units: &Units) -> Result<(), Failure> {
+    crate::print(&if as_json { format!("{}\n", object(study, table)) } else { text(study, table, units) })
+}
+
+fn object(study: &Study, table: &Table) -> Value {
+    let run = |row: &Row| {
+        let mut values = serde_json::Map::new();
+        for (n, varied) in study.plan.vary.iter().enumerate() {
+            values.insert(varied.key.clone(), json!(row.run.values[n].text()));
+        }
+        let error = if let State::Failed(why) = &row.state { Some(why) } else { None };
+        json!({
+            "values": values,
+            "status": row.state.word(),
+            "answers": row.answers,
+            "findings": row.findings,
+            "error": error,
+            "result": study.result(&row.run).to_string_lossy(),
+        })
+    };
+    let keys = table.keys.iter().zip(&study.plan.vary).map(|(key, varied)| {
+        let value = |value: &asperity_io::study::Value| match (key.unit, value.number()) {
+            (Some(_), Some((number, _))) => json!(number),
+            _ => json!(value.text()),
+        };
+        json!({ "key": key.name, "unit": key.unit, "values": varied.values.iter().map(value).collect::<Vec<_>>() })
+    });
+    json!({
+        "study": study.folder.to_string_lossy(),
+        "zip": study.plan.zip,
+        "keys": keys.collect::<Vec<_>>(),
+        "counts": STATES.map(|word| (word, table.count(word))).into_iter().collect::<std::collections::BTreeMap<_, _>>(),
+        "runs": table.rows.iter().map(run).collect::<Vec<_>>(),
+    })
+}
+
+const STATES: [&str; 5] = ["done", "running", "unfinished", "failed", "missing"];
+/// Answers in a line of the table.
+const ANSWERS: usize = 4;
+/// Letters of an error in it.
+const LONGEST: usize = 90;
+
+/// The cells of the table, with so many answers.
+fn lines(study: &Study, table: &Table, units: &Units, most: usize) -> Vec<Vec<String>> {
+    // The case may have chosen units.
+    let done = table.rows.iter().find(|row| row.state == State::Done);
+    let reader = done.and_then(|row| Reader::open(&study.result(&row.run)).ok());
+    let units = reader.map_or_else(|| units.clone(), |reader| Units::of(&reader, units));
+    let shown: Vec<&str> = table.answers.iter().map(|column| column.name.as_str()).take(most).collect();
+    let keys = study.plan.vary.iter().map(|varied| study.plan.short(&varied.key).to_owned());
+    let head = keys.chain(["status".into()]).chain(shown.iter().map(|name| name.replace('_', " ")));
+    let mut lines: Vec<Vec<String>> = vec![head.collect()];
+    for row in &table.rows {
+        let values = row.run.values.iter().map(|value| value.text());
+        let mut line: Vec<String> = values.chain([row.state.word().to_owned()]).collect();
+        match &row.state {
+            State::Failed(why) => {
+                let first = why.lines().next().unwrap_or_default();
+                let cut: String = first.chars().take(LONGEST).collect();
+                line.push(if cut.len() < why.len() { format!("{cut} ...") } else { cut });
+            }
+            _ => line.extend(shown.iter().map(|name| {
+                let answer = row.answers.iter().find(|answer| answer.name == *name);
+                answer.map_or_else(|| "-".to_owned(), |answer| answer.words(&units))
+            })),
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+fn text(study: &Study, table: &Table, units: &Units) -> String {
+    let lines = lines(study, table, units, ANSWERS);
+    let columns = lines[0].len();
+    let is_error = |n: usize, column: usize| {
+        n > 0 && matches!(table.rows[n - 1].state, State::Failed(_)) && column > study.plan.vary.len()
+    };
+    let width = |column: usize| {
+        let cells = lines.iter().enumerate().filter(|(n, _)| !is_error(*n, column));
+        cells.filter_map(|(_, line)| Some(line.get(column)?.chars().count())).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for line in &lines {
+        let cells = line.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+        text += cells.collect::<Vec<_>>().join("  ").trim_end();
+        text.push('\n');
+    }
+    let counts = STATES.iter().filter(|word| table.count(word) > 0);
+    let counts: Vec<String> = counts.map(|word| format!("{} {word}", table.count(word))).collect();
+    text += &format!("\n{} of {}", counts.join(", "), counted(table.rows.len(), "run"));
+    text += &format!("; table and figure in {}\n", study.folder.display());
+    text
+}

@@ -1,0 +1,175 @@
+//! `[study]`: keys of the case and the values that each takes in a study. A single run leaves the section out.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use schemars::{Schema, SchemaGenerator, json_schema};
+use toml::de::DeValue;
+
+use super::keys::*;
+use super::text::Text;
+use super::{Case, CaseErrors, document, file_text, overridden};
+use crate::Code;
+
+/// Keys that a study varies: it runs the case once for each combination of their values. `asperity run` ignores the section.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Study {
+    /// Paths of keys with the values that each takes: a list, or a text such as "0.1 N:10 N:5:log" (from, to, how many) or "1..10"
+    /// (whole numbers, both ends included).
+    #[schemars(example = serde_json::json!({ "load.history.value": ["0.1 N", "1 N"], "surface.0.seed": "1..10" }))]
+    #[serde(default)]
+    vary: BTreeMap<String, Form<Sweep, Vec<Varied>>>,
+    /// Whether the first values of all keys make the first run, the second ones the second, and so on; if false, which is the
+    /// default, every combination is run.
+    #[schemars(example = true)]
+    #[serde(default)]
+    pub zip: bool,
+}
+
+/// Values as a text.
+#[derive(Clone, Debug)]
+struct Sweep(String);
+
+impl Scalar for Sweep {
+    fn expected() -> String {
+        Self::FORMS.to_owned()
+    }
+
+    fn from_text(text: &str) -> Result<Self, QuantityError> {
+        Ok(Sweep(text.to_owned()))
+    }
+}
+
+deserialize!(Sweep);
+
+impl Word for Sweep {
+    const FORMS: &'static str = "a list of values, or a text such as \"1..10\" or \"0.1 N:10 N:5:log\" (write the path of the key in quotes)";
+}
+
+impl JsonSchema for Sweep {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Sweep".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "string" })
+    }
+}
+
+/// A value of any key.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(transparent)]
+struct Varied(toml::Value);
+
+impl JsonSchema for Varied {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Varied".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({})
+    }
+}
+
+/// How the values of a key are written.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Written {
+    /// One text for all of them.
+    Text(String),
+    /// The TOML of each.
+    List(Vec<String>),
+}
+
+impl Study {
+    /// The keys that vary, in the order of the text.
+    fn keys(&self, text: &Text<'_>) -> Vec<(String, Written)> {
+        let section = match text.root.get("study").map(|section| section.get_ref()) {
+            Some(DeValue::Table(study)) => study.get("vary").map(|vary| vary.get_ref()),
+            _ => None,
+        };
+        let place = |key: &str| match section {
+            Some(DeValue::Table(vary)) => vary.get_key_value(key).map_or(0, |(key, _)| key.span().start),
+            _ => 0,
+        };
+        let written = |values: &Form<Sweep, Vec<Varied>>| match values {
+            Form::Word(Sweep(text)) => Written::Text(text.clone()),
+            Form::List(list) => Written::List(list.iter().map(|value| value.0.to_string()).collect()),
+            Form::Table(never) => match *never {},
+        };
+        let mut keys: Vec<_> = self.vary.iter().map(|(key, values)| (key.clone(), written(values))).collect();
+        keys.sort_by_key(|(key, _)| place(key));
+        keys
+    }
+}
+
+/// A case file whose keys may be changed, also one that is no case before they are.
+pub(crate) struct Base {
+    /// Name of the file.
+    pub(crate) name: String,
+    directory: PathBuf,
+    source: String,
+    overrides: Vec<String>,
+    /// What its section `[study]` says, in the order of the text.
+    pub(crate) vary: Vec<(String, Written)>,
+    /// Whether the values go together.
+    pub(crate) zip: bool,
+}
+
+impl Base {
+    /// Reads a case file.
+    ///
+    /// # Errors
+    /// [`CaseErrors`] where the file cannot be read or is no TOML, where an override cannot be applied, or where `[study]` is wrong.
+    pub(crate) fn read(path: &Path, overrides: &[String]) -> Result<Base, CaseErrors> {
+        let name = path.display().to_string();
+        let source = file_text(path).map_err(|(reason, help)| {
+            CaseErrors::without_place(Code::File, &name, reason, "a case file", help)
+        })?;
+        let text = overridden(&name, source.clone(), overrides)?.text;
+        let read = Text::parse(&text).and_then(|parsed| {
+            let study = document::study(&parsed)?;
+            Ok((study.keys(&parsed), study.zip))
+        });
+        let (vary, zip) = match read {
+            Ok(read) => read,
+            Err(errors) => return Err(CaseErrors { name, source: text, errors }),
+        };
+        let directory = path.parent().unwrap_or(Path::new("")).to_owned();
+        Ok(Base { name, directory, source, overrides: overrides.to_vec(), vary, zip })
+    }
+
+    /// The text of the case with its overrides and without `[study]`.
+    pub(crate) fn text(&self) -> Result<String, CaseErrors> {
+        Ok(alone(&overridden(&self.name, self.source.clone(), &self.overrides)?.text))
+    }
+
+    /// The case with these overrides too.
+    ///
+    /// # Errors
+    /// As [`Case::read`].
+    pub(crate) fn case(&self, changes: &[String]) -> Result<Case, CaseErrors> {
+        let overrides = [self.overrides.as_slice(), changes].concat();
+        let output = PathBuf::from("result.zarr");
+        let case = Case::from_text(&self.name, self.source.clone(), &self.directory, output, &overrides)?;
+        Ok(Case { source: alone(&case.source), ..case })
+    }
+}
+
+/// The text of a case without `[study]`: that of one run.
+fn alone(text: &str) -> String {
+    let Ok(mut document) = text.parse::<toml_edit::DocumentMut>() else { return text.to_owned() };
+    match document.remove("study") {
+        Some(_) => document.to_string(),
+        None => text.to_owned(),
+    }
+}

@@ -1,0 +1,102 @@
+"""Studies in the folder that ``asperity study`` reads and writes."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._core import CaseError
+from ._solve import _toml, source
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def study_in_folder(
+    case: Any, vary: Mapping[str, Any] | None, directory: Any, zipped: bool, jobs: int | None, threads: int | None, quiet: bool
+) -> xarray.Dataset:
+    """Runs ``asperity study`` and returns its table: a dimension for each key, or `run` where values go together."""
+    path = _case_file(case, directory)
+    words = [sys.executable, "-m", "asperity", "study", path, "--json"]
+    for key, values in (vary or {}).items():
+        words += ["--vary", f"{key}={_written(key, values)}"]
+    for option, value in (("-o", directory), ("--jobs", jobs), ("--threads", threads)):
+        words += [] if value is None else [option, os.fspath(value) if option == "-o" else str(value)]
+    words += ["--zip"] * zipped + ["-q"] * quiet
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8") as process:
+        try:
+            assert process.stderr is not None and process.stdout is not None
+            told = []
+            for line in process.stderr:
+                told.append(line)
+                if not quiet:
+                    sys.stderr.write(line)
+            text = process.stdout.read()
+        except KeyboardInterrupt:
+            process.terminate()
+            raise
+    if process.returncode == 2:
+        raise CaseError("".join(told).removeprefix("error: ").strip())
+    if not text:
+        raise RuntimeError("".join(told).strip() or f"asperity study ended with exit code {process.returncode}")
+    return _dataset(json.loads(text))
+
+
+def _case_file(case: Any, directory: Any) -> str:
+    """The file of a case; one that is given as text or keys is written into the folder."""
+    try:
+        path, text = source(case)
+    except FileNotFoundError as error:
+        raise CaseError(f"the case {error.filename} cannot be read: {error.strerror}") from None
+    if text is None:
+        return path
+    if directory is None:
+        raise CaseError("a study of a case that is no file needs a folder: give directory=")
+    file = Path(os.fspath(directory), "case.toml")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8")
+    return str(file)
+
+
+def _written(key: str, values: Any) -> str:
+    """The values of a key as the option --vary takes them."""
+    if isinstance(values, str):
+        return values
+    if isinstance(values, np.ndarray):
+        values = values.tolist()
+    if not isinstance(values, (list, tuple, range)):
+        raise CaseError(f"the values of {key} are {values!r}, but must be a list, or a text such as '1..10' or '0.1 N:10 N:5:log'")
+    return ",".join(json.dumps(value, ensure_ascii=False) if isinstance(value, str) else _toml(key, value) for value in values)
+
+
+def _dataset(found: dict[str, Any]) -> xarray.Dataset:
+    import xarray
+
+    keys, runs = found["keys"], found["runs"]
+    zipped = found["zip"]
+    dims = ("run",) if zipped else tuple(key["key"] for key in keys)
+    shape = (len(runs),) if zipped else tuple(len(key["values"]) for key in keys)
+    coordinates = {}
+    for key in keys:
+        attributes = {"long_name": key["key"], **({"units": key["unit"]} if key["unit"] else {})}
+        coordinates[key["key"]] = ("run" if zipped else key["key"], np.array(key["values"]), attributes)
+    columns: dict[str, Any] = {}
+    for n, run in enumerate(runs):
+        for answer in run["answers"]:
+            name = answer["name"]
+            if name not in columns:
+                attributes = {"units": answer["unit"], "long_name": name.replace("_", " ")}
+                columns[name] = (dims, np.full(len(runs), np.nan), attributes)
+            columns[name][1][n] = np.nan if answer["value"] is None else answer["value"]
+    columns = {name: (dims, values.reshape(shape), attributes) for name, (dims, values, attributes) in columns.items()}
+    for name, words in (("status", "how far the run is"), ("error", "why the run failed"), ("result", "path of the result")):
+        values = np.array([run[name] or "" for run in runs]).reshape(shape)
+        columns[name if name != "result" else "path"] = (dims, values, {"long_name": words})
+    return xarray.Dataset(columns, coords=coordinates, attrs={"study": found["study"]})

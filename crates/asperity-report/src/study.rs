@@ -1,0 +1,112 @@
+//! The figure of a study: its first answer over the first key that varies. Keys that end in `.seed` are averaged, with bars from the
+//! least to the largest value; every combination of the other keys is a curve.
+
+use asperity_io::study::{Plan, Table};
+
+use crate::figure::{Axis, COLOURS, Curves, Figure, Series, Style};
+
+/// An axis is logarithmic where its values span this factor.
+const DECADE: f64 = 10.0;
+/// The share of an axis that stays free at each end, so that no point lies on the frame.
+const MARGIN: f64 = 0.04;
+
+/// The values of a curve at one place: of all its seeds.
+type Place = (f64, Vec<f64>);
+
+/// The figure; `None` where nothing is done yet.
+pub fn figure(plan: &Plan, table: &Table) -> Option<Figure> {
+    let answer = table.answers.first()?;
+    let is_seed = |n: usize| table.keys[n].name.rsplit('.').next() == Some("seed");
+    let keys: Vec<usize> = (0..table.keys.len()).collect();
+    let across = keys.iter().copied().find(|n| !is_seed(*n)).unwrap_or(0);
+    let others: Vec<usize> = match plan.zip {
+        true => vec![],
+        false => keys.into_iter().filter(|n| *n != across && !is_seed(*n)).collect(),
+    };
+    let is_number = table.keys[across].unit.is_some();
+    let place = |row: usize| match is_number {
+        true => table.number(row, across),
+        false => {
+            let value = &table.rows[row].run.values[across];
+            plan.vary[across].values.iter().position(|other| other == value).map(|n| n as f64)
+        }
+    };
+    let mut curves: Vec<(String, Vec<Place>)> = vec![];
+    for (row, value) in answer.values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+        let Some(x) = place(row) else { continue };
+        let word = |n: &usize| {
+            format!("{} = {}", plan.short(&table.keys[*n].name), table.rows[row].run.values[*n].text())
+        };
+        let name = others.iter().map(word).collect::<Vec<_>>().join(", ");
+        let curve = match curves.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, places)) => places,
+            None => {
+                curves.push((name, vec![]));
+                &mut curves.last_mut()?.1
+            }
+        };
+        match curve.iter_mut().find(|(known, _)| *known == x) {
+            Some((_, values)) => values.push(*value),
+            None => curve.push((x, vec![*value])),
+        }
+    }
+    let xs: Vec<f64> = curves.iter().flat_map(|(_, places)| places.iter().map(|place| place.0)).collect();
+    let ys: Vec<f64> = answer.values.iter().copied().filter(|value| value.is_finite()).collect();
+    if xs.is_empty() {
+        return None;
+    }
+    let label = table.keys[across].name.clone();
+    let x = match table.keys[across].unit {
+        Some(unit) => axis(label, unit, &xs),
+        None => {
+            let names: Vec<String> = plan.vary[across].values.iter().map(|value| value.text()).collect();
+            Axis::states(label, &names.iter().map(String::as_str).collect::<Vec<_>>())
+        }
+    };
+    let unit = if answer.unit == "1" { "" } else { answer.unit };
+    let y = axis(answer.name.replace('_', " "), unit, &ys);
+    let averaged = curves.iter().any(|(_, places)| places.iter().any(|(_, values)| values.len() > 1));
+    let mut panel = Curves::new("", x, y);
+    for (n, (name, places)) in curves.iter().enumerate() {
+        panel = drawn(panel, name, places, COLOURS[n % COLOURS.len()]);
+    }
+    let figure = Figure::new("").with(panel).columns(1).panel_size([360.0, 260.0]);
+    Some(match averaged {
+        true => figure.caption("Mean over the seeds; the bars go from the least to the largest value."),
+        false => figure,
+    })
+}
+
+/// Adds a curve through the means, with a bar at each place.
+fn drawn(panel: Curves, name: &str, places: &[Place], colour: &str) -> Curves {
+    let mut places = places.to_vec();
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let means = || places.iter().map(|(x, values)| [*x, mean(values)]);
+    let bars = places.iter().filter(|(_, values)| values.len() > 1).flat_map(|(x, values)| {
+        let [low, high] =
+            [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick).unwrap_or(f64::NAN));
+        [[*x, low], [*x, high], [*x, f64::NAN]]
+    });
+    panel
+        .with(Series::through("", Style::Line, bars).in_colour(colour))
+        .with(Series::through(name, Style::Line, means()).in_colour(colour))
+        .with(Series::through("", Style::Points, means()).in_colour(colour))
+}
+
+/// An axis for values, with room at its ends; logarithmic where they are positive and span a decade.
+fn axis(label: String, unit: &str, values: &[f64]) -> Axis {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if least > 0.0 && largest >= DECADE * least {
+        let room = (largest / least).powf(MARGIN);
+        return Axis::log(label, unit).between(least / room, largest * room);
+    }
+    match largest > least {
+        true => {
+            let room = MARGIN * (largest - least);
+            Axis::linear(label, unit).between(least - room, largest + room)
+        }
+        false => Axis::linear(label, unit),
+    }
+}

@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn heights_alone_are_a_profile_of_the_given_length() {
         let long = ReadOptions { size: Some([3e-6, 1.0]), ..ReadOptions::default() };
-        for text in ["z [nm]\n1\n2\n0.5\n", "# height (nm)\n1.0\n2.0\n0.5\n", "z [nm]\n1,0\n2,0\n0,5\n"] {
+        for text in ["z [nm]\n1\n2\n0.5\n", "# height (nm)\n1.0\n2.0\n0.5\n"] {
             let profile =
                 profile_of(text.as_bytes(), &long).unwrap_or_else(|error| panic!("{error}:\n{text}"));
             assert_eq!(profile.surface.grid().cells(), [3, 1], "{text}");
@@ -208,6 +208,8 @@ mod tests {
                 assert!((profile.surface.heights()[[n, 0]] / wanted - 1.0).abs() < 1e-12, "{text}");
             }
         }
+        // With a comma this is two columns of integers, or one of decimals: no heights are read with the unit of the one.
+        assert!(message("z [nm]\n1,0\n2,0\n0,5\n", &long).contains("--height-unit"));
         assert!(message("1\n2\n", &ReadOptions::default()).contains("--height-unit"));
         assert!(message("z [nm]\n1\n2\n", &ReadOptions::default()).contains("--size '4 mm'"));
     }

@@ -26,8 +26,8 @@ type Map<'py> = Bound<'py, PyArray2<f64>>;
 /// Heights of the shape or the synthetic roughness that the keys `domain` and `surface` describe; minus infinity where a shape
 /// cannot touch.
 #[pyfunction]
-pub fn heights<'py>(py: Python<'py>, keys: Bound<'_, PyDict>) -> PyResult<Map<'py>> {
-    let (grid, part) = given::surface(&table(&keys)?).map_err(error::alone)?;
+pub fn heights<'py>(py: Python<'py>, keys: Bound<'_, PyDict>) -> PyResult<(Map<'py>, bool)> {
+    let (grid, part, single) = given::surface(&table(&keys)?).map_err(error::alone)?;
     let made = detached(py, || match part {
         Part::SelfAffine(roughness) => roughness.heights(&grid),
         Part::Synthesis(roughness) => roughness.heights(&grid),
@@ -38,7 +38,7 @@ pub fn heights<'py>(py: Python<'py>, keys: Bound<'_, PyDict>) -> PyResult<Map<'p
             Ok(Array2::from_shape_fn(grid.shape(), height))
         }
     })?;
-    Ok(made.map_err(|error| raised(py, error))?.into_pyarray(py))
+    Ok((made.map_err(|error| raised(py, error))?.into_pyarray(py), single))
 }
 
 /// Reads a measured surface: heights, size, and what the file says.

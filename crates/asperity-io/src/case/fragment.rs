@@ -154,7 +154,7 @@ pub fn roughness(keys: &[(&str, &str)]) -> Result<(Grid, Part), Vec<CaseError>> 
     }
     let surfaces = Value::Array(vec![surface.into()]);
     let document = Table::from_iter([("domain".into(), domain.into()), ("surface".into(), surfaces)]);
-    given::surface(&document).map_err(bare)
+    given::surface(&document).map(|(grid, part, _)| (grid, part)).map_err(bare)
 }
 
 /// The stress below the surface from words: the keys of `[stress]` but `times`, for a body among these.

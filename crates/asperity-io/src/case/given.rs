@@ -19,6 +19,7 @@ use super::material::Dependence;
 use super::place::Checks;
 use super::read::Reader;
 use super::shift::Shift;
+use super::surface::Surface;
 use super::text::Text;
 use super::{Case, CaseErrors, Pair, assemble};
 use crate::Code;
@@ -83,7 +84,7 @@ pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<Pair, CaseErrors
 ///
 /// # Errors
 /// [`CaseErrors`] with what is wrong.
-pub fn surface(keys: &Table) -> Result<(Grid, Part), CaseErrors> {
+pub fn surface(keys: &Table) -> Result<(Grid, Part, bool), CaseErrors> {
     from_keys(keys, &Arrays::new(), |text| {
         let (domain, surfaces) = document::roughness(text)?;
         let checks = Checks::new(text, Path::new(""));
@@ -92,7 +93,9 @@ pub fn surface(keys: &Table) -> Result<(Grid, Part), CaseErrors> {
         let place = checks.at("surface").item(0);
         let part = surfaces.first().and_then(|surface| surface.part(&place, grid.as_ref(), line));
         match (grid, part, checks.any()) {
-            (Some(grid), Some(part), false) => Ok((grid, part)),
+            (Some(grid), Some(part), false) => {
+                Ok((grid, part, surfaces.first().is_some_and(Surface::is_single)))
+            }
             _ => Err(checks.into_errors()),
         }
     })

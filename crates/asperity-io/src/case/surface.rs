@@ -106,6 +106,9 @@ pub enum Kind {
     Array {
         /// Name of the array: heights \[m\], minus infinity where nothing can touch.
         array: String,
+        /// Whether a shape of a single body is among them: no wave, roughness or punch.
+        #[serde(default)]
+        single: bool,
     },
 }
 
@@ -158,7 +161,7 @@ impl Surface {
             }
             Kind::SelfAffine(roughness) => return roughness.part(at, grid, line),
             Kind::File(_) => return None, // see `measured`
-            Kind::Array { array } => {
+            Kind::Array { array, .. } => {
                 let heights = at.key("array").array(array, grid?)?;
                 return Some(Part::Heights { name: array.clone(), heights });
             }
@@ -173,8 +176,12 @@ impl Surface {
 
     /// Whether it is the shape of a single body: no wave, roughness or punch.
     pub fn is_single(&self) -> bool {
-        use Kind::{Cone, Cylinder, Ellipsoid, Sphere, Wedge};
-        matches!(self.kind, Sphere { .. } | Ellipsoid { .. } | Cylinder { .. } | Cone { .. } | Wedge { .. })
+        use Kind::{Array, Cone, Cylinder, Ellipsoid, Sphere, Wedge};
+        match self.kind {
+            Sphere { .. } | Ellipsoid { .. } | Cylinder { .. } | Cone { .. } | Wedge { .. } => true,
+            Array { single, .. } => single,
+            _ => false,
+        }
     }
 }
 

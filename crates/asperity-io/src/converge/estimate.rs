@@ -18,7 +18,6 @@ const SAFETY: [f64; 2] = [1.25, 3.0];
 const ORDERS: [f64; 2] = [0.5, 2.0];
 
 /// The answers of the variations.
-#[derive(Default)]
 pub(super) struct Runs {
     pub half: Option<Vec<Answer>>,
     pub quarter: Option<Vec<Answer>>,

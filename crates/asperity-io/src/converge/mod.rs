@@ -145,19 +145,21 @@ pub fn converge(
     };
     work.spent = 0.0;
     let mut notes = vec![];
-    let mut runs = Runs::default();
-    runs.half = work.vary(&[Change::HalfCells], &mut notes)?;
-    if runs.half.is_some() {
-        // No second note: a quarter is only a refinement of the estimate.
-        runs.quarter = work.vary(&[Change::QuarterCells], &mut vec![])?;
-    }
-    if options.refine || runs.half.is_none() {
-        runs.double = work.vary(&[Change::DoubleCells], &mut notes)?;
-    }
-    let coarse: &[Change] = if runs.half.is_some() { &[Change::HalfCells] } else { &[] };
+    let half = work.vary(&[Change::HalfCells], &mut notes)?;
+    // A quarter only sharpens the estimate: that it is not possible is not worth a note.
+    let quarter = match half {
+        Some(_) => work.vary(&[Change::QuarterCells], &mut vec![])?,
+        None => None,
+    };
+    let double = match options.refine || half.is_none() {
+        true => work.vary(&[Change::DoubleCells], &mut notes)?,
+        false => None,
+    };
+    let coarse: &[Change] = if half.is_some() { &[Change::HalfCells] } else { &[] };
     let with = |change| [coarse, &[change]].concat();
-    runs.long = work.vary(&with(Change::LongSteps), &mut notes)?;
-    runs.loose = work.vary(&with(Change::LooseSolver), &mut notes)?;
+    let long = work.vary(&with(Change::LongSteps), &mut notes)?;
+    let loose = work.vary(&with(Change::LooseSolver), &mut notes)?;
+    let runs = Runs { half, quarter, double, long, loose };
     let cost = work.spent / (base.convolutions.max(1) as f64);
     let bars = bars(&base.answers, &runs, options.refine);
     Ok(Convergence { answers: base.answers, bars, notes, cost })

@@ -13,7 +13,7 @@ use ndarray::Array2;
 
 use super::finish::Unit;
 use super::text::{is_profile, read_columns};
-use super::{Format, Problem, ReadOptions, TopographyError, unpack};
+use super::{Format, Problem, ReadOptions, TopographyError, format, unpack};
 
 /// Spacings that agree to this share of their mean are equal: instruments round their positions.
 const EVEN: f64 = 1e-3;
@@ -41,7 +41,8 @@ pub fn read_profile(path: &Path, options: &ReadOptions) -> Result<Option<Profile
     let bytes = super::bytes_of(path, options).map_err(&in_file)?;
     let unpacked = unpack::gunzip(&bytes).map_err(&in_file)?;
     let bytes = unpacked.as_deref().unwrap_or(&bytes);
-    if !is_profile(bytes) {
+    // Formats with a name of their own may hold a single column of text too.
+    if format::detect(bytes).is_some_and(|format| format != Format::Text) || !is_profile(bytes) {
         return Ok(None);
     }
     profile(bytes, options).map(Some).map_err(in_file)

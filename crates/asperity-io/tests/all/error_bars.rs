@@ -11,11 +11,14 @@ use asperity_io::converge::{ConvergeOptions, Convergence, ErrorBar, converge};
 
 use super::common::noise;
 
+/// Names and exact values of answers.
+type Exact = Vec<(&'static str, f64)>;
+
 /// A random case and the exact values of its answers.
 struct Known {
     kind: &'static str,
     text: String,
-    exact: fn(&Case, &[f64]) -> Vec<(&'static str, f64)>,
+    exact: fn(&Case, &[f64]) -> Exact,
     numbers: Vec<f64>,
 }
 
@@ -114,14 +117,14 @@ fn area_of(radius: f64) -> [(&'static str, f64); 2] {
     [("contact_area", area), ("contact_area_corrected", area)]
 }
 
-fn hertz(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
+fn hertz(case: &Case, numbers: &[f64]) -> Exact {
     let [radius, load] = numbers else { unreachable!() };
     let exact = HertzSphere::under_load(*radius, modulus(case), *load).unwrap();
     let more = [("approach", exact.approach), ("max_pressure", exact.peak_pressure)];
     area_of(exact.contact_radius).into_iter().chain(more).collect()
 }
 
-fn westergaard(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
+fn westergaard(case: &Case, numbers: &[f64]) -> Exact {
     let [amplitude, length, pressure] = numbers else { unreachable!() };
     let exact = Westergaard::under_pressure(*amplitude, *length, modulus(case), *pressure).unwrap();
     vec![
@@ -132,7 +135,7 @@ fn westergaard(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
     ]
 }
 
-fn ting(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
+fn ting(case: &Case, numbers: &[f64]) -> Exact {
     let [radius, peak, rise, end] = *numbers else { unreachable!() };
     let history = History::Triangle { peak, rise, fall: rise };
     let exact = Ting::new(radius, &case.conditions.creep, &history, end).unwrap().at(end).unwrap();
@@ -140,7 +143,7 @@ fn ting(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
     area_of(exact.contact_radius).into_iter().chain(more).collect()
 }
 
-fn hunter(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
+fn hunter(case: &Case, numbers: &[f64]) -> Exact {
     let [radius, velocity, load] = *numbers else { unreachable!() };
     let exact = HunterCylinder::under_load(radius, &case.conditions.creep, velocity, load).unwrap();
     vec![
@@ -154,7 +157,7 @@ fn hunter(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
 /// The flow along the furrows of a wave in contact: dp/(12 mu Lx) times the integral of h³ over y. The gap beside a strip of contact
 /// follows from the slope dh/dy = 4 p cos(psi) sqrt(sin² psi - sin² psi_a)/(E* sin² psi_a) with psi = pi y/l, whose pressure under the
 /// strip is Westergaard's.
-fn channel(case: &Case, numbers: &[f64]) -> Vec<(&'static str, f64)> {
+fn channel(case: &Case, numbers: &[f64]) -> Exact {
     let [amplitude, length, pressure] = *numbers else { unreachable!() };
     let modulus = modulus(case);
     let exact = Westergaard::under_pressure(amplitude, length, modulus, pressure).unwrap();

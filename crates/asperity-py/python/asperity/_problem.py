@@ -76,7 +76,7 @@ class Problem:
         histogram = {name: number(f"largest_{name}", end) for name, end in ends.items() if end is not None}
         keys: dict[str, Any] = {
             "domain": {"cells": list(shape.cells), "size": list(shape.size), "boundary": self.boundary},
-            "surface": [{"kind": "array", "array": "heights"}],
+            "surface": [{"kind": "array", "array": "heights", "single": bool(shape.metadata.get("single"))}],
             "body": bodies,
             "load": self.load_keys("N/m" if shape.is_line else "N"),
             "solver": {

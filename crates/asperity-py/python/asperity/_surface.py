@@ -155,8 +155,8 @@ class Surface(OnGrid):
                 f"surfaces of {self.cells} cells on {self.size} m and of {other.cells} cells on {other.size} m "
                 "cannot be added: they must have the same cells and size"
             )
-        # What was measured does not repeat beyond its edges, and the sum neither.
-        known = {"format": one.metadata["format"] for one in (self, other) if "format" in one.metadata}
+        # What was measured does not repeat beyond its edges, and the sum neither; a single body stays one with roughness on it.
+        known = {key: one.metadata[key] for one in (self, other) for key in ("format", "single") if key in one.metadata}
         return Surface(self.heights + other.heights, size=self.size, metadata=known)
 
     def __radd__(self, other: Summand) -> Surface:
@@ -660,8 +660,8 @@ def _made(cells: Any, size: Any, kind: str, numbers: dict[str, Any], /, **keys: 
     if len(grid) != len(extent):
         raise CaseError(f"cells is {grid} and size {extent}, but both must have two numbers, or both one for a line of cells")
     domain = {"cells": list(grid), "size": list(extent)}
-    heights = _core.heights({"domain": domain, "surface": [{"kind": kind, **numbers_of(numbers), **keys}]})
-    return Surface(heights.reshape(grid), size=extent)
+    heights, single = _core.heights({"domain": domain, "surface": [{"kind": kind, **numbers_of(numbers), **keys}]})
+    return Surface(heights.reshape(grid), size=extent, metadata={"single": True} if single else None)
 
 
 def as_surface(value: Any, size: float | Sequence[float] | None) -> Surface:

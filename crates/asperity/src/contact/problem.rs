@@ -72,7 +72,13 @@ impl Problem<'_> {
         let extent = self.extent();
         let load = match self.prescribed {
             Prescribed::Load(load) => load,
-            Prescribed::Approach(w) => return self.trivial_at_approach(w, &extent, operator, state),
+            Prescribed::Approach(w) => {
+                if !self.is_apart_at(w, &extent, operator)? {
+                    return Ok(None);
+                }
+                state.lift_off(w);
+                return Ok(Some(Outcome::default()));
+            }
         };
         let sound = load >= 0.0 && load.is_finite();
         require(sound, "load", format_args!("{load} N"), "finite and not negative")?;
@@ -96,19 +102,11 @@ impl Problem<'_> {
         Ok(Some(Outcome { convolutions: 1, saturated: true, ..Outcome::default() }))
     }
 
-    fn trivial_at_approach(
-        &self,
-        approach: f64,
-        extent: &Extent,
-        operator: &dyn Operator,
-        state: &mut ContactState,
-    ) -> Result<Option<Outcome>> {
+    /// Whether nothing touches at that approach.
+    fn is_apart_at(&self, approach: f64, extent: &Extent, operator: &dyn Operator) -> Result<bool> {
         require(approach.is_finite(), "approach", format_args!("{approach} m"), "finite")?;
-        if approach <= extent.first_touch {
-            state.lift_off(approach);
-            return Ok(Some(Outcome::default()));
-        }
-        if !operator.determines_mean() && self.hardness.is_infinite() {
+        let is_apart = approach <= extent.first_touch;
+        if !is_apart && !operator.determines_mean() && self.hardness.is_infinite() {
             // Full contact at the approach where the mean gap closes. A cell that cannot touch makes the mean infinite, and
             // every approach determined.
             let max = sum(self.gap) / self.gap.len() as f64;
@@ -116,6 +114,6 @@ impl Problem<'_> {
                 return Err(Error::Undetermined { approach, max });
             }
         }
-        Ok(None)
+        Ok(is_apart)
     }
 }

@@ -85,9 +85,7 @@ impl March {
         self.stepper.accept()?;
         self.row = Some((self.done, attempt.instant, self.stepper.time_error()));
         let mut recorder = std::mem::take(&mut self.recorder);
-        if !recorder.is_empty() {
-            self.last().iter().for_each(|step| step.record(&mut recorder));
-        }
+        self.last().iter().for_each(|step| step.record(&mut recorder));
         self.recorder = recorder;
         self.schedule.accept(attempt);
         self.done += 1;

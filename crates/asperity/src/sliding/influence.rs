@@ -37,7 +37,7 @@ const GAUSS: [(f64, f64); 6] = [
 const NEAR: i64 = 3;
 /// Grading of the panels towards a kink, and their number.
 const RATIO: f64 = 0.25;
-const PANELS: usize = 14;
+const PANELS: i32 = 14;
 /// e^(-45) is a rounding error.
 const END: f64 = 45.0;
 
@@ -228,18 +228,10 @@ fn panels(near: bool, dx: f64) -> Vec<(f64, f64)> {
     if !near {
         return vec![(0.0, middle), (middle, dx)];
     }
-    let mut ends = vec![0.0];
-    let mut width = middle;
-    for _ in 0..PANELS {
-        width *= RATIO;
-        ends.push(middle - width);
-    }
-    ends.push(middle);
-    for _ in 0..PANELS {
-        ends.push(middle + width);
-        width /= RATIO;
-    }
-    ends.push(dx);
+    let widths: Vec<f64> = (1..=PANELS).map(|k| middle * RATIO.powi(k)).collect();
+    let below = widths.iter().map(|width| middle - width);
+    let above = widths.iter().rev().map(|width| middle + width);
+    let ends: Vec<f64> = [0.0].into_iter().chain(below).chain([middle]).chain(above).chain([dx]).collect();
     ends.windows(2).map(|pair| (pair[0], pair[1])).collect()
 }
 

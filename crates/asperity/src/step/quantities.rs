@@ -19,10 +19,6 @@ impl Recorder {
         Recorder { values: vec![f64::NAN; columns.iter().map(Column::width).sum()], columns }
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.columns.is_empty()
-    }
-
     pub(super) fn columns(&self) -> &[Column] {
         &self.columns
     }

@@ -142,9 +142,9 @@ impl Relaxation {
         self.elapsed.iter_mut().zip(self.pair.own(lengths)).for_each(|(e, x)| *e = x);
         if load == Load::Apart {
             self.under_way = UnderWay::Apart;
-            let recalled = self.recovered(&self.elapsed);
+            let rows = self.recovery();
             self.next.set(&self.dual, x, Driver::Time, &self.cell.shape);
-            self.next.set_apart(&recalled);
+            self.next.set_apart(&rows[rows.len() - 1]);
             return;
         }
         self.under_way = UnderWay::Contact;
@@ -156,11 +156,17 @@ impl Relaxation {
         self.next.set(&self.dual, x, driver, &self.cell.shape);
     }
 
-    /// Weights of (q, u) in the displacement that is left when a step without pressure, so long on the clocks, ends.
-    fn recovered(&self, elapsed: &[f64]) -> Vec<f64> {
-        let gone: Vec<f64> = self.gone.iter().zip(elapsed).map(|(gone, x)| gone + x).collect();
-        let rows = self.transition(&self.dual, &gone);
-        rows.last().cloned().unwrap_or_default()
+    /// Weights of (q, u) in the states, and last in the displacement, that are left when the step without pressure ends.
+    fn recovery(&self) -> Vec<Vec<f64>> {
+        let gone: Vec<f64> = self.gone.iter().zip(&self.elapsed).map(|(gone, x)| gone + x).collect();
+        self.transition(&self.dual, &gone)
+    }
+
+    /// Ends the last step with the state `last`, and finds the gap of the planned one where it is wanted, from the rigid one.
+    fn end(&mut self, last: &ContactState, next: Option<(&[f64], &mut [f64])>) {
+        let next = next.map(|(rigid, gap)| (self.next.recalled(), rigid, gap));
+        let (unit, third) = (&last.unit_displacement, Some(&mut self.third[..]));
+        self.states.end(self.rules.ending(), unit, &mut self.displacement, third, next);
     }
 
     /// What becomes of (q, u) without pressure while the clocks go so far, with the states of `new` after it.
@@ -226,7 +232,7 @@ impl History for Relaxation {
         self.clocks.measure(step);
         self.cell.begin();
         self.since_kink = if step.is_smooth { self.since_kink + self.rules.length } else { 0.0 };
-        let ends = self.under_way == UnderWay::Contact;
+        let ends = self.under_way == UnderWay::Contact && !self.is_elastic();
         let before = Reference { length: -self.rules.length, driver: self.rules.driver };
         self.reference = (ends && step.is_smooth).then_some(before);
         if self.under_way == UnderWay::Apart {
@@ -234,24 +240,16 @@ impl History for Relaxation {
         }
         self.under_way = UnderWay::Nothing;
         let new_rates = self.pair.set_rates(self.clocks.lengths(), &mut self.rates);
-        let unit = &last.unit_displacement;
-        if self.is_elastic() {
-            self.plan(step.load);
-            gap.copy_from_slice(rigid);
-        } else if ends && !new_rates {
-            self.plan(step.load);
-            let third = Some(&mut self.third[..]);
-            let next = Some((self.next.recalled(), rigid, gap));
-            self.states.end(self.rules.ending(), unit, &mut self.displacement, third, next);
-        } else {
+        if new_rates {
             if ends {
-                let third = Some(&mut self.third[..]);
-                self.states.end(self.rules.ending(), unit, &mut self.displacement, third, None);
+                self.end(last, None);
             }
-            if new_rates {
-                self.recast(Some(Dual::of(self.pair.creep(&self.rates))?));
-            }
-            self.plan(step.load);
+            self.recast(Some(Dual::of(self.pair.creep(&self.rates))?));
+        }
+        self.plan(step.load);
+        if ends && !new_rates {
+            self.end(last, Some((rigid, gap)));
+        } else {
             self.recall(&self.next, Some(rigid), gap);
         }
         std::mem::swap(&mut self.rules, &mut self.next);
@@ -298,10 +296,8 @@ impl History for Relaxation {
     }
 
     fn third_state(&self, step: &Interval) -> Option<ThirdState> {
-        if self.is_elastic() {
-            return None;
-        }
-        third_state(step, self.under_way == UnderWay::Contact, self.rules.length)
+        let in_contact = self.under_way == UnderWay::Contact;
+        third_state(step, in_contact, self.rules.length).filter(|_| !self.is_elastic())
     }
 
     fn keep_as_third(&mut self, ends: &Ends<'_>) {

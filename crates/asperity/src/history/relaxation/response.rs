@@ -36,8 +36,7 @@ impl Relaxation {
                 )
             }
             UnderWay::Apart => {
-                let gone: Vec<f64> = self.gone.iter().zip(&self.elapsed).map(|(gone, x)| gone + x).collect();
-                let rows = self.transition(&self.dual, &gone);
+                let rows = self.recovery();
                 let all = states.iter().chain([&own]);
                 let mut both = vec![0.0; states.len() + 1];
                 for (factor, row) in all.zip(&rows) {

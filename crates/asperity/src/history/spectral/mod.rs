@@ -106,34 +106,23 @@ impl Spectral {
         let x = step.length();
         self.length = x;
         self.under_way = if step.load == Load::Apart { UnderWay::Apart } else { UnderWay::Contact };
-        self.driver = Driver::Time;
-        self.steps.clear();
-        self.run = match &mut self.mean {
-            Some(mean) => mean.run(step.load, x),
-            None => Run::Linear(Driver::Time),
+        self.run = self.mean.as_mut().map_or(Run::Linear(Driver::Time), |mean| mean.run(step.load, x));
+        let recovers = step.load == Load::Apart && self.mean.is_some();
+        self.driver = match self.run {
+            Run::Linear(driver) if !recovers => driver,
+            _ => Driver::Time,
         };
-        if x <= 0.0 {
-            self.steps.push(Table(vec![]));
-            return;
-        }
-        let (Load::Apart, Some(_)) = (step.load, &self.mean) else {
-            let table = match &self.mean {
-                None => self.waves.table(x, |tau| linear(x / tau)),
-                Some(mean) => {
-                    if let Run::Linear(driver) = self.run {
-                        self.driver = driver;
-                    }
-                    self.waves.table(x, |tau| mean.share(&self.run, tau, x))
-                }
-            };
-            return self.steps.push(table);
+        let of_length = |x: f64| self.waves.table(x, |tau| linear(x / tau));
+        self.steps = match &self.mean {
+            _ if x <= 0.0 => vec![Table(vec![])],
+            None => vec![of_length(x)],
+            Some(mean) if !recovers => vec![self.waves.table(x, |tau| mean.share(&self.run, tau, x))],
+            // Its parts are short against the times that matter when they pass: u is linear in each.
+            Some(_) => {
+                let halves = (1..=PARTS).rev().map(|part| part.min(PARTS - 1));
+                halves.map(|halves| of_length(x * libm::pow(0.5, f64::from(halves)))).collect()
+            }
         };
-        // Its parts are short against the times that matter when they pass: u is linear in each.
-        for part in (1..=PARTS).rev() {
-            let halves = if part == PARTS { part - 1 } else { part };
-            let x = x * libm::pow(0.5, f64::from(halves));
-            self.steps.push(self.waves.table(x, |tau| linear(x / tau)));
-        }
     }
 
     /// Finds the operator and g of the step under way.

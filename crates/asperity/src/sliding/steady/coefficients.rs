@@ -71,17 +71,12 @@ pub(super) fn on_torus(
         let end = 0.5 * (from[0] + from[m]);
         for i in 0..m {
             let distance = i.min(m - i);
-            let value = match 2 * i == m {
-                true => end,
-                false if 2 * i < m => from[i + m / 2],
-                false => from[i - m / 2],
-            };
-            let value = match distance > seen {
-                true => {
-                    end + (value - end)
-                        * (1.0 - smooth_step((distance - seen) as f64 / (m / 2 - seen) as f64))
-                }
-                false => value,
+            let value = if 2 * i == m { end } else { from[(i + m / 2) % m] };
+            let value = if distance > seen {
+                let beyond = (distance - seen) as f64 / (m / 2 - seen) as f64;
+                end + (value - end) * (1.0 - smooth_step(beyond))
+            } else {
+                value
             };
             torus[if along_y { j * my + i } else { i * my + j }] = value - least;
         }

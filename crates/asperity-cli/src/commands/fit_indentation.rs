@@ -8,7 +8,7 @@ use asperity::indentation::{
 use asperity::layer::Interface;
 use asperity::material::Modulus;
 use asperity::reference::MdrProfile;
-use asperity_io::curve::{Indentation, MaterialOf, indentation_block};
+use asperity_io::curve::{Indentation, IndentationTest, MaterialOf, indentation_block};
 use asperity_io::output::write_all;
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
@@ -48,7 +48,7 @@ impl Verb for FitIndentation {
         let taken = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
         let fit =
             fit_indentation(profile, &taken, &options).map_err(Failure::about(self.record.display()))?;
-        let block = indentation_block(&record, &fit, of);
+        let block = indentation_block(&record, &IndentationTest { profile, layer }, &fit, of);
         if let Some(path) = &self.output {
             write_all(path, self.force, block.as_bytes())?;
         }

@@ -74,6 +74,39 @@ fn the_example_gives_its_material_back() {
 }
 
 #[test]
+fn the_file_keeps_the_test_and_both_ways_to_read_a_thin_sample_are_cases() {
+    let dir = tempfile::tempdir().unwrap();
+    let arguments = ["--radius", "5 mm", "--thickness", "2 mm", "--interface", "slip", "-o", "pad.toml"];
+    let output = fit(dir.path(), &record(), &arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let block = std::fs::read_to_string(dir.path().join("pad.toml")).unwrap();
+    for words in ["radius = \"5e-3 m\"", "\nthickness = \"2e-3 m\"\n", "silicone-indentation.csv"] {
+        assert!(block.contains(words), "{words}: {block}");
+    }
+    // What `check` says of a case with this body, in a contact of some millimetres.
+    let check = |body: &str| {
+        let case = format!(
+            "[domain]\ncells = [16, 16]\nsize = [\"8 mm\", \"8 mm\"]\n[[surface]]\nkind = \"sphere\"\nradius = \"5 mm\"\n[[body]]\n{body}\
+             [load]\ncontrol = \"load\"\nhistory = {{ kind = \"step\", value = 1 }}\n[time]\nend = 1\nsteps = 1\n"
+        );
+        std::fs::write(dir.path().join("case.toml"), case).unwrap();
+        let mut check = Command::new(env!("CARGO_BIN_EXE_asperity"));
+        let output = check.args(["check", "case.toml"]).current_dir(dir.path()).output().unwrap();
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stdout) + &text(&output.stderr)
+    };
+    let half_space = check(&block);
+    assert!(half_space.contains("thin-body") && !half_space.contains("slipping"), "{half_space}");
+    // The layer, as the remarks tell it.
+    let layer = check(&format!("base = \"rigid\"\n[[body.layer]]\ninterface = \"slip\"\n{block}"));
+    assert!(layer.contains("2 mm") && !layer.contains("thin-body"), "{layer}");
+    // Also alone.
+    let mut show = Command::new(env!("CARGO_BIN_EXE_asperity"));
+    let shown = show.args(["material", "show", "pad.toml"]).current_dir(dir.path()).output().unwrap();
+    assert!(shown.status.success(), "{}", text(&shown.stderr));
+}
+
+#[test]
 fn slips_are_told() {
     let dir = tempfile::tempdir().unwrap();
     let says = |arguments: &[&str], record: &Path, words: &[&str]| {

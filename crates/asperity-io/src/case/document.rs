@@ -22,7 +22,7 @@ use super::temperature::Temperature;
 use super::text::Text;
 use super::time::Times;
 use crate::quantity::range::{Poisson, Positive};
-use crate::quantity::{Number, Pressure};
+use crate::quantity::{Length, Number, Pressure};
 
 /// The keys of the root.
 const SECTIONS: &[&str] = &[
@@ -42,7 +42,7 @@ const SECTIONS: &[&str] = &[
 ];
 
 /// Keys of a `[[body]]` that may stand next to a material of its own file: `fit-indentation` writes `poisson`.
-const OF_A_BODY: &[&str] = &["material", "name", "poisson", "bulk_modulus", "hardness"];
+const OF_A_BODY: &[&str] = &["material", "name", "thickness", "poisson", "bulk_modulus", "hardness"];
 
 /// A case of asperity: two bodies, the gap between them, a load over time.
 #[derive(Debug, JsonSchema)]
@@ -160,6 +160,7 @@ pub fn material(text: &Text<'_>) -> Read<Material> {
     reader.only(OF_A_BODY);
     // The other keys do not change the functions of a material, but a slip in them is an error all the same.
     let _: Option<String> = reader.optional("name");
+    let _: Option<Length<Positive>> = reader.optional("thickness");
     let _: Option<Number<Poisson>> = reader.optional("poisson");
     for key in ["bulk_modulus", "hardness"] {
         let _: Option<Pressure<Positive>> = reader.optional(key);

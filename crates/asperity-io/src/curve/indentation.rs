@@ -11,8 +11,9 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use asperity::indentation::{IndentationFit, Interval};
+use asperity::indentation::{IndentationFit, Interval, SampleLayer};
 use asperity::material::Modulus;
+use asperity::reference::MdrProfile;
 
 use super::block::{PRONY, file_name};
 use super::bytes;
@@ -108,9 +109,49 @@ impl MaterialOf {
     }
 }
 
+/// The indenter and the sample of a test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IndentationTest {
+    /// The indenter.
+    pub profile: MdrProfile,
+    /// The thin sample, if it is not as deep as a half-space.
+    pub layer: Option<SampleLayer>,
+}
+
+impl IndentationTest {
+    /// The test in remarks, with the keys of a case, and the key `thickness` of a thin sample.
+    fn written(&self) -> String {
+        let indenter = match self.profile {
+            MdrProfile::Sphere { radius } => format!("kind = \"sphere\", radius = \"{radius:e} m\""),
+            MdrProfile::Cone { slope } => format!("kind = \"cone\", slope = {slope:?}"),
+        };
+        let mut text = format!("# Indenter of the test, as [[surface]]: {indenter}.\n");
+        match &self.layer {
+            None => {
+                text += "# The sample was taken as much thicker than the contact is wide: a half-space.\n"
+            }
+            Some(SampleLayer { thickness, interface, .. }) => {
+                let interface = choice::word(interface);
+                let _ = write!(
+                    text,
+                    "# The sample was a layer on a rigid base, interface = \"{interface}\". A case solves the body below as a half-space. For \
+                     the sample\n# of the test write base = \"rigid\" under [[body]], and the lines below with interface = \"{interface}\" \
+                     under [[body.layer]].\nthickness = \"{thickness:e} m\"\n"
+                );
+            }
+        }
+        text
+    }
+}
+
 /// `poisson = ...` and `material = { ... }` in full precision, to stand under a `[[body]]` of a case file, with intervals
-/// behind the terms.
-pub fn indentation_block(record: &Indentation, fit: &IndentationFit, of: MaterialOf) -> String {
+/// behind the terms; the test in remarks, and `thickness = ...` where the sample was thin.
+pub fn indentation_block(
+    record: &Indentation,
+    test: &IndentationTest,
+    fit: &IndentationFit,
+    of: MaterialOf,
+) -> String {
     let [step, length] = fit.window;
     let mut text = format!(
         "# From the indentation {}: {} rows, misfit {:.2} % rms of the largest value; steps from {step:.3e} s, {length:.3e} s in \
@@ -125,6 +166,7 @@ pub fn indentation_block(record: &Indentation, fit: &IndentationFit, of: Materia
         format!("{open}{:.3e} to {:.3e} {unit}", x.low, x.high)
     };
     let equilibrium = of.of(fit.equilibrium);
+    text += &test.written();
     let _ = writeln!(text, "poisson = {:?}", of.poisson);
     if fit.terms.is_empty() {
         let known = interval(equilibrium, "Pa");

@@ -8,11 +8,11 @@ use crate::failure::Failure;
 use crate::format::quantity;
 
 /// Letters of the first column of a summary.
-const WIDTH: usize = 27;
+const WIDTH: usize = 26;
 
 /// A line of a summary.
 pub fn line(name: &str, value: impl std::fmt::Display) -> String {
-    format!("{name:<WIDTH$}{value}\n")
+    format!("{name:<WIDTH$} {value}\n")
 }
 
 /// Name and words of each answer.

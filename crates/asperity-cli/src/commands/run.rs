@@ -125,6 +125,9 @@ fn print_summary(
     if summary.status != Status::Complete {
         return Ok(());
     }
+    if let Err(error) = case.output.units.check(&summary.answers) {
+        crate::messages::message!("note: {error}");
+    }
     let mut text = String::new();
     match bars {
         Some(bars) => text += &super::converge::text(bars, &case.output.units),

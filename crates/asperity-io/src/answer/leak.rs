@@ -23,9 +23,13 @@ pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
         first.note = note;
     }
     let open = percolates.iter().rposition(|open| *open != 0.0);
-    if let Some(tight) = open.map_or(times.first(), |open| times.get(open + 1)) {
+    let first = open.map_or(0, |open| open + 1);
+    if let Some(tight) = times.get(first) {
         let between = words::tight(times, percolates, units);
-        answers.push(Answer::new("tight_from", *tight, "s").with_note(between));
+        // Between the last time at which it leaks and the next one nothing is known.
+        let resolution = open.map_or(0.0, |open| tight - times[open]);
+        let answer = Answer::new("tight_from", *tight, "s").with_note(between);
+        answers.push(Answer { resolution, ..answer });
     }
     Ok(answers)
 }

@@ -41,7 +41,8 @@ pub struct Answer {
     /// What a reader must know besides, in a few words.
     #[serde(skip)]
     pub note: String,
-    /// How much of it the whole cells at the edge of the contact leave open, SI; 0 where it does not count cells.
+    /// How much of it the whole cells at the edge of the contact leave open, or the distance of the rows of a time or a velocity; SI, 0
+    /// where neither limits it.
     #[serde(skip)]
     pub resolution: f64,
 }

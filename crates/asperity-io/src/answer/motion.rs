@@ -33,7 +33,16 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
         Answer::new("friction_force", friction.force, reader.header().grid.units("N")).at(row),
     ];
     if sweep && rows.len() > 1 {
-        answers.push(Answer::new("velocity_of_largest_friction", row.coordinate.value(), "m/s"));
+        let velocity = |n: usize| rows.get(n).map(|row| row.coordinate.value());
+        let own = row.coordinate.value();
+        let neighbours = [n.checked_sub(1).and_then(velocity), velocity(n + 1)];
+        let resolution = neighbours.iter().flatten().map(|v| (v - own).abs()).fold(0.0, f64::max);
+        let note = match neighbours {
+            [Some(_), Some(_)] => "",
+            _ => "at the end of the sweep: the friction may be larger beyond it",
+        };
+        let answer = Answer::new("velocity_of_largest_friction", own, "m/s").with_note(note);
+        answers.push(Answer { resolution, ..answer });
         let few = rows.iter().zip(&coefficients).filter(|_| rows.len() <= FEW);
         answers.extend(few.map(|(row, coefficient)| {
             let name = format!("friction_coefficient_at_{}", quantity(row.coordinate.value(), "m/s"));

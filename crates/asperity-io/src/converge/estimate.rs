@@ -59,12 +59,17 @@ fn bar(answer: &Answer, runs: &Runs, extrapolate: bool) -> ErrorBar {
     }
     let grids = [half, quarter, double].iter().flatten().count();
     let safety = SAFETY[usize::from(grids < 2)];
-    grid = grid.map(|grid| safety * grid.max(answer.resolution));
+    // Times and velocities are known to the distance of the rows, areas to the cells.
+    let [of_cells, of_rows] = match answer.unit {
+        "s" | "m/s" => [0.0, answer.resolution],
+        _ => [answer.resolution, 0.0],
+    };
+    grid = grid.map(|grid| safety * grid.max(of_cells));
     // The steps and the tolerance are varied on the coarser grid.
     let from = if runs.half.is_some() { half } else { Some(own) };
     let moved = |run: &Option<Vec<Answer>>| Some((at(run)? - from?).abs());
     let none = |run: &Option<Vec<Answer>>| run.is_none().then_some(0.0);
-    let time = none(&runs.long).or(moved(&runs.long));
+    let time = none(&runs.long).or(moved(&runs.long)).map(|time| time.max(of_rows));
     let solver = none(&runs.loose).or(moved(&runs.loose));
     let error = match (grid, time, solver) {
         (Some(grid), Some(time), Some(solver)) => Some((grid * grid + time * time + solver * solver).sqrt()),

@@ -1,11 +1,11 @@
 //! A study: a case run for several values of some of its keys, in one folder.
 //!
 //! ```text
-//! DIR/study.json    what the study is: text of the case, keys, values
-//! DIR/NAME.zarr     the result of each run; its name says its values
-//! DIR/NAME.error    why a run failed
-//! DIR/study.csv     a row for each run: values, status, answers
-//! DIR/study.zarr    the same for xarray, with the keys as dimensions
+//! study.json        what the study is: text of the case, keys, values
+//! NAME.zarr         the result of each run; its name says its values
+//! NAME.error        why a run failed
+//! study.csv         a row for each run: values, status, answers
+//! study.zarr        the same for xarray, with the keys as dimensions
 //! ```
 //!
 //! Several processes, on one machine or on many that share the folder, may work on one study: the store lets one process at a time

@@ -42,7 +42,8 @@ pub fn read_profile(path: &Path, options: &ReadOptions) -> Result<Option<Profile
     let unpacked = unpack::gunzip(&bytes).map_err(&in_file)?;
     let bytes = unpacked.as_deref().unwrap_or(&bytes);
     // Formats with a name of their own may hold a single column of text too.
-    if format::detect(bytes).is_some_and(|format| format != Format::Text) || !is_profile(bytes) {
+    let plain = |format| matches!(format, Format::Text | Format::Csv);
+    if format::detect(bytes).is_some_and(|format| !plain(format)) || !is_profile(bytes) {
         return Ok(None);
     }
     profile(bytes, options).map(Some).map_err(in_file)

@@ -270,6 +270,7 @@ fn surface_part(args: &New, topography: &Topography, path: &str, purpose: Purpos
         let _ = writeln!(text, "height_unit = {}", toml(unit));
     }
     text += "level = \"plane\"                       # the sample may be tilted under the instrument\n";
+    text += "outliers = { threshold = 8, radius = 2 }   # spikes of the instrument; summits of the surface stay\n";
     if holes > 0 {
         let _ = writeln!(text, "fill = \"harmonic\"                     # {holes} points are undefined");
     }

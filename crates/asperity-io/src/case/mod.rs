@@ -79,6 +79,7 @@ mod surface;
 mod temperature;
 mod text;
 mod time;
+mod until;
 mod warmth;
 mod words;
 

@@ -40,7 +40,7 @@ mod _core {
         leakage::{judge_leaks, leakage},
         march::March,
         material::{Body, layer_compliance, shift_factor, vertical_shift_factor},
-        registry::{histogram_coordinates, registry},
+        registry::{histogram_coordinates, registry, waitable},
         session::{case_text, check, converge, report, run},
         sliding::Persson,
         store::{Store, derive_again},

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use asperity::Grid;
-use asperity::quantities::{Column, Quantity};
+use asperity::quantities::{Column, Quantity, RowNumber};
 use asperity::stress::Rolling;
 use asperity_io::store::{FieldKind, SCALARS, Series, StressSet, coordinates, leak_series};
 use asperity_io::stress::Ratio;
@@ -46,6 +46,17 @@ pub fn registry(py: Python<'_>) -> PyResult<BTreeMap<&'static str, Vec<Entry>>> 
         ("leaks", leaks(false).collect()),
         ("leaks of a gas", leaks(true).collect()),
     ]))
+}
+
+/// Name, unit and unit on a line of cells of the numbers that a stage can wait for.
+#[pyfunction]
+pub fn waitable(py: Python<'_>) -> PyResult<Vec<(&'static str, &'static str, &'static str)>> {
+    let line = Grid::line(2, 1.0).map_err(|error| raised(py, error))?;
+    let on_line = |number: RowNumber| match number {
+        RowNumber::Column(column) => line.units(column.units),
+        RowNumber::Quantity(quantity) => quantity.units_on(&line),
+    };
+    Ok(RowNumber::all().map(|number| (number.name(), number.units(), on_line(number))).collect())
 }
 
 fn real(name: &'static str, units: &'static str, on_line: &'static str, words: &'static str) -> Entry {

@@ -553,3 +553,19 @@ def test_a_march_is_steered_between_rows(tmp_path):
     next(line)
     line.prescribe(load=asp.ramp_to(2.0, duration=0.5))
     assert [row.load for row in line] == pytest.approx([2.0, 2.0], rel=1e-9)
+
+
+def test_a_stage_ends_where_a_number_of_the_rows_reaches_a_value() -> None:
+    sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
+    zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+
+    def pressed(until: dict[str, float]) -> asp.Result:
+        return asp.solve(sphere, zener, times=asp.uniform(1.0, 20), stages=[asp.Stage(load=asp.ramp(2e-3, duration=1.0), until=until)])
+
+    # A smooth number is met to a millionth of it; the contact fraction rises by cells of 1/1024 (or a few at once, by symmetry 8).
+    result = pressed({"max_pressure": 2e4})
+    assert abs(result.max_pressure[-1] - 2e4) <= 2e4 * 1e-6
+    result = pressed({"contact_fraction": 0.05})
+    assert result.contact_fraction[-2] < 0.05 <= result.contact_fraction[-1] <= 0.05 + 8 / 1024
+    with pytest.raises(asp.CaseError, match="friction_coefficient.*slide"):
+        pressed({"friction_coefficient": 0.1})

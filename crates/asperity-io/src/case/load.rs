@@ -6,6 +6,7 @@ use super::history::{From, History, Kind};
 use super::history_file::Origin;
 use super::keys::*;
 use super::time::{Spacing, Times};
+use super::until::{self, Until};
 
 /// What presses the bodies together.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
@@ -37,9 +38,9 @@ pub struct Stage {
     history: History,
     /// Longest duration of the stage. Every stage but the last needs `duration` or `until`.
     duration: Option<Time<Positive>>,
-    /// The stage ends when this happens: a value is crossed, from either side, or the contact is lost. Without
+    /// The stage ends when this happens: a number of the rows crosses a value, from either side, or the contact is lost. Without
     /// `duration` it must happen before `time.end`.
-    #[schemars(example = "contact-lost", example = serde_json::json!({ "approach": "2 um" }))]
+    #[schemars(example = "contact-lost", example = serde_json::json!({ "approach": "2 um" }), example = serde_json::json!({ "contact_fraction": 0.1 }))]
     until: Option<Until>,
     /// The event of `until` counts only after the jump with which the stage begins (as a load that relaxes after a step of
     /// the approach); false if not given.
@@ -62,23 +63,6 @@ pub struct Stage {
     /// a need of `duration`.
     #[schemars(example = serde_json::json!({ "times": ["1 s", "10 s"] }))]
     time: Option<Times>,
-}
-
-/// What ends a stage.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Until {
-    /// The contact is lost.
-    ContactLost,
-    /// The approach crosses a value.
-    #[schemars(example = "2 um")]
-    Approach(Length),
-    /// The load crosses a value.
-    #[schemars(example = "0.1 N")]
-    Load(Prescribed),
-    /// The mean pressure crosses a value.
-    #[schemars(example = "1 MPa")]
-    Pressure(Pressure<NonNegative>),
 }
 
 impl Load {
@@ -150,6 +134,10 @@ impl Stage {
             Some(Until::ContactLost) => Some(Event::ContactLost),
             Some(Until::Approach(value)) => Some(Event::Approach(value.get())),
             Some(Until::Pressure(value)) => Some(Event::Pressure(value.get())),
+            Some(Until::Number(number, value)) => {
+                let at = at.key("until").key(number.name());
+                Some(Event::Number(*number, at.quantity(until::resolve(*number, value, line))?))
+            }
             Some(Until::Load(value)) => {
                 let load = Kind::of(Control::Load, line).resolve(value);
                 Some(Event::Load(at.key("until").key("load").quantity(load)?))

@@ -80,6 +80,7 @@ mod surface;
 mod temperature;
 mod text;
 mod time;
+mod until;
 mod warmth;
 mod words;
 

@@ -106,6 +106,14 @@ dimensions! {
     Force = "a force", "N", "nN, uN, mN, N, kN", "0.5 N", [1, 1, -2, 0, 0];
     /// A force per length \[N/m\].
     ForcePerLength = "a force per length", "N/m", "N/m, N/mm, kN/m", "2 N/mm", [0, 1, -2, 0, 0];
+    /// An area \[m²\].
+    Area = "an area", "m2", "um^2, mm^2, m^2", "1 mm^2", [2, 0, 0, 0, 0];
+    /// A moment \[N m\].
+    Moment = "a moment", "N m", "N mm, N m", "1 N mm", [2, 1, -2, 0, 0];
+    /// A power \[W\].
+    Power = "a power", "W", "mW, W, kW", "1 mW", [2, 1, -3, 0, 0];
+    /// A power per length \[W/m\].
+    PowerPerLength = "a power per length", "W/m", "W/m, W/mm", "1 W/m", [1, 1, -3, 0, 0];
     /// A velocity \[m/s\].
     Velocity = "a velocity", "m/s", "um/s, mm/s, m/s, km/h", "10 mm/s", [1, 0, -1, 0, 0];
     /// A compliance \[1/Pa\].

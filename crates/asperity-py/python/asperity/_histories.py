@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._arrays import choice, count, either, in_hertz, line, number, points
-from ._core import CaseError
+from ._core import CaseError, waitable
 from ._units import has_unit, unit_among
 
 __all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
@@ -133,6 +133,12 @@ def ramp_to(value: float, *, duration: float) -> History:
     return _history("ramp-to", {"value of the ramp": value}, duration=duration)
 
 
+def _event_units(load_unit: str) -> dict[str, str]:
+    """What a stage can wait for, with its SI unit; the unit of a load tells a line contact."""
+    numbers = {name: on_line if load_unit == "N/m" else unit for name, unit, on_line in waitable()}
+    return {"approach": "m", "load": load_unit, "pressure": "Pa", **numbers}
+
+
 @dataclass(frozen=True)
 class Stage:
     """A part of a programme: what is prescribed, on a clock that starts with it, and when it ends.
@@ -141,8 +147,8 @@ class Stage:
     ----------
     load, pressure, approach : what is prescribed [N], [Pa] or [m], exactly one of them: a history, or a number for a step
     duration : the stage lasts no longer than this [s]; the last stage may last to the end of the run
-    until : what ends it: ("approach", value [m]), ("load", value [N]) or ("pressure", value [Pa]), crossed from either side, or
-        "contact-lost". Without `duration` it must happen before the run ends.
+    until : what ends it: a number of the rows with its value, as in {"contact_fraction": 0.1} or ("approach", 2e-6), crossed from
+        either side, in SI units ("pressure" is the mean pressure), or "contact-lost". Without `duration` it must happen before the run ends.
     after_jump : the event of `until` counts only after the jump with which the stage begins, as a load that relaxes after a step
         of the approach
     times : times of the stage, measured from its start; default: those of the run
@@ -168,7 +174,7 @@ class Stage:
     pressure: History | float | None = None
     approach: History | float | None = None
     duration: float | None = None
-    until: Literal["contact-lost"] | tuple[Literal["approach", "load", "pressure"], Any] | None = None
+    until: Literal["contact-lost"] | tuple[str, Any] | dict[str, Any] | None = None
     after_jump: bool = False
     times: Times | npt.ArrayLike | None = None
 
@@ -182,10 +188,12 @@ class Stage:
             object.__setattr__(self, "times", as_times(self.times))
         if isinstance(self.until, list):
             object.__setattr__(self, "until", tuple(self.until))
+        if isinstance(self.until, dict) and len(self.until) == 1:
+            object.__setattr__(self, "until", next(iter(self.until.items())))
         if self.until is not None and self.until != "contact-lost":
             if not isinstance(self.until, tuple) or len(self.until) != 2:
-                raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or a pair as in ('load', 0.1)")
-            choice("the event of until", self.until[0], ("approach", "load", "pressure"))
+                raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or one number of the rows with its value, as in {{'load': 0.1}}")
+            choice("the event of until", self.until[0], tuple(_event_units("N")))
 
     def _keys(self, load_unit: str) -> dict[str, Any]:
         """The keys of one of the `stages`; the unit of a load is N, or N/m of a line contact."""
@@ -200,8 +208,7 @@ class Stage:
             keys["duration"] = number("duration of the stage", self.duration)
         if isinstance(self.until, tuple):
             event, limit = self.until
-            unit = {"approach": "m", "load": load_unit, "pressure": "Pa"}[event]
-            keys["until"] = {event: number(f"until {event}", limit, unit)}
+            keys["until"] = {event: number(f"until {event}", limit, _event_units(load_unit)[event])}
         elif self.until is not None:
             keys["until"] = self.until
         if self.times is not None:

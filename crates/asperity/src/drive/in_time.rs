@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use super::{Coordinate, Drive};
 use crate::error::{Error, Result, require};
 use crate::load::{Control, Course, Stage};
+use crate::quantities::{Column, RowNumber};
 use crate::simulation::Simulation;
 use crate::step::{Checkpoint, Loader, Proposal, Recorder, Saver, Schedule, Step, Stepper, Summary, Verdict};
 use crate::time::Instant;
@@ -38,6 +39,8 @@ pub struct March {
     pub(crate) schedule: Schedule,
     pub(crate) stepper: Stepper,
     recorder: Recorder,
+    /// The number that the stage under way waits for.
+    gauge: Gauge,
     /// Rows done.
     done: usize,
     /// The row that the state belongs to: its number, its instant, its estimated error.
@@ -61,6 +64,7 @@ impl March {
             schedule: Schedule::new(&simulation),
             recorder: Recorder::new(simulation.columns()?),
             stepper: Stepper::new(simulation.clone())?,
+            gauge: Gauge::default(),
             done: 0,
             row: None,
             simulation,
@@ -88,8 +92,16 @@ impl March {
         self.last().iter().for_each(|step| step.record(&mut recorder));
         self.recorder = recorder;
         self.schedule.accept(attempt);
+        self.note();
         self.done += 1;
         Ok(())
+    }
+
+    /// Tells the schedule the number that it waits for, of the last row or of the bodies before t = 0.
+    fn note(&mut self) {
+        if let Some(number) = self.schedule.awaited() {
+            self.schedule.note(self.gauge.read(number, &self.stepper.row()));
+        }
     }
 }
 
@@ -104,11 +116,17 @@ impl Drive for March {
             Proposal::Try(step) => step,
             Proposal::Done(reason) => return reason.outcome(self.simulation.times.end()).map(|()| None),
         };
+        if self.done == 0 {
+            self.note();
+        }
         self.stepper.begin();
         self.recorder.clear();
         let attempt = loop {
             self.row = Some((self.done, step.instant, None));
-            let attempt = self.stepper.attempt(&step)?;
+            let mut attempt = self.stepper.attempt(&step)?;
+            if let Some(number) = self.schedule.awaited() {
+                attempt.number = self.gauge.preview(number, &mut self.stepper)?;
+            }
             match self.schedule.assess(&step, &attempt) {
                 Verdict::Try(next) => step = next,
                 Verdict::Accept => break attempt,
@@ -171,5 +189,38 @@ impl Drive for March {
         to.within("schedule", |to| self.schedule.save(to));
         to.within("step", |to| self.stepper.save(to));
         to.finish()
+    }
+}
+
+/// Reads a single number of a row.
+#[derive(Default)]
+struct Gauge {
+    /// For the quantity read last.
+    recorder: Recorder,
+}
+
+impl Gauge {
+    /// Of an attempt.
+    fn preview(&mut self, number: RowNumber, stepper: &mut Stepper) -> Result<f64> {
+        if let RowNumber::Quantity(quantity) = number
+            && let Some(value) = stepper.preview(quantity)?
+        {
+            return Ok(value);
+        }
+        Ok(self.read(number, &stepper.row()))
+    }
+
+    /// Of a row that stands.
+    fn read(&mut self, number: RowNumber, row: &Step<'_>) -> f64 {
+        match number {
+            RowNumber::Column(column) => column.of(&row.row()),
+            RowNumber::Quantity(quantity) => {
+                if self.recorder.of(quantity).is_none() {
+                    self.recorder = Recorder::new(vec![Column { quantity, edges: vec![] }]);
+                }
+                row.record(&mut self.recorder);
+                self.recorder.of(quantity).map_or(f64::NAN, |values| values[0])
+            }
+        }
     }
 }

@@ -5,6 +5,7 @@
 
 use super::{Control, History, Loading, TimeGrid};
 use crate::error::{Error, Result, positive, require};
+use crate::quantities::RowNumber;
 
 /// The consecutive stages of a run. The run ends with the last stage or at the end of its time grid, whichever comes first.
 ///
@@ -72,6 +73,8 @@ pub enum Event {
     Load(f64),
     /// The mean pressure reaches a value \[Pa\].
     Pressure(f64),
+    /// Another number of a row reaches a value, in its SI unit.
+    Number(RowNumber, f64),
     /// Bodies in contact lose contact.
     ContactLost,
 }
@@ -82,6 +85,10 @@ impl std::fmt::Display for Event {
             Event::Approach(value) => write!(f, "approach {value:e} m"),
             Event::Load(value) => write!(f, "load {value:e} N"),
             Event::Pressure(value) => write!(f, "mean pressure {value:e} Pa"),
+            Event::Number(number, value) => match number.units() {
+                "1" => write!(f, "{} {value}", number.name()),
+                units => write!(f, "{} {value:e} {units}", number.name()),
+            },
             Event::ContactLost => f.write_str("loss of contact"),
         }
     }
@@ -178,6 +185,9 @@ impl Stage {
         match self.until {
             Some(Event::Approach(value)) if !value.is_finite() => {
                 Err(Error::invalid("approach of the event", value, "finite"))
+            }
+            Some(Event::Number(number, value)) if !value.is_finite() => {
+                Err(Error::invalid(format!("{} of the event", number.name()), value, "finite"))
             }
             Some(Event::Load(value) | Event::Pressure(value)) if !(value.is_finite() && value >= 0.0) => {
                 Err(Error::invalid("load of the event", value, "finite and not negative (bodies only press)"))

@@ -13,17 +13,18 @@ pub(super) struct LoadPower {
 impl LoadPower {
     /// `None` where it is not asked for.
     pub(super) fn of(simulation: &Simulation) -> Option<Self> {
-        simulation.quantities.has(Quantity::LoadPower).then_some(LoadPower { last: f64::NAN })
+        simulation.takes(Quantity::LoadPower).then_some(LoadPower { last: f64::NAN })
     }
 }
 
 impl Process for LoadPower {
     fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
-        let [before, now] = row.loads;
-        let advance = row.now.approach - row.before.approach;
-        let dt = row.step.length();
-        self.last = if dt > 0.0 { 0.5 * (before + now) * advance / dt } else { 0.0 };
+        self.last = power(row);
         Ok(())
+    }
+
+    fn preview(&mut self, quantity: Quantity, row: &mut Solved<'_>) -> Result<Option<f64>> {
+        Ok((quantity == Quantity::LoadPower).then(|| power(row)))
     }
 
     fn quantity(&self, quantity: Quantity) -> Option<f64> {
@@ -33,4 +34,12 @@ impl Process for LoadPower {
     fn name(&self) -> &'static str {
         "load_power"
     }
+}
+
+/// Of the step that led to this row \[W\].
+fn power(row: &Solved<'_>) -> f64 {
+    let [before, now] = row.loads;
+    let advance = row.now.approach - row.before.approach;
+    let dt = row.step.length();
+    if dt > 0.0 { 0.5 * (before + now) * advance / dt } else { 0.0 }
 }

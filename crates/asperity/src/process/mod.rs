@@ -39,6 +39,11 @@ pub(crate) trait Process: Send {
     /// Takes in the row that was just solved.
     fn accept(&mut self, row: &mut Solved<'_>) -> Result<()>;
 
+    /// A quantity of this process at the end of an attempt, before it is known whether the attempt stands.
+    fn preview(&mut self, _quantity: Quantity, _row: &mut Solved<'_>) -> Result<Option<f64>> {
+        Ok(None)
+    }
+
     /// A quantity of the last row, where it is one of this process.
     fn quantity(&self, _quantity: Quantity) -> Option<f64> {
         None

@@ -145,6 +145,24 @@ impl Moving {
         }
     }
 
+    /// The forces at the end of a step; `held` is the error that they state for one that is known of them.
+    fn forces(&self, row: &Solved<'_>, time_error: f64, held: impl FnOnce(f64) -> f64) -> Friction {
+        let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
+        let contact = ContactForces {
+            simulation: row.simulation,
+            direction: self.motion.direction,
+            slopes: &self.slopes,
+            state: row.now,
+            gap: row.gap,
+            compliance: row.compliance,
+            remembers: row.simulation.parts().any(remembers),
+            velocity: self.motion.path.velocity(row.step.instant.time),
+            distance: self.distance,
+            shear_stress: self.motion.shear_stress,
+        };
+        Friction::in_time(&contact, time_error, held)
+    }
+
     fn move_to(&mut self, distance: f64, gap: &mut UndeformedGap) {
         if distance == self.distance {
             return;
@@ -169,27 +187,19 @@ impl Process for Moving {
     /// Finds the forces at the end of the row.
     fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
         let time_error = row.time_error.unwrap_or(0.0);
-        let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
-        let contact = ContactForces {
-            simulation: row.simulation,
-            direction: self.motion.direction,
-            slopes: &self.slopes,
-            state: row.now,
-            gap: row.gap,
-            compliance: row.compliance,
-            remembers: row.simulation.parts().any(remembers),
-            velocity: self.motion.path.velocity(row.step.instant.time),
-            distance: self.distance,
-            shear_stress: self.motion.shear_stress,
-        };
         let (way, cell) = ([self.before, self.distance], self.motion.direction.cell(&row.simulation.grid));
-        let friction = Friction::in_time(&contact, time_error.max(self.time_error), |error| {
-            self.swing.see(way, cell, error)
-        });
+        let mut swing = self.swing;
+        let friction = self.forces(row, time_error.max(self.time_error), |error| swing.see(way, cell, error));
+        self.swing = swing;
         let before = std::mem::replace(&mut self.before, self.distance);
         row.other_work += 0.5 * (self.friction.force + friction.force) * (self.distance - before);
         (self.friction, self.time_error) = (friction, time_error);
         Ok(())
+    }
+
+    fn preview(&mut self, quantity: Quantity, row: &mut Solved<'_>) -> Result<Option<f64>> {
+        let is_own = quantity.is_of_motion() && quantity != Quantity::DissipatedPower;
+        Ok(is_own.then(|| self.forces(row, 0.0, |error| error).quantity(quantity)).flatten())
     }
 
     fn quantity(&self, quantity: Quantity) -> Option<f64> {

@@ -14,13 +14,11 @@ pub(super) struct Stiffness {
 
 impl Stiffness {
     pub(super) fn of(simulation: &Simulation, operator: &dyn Operator) -> Option<Self> {
-        let wanted = simulation.quantities.has(Quantity::ContactStiffness);
+        let wanted = simulation.takes(Quantity::ContactStiffness);
         wanted.then(|| Stiffness { solver: ContactStiffness::new(operator), last: f64::NAN })
     }
-}
 
-impl Process for Stiffness {
-    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+    fn of_row(&mut self, row: &mut Solved<'_>) -> Result<f64> {
         let pressure = &row.now.pressure;
         // Cells at the hardness carry no more, unless they stay flat: then they respond to unloading.
         let most = match row.simulation.plasticity {
@@ -30,9 +28,19 @@ impl Process for Stiffness {
         let bears = |k: usize| pressure[k] > 0.0 && pressure[k] < most.at(k);
         let compliance = row.simulation.instantaneous();
         let (stiffness, convolutions) = self.solver.of(row.operator, compliance, bears, row.interrupt)?;
-        self.last = stiffness;
         row.convolutions += convolutions;
+        Ok(stiffness)
+    }
+}
+
+impl Process for Stiffness {
+    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        self.last = self.of_row(row)?;
         Ok(())
+    }
+
+    fn preview(&mut self, quantity: Quantity, row: &mut Solved<'_>) -> Result<Option<f64>> {
+        (quantity == Quantity::ContactStiffness).then(|| self.of_row(row)).transpose()
     }
 
     fn quantity(&self, quantity: Quantity) -> Option<f64> {

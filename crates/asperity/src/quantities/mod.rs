@@ -31,6 +31,7 @@
 
 mod eccentricity;
 mod histogram;
+mod number;
 mod perimeter;
 mod rows;
 mod stiffness;
@@ -42,6 +43,7 @@ use crate::grid::Grid;
 
 pub(crate) use eccentricity::eccentricity;
 pub(crate) use histogram::{densities, spot_classes};
+pub use number::RowNumber;
 pub use perimeter::{Edges, contact_edges};
 pub use rows::{Entry, ROW_COLUMNS, RowColumn, RowFigure};
 pub use stiffness::ContactStiffness;

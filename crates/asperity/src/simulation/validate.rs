@@ -5,7 +5,7 @@ use crate::error::{Error, Result, require};
 use crate::grid::Boundary;
 use crate::load::{Control, Course, Event, History, Programme, Stage, of_stage};
 use crate::material::Creep;
-use crate::quantities::Quantity;
+use crate::quantities::{Quantity, RowNumber};
 use crate::time::{Instant, SAME};
 
 /// Fewer steps than this to the period of a sine miss its course.
@@ -52,8 +52,12 @@ impl Simulation {
         checks.extend(stages.flat_map(|n| {
             let stage = &self.loading.stages[n];
             let own = instants.iter().filter(|instant| instant.stage == n);
-            let checks =
-                [self.validate_history(stage), self.validate_steps(stage, own), self.validate_load(stage)];
+            let checks = [
+                self.validate_history(stage),
+                self.validate_steps(stage, own),
+                self.validate_load(stage),
+                self.validate_event(stage),
+            ];
             checks.map(|checked| self.of_stage(n, checked))
         }));
         checks.into_iter().filter_map(Result::err).collect()
@@ -230,6 +234,32 @@ impl Simulation {
     fn of_stage(&self, n: usize, checked: Result<()>) -> Result<()> {
         let named = |error| if self.loading.stages.len() > 1 { of_stage(error, n) } else { error };
         checked.map_err(|error| named(error).of(&format!("load.stages[{n}]")))
+    }
+
+    /// Rows must have what a stage waits for.
+    fn validate_event(&self, stage: &Stage) -> Result<()> {
+        let Some(Event::Number(RowNumber::Quantity(quantity), _)) = stage.until else { return Ok(()) };
+        let moves = self.motion.is_some();
+        let sheared = self.motion.as_ref().is_some_and(|motion| motion.shear_stress.is_some());
+        let checked = if quantity.is_of_motion() && !moves {
+            let expected = "one that the rows have. Only a contact in motion has this one: add [motion] (in Python use slide)";
+            Err(Error::invalid("quantity of the event", quantity, expected))
+        } else if quantity == Quantity::FrictionCoefficientTotal && !sheared {
+            let expected = "one that the rows have. This one needs the shear stress on the contact: give motion.shear_stress";
+            Err(Error::invalid("quantity of the event", quantity, expected))
+        } else {
+            self.allows(quantity)
+        };
+        checked.map_err(|error| match error {
+            Error::Invalid { what, value, expected, .. } => Error::invalid(what, value, expected).of("until"),
+            other => other,
+        })
+    }
+
+    /// Whether the run computes a quantity: it is asked for, or a stage waits for it.
+    pub(crate) fn takes(&self, quantity: Quantity) -> bool {
+        let waits = |stage: &Stage| matches!(stage.until, Some(Event::Number(RowNumber::Quantity(other), _)) if other == quantity);
+        self.quantities.has(quantity) || self.loading.stages.iter().any(waits)
     }
 
     /// Times of a history must be apart.

@@ -46,6 +46,7 @@ use crate::error::{Error, Result};
 use crate::history::{self, History, Law};
 use crate::operator::plan;
 use crate::process::{self, Process, Solved};
+use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use state::StepState;
 
@@ -143,6 +144,7 @@ impl Stepper {
             touches: self.state.now.touches(),
             pulls: self.contact.pulls(),
             reached: Response { approach: self.state.now.approach, load: carried },
+            number: f64::NAN,
             first_touch: self.state.first_touch(),
         })
     }
@@ -187,6 +189,22 @@ impl Stepper {
         self.history.time_error()
     }
 
+    /// A quantity at the end of the attempt, of a process; `None` where it is one of the state.
+    ///
+    /// # Errors
+    /// Those of the processes.
+    pub(crate) fn preview(&mut self, quantity: Quantity) -> Result<Option<f64>> {
+        let Some(step) = &self.step else { return Ok(None) };
+        let mut row = solved(&self.simulation, step, &mut self.state, &mut self.contact);
+        for process in &mut self.processes {
+            if let Some(value) = process.preview(quantity, &mut row)? {
+                self.outcome.convolutions += row.convolutions;
+                return Ok(Some(value));
+            }
+        }
+        Ok(None)
+    }
+
     /// The attempt stands: the history closes the step, the processes take in the row.
     ///
     /// # Errors
@@ -196,29 +214,44 @@ impl Stepper {
         self.history.close(&self.state.ends(self.contact.hardness()))?;
         let exchange = self.history.exchange(&self.state.ends(self.contact.hardness()));
         self.contact.commit();
-        let (operator, hardness, interrupt) = self.contact.parts();
-        let StepState { now, before, loads, gap, undeformed, compliance, .. } = &mut self.state;
+        let time_error = self.history.time_error();
         let mut row = Solved {
-            simulation: &self.simulation,
-            step,
-            before,
-            now,
-            loads: *loads,
-            gap,
-            undeformed,
-            compliance: *compliance,
-            hardness,
-            operator,
-            interrupt,
-            time_error: self.history.time_error(),
+            time_error,
             exchange,
-            other_work: 0.0,
-            convolutions: 0,
+            ..solved(&self.simulation, step, &mut self.state, &mut self.contact)
         };
         self.processes.iter_mut().try_for_each(|process| process.accept(&mut row))?;
         self.outcome.convolutions += row.convolutions;
         self.state.end(step.length());
         self.is_open = false;
         Ok(())
+    }
+}
+
+/// What was solved, for the processes; what the history knows of it is not filled in.
+fn solved<'a>(
+    simulation: &'a Simulation,
+    step: &'a Interval,
+    state: &'a mut StepState,
+    contact: &'a mut StepContact,
+) -> Solved<'a> {
+    let (operator, hardness, interrupt) = contact.parts();
+    let StepState { now, before, loads, gap, undeformed, compliance, .. } = state;
+    Solved {
+        simulation,
+        step,
+        before,
+        now,
+        loads: *loads,
+        gap,
+        undeformed,
+        compliance: *compliance,
+        hardness,
+        operator,
+        interrupt,
+        time_error: None,
+        exchange: None,
+        other_work: 0.0,
+        convolutions: 0,
     }
 }

@@ -28,7 +28,7 @@ impl Recorder {
     }
 
     /// The numbers of a quantity.
-    pub(super) fn of(&self, quantity: Quantity) -> Option<&[f64]> {
+    pub(crate) fn of(&self, quantity: Quantity) -> Option<&[f64]> {
         let mut start = 0;
         for column in &self.columns {
             let end = start + column.width();

@@ -23,6 +23,7 @@ use super::step_size::StepSizeControl;
 use crate::error::{Error, Result};
 use crate::load::{Control, Event, History, Stage};
 use crate::material::ReducedTime;
+use crate::quantities::RowNumber;
 use crate::simulation::Simulation;
 use crate::time::{Instant, SAME, Span, Stop, TimeGrid, agree, stops};
 
@@ -42,6 +43,8 @@ pub(crate) struct Summary {
     /// Whether a traction besides the contact acts on the surfaces: then a load of 0 says nothing of the contact.
     pub(crate) pulls: bool,
     pub(crate) reached: Response,
+    /// The number of the row that the stage waits for; NaN where it waits for none.
+    pub(crate) number: f64,
     /// Approach at which the surfaces without pressure would just touch \[m\].
     pub(crate) first_touch: f64,
 }
@@ -124,6 +127,8 @@ pub(crate) struct Schedule {
     reached: Response,
     touched: bool,
     is_smooth: bool,
+    /// The number that the stage under way waits for, in the last row; NaN where it waits for none.
+    number: f64,
     /// Which side of its value the event is waited for from: -1 below, 1 above, 0 not yet known.
     side: f64,
     /// The largest approach and load so far.
@@ -167,6 +172,7 @@ impl Schedule {
             reached: Response::default(),
             touched: false,
             is_smooth: false,
+            number: f64::NAN,
             side: 0.0,
             largest: Response::default(),
             stopped: None,
@@ -182,6 +188,19 @@ impl Schedule {
 
     fn stage(&self) -> &Stage {
         self.steered.as_ref().unwrap_or(&self.plan.stages[self.stage.min(self.plan.stages.len() - 1)])
+    }
+
+    /// The number of a row that the stage under way waits for.
+    pub(crate) fn awaited(&self) -> Option<RowNumber> {
+        match self.stage().until {
+            Some(Event::Number(number, _)) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// Takes the awaited number of the last row; before the first one, of the bodies at first touch.
+    pub(crate) fn note(&mut self, number: f64) {
+        self.number = number;
     }
 
     /// Whether a stage was prescribed between two rows.
@@ -343,6 +362,9 @@ impl Schedule {
         }
         let (signal, tolerance) = self.signal(event, attempt);
         let start = self.signal_at_start(event, attempt);
+        if signal.is_nan() {
+            return None;
+        }
         if self.side == 0.0 {
             // The value must be left before it can be reached, and what never touched is not lost: from the last row on,
             // else from this one on.
@@ -377,6 +399,7 @@ impl Schedule {
             Event::Approach(value) => (approach - value, MET * deepest.max(value.abs())),
             Event::Load(value) => (load - value, MET * heaviest.max(value.abs())),
             Event::Pressure(value) => (load / area - value, MET * value.abs().max(heaviest / area)),
+            Event::Number(_, value) => (attempt.number - value, MET * value.abs().max(self.number.abs())),
             Event::ContactLost if attempt.instant.control == Control::Approach => {
                 (approach - attempt.first_touch, MET * deepest)
             }
@@ -388,7 +411,8 @@ impl Schedule {
 
     /// The same at the start of the step.
     fn signal_at_start(&self, event: Event, attempt: &Summary) -> f64 {
-        self.signal(event, &Summary { reached: self.reached, touches: self.touched, ..*attempt }).0
+        let number = self.number;
+        self.signal(event, &Summary { reached: self.reached, touches: self.touched, number, ..*attempt }).0
     }
 
     /// Takes the row that stands.
@@ -483,6 +507,9 @@ impl Schedule {
         if let Some(stage) = &self.steered {
             to.value("steered", &steered::numbers(stage));
         }
+        if self.awaited().is_some() {
+            to.value("number", &self.number);
+        }
         self.save_own(to);
         if let Some(Instant { time, dt, value, jump, .. }) = &self.last {
             to.values("last", &[time, dt, value, jump]);
@@ -517,6 +544,9 @@ impl Schedule {
             return Err(from.foreign("times of another programme"));
         }
         self.load_own(from)?;
+        if self.awaited().is_some() {
+            self.number = from.get("number")?;
+        }
         let (control, stage) = (self.stage().control, self.stage);
         let mut last = Instant { time: 0.0, dt: 0.0, value: 0.0, jump: false, control, stage };
         let Instant { time, dt, value, jump, .. } = &mut last;

@@ -10,11 +10,11 @@ use asperity::process::Motion;
 use asperity::step::Row;
 
 use asperity::material::{Creep, CreepTerm, Relaxation};
-use asperity::quantities::{Quantities, Quantity};
+use asperity::quantities::{Quantities, Quantity, RowNumber};
 use asperity::simulation::Simulation;
 use asperity::sliding::{Direction, Friction, MovingGap, Path, Steady, SteadyMotion};
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
-use asperity::{Boundary, Control, Grid, History, Loading, SolverOptions, TimeGrid};
+use asperity::{Boundary, Control, Event, Grid, History, Loading, SolverOptions, TimeGrid};
 
 fn zener(instantaneous: f64, retarded: f64, time: f64) -> Creep {
     Creep {
@@ -319,4 +319,27 @@ fn friction_is_right_while_the_body_still_creeps_under_the_load() {
         // A step of a cell is five retardation times.
         assert!((friction.force / exact - 1.0).abs() < 0.03, "{}: {} {exact}", row.time(), friction.force);
     }
+}
+
+#[test]
+fn a_stage_ends_at_a_friction_coefficient() {
+    // Sliding starts with no friction, which then grows: the stage ends at half of what 60 steps reach. The same way in 60 steps
+    // encloses the time; a coefficient that is met is met to 1e-6 of it.
+    let grid = Grid::new([32, 8], [1.0, 0.25]).unwrap();
+    let wave = shape(Shape::Wave { amplitude: 0.01, wavelength: [1.0, f64::INFINITY] });
+    let slid = |event: Option<Event>, steps: usize| {
+        let times = TimeGrid::Uniform { end: 2.0, steps };
+        let path = at_speed(0.1, 0.0);
+        let mut sliding =
+            simulation(grid, Boundary::Periodic, &wave, zener(0.25, 0.75, 0.5), 0.1, path, times);
+        sliding.loading.stages[0].until = event;
+        run(sliding)
+    };
+    let all = slid(None, 60);
+    let value = 0.5 * all.last().unwrap().1.coefficient;
+    let first = all.iter().position(|(_, friction)| friction.coefficient >= value).unwrap();
+    let number = RowNumber::from_name("friction_coefficient").unwrap();
+    let (row, friction) = slid(Some(Event::Number(number, value)), 60).pop().unwrap();
+    assert!((friction.coefficient - value).abs() <= 1e-6 * value, "{} {value}", friction.coefficient);
+    assert!(all[first - 1].0.time() < row.time() && row.time() <= all[first].0.time());
 }

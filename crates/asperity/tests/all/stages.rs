@@ -4,6 +4,7 @@ use asperity::Drive;
 use asperity::drive::March;
 use asperity::load::{Control, Course, Event, History, Programme, Stage};
 use asperity::material::{Creep, CreepTerm, Relaxation};
+use asperity::quantities::RowNumber;
 use asperity::reference::{Mdr, MdrProfile, MdrTarget};
 use asperity::simulation::Simulation;
 use asperity::step::Row;
@@ -365,4 +366,72 @@ fn an_event_after_the_jump_is_the_relaxation_and_too_few_steps_of_a_sine_are_ref
     };
     let Err(error) = March::new(simulation) else { panic!("accepted") };
     assert!(error.to_string().contains("4000 uniform steps"), "{error}");
+}
+
+#[test]
+fn a_stage_ends_where_a_number_of_its_rows_reaches_a_value() {
+    // A sphere of radius 2 on an elastic half-space with E* = 4. 400 rows enclose the time; straight lines between them are right to
+    // a row's spacing. The event itself is met to 1e-6 of the larger of its value and the number in the row before it.
+    let grid = Grid::new([32, 32], [1.0, 1.0]).unwrap();
+    let sphere = Part::Shape { shape: Shape::Sphere { radius: 2.0 }, center: [0.0, 0.0] };
+    let gap = undeformed_gap(&grid, &[sphere]).unwrap();
+    let solver = SolverOptions { tolerance: 1e-10, ..SolverOptions::default() };
+    let creep = Creep { instantaneous: 0.25, terms: vec![], fluidity: 0.0 };
+    let base = Simulation { creep, solver, ..Simulation::new(grid, gap) };
+    let ramp = History::Ramp { value: 0.1, duration: 1.0 };
+    let pressed = |event: Option<Event>, steps: usize| {
+        let stage = Stage { until: event, ..Stage::new(Control::Load, ramp.clone()) };
+        rows(Simulation {
+            loading: Programme::new(vec![stage]),
+            times: TimeGrid::Uniform { end: 1.0, steps },
+            ..base.clone()
+        })
+    };
+    let all = pressed(None, 400);
+    let number = |name: &str, value: f64| Some(Event::Number(RowNumber::from_name(name).unwrap(), value));
+    let between = |of: fn(&Row) -> f64, value: f64| {
+        let pair =
+            all.windows(2).find(|pair| (of(&pair[0]) - value) * (of(&pair[1]) - value) <= 0.0).unwrap();
+        let share = (value - of(&pair[0])) / (of(&pair[1]) - of(&pair[0]));
+        pair[0].time() + share * (pair[1].time() - pair[0].time())
+    };
+    type Read = fn(&Row) -> f64;
+    let smooth: [(&str, Read); 2] =
+        [("mean_gap", |row| row.mean_gap), ("max_pressure", |row| row.max_pressure)];
+    for (name, of) in smooth {
+        let value = 0.5 * (of(&all[100]) + of(&all[300]));
+        let found = pressed(number(name, value), 7).pop().unwrap();
+        assert!((of(&found) - value).abs() <= 2e-6 * value.abs().max(of(&all[0]).abs()), "{name}");
+        let time = between(of, value);
+        assert!((found.time() - time).abs() < 1.0 / 400.0, "{name}: {} {time}", found.time());
+    }
+    // The contact fraction rises in steps: the stage ends with the first row at or above the value.
+    let found = pressed(number("contact_fraction", 0.1), 7).pop().unwrap();
+    let first = all.iter().position(|row| row.contact_fraction >= 0.1).unwrap();
+    assert!(all[first - 1].time() < found.time() && found.time() <= all[first].time() + 1e-8);
+    assert!(found.contact_fraction >= 0.1 && found.contact_fraction <= all[first].contact_fraction);
+
+    // What never comes is told at the end.
+    let stage = Stage { until: number("contact_fraction", 0.9), ..Stage::new(Control::Load, ramp.clone()) };
+    let simulation = |stage: &Stage| Simulation {
+        loading: Programme::new(vec![stage.clone()]),
+        times: TimeGrid::Uniform { end: 1.0, steps: 3 },
+        ..base.clone()
+    };
+    let mut march = March::new(simulation(&stage)).unwrap();
+    let error = loop {
+        match march.advance() {
+            Ok(step) => assert!(step.is_some()),
+            Err(error) => break error.to_string(),
+        }
+    };
+    assert!(error.contains("waits for contact_fraction 0.9"), "{error}");
+
+    // A contact at rest has no friction; work of the solver and sums over rows are nothing to wait for.
+    let stage = Stage { until: number("friction_coefficient", 0.1), ..stage };
+    let error = March::new(simulation(&stage)).err().unwrap().to_string();
+    assert!(error.contains("friction_coefficient") && error.contains("[motion]"), "{error}");
+    for name in ["iterations", "stage", "time", "elastic_energy", "gap_histogram"] {
+        assert_eq!(RowNumber::from_name(name), None);
+    }
 }

@@ -48,6 +48,7 @@ fn reaches(step: &Interval, load: f64) -> Summary {
         touches: load != 0.0,
         pulls: false,
         reached: Response { approach: 1.0, load },
+        number: f64::NAN,
         first_touch: 0.0,
     }
 }

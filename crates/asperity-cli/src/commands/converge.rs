@@ -22,6 +22,9 @@ impl Verb for Converge {
     fn run(&self) -> Result<(), Failure> {
         let units = units(&self.case, &self.common.set, &self.unit)?;
         let found = of_case(&self.case, &self.common.set, None, self.refine, self.quiet)?;
+        if !self.quiet {
+            super::findings::print(&found.findings);
+        }
         crate::print(&match self.json {
             true => format!("{}\n", object(&found)),
             false => text(&found, &units),
@@ -59,7 +62,7 @@ pub fn of_case(
 }
 
 fn object(found: &Convergence) -> Value {
-    json!({ "answers": found.bars, "cost": found.cost, "notes": found.notes })
+    json!({ "answers": found.bars, "cost": found.cost, "notes": found.notes, "findings": asperity_io::finding::list(&found.findings) })
 }
 
 /// A line for each answer, and what could not be varied.

@@ -11,6 +11,9 @@ use crate::store::{At, Reader, Result};
 /// A prescribed value is held where it stays the same but for its rounding.
 const HELD: f64 = 1e-9;
 
+/// A smaller relaxation is what the solver leaves open.
+const NOISE: f64 = 1e-5;
+
 /// The answers of the row `n`.
 pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>> {
     let grid = &reader.header().grid;
@@ -88,5 +91,5 @@ fn while_held(rows: &[Row], held_approach: bool) -> Option<Answer> {
         true => Answer::new("relaxation", 1.0 - last.load / first.load, "1"),
         false => Answer::new("creep", last.approach - first.approach, "m"),
     })
-    .filter(|answer| answer.value != 0.0)
+    .filter(|answer| answer.value != 0.0 && (answer.unit != "1" || answer.value.abs() > NOISE))
 }

@@ -47,6 +47,9 @@ pub struct Answer {
     pub resolution: f64,
 }
 
+/// Loads that differ by less than this share are equal.
+const SAME: f64 = 1e-6;
+
 /// Numbers without a unit that are shown in percent.
 const SHARES: [&str; 2] = ["contact_fraction", "relaxation"];
 
@@ -107,8 +110,10 @@ fn decisive(reader: &Reader, rows: &[Row]) -> Result<Option<usize>> {
     if rows[last].contact_fraction > 0.0 {
         return Ok(Some(last));
     }
-    let loads: Vec<f64> = rows.iter().map(|row| row.load).collect();
-    Ok(largest(&loads).filter(|row| rows[*row].contact_fraction > 0.0).or(Some(last)))
+    // Of equal loads the last one: rounding must not choose.
+    let most = rows.iter().map(|row| row.load).fold(0.0, f64::max);
+    let peak = rows.iter().rposition(|row| row.load >= most * (1.0 - SAME));
+    Ok(peak.filter(|row| rows[*row].contact_fraction > 0.0).or(Some(last)))
 }
 
 /// Loss angle, loss and stiffness of the last full cycle of a sine.

@@ -25,6 +25,8 @@ pub(super) struct Runs {
     /// Longer steps and the looser tolerance, on the coarser grid where there is one.
     pub long: Option<Vec<Answer>>,
     pub loose: Option<Vec<Answer>>,
+    /// Whether the steps in time can cause an error.
+    pub has_steps: bool,
 }
 
 /// The answer of a run by its name; NaN if the run has it without a value.
@@ -68,9 +70,14 @@ fn bar(answer: &Answer, runs: &Runs, extrapolate: bool) -> ErrorBar {
     // The steps and the tolerance are varied on the coarser grid.
     let from = if runs.half.is_some() { half } else { Some(own) };
     let moved = |run: &Option<Vec<Answer>>| Some((at(run)? - from?).abs());
-    let none = |run: &Option<Vec<Answer>>| run.is_none().then_some(0.0);
-    let time = none(&runs.long).or(moved(&runs.long)).map(|time| time.max(of_rows));
-    let solver = none(&runs.loose).or(moved(&runs.loose));
+    let time = match runs.has_steps {
+        true => moved(&runs.long).map(|time| time.max(of_rows)),
+        false => Some(of_rows),
+    };
+    if time.is_none() && note.is_empty() {
+        note = "the steps were not varied: their error is not known".into();
+    }
+    let solver = moved(&runs.loose);
     let error = match (grid, time, solver) {
         (Some(grid), Some(time), Some(solver)) => Some((grid * grid + time * time + solver * solver).sqrt()),
         _ => None,

@@ -18,6 +18,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use asperity::Axis;
+use asperity::finding::Finding;
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{self, Answer, Units};
@@ -62,6 +64,8 @@ pub struct Convergence {
     pub answers: Vec<Answer>,
     /// The same with their errors.
     pub bars: Vec<ErrorBar>,
+    /// Where the numbers of the case may be off.
+    pub findings: Vec<Finding>,
     /// What was solved in addition to the case, and what could not be, in words.
     pub notes: Vec<String>,
     /// Convolutions of the additional runs, each counted as a share of one of the case's size: over those of the case.
@@ -122,6 +126,8 @@ struct Work<'a> {
 /// What a run answers, and what it took.
 struct Solved {
     answers: Vec<Answer>,
+    rows: usize,
+    findings: Vec<Finding>,
     convolutions: u64,
 }
 
@@ -157,12 +163,27 @@ pub fn converge(
     };
     let coarse: &[Change] = if half.is_some() { &[Change::HalfCells] } else { &[] };
     let with = |change| [coarse, &[change]].concat();
-    let long = work.vary(&with(Change::LongSteps), &mut notes)?;
+    let long = work.longer_steps(&with(Change::LongSteps), half.as_ref().or(Some(&base)), &mut notes)?;
     let loose = work.vary(&with(Change::LooseSolver), &mut notes)?;
-    let runs = Runs { half, quarter, double, long, loose };
+    if options.refine && half.is_none() {
+        notes.push("not extrapolated: that needs an answer with half the cells too".into());
+    }
+    // Without memory and without motion the steps cause nothing; a sweep has none.
+    let creep = &case.conditions.creep;
+    let timeless = creep.terms.is_empty() && creep.fluidity == 0.0 && case.motion.is_none();
+    let has_steps = case.axis() == Axis::Time && !timeless;
+    let answers = |solved: Option<Solved>| solved.map(|solved| solved.answers);
+    let runs = Runs {
+        half: answers(half),
+        quarter: answers(quarter),
+        double: answers(double),
+        long: answers(long),
+        loose: answers(loose),
+        has_steps,
+    };
     let cost = work.spent / (base.convolutions.max(1) as f64);
     let bars = bars(&base.answers, &runs, options.refine);
-    Ok(Convergence { answers: base.answers, bars, notes, cost })
+    Ok(Convergence { answers: base.answers, bars, findings: base.findings, notes, cost })
 }
 
 /// What the error bars of a case take, about, over what the case itself takes.
@@ -177,12 +198,26 @@ pub fn expected_cost(case: &Case, read: &Read<'_>) -> f64 {
 }
 
 impl Work<'_> {
-    /// The answers with these changes; `None` and a note where the case does not allow them.
-    fn vary(
+    /// The answers with longer steps; `None` and a note where they are the steps of `before`, because breaks of the history end them.
+    fn longer_steps(
         &mut self,
         changes: &[Change],
+        before: Option<&Solved>,
         notes: &mut Vec<String>,
-    ) -> Result<Option<Vec<Answer>>, ConvergeError> {
+    ) -> Result<Option<Solved>, ConvergeError> {
+        let Some(long) = self.vary(changes, notes)? else { return Ok(None) };
+        if before.is_some_and(|before| long.rows >= before.rows) {
+            notes.push(
+                "steps of twice the length: there are no fewer of them, as the history has its breaks there"
+                    .into(),
+            );
+            return Ok(None);
+        }
+        Ok(Some(long))
+    }
+
+    /// The answers with these changes; `None` and a note where the case does not allow them.
+    fn vary(&mut self, changes: &[Change], notes: &mut Vec<String>) -> Result<Option<Solved>, ConvergeError> {
         let names: Vec<&str> = changes.iter().map(|change| change.name()).collect();
         let mut overrides = vec![];
         for change in changes {
@@ -196,7 +231,7 @@ impl Work<'_> {
         }
         let what = names.join(", ");
         match self.solve(&what, &overrides) {
-            Ok(solved) => Ok(solved.map(|solved| solved.answers)),
+            Ok(solved) => Ok(solved),
             Err(ConvergeError::Case(errors)) => {
                 let why = errors.errors.first().map_or(String::new(), |error| error.message.clone());
                 notes.push(format!("{what}: not possible: {why}"));
@@ -237,5 +272,6 @@ impl Work<'_> {
 
 fn solved(reader: &Reader) -> Result<Solved, ConvergeError> {
     let answers = answer::of(reader, &Units::default())?;
-    Ok(Solved { answers, convolutions: reader.work().convolutions })
+    let findings = reader.findings().to_vec();
+    Ok(Solved { answers, rows: reader.len(), findings, convolutions: reader.work().convolutions })
 }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -145,3 +147,15 @@ def test_a_sweep_takes_the_body_that_stands_still_relaxed() -> None:
     assert found.friction_coefficient[0] == pytest.approx(relaxed.friction_coefficient[0], rel=1e-9)
     with pytest.raises(asp.CaseError, match="motion"):
         asp.slide(wave, (track, slider), pressure=20e3, velocity=0.05, times=[0.01], boundary="periodic")
+
+
+def test_a_single_shape_that_meets_its_own_track_is_told() -> None:
+    # It travels round the domain of 1 mm in 0.01 s, and the body remembers it for 1 s.
+    rubber = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=1.0, poisson=0.5)
+    ball = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
+    rough = ball + asp.Surface.wave(cells=(32, 32), size=(1e-3, 1e-3), amplitude=1e-9, wavelength=(5e-4, 5e-4))
+    for surface, told in [(ball, True), (rough, True), (2.0 * ball, True), (asp.Surface(rough.heights, size=rough.size), False)]:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", asp.ResultWarning)
+            found = asp.steady(surface, rubber, load=1e-3, velocities=[0.1], boundary="periodic")
+        assert ("own-track" in [finding["code"] for finding in found.findings]) is told

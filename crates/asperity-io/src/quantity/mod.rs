@@ -329,7 +329,7 @@ mod tests {
         let text = message::<dimension::Pressure, Finite>("2 Mpa");
         assert!(text.ends_with("did you mean \"MPa\"?"), "{text}");
         let text = message::<dimension::Length, Finite>("5 m^2");
-        assert!(text.contains("\"m^2\" is not a unit of length"), "{text}");
+        assert!(text.contains("\"m^2\" is the unit of an area"), "{text}");
         let text = message::<dimension::Number, Finite>("5 m");
         assert!(text.starts_with("a number such as 0.38"), "{text}");
     }

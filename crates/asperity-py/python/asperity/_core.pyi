@@ -33,6 +33,7 @@ __all__ = [
     "shift_factor",
     "vertical_shift_factor",
     "case_text",
+    "converge",
     "check",
     "report",
     "run",

@@ -365,7 +365,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             for place, unit, words, ends in places:
                 coordinates[place] = (place, ends, {"units": written(unit), "long_name": words})
         # Text, as all other attributes, so that the dataset can be written.
-        lists = {name: json.dumps(self._attributes[name]) for name in ("findings", "error_bars") if name in self._attributes}
+        lists: dict[str, Any] = {name: json.dumps(self._attributes[name]) for name in ("findings", "error_bars") if name in self._attributes}
         attributes = {**self._attributes, "findings": "[]", **lists}
         whole = xarray.Dataset(data, coords=coordinates, attrs=attributes)
         if not self._leaks:

@@ -27,8 +27,9 @@ def study_in_folder(
     words = [sys.executable, "-m", "asperity", "study", path, "--json"]
     for key, values in (vary or {}).items():
         words += ["--vary", f"{key}={_written(key, values)}"]
-    for option, value in (("-o", directory), ("--jobs", jobs), ("--threads", threads)):
-        words += [] if value is None else [option, os.fspath(value) if option == "-o" else str(value)]
+    words += [] if directory is None else ["-o", os.fspath(directory)]
+    for option, value in (("--jobs", jobs), ("--threads", threads)):
+        words += [] if value is None else [option, str(value)]
     words += ["--zip"] * zipped + ["-q"] * quiet
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8") as process:
         try:

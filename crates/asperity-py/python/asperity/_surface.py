@@ -156,7 +156,7 @@ class Surface(OnGrid):
                 "cannot be added: they must have the same cells and size"
             )
         # What was measured does not repeat beyond its edges, and the sum neither; a single body stays one with roughness on it.
-        known = {key: one.metadata[key] for one in (self, other) for key in ("format", "single") if key in one.metadata}
+        known: dict[str, Any] = {key: one.metadata[key] for one in (self, other) for key in ("format", "single") if key in one.metadata}
         return Surface(self.heights + other.heights, size=self.size, metadata=known)
 
     def __radd__(self, other: Summand) -> Surface:

@@ -1,7 +1,7 @@
 //! Error bars of answers: the same case solved with other cells, other steps and another tolerance.
 //!
 //! Three things limit an answer Q: the size of the cells h, the length of the steps, and the tolerance of the solver. Each is made
-//! coarser on its own ([`variation`]), and an answer's error is estimated from how much it moves ([`estimate`]):
+//! coarser on its own, and an answer's error is estimated from how much it moves:
 //!
 //! - **grid**: half and, where possible, a quarter of the cells along each side. Where the cells cannot be halved (roughness whose
 //!   shortest wave has too few cells then) the grid is refined instead.

@@ -31,9 +31,9 @@ pub trait Drive: Send {
     /// The next row, or `None` at the end.
     ///
     /// # Errors
-    /// [`Error::NotConverged`](crate::Error::NotConverged) with the coordinate; [`last`](Self::last) then has the best state
-    /// reached. [`Error::Undetermined`](crate::Error::Undetermined), [`Error::Interrupted`](crate::Error::Interrupted),
-    /// [`Error::Missed`](crate::Error::Missed), [`Error::Invalid`](crate::Error::Invalid).
+    /// [`Error::NotConverged`] with the coordinate; [`last`](Self::last) then has the best state
+    /// reached. [`Error::Undetermined`], [`Error::Interrupted`],
+    /// [`Error::Missed`], [`Error::Invalid`].
     fn advance(&mut self) -> Result<Option<Step<'_>>>;
 
     /// The last row; after an error the state that the failed solve reached. `None` before the first.
@@ -83,7 +83,7 @@ pub trait Drive: Send {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) by the rules of a stage; before the first row and after the last; where rows do not
+    /// [`Error::Invalid`] by the rules of a stage; before the first row and after the last; where rows do not
     /// follow one another in time.
     fn prescribe(&mut self, control: Control, _course: Course) -> Result<()> {
         let expected = "a march in time: other rows do not follow one another";
@@ -116,7 +116,7 @@ pub fn of(simulation: Simulation, steady: Option<SteadyMotion>) -> Result<Box<dy
 /// Goes on where a checkpoint of the same simulation was taken.
 ///
 /// # Errors
-/// As [`of`]; [`Error::Invalid`](crate::Error::Invalid) where the checkpoint belongs to another simulation.
+/// As [`of`]; [`Error::Invalid`] where the checkpoint belongs to another simulation.
 pub fn resume(
     simulation: Simulation,
     steady: Option<SteadyMotion>,

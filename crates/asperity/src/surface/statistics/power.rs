@@ -94,7 +94,7 @@ impl PowerSpectrum {
     /// window of mean square 1, so that its edges do not count as roughness. Undefined points are filled (harmonic).
     ///
     /// # Errors
-    /// [`Error::Invalid`] if more than [`MOST_FILLED`] of the points are undefined.
+    /// [`Error::Invalid`] if more than a quarter of the points are undefined.
     pub fn within(surface: &Surface, extent: Extent) -> Result<Self> {
         let grid = *surface.grid();
         let flat = match extent {

@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use asperity::Axis;
 use asperity::finding::Finding;
+use asperity::{Axis, Simulation};
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{self, Answer, Units};
@@ -169,8 +169,10 @@ pub fn converge(
         notes.push("not extrapolated: that needs an answer with half the cells too".into());
     }
     // Without memory and without motion the steps cause nothing; a sweep has none.
-    let creep = &case.conditions.creep;
-    let timeless = creep.terms.is_empty() && creep.fluidity == 0.0 && case.motion.is_none();
+    let Simulation { creep, thermal, layers, .. } = &case.conditions;
+    let remembers =
+        !creep.terms.is_empty() || creep.fluidity != 0.0 || !thermal.is_empty() || layers.is_some();
+    let timeless = !remembers && case.motion.is_none();
     let has_steps = case.axis() == Axis::Time && !timeless;
     let answers = |solved: Option<Solved>| solved.map(|solved| solved.answers);
     let runs = Runs {

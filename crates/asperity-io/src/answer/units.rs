@@ -178,18 +178,12 @@ impl Units {
 
     /// The unit for the leak rates of a liquid or a `gas`, per SI value of the volume rate \[m³/s\] or of the standard rate \[Pa m³/s\].
     pub fn shown_leak(&self, gas: bool) -> Shown {
-        let usual = || match gas {
-            true => Shown { factor: MBAR_LITRE, text: "mbar l/s".into() },
-            false => Shown { factor: 1.0, text: "m³/s".into() },
-        };
-        let Some(text) = self.0.get("leak") else { return usual() };
-        let Ok(unit) = Unit::parse(text) else { return usual() };
-        let factor = match (gas, unit.powers) {
-            (false, VOLUME_RATE) | (true, PV_RATE) => 1.0 / unit.scale(),
-            (true, VOLUME_RATE) => 1.0 / (ATMOSPHERE * unit.scale()),
-            _ => return usual(),
-        };
-        Shown { factor, text: text.clone() }
+        let (si, factor, text) =
+            if gas { ("Pa m3/s", MBAR_LITRE, "mbar l/s") } else { ("m3/s", 1.0, "m³/s") };
+        match self.leak_unit(si) {
+            Some((chosen, _)) => chosen,
+            None => Shown { factor, text: text.into() },
+        }
     }
 
     /// An answer with its error: "42.3 % ± 0.8".
@@ -245,18 +239,24 @@ impl Units {
         Some(Shown { factor: 1.0 / unit.scale(), text: text.clone() })
     }
 
-    /// A leak in the unit chosen for leaks, where it can be given in it: a gas as mass, as pressure times volume at 0 °C, or as
-    /// volume at 0 °C and one atmosphere; a liquid as volume.
+    /// A leak in the unit chosen for leaks, where it can be given in it.
     fn leak(&self, value: f64, si: &str) -> Option<String> {
+        let (Shown { factor, text }, conditions) = self.leak_unit(si)?;
+        Some(format!("{} {text}{conditions}", quantity(value * factor, "")))
+    }
+
+    /// The unit chosen for leaks, per value in this SI unit, and at which conditions it counts: a gas as mass, as pressure times volume at
+    /// 0 °C, or as volume at 0 °C and one atmosphere; a liquid as volume. `None` where none is chosen, or it does not fit.
+    fn leak_unit(&self, si: &str) -> Option<(Shown, &'static str)> {
         let text = self.0.get("leak")?;
         let unit = Unit::parse(text).ok()?;
-        let (value, conditions) = match (si, unit.powers) {
-            ("m3/s", VOLUME_RATE) | ("kg/s", MASS_RATE) => (value, ""),
-            ("Pa m3/s", PV_RATE) => (value, " (at 0 °C)"),
-            ("Pa m3/s", VOLUME_RATE) => (value / ATMOSPHERE, " (at 0 °C and 1 atm)"),
+        let (per, conditions) = match (si, unit.powers) {
+            ("m3/s", VOLUME_RATE) | ("kg/s", MASS_RATE) => (1.0, ""),
+            ("Pa m3/s", PV_RATE) => (1.0, " (at 0 °C)"),
+            ("Pa m3/s", VOLUME_RATE) => (ATMOSPHERE, " (at 0 °C and 1 atm)"),
             _ => return None,
         };
-        Some(format!("{} {text}{conditions}", quantity(value / unit.scale(), "")))
+        Some((Shown { factor: 1.0 / (per * unit.scale()), text: text.clone() }, conditions))
     }
 }
 

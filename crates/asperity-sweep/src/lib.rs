@@ -20,4 +20,4 @@ pub use fields::{Fields, each, each_with_sums, sums};
 pub use instructions::Instructions;
 pub use merge::{Max, Merge, Min, larger, smaller};
 pub use reductions::{count_finite, count_positive, dot, is_zero, maximum, minimum, sum};
-pub use sweep::{BLOCK, run, strands, sweep, zeros};
+pub use sweep::{BLOCK, in_pool, run, strands, sweep, zeros};

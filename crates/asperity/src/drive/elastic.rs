@@ -4,6 +4,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use asperity_sweep::in_pool;
+
 use super::Drive;
 use crate::contact::{ContactState, Outcome, Start};
 use crate::error::{Error, Result};
@@ -94,7 +96,8 @@ impl Drive for Elastic {
         let (gap, compliance) =
             (self.simulation.gap.as_slice().unwrap_or_default(), self.simulation.instantaneous());
         let prescribed = prescribed(control, value, self.simulation.grid.area());
-        let solved = self.contact.solve(Start::Pressure, gap, compliance, prescribed, &mut self.state);
+        let solved =
+            in_pool(|| self.contact.solve(Start::Pressure, gap, compliance, prescribed, &mut self.state));
         self.outcome = match &solved {
             Ok(outcome) => *outcome,
             Err(Error::NotConverged(report)) => report.outcome(),

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use asperity_sweep::in_pool;
+
 use super::{Coordinate, Drive};
 use crate::error::{Error, Result, require};
 use crate::load::{Control, Course, Stage};
@@ -123,7 +125,7 @@ impl Drive for March {
         self.recorder.clear();
         let attempt = loop {
             self.row = Some((self.done, step.instant, None));
-            let mut attempt = self.stepper.attempt(&step)?;
+            let mut attempt = in_pool(|| self.stepper.attempt(&step))?;
             if let Some(number) = self.schedule.awaited() {
                 attempt.number = self.gauge.preview(number, &mut self.stepper)?;
             }
@@ -132,7 +134,7 @@ impl Drive for March {
                 Verdict::Accept => break attempt,
             }
         };
-        self.accept(&attempt)?;
+        in_pool(|| self.accept(&attempt))?;
         Ok(self.last())
     }
 

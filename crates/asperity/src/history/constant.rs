@@ -109,7 +109,7 @@ impl History for ConstantPressure {
             let recalled = Combination { weights: &self.none, own: 0.0 };
             let ending = Ending { compliance: 1.0, recalled, updates: &updates };
             let unit = &last.unit_displacement;
-            self.strains.end(ending, unit, &mut self.unit, None, Some((next, rigid, gap)));
+            self.strains.end(ending, unit, unit, &mut self.unit, Some((next, rigid, gap)));
         } else {
             self.strains.combine(next, &self.unit, Some(rigid), gap);
         }

@@ -53,33 +53,32 @@ impl Branches {
         Interleaved { cells: self.cells, branches: self.count, data: &self.data }
     }
 
-    /// Ends a step: `u` becomes u' and goes to `before` as it was, the branches are updated. Then writes
-    /// `gap` = `rigid` + `next`, where these are given.
+    /// Ends a step that began with `u`: writes u' to `fresh` and updates the branches. Then writes `gap` = `rigid` + `next`, where
+    /// these are given.
     pub(crate) fn end(
         &mut self,
         ending: Ending<'_>,
         unit: &[f64],
-        u: &mut [f64],
-        before: Option<&mut [f64]>,
+        u: &[f64],
+        fresh: &mut [f64],
         next: Option<(Combination<'_>, &[f64], &mut [f64])>,
     ) {
         let (combination, gaps) = match next {
             Some((combination, rigid, gap)) => (Some(combination), Some((rigid, gap))),
             None => (None, None),
         };
-        let kernel = |(q, unit, u, before, gaps): (
+        let kernel = |(q, unit, u, fresh, gaps): (
             Interleaved<&mut [f64]>,
             &[f64],
+            &[f64],
             &mut [f64],
-            Option<&mut [f64]>,
             Option<(&[f64], &mut [f64])>,
         )| {
-            let (n, mut before, mut gaps) = (u.len(), before, gaps);
+            let (n, mut gaps) = (u.len(), gaps);
             for start in (0..n).step_by(CHUNK) {
                 let own = start..n.min(start + CHUNK);
-                let (unit, u) = (&unit[own.clone()], &mut u[own.clone()]);
-                let mut fresh = [0.0; CHUNK];
-                let fresh = &mut fresh[..u.len()];
+                let (unit, u, fresh) = (&unit[own.clone()], &u[own.clone()], &mut fresh[own.clone()]);
+                fresh.fill(0.0);
                 ending.recalled.add(fresh, u, |i| &q.data[i * n..][own.clone()]);
                 fresh.iter_mut().zip(unit).for_each(|(f, unit)| *f += ending.compliance * unit);
                 let mut gap = gaps.as_mut().map(|(rigid, gap)| {
@@ -97,16 +96,12 @@ impl Branches {
                         gap.iter_mut().zip(&*q).for_each(|(g, q)| *g += weight * q);
                     }
                 }
-                if let Some(before) = &mut before {
-                    before[own.clone()].copy_from_slice(u);
-                }
-                u.copy_from_slice(fresh);
                 if let (Some(gap), Some(next)) = (gap, combination) {
-                    gap.iter_mut().zip(u).for_each(|(g, u)| *g += next.own * *u);
+                    gap.iter_mut().zip(fresh).for_each(|(g, u)| *g += next.own * *u);
                 }
             }
         };
-        sweep((self.blocks(), unit, u, before, gaps), &kernel);
+        sweep((self.blocks(), unit, u, fresh, gaps), &kernel);
     }
 
     /// Writes `sum` = `base` + the combination; 0 in place of no base.

@@ -26,11 +26,12 @@
 
 use super::rules::Driver;
 use super::shape::{Shape, moment};
+use super::survey::{Clock, Sums};
 use super::{Reference, Relaxation};
 use crate::history::Ends;
 use crate::material::Dual;
 use crate::step::Piece;
-use asperity_sweep::{each, sums};
+use asperity_sweep::{each, run, sums};
 
 /// Share of the stress at the start, and of the relaxed one, that an error is measured by at the least.
 pub(crate) const FLOOR: f64 = 0.1;
@@ -95,53 +96,30 @@ impl Relaxation {
         // What the solver leaves of u.
         let [energy, pressure] =
             sums((&ends.now.pressure[..], &ends.now.unit_displacement[..]), |(p, unit)| [p * unit, p]);
-        let left =
-            if pressure > 0.0 { self.tolerance * self.rules.compliance * energy / pressure } else { 0.0 };
-        let (compliance, in_time) = (self.rules.compliance, self.rules.driver == Driver::Time);
-        let ([w_before, w], lasts) = (ends.approaches(), self.rules.length > 0.0);
-        let cells = (
-            (&self.displacement[..], &self.third[..], ends.rigid_before),
-            (&ends.before.pressure[..], &ends.before.unit_displacement[..]),
-            (&ends.now.pressure[..], &ends.now.unit_displacement[..]),
-            (ends.gap, ends.rigid, ends.hardness),
-        );
-        let sums =
-            sums(cells, |((u, u_third, rigid_before), (p, unit), (p_now, unit_now), (gap, rigid, most))| {
-                let presses = p > 0.0 || p_now > 0.0;
-                if !(presses || rigid < w) {
-                    return [0.0; 9];
-                }
-                let u_now = compliance * unit_now + (gap - rigid);
-                let (before, now) = (u_third - u, u_now - u);
-                let second = (before / third - now / step) / (third - step);
-                // What rounding errors of u make of it.
-                let rounding = ROUNDING * u.abs().max(u_now.abs()) * spread;
-                let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
-                if !presses {
-                    return [curved, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-                }
-                // A cell that comes into contact had this gap before.
-                let late = if p > 0.0 || !lasts { 0.0 } else { (rigid_before + u - w_before).max(0.0) };
-                let late = if late.is_finite() { late } else { 0.0 };
-                let bends = curved.max(if in_time { LATE * late } else { 0.0 });
-                let is_seen = second.abs() > left * spread;
-                // At the hardness the pressure is known.
-                let is_free = p_now > 0.0 && p_now < most;
-                let own = if is_free { late.max(if is_seen { curved } else { 0.0 }) } else { 0.0 };
-                let touches = f64::from(u8::from(p_now > 0.0));
-                let touched = f64::from(u8::from(p > 0.0));
-                [
-                    bends,
-                    unit_now,
-                    unit,
-                    u_now.abs(),
-                    own,
-                    touches,
-                    if is_free { most } else { 0.0 },
-                    touched,
-                    touched * touches,
-                ]
-            });
+        let compliance = self.rules.compliance;
+        let left = if pressure > 0.0 { self.tolerance * compliance * energy / pressure } else { 0.0 };
+        let sums = run(Sums {
+            u: &self.displacement,
+            third: &self.third,
+            rigid_before: ends.rigid_before,
+            p: &ends.before.pressure,
+            unit: &ends.before.unit_displacement,
+            p_now: &ends.now.pressure,
+            unit_now: &ends.now.unit_displacement,
+            gap: ends.gap,
+            rigid: ends.rigid,
+            hardness: ends.hardness,
+            compliance,
+            approaches: ends.approaches(),
+            clock: Clock {
+                step,
+                third,
+                spread,
+                left,
+                in_time: self.rules.driver == Driver::Time,
+                lasts: self.rules.length > 0.0,
+            },
+        });
         let [bends, now, before, displaced, own, touching, most, touched, stay] = sums;
         let staying = if touched > 0.0 { stay / touched } else { 1.0 };
         // U under pressures all over a contact of this size. (On a periodic domain an even pressure has none.)

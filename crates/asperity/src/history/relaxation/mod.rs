@@ -23,6 +23,7 @@ mod pair;
 mod response;
 pub(super) mod rules;
 pub(super) mod shape;
+mod survey;
 mod total_error;
 
 pub(super) use estimate::{FLOOR, LATE, ROUNDING, growing, remembered_defect, soon};
@@ -165,8 +166,14 @@ impl Relaxation {
     /// Ends the last step with the state `last`, and finds the gap of the planned one where it is wanted, from the rigid one.
     fn end(&mut self, last: &ContactState, next: Option<(&[f64], &mut [f64])>) {
         let next = next.map(|(rigid, gap)| (self.next.recalled(), rigid, gap));
-        let (unit, third) = (&last.unit_displacement, Some(&mut self.third[..]));
-        self.states.end(self.rules.ending(), unit, &mut self.displacement, third, next);
+        self.states.end(
+            self.rules.ending(),
+            &last.unit_displacement,
+            &self.displacement,
+            &mut self.third,
+            next,
+        );
+        std::mem::swap(&mut self.displacement, &mut self.third);
     }
 
     /// What becomes of (q, u) without pressure while the clocks go so far, with the states of `new` after it.

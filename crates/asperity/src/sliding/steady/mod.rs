@@ -30,6 +30,8 @@ mod pivots;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use asperity_sweep::in_pool;
+
 use self::contact::SteadyContact;
 use self::operators::{Operators, Stream};
 use super::{ContactForces, Direction, Friction, Slopes, Streaming};
@@ -204,7 +206,7 @@ impl Drive for Steady {
     fn advance(&mut self) -> Result<Option<Step<'_>>> {
         let Some(velocity) = self.motion.velocities.get(self.done).copied() else { return Ok(None) };
         self.index = self.done;
-        let solved = self.solve(velocity);
+        let solved = in_pool(|| self.solve(velocity));
         let mut recorder = std::mem::take(&mut self.recorder);
         self.row().record(&mut recorder);
         self.recorder = recorder;

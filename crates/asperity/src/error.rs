@@ -65,6 +65,20 @@ pub enum Error {
         /// Load at the end \[N\].
         load: f64,
     },
+    /// No equilibrium under the prescribed load: the surfaces that adhered are pulled off; the rows so far are complete.
+    #[error(
+        "no equilibrium at t = {time} s: the load {} N is below pull-off (last stable load {} N, at an approach of {} m); \
+         prescribe the approach to follow the contact through it, or end the stage there with until = \"contact-lost\"",
+        significant(*load, 4), significant(last[0], 6), significant(last[1], 6)
+    )]
+    PulledOff {
+        /// Prescribed load \[N\].
+        load: f64,
+        /// Time \[s\].
+        time: f64,
+        /// Load \[N\] and approach \[m\] of the last row.
+        last: [f64; 2],
+    },
     /// The run was interrupted on request; the rows so far are complete.
     #[error("interrupted")]
     Interrupted,
@@ -148,6 +162,7 @@ impl Error {
             Error::Undetermined { .. } => "undetermined",
             Error::NotConverged(_) => "not-converged",
             Error::Missed { .. } => "missed-event",
+            Error::PulledOff { .. } => "pulled-off",
             Error::Interrupted => "interrupted",
         }
     }

@@ -125,7 +125,16 @@ impl Drive for March {
         self.recorder.clear();
         let attempt = loop {
             self.row = Some((self.done, step.instant, None));
-            let mut attempt = in_pool(|| self.stepper.attempt(&step))?;
+            let mut attempt = match in_pool(|| self.stepper.attempt(&step)) {
+                Err(Error::PulledOff { load, time, last }) => match self.schedule.retreat(&step) {
+                    Some(shorter) => {
+                        step = shorter;
+                        continue;
+                    }
+                    None => return Err(Error::PulledOff { load, time, last }),
+                },
+                attempt => attempt?,
+            };
             if let Some(number) = self.schedule.awaited() {
                 attempt.number = self.gauge.preview(number, &mut self.stepper)?;
             }

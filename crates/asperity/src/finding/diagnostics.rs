@@ -162,7 +162,7 @@ impl Diagnostics {
         let index = step.index();
         self.beyond.see(index, step);
         let (control, compliance) = (step.control(), step.simulation().compliance(row.coordinate.value()));
-        self.see_contact(index, row, step.pressure(), control, compliance);
+        self.see_contact(index, row, step.contact_pressure(), control, compliance);
         self.capped |= row.capped_area > 0.0 && control == Control::Approach;
         if let Some(friction) = step.friction() {
             self.slides.see(index, row.coordinate, &friction);

@@ -73,9 +73,9 @@ impl Beyond {
 fn counts(quantity: Quantity, step: &Step<'_>) -> bool {
     match quantity {
         Quantity::GapHistogram => {
-            let open = step.pressure().iter().any(|pressure| *pressure <= 0.0);
+            let open = step.contact_pressure().iter().any(|pressure| *pressure <= 0.0);
             open && step.simulation().gap.iter().all(|gap| gap.is_finite())
         }
-        _ => step.pressure().iter().any(|pressure| *pressure > 0.0),
+        _ => step.contact_pressure().iter().any(|pressure| *pressure > 0.0),
     }
 }

@@ -119,6 +119,8 @@ impl Law {
 pub(crate) struct Ends<'a> {
     pub(crate) before: &'a ContactState,
     pub(crate) now: &'a ContactState,
+    /// Contact pressures of both \[Pa\]: all of it, where no other traction acts.
+    pub(crate) pressures: [&'a [f64]; 2],
     /// Loads of both \[N\].
     pub(crate) loads: [f64; 2],
     /// h0 + g, and h0.

@@ -110,6 +110,7 @@ impl Retarded {
         self.memory.close(&Ends {
             before: &self.before,
             now: &self.now,
+            pressures: [&self.before, &self.now].map(|state| &state.pressure[..]),
             loads,
             gap: &self.recalled,
             rigid: &self.rest,

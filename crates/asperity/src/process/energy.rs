@@ -33,6 +33,8 @@ pub(super) struct Energy {
     work: f64,
     /// w \[m\].
     approach: f64,
+    /// Of the attraction between the surfaces \[J\].
+    potential: f64,
     /// Heat per time in the last step \[W\].
     power: f64,
     /// Whether the load alone works on bodies that remember nothing: ∫ W dw is then the change of their energy, in steps of any length.
@@ -52,7 +54,7 @@ impl Energy {
 }
 
 saved! {
-    Energy { "energies": elastic, dissipated, flattening, work, approach; }
+    Energy { "energies": elastic, dissipated, flattening, work, approach, potential; }
 }
 
 impl Process for Energy {
@@ -68,7 +70,7 @@ impl Process for Energy {
         // the work is what the bodies take.
         let jump = row.step.length() == 0.0;
         self.work += match jump || !row.before.touches() || self.is_conservative {
-            true => cell_area * step.work + flattened,
+            true => cell_area * step.work + flattened + row.potential - self.potential,
             false => step.mean_load * (row.now.approach - self.approach),
         };
         let before = self.dissipated;
@@ -76,6 +78,7 @@ impl Process for Energy {
         self.dissipated += cell_area * step.heat;
         self.flattening += flattened;
         self.approach = row.now.approach;
+        self.potential = row.potential;
         self.work += row.other_work;
         self.power = if jump { 0.0 } else { (self.dissipated - before) / row.step.length() };
         Ok(())
@@ -109,7 +112,7 @@ impl Process for Energy {
 /// Σ p |h| over the cells at the hardness \[m Pa\].
 fn overlap_work(row: &Solved<'_>) -> f64 {
     let (c, w) = (row.compliance, row.now.approach);
-    let cells = (&row.now.pressure[..], &row.now.unit_displacement[..], &row.gap[..], row.hardness);
+    let cells = (row.contact, &row.now.unit_displacement[..], &row.gap[..], row.hardness);
     sums(cells, |(p, u, h, hardness)| {
         let overlap = if p >= hardness { (w - c * u - h).max(0.0) } else { 0.0 };
         [if overlap > 0.0 { p * overlap } else { 0.0 }]

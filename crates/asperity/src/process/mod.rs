@@ -67,6 +67,9 @@ pub(crate) struct Solved<'a> {
     pub(crate) step: &'a Interval,
     pub(crate) before: &'a ContactState,
     pub(crate) now: &'a ContactState,
+    /// Contact pressure of the row \[Pa\], and the potential energy of other tractions \[J\].
+    pub(crate) contact: &'a [f64],
+    pub(crate) potential: f64,
     /// Loads of both \[N\].
     pub(crate) loads: [f64; 2],
     /// h0 + g that it was solved with, and h0.

@@ -18,6 +18,9 @@
 //! | `spot_histogram` | | number of spots per class of area, by powers of two of the cell |
 //! | `pressure_histogram` | 1/Pa | probability density of the pressure of the cells in contact |
 //! | `gap_histogram` | 1/m | probability density of the gap of the open cells |
+//! | `adhesive_load`, `repulsive_load` | N | attraction between the surfaces, and load on the cells in contact |
+//! | `adhesion_energy` | J | potential energy of the attraction |
+//! | `outer_iterations`, `adhesion_residual` | | passes of the loop around the contact solver, and the change in the last one |
 //! | `velocity`, `sliding_distance` | m/s, m | velocity of a contact in motion, and how far it has moved |
 //! | `friction_force`, `side_force` | N | force against motion and across it |
 //! | `friction_coefficient`, `friction_coefficient_total` | | friction force over load, without and with a shear stress on the contact |
@@ -148,6 +151,16 @@ quantities! {
     PressureHistogram = "pressure_histogram" ["1/Pa"] "probability density of the contact pressure", Histogram, ("", "", "");
     /// Probability density of the gap of the open cells, in 1/m.
     GapHistogram = "gap_histogram" ["1/m"] "probability density of the open gap", Histogram, ("", "", "");
+    /// Σ σ: what the attraction between the surfaces adds to the load, in N; of an adhesive contact, as the four that follow.
+    AdhesiveLoad = "adhesive_load" ["N"] "adhesive load", Adhesion, ("Parts of the load", "load", "adhesive");
+    /// Σ q: load on the cells in contact, in N. The load is the difference.
+    RepulsiveLoad = "repulsive_load" ["N"] "repulsive load", Adhesion, ("Parts of the load", "load", "repulsive");
+    /// Σ γ(g): potential energy of the attraction, 0 where the surfaces are far apart, in J.
+    AdhesionEnergy = "adhesion_energy" ["J"] "adhesion energy", Adhesion, ("Energy", "energy", "adhesion");
+    /// Passes of the loop around the contact solver.
+    OuterIterations = "outer_iterations" ["1"] "passes of the adhesion", Adhesion, ("Passes of the adhesion", "number", "");
+    /// Change of the attraction in the last of them, relative to all forces between the surfaces.
+    AdhesionResidual = "adhesion_residual" ["1"] "change of the adhesion in the last pass", Adhesion, ("Change of the adhesion in the last pass", "share", "");
     /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.
     Velocity = "velocity" ["m/s"] "velocity", Motion, ("Velocity", "velocity", "");
     /// Distance that the contact has moved, in m.
@@ -201,6 +214,8 @@ enum Kind {
     Energy,
     /// The step or the response of the contact: known only in runs in time.
     Response,
+    /// A contact with adhesion: every row has it.
+    Adhesion,
     /// A contact in motion: every row has it, or only on request.
     Motion,
     MotionOnRequest,
@@ -218,9 +233,14 @@ pub struct Panel {
 }
 
 impl Quantity {
-    /// The quantities of every contact, moving or not.
+    /// The quantities of every contact, moving or not, with adhesion or without.
     pub fn at_rest() -> impl Iterator<Item = Quantity> {
-        Quantity::ALL.into_iter().filter(|quantity| !quantity.is_of_motion())
+        Quantity::ALL.into_iter().filter(|quantity| !quantity.is_of_motion() && !quantity.is_of_adhesion())
+    }
+
+    /// The quantities that every row of an adhesive contact has.
+    pub fn of_adhesion() -> impl Iterator<Item = Quantity> {
+        Quantity::ALL.into_iter().filter(|quantity| quantity.is_of_adhesion())
     }
 
     /// The quantities that every row of a contact in motion has.
@@ -297,6 +317,11 @@ impl Quantity {
     /// Whether it belongs to a contact in motion.
     pub fn is_of_motion(self) -> bool {
         matches!(self.declaration().kind, Kind::Motion | Kind::MotionOnRequest)
+    }
+
+    /// Whether it belongs to a contact with adhesion.
+    pub fn is_of_adhesion(self) -> bool {
+        self.declaration().kind == Kind::Adhesion
     }
 
     /// Whether it needs the memory of [`Spots`](crate::spots::Spots), because connected cells are found.

@@ -151,6 +151,14 @@ impl Simulation {
         self.parts().map(|creep| creep.instantaneous).sum()
     }
 
+    /// Compliance of the pair after a long time \[1/Pa\]; where it flows, at the end of the run.
+    pub fn relaxed(&self) -> f64 {
+        let flows = self.parts().any(|creep| creep.fluidity > 0.0);
+        let long =
+            |creep: &Creep| creep.instantaneous + creep.terms.iter().map(|t| t.compliance).sum::<f64>();
+        if flows { self.compliance(self.times.end()) } else { self.parts().map(long).sum() }
+    }
+
     /// Compliance of the pair at time t under a pressure held since 0 \[1/Pa\].
     pub fn compliance(&self, t: f64) -> f64 {
         self.creep.value(t) + self.thermal.iter().map(|body| body.value(0.0, t)).sum::<f64>()

@@ -46,6 +46,7 @@ impl Simulation {
             self.validate_plasticity(),
             self.validate_scheme(),
             self.validate_layers(),
+            self.validate_traction(),
             self.validate_jumps(&instants),
         ];
         let stages = 0..self.loading.stages.len();
@@ -97,6 +98,10 @@ impl Simulation {
         } else if self.layers.is_some() && (is_energy || quantity == Quantity::ContactStiffness) {
             "one that is solved for layers that creep differently. Leave it out, or give all layers and bodies the same relative \
              creep"
+        } else if quantity == Quantity::ContactStiffness && self.traction.is_some() {
+            "one that an adhesive contact has: its stiffness includes that of the attraction and is infinite where cells snap"
+        } else if quantity.is_of_adhesion() && self.traction.is_none() {
+            "one that the rows have. Only an adhesive contact has this one: add [adhesion]"
         } else {
             return Ok(());
         };
@@ -199,6 +204,15 @@ impl Simulation {
         require(self.thermal.is_empty(), "temperature", "temperature", "not constant".into(), expected)?;
         let expected = "none: the contact stays in its place";
         require(self.motion.is_none(), "motion", "motion", "given".into(), expected)
+    }
+
+    /// What goes with a traction besides the contact.
+    fn validate_traction(&self) -> Result<()> {
+        let Some(traction) = &self.traction else { return Ok(()) };
+        let expected = "\"cap\" where the surfaces adhere";
+        require(self.plasticity == Plasticity::Cap, "plasticity", "\"accumulate\"", expected)
+            .map_err(|error| error.of("solver.plasticity"))?;
+        traction.check(self)
     }
 
     /// Where displacements are known up to a constant.

@@ -34,16 +34,24 @@ impl CutOff {
     }
 }
 
+/// What processes may use after a row.
+pub(super) struct Parts<'a> {
+    pub(super) operator: &'a mut dyn Operator,
+    pub(super) hardness: Hardness<'a>,
+    pub(super) traction: Option<&'a TractionSolver>,
+    pub(super) interrupt: Option<&'a AtomicBool>,
+}
+
 impl StepContact {
     pub(crate) fn new(simulation: &Simulation, operator: Box<dyn Operator>) -> Self {
-        let law = simulation.traction.as_ref();
+        let law = simulation.traction.as_deref();
         StepContact {
             solver: Solver::new(simulation.solver.method, &*operator),
             operator,
             changes: false,
             options: simulation.solver,
             hardness: CutOff { all: simulation.hardness, of_cells: simulation.hardness_of_cells() },
-            traction: law.map(|law| TractionSolver::new(law.start(&simulation.grid), simulation.grid.len())),
+            traction: law.map(|law| TractionSolver::new(law, &simulation.grid)),
             interrupt: None,
         }
     }
@@ -56,9 +64,23 @@ impl StepContact {
         self.options.tolerance
     }
 
-    /// Whether a traction besides the contact acts on the surfaces.
+    /// The traction besides the contact that acts on the surfaces.
+    pub(super) fn traction(&self) -> Option<&TractionSolver> {
+        self.traction.as_ref()
+    }
+
+    pub(super) fn traction_mut(&mut self) -> Option<&mut TractionSolver> {
+        self.traction.as_mut()
+    }
+
+    /// Whether there is one.
     pub(super) fn pulls(&self) -> bool {
         self.traction.is_some()
+    }
+
+    /// The contact pressures of both states of a step \[Pa\], 0 or more: all pressure, where no other traction acts.
+    pub(super) fn pressures<'a>(&'a self, states: [&'a ContactState; 2]) -> [&'a [f64]; 2] {
+        self.traction.as_ref().map_or(states.map(|state| &state.pressure[..]), TractionSolver::contact)
     }
 
     /// Takes the operator of the step that was opened, where it has one of its own.
@@ -101,7 +123,12 @@ impl StepContact {
     }
 
     /// What processes may use after a row.
-    pub(super) fn parts(&mut self) -> (&mut dyn Operator, Hardness<'_>, Option<&AtomicBool>) {
-        (&mut *self.operator, self.hardness.lent(), self.interrupt.as_deref())
+    pub(super) fn parts(&mut self) -> Parts<'_> {
+        Parts {
+            operator: &mut *self.operator,
+            hardness: self.hardness.lent(),
+            traction: self.traction.as_ref(),
+            interrupt: self.interrupt.as_deref(),
+        }
     }
 }

@@ -29,6 +29,7 @@ mod warm_start;
 pub use row::{Row, Step};
 pub use snapshot::Checkpoint;
 
+use contact::Parts;
 pub(crate) use contact::StepContact;
 pub(crate) use interval::{Course, Interval, Load, Piece, prescribed};
 pub(crate) use quantities::Recorder;
@@ -48,6 +49,7 @@ use crate::operator::plan;
 use crate::process::{self, Process, Solved};
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
+use asperity_sweep::is_zero;
 use state::StepState;
 
 pub(crate) struct Stepper {
@@ -108,7 +110,7 @@ impl Stepper {
         let Some(third) = third else { return self.solve(step) };
         let first = self.solve(&step.share(third.at))?;
         if !self.is_apart() {
-            self.history.keep_as_third(&self.state.ends(self.contact.hardness()));
+            self.history.keep_as_third(&self.state.ends(&self.contact));
         } else if third.step < third.at {
             // Nothing presses: the step has no error.
             return Ok(first);
@@ -117,6 +119,12 @@ impl Stepper {
             true => self.solve(step),
             false => self.solve(&step.of_length(third.step / third.at * first.instant.dt)),
         }
+    }
+
+    /// Whether the surfaces are in contact in the attempt.
+    fn touches(&self) -> bool {
+        let [_, now] = self.contact.pressures([&self.state.before, &self.state.now]);
+        !is_zero(now)
     }
 
     fn solve(&mut self, step: &Interval) -> Result<Summary> {
@@ -133,15 +141,19 @@ impl Stepper {
                 self.outcome = report.outcome();
                 return Err(Error::NotConverged(report));
             }
+            Err(Error::PulledOff { load, .. }) => {
+                let last = [self.state.loads[0], self.state.before.approach];
+                return Err(Error::PulledOff { load, time: step.instant.time, last });
+            }
             Err(error) => return Err(error),
         }
         let carried = self.state.meet(prescribed);
         self.tried = Some(step.length());
         Ok(Summary {
             instant: step.instant,
-            error: self.history.error(&step, &self.state.ends(self.contact.hardness())),
+            error: self.history.error(&step, &self.state.ends(&self.contact)),
             is_turn,
-            touches: self.state.now.touches(),
+            touches: self.touches(),
             pulls: self.contact.pulls(),
             reached: Response { approach: self.state.now.approach, load: carried },
             number: f64::NAN,
@@ -211,8 +223,8 @@ impl Stepper {
     /// Those of the processes.
     pub(crate) fn accept(&mut self) -> Result<()> {
         let Some(step) = &self.step else { return Ok(()) };
-        self.history.close(&self.state.ends(self.contact.hardness()))?;
-        let exchange = self.history.exchange(&self.state.ends(self.contact.hardness()));
+        self.history.close(&self.state.ends(&self.contact))?;
+        let exchange = self.history.exchange(&self.state.ends(&self.contact));
         self.contact.commit();
         let time_error = self.history.time_error();
         let mut row = Solved {
@@ -222,7 +234,8 @@ impl Stepper {
         };
         self.processes.iter_mut().try_for_each(|process| process.accept(&mut row))?;
         self.outcome.convolutions += row.convolutions;
-        self.state.end(step.length());
+        let (length, touches) = (step.length(), self.touches());
+        self.state.end(length, touches);
         self.is_open = false;
         Ok(())
     }
@@ -235,12 +248,16 @@ fn solved<'a>(
     state: &'a mut StepState,
     contact: &'a mut StepContact,
 ) -> Solved<'a> {
-    let (operator, hardness, interrupt) = contact.parts();
+    let Parts { operator, hardness, traction, interrupt } = contact.parts();
     let StepState { now, before, loads, gap, undeformed, compliance, .. } = state;
+    let potential = traction
+        .and_then(|traction| traction.quantity(Quantity::AdhesionEnergy, simulation.grid.cell_area()));
     Solved {
         simulation,
         step,
         before,
+        contact: traction.map_or(&now.pressure, |traction| traction.contact()[1]),
+        potential: potential.unwrap_or(0.0),
         now,
         loads: *loads,
         gap,

@@ -52,7 +52,7 @@ impl Step<'_> {
         let Recorder { columns, values } = recorder;
         let grid = &self.simulation.grid;
         let boundary = self.simulation.boundary;
-        let pressure = self.pressure();
+        let pressure = self.contact_pressure();
         let spots = columns
             .iter()
             .any(|column| column.quantity.is_of_spots())
@@ -65,7 +65,7 @@ impl Step<'_> {
         };
         let (c, w) = (self.compliance, self.state.approach);
         let gaps = || {
-            let fields = self.state.unit_displacement.iter().zip(self.gap).zip(&self.state.pressure);
+            let fields = self.state.unit_displacement.iter().zip(self.gap).zip(self.contact_cells());
             fields.filter(|((_, h), _)| **h < f64::INFINITY).map(move |((u, h), p)| (c * u + h - w, *p))
         };
         let mut rest = &mut values[..];
@@ -88,7 +88,7 @@ impl Step<'_> {
                     continue;
                 }
                 Quantity::PressureHistogram => {
-                    let touching = self.state.pressure.iter().copied().filter(|p| *p > 0.0);
+                    let touching = self.contact_cells().iter().copied().filter(|p| *p > 0.0);
                     densities(touching, &column.edges, own);
                     continue;
                 }

@@ -13,6 +13,7 @@ use crate::quantities::{Column, Quantity, contact_edges};
 use crate::simulation::Simulation;
 use crate::sliding::Friction;
 use crate::time::Instant;
+use crate::traction::TractionSolver;
 use asperity_sweep::{Max, kernel, run};
 
 /// The numbers of one row.
@@ -25,7 +26,7 @@ pub struct Row {
     /// w \[m\], zero at first touch of the undeformed bodies. Of a free line contact of half-spaces it is measured from the end of the domain,
     /// x = L: a half-space under a load on a line moves endlessly against points at infinity.
     pub approach: f64,
-    /// Area of the cells with p > 0 \[m^2\].
+    /// Area of the cells in contact, with a contact pressure > 0 \[m^2\].
     pub contact_area: f64,
     /// Contact area less the share of its perimeter (Yastrebov, Anciaux & Molinari 2017) \[m^2\].
     pub contact_area_corrected: f64,
@@ -68,6 +69,8 @@ pub struct Step<'a> {
     pub(crate) simulation: &'a Simulation,
     pub(crate) hardness: Hardness<'a>,
     pub(crate) state: &'a ContactState,
+    /// A traction besides the contact.
+    pub(crate) traction: Option<&'a TractionSolver>,
     /// h0 + g.
     pub(crate) gap: &'a [f64],
     /// c: u = c U + g.
@@ -101,6 +104,7 @@ impl<'a> Step<'a> {
             simulation,
             hardness,
             state,
+            traction: None,
             gap,
             compliance,
             outcome,
@@ -127,6 +131,10 @@ impl<'a> Step<'a> {
     /// asked for.
     pub(crate) fn energy_balance(&self) -> Option<[f64; 2]> {
         let energy = |quantity| self.of_process(quantity);
+        if self.traction.is_some() {
+            // Surfaces that jump into contact or off it lose energy.
+            return None;
+        }
         let kept = energy(Quantity::ElasticEnergy)? + energy(Quantity::DissipatedEnergy)?;
         Some([energy(Quantity::ExternalWork)?, kept + energy(Quantity::FlatteningWork)?])
     }
@@ -134,7 +142,9 @@ impl<'a> Step<'a> {
     /// A quantity that a process tells of this row.
     pub(crate) fn of_process(&self, quantity: Quantity) -> Option<f64> {
         let of_friction = || self.friction.and_then(|friction| friction.quantity(quantity));
-        self.processes.iter().find_map(|process| process.quantity(quantity)).or_else(of_friction)
+        let of_traction = || self.traction?.quantity(quantity, self.simulation.grid.cell_area());
+        let of_process = self.processes.iter().find_map(|process| process.quantity(quantity));
+        of_process.or_else(of_friction).or_else(of_traction)
     }
 
     /// Time, length of the step, prescribed value; `None` of a steady state.
@@ -173,9 +183,26 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// Pressure \[Pa\], shape (nx, ny).
+    /// Pressure \[Pa\], shape (nx, ny): all of it, negative where the surfaces pull at each other.
     pub fn pressure(&self) -> ArrayView2<'a, f64> {
         to_view(self.simulation.grid.shape(), &self.state.pressure)
+    }
+
+    /// Contact pressure \[Pa\], 0 or more, shape (nx, ny): all of the pressure where no other traction acts.
+    pub fn contact_pressure(&self) -> ArrayView2<'a, f64> {
+        to_view(self.simulation.grid.shape(), self.contact_cells())
+    }
+
+    pub(crate) fn contact_cells(&self) -> &'a [f64] {
+        self.traction.map_or(&self.state.pressure, |traction| traction.contact()[1])
+    }
+
+    /// Attraction between the surfaces \[Pa\], 0 or more: contact pressure less pressure.
+    pub fn adhesive_traction_into(&self, traction: &mut Array2<f64>) {
+        traction.fill(0.0);
+        if let Some(law) = self.traction {
+            traction.iter_mut().zip(law.bound()).for_each(|(t, b)| *t = -b);
+        }
     }
 
     /// Gap h = h0 + u - w \[m\]: 0 in contact, negative where capped cells are flattened.
@@ -199,7 +226,7 @@ impl<'a> Step<'a> {
     /// 0 out of contact, 1 in contact, 2 at the hardness.
     pub fn contact_into(&self, contact: &mut Array2<u8>) {
         let state = |p: f64, hardness: f64| u8::from(p > 0.0) + u8::from(p >= hardness);
-        let cells = contact.iter_mut().zip(&self.state.pressure).enumerate();
+        let cells = contact.iter_mut().zip(self.contact_cells()).enumerate();
         cells.for_each(|(n, (c, p))| *c = state(*p, self.hardness.at(n)));
     }
 
@@ -209,6 +236,7 @@ impl<'a> Step<'a> {
         let Simulation { grid, boundary, .. } = self.simulation;
         let survey = Survey {
             p: &state.pressure,
+            q: self.contact_cells(),
             u: &state.unit_displacement,
             h: self.gap,
             hardness: *hardness,
@@ -217,7 +245,8 @@ impl<'a> Step<'a> {
         };
         let ([pressure, touching, capped, gap, touchable], Max(max_pressure)) = run(survey);
         // The border of a free domain is no edge of the contact, and the ends of a line contact are points.
-        let edges = if grid.is_line() { 0 } else { contact_edges(self.pressure(), *boundary).number() };
+        let edges =
+            if grid.is_line() { 0 } else { contact_edges(self.contact_pressure(), *boundary).number() };
         let cell = grid.cell_area();
         Row {
             coordinate: self.coordinate,
@@ -296,6 +325,7 @@ impl Stepper {
             recalled: Some(&*self.history),
             undeformed: Some(undeformed),
             processes: &self.processes,
+            traction: self.contact.traction(),
             ..Step::of(&self.simulation, self.contact.hardness(), (now, self.outcome), (gap, *compliance))
         }
     }
@@ -312,21 +342,21 @@ impl Row {
 }
 
 kernel! {
-    /// The sums of p, of touching cells, of capped ones, of gaps, and of cells that can touch; and the largest p.
+    /// The sums of p, of touching cells (contact pressure q > 0), of capped ones, of gaps, and of cells that can touch; and the largest p.
     struct Survey<'a> {
-        cells { p: &'a [f64], u: &'a [f64], h: &'a [f64], hardness: Hardness<'a> }
+        cells { p: &'a [f64], q: &'a [f64], u: &'a [f64], h: &'a [f64], hardness: Hardness<'a> }
         numbers { c: f64, w: f64 }
     }
     fn run<V>(self) -> ([f64; 5], Max) {
         let [zero, c, w] = [0.0, self.c, self.w].map(V::splat);
         let (mut sums, mut peak) = ([zero; 5], zero);
         for n in (0..self.p.len()).step_by(8) {
-            let [p, u] = [self.p, self.u].map(|field| V::load(field, n, 0.0));
+            let [p, q, u] = [self.p, self.q, self.u].map(|field| V::load(field, n, 0.0));
             let h = V::load(self.h, n, f64::INFINITY);
             let can_touch = h.less(V::splat(f64::INFINITY));
-            let capped = self.hardness.load::<V>(n).at_most(p);
+            let capped = self.hardness.load::<V>(n).at_most(q);
             let gap = (c * u + h - w).only(can_touch);
-            let terms = [p, V::count(zero.less(p)), V::count(capped), gap, V::count(can_touch)];
+            let terms = [p, V::count(zero.less(q)), V::count(capped), gap, V::count(can_touch)];
             sums = std::array::from_fn(|k| sums[k] + terms[k]);
             peak = p.larger(peak);
         }

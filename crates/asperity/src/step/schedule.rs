@@ -25,8 +25,10 @@ use crate::load::{Control, Event, History, Stage};
 use crate::material::ReducedTime;
 use crate::quantities::RowNumber;
 use crate::simulation::Simulation;
-use crate::time::{Instant, SAME, Span, Stop, TimeGrid, agree, stops};
+use crate::time::{Instant, SAME, SHORTEST, Span, Stop, TimeGrid, agree, stops};
 
+/// The last equilibrium is found to this share of the step.
+const CLOSEST: f64 = 1e-3;
 /// Steps to the period of a sine, at least, where steps are adaptive.
 const STEPS_PER_PERIOD: f64 = 40.0;
 
@@ -88,8 +90,12 @@ enum Search {
     Length,
     /// The event within the step.
     Event { event: Event, enclosure: Enclosure },
+    /// The longest step that ends in equilibrium: lengths with and without one.
+    Equilibrium { with: f64, without: f64 },
     /// The row ends where the event has just happened.
     End,
+    /// It ends with the last equilibrium.
+    Last,
 }
 
 /// What is planned of a run.
@@ -312,11 +318,45 @@ impl Schedule {
         longest
     }
 
+    /// What to try after an attempt that found no equilibrium: the longest step with one is found to a thousandth. `None` where steps
+    /// have given lengths and the end of contact is not waited for, or where the last row is the last equilibrium.
+    pub(crate) fn retreat(&mut self, tried: &Interval) -> Option<Interval> {
+        let without = tried.length();
+        let with = match self.search {
+            Search::Equilibrium { with, .. } => with,
+            _ if self.size.is_some() || self.awaits_parting() => 0.0,
+            _ => return None,
+        };
+        self.search = Search::Equilibrium { with, without };
+        if without <= SHORTEST * self.plan.times.end() {
+            return None;
+        }
+        Some(tried.of_length(self.between().unwrap_or(with)))
+    }
+
+    /// The length to try between those with and without an equilibrium; `None` where they are close enough: the search is at its end.
+    fn between(&mut self) -> Option<f64> {
+        let Search::Equilibrium { with, without } = self.search else { return None };
+        if without - with > CLOSEST * without {
+            return Some(0.5 * (with + without));
+        }
+        self.search = if self.awaits_parting() { Search::End } else { Search::Last };
+        None
+    }
+
+    fn awaits_parting(&self) -> bool {
+        self.stage().until == Some(Event::ContactLost)
+    }
+
     /// Whether the attempt at an interval stands, or what to try instead.
     pub(crate) fn assess(&mut self, tried: &Interval, attempt: &Summary) -> Verdict {
         let dt = attempt.instant.dt;
         match &mut self.search {
-            Search::End => return Verdict::Accept,
+            Search::End | Search::Last => return Verdict::Accept,
+            Search::Equilibrium { with, .. } => {
+                *with = dt;
+                return self.between().map_or(Verdict::Accept, |dt| Verdict::Try(tried.of_length(dt)));
+            }
             Search::Length => {
                 let size = self.size.as_ref().filter(|_| !attempt.instant.jump);
                 if let Some(dt) = size.and_then(|size| size.rejects(dt, attempt.error?)) {
@@ -383,7 +423,7 @@ impl Schedule {
         }
         let before = match (event, control) {
             // The distance between the bodies is known only of open ones.
-            (Event::ContactLost, Control::Approach) => f64::NAN,
+            (Event::ContactLost, Control::Approach) if !attempt.pulls => f64::NAN,
             _ => side * start,
         };
         Some(Search::Event { event, enclosure: Enclosure::new(dt, before, side * signal) })
@@ -400,6 +440,8 @@ impl Schedule {
             Event::Load(value) => (load - value, MET * heaviest.max(value.abs())),
             Event::Pressure(value) => (load / area - value, MET * value.abs().max(heaviest / area)),
             Event::Number(_, value) => (attempt.number - value, MET * value.abs().max(self.number.abs())),
+            // Surfaces that pull at each other part at once.
+            Event::ContactLost if attempt.pulls => (if attempt.touches { 1.0 } else { -1.0 }, 0.0),
             Event::ContactLost if attempt.instant.control == Control::Approach => {
                 (approach - attempt.first_touch, MET * deepest)
             }

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{Loader, Saver, Stepper, UndeformedGap, saved};
-use crate::contact::{ContactState, Hardness, Prescribed};
+use super::{Loader, Saver, StepContact, Stepper, UndeformedGap, saved};
+use crate::contact::{ContactState, Prescribed};
 use crate::error::Result;
 use crate::history::Ends;
 use crate::simulation::Simulation;
@@ -42,10 +42,11 @@ impl StepState {
     }
 
     /// Both ends of the step of the attempt.
-    pub(super) fn ends<'a>(&'a self, hardness: Hardness<'a>) -> Ends<'a> {
+    pub(super) fn ends<'a>(&'a self, contact: &'a StepContact) -> Ends<'a> {
         let StepState { now, before, gap, undeformed, .. } = self;
+        let (pressures, hardness) = (contact.pressures([before, now]), contact.hardness());
         let (rigid, rigid_before) = (undeformed.now(), undeformed.before());
-        Ends { before, now, loads: self.loads, gap, rigid, rigid_before, hardness }
+        Ends { before, now, pressures, loads: self.loads, gap, rigid, rigid_before, hardness }
     }
 
     /// The load that the attempt carries \[N\]; its own is the prescribed one, where that is a load.
@@ -64,10 +65,10 @@ impl StepState {
     }
 
     /// The attempt stands as a row, after a step of this length.
-    pub(super) fn end(&mut self, length: f64) {
+    pub(super) fn end(&mut self, length: f64, touches: bool) {
         self.loads[0] = self.loads[1];
         self.last_length = length;
-        self.touched = self.now.touches();
+        self.touched = touches;
     }
 }
 
@@ -90,6 +91,9 @@ impl Stepper {
     pub(crate) fn save<'a>(&'a self, to: &mut Saver<'a>) {
         self.state.save_own(to);
         to.within("history", |to| self.history.save(to));
+        if let Some(traction) = self.contact.traction() {
+            to.within("traction", |to| traction.save_own(to));
+        }
         to.value("processes", &self.processes.len());
         for process in &self.processes {
             to.within(process.name(), |to| {
@@ -105,7 +109,10 @@ impl Stepper {
     /// [`Error::Invalid`](crate::Error::Invalid) where it belongs to another simulation.
     pub(crate) fn load(&mut self, from: &mut Loader<'_>) -> Result<()> {
         self.state.load_own(from)?;
-        self.state.touched = self.state.now.touches();
+        if let Some(traction) = self.contact.traction_mut() {
+            from.within("traction", |from| traction.load(from))?;
+        }
+        self.state.touched = self.touches();
         if from.get::<usize>("processes")? != self.processes.len() {
             return Err(from.foreign("other quantities or processes"));
         }

@@ -142,6 +142,11 @@ impl Stepper {
     /// Makes the guess for the contact of `step` in `self.state.now`, which holds the row before the last one, or the last attempt at this
     /// row.
     pub(super) fn guess(&mut self, step: &Interval, prescribed: Prescribed) -> Start {
+        if self.contact.pulls() {
+            // The traction keeps its own start.
+            self.state.now.approach = self.state.before.approach;
+            return Start::Pressure;
+        }
         if let Some(start) = self.guess_shifted(step, prescribed) {
             return start;
         }

@@ -16,6 +16,17 @@ impl Extrapolation {
         self.passes.clear();
     }
 
+    /// Sets `bound` to B of the last pass, where `bound` was extrapolated beyond it, and forgets the others; `false` where it was not.
+    pub(super) fn take_back(&mut self, bound: &mut [f64]) -> bool {
+        if self.passes.len() < 2 {
+            return false;
+        }
+        let Some([b, f]) = self.passes.pop() else { return false };
+        self.passes.clear();
+        each(bound, (&b[..], &f[..]), |to, (b, f)| *to = b + f);
+        true
+    }
+
     /// Sets `bound` to the next b after a pass that gave `next` = B(b). Where the pass `failed`, half a plain step from the pass
     /// before it.
     pub(super) fn step(&mut self, bound: &mut [f64], next: &[f64], failed: bool) {

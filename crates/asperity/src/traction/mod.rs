@@ -4,22 +4,30 @@
 //! the same convex problem with another gap and load, so one loop around the unchanged contact solver serves every law:
 //!
 //! ```text
+//! b = that of the last row
 //! repeat:
 //!     h' = h + c K b                                    one convolution
 //!     q, w = contact of c K, h', load W/A - Σ b or approach w
 //!     g = h' + c K q - w,   B = b(g, q),   f = B - b
-//!     stop where Σ|f| <= tolerance (Σ|B| + Σ q), the largest of all passes
-//!     b = extrapolation of the last passes where it lowers the residual, else a shorter plain step
+//!     stop where Σ|f| <= tolerance (Σ|B| + Σ q), in which a force counts as none below 1e-4 of the largest one so far
+//!     b = extrapolation of the last passes where it lowers the residual, else a plain step
 //! ```
 //!
-//! Under a prescribed load W a pass in which Σ b alone exceeds W/A leaves no load to the contact: then the approach is searched at
-//! which the tractions carry W. After convergence the state holds t and U = K t: what the bodies remember is the total traction.
+//! Under a prescribed load W a pass in which Σ b alone exceeds W/A leaves no load to the contact. Then the approach is searched at
+//! which the tractions carry W; an attraction that falls with the gap carries none stably, so there the surfaces are pulled off. After convergence the
+//! state holds t and U = K t: what the bodies remember is the total traction.
+//!
+//! Each attempt at a row begins with the b of the last row, not with that of the attempt before: where several equilibria
+//! exist the row is on the branch that is connected with the last one.
 
+mod adhesion;
 mod extrapolation;
 #[cfg(test)]
 mod tests;
 
 use std::sync::atomic::AtomicBool;
+
+pub use adhesion::{Adhesion, AdhesionLaw, FINE_TRAP, LARGEST_TRAP, own_response};
 
 use crate::contact::{
     ContactState, Outcome, Prescribed, Problem, Solver, SolverOptions, Task, not_converged,
@@ -27,11 +35,16 @@ use crate::contact::{
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::operator::Operator;
-use asperity_sweep::{each, sum, sums};
+use crate::quantities::Quantity;
+use crate::simulation::Simulation;
+use crate::step::{Loader, saved};
+use asperity_sweep::{each, sum, sums, zeros};
 use extrapolation::Extrapolation;
 
+/// Forces below this share of the largest one of the run are none.
+const LEAST: f64 = 1e-4;
 /// Passes after which a solve is given up.
-const MOST_PASSES: usize = 200;
+const MOST_PASSES: usize = 500;
 /// The contact of a pass is solved to this share of the tolerance of the loop.
 const INNER: f64 = 0.1;
 /// Approaches tried for a load that the contact does not carry.
@@ -41,6 +54,19 @@ const MOST_APPROACHES: usize = 100;
 pub trait TractionLaw: std::fmt::Debug + Send + Sync {
     /// The tractions of a run on this grid.
     fn start(&self, grid: &Grid) -> Box<dyn SurfaceTraction>;
+
+    /// Tolerance of the loop, where it is not that of the contact.
+    fn tolerance(&self) -> Option<f64> {
+        None
+    }
+
+    /// What can be known to be wrong before the first solve.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`], whose parameter is a key of the law's table.
+    fn check(&self, _simulation: &Simulation) -> Result<()> {
+        Ok(())
+    }
 }
 
 /// Tractions on the surfaces that depend on the gap.
@@ -58,6 +84,16 @@ pub trait SurfaceTraction: Send {
         None
     }
 
+    /// The least and the largest traction \[Pa\].
+    fn limits(&self) -> [f64; 2] {
+        [f64::NEG_INFINITY, f64::INFINITY]
+    }
+
+    /// Whether γ is concave: then no plain pass raises the energy, and no surfaces that are apart hold a load in tension stably.
+    fn is_attraction(&self) -> bool {
+        false
+    }
+
     /// The step stands: what the law remembers of it is kept.
     fn commit(&mut self) {}
 }
@@ -65,72 +101,154 @@ pub trait SurfaceTraction: Send {
 /// The loop around the contact solver.
 pub(crate) struct TractionSolver {
     law: Box<dyn SurfaceTraction>,
-    /// b, K b, and B of the pass.
-    bound: Vec<f64>,
+    tolerance: Option<f64>,
+    /// The traction b and the contact pressure q of the last row, with which each attempt begins.
+    last: Tractions,
+    now: Tractions,
+    /// K b, and B of the pass.
     image: Vec<f64>,
     next: Vec<f64>,
     /// h', and then g.
     shifted: Vec<f64>,
     gap: Vec<f64>,
+    extrapolation: Extrapolation,
+    /// The largest Σ|B| + Σ q of all passes.
+    scale: f64,
+    /// Of the last solve.
+    passes: usize,
+    residual: f64,
+}
+
+/// The parts of a total traction.
+struct Tractions {
+    /// b \[Pa\].
+    bound: Vec<f64>,
     /// The contact pressure q with K q.
     contact: ContactState,
-    extrapolation: Extrapolation,
-    /// The largest Σ|B| + Σ q of all passes: what a force of nothing is measured by.
-    scale: f64,
+}
+
+impl Tractions {
+    fn none(cells: usize) -> Self {
+        Tractions { bound: zeros(cells), contact: ContactState::new(cells) }
+    }
+
+    fn copy_from(&mut self, other: &Self) {
+        self.bound.copy_from_slice(&other.bound);
+        let (to, from) = (&mut self.contact, &other.contact);
+        to.pressure.copy_from_slice(&from.pressure);
+        to.unit_displacement.copy_from_slice(&from.unit_displacement);
+        (to.approach, to.rounding) = (from.approach, from.rounding);
+    }
+}
+
+saved! {
+    TractionSolver {
+        "contact": last.contact.approach, last.contact.rounding;
+        "scale": scale;
+    }
+    fields {
+        "bound": last.bound;
+        "contact_pressure": last.contact.pressure;
+        "contact_displacement": last.contact.unit_displacement;
+    }
 }
 
 /// One pass of the loop.
 #[derive(Clone, Copy)]
 struct Pass {
     outcome: Outcome,
-    /// Σ|B - b| over the largest Σ|B| + Σ q of all passes.
+    /// Σ|B - b| over Σ|B| + Σ q.
     residual: f64,
     /// 1/2 <t, c K t> + Σ γ(g), less the work of a prescribed load.
     energy: Option<f64>,
 }
 
 impl TractionSolver {
-    pub(crate) fn new(law: Box<dyn SurfaceTraction>, cells: usize) -> Self {
-        let zeros = || vec![0.0; cells];
+    pub(crate) fn new(law: &dyn TractionLaw, grid: &Grid) -> Self {
+        let cells = grid.len();
         TractionSolver {
-            law,
-            bound: zeros(),
-            image: zeros(),
-            next: zeros(),
-            shifted: zeros(),
-            gap: zeros(),
-            contact: ContactState::new(cells),
+            law: law.start(grid),
+            tolerance: law.tolerance(),
+            last: Tractions::none(cells),
+            now: Tractions::none(cells),
+            image: zeros(cells),
+            next: zeros(cells),
+            shifted: zeros(cells),
+            gap: zeros(cells),
             extrapolation: Extrapolation::default(),
             scale: 0.0,
+            passes: 0,
+            residual: 0.0,
         }
+    }
+
+    /// Takes back what `save_own` gave.
+    ///
+    /// # Errors
+    /// Where it belongs to another simulation.
+    pub(crate) fn load(&mut self, from: &Loader<'_>) -> Result<()> {
+        self.load_own(from)?;
+        self.now.copy_from(&self.last);
+        Ok(())
     }
 
     /// The step stands.
     pub(crate) fn commit(&mut self) {
         self.law.commit();
+        self.last.copy_from(&self.now);
+    }
+
+    /// The contact pressures q of the last row and of the last attempt \[Pa\].
+    pub(crate) fn contact(&self) -> [&[f64]; 2] {
+        [&self.last.contact.pressure, &self.now.contact.pressure]
+    }
+
+    /// The traction b of the last attempt \[Pa\]; tension is negative.
+    pub(crate) fn bound(&self) -> &[f64] {
+        &self.now.bound
+    }
+
+    /// A quantity of the last attempt on cells of this area \[m²\].
+    pub(crate) fn quantity(&self, quantity: Quantity, cell_area: f64) -> Option<f64> {
+        Some(match quantity {
+            Quantity::AdhesiveLoad => -cell_area * sum(&self.now.bound),
+            Quantity::RepulsiveLoad => cell_area * sum(&self.now.contact.pressure),
+            Quantity::AdhesionEnergy => cell_area * self.law.energy(&self.gap)?,
+            Quantity::OuterIterations => self.passes as f64,
+            Quantity::AdhesionResidual => self.residual,
+            _ => return None,
+        })
     }
 
     /// Solves for the total traction, which `state` holds in the end; its approach is where the search starts.
     ///
     /// # Errors
-    /// [`Error::NotConverged`], and those of the contact and of the law.
+    /// [`Error::NotConverged`], [`Error::PulledOff`], and those of the contact and of the law.
     pub(crate) fn solve(&mut self, solver: &mut Solver, task: Task) -> Result<Outcome> {
         let Task { operator, problem, options, state, interrupt } = task;
-        let mut run = Run { own: self, solver, operator, options, interrupt, total: Outcome::default() };
+        self.now.copy_from(&self.last);
+        self.passes = 0;
+        let tolerance = self.tolerance.unwrap_or(options.tolerance);
+        let mut run =
+            Run { own: self, solver, operator, options, tolerance, interrupt, total: Outcome::default() };
         match problem.prescribed {
             Prescribed::Approach(_) => run.solve(problem)?,
             Prescribed::Load(load) => match run.solve(problem) {
+                Err(Error::Infeasible { .. }) if run.own.law.is_attraction() => {
+                    return Err(Error::PulledOff { load, time: f64::NAN, last: [f64::NAN; 2] });
+                }
                 Err(Error::Infeasible { .. }) => run.search_approach(problem, load, state.approach)?,
                 solved => solved?,
             },
         }
-        let total = run.total;
-        for n in 0..self.bound.len() {
-            state.pressure[n] = self.contact.pressure[n] + self.bound[n];
-            state.unit_displacement[n] = self.contact.unit_displacement[n] + self.image[n];
-        }
-        state.approach = self.contact.approach;
-        state.rounding = self.contact.rounding + 1.0;
+        let (total, residual) = (run.total, run.total.residual);
+        self.residual = residual;
+        let Tractions { bound, contact } = &self.now;
+        each(&mut state.pressure, (&contact.pressure[..], &bound[..]), |t, (q, b)| *t = q + b);
+        let images = (&contact.unit_displacement[..], &self.image[..]);
+        each(&mut state.unit_displacement, images, |u, (kq, kb)| *u = kq + kb);
+        state.approach = contact.approach;
+        state.rounding = contact.rounding + 1.0;
         Ok(total)
     }
 }
@@ -141,6 +259,7 @@ struct Run<'a> {
     solver: &'a mut Solver,
     operator: &'a mut dyn Operator,
     options: &'a SolverOptions,
+    tolerance: f64,
     interrupt: Option<&'a AtomicBool>,
     total: Outcome,
 }
@@ -152,17 +271,33 @@ impl Run<'_> {
         let mut best = f64::INFINITY;
         let mut energy = f64::INFINITY;
         for _ in 0..MOST_PASSES {
-            let pass = self.pass(problem)?;
+            self.own.passes += 1;
+            let is_attraction = self.own.law.is_attraction();
+            let pass = match self.pass(problem) {
+                // Extrapolated too far.
+                Err(Error::Infeasible { .. })
+                    if is_attraction && self.own.extrapolation.take_back(&mut self.own.now.bound) =>
+                {
+                    continue;
+                }
+                pass => pass?,
+            };
             self.total = self.total.then(pass.outcome);
             self.total.convolutions += 1;
             self.total.residual = pass.residual.max(pass.outcome.residual);
-            if pass.residual <= self.options.tolerance {
+            if pass.residual <= self.tolerance {
                 return Ok(());
             }
             let rises = pass.energy.is_some_and(|now| now > energy + 1e-6 * now.abs());
             let own = &mut *self.own;
-            // Where an extrapolation raised the energy or doubled the residual it is taken back.
-            own.extrapolation.step(&mut own.bound, &own.next, rises || pass.residual > 2.0 * best);
+            // An extrapolation that raised the energy is taken back: of an attraction to the plain pass, which never does. Others may
+            // also diverge.
+            if !(rises && is_attraction && own.extrapolation.take_back(&mut own.now.bound)) {
+                let failed = !is_attraction && (rises || pass.residual > 2.0 * best);
+                own.extrapolation.step(&mut own.now.bound, &own.next, failed);
+                let [least, most] = own.law.limits();
+                own.now.bound.iter_mut().for_each(|b| *b = b.clamp(least, most));
+            }
             best = best.min(pass.residual);
             energy = pass.energy.map_or(energy, |now| now.min(energy));
         }
@@ -171,12 +306,13 @@ impl Run<'_> {
 
     fn pass(&mut self, problem: &Problem) -> Result<Pass> {
         let (own, c) = (&mut *self.own, problem.compliance);
-        self.operator.apply_into(&own.bound, &mut own.image);
+        let bound = &own.now.bound[..];
+        self.operator.apply_into(bound, &mut own.image);
         each(&mut own.shifted, (problem.gap, &own.image[..]), |to, (h, u)| *to = h + c * u);
         let cell_area = self.operator.grid().cell_area();
         let prescribed = match problem.prescribed {
             Prescribed::Load(load) => {
-                let carried = load - cell_area * sum(&own.bound);
+                let carried = load - cell_area * sum(bound);
                 if carried <= 0.0 {
                     return Err(Error::Infeasible { parameter: String::new(), load: carried, max: 0.0 });
                 }
@@ -185,34 +321,31 @@ impl Run<'_> {
             approach => approach,
         };
         let inner = Problem { gap: &own.shifted, prescribed, ..*problem };
-        let options =
-            SolverOptions { tolerance: (INNER * self.options.tolerance).max(1e-14), ..*self.options };
-        let (solver, state) = (&mut *self.solver, &mut own.contact);
-        let outcome = solver.solve(self.operator, &inner, &options, state, self.interrupt)?;
-        let w = own.contact.approach;
-        let fields = (&own.shifted[..], &own.contact.unit_displacement[..]);
+        let options = SolverOptions { tolerance: (INNER * self.tolerance).max(1e-14), ..*self.options };
+        let (solver, contact) = (&mut *self.solver, &mut own.now.contact);
+        let outcome = solver.solve(self.operator, &inner, &options, contact, self.interrupt)?;
+        let w = contact.approach;
+        let fields = (&own.shifted[..], &contact.unit_displacement[..]);
         each(&mut own.gap, fields, |to, (h, u)| *to = (h + c * u - w).max(0.0));
-        self.own.law.bound(&self.own.gap, &self.own.contact.pressure, &mut self.own.next)?;
-        let own = &*self.own;
+        own.law.bound(&own.gap, &contact.pressure, &mut own.next)?;
+        let Tractions { bound, contact } = &own.now;
         let fields = (
-            (&own.bound[..], &own.next[..], &own.contact.pressure[..]),
-            (&own.image[..], &own.contact.unit_displacement[..]),
+            (&bound[..], &own.next[..], &contact.pressure[..]),
+            (&own.image[..], &contact.unit_displacement[..]),
         );
         let [change, size, work, total] = sums(fields, |((b, next, q), (kb, kq))| {
             let t = b + q;
             [(next - b).abs(), next.abs() + q, t * (kb + kq), t]
         });
-        let scale = own.scale.max(size);
+        own.scale = own.scale.max(size);
         let potential = own.law.energy(&own.gap);
-        self.own.scale = scale;
         let of_load = if matches!(problem.prescribed, Prescribed::Load(_)) { w * total } else { 0.0 };
         Ok(Pass {
             outcome,
-            residual: if change > 0.0 { change / scale } else { 0.0 },
+            residual: if change > 0.0 { change / size.max(LEAST * own.scale) } else { 0.0 },
             energy: potential.map(|potential| 0.5 * c * work + potential - of_load),
         })
     }
-
     /// The approach at which the tractions carry `load`, from `start` on: enclosed by growing steps, found by the Illinois form of
     /// false position.
     fn search_approach(&mut self, problem: &Problem, load: f64, start: f64) -> Result<()> {
@@ -221,12 +354,12 @@ impl Run<'_> {
         let excess = |run: &mut Self, w: f64| -> Result<f64> {
             run.solve(&Problem { prescribed: Prescribed::Approach(w), ..*problem })?;
             let own = &run.own;
-            Ok(cell_area * (sum(&own.bound) + sum(&own.contact.pressure)) - load)
+            Ok(cell_area * (sum(&own.now.bound) + sum(&own.now.contact.pressure)) - load)
         };
         let (mut a, mut fa) = (start, excess(self, start)?);
         let mut step = if fa > 0.0 { -1e-3 } else { 1e-3 } * scale.max(start.abs()).max(1e-12);
         // The passes are known to their tolerance.
-        let small = 10.0 * self.options.tolerance * load.abs().max(cell_area * self.own.scale);
+        let small = 10.0 * self.tolerance * load.abs().max(cell_area * self.own.scale);
         let (mut b, mut fb) = (a, fa);
         for _ in 0..MOST_APPROACHES {
             if fb.abs() <= small {

@@ -1,6 +1,7 @@
 //! The facts about contacts, in one program.
 
 mod adaptive;
+mod adhesion;
 mod capped;
 mod conditions;
 mod contact;

@@ -95,16 +95,16 @@ impl Relaxation {
         let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
         // What the solver leaves of u.
         let [energy, pressure] =
-            sums((&ends.now.pressure[..], &ends.now.unit_displacement[..]), |(p, unit)| [p * unit, p]);
+            sums((&ends.now.pressure[..], &ends.now.unit_displacement[..]), |(p, unit)| [p * unit, p.abs()]);
         let compliance = self.rules.compliance;
         let left = if pressure > 0.0 { self.tolerance * compliance * energy / pressure } else { 0.0 };
         let sums = run(Sums {
             u: &self.displacement,
             third: &self.third,
             rigid_before: ends.rigid_before,
-            p: &ends.before.pressure,
+            p: ends.pressures[0],
             unit: &ends.before.unit_displacement,
-            p_now: &ends.now.pressure,
+            p_now: ends.pressures[1],
             unit_now: &ends.now.unit_displacement,
             gap: ends.gap,
             rigid: ends.rigid,

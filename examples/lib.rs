@@ -43,7 +43,9 @@ templates!(
     "lip-seal",
     "gasket",
     "coated-steel",
-    "gel-on-glass"
+    "gel-on-glass",
+    "adhesive-sphere",
+    "gel-adhesion"
 );
 
 /// Cases of the figures of Spinu and Cerlinca (2017), which `asperity reproduce` computes.

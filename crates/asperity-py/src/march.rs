@@ -50,9 +50,9 @@ impl March {
         let made = without_python(py, &interrupt, || -> Result<_, CaseErrors> {
             let mut case = Case::given(&keys, &arrays, Path::new(""))?;
             case.conditions.include = include;
-            let setup = serde_json::Value::Object(session::setup(&case)).to_string();
             let parts = case.parts()?;
             let simulation = case.simulation_of(&parts)?;
+            let setup = serde_json::Value::Object(session::setup(&case, &simulation)).to_string();
             let steady = case.steady_of(&parts, &simulation)?;
             // An array does not tell what it is made of.
             let known = Known { parts: &[], bodies: &case.bodies, thickness: case.thickness };
@@ -220,6 +220,8 @@ impl March {
                 FieldKind::Gap => step.gap_into(&mut field),
                 FieldKind::Displacement => step.displacement_into(&mut field),
                 FieldKind::Flattening => step.flattening_into(&mut field),
+                FieldKind::ContactPressure => field.assign(&step.contact_pressure()),
+                FieldKind::AdhesiveTraction => step.adhesive_traction_into(&mut field),
                 FieldKind::Pressure | FieldKind::Contact => field.assign(&step.pressure()),
             }
             // Of a contact that moves, in its frame.

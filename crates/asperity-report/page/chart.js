@@ -59,7 +59,7 @@ class Chart {
     this.legend = make("div", { class: "legend", "aria-live": "polite" });
     this.plot = make("div", { class: "plot", tabindex: "0", role: "img" });
     this.note = make("p", { class: "note" });
-    this.box = make("div", { class: "chart" }, make("div", { class: "head" }, this.heading, this.switches), this.legend, this.plot, this.note);
+    this.box = make("div", { class: spec.free ? "chart free" : "chart" }, make("div", { class: "head" }, this.heading, this.switches), this.legend, this.plot, this.note);
     host.append(this.box);
     this.plot.addEventListener("keydown", (event) => {
       const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
@@ -270,7 +270,7 @@ class Chart {
     this.reserve();
     this.uplot.over.addEventListener("mousedown", () => (Chart.dragged = this));
     this.uplot.over.addEventListener("click", () => this.pick?.(this.uplot.posToVal(this.uplot.cursor.left, "x")));
-    for (const name of this.legend.querySelectorAll("tr:not(:first-child) th, .u-series:only-child th")) {
+    for (const name of this.legend.querySelectorAll(this.spec.free ? "th" : "tr:not(:first-child) th, .u-series:only-child th")) {
       name.tabIndex = 0;
       name.title = "Hide or show this curve";
       name.addEventListener("keydown", (event) => (event.key === "Enter" || event.key === " ") && (event.preventDefault(), name.click()));

@@ -21,6 +21,7 @@ class Panels {
 
 // Charts over the rows have one cursor and one zoom; a click shows the maps of that time.
 const overRows = { shared: "rows", pick: (at) => showNearest(at) };
+const forces = new Panels("evolution", {});
 const evolution = new Panels("evolution", overRows);
 const loading = new Panels("evolution", {});
 const cyclesOf = new Panels("evolution", { shared: "cycle number" });
@@ -42,8 +43,18 @@ function stages() {
   return stage.flatMap((now, n) => (n > 0 && now !== stage[n - 1] ? [{ at: state.series.time[n], text: `stage ${now + 1}` }] : []));
 }
 
+/** Load over approach of surfaces that adhere: both branches, and the pull-off. */
+function forceCurve({ approaching, parting, pull_off }) {
+  const x = numbers("approach"), gaps = (values) => values.map((value) => value ?? NaN);
+  return { title: "Load over approach", free: true, x: { label: "approach", unit: "m" }, y: { label: "load", unit: state.units.load },
+    events: [{ at: x[pull_off], text: "pull-off" }],
+    series: [{ name: "approaching", x, y: gaps(approaching) }, { name: "parting", x, y: gaps(parting) }] };
+}
+
 function evolutionPart() {
   const time = state.series.time, events = stages();
+  const adheres = Boolean(state.force_curve);
+  if (adheres) forces.set([forceCurve(state.force_curve)]);
   evolution.set(state.evolution.map(([title, label, names, states]) => ({
     title,
     x: rowsAxis(),
@@ -64,7 +75,7 @@ function evolutionPart() {
     const values = numbers(key).filter(isFinite), low = Math.min(...values), high = Math.max(...values);
     return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high));
   };
-  const whole = varies("load") && varies("approach") ? [over("Load over approach")] : [];
+  const whole = !adheres && varies("load") && varies("approach") ? [over("Load over approach")] : [];
   loading.set([...whole, ...(cycle ? [over("Load over approach, last cycle", cycle[0], cycle[1] + 1)] : [])]);
   $("last-cycle").hidden = !cycle;
   cyclesOf.set(state.cycles.filter((part) => part.loss_angle.length > 1).flatMap(cyclePanels));

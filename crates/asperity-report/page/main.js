@@ -57,7 +57,7 @@ async function follow() {
     cache.clear();
     single.clear();
   }
-  for (const key of ["series", "status", "headline", "facts", "findings", "instants", "fields", "running", "stress", "leak", "last_cycle", "cycles"]) state[key] = next[key];
+  for (const key of ["series", "status", "headline", "facts", "findings", "instants", "fields", "running", "stress", "leak", "last_cycle", "force_curve", "cycles"]) state[key] = next[key];
   summary();
   stressPart();
   evolutionPart();

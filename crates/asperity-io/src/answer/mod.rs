@@ -3,6 +3,7 @@
 //! | result | answers |
 //! |---|---|
 //! | with leakage | `leak_rate` (of a gas also `leak_rate_standard`), `hydraulic_gap`, `tight_from` |
+//! | with adhesion | `pull_off_force`, `pull_off_approach` |
 //! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force` |
 //! | with a sine | `loss_angle`, `dissipated_energy`, `dynamic_stiffness` of the last cycle |
 //! | every contact | `contact_area`, `contact_area_corrected`, `contact_fraction`, `max_pressure`, `approach` and `creep` where the load is given, `load` and `relaxation` where the approach is |
@@ -11,6 +12,7 @@
 //! They are those of the last row; if nothing touches there, of the row with the largest load; of a sweep, of the velocity with the largest
 //! friction. Summaries, comparisons, reports, error bars and studies all read them here.
 
+mod adhesion;
 mod contact;
 mod leak;
 mod motion;
@@ -70,7 +72,7 @@ impl Answer {
     pub fn label(&self) -> String {
         match (self.name.as_str(), self.unit) {
             ("contact_area", "m") => "contact length".into(),
-            (name, _) => name.replace('_', " "),
+            (name, _) => name.replace('_', " ").replace("pull off", "pull-off"),
         }
     }
 
@@ -93,6 +95,7 @@ pub fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     let rows = reader.rows()?;
     let Some(decisive) = decisive(reader, &rows)? else { return Ok(vec![]) };
     let mut answers = leak::of(reader, units)?;
+    answers.extend(adhesion::of(reader, &rows));
     answers.extend(motion::of(reader, &rows, decisive)?);
     answers.extend(last_cycle(reader)?);
     answers.extend(contact::of(reader, &rows, decisive)?);

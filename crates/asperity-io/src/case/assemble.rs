@@ -1,10 +1,11 @@
 //! From the sections to the case: the order of the conversions, and the checks that need several sections.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use asperity::load::Course;
 use asperity::time::Plan;
-use asperity::{Grid, Programme, Scheme, Simulation, TimeGrid};
+use asperity::{Control, Grid, Programme, Scheme, Simulation, TimeGrid};
 use ndarray::Array2;
 
 use super::body::{self, Body};
@@ -20,6 +21,7 @@ use super::text::Text;
 use super::warmth;
 use super::{Case, motion, time};
 use crate::Code;
+use crate::store::FieldKind;
 
 /// Most letters of a title.
 const TITLE: usize = 1000;
@@ -93,12 +95,18 @@ impl Document {
             let shortest = samples().map(|sample| sample.shortest(points, end));
             time::first_step(shortest.fold(f64::INFINITY, f64::min), course)
         };
-        let loading = self.load.programme(&at("load"), line, &first_step);
+        let adhesion = self.adhesion.as_ref().map(|adhesion| adhesion.law(&at("adhesion")));
+        let usual = adhesion.is_some().then_some(Control::Approach);
+        let loading = self.load.programme(&at("load"), line, usual, &first_step);
         let programme = loading.as_ref().map(|(programme, _)| programme);
         if self.motion.is_none() {
             motion::nothing_moves(&at("surface"), &self.surface);
         }
         let motion = self.motion.as_ref().and_then(|motion| motion.moving(&at("motion"), &self.surface));
+        if self.motion.is_some() && self.adhesion.is_some() {
+            let help = "delete one of the two sections";
+            at("motion").fault::<()>("surfaces that slide do not adhere here", "no [adhesion]", help);
+        }
         let swept = motion.as_ref().and_then(Motion::swept);
         let times = match (&motion, &grid, &self.time) {
             (Some(motion), Some(grid), _) if swept.is_some() => motion.times(&at("motion"), grid),
@@ -119,6 +127,12 @@ impl Document {
         let stops = motion.as_ref().zip(grid.as_ref()).zip(times.as_ref());
         let stops = stops.and_then(|((motion, grid), times)| motion.stops(&at("motion"), grid, times.end()));
         let output = self.output.output(&at("output"), times.as_ref(), programme, default_path);
+        let output = output.map(|mut output| {
+            if self.adhesion.is_some() && self.output.is_silent_on_fields() {
+                output.fields.insert(FieldKind::ContactPressure);
+            }
+            output
+        });
         let known = swept.or(stops.as_ref().map(Vec::len));
         let output = output.map(|output| match known.filter(|_| self.output.is_silent_on_rows()) {
             Some(count) => Output { rows: Rows::Every((count / 10).max(1)), ..output },
@@ -158,6 +172,12 @@ impl Document {
         }
         let conditions =
             self.conditions(grid, pair.as_ref(), programme, times.as_ref(), hardness.as_ref(), include);
+        let conditions = match adhesion {
+            None => conditions,
+            Some(law) => law
+                .zip(conditions)
+                .map(|(law, conditions)| Simulation { traction: Some(Arc::new(law)), ..conditions }),
+        };
         if let Some(conditions) = &conditions {
             for error in conditions.faults() {
                 checks.root().core::<()>(Err(error));

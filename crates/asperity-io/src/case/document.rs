@@ -6,6 +6,7 @@
 
 use schemars::JsonSchema;
 
+use super::adhesion::Adhesion;
 use super::body::Body;
 use super::domain::Domain;
 use super::error::CaseError;
@@ -34,6 +35,7 @@ const SECTIONS: &[&str] = &[
     "time",
     "temperature",
     "motion",
+    "adhesion",
     "leakage",
     "solver",
     "output",
@@ -70,6 +72,9 @@ pub struct Document {
     /// Motion of the contact over the bodies; nothing moves if not given.
     #[schemars(example = serde_json::json!({ "velocity": "10 mm/s" }))]
     pub motion: Option<Motion>,
+    /// An attraction between the surfaces; none if not given.
+    #[schemars(example = serde_json::json!({ "work": "50 mJ/m2", "range": "5 nm" }))]
+    pub adhesion: Option<Adhesion>,
     /// The flow of a fluid through the gap.
     #[schemars(example = serde_json::json!({ "pressure_drop": "2 bar", "viscosity": "1 mPa s" }))]
     pub leakage: Option<LeakageKeys>,
@@ -109,6 +114,7 @@ impl Document {
                 false => reader.required("time"),
             },
             temperature: reader.table("temperature"),
+            adhesion: reader.table("adhesion"),
             leakage: reader.table("leakage"),
             solver: reader.table("solver").unwrap_or_default(),
             output: reader.table("output").unwrap_or_default(),

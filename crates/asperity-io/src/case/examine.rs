@@ -6,6 +6,7 @@ use asperity::material::Modulus;
 use asperity::sliding::Streaming;
 use asperity::surface::statistics::{HeightStatistics, SlopeStatistics};
 use asperity::surface::{Part, Punch, Shape, Surface};
+use asperity::traction::AdhesionScale;
 use asperity::{Boundary, Simulation};
 use serde::Serialize;
 
@@ -44,6 +45,9 @@ pub struct Inputs {
     pub expected_cells_across: Option<f64>,
     /// Expected pressure over contact modulus at the end: the largest of a round contact, the mean of a rough one.
     pub expected_pressure_over_modulus: Option<f64>,
+    /// The numbers of an adhesive contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adhesion: Option<AdhesionScale>,
 }
 
 /// A part of the gap.
@@ -135,6 +139,8 @@ impl Case {
         let mut inputs = Inputs {
             surfaces: parts.iter().map(|part| surface(&self.conditions.grid, part)).collect(),
             moduli: self.bodies.iter().filter_map(relaxed).collect(),
+            // Checked with the simulation.
+            adhesion: AdhesionScale::of(simulation).ok().flatten(),
             ..Inputs::default()
         };
         let Some(expected) = expected else { return inputs };

@@ -113,7 +113,7 @@ pub fn prescribed(keys: Table, line: bool) -> Result<(Control, Course), CaseErro
         let load = reader.required::<Load>("load");
         let load = reader.finish(load)?;
         let checks = Checks::new(text, Path::new(""));
-        let made = load.programme(&checks.at("load"), line, &|_, _| 0.0);
+        let made = load.programme(&checks.at("load"), line, None, &|_, _| 0.0);
         let stage = made.and_then(|(mut programme, _)| programme.stages.pop());
         stage.map(|stage| (stage.control, stage.course)).ok_or_else(|| checks.into_errors())
     })

@@ -13,7 +13,7 @@ pub use crate::quantity::range::{
 pub use crate::quantity::scalar::Scalar;
 pub(crate) use crate::quantity::scalar::deserialize;
 pub use crate::quantity::{
-    Angle, Compliance, Dimension, Expansion, Fluidity, Frequency, Label, Length, MolarEnergy, MolarMass,
-    Number, Prescribed, Pressure, QuantityError, Signed, Temperature, TemperatureDifference, Time, Velocity,
-    Viscosity, Whole, dimension,
+    Angle, Compliance, Dimension, EnergyPerArea, Expansion, Fluidity, Frequency, Label, Length, MolarEnergy,
+    MolarMass, Number, Prescribed, Pressure, QuantityError, Signed, Temperature, TemperatureDifference, Time,
+    Velocity, Viscosity, Whole, dimension,
 };

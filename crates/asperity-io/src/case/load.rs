@@ -12,7 +12,7 @@ use super::until::{self, Until};
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
-    /// The prescribed quantity; with `history`.
+    /// The prescribed quantity; with `history`. "approach" if not given in a case with [adhesion].
     control: Option<Control>,
     /// Its value over time, 0 before t = 0; with `control`.
     #[schemars(example = serde_json::json!({ "kind": "step", "value": "0.5 N" }))]
@@ -66,12 +66,14 @@ pub struct Stage {
 }
 
 impl Load {
-    /// What is prescribed, and the files that hold histories. On a `line` loads are per length. `first_step` is the first step of
+    /// What is prescribed, and the files that hold histories. On a `line` loads are per length; `usual` is the control
+    /// where the case names none. `first_step` is the first step of
     /// logarithmic steps to a time under a course, where the case does not say it.
     pub fn programme(
         &self,
         at: &Place<'_>,
         line: bool,
+        usual: Option<Control>,
         first_step: &dyn Fn(f64, Option<&Course>) -> f64,
     ) -> Option<(Programme, Vec<Origin>)> {
         let (at, made) = match &self.stages {
@@ -89,7 +91,7 @@ impl Load {
                 (at, made.into_iter().collect::<Option<Vec<_>>>()?)
             }
             None => {
-                let control = self.control.or_else(|| at.missing("control", ""));
+                let control = self.control.or(usual).or_else(|| at.missing("control", ""));
                 let history = self.history.as_ref().or_else(|| at.missing("history", ""));
                 let (control, history, at) = (control?, history?, at.key("history"));
                 if let History::Hold {} = history {

@@ -39,6 +39,7 @@
 //! # Ok::<(), asperity_io::case::CaseErrors>(())
 //! ```
 
+mod adhesion;
 mod assemble;
 mod bare;
 mod body;
@@ -321,6 +322,13 @@ impl Case {
                     && simulation.columns_of(&alone).is_ok()
             };
             wanted.list = Quantity::at_rest().filter(possible).collect();
+        }
+        if simulation.traction.is_some() {
+            let of_rows = Quantity::of_adhesion().chain([Quantity::ElasticEnergy]);
+            let new =
+                |quantity: &Quantity| !wanted.list.contains(quantity) && simulation.allows(*quantity).is_ok();
+            let of_rows: Vec<Quantity> = of_rows.filter(new).collect();
+            wanted.list.extend(of_rows);
         }
         if let Some(motion) = &self.motion {
             // What steady states have no row of, or what displacements that are known up to a constant do not determine.

@@ -42,7 +42,7 @@ pub struct OutputKeys {
     /// The result, relative to the working directory; the case file's name with ".zarr" if not given.
     #[schemars(example = "rough_pmma.zarr")]
     path: Option<String>,
-    /// The fields that are stored; ["pressure", "gap"] if not given, [] for none.
+    /// The fields that are stored; ["pressure", "gap"] if not given, with [adhesion] also "contact_pressure"; [] for none.
     #[schemars(example = ("pressure", "gap"))]
     fields: Option<Vec<FieldKind>>,
     /// Optional quantities of each row, in addition to load, approach and areas; ["all"] for all that the case allows.
@@ -191,6 +191,11 @@ impl OutputKeys {
         }
     }
 
+    /// Whether the case leaves the stored fields open.
+    pub fn is_silent_on_fields(&self) -> bool {
+        self.fields.is_none()
+    }
+
     /// Whether the case leaves the stored rows open.
     pub fn is_silent_on_rows(&self) -> bool {
         self.every.is_none() && self.times.is_none()
@@ -224,6 +229,18 @@ impl OutputKeys {
             let message = "there is no permanent flattening with plasticity = \"cap\"";
             let help = "set solver.plasticity = \"accumulate\"";
             at.key("fields").item(n).fault::<()>(message, "another field", help);
+        }
+        let adhesive =
+            |kind: &FieldKind| matches!(kind, FieldKind::ContactPressure | FieldKind::AdhesiveTraction);
+        if let Some(n) =
+            self.fields.iter().flatten().position(adhesive).filter(|_| conditions.traction.is_none())
+        {
+            let message = "all pressure is contact pressure in a case without [adhesion]";
+            at.key("fields").item(n).fault::<()>(
+                message,
+                "another field",
+                "take \"pressure\", or add [adhesion]",
+            );
         }
         for (n, quantity) in self.named() {
             let at = at.key("quantities").item(n);

@@ -132,6 +132,8 @@ dimensions! {
     Expansion = "an expansion per kelvin", "1/K", "1/K", "6e-4 1/K", [0, 0, 0, -1, 0];
     /// An energy per mole \[J/mol\].
     MolarEnergy = "an energy per mole", "J/mol", "J/mol, kJ/mol, kcal/mol", "120 kJ/mol", [2, 1, -2, 0, -1];
+    /// An energy per area, which is a force per length \[J/m²\].
+    EnergyPerArea = "an energy per area", "J/m2", "mJ/m^2, J/m^2", "50 mJ/m2", [0, 1, -2, 0, 0];
     /// A pure number.
     Number = "a number", "", "none, or %", "0.38", [0, 0, 0, 0, 0];
 }

@@ -36,6 +36,8 @@ impl Maps {
                 FieldKind::Gap => step.gap_into(field),
                 FieldKind::Displacement => step.displacement_into(field),
                 FieldKind::Flattening => step.flattening_into(field),
+                FieldKind::ContactPressure => field.assign(&step.contact_pressure()),
+                FieldKind::AdhesiveTraction => step.adhesive_traction_into(field),
                 FieldKind::Pressure | FieldKind::Contact => {}
             }
             if has_moved {

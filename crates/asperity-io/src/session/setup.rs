@@ -4,6 +4,7 @@ use asperity::kernel::Kernel;
 use asperity::load::Control;
 use asperity::material::Creep;
 use asperity::sliding::SteadyMotion;
+use asperity::traction::AdhesionScale;
 use asperity::{Axis, Simulation};
 use serde_json::{Map, Value, json};
 
@@ -24,7 +25,7 @@ pub(super) fn header(case: &Case, simulation: &Simulation, steady: Option<&Stead
         // Checked with the simulation.
         quantities: simulation.columns().unwrap_or_default(),
         rows_expected: steady.map_or_else(plan, |motion| Some(motion.velocities.len())),
-        setup: setup(case),
+        setup: setup(case, simulation),
     }
 }
 
@@ -36,8 +37,8 @@ fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     points.iter().enumerate().filter(|(n, _)| is_kept(*n)).map(|(_, point)| *point).collect()
 }
 
-/// The case in numbers, SI: the attribute `setup` of its result.
-pub fn setup(case: &Case) -> Map<String, Value> {
+/// The case and its `simulation` in numbers, SI: the attribute `setup` of its result.
+pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
     let description = serde_json::to_value(case.describe()).unwrap_or_default();
     let mut setup = match description {
         Value::Object(map) => map,
@@ -89,6 +90,10 @@ pub fn setup(case: &Case) -> Map<String, Value> {
     setup.insert("solver_tolerance".into(), json!(case.conditions.solver.tolerance));
     if let Some(plan) = &case.stress {
         setup.insert(stress::SETUP.into(), serde_json::to_value(plan).unwrap_or_default());
+    }
+    // Checked with the simulation.
+    if let Ok(Some(scale)) = AdhesionScale::of(simulation) {
+        setup.insert(Header::ADHESION.into(), json!(scale));
     }
     if let Some(leak) = &case.leakage {
         setup.insert("leakage".into(), serde_json::to_value(leak).unwrap_or_default());

@@ -10,7 +10,7 @@ use crate::choice;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FieldKind {
-    /// Contact pressure p, in Pa, positive in compression.
+    /// Pressure p between the surfaces, in Pa, positive in compression; negative where they pull at each other.
     Pressure,
     /// Gap h between the deformed surfaces, in m.
     Gap,
@@ -20,16 +20,24 @@ pub enum FieldKind {
     Contact,
     /// Permanent flattening, in m: what the undeformed gap has gained; with plasticity = "accumulate".
     Flattening,
+    /// Pressure of the cells in contact, in Pa, 0 or more; with [adhesion], where `pressure` is less by the attraction.
+    #[serde(rename = "contact_pressure")]
+    ContactPressure,
+    /// Attraction between the surfaces, in Pa; with [adhesion].
+    #[serde(rename = "adhesive_traction")]
+    AdhesiveTraction,
 }
 
 impl FieldKind {
     /// Every kind.
-    pub const ALL: [FieldKind; 5] = [
+    pub const ALL: [FieldKind; 7] = [
         FieldKind::Pressure,
         FieldKind::Gap,
         FieldKind::Displacement,
         FieldKind::Contact,
         FieldKind::Flattening,
+        FieldKind::ContactPressure,
+        FieldKind::AdhesiveTraction,
     ];
 
     /// Its name in case files and results.
@@ -45,7 +53,7 @@ impl FieldKind {
     /// Its unit; "1" where it has none.
     pub fn units(self) -> &'static str {
         match self {
-            FieldKind::Pressure => "Pa",
+            FieldKind::Pressure | FieldKind::ContactPressure | FieldKind::AdhesiveTraction => "Pa",
             FieldKind::Gap | FieldKind::Displacement | FieldKind::Flattening => "m",
             FieldKind::Contact => "1",
         }
@@ -68,6 +76,8 @@ impl FieldKind {
             FieldKind::Displacement => "normal displacement",
             FieldKind::Contact => "contact state",
             FieldKind::Flattening => "permanent flattening",
+            FieldKind::ContactPressure => "pressure of the cells in contact",
+            FieldKind::AdhesiveTraction => "attraction between the surfaces",
         }
     }
 }

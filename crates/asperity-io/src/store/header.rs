@@ -69,6 +69,14 @@ impl Header {
     /// The key of [`Header::controls`] in the setup.
     pub(crate) const CONTROLS: &'static str = "stage_controls";
 
+    /// The numbers of its adhesion, by the names of [`AdhesionScale`](asperity::traction::AdhesionScale).
+    pub fn adhesion(&self) -> Option<&Map<String, Value>> {
+        self.setup.get(Header::ADHESION).and_then(Value::as_object)
+    }
+
+    /// The key of [`Header::adhesion`] in the setup.
+    pub(crate) const ADHESION: &'static str = "adhesion";
+
     /// What its rows follow one another in.
     pub fn axis(&self) -> Axis {
         match self.setup.get("motion").and_then(|motion| motion.get("steady")).and_then(Value::as_bool) {

@@ -298,10 +298,15 @@ impl Reader {
         self.field_map(FieldKind::Contact, at)
     }
 
-    /// The field that shows the contact: the states if they were kept, else the pressure, else the gap.
+    /// The field that shows the contact: the states if they were kept, else the pressure, of surfaces that adhere that of the cells in
+    /// contact, else the gap.
     pub fn contact_kind(&self) -> Option<FieldKind> {
         let kept = &self.header().fields;
-        [FieldKind::Contact, FieldKind::Pressure, FieldKind::Gap].into_iter().find(|kind| kept.contains(kind))
+        let pressure = match self.header().adhesion() {
+            Some(_) => FieldKind::ContactPressure,
+            None => FieldKind::Pressure,
+        };
+        [FieldKind::Contact, pressure, FieldKind::Gap].into_iter().find(|kind| kept.contains(kind))
     }
 
     /// The contact states at a stored instant (0 open, 1 in contact, 2 at the hardness), from the field of
@@ -313,8 +318,8 @@ impl Reader {
         let hardness = self.header().setup.get("hardness").and_then(Value::as_f64).unwrap_or(f64::INFINITY);
         Ok(match self.contact_kind() {
             Some(FieldKind::Contact) | None => self.contact(at)?,
-            Some(FieldKind::Pressure) => self
-                .field(FieldKind::Pressure, at)?
+            Some(kind @ (FieldKind::Pressure | FieldKind::ContactPressure)) => self
+                .field(kind, at)?
                 .mapv(|p| u8::from(p > 0.0) + u8::from(p > 0.0 && p >= hardness * (1.0 - 1e-12))),
             Some(kind) => {
                 let gap = self.field(kind, at)?;

@@ -166,7 +166,10 @@ fn is_of_its_row(reader: &Reader, index: usize, row: &Row) -> Result<()> {
                     cells as f64 + 1.0,
                 )
             }
-            FieldKind::Displacement | FieldKind::Flattening => true,
+            FieldKind::Displacement
+            | FieldKind::Flattening
+            | FieldKind::ContactPressure
+            | FieldKind::AdhesiveTraction => true,
         };
         if !holds {
             let what =

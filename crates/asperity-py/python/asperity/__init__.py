@@ -15,6 +15,7 @@ True
 """
 
 from . import compat as compat
+from ._adhesion import Adhesion as Adhesion
 from ._core import CaseError as CaseError, ConvergenceError as ConvergenceError, __version__ as __version__
 from ._cite import cite as cite
 from ._contact import (

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, get_args
 import numpy as np
 import numpy.typing as npt
 
+from ._adhesion import Adhesion
 from ._arrays import as_plane, check_places, choice, count, distinct, field, in_order, number
 from ._core import CaseError
 from ._histories import History, Stage, Times, as_history, as_times, one_of
@@ -126,11 +127,19 @@ class InStages(InTime):
 
     approach: History | float | None = None
     stages: Sequence[Stage] | None = None
+    adhesion: Adhesion | None = None
 
     alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure", "approach", "stages"), ("surface", "gap")]
 
     def controls(self) -> dict[str, Any]:
         return {**super().controls(), "approach": self.approach, "stages": self.stages}
+
+    def course_keys(self) -> dict[str, Any]:
+        if self.adhesion is None:
+            return super().course_keys()
+        if not isinstance(self.adhesion, Adhesion):
+            raise CaseError(f"adhesion is {self.adhesion!r}, but must be an asperity.Adhesion")
+        return {**super().course_keys(), "adhesion": self.adhesion._keys}
 
     def load_keys(self, load_unit: str) -> dict[str, Any]:
         if self.stages is None:

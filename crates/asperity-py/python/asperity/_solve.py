@@ -53,7 +53,7 @@ class Step(Numbers, Sealed):
         return dict(self._row)
 
     def field(self, name: str) -> Floats:
-        """The field "pressure" [Pa], "gap", "displacement", "flattening" [m] or "contact" (0, 1, 2), shape (nx, ny), as a new
+        """The field "pressure", "contact_pressure", "adhesive_traction" [Pa], "gap", "displacement", "flattening" [m] or "contact" (0, 1, 2), shape (nx, ny), as a new
         array; of a line contact (n,), as all fields."""
         if self._march._core.done != self._index + 1:
             raise CaseError(f"the march has moved on from row {self._index}: read fields before the next row")
@@ -225,6 +225,8 @@ def solve(given: Solve) -> Result:
     times : times to solve for: uniform, log, adaptive, listed, or a sequence [s]; breaks of the history are added
     load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step
     stages : instead, a list of :class:`Stage` s: the control switches at a time or at an event
+    adhesion : an attraction between the surfaces, asperity.Adhesion; then loads may be negative, and each row also has "adhesive_load",
+        "repulsive_load", "adhesion_energy", "outer_iterations", "adhesion_residual"
     hardness : largest pressure [Pa], for all cells or as array (nx, ny); default: that of the materials
     boundary : "free" (half-space) or "periodic"
     temperature : of the run [K], or (time [s], temperature [K]) points, linear in between and held after the last; it applies
@@ -236,7 +238,8 @@ def solve(given: Solve) -> Result:
         "contact_perimeter", "contact_percolation", "gap_percolation", "rms_gap", "contact_eccentricity", "elastic_energy",
         "dissipated_energy", "flattening_work", "external_work", "load_power", and "spot_histogram", "pressure_histogram", "gap_histogram" of that many `bins` up to `largest_pressure` [Pa] (by default the
         hardness) and `largest_gap` [m] (by default that of the undeformed gap)
-    fields : fields to keep: "pressure", "gap", "displacement", "contact", "flattening"
+    fields : fields to keep: "pressure", "gap", "displacement", "contact", "flattening", with adhesion also "contact_pressure",
+        "adhesive_traction"
     every : keep the fields of every n-th row, and of the first and the last; default: of every row, up to 20 rows
     field_times : instead, times at which fields are kept [s]; each becomes a step
     output : path of a result on disk, which is written row by row; the result that is returned reads its fields from there. `force`

@@ -85,14 +85,16 @@ pub(super) fn one(reader: &Reader, kind: FieldKind, at: At, block: usize) -> Res
     Ok(means(reader.field(kind, at)?.view(), block))
 }
 
-/// The fields to show: those kept, and the contact, which any but displacement and flattening tells.
+/// The fields to show: those kept, and the contact, which any but displacement, flattening and attraction tells.
 fn kinds(reader: &Reader) -> Vec<FieldKind> {
     let kept = &reader.header().fields;
-    let silent = [FieldKind::Displacement, FieldKind::Flattening];
+    let silent = [FieldKind::Displacement, FieldKind::Flattening, FieldKind::AdhesiveTraction];
     let tells = kept.iter().any(|kind| !silent.contains(kind));
     let shown = |kind: &FieldKind| if *kind == FieldKind::Contact { tells } else { kept.contains(kind) };
     let order = [
         FieldKind::Pressure,
+        FieldKind::ContactPressure,
+        FieldKind::AdhesiveTraction,
         FieldKind::Contact,
         FieldKind::Gap,
         FieldKind::Displacement,

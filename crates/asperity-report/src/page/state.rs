@@ -15,6 +15,7 @@ use super::maps::Maps;
 use super::{material, stress};
 use crate::figure::Colours;
 use crate::leak::sentence;
+use crate::result::ForceCurve;
 use crate::result::panels::{self, CONTACT_PRESSURE, RowPanel};
 use crate::result::{Options, Rows, look, name_of_theory, persson, temperature_at_rows};
 
@@ -85,6 +86,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "time_unit": units.shown("time").map(|shown| json!({"factor": shown.factor, "text": shown.text})),
         "rows": {"label": rows.of.name(), "unit": rows.of.unit(), "symbol": rows.of.symbol(), "log": rows.log},
         "last_cycle": last_cycle(reader)?,
+        "force_curve": ForceCurve::of(reader, &reader.series("approach")?, &reader.series("load")?),
         "cycles": each_cycle(reader)?,
         "evolution": evolution(reader, theory.is_some())?,
         "solver": panels::of_work(reader)?.iter().map(panel).collect::<Vec<_>>(),

@@ -8,7 +8,7 @@ use asperity_io::store::{Reader, StoreError};
 
 use super::rows::Rows;
 use super::{Options, PlotError, nameless};
-use crate::figure::{Axis, Curves, Figure, extent};
+use crate::figure::{Axis, Curves, Figure, Series, Style, extent};
 
 pub(super) fn load_displacement(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let kept = shown(reader, options)?;
@@ -18,13 +18,57 @@ pub(super) fn load_displacement(reader: &Reader, options: &Options) -> Result<Fi
         let values = reader.series(name)?;
         Ok(kept.iter().filter_map(|row| values.get(*row).copied()).collect())
     };
-    let figure = Figure::new("").with(nameless(panel.clone(), &pick("approach")?, pick("load")?));
+    let (approach, load) = (pick("approach")?, pick("load")?);
+    let whole = match ForceCurve::of(reader, &approach, &load) {
+        Some(curve) => curve.drawn(panel.clone(), &approach),
+        None => nameless(panel.clone(), &approach, load),
+    };
+    let figure = Figure::new("").with(whole);
     let Some(cycle) = last_cycle(reader, options)? else { return Ok(figure) };
     let ends = [*cycle.start(), *cycle.end()].map(|row| reader.series("time").map(|times| times[row]));
     let [from, to] = ends;
     let title = format!("Last cycle, {} to {}", super::moment(reader, from?), quantity(to?, "s"));
     let [x, y] = ["approach", "load"].map(|name| reader.series(name));
     Ok(figure.with(nameless(Curves { title, ..panel }, &x?[cycle.clone()], y?[cycle].to_vec())))
+}
+
+/// Load over approach of surfaces that adhere: while they approach and while they part (NaN in between), and the row of the pull-off.
+#[derive(serde::Serialize)]
+pub(crate) struct ForceCurve {
+    approaching: Vec<f64>,
+    parting: Vec<f64>,
+    pull_off: usize,
+}
+
+impl ForceCurve {
+    /// `None` where they do not adhere, or nothing pulls.
+    pub(crate) fn of(reader: &Reader, approach: &[f64], load: &[f64]) -> Option<ForceCurve> {
+        reader.header().adhesion()?;
+        let least = (0..load.len()).reduce(|a, b| if load[b] < load[a] { b } else { a })?;
+        let mut curve = ForceCurve {
+            approaching: vec![f64::NAN; load.len()],
+            parting: vec![f64::NAN; load.len()],
+            pull_off: least,
+        };
+        let mut parts = false;
+        for n in 1..load.len() {
+            parts = if approach[n] == approach[n - 1] { parts } else { approach[n] < approach[n - 1] };
+            let branch = if parts { &mut curve.parting } else { &mut curve.approaching };
+            branch[n - 1..=n].copy_from_slice(&load[n - 1..=n]);
+        }
+        (load[least] < 0.0).then_some(curve)
+    }
+
+    fn drawn(self, panel: Curves, approach: &[f64]) -> Curves {
+        let mut only = vec![f64::NAN; approach.len()];
+        let whole = if self.parting[self.pull_off].is_nan() { &self.approaching } else { &self.parting };
+        only[self.pull_off] = whole[self.pull_off];
+        let branches = [("approaching", self.approaching), ("parting", self.parting)];
+        let branches = branches.into_iter().filter(|(_, load)| load.iter().any(|load| load.is_finite()));
+        let curves = branches
+            .fold(panel, |panel, (name, load)| panel.with(Series::new(name, Style::Line, approach, load)));
+        curves.with(Series::new("pull-off", Style::Points, approach, only))
+    }
 }
 
 /// Rows of the last cycle within the window: the last full period of a load that is a sine; else from the last but one to the last

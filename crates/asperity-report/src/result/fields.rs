@@ -41,6 +41,8 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, Pl
         return Ok(line::field(reader, kind, at)?);
     }
     let (label, Some(colours)) = look(kind) else { return states(reader, at) };
+    let is_tension = kind == FieldKind::Pressure && reader.header().adhesion().is_some();
+    let colours = if is_tension { Colours::Diverging } else { colours };
     let values = if kind == FieldKind::Gap { gap(reader, at)? } else { reader.field(kind, at)? };
     let index = reader.index(at)?;
     let touches = |value: &f64| *value == 0.0;
@@ -50,7 +52,10 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, Pl
             "",
         ),
         FieldKind::Gap if values.iter().any(touches) => (String::new(), " Light: contact."),
-        FieldKind::Pressure if values.iter().any(|pressure| *pressure <= 0.0) => {
+        FieldKind::Pressure if is_tension => (String::new(), " Negative: the surfaces pull at each other."),
+        FieldKind::Pressure | FieldKind::ContactPressure
+            if values.iter().any(|pressure| *pressure <= 0.0) =>
+        {
             (no_contact(reader, index)?, " Light: no contact.")
         }
         _ => (no_contact(reader, index)?, ""),

@@ -36,7 +36,7 @@ use serde_json::Value;
 
 pub(crate) use common::Common;
 pub use common::common_limits;
-pub(crate) use evolution::last_cycle;
+pub(crate) use evolution::{ForceCurve, last_cycle};
 pub(crate) use friction::{name_of_theory, persson};
 pub(crate) use leak::last_map as last_leak_map;
 pub use plot::Plot;

@@ -75,6 +75,10 @@ plots! {
     Contact "contact" Shows::Field(FieldKind::Contact), map!(Contact);
     /// Map of the permanent flattening at an instant.
     Flattening "flattening" Shows::Field(FieldKind::Flattening), map!(Flattening);
+    /// Map of the pressure of the cells in contact, of surfaces that adhere.
+    ContactPressure "contact-pressure" Shows::Field(FieldKind::ContactPressure), map!(ContactPressure);
+    /// Map of the attraction between the surfaces at an instant.
+    AdhesiveTraction "adhesive-traction" Shows::Field(FieldKind::AdhesiveTraction), map!(AdhesiveTraction);
     /// Map of the undeformed gap.
     InitialGap "initial-gap" Shows::Undeformed, fields::initial_gap;
     /// Pressure and gap along a line at an instant.
@@ -175,6 +179,8 @@ pub(crate) fn look(kind: FieldKind) -> (&'static str, Option<Colours>) {
         FieldKind::Gap => ("gap", Some(Colours::Gap)),
         FieldKind::Displacement => ("displacement", Some(Colours::Sequential)),
         FieldKind::Flattening => ("permanent flattening", Some(Colours::Sequential)),
+        FieldKind::ContactPressure => ("contact pressure", Some(Colours::Pressure)),
+        FieldKind::AdhesiveTraction => ("attraction", Some(Colours::Sequential)),
         FieldKind::Contact => ("contact", None),
     }
 }

@@ -11,8 +11,9 @@ use super::strain::Strain;
 use super::thin::Widest;
 use super::worst::extend;
 use super::{
-    BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN,
-    SPOTS_UNRESOLVED, STEPS_TOO_LONG, domain, material, plausible, strain, surface, thin, time,
+    ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE,
+    LARGE_STRAIN, SPOTS_UNRESOLVED, STEPS_TOO_LONG, adhesion, domain, material, plausible, strain, surface,
+    thin, time,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -74,6 +75,7 @@ pub struct Diagnostics {
     resolution: Resolution,
     strain: Strain,
     slides: Slides,
+    adhesion: adhesion::Border,
     balance: Balance,
     beyond: Beyond,
     /// The finding for a held approach with cells at the hardness, and whether there were such cells.
@@ -107,6 +109,7 @@ impl Diagnostics {
             resolution: Resolution::default(),
             strain: Strain::new(simulation, radius(grid, known.parts)),
             slides: Slides::default(),
+            adhesion: adhesion::Border::default(),
             balance: Balance::default(),
             beyond: Beyond::default(),
             held: time::held_at_hardness(simulation)
@@ -151,6 +154,7 @@ impl Diagnostics {
                     self.resolution.resume_line([first, last.min(rows.len() - 1)], width);
                 }
                 BEYOND_HISTOGRAM => self.beyond.resume(finding),
+                ADHESION_AT_BORDER => self.adhesion.resume(finding),
                 ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
                 _ => {}
             }
@@ -167,6 +171,7 @@ impl Diagnostics {
         if let Some(friction) = step.friction() {
             self.slides.see(index, row.coordinate, &friction);
         }
+        self.adhesion.see(step);
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);
         }
@@ -255,6 +260,7 @@ impl Diagnostics {
         }
         found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
         found.extend(self.slides.finding());
+        found.extend(self.adhesion.finding());
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
         found
@@ -305,5 +311,6 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     }
     found.extend(plausible::unlikely_end(simulation));
     found.extend(time::of(simulation));
+    found.extend(adhesion::before(simulation));
     found
 }

@@ -17,6 +17,7 @@
 //! | `time` | steps that are too long for the history and the material |
 //! | `energy` | the energy balance |
 //! | `leak` | leaks that are unreliable because of gap, grid or fluid pressure |
+//! | `adhesion` | cells that snap one by one, attraction beyond the border |
 //! | `motion` | friction that the grid does not resolve, bodies on their own track |
 //! | `thin` | half-spaces of finite thickness |
 //! | `plausible` | magnitudes that suggest a wrong unit: one table of all |
@@ -24,6 +25,7 @@
 //!
 //! docs/findings.md lists all codes with their limits.
 
+mod adhesion;
 mod contact;
 mod diagnostics;
 mod domain;
@@ -229,6 +231,10 @@ codes! {
     FRICTION_ZERO = "friction-zero";
     /// A single body on a periodic domain runs over its own track.
     OWN_TRACK = "own-track";
+    /// Cells that adhere or part one by one.
+    ADHESION_UNRESOLVED = "adhesion-unresolved";
+    /// Attraction at the border of a free domain.
+    ADHESION_AT_BORDER = "adhesion-at-border";
 }
 
 #[cfg(test)]

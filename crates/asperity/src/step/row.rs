@@ -197,6 +197,11 @@ impl<'a> Step<'a> {
         self.traction.map_or(&self.state.pressure, |traction| traction.contact()[1])
     }
 
+    /// The traction besides the contact \[Pa\], shape (nx, ny): negative where the surfaces pull at each other.
+    pub(crate) fn other_traction(&self) -> Option<ArrayView2<'a, f64>> {
+        self.traction.map(|traction| to_view(self.simulation.grid.shape(), traction.bound()))
+    }
+
     /// Attraction between the surfaces \[Pa\], 0 or more: contact pressure less pressure.
     pub fn adhesive_traction_into(&self, traction: &mut Array2<f64>) {
         traction.fill(0.0);

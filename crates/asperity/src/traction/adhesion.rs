@@ -184,8 +184,12 @@ impl TractionLaw for Adhesion {
         Some(self.tolerance)
     }
 
+    fn as_adhesion(&self) -> Option<&Adhesion> {
+        Some(self)
+    }
+
     fn check(&self, simulation: &Simulation) -> Result<()> {
-        self.validate()?;
+        self.validate().map_err(|error| error.of("adhesion"))?;
         if simulation.motion.is_some() {
             let expected = "none: adhesion acts between surfaces that do not slide";
             return Err(Error::invalid("motion of an adhesive contact", "given", expected).of("motion"));
@@ -204,7 +208,8 @@ impl TractionLaw for Adhesion {
             needed(nx),
             needed(ny)
         );
-        Err(Error::invalid("trap number of the adhesion", format!("{trap:.3}"), expected).of("range"))
+        Err(Error::invalid("trap number of the adhesion", format!("{trap:.3}"), expected)
+            .of("adhesion.range"))
     }
 }
 

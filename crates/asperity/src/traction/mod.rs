@@ -22,12 +22,14 @@
 
 mod adhesion;
 mod extrapolation;
+mod scale;
 #[cfg(test)]
 mod tests;
 
 use std::sync::atomic::AtomicBool;
 
 pub use adhesion::{Adhesion, AdhesionLaw, FINE_TRAP, LARGEST_TRAP, own_response};
+pub use scale::{AdhesionScale, pull_off};
 
 use crate::contact::{
     ContactState, Outcome, Prescribed, Problem, Solver, SolverOptions, Task, not_converged,
@@ -60,10 +62,15 @@ pub trait TractionLaw: std::fmt::Debug + Send + Sync {
         None
     }
 
+    /// The law of adhesion, where it is one.
+    fn as_adhesion(&self) -> Option<&Adhesion> {
+        None
+    }
+
     /// What can be known to be wrong before the first solve.
     ///
     /// # Errors
-    /// [`Error::Invalid`], whose parameter is a key of the law's table.
+    /// [`Error::Invalid`], whose parameter is a key of the case.
     fn check(&self, _simulation: &Simulation) -> Result<()> {
         Ok(())
     }

@@ -4,6 +4,7 @@ mod cost;
 
 use asperity::Axis;
 use asperity::load::{Course, Stage};
+use asperity::traction::FINE_TRAP;
 use asperity_io::case::{Case, Examination, Inputs, SurfaceInput, Travel, bare_numbers};
 use asperity_io::converge::expected_cost;
 use asperity_io::stress::StressDescription;
@@ -127,6 +128,24 @@ fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
     } else if let Some(shares) = inputs.expected_contact_share {
         let share = range(case, shares, |share| format!("{:.2} %", 100.0 * share));
         line("expected", format!("share of the domain in contact {share}{strain}"));
+    }
+    if let Some(adhesion) = &inputs.adhesion {
+        let (work, range) = (quantity(adhesion.work, "J/m2"), quantity(adhesion.range, "m"));
+        let strength = quantity(adhesion.strength, "Pa");
+        line(
+            "adhesion",
+            format!("{work} over {range}, {strength} at most; Tabor's number {:.2}", adhesion.tabor),
+        );
+        let [nx, ny] = adhesion.cells_needed;
+        let fine = if adhesion.trap <= FINE_TRAP {
+            "fine enough".to_owned()
+        } else {
+            format!("{nx} x {ny} cells are needed")
+        };
+        line("trap number", format!("{:.3} of {FINE_TRAP}: {fine}", adhesion.trap));
+        if let Some(force) = adhesion.expected_pull_off {
+            line("pull-off", format!("{} expected of an elastic sphere", quantity(force, "N")));
+        }
     }
     lines
 }

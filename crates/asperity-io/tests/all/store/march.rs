@@ -13,7 +13,7 @@ use ndarray::Array2;
 
 use super::{Case, bits, place, row_bits};
 
-const FIELDS: [FieldKind; 5] = FieldKind::ALL;
+const FIELDS: [FieldKind; 7] = FieldKind::ALL;
 
 /// A rough sphere on a Zener solid under a load that jumps, cut off by a hardness.
 fn simulation() -> Simulation {

@@ -22,7 +22,7 @@ def test_a_profile_has_one_dimension() -> None:
     assert surface.gap().shape == (256,) and surface.gap().min() == 0
     same = asp.Surface(surface.heights, size=4 * HALF_WIDTH)
     assert np.array_equal((surface + same).heights, 2 * surface.heights)
-    assert "a line of 256 cells" in repr(surface)
+    assert "a line of 256 cells" in repr(-surface) and repr(surface).startswith("Surface.cylinder(cells=(256,)")
     rough = asp.Surface.self_affine(cells=256, size=1e-3, hurst=0.8, rms_height=1e-6, longest=5e-4, shortest=5e-5, seed=1)
     assert rough.heights.shape == (256,)
     assert rough.heights.std() == pytest.approx(1e-6, rel=1e-9)  # the rms height is exact

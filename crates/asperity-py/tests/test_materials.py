@@ -407,3 +407,34 @@ def test_fits_are_drawn():
     assert ax.get_xlabel() == "angular frequency [rad/s]" and "[Pa]" in ax.get_ylabel()
     assert asp.fit_creep(T, rubber.creep_compliance(T), modulus="shear").plot().get_ylabel() == "J(t) [1/Pa]"
     plt.close("all")
+
+
+def test_materials_tell_their_parameters_and_functions_in_short():
+    zener = asp.Zener(shear=1e6, shear_kelvin=2e6, retardation_time=3.0, poisson=0.5, shift=asp.wlf(**WLF))
+    assert (zener.shear, zener.shear_kelvin, zener.retardation_time, zener.young) == (1e6, 2e6, 3.0, None)
+    assert (zener.shift.c1, zener.shift.reference) == (8.86, 293.15) and not hasattr(zener.shift, "activation_energy")
+    assert asp.arrhenius(activation_energy=80e3, reference=300.0).activation_energy == 80e3
+    same = asp.Zener(shear=1e6, shear_kelvin=2e6, retardation_time=3.0, poisson=0.5, shift=asp.wlf(**WLF))
+    assert zener == same and zener != asp.Zener(shear=1e6, shear_kelvin=2e6, retardation_time=3.0, poisson=0.49)
+    window = (1e-3, 1e3)
+    models = [
+        asp.Elastic(shear=1e6, poisson=0.5),
+        asp.Maxwell(shear=1e6, relaxation_time=1.0, poisson=0.5),
+        zener,
+        asp.StandardLinearSolid(shear_equilibrium=1e6, shear_instantaneous=2e6, relaxation_time=1.0, poisson=0.5),
+        asp.Burgers(shear=1e6, relaxation_time=100.0, shear_kelvin=2e6, retardation_time=5.0, poisson=0.5),
+        asp.Prony(**PMMA, poisson=0.38),
+        asp.Creep(instantaneous=1e-6, terms=[(1e-6, 1.0)], poisson=0.5),
+        asp.Springpot(shear=1e6, time=1.0, order=0.3, window=window, poisson=0.5),
+        asp.FractionalMaxwell(shear=1e6, time=1.0, order=0.3, window=window, poisson=0.5),
+        asp.FractionalZener(shear_equilibrium=1e6, shear_instantaneous=1e9, time=1e-2, order=0.5, window=window, poisson=0.5),
+    ]
+    for model in models:
+        assert np.array_equal(model.creep(T), model.creep_compliance(T)) and np.array_equal(model.relaxation(T), model.relaxation_modulus(T))
+        storage, loss = model.storage_loss(1 / T)
+        assert np.array_equal(model.storage(1 / T), storage) and np.array_equal(model.loss(1 / T), loss)
+    # A Kelvin-Voigt body answers a step of the strain with a pulse at 0, which is no modulus, and with its spring.
+    voigt = asp.KelvinVoigt(shear=1e6, retardation_time=2.0, poisson=0.5)
+    assert float(voigt.creep(2.0)) == pytest.approx((1 - math.exp(-1)) / 1e6, rel=1e-12)
+    assert float(voigt.storage(3.0)) == pytest.approx(1e6, rel=1e-12) and float(voigt.loss(3.0)) == pytest.approx(6e6, rel=1e-12)
+    assert voigt.relaxation([0.0, 1.0]).tolist() == [1e6, 1e6]

@@ -70,7 +70,7 @@ def test_a_surface_is_an_array_and_equals_another(rough):
     assert rough == asp.Surface(rough.heights, size=rough.size) and rough != 2 * rough and rough != asp.Surface(rough.heights, size=(1, 1))
     assert rough != "rough" and asp.Surface(np.full((2, 2), np.nan), size=(1, 1)) == asp.Surface(np.full((2, 2), np.nan), size=(1, 1))
     assert np.allclose(rough.x, (np.arange(24) + 0.5) * 1e-3 / 24) and rough.y.shape == (20,)
-    assert repr(rough) == "Surface(24 x 20 cells, 0.001 m x 0.0008 m)"
+    assert repr(-rough) == "Surface(24 x 20 cells, 0.001 m x 0.0008 m)" and repr(rough).startswith("Surface.self_affine(cells=(24, 20)")
 
 
 def test_a_topography_and_a_labelled_array_are_surfaces(rough):

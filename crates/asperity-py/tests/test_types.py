@@ -23,6 +23,9 @@ asp.cite("bibtex")
 ball.level("plane")
 asp.elastic(ball, 1e6, load=1.0).stiffness
 asp.Stage(load=1.0, until=("approach", 2e-6))
+radius: float = ball.radius + asp.ramp(1.0, duration=2.0).duration
+text: str = asp.solve(ball, asp.Elastic(young=1e6, poisson=0.5), load=lambda t: 2.0 * t, breaks=[1.0], times=[2.0]).methods(bibtex=True)
+misfit = asp.Relaxation(lambda t: 1e6, window=(1.0, 2.0), poisson=0.5).fit
 ball.level().fill("nearest").filter(shortest=2e-6, edge="gaussian").window().flip("x")
 """
 WRONG = [
@@ -33,6 +36,7 @@ WRONG = [
     'asp.cite("bibtx")',
     'asp.open("a.zarr").findings[0].sevrity',
     'ball + "a"',
+    'ball.raduis',
     'asp.elastic(ball, 1e6, load=1.0).stifness',
     'ball.fill("harmonc")',
     'ball.filter(edge="shrp")',

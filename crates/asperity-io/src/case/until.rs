@@ -66,11 +66,9 @@ impl<'de> de::Visitor<'de> for Visitor {
 
 /// The value in SI, in the unit that the number has in results; on a `line` forces are per length, areas lengths.
 pub fn resolve(number: RowNumber, value: &Prescribed, line: bool) -> Result<f64, QuantityError> {
-    let grid = Grid::line(1, 1.0).ok().filter(|_| line);
-    let units = match (number, &grid) {
-        (RowNumber::Quantity(quantity), Some(grid)) => quantity.units_on(grid),
-        (_, Some(grid)) => grid.units(number.units()),
-        (_, None) => number.units(),
+    let units = match Grid::line(1, 1.0) {
+        Ok(grid) if line => number.units_on(&grid),
+        _ => number.units(),
     };
     fn si<D: Dimension>(value: &Prescribed) -> Result<f64, QuantityError> {
         value.resolve::<D, Finite>().map(|value| value.get())

@@ -5,7 +5,7 @@ use asperity::load::Control;
 use asperity::material::Creep;
 use asperity::sliding::SteadyMotion;
 use asperity::traction::AdhesionScale;
-use asperity::{Axis, Simulation};
+use asperity::{Axis, Simulation, TimeGrid};
 use serde_json::{Map, Value, json};
 
 use crate::answer::Units;
@@ -87,7 +87,13 @@ pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
     if !case.output.units.is_empty() {
         setup.insert(Units::SETUP.into(), json!(case.output.units));
     }
-    setup.insert("solver_tolerance".into(), json!(case.conditions.solver.tolerance));
+    let Simulation { solver, times, plasticity, .. } = &case.conditions;
+    setup.insert("solver_method".into(), json!(solver.method));
+    setup.insert("solver_tolerance".into(), json!(solver.tolerance));
+    setup.insert("plasticity".into(), json!(plasticity));
+    if let TimeGrid::Adaptive { tolerance, .. } = times {
+        setup.insert("time_tolerance".into(), json!(tolerance));
+    }
     if let Some(plan) = &case.stress {
         setup.insert(stress::SETUP.into(), serde_json::to_value(plan).unwrap_or_default());
     }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from typing import Literal
 
 from ._core import CaseError, __version__
@@ -51,6 +53,12 @@ and, where you use them,
   contact_area_corrected: V. A. Yastrebov, G. Anciaux, J.-F. Molinari, Tribol. Int. 114 (2017) 161,
   doi:10.1016/j.triboint.2017.04.023
 """
+
+
+def entries(keys: Sequence[str]) -> str:
+    """The entries of BibTeX with these keys."""
+    every = {entry[1:].split("{", 1)[1].split(",", 1)[0]: entry for entry in re.split("(?m)^(?=@)", _BIBTEX) if entry}
+    return "".join(every[key] for key in keys)
 
 
 def cite(format: Literal["text", "bibtex"] = "text") -> str:

@@ -209,6 +209,47 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         labels = _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary)
         return labels.reshape(self.pressure.shape)
 
+    @property
+    def contact_modulus(self) -> float:
+        """E* [Pa]."""
+        modulus: float = self._planned.keys["contact_modulus"]
+        return modulus
+
+    @property
+    def tolerance(self) -> float:
+        """Largest residual that the solver was to leave."""
+        tolerance: float = self._planned.keys["tolerance"]
+        return tolerance
+
+    @property
+    def method(self) -> Method:
+        """"projected-cg" or "polonsky-keer"."""
+        method: Method = self._planned.keys["method"]
+        return method
+
+    @property
+    def hardness(self) -> float | Floats | None:
+        """Largest pressure [Pa], of all cells or of each; None where there is none."""
+        hardness: float | Floats | None = self._planned.hardness
+        return hardness
+
+    @property
+    def _setup(self) -> dict[str, Any]:
+        """The contact in numbers, as a result has them."""
+        return {
+            "boundary": self.boundary,
+            "contact_modulus": self.contact_modulus,
+            "hardness": self.hardness if isinstance(self.hardness, float) else None,
+            "hardness_of_cells": isinstance(self.hardness, np.ndarray),
+            "kernel": "given" if self._planned.kernel is not None else "half-space",
+            "solver_method": self.method,
+            "solver_tolerance": self.tolerance,
+        }
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was computed, as :meth:`Result.methods`."""
+        return _result([self], False).methods(bibtex=bibtex)
+
     def to_result(self) -> Result:
         """The contact as a result of one row at the time 0, with the fields "pressure", "gap" and "displacement"."""
         return _result([self], True)
@@ -352,7 +393,7 @@ def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
             "title": "Elastic contact",
             "version": _core.__version__,
             "status": "complete",
-            "setup": json.dumps({"boundary": first.boundary}),
+            "setup": json.dumps(first._setup),
             "findings": [dict(finding) for finding in first.findings],
         },
     )

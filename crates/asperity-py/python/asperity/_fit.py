@@ -11,7 +11,7 @@ import html
 import json
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
 
@@ -109,12 +109,16 @@ class Fit(ReadOnlyArrays):
         rest: dict[str, Any] = dict(
             poisson=poisson, bulk_modulus=bulk_modulus, hardness=hardness, name=name, shift=self.shift, temperature=temperature, window=self.window
         )
+        made: Material
         if self.equilibrium is not None:
-            return Prony(equilibrium=self.equilibrium, terms=self.terms, modulus=self.modulus, **rest)
-        assert self.instantaneous is not None and self.fluidity is not None
-        return Creep(
-            instantaneous=self.instantaneous, terms=self.terms, fluidity=self.fluidity, compliance=self.modulus, **rest
-        )
+            made = Prony(equilibrium=self.equilibrium, terms=self.terms, modulus=self.modulus, **rest)
+        else:
+            assert self.instantaneous is not None and self.fluidity is not None
+            made = Creep(
+                instantaneous=self.instantaneous, terms=self.terms, fluidity=self.fluidity, compliance=self.modulus, **rest
+            )
+        made._hold(_fit=self)
+        return made
 
     def curve(self, x: npt.ArrayLike) -> tuple[Floats, ...]:
         """The fitted curves at reduced times [s], or angular frequencies [rad/s] of a DMA."""
@@ -391,6 +395,96 @@ def fit_file(given: OfFile) -> Fit:
     places = {role: at if isinstance(at, str) else count(f"column of {role}", at) for role, at in (given.columns or {}).items()}
     found = _core.fit_file(os.fspath(given.path), given.kind, places, dict(given.units or {}), given.sheet, given.keys(given.kind))
     return given.fit_of(found)
+
+
+#: Points per decade of time at which a function is looked at.
+_PER_DECADE = 20
+
+
+@dataclass
+class OfFunction:
+    """The arguments of :func:`Relaxation` and :func:`CreepFunction`."""
+
+    function: Callable[[float], Any]
+    _: KW_ONLY
+    window: Sequence[float]
+    modulus: Measure = "young"
+    poisson: float | None = None
+    bulk_modulus: float | None = None
+    hardness: float | None = None
+    name: str | None = None
+    shift: Shift | None = None
+    temperature: float | None = None
+    per_decade: float = 3.0
+    max_misfit: float = 0.01
+
+    def material(self, kind: str) -> Material:
+        """The material with this function of time."""
+        label, function = _LABELS[kind][0], self.function
+        if not callable(function):
+            raise CaseError(f"the {label} is {function!r}, but must be a function of time in s; measured points go to asperity.fit_{kind}")
+        first, last = pair("window", bare("window", self.window, "s"))
+        if not 0.0 < first < last < math.inf:
+            raise CaseError(f"window is {self.window!r}, but must be (first, last) time in s, both greater than 0")
+        times = np.geomspace(first, last, max(3, math.ceil(_PER_DECADE * math.log10(last / first)) + 1))
+        unit = "Pa" if kind == "relaxation" else "1/Pa"
+        values = np.array([number(f"{label} at {time:g} s", function(float(time)), unit) for time in times])
+        limit = number("max_misfit", self.max_misfit)
+        curve = OfCurve(times, values, modulus=self.modulus, shift=self.shift, per_decade=self.per_decade, max_misfit=limit)
+        fit = curve.fit(kind, times, [values])
+        if fit.max_misfit > limit:
+            raise CaseError(
+                f"the {label} is {100 * fit.max_misfit:.2g} % off its Prony series at {fit.worst:g} s, more than max_misfit, {100 * limit:g} %: "
+                "a passive material relaxes by decaying exponentials only; give a larger per_decade, a shorter window or a larger max_misfit"
+            )
+        return fit.with_body(
+            poisson=self.poisson, bulk_modulus=self.bulk_modulus, hardness=self.hardness, name=self.name, temperature=self.temperature
+        )
+
+
+@arguments_of(OfFunction)
+def Relaxation(given: OfFunction) -> Material:
+    """A material of any relaxation function of time, as a Prony series that is fitted to it.
+
+    Parameters
+    ----------
+    function : relaxation modulus [Pa] at a time [s]
+    window : first and last time [s] for which it holds: the shortest step of the run and its end, or less and more. A run that
+        needs other times gets the finding "beyond-material-data"
+    modulus : "young" or "shear": what the function gives
+    poisson, bulk_modulus, hardness, name, shift, temperature : of the body, as for any material
+    max_misfit : largest relative distance of the series from the function; what has no such series is refused
+    per_decade : times per decade that the fit begins with
+
+    Returns
+    -------
+    A :class:`Prony` material. Its `fit` says how close it is: ``material.fit.max_misfit``
+
+    Raises
+    ------
+    CaseError : no sum of decaying exponentials with positive weights is that close, as of a modulus that grows
+
+    Examples
+    --------
+    >>> import asperity as asp, numpy as np
+    >>> stretched = asp.Relaxation(lambda t: 1e6 + 9e6 * np.exp(-np.sqrt(t / 2.0)), window=(1e-3, 1e3), poisson=0.5)
+    >>> stretched.fit.max_misfit < 1e-3, bool(abs(float(stretched.relaxation(2.0)) / (1e6 + 9e6 * np.exp(-1)) - 1) < 1e-3)
+    (True, True)
+    """
+    return given.material("relaxation")
+
+
+@arguments_of(OfFunction)
+def CreepFunction(given: OfFunction) -> Material:
+    """A material of any creep function of time [1/Pa]; the parameters are those of :func:`Relaxation`, and what is made is a
+    :class:`Creep` material.
+
+    >>> import asperity as asp
+    >>> andrade = asp.CreepFunction(lambda t: 1e-9 * (1.0 + 0.3 * t ** (1 / 3)), window=(1e-2, 1e4), poisson=0.3)
+    >>> andrade.fit.max_misfit < 1e-4, abs(float(andrade.creep(1000.0)) / 4e-9 - 1) < 1e-4
+    (True, True)
+    """
+    return given.material("creep")
 
 
 def _sweeps(x: Floats, curves: list[Floats], temperature: Any) -> list[tuple[float | None, Floats, list[Floats]]]:

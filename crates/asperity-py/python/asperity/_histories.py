@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import choice, count, either, in_hertz, line, number, points
+from ._arrays import Floats, choice, count, either, in_hertz, line, number, points
 from ._core import CaseError, waitable
+from ._parameters import Parameter, call
+from ._sampled import as_points
 from ._units import has_unit, unit_among
 
-__all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
+__all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sampled", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
 
 
 #: What the numbers of a history are called in a case.
@@ -36,19 +39,50 @@ class History:
     points: tuple[tuple[float, float], ...] = ()
     #: SI unit of its values, where they were given with one.
     unit: str | None = None
+    #: Of a function: the largest distance of its table that was found.
+    error: float | None = None
+
+    #: Value of a step, or at the end of a ramp.
+    value = Parameter[float]()
+    #: Duration of a ramp [s].
+    duration = Parameter[float]()
+    #: Largest value of a triangle or trapezoid, and how long [s] it rises, holds and falls.
+    peak = Parameter[float]()
+    rise = Parameter[float]()
+    hold = Parameter[float]()
+    fall = Parameter[float]()
+    #: Mean, amplitude and frequency [Hz] of a sine.
+    mean = Parameter[float]()
+    amplitude = Parameter[float]()
+    frequency = Parameter[float]()
+
+    @property
+    def _parameters(self) -> dict[str, Any]:
+        return dict(zip(_NUMBERS.get(self.kind, ()), self.numbers))
+
+    @property
+    def end(self) -> float:
+        """The time from which on the value stays the same [s]: 0 of a step, infinite of a sine."""
+        if self.kind == "sine":
+            return math.inf
+        if self.kind == "table":
+            return self.points[-1][0]
+        times = ("duration", "rise", "hold", "fall")
+        return float(sum(value for name, value in self._parameters.items() if name in times))
 
     @property
     def _keys(self) -> dict[str, Any]:
         """The keys of a `history`."""
         kind = {"kind": "ramp", "from": "current"} if self.kind == "ramp-to" else {"kind": self.kind}
         points = {"points": [list(point) for point in self.points]} if self.kind == "table" else {}
-        return {**kind, **dict(zip(_NUMBERS.get(self.kind, ()), self.numbers)), **points}
+        return {**kind, **self._parameters, **points}
 
     def __repr__(self) -> str:
         if len(self.points) > 4:
             return f"{self.kind}({len(self.points)} points from {self.points[0]} to {self.points[-1]})"
-        words = ", ".join(f"{value!r}" for value in self.numbers)
-        return f"{self.kind.replace('-', '_')}({words or list(self.points) or ''})"
+        if self.points:
+            return f"{self.kind}({list(self.points)!r})"
+        return call(self.kind.replace("-", "_"), self._parameters, 0 if self.kind == "sine" else 1)
 
 
 @dataclass(frozen=True)
@@ -58,21 +92,47 @@ class Times:
     kind: str
     numbers: tuple[float, ...]
 
+    #: Number of steps of uniform and logarithmic times.
+    steps = Parameter[int]()
+    #: First instant [s] of logarithmic times; the longest first step of adaptive ones.
+    first = Parameter[float]()
+    #: Relative error of the stress that adaptive steps aim at.
+    tolerance = Parameter[float]()
+
+    @property
+    def _parameters(self) -> dict[str, Any]:
+        if self.kind == "list":
+            return {}
+        end, second, *first = self.numbers
+        name = "tolerance" if self.kind == "adaptive" else "steps"
+        return {"end": end, name: second if self.kind == "adaptive" else int(second), **dict(zip(("first",), first))}
+
+    @property
+    def end(self) -> float:
+        """The last time [s]."""
+        return self.numbers[-1 if self.kind == "list" else 0]
+
+    @property
+    def _marks(self) -> Floats:
+        """The times of the steps [s]; of adaptive ones, which are not known yet, as many equal ones as a function is looked at in."""
+        if self.kind == "list":
+            return np.array(self.numbers)
+        if self.kind == "log" and self.steps > 1:
+            return np.geomspace(self.first, self.end, self.steps)
+        steps = _LOOKS if self.kind == "adaptive" else self.steps
+        return self.end * (np.arange(1, steps + 1) / steps)
+
     @property
     def _keys(self) -> dict[str, Any]:
         """The keys of `[time]`."""
-        if self.kind == "list":
-            return {"times": list(self.numbers)}
-        end, second, *first = self.numbers
-        if self.kind == "adaptive":
-            return {"end": end, "spacing": "adaptive", "tolerance": second, "first": first[0]}
-        return {"end": end, "steps": int(second), "spacing": self.kind, **({"first": first[0]} if first else {})}
+        return {"times": list(self.numbers)} if self.kind == "list" else {**self._parameters, "spacing": self.kind}
 
     def __repr__(self) -> str:
         if self.kind == "list" and len(self.numbers) > 4:
             return f"listed({len(self.numbers)} times from {self.numbers[0]:g} to {self.numbers[-1]:g} s)"
-        name = "listed" if self.kind == "list" else self.kind
-        return f"{name}({', '.join(f'{value:g}' for value in self.numbers)})"
+        if self.kind == "list":
+            return f"listed({list(self.numbers)!r})"
+        return call(self.kind, self._parameters, 1 if self.kind == "adaptive" else 2)
 
 
 #: What the values of a history may be: a load, a load per length, a pressure, an approach or path, a velocity.
@@ -120,6 +180,43 @@ def table(pairs: Sequence[tuple[float, float]] | npt.NDArray[Any]) -> History:
     ends = [pair[1] for pair in pairs] if several else []
     unit = unit_among("the value of a history", ends, _UNITS)
     return History("table", (), tuple(points("points of the table", pairs, ("s", unit or ""))), unit=unit)
+
+
+#: A function of time [s].
+Function = Callable[[float], Any]
+
+#: Steps in which a function is looked at first, where the run has no times of its own before it begins.
+_LOOKS = 64
+#: Distance of the table of a function, relative to its largest value.
+_TOLERANCE = 1e-3
+
+
+def sampled(function: Function, *, end: float, breaks: Sequence[float] = (), tolerance: float = _TOLERANCE) -> History:
+    """A history from a function of time [s] between 0 and `end` [s], as a table; held after the end.
+
+    The distance of the table from the function is at most `tolerance` times the largest value: `error` of the history is the largest that
+    was found. `breaks` are the times [s] at which the function has a jump or a kink. The points of the table become steps of the run.
+    A pulse shorter than a 250th of the whole may be missed: name its edges as breaks.
+
+    ``load=function`` of :func:`solve` makes such a table from the times of the run; a :class:`Stage`, :meth:`March.prescribe` and
+    everything else takes the history made here.
+
+    >>> import asperity as asp, math
+    >>> beat = asp.sampled(lambda t: 1.0 + 0.5 * math.sin(t) * math.sin(10 * t), end=6.0)
+    >>> beat.error < 1.5e-3, beat.end
+    (True, 6.0)
+    """
+    last = number("end", end)
+    if not (math.isfinite(last) and last > 0.0):
+        raise CaseError(f"end is {last} s, but must be a time after 0 s")
+    return _of_function("value", function, np.linspace(0.0, last, _LOOKS + 1)[1:], breaks, number("tolerance", tolerance), "")
+
+
+def _of_function(what: str, function: Any, marks: Floats, breaks: Sequence[float], tolerance: float, unit: str) -> History:
+    if not callable(function):
+        raise CaseError(f"function is {function!r}, but must be a function of time")
+    found, error = as_points(what, function, marks, breaks, tolerance, unit)
+    return History("table", (), found, error=error)
 
 
 def hold() -> History:
@@ -258,9 +355,14 @@ def listed(instants: npt.ArrayLike) -> Times:
     return Times("list", tuple(given[1:] if len(given) > 1 and given[0] == 0.0 else given))
 
 
-def as_history(what: str, value: Any, unit: str | None = None) -> History:
-    """A history of what is prescribed, in the SI unit `unit`, by default that of the parameter; a number is a step."""
+def as_history(what: str, value: Any, unit: str | None = None, *, over: Times | None = None, breaks: Sequence[float] = ()) -> History:
+    """A history of what is prescribed, in the SI unit `unit`, by default that of the parameter; a number is a step, a function is
+    sampled `over` the times of the run."""
     unit = {"load": "N", "pressure": "Pa", "approach": "m", "path": "m", "velocity": "m/s"}[what] if unit is None else unit
+    if callable(value):
+        if over is None:
+            raise CaseError(f"{what} is a function: make a history of it, {what}=asperity.sampled(function, end=...)")
+        return _of_function(what, value, over._marks, breaks, _TOLERANCE, unit)
     if not isinstance(value, History):
         return History("step", (number(what, value, unit),), unit=unit if has_unit(value) else None)
     if value.unit not in (None, unit):

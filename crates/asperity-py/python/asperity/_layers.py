@@ -91,6 +91,14 @@ class Body:
         return {"base": "rigid", **own}
 
 
+def materials_of(body: Material | Body) -> list[Material]:
+    """The materials of a body, those of its layers first."""
+    if isinstance(body, Material):
+        return [body]
+    base = [body.base] if isinstance(body.base, Material) else []
+    return [*(layer.material for layer in body.layers), *base]
+
+
 def layer_compliance(q: npt.ArrayLike, body: Material | Body, *, time: float = 0.0) -> Floats:
     """C(q) [m/Pa]: the displacement of the surface under a wave of pressure of unit amplitude.
 

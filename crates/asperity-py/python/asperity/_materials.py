@@ -19,7 +19,7 @@ import functools
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -31,6 +31,9 @@ from ._sealed import Sealed
 from ._shifts import Shift
 from ._units import frequency
 from ._words import Measure
+
+if TYPE_CHECKING:
+    from ._fit import Fit
 
 __all__ = ["Burgers", "Creep", "Elastic", "FractionalMaxwell", "FractionalZener", "KelvinVoigt", "Material", "Maxwell", "Prony", "Springpot", "StandardLinearSolid", "Zener"]
 
@@ -110,12 +113,19 @@ class Material(Sealed):
         return f"<b>{type(self).__name__}</b> (SI){_html.table(rows)}"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return functools.partial(type(self), **self._given), ()
+        made = {"_fit": self.fit} if self.fit is not None else None
+        return functools.partial(type(self), **self._given), (), made
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and isinstance(other, Material) and self._given == other._given
 
     __hash__ = None  # type: ignore[assignment]
+
+    @property
+    def fit(self) -> Fit | None:
+        """The fit that it comes from; None of one that was given by its numbers."""
+        found: Fit | None = self.__dict__.get("_fit")
+        return found
 
     @property
     def measure(self) -> Measure:
@@ -139,7 +149,8 @@ class Material(Sealed):
 
     def relaxation_modulus(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
         """Relaxation modulus [Pa] at times `t` [s]: Young's modulus with ``measure="young"``, the shear modulus with "shear"; by default the
-        one that the material was given in (:attr:`measure`).
+        one that the material was given in (:attr:`measure`). The pulse at t = 0 with which a body without instantaneous compliance
+        (:class:`KelvinVoigt`) answers a step of the strain is left out.
 
         >>> import asperity as asp
         >>> rubber = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=2.0, poisson=0.5)
@@ -161,6 +172,28 @@ class Material(Sealed):
         at = array("angular frequencies", frequency("angular frequencies", omega, angular=True))
         storage, loss = self._body.complex(line("angular frequencies", at.reshape(-1)), self._of(measure))
         return storage.reshape(at.shape), loss.reshape(at.shape)
+
+    def creep(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+        """Short for :meth:`creep_compliance`."""
+        return self.creep_compliance(t, measure=measure)
+
+    def relaxation(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+        """Short for :meth:`relaxation_modulus`."""
+        return self.relaxation_modulus(t, measure=measure)
+
+    def storage(self, omega: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+        """The storage modulus [Pa], as :meth:`storage_loss`."""
+        return self.storage_loss(omega, measure=measure)[0]
+
+    def loss(self, omega: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+        """The loss modulus [Pa], as :meth:`storage_loss`.
+
+        >>> import asperity as asp
+        >>> zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=2.0, poisson=0.5)
+        >>> float(zener.loss(1.0) / zener.storage(1.0)) > 0.3, zener.shear, float(zener.relaxation(0.0))
+        (True, 1000000.0, 1000000.0)
+        """
+        return self.storage_loss(omega, measure=measure)[1]
 
     def contact_compliance(self, t: npt.ArrayLike) -> Floats:
         """Contact creep compliance C(t) [1/Pa] against a rigid body: 1/E* of an elastic one."""

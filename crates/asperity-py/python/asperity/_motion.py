@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._arrays import Floats, choice, direction_of, line, number
-from ._histories import History, as_history, one_of
+from ._histories import Function, History, one_of
 from ._options import arguments_of
 from ._problem import InTime, Run
 from ._result import Result
@@ -36,8 +36,8 @@ class Moving(Run):
 class Slide(Moving, InTime):
     """The arguments of :func:`asperity.slide`."""
 
-    velocity: History | float | None = None
-    path: History | None = None
+    velocity: History | Function | float | None = None
+    path: History | Function | None = None
     start: float = 0.0
     cells_per_step: float = 1.0
 
@@ -46,7 +46,7 @@ class Slide(Moving, InTime):
     def course_keys(self) -> dict[str, Any]:
         what, course = one_of({"velocity": self.velocity, "path": self.path}, "give")
         motion = {
-            what: as_history(what, course)._keys,
+            what: self.history_keys(what, course),
             "start": number("start", self.start),
             "cells_per_step": number("cells_per_step", self.cells_per_step),
             **self.motion_keys(),

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from ._adhesion import Adhesion
-from ._arrays import as_plane, check_places, choice, count, distinct, field, in_order, number
+from ._arrays import as_plane, check_places, choice, count, distinct, field as field_of, in_order, number
 from ._core import CaseError
-from ._histories import History, Stage, Times, as_history, as_times, one_of
+from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
 from ._layers import Body
 from ._materials import Material
 from ._rows import Quantity
@@ -34,8 +34,8 @@ class Problem:
     surface: Any = None
     material: Material | Body | Sequence[Material | Body] | None = None
     _: KW_ONLY
-    load: History | float | None = None
-    pressure: History | float | None = None
+    load: History | Function | float | None = None
+    pressure: History | Function | float | None = None
     gap: Any = None
     size: float | Sequence[float] | None = None
     hardness: float | npt.ArrayLike | None = None
@@ -53,6 +53,8 @@ class Problem:
     every: int | None = None
     field_times: npt.ArrayLike | None = None
     title: str = ""
+    #: Of each history that was given as a function: the points of its table, and the largest distance that was found.
+    sampled: dict[str, dict[str, float]] = field(init=False, default_factory=dict)
 
     #: Groups of fields of which exactly one is given.
     alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure"), ("surface", "gap")]
@@ -99,7 +101,11 @@ class Problem:
     def load_keys(self, load_unit: str) -> dict[str, Any]:
         """The keys of `[load]`; the unit of a load is N, or N/m of a line contact."""
         control, value = one_of(self.controls(), "give")
-        return {"control": control, "history": as_history(control, value, load_unit if control == "load" else None)._keys}
+        return {"control": control, "history": self.history_keys(control, value, load_unit if control == "load" else None)}
+
+    def history_keys(self, what: str, value: Any, unit: str | None = None) -> dict[str, Any]:
+        """The keys of a history."""
+        return as_history(what, value, unit)._keys
 
     def controls(self) -> dict[str, Any]:
         """What may be prescribed."""
@@ -116,6 +122,19 @@ class InTime(Problem):
 
     times: Times | npt.ArrayLike
     scheme: Scheme = "linear"
+    breaks: Sequence[float] = ()
+
+    def __post_init__(self) -> None:
+        # Once: a generator gives its times only once.
+        self.times = as_times(self.times)
+
+    def history_keys(self, what: str, value: Any, unit: str | None = None) -> dict[str, Any]:
+        if np.size(self.breaks) and not callable(value):
+            raise CaseError(f"breaks goes with a {what} that is a function: a history has its own")
+        history = as_history(what, value, unit, over=as_times(self.times), breaks=self.breaks)
+        if history.error is not None:
+            self.sampled[what] = {"points": len(history.points), "error": history.error}
+        return history._keys
 
     def course_keys(self) -> dict[str, Any]:
         return {"time": {**as_times(self.times)._keys, "scheme": choice("scheme", self.scheme, get_args(Scheme))}}
@@ -125,7 +144,7 @@ class InTime(Problem):
 class InStages(InTime):
     """A run in time at rest, whose control may switch: the arguments of :func:`asperity.march`."""
 
-    approach: History | float | None = None
+    approach: History | Function | float | None = None
     stages: Sequence[Stage] | None = None
     adhesion: Adhesion | None = None
 
@@ -185,7 +204,7 @@ def hardness_of(hardness: Any, shape: Surface) -> float | Floats | None:
         return None
     if np.ndim(bare("hardness", in_order("hardness", hardness, shape.size))) != len(shape.size):
         return number("hardness", hardness)
-    cells = field("hardness", hardness, line=True, size=shape.size)
+    cells = field_of("hardness", hardness, line=True, size=shape.size)
     if cells.shape != shape.cells:
         raise CaseError(f"hardness has shape {cells.shape}, but must have {shape.cells}: one value for each cell")
     return cells

@@ -115,7 +115,7 @@ class Record:
             return self.result(status)
         self._catch_up()
         self._write(len(self))
-        self._writer.finish(status, self._march._core.findings(), message)
+        self._writer.finish(status, json.dumps(self._march._found()), message)
         self._writer = None
         return open(self._output)
 

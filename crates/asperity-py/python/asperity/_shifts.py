@@ -22,6 +22,7 @@ from . import _core
 from ._arrays import Floats, each, number, points
 from ._core import CaseError
 from ._findings import warn_caller
+from ._parameters import Parameter, call
 from ._units import carries
 
 
@@ -45,6 +46,18 @@ class Shift:
     #: How moduli depend on temperature: the expansion [1/K] of a density, or points (temperature [K], b_T).
     vertical: float | tuple[tuple[float, float], ...] | None = None
 
+    #: Constants of WLF: c1, and c2 [K].
+    c1 = Parameter[float]()
+    c2 = Parameter[float]()
+    #: Activation energy of Arrhenius [J/mol].
+    activation_energy = Parameter[float]()
+    #: Reference temperature [K].
+    reference = Parameter[float]()
+
+    @property
+    def _parameters(self) -> dict[str, Any]:
+        return dict(zip(_NUMBERS[self.model], self.numbers))
+
     def factor(self, temperature: npt.ArrayLike) -> Floats:
         """a_T at temperatures [K]: processes take a_T times as long as at the reference temperature.
 
@@ -67,7 +80,7 @@ class Shift:
     @property
     def _keys(self) -> dict[str, Any]:
         """The keys of a `shift`."""
-        keys: dict[str, Any] = {"model": self.model, **dict(zip(_NUMBERS[self.model], self.numbers))}
+        keys: dict[str, Any] = {"model": self.model, **{_KEYS.get(name, name): value for name, value in self._parameters.items()}}
         if self.model == "table":
             keys["points"] = [list(point) for point in self.points]
         if isinstance(self.vertical, tuple):
@@ -80,17 +93,14 @@ class Shift:
         raised = ""
         if self.vertical is not None:
             raised = f", vertical={list(self.vertical) if isinstance(self.vertical, tuple) else (self.vertical or 'density')!r}"
-        if self.model == "wlf":
-            c1, c2, reference = self.numbers
-            return f"wlf(c1={c1!r}, c2={c2!r}, reference={reference!r}{raised})"
-        if self.model == "arrhenius":
-            energy, reference = self.numbers
-            return f"arrhenius(activation_energy={energy!r}, reference={reference!r}{raised})"
-        return f"shift_table({list(self.points)!r}{raised})"
+        if self.model == "table":
+            return f"shift_table({list(self.points)!r}{raised})"
+        return f"{call(self.model, self._parameters)[:-1]}{raised})"
 
 
-#: What the numbers of a shift are called in a case.
-_NUMBERS = {"wlf": ("c1", "c2", "reference"), "arrhenius": ("energy", "reference"), "table": ()}
+#: What the numbers of a shift are called, and in a case where they have another name there.
+_NUMBERS = {"wlf": ("c1", "c2", "reference"), "arrhenius": ("activation_energy", "reference"), "table": ()}
+_KEYS = {"activation_energy": "energy"}
 
 
 def wlf(*, c1: float, c2: float, reference: float, vertical: Vertical = None) -> Shift:
@@ -161,7 +171,7 @@ def made(keys: dict[str, Any] | None) -> Shift | None:
     """The shift of these keys."""
     if keys is None:
         return None
-    numbers = tuple(keys[name] for name in _NUMBERS[keys["model"]])
+    numbers = tuple(keys[_KEYS.get(name, name)] for name in _NUMBERS[keys["model"]])
     vertical = keys.get("vertical")
     if isinstance(vertical, list):
         vertical = tuple(tuple(point) for point in vertical)

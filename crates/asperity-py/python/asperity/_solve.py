@@ -18,8 +18,9 @@ from ._columns import HISTOGRAMS, Number
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
 from ._histories import History, as_history, one_of
+from ._layers import materials_of
 from ._options import arguments_of
-from ._problem import InStages, Problem, Run, Solve
+from ._problem import InStages, Problem, Run, Solve, bodies_of
 from ._progress import Progress
 from ._record import Keep, Record
 from ._result import Result, open
@@ -115,7 +116,9 @@ class March(Sealed):
         # Threads that share a march take turns.
         self._turn = threading.Lock()
         self._hold(initial_gap=shape.gap(), size=shape.size)
-        self._setup: dict[str, Any] = json.loads(self._core.setup)
+        self._setup: dict[str, Any] = {**json.loads(self._core.setup), **({"sampled": given.sampled} if given.sampled else {})}
+        fits = [material.fit for body in bodies_of(given.material) for material in materials_of(body) if material.fit is not None]
+        self._of_fits = [finding for fit in fits for finding in fit.findings]
         self._record = Record(self, keep, output, force)
 
     def __repr__(self) -> str:
@@ -133,8 +136,12 @@ class March(Sealed):
 
     @property
     def findings(self) -> list[Finding]:
-        """Where the numbers of the rows so far may be off (docs/findings.md)."""
-        return findings_of(json.loads(self._core.findings()))
+        """Where the numbers of the rows so far may be off (docs/findings.md), and where the fits of their materials."""
+        return findings_of(self._found())
+
+    def _found(self) -> list[dict[str, Any]]:
+        """The findings as the core tells them."""
+        return [*json.loads(self._core.findings()), *self._of_fits]
 
     def __iter__(self) -> Iterator[Step]:
         return self
@@ -223,7 +230,9 @@ def solve(given: Solve) -> Result:
     gap : instead of the surface the undeformed gap [m], infinite where nothing can touch; it is shifted to the least value 0
     material : the deformable body (a material for a half-space, an asperity.Body for layers), or a pair of them
     times : times to solve for: uniform, log, adaptive, listed, or a sequence [s]; breaks of the history are added
-    load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step
+    load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, a number for a step, or a function of time [s], which
+        becomes a table within a thousandth of its largest value (:func:`sampled`)
+    breaks : times at which such a function has a jump or a kink [s]
     stages : instead, a list of :class:`Stage` s: the control switches at a time or at an event
     adhesion : an attraction between the surfaces, asperity.Adhesion; then loads may be negative, and each row also has "adhesive_load",
         "repulsive_load", "adhesion_energy", "outer_iterations", "adhesion_residual"

@@ -37,6 +37,7 @@ from ._core import CaseError
 from ._findings import findings_of, warn, warn_caller
 from ._grid import OnGrid
 from ._histories import one_of
+from ._parameters import Parameter, call
 from ._sealed import ReadOnlyArrays
 from ._units import carries, factor_of, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
@@ -105,6 +106,30 @@ class Surface(OnGrid):
     size: tuple[float, ...]
     metadata: dict[str, Any] = dataclass_field(default_factory=dict)
 
+    #: What a shape was made with: radius of a sphere, cylinder or punch [m], radii of an ellipsoid [m], slope of a cone or wedge, sides
+    #: of a punch [m], amplitude and wavelengths of a wave [m], and the `center` from the middle of the domain [m].
+    radius = Parameter[float]()
+    radius_x = Parameter[float]()
+    radius_y = Parameter[float]()
+    slope = Parameter[float]()
+    sides = Parameter[list[float]]()
+    amplitude = Parameter[float]()
+    wavelength = Parameter[list[float]]()
+    center = Parameter[list[float]]()
+    #: What self-affine roughness was made with: Hurst exponent, rms gradient or height [m], wavelengths [m], seed.
+    hurst = Parameter[float]()
+    rms_gradient = Parameter[float]()
+    rms_height = Parameter[float]()
+    longest = Parameter[float]()
+    shortest = Parameter[float]()
+    roll_off = Parameter[float]()
+    seed = Parameter[int]()
+
+    @property
+    def _parameters(self) -> dict[str, Any]:
+        """What it was made with; none of heights that were given, or changed."""
+        return dict(self.__dict__.get("_made", {}))
+
     # Operators of numpy arrays leave a surface to its own.
     __array_ufunc__ = None
     __hash__ = None  # type: ignore[assignment]
@@ -117,7 +142,8 @@ class Surface(OnGrid):
         object.__setattr__(self, "metadata", {**known, **(metadata or {})})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return functools.partial(Surface, size=self.size, metadata=self.metadata), (self.heights,)
+        made = {"_made": self._parameters} if self._parameters else None
+        return functools.partial(Surface, size=self.size, metadata=self.metadata), (self.heights,), made
 
     @property
     def cells(self) -> tuple[int, ...]:
@@ -202,6 +228,9 @@ class Surface(OnGrid):
         return xarray.DataArray(np.array(self.heights), dims=self._axes, coords=self._coordinates, name="heights", attrs=attributes)
 
     def __repr__(self) -> str:
+        known = self._parameters
+        if known:
+            return call(f"Surface.{known.pop('kind').replace('-', '_')}", {"cells": self.cells, "size": self.size, **known})
         return f"Surface({cells_of(self.heights)}, {' x '.join(f'{length:g} m' for length in self.size)})"
 
     def gap(self) -> Floats:
@@ -552,14 +581,18 @@ class Surface(OnGrid):
         1.0
         """
         lay: dict[str, Any] = dict(numbers_of({"ratio": lay_ratio}))
+        turned = 0.0
         if lay_angle is not None:
-            lay["angle"] = f"{angle('lay_angle', lay_angle)!r} rad"
+            turned = angle("lay_angle", lay_angle)
+            lay["angle"] = f"{turned!r} rad"
         distribution = numbers_of({"skewness": skewness, "kurtosis": kurtosis})
         if len(lengths("size", size)) == 1 and (lay or distribution):
             raise CaseError("a profile has no lay, and heights of a normal distribution: leave lay, skewness and kurtosis out")
         numbers = dict(hurst=hurst, rms_gradient=rms_gradient, rms_height=rms_height, longest=longest, shortest=shortest, roll_off=roll_off)
         given = {"seed": count("seed", seed, 0, 2**63 - 1), "lay": lay, "distribution": distribution}
-        return _made(cells, size, "self-affine", numbers, **{name: value for name, value in given.items() if value != {}})
+        of_lay = {f"lay_{name}": turned if name == "angle" else value for name, value in lay.items()}
+        made = {**numbers_of(numbers), "seed": given["seed"], **of_lay, **distribution}
+        return _made(cells, size, "self-affine", numbers, made, **{name: value for name, value in given.items() if value != {}})
 
     @staticmethod
     def contact_mechanics_challenge(*, cells: Sequence[int], seed: int = 0) -> Surface:
@@ -568,7 +601,7 @@ class Surface(OnGrid):
         Hurst exponent 0.8, roll-off 20 um, cut-off 0.1 um, rms gradient 1; it needs 2000 cells a side or more.
         """
         whole = count("seed", seed, 0, 2**63 - 1)
-        return _made(cells, (1e-4, 1e-4), "self-affine", {}, preset="contact-mechanics-challenge", seed=whole)
+        return _made(cells, (1e-4, 1e-4), "self-affine", {}, None, preset="contact-mechanics-challenge", seed=whole)
 
     @staticmethod
     def sphere(
@@ -636,7 +669,8 @@ class Surface(OnGrid):
         *, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]
     ) -> Surface:
         """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge. On a line one wavelength."""
-        return _made(cells, size, "wave", {"amplitude": amplitude}, wavelength=_along_both("wavelength", wavelength, size))
+        waves = _along_both("wavelength", wavelength, size)
+        return _made(cells, size, "wave", {"amplitude": amplitude}, {**numbers_of({"amplitude": amplitude}), "wavelength": waves}, wavelength=waves)
 
 
 def _along_both(what: str, value: Any, size: Any) -> list[float]:
@@ -651,17 +685,22 @@ def _shape(cells: Any, size: Any, center: Any, kind: str, keys: dict[str, Any] |
     # What is straight along y has no place along it.
     straight = kind in ("cylinder", "wedge") and np.size(center) == 1
     place = [*lengths("center", center), 0.0] if straight else along("center", center, dimensions)
-    return _made(cells, size, kind, numbers, center=place[:dimensions], **(keys or {}))
+    keys = {**(keys or {}), "center": place[:dimensions]}
+    made = {**numbers_of(numbers), **{"sides" if name == "size" else name: value for name, value in keys.items()}}
+    return _made(cells, size, kind, numbers, made, **keys)
 
 
-def _made(cells: Any, size: Any, kind: str, numbers: dict[str, Any], /, **keys: Any) -> Surface:
-    """The surface of a case that has these keys."""
+def _made(cells: Any, size: Any, kind: str, numbers: dict[str, Any], made: dict[str, Any] | None, /, **keys: Any) -> Surface:
+    """The surface of a case that has these keys; `made` are the parameters that it was made with."""
     extent, grid = lengths("size", size), cell_counts("cells", cells)
     if len(grid) != len(extent):
         raise CaseError(f"cells is {grid} and size {extent}, but both must have two numbers, or both one for a line of cells")
     domain = {"cells": list(grid), "size": list(extent)}
     heights, single = _core.heights({"domain": domain, "surface": [{"kind": kind, **numbers_of(numbers), **keys}]})
-    return Surface(heights.reshape(grid), size=extent, metadata={"single": True} if single else None)
+    surface = Surface(heights.reshape(grid), size=extent, metadata={"single": True} if single else None)
+    if made is not None:
+        object.__setattr__(surface, "_made", {"kind": kind, **made})
+    return surface
 
 
 def as_surface(value: Any, size: float | Sequence[float] | None) -> Surface:

@@ -62,7 +62,8 @@ _ROUNDING = 1e-12
 #: What a negative gap is: the overlap where the pressure is cut off.
 _FLATTENED = "below 0: flattened at the hardness"
 #: Names of curves that an evolution has more than one of.
-_KINDS = ("counted", "corrected", "at the hardness", "nominal mean", "largest", "mean over the contact", "of the bulk", "in total")
+_KINDS = ("counted", "corrected", "at the hardness", "nominal mean", "largest", "mean over the contact", "of the bulk", "in total",
+    "against motion", "across it", "solved", "critical constriction", "effective medium", "hydraulic", "critical")
 
 
 class _Panel(NamedTuple):
@@ -90,6 +91,10 @@ class Plots:
         fields = self._result.fields
         missing = {name for name in ("pressure", "gap", "displacement", "flattening") if name not in fields}
         touching = {"pressure", "contact"} & {*fields}
+        if "friction_coefficient" not in self._result._table:
+            missing.add("friction")
+        if not self._result._leaks and "gap" not in fields:
+            missing.add("leak")
         return _told(self, frozenset(missing | ({"contact", "spots"} if not touching else set()) | ({"profile"} if not fields else set())))
 
     def evolution(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
@@ -97,18 +102,63 @@ class Plots:
         in a new figure or the `axes` that another evolution returned. The pressure is the nominal mean (load by the area of the
         domain), the largest one and the mean over the contact. Time is logarithmic where half of the rows lie in the first tenth of
         the run (velocities where they span a decade), and where `log_time` says so; the row at the time 0 is not shown then."""
+        return self._over_rows("evolution", self._panels(), axes, log_time, label, style)
+
+    def friction(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
+        """Friction coefficient, force, contact area over that of the domain and lost power of a contact in motion, over time or, of
+        steady states, over the velocity: four axes, as :meth:`evolution`."""
         result = self._result
+        coefficient = [("", result.friction_coefficient)]
+        if "friction_coefficient_total" in result._table:
+            coefficient = [("of the bulk", result.friction_coefficient), ("in total", result.friction_coefficient_total)]
+        force = [("", result.friction_force)]
+        if _largest(result.side_force) > 1e-3 * _largest(result.friction_force):
+            force = [("against motion", result.friction_force), ("across it", result.side_force)]
+        panels = [
+            _Panel("friction coefficient", "1", 1, coefficient),
+            _Panel("force", result.units("friction_force"), 1, force),
+            _Panel("contact over nominal area", "1", 1, [("", result.contact_fraction)]),
+            _Panel("power lost", result.units("dissipated_power"), 1, [("", result.dissipated_power)]),
+        ]
+        return self._over_rows("friction", panels, axes, log_time, label, style)
+
+    def leak(self, leaks: Any = None, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
+        """Leak rate with its two estimates, and hydraulic and critical gap over time, on logarithmic axes: two axes, or one (the gaps) where
+        no fluid is given. `leaks` is what :meth:`Result.leakage` returns; by default the leaks that the run stored. Times at which the seal
+        is tight are left out."""
+        found = self._result.leakage() if leaks is None else leaks
+        names = {"solved": "leak_rate", "critical constriction": "leak_estimate_junction", "effective medium": "leak_estimate_medium"}
+        panels = []
+        if "leak_rate" in found:
+            rates = [(words, found[name].values) for words, name in names.items() if name in found]
+            panels.append(_Panel("leak rate", found["leak_rate"].attrs["units"], 1, rates))
+        gaps = [("hydraulic", found["hydraulic_gap"].values), ("critical", found["critical_gap"].values)]
+        panels.append(_Panel("gap", "m", 1, gaps))
+        open_ = np.asarray(found["percolates"].values, dtype=bool)
+        panels = [panel._replace(curves=[(words, np.where(open_, values, np.nan)) for words, values in panel.curves]) for panel in panels]
+        drawn = self._over_rows("leak", panels, axes, log_time, label, style, over=np.asarray(found["leak_time"].values))
+        for ax in drawn.flat if open_.any() else ():
+            ax.set_yscale("log", nonpositive="mask")
+        return drawn
+
+    def _over_rows(
+        self, name: str, panels: list[_Panel], axes: Any, log_time: bool | None, label: str | None, style: dict[str, Any], over: Any = None
+    ) -> npt.NDArray[Any]:
+        """The panels over the rows, or over these times, each in axes of its own."""
+        result = self._result
+        lines, number = {4: (2, "four"), 2: (1, "two"), 1: (1, "one")}[len(panels)]
+        columns = len(panels) // lines
         if "ax" in style:
-            raise TypeError("evolution draws into four axes: give axes=, as plt.subplots(2, 2) returns them")
+            raise TypeError(f"{name} draws into {number} axes: give axes=, as plt.subplots({lines}, {columns}) returns them")
         _check_style(style)
         if axes is None:
             import matplotlib.pyplot as plt
 
-            _, axes = plt.subplots(2, 2, figsize=(8, 5.4), layout="constrained")
-        if np.size(axes) != 4:
-            raise CaseError(f"axes holds {np.size(axes)} axes, but must hold four, as plt.subplots(2, 2) returns them")
+            _, axes = plt.subplots(lines, columns, figsize=(4 * columns, 2.7 * lines), layout="constrained")
+        if np.size(axes) != len(panels):
+            raise CaseError(f"axes holds {np.size(axes)} axes, but must hold {number}, as plt.subplots({lines}, {columns}) returns them")
         drawn: npt.NDArray[Any] = np.asarray(axes, dtype=object)
-        over = result._table["time"]
+        over = result._table["time"] if over is None else over
         drawn_before = [ax for ax in drawn.flat if ax.lines]
         if log_time is None and drawn_before:
             log_time = drawn_before[0].get_xscale() == "log"
@@ -117,7 +167,7 @@ class Plots:
         # A logarithmic axis has no place for the row at the time 0.
         rows = over > 0 if log_time else np.full(over.shape, True)
         along = result._axis
-        for ax, panel in zip(drawn.flat, self._panels()):
+        for ax, panel in zip(drawn.flat, panels):
             # Decades on both sides of a second, or of 1 m/s, are powers of ten of it.
             wide = log_time and np.any(over[rows] < 1.0) and over[-1] > 1e6 * np.min(over[rows], initial=np.inf) and over[-1] > 1.0
             shift = _scale(ax, along.name, 1.0 if wide else _largest(over), along.unit, axis="x", log=log_time)

@@ -78,9 +78,9 @@ pub struct Diagnostics {
     adhesion: adhesion::Border,
     balance: Balance,
     beyond: Beyond,
-    /// The finding for a held approach with cells at the hardness, and whether there were such cells.
-    held: Option<Finding>,
-    capped: bool,
+    /// Where an approach is held while cells are at the hardness, and the control of each stage.
+    held: time::Held,
+    controls: Vec<Control>,
     /// Errors of the time steps that are too large by themselves: number of the row, error, load; and the largest load of the run.
     coarse: Vec<(usize, f64, f64)>,
     heaviest: f64,
@@ -112,9 +112,8 @@ impl Diagnostics {
             adhesion: adhesion::Border::default(),
             balance: Balance::default(),
             beyond: Beyond::default(),
-            held: time::held_at_hardness(simulation)
-                .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
-            capped: false,
+            held: time::Held::default(),
+            controls: simulation.loading.stages.iter().map(|stage| stage.control).collect(),
             coarse: vec![],
             heaviest: 0.0,
             thickness: known.thickness.filter(|_| free),
@@ -135,12 +134,13 @@ impl Diagnostics {
     /// Adds the rows that an earlier session of the run stored, with their friction where anything moves, and its findings.
     pub fn resume(&mut self, rows: &[Row], frictions: &[Friction], found: &[Finding]) {
         let grid = self.grid;
-        rows.iter().enumerate().for_each(|(index, row)| self.take(index, row, Counted::of(&grid, row)));
+        for (index, row) in rows.iter().enumerate() {
+            let control = self.controls.get(row.stage).copied().unwrap_or(Control::Load);
+            self.take(index, row, Counted::of(&grid, row), control);
+        }
         for (index, (row, friction)) in rows.iter().zip(frictions).enumerate() {
             self.slides.see(index, row.coordinate, friction);
         }
-        // Which rows had their approach held does not follow from them.
-        self.capped |= self.held.as_ref().is_some_and(|held| found.contains(held));
         // Findings that do not follow from rows alone; later rows are checked again.
         for finding in found {
             let Some([first, last]) = finding.rows.filter(|at| at[0] < rows.len()) else { continue };
@@ -167,7 +167,6 @@ impl Diagnostics {
         self.beyond.see(index, step);
         let (control, compliance) = (step.control(), step.simulation().compliance(row.coordinate.value()));
         self.see_contact(index, row, step.contact_pressure(), control, compliance);
-        self.capped |= row.capped_area > 0.0 && control == Control::Approach;
         if let Some(friction) = step.friction() {
             self.slides.see(index, row.coordinate, &friction);
         }
@@ -202,11 +201,12 @@ impl Diagnostics {
             true => Counted::on_line(pressure),
             false => Counted::of(&self.grid, row),
         };
-        self.take(index, row, contact);
+        self.take(index, row, contact, control);
     }
 
-    fn take(&mut self, index: usize, row: &Row, contact: Counted) {
+    fn take(&mut self, index: usize, row: &Row, contact: Counted, control: Control) {
         self.rows += 1;
+        self.held.see(index, row, control == Control::Approach);
         self.deepest = self.deepest.max(row.approach);
         self.heaviest = self.heaviest.max(row.load);
         if let Some(error) = row.time_error.filter(|error| *error > time::COARSE) {
@@ -255,8 +255,8 @@ impl Diagnostics {
             // What was expected before the run is known now.
             found.retain(|finding| finding.code != STEPS_TOO_LONG);
             found.push(coarse);
-        } else if lacks(&found, STEPS_TOO_LONG) {
-            found.extend(self.held.clone().filter(|_| self.capped));
+        } else if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG && finding.is_warning()) {
+            found.extend(self.held.finding(simulation));
         }
         found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
         found.extend(self.slides.finding());

@@ -6,7 +6,7 @@ use ndarray::Array2;
 use super::*;
 use crate::drive::March;
 use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Loading};
+use crate::load::{Control, Course, History, Loading, Programme, Stage};
 use crate::material::{Body, Creep, CreepTerm, Lateral, Material, Modulus};
 use crate::quantities::{Quantities, Quantity};
 use crate::simulation::Simulation;
@@ -329,6 +329,51 @@ fn a_held_approach_with_cells_at_the_hardness_needs_steps() {
     assert!(codes(&found).contains(&STEPS_TOO_LONG), "{found:?}");
     assert!(!codes(&after(of(3, high), &parts)).contains(&STEPS_TOO_LONG));
     assert!(!codes(&after(of(30, low), &parts)).contains(&STEPS_TOO_LONG));
+}
+
+#[test]
+fn a_hold_of_what_was_reached_and_a_steered_one_at_the_hardness_need_steps_as_well() {
+    let parts = [sphere(5e-3)];
+    let press = History::Ramp { value: 2e-3, duration: 1.0 };
+    let of = |steps, hardness| Simulation {
+        creep: zener(),
+        hardness,
+        times: TimeGrid::Uniform { end: 4.0, steps },
+        loading: loaded(Control::Load, press.clone()),
+        ..simulation(&parts)
+    };
+    let hold = || Stage::new(Control::Approach, Course::Hold);
+    let in_stages = |simulation: Simulation| {
+        let first = Stage { duration: Some(1.0), ..Stage::new(Control::Load, press.clone()) };
+        after(Simulation { loading: Programme::new(vec![first, hold()]), ..simulation }, &parts)
+    };
+    let steered = |simulation: Simulation| {
+        let mut diagnostics = Diagnostics::new(&simulation, Known { parts: &parts, ..Known::default() });
+        let mut march = March::new(simulation).unwrap();
+        while let Some(step) = march.advance().unwrap() {
+            let row = step.row();
+            diagnostics.see(&step, &row);
+            if row.coordinate.value() == 1.0 && row.stage == 0 {
+                march.prescribe(Control::Approach, Course::Hold).unwrap();
+            }
+        }
+        diagnostics.findings(march.simulation())
+    };
+    // A hold of 3 s, while the material relaxes in half a second.
+    let (low, high) = (5e3, 1e9);
+    let held = |found: Vec<Finding>| {
+        found.into_iter().find(|finding| finding.text.contains("held while cells are at"))
+    };
+    for few in [in_stages(of(8, low)), steered(of(8, low))] {
+        // The ramp has two steps, which is a note of its own.
+        let finding = held(few).expect("six steps");
+        assert!(finding.is_warning() && finding.code == STEPS_TOO_LONG);
+        assert_eq!((finding.value, finding.limit, finding.rows), (Some(6.0), Some(10.0), Some([3, 8])));
+    }
+    for enough in [in_stages(of(16, low)), steered(of(16, low)), in_stages(of(8, high)), steered(of(8, high))]
+    {
+        assert_eq!(held(enough), None);
+    }
 }
 
 #[test]

@@ -10,9 +10,11 @@
 use super::words::{digits, rows, si};
 use super::worst::Worst;
 use super::{ALIASED_HISTORY, Finding, STEPS_TOO_LONG};
+use crate::drive::Coordinate;
 use crate::error::significant;
 use crate::load::{Control, Course, History, Stage};
 use crate::simulation::Simulation;
+use crate::step::Row;
 use crate::time::{Instant, Plan, TimeGrid};
 
 /// Steps per period.
@@ -53,13 +55,13 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
             // The part that lacks the most steps.
             let fewer =
                 long.as_ref().is_none_or(|other| course.steps * other.least < other.steps * course.least);
-            if course.steps < course.least && fewer && relaxes(simulation, &plan, &course) {
+            if course.steps < course.least && fewer && relaxes(simulation, &course) {
                 long = Some(course);
             }
         }
         found.extend(drifting(simulation, &plan, instants, first));
     }
-    found.extend(long.map(|course| too_long(simulation, &plan, &course)));
+    found.extend(long.map(|course| too_long(simulation, &course, plan.exact)));
     found
 }
 
@@ -127,30 +129,50 @@ fn rounded_down(number: f64) -> f64 {
     significant(down, 2).parse().unwrap_or(down)
 }
 
-/// The finding for too few steps while an approach is held with cells at the hardness.
-pub(super) fn held_at_hardness(simulation: &Simulation) -> Option<Finding> {
-    let plan = simulation.plan();
-    let stages = &simulation.loading.stages;
-    let fixed = |stage: usize| !stages[stage].times.as_ref().unwrap_or(&simulation.times).is_adaptive();
-    let mut held: Vec<Piece> = vec![];
-    for (n, pair) in plan.instants.windows(2).enumerate() {
-        let [before, now] = [pair[0], pair[1]];
-        let holds = now.dt > 0.0 && now.control == Control::Approach && before.value == now.value;
-        if !holds || !fixed(now.stage) {
-            continue;
+/// The parts of a run in which an approach is held while cells are at the hardness, from its rows: what a stage holds, or what is prescribed
+/// between two rows, is not known before.
+#[derive(Default)]
+pub(super) struct Held {
+    pieces: Vec<Piece>,
+    /// The stage that each of them begins in.
+    stages: Vec<usize>,
+    /// Time \[s\] and approach \[m\] of the last row, and whether it belongs to the last piece.
+    last: Option<(f64, f64)>,
+    holds: bool,
+}
+
+impl Held {
+    /// Takes in a row in time, and whether its approach is prescribed.
+    pub(super) fn see(&mut self, index: usize, row: &Row, is_prescribed: bool) {
+        let Coordinate::Time(time) = row.coordinate else { return };
+        let Some((before, approach)) = self.last.replace((time, row.approach)) else { return };
+        let dt = time - before;
+        // A row of no duration at the same approach ends nothing.
+        let holds =
+            is_prescribed && row.approach == approach && (row.capped_area > 0.0 || dt == 0.0 && self.holds);
+        match self.pieces.last_mut().filter(|_| self.holds) {
+            _ if !holds || dt == 0.0 => {}
+            Some(piece) => piece.add(index, time, dt),
+            None => {
+                let what = "approach is held while cells are at the hardness";
+                self.pieces.push(Piece::new(index, time, dt, PER_COURSE, what));
+                self.stages.push(row.stage);
+            }
         }
-        match held.last_mut().filter(|piece| piece.last == n) {
-            Some(piece) => piece.add(n + 1, now.dt),
-            None => held.push(Piece::new(
-                n + 1,
-                now.dt,
-                PER_COURSE,
-                "approach is held while cells are at the hardness",
-            )),
-        }
+        self.holds = holds && (self.holds || dt > 0.0);
     }
-    let long = held.iter().filter(|piece| piece.steps < piece.least && relaxes(simulation, &plan, piece));
-    long.min_by_key(|piece| piece.steps).map(|piece| too_long(simulation, &plan, piece))
+
+    /// The finding for the part with the fewest steps, where they are fixed and too few.
+    pub(super) fn finding(&self, simulation: &Simulation) -> Option<Finding> {
+        let own = |stage: usize| simulation.loading.stages.get(stage).and_then(|stage| stage.times.as_ref());
+        let fixed = |stage: usize| !own(stage).unwrap_or(&simulation.times).is_adaptive();
+        let long = std::iter::zip(&self.pieces, &self.stages)
+            .filter(|(piece, stage)| {
+                fixed(**stage) && piece.steps < piece.least && relaxes(simulation, piece)
+            })
+            .map(|(piece, _)| piece);
+        long.min_by_key(|piece| piece.steps).map(|piece| too_long(simulation, piece, true))
+    }
 }
 
 /// A step in which the temperature changes the rate of a material while the load or approach changes or the other body has
@@ -190,7 +212,8 @@ struct Piece {
     first: usize,
     last: usize,
     steps: usize,
-    /// Sum of its steps and the shortest of them \[s\].
+    /// Its end, the sum of its steps and the shortest of them \[s\].
+    end: f64,
     length: f64,
     shortest: f64,
     /// Its number of steps.
@@ -200,12 +223,13 @@ struct Piece {
 }
 
 impl Piece {
-    fn new(row: usize, dt: f64, least: usize, what: &'static str) -> Self {
-        Piece { first: row, last: row, steps: 1, length: dt, shortest: dt, least, what }
+    fn new(row: usize, end: f64, dt: f64, least: usize, what: &'static str) -> Self {
+        Piece { first: row, last: row, steps: 1, end, length: dt, shortest: dt, least, what }
     }
 
-    fn add(&mut self, row: usize, dt: f64) {
+    fn add(&mut self, row: usize, end: f64, dt: f64) {
         self.last = row;
+        self.end = end;
         self.steps += 1;
         self.length += dt;
         self.shortest = self.shortest.min(dt);
@@ -237,7 +261,7 @@ fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
         };
         match found.last_mut().filter(|_| way == going) {
             Some((course, moved)) if way != 0.0 => {
-                course.add(n, instant.dt);
+                course.add(n, instant.time, instant.dt);
                 *moved += change;
             }
             _ if way != 0.0 => {
@@ -247,7 +271,7 @@ fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
                     _ if energies => (PER_COURSE, "load rises"),
                     _ => (PER_RISE, "load rises"),
                 };
-                found.push((Piece::new(n, instant.dt, least, what), change));
+                found.push((Piece::new(n, instant.time, instant.dt, least, what), change));
             }
             _ => {}
         }
@@ -258,8 +282,8 @@ fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
 }
 
 /// Whether the material relaxes within the times of a part, in the reduced time of each body.
-fn relaxes(simulation: &Simulation, plan: &Plan, course: &Piece) -> bool {
-    let end = plan.instants[course.last].time;
+fn relaxes(simulation: &Simulation, course: &Piece) -> bool {
+    let end = course.end;
     let thermal = simulation.thermal.iter().map(|body| (&body.creep, Some(&body.clock)));
     std::iter::once((&simulation.creep, None)).chain(thermal).any(|(creep, clock)| {
         let factor = clock.map_or(1.0, |clock| clock.elapsed(end - course.length, end) / course.length);
@@ -275,9 +299,10 @@ fn relaxes(simulation: &Simulation, plan: &Plan, course: &Piece) -> bool {
     })
 }
 
-fn too_long(simulation: &Simulation, plan: &Plan, course: &Piece) -> Finding {
+/// `located` if the rows of the part are those of the run.
+fn too_long(simulation: &Simulation, course: &Piece, located: bool) -> Finding {
     let at = [course.first, course.last];
-    let place = if plan.exact { format!(" ({})", rows(at)) } else { String::new() };
+    let place = if located { format!(" ({})", rows(at)) } else { String::new() };
     let coarse =
         if course.what == "load rises" { "pressures and energies" } else { "load, approach and energies" };
     let text = format!(
@@ -290,7 +315,7 @@ fn too_long(simulation: &Simulation, plan: &Plan, course: &Piece) -> Finding {
         more_steps(simulation, course.least as f64 / course.steps as f64)
     );
     let finding = Finding::warning(STEPS_TOO_LONG, course.steps as f64, course.least as f64, text);
-    let finding = finding.at(plan.exact.then_some(at));
+    let finding = finding.at(located.then_some(at));
     if course.least == PER_RISE { finding.as_note() } else { finding }
 }
 

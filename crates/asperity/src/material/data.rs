@@ -1,6 +1,6 @@
 //! Checks of measured curves before the fit: order, sign, noise, and passivity.
 
-use crate::error::{Error, Result, increasing, require};
+use crate::error::{Error, Result, increasing, require, significant};
 
 /// Number of points above which a curve is averaged.
 const MOST_POINTS: usize = 10_000_000;
@@ -257,8 +257,8 @@ pub(super) fn check_misfit(
                 words.point(n, xs[n]),
                 words.value(values[n]),
                 format!(
-                    "within {:.0} % of a passive material; the nearest one lies {:.1} % {} the data there",
-                    100.0 * allowed,
+                    "within {} % of a passive material; the nearest one lies {:.1} % {} the data there",
+                    significant(100.0 * allowed, 2),
                     100.0 * mean.abs(),
                     if mean > 0.0 { "above" } else { "below" }
                 ),

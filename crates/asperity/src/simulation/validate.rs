@@ -250,8 +250,39 @@ impl Simulation {
         checked.map_err(|error| named(error).of(&format!("load.stages[{n}]")))
     }
 
-    /// Rows must have what a stage waits for.
+    /// Rows must have what a stage waits for, and can reach it.
     fn validate_event(&self, stage: &Stage) -> Result<()> {
+        self.validate_awaited(stage)?;
+        let (key, number, value) = match stage.until {
+            None | Some(Event::ContactLost | Event::Approach(_)) => return Ok(()),
+            Some(Event::Load(value)) => ("load", "load", value),
+            Some(Event::Pressure(value)) => ("pressure", "mean_pressure", value),
+            Some(Event::Number(number, value)) => (number.name(), number.name(), value),
+        };
+        let Some(number) = RowNumber::from_name(number) else { return Ok(()) };
+        let heaviest = self.most() * self.grid.cell_area();
+        let hardest = match &self.hardness_map {
+            Some(map) => map.iter().copied().fold(0.0, f64::max),
+            None => self.hardness,
+        };
+        let [least, most] = number.range(&self.grid, heaviest, hardest, self.traction.is_some());
+        let unit = match number.units_on(&self.grid) {
+            "1" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        let expected = match (least.is_finite(), most.is_finite()) {
+            (true, true) => format!("between {least} and {most}{unit}, the values that it can have"),
+            (true, false) => format!("{least}{unit} or more, the values that it can have"),
+            _ => format!("{most}{unit} or less, the values that it can have"),
+        };
+        // Equality within rounding is the limit itself, which can be reached.
+        let reaches = value >= least && value <= most * (1.0 + 1e-12);
+        require(reaches, format!("{key} of the event"), format!("{value}{unit}"), expected)
+            .map_err(|error| error.of(&format!("until.{key}")))
+    }
+
+    /// Rows must have what a stage waits for.
+    fn validate_awaited(&self, stage: &Stage) -> Result<()> {
         let Some(Event::Number(RowNumber::Quantity(quantity), _)) = stage.until else { return Ok(()) };
         let moves = self.motion.is_some();
         let sheared = self.motion.as_ref().is_some_and(|motion| motion.shear_stress.is_some());

@@ -464,6 +464,39 @@ fn stages_and_adaptive_steps() {
     says(old, &until("\"contact-last\""), "load.stages[1].until", 34, "unknown-kind", &[]);
     says(old, &until("{ load = \"2 um\" }"), "load.stages[1].until.load", 34, "wrong-unit", &[]);
     says(old, &until("{ load = 1, approach = 2 }"), "load.stages[1].until", 34, "wrong-type", &[]);
+    // Values that no row can have: a share above 1, more than the domain, a negative area, more than the hardness of 10 MPa bears.
+    for (number, value, key) in [
+        ("contact_fraction", "2", "load.stages[1].until.contact_fraction"),
+        ("contact_area", "\"1 m2\"", "load.stages[1].until.contact_area"),
+        ("largest_spot", "\"-1 mm2\"", "load.stages[1].until.largest_spot"),
+        ("contact_percolation", "4", "load.stages[1].until.contact_percolation"),
+        ("max_pressure", "\"11 MPa\"", "load.stages[1].until.max_pressure"),
+        ("pressure", "\"11 MPa\"", "load.stages[1].until.pressure"),
+    ] {
+        says(
+            old,
+            &until(&format!("{{ {number} = {value} }}")),
+            key,
+            34,
+            "out-of-range",
+            &["values that it can have"],
+        );
+    }
+    for good in
+        ["contact_fraction = 1", "max_pressure = \"10 MPa\"", "mean_gap = \"-1 nm\"", "contact_spots = 3"]
+    {
+        let text = GOOD.replacen(old, &until(&format!("{{ {good} }}")), 1);
+        assert!(Case::parse(&text, Path::new("."), &[]).is_ok(), "{good}");
+    }
+    says(
+        old,
+        &until("{ contact_area = \"1 um\" }"),
+        "load.stages[1].until.contact_area",
+        34,
+        "wrong-unit",
+        &[],
+    );
+    says(old, &until("{ friction_force = \"1 N\" }"), "load.stages[1].until", 34, "out-of-range", &[]);
     says(old, &edit(" } }", " }, steps = 5 }"), at, 34, "conflict", &[]);
     let ends = |more: &str| edit(" } }", &format!(" }}, duration = 5, {more} }}"));
     says(old, &ends("spacing = \"log\""), "load.stages[1].steps", 34, "missing-key", &[]);

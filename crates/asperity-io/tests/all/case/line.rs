@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
+use asperity::quantities::RowNumber;
 use asperity::{Control, Event, Grid};
+use asperity_io::Code;
 use asperity_io::case::{Case, CaseError};
 
 const GOOD: &str = r#"
@@ -99,6 +101,37 @@ fn a_load_of_the_wrong_kind_names_the_right_one() {
     );
     let error = fault(&until);
     assert_eq!(error.key, "load.stages[0].until.load");
+}
+
+#[test]
+fn a_stage_of_a_line_contact_waits_for_numbers_in_its_units() {
+    // An area is a length, a perimeter a number of ends; the domain is 2 mm long.
+    let waits = |until: &str| {
+        edited(
+            "control = \"load\"\nhistory = { kind = \"ramp\", value = \"2 N/mm\", duration = \"1 s\" }",
+            &format!(
+                "stages = [{{ control = \"load\", history = {{ kind = \"ramp\", value = \"2 N/mm\", duration = \"1 s\" }}, until = {{ {until} }} }}]"
+            ),
+        )
+    };
+    for (until, name, value) in [
+        ("contact_area = \"0.1 mm\"", "contact_area", 1e-4),
+        ("contact_perimeter = 4", "contact_perimeter", 4.0),
+        ("max_pressure = \"1 MPa\"", "max_pressure", 1e6),
+    ] {
+        let number = RowNumber::from_name(name).unwrap();
+        let stages = case(&waits(until)).conditions.loading.stages;
+        assert_eq!(stages[0].until, Some(Event::Number(number, value)));
+    }
+    for (until, code) in [
+        ("contact_area = \"0.1 mm2\"", Code::WrongUnit),
+        ("contact_area = \"3 mm\"", Code::OutOfRange),
+        ("contact_perimeter = \"4 mm\"", Code::WrongUnit),
+    ] {
+        let error = fault(&waits(until));
+        let key = until.split(' ').next().unwrap();
+        assert_eq!((error.key, error.code), (format!("load.stages[0].until.{key}"), code), "{until}");
+    }
 }
 
 #[test]

@@ -128,6 +128,8 @@ impl Relaxation {
             false => (touching * self.cell_area).sqrt(),
         };
         let relaxed = self.dual.relaxation.equilibrium * displaced;
+        // Where surfaces pull at each other U may be negative.
+        let (now, before) = (now.abs(), before.abs());
         let least = FLOOR * before.max(relaxed).max(pressure * contact);
         let mean = if pressure > 0.0 { touching * energy / pressure } else { 0.0 };
         let pressed = if touching > 0.0 { mean.max(least) } else { 0.0 };

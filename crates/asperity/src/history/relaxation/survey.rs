@@ -50,8 +50,8 @@ kernel! {
             let own = late.larger(curved.only((left * spread).less(second)));
             let cells = [
                 bends,
-                unit_now.abs().only(presses),
-                unit.abs().only(presses),
+                unit_now.only(presses),
+                unit.only(presses),
                 u_now.abs().only(presses),
                 own.only(is_free),
                 V::count(zero.less(p_now)),

@@ -1,0 +1,45 @@
+"""What an object was made with, as its attributes: `ramp.duration`, `sphere.radius`, `wlf.c1`."""
+
+from __future__ import annotations
+
+from typing import Any, Generic, Protocol, TypeVar, overload
+
+Value = TypeVar("Value")
+
+
+class Parametrised(Protocol):
+    """An object that knows what it was made with."""
+
+    @property
+    def _parameters(self) -> dict[str, Any]:
+        """The values by the names of the parameters."""
+
+
+class Parameter(Generic[Value]):
+    """An attribute that is one of the parameters; an object that was made without it does not have it."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    @overload
+    def __get__(self, made: None, owner: type) -> Parameter[Value]: ...
+    @overload
+    def __get__(self, made: Parametrised, owner: type) -> Value: ...
+    def __get__(self, made: Parametrised | None, owner: type) -> Parameter[Value] | Value:
+        if made is None:
+            return self
+        known = made._parameters
+        if self._name not in known:
+            has = f"was made with {', '.join(known)}" if known else "has no parameters"
+            raise AttributeError(f"{made!r} has no {self._name!r}; it {has}")
+        value: Value = known[self._name]
+        return value
+
+    def __set__(self, made: Parametrised, value: Value) -> None:
+        raise AttributeError(f"{self._name} cannot be set: {type(made).__name__} does not change once it is made; make another")
+
+
+def call(name: str, parameters: dict[str, Any], positional: int = 0) -> str:
+    """The call that makes the object, the first parameters without their names."""
+    words = [repr(value) if n < positional else f"{key}={value!r}" for n, (key, value) in enumerate(parameters.items())]
+    return f"{name}({', '.join(words)})"

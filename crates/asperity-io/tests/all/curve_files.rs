@@ -4,7 +4,9 @@ use std::f64::consts::TAU;
 use std::io::{Cursor, Write};
 
 use asperity::material::{Modulus, Relaxation, Shift};
-use asperity_io::curve::{Columns, Curves, Kind, Request, ShiftRequest, VerticalRequest};
+use asperity_io::curve::{
+    Column, Columns, Curves, Kind, Remedy, Request, Role, ShiftRequest, VerticalRequest,
+};
 
 fn rubber() -> Relaxation {
     Relaxation::absolute(1e6, &[(5e8, 1e-4), (8e7, 1e-2), (3e6, 2.0)]).unwrap()
@@ -392,5 +394,32 @@ fn a_file_without_a_curve_is_told_by_its_columns() {
         std::fs::write(&path, text).unwrap();
         let told = Curves::kind_of(&path, None).unwrap_err().to_string();
         assert!(told.contains(words), "{told}");
+    }
+}
+
+#[test]
+fn columns_without_names_are_taken_in_order_only_where_there_are_as_many_as_needed() {
+    // A counter before the time: E(t) = 1 MPa + 2 MPa exp(-t/10 s).
+    let modulus = |t: f64| 1e6 + 2e6 * (-t / 10.0).exp();
+    let rows = |row: &dyn Fn(i32, f64) -> String| -> String {
+        (0..40).map(|k| row(k, 10f64.powf(-1.0 + 0.1 * f64::from(k)))).collect()
+    };
+    let read =
+        |text: &str, said: &Columns| Curves::parse("x.csv".as_ref(), text.as_bytes(), Kind::Relaxation, said);
+    let two = rows(&|_, t| format!("{t:.12e} {:.12e}\n", modulus(t)));
+    let kept = read(&two, &Columns::default()).unwrap();
+    assert!((kept.sweeps[0].curves[0][5] / modulus(kept.sweeps[0].x[5]) - 1.0).abs() < 1e-9); // twelve digits in the file
+    for three in [
+        rows(&|k, t| format!("{k} {t:.12e} {:.12e}\n", modulus(t))),
+        format!("a;b;c\n{}", rows(&|k, t| format!("{k};{t:.12e};{:.12e}\n", modulus(t)))),
+    ] {
+        let error = read(&three, &Columns::default()).unwrap_err();
+        assert!(error.message.contains("there are 3, more than the 2"), "{error}");
+        assert_eq!(error.remedy, Some(Remedy::Column(Role::Time)));
+        let said = Columns {
+            columns: [(Role::Time, Column::Number(2)), (Role::Modulus, Column::Number(3))].into(),
+            ..Columns::default()
+        };
+        assert_eq!(read(&three, &said).unwrap().sweeps[0].curves, kept.sweeps[0].curves);
     }
 }

@@ -54,6 +54,7 @@ mod _core {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("LAYERED_STRESS", asperity_io::stress::LAYERED)?;
+        module.add("POLYMERS", asperity::finding::TEMPERATURES)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -13,7 +13,7 @@ use asperity_io::output::write_all;
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
 
-use super::material::columns;
+use super::material::{columns, refused};
 use crate::args::FitIndentation;
 use crate::failure::Failure;
 use crate::files::Files;
@@ -44,7 +44,7 @@ impl Verb for FitIndentation {
             layer,
             ..IndentationOptions::default()
         };
-        let record = Indentation::read(&self.record, &columns)?;
+        let record = Indentation::read(&self.record, &columns).map_err(refused)?;
         let taken = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
         let fit =
             fit_indentation(profile, &taken, &options).map_err(Failure::about(self.record.display()))?;

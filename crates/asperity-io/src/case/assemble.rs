@@ -72,9 +72,14 @@ fn temperatures(
     parts: &[body::Part<'_>],
 ) -> Option<Option<Temperatures>> {
     let Some(temperature) = temperature else { return Some(None) };
-    let depends = |sample: &Sample| sample.shift.is_some() && sample.temperature.is_none();
-    let matters = parts.iter().any(|part| part.sample.as_ref().is_none_or(depends));
-    temperature.temperatures(&checks.at("temperature"), matters).map(Some)
+    let depends = |sample: &&Sample| sample.shift.is_some() && sample.temperature.is_none();
+    // A material that is wrong may depend on it.
+    let unknown = parts.iter().any(|part| part.sample.is_none());
+    let shifts: Vec<_> = parts
+        .iter()
+        .filter_map(|part| Some((part.name.as_str(), part.sample.as_ref().filter(depends)?.shift.as_ref()?)))
+        .collect();
+    temperature.temperatures(&checks.at("temperature"), &shifts, unknown).map(Some)
 }
 
 impl Document {

@@ -122,11 +122,11 @@ pub fn pair(
     Some(pair)
 }
 
-/// The lowest temperature of a material with a shift \[K\]: that of its shift, its own or that of the run; infinite without a shift.
-fn coldest(sample: &Sample, course: Option<&[(f64, f64)]>) -> f64 {
-    let Some(shift) = &sample.shift else { return f64::INFINITY };
+/// The first temperature of a material with a shift that no polymer has: that of its shift, its own or that of the run.
+fn unlikely_temperature(name: &str, sample: &Sample, course: Option<&[(f64, f64)]>) -> Option<Finding> {
     let course = course.unwrap_or_default().iter().map(|point| point.1);
-    shift.reference().into_iter().chain(sample.temperature).chain(course).fold(f64::INFINITY, f64::min)
+    let all = sample.shift.as_ref()?.reference().into_iter().chain(sample.temperature).chain(course);
+    all.filter_map(|kelvin| finding::unlikely_temperature(name, kelvin)).next()
 }
 
 /// The reference temperature of a material with a shift \[K\], where neither the material nor the run has a temperature.
@@ -167,7 +167,7 @@ impl Pair {
         self.creeps.push((part.at.core(body.contact_creep())?, clock));
         self.bodies.push(body);
         self.findings.extend(findings(&name, sample, &report, window, outside));
-        self.findings.extend(finding::unlikely_temperature(&name, coldest(sample, course.temperatures)));
+        self.findings.extend(unlikely_temperature(&name, sample, course.temperatures));
         self.findings.extend(untold(sample, course).map(|kelvin| finding::at_reference(&name, kelvin)));
         self.reports.push(MaterialReport { body: name, ..report });
         Some(())

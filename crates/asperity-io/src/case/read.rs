@@ -203,7 +203,12 @@ impl<'r, 't> Reader<'r, 't> {
             _ if self.text.at(&span).key == "motion.velocity" => return Ok(()),
             _ => {
                 let expected = format!("a table that begins with the key `{tag}`");
-                return Err(self.text.wrong(Code::WrongType, self.text.at(&span), &expected, "").into());
+                let spot = self.text.at(&span);
+                let help = words::as_table(&spot.key, &self.text.value(&spot));
+                return Err(self
+                    .text
+                    .wrong(Code::WrongType, spot, &expected, &help.unwrap_or_default())
+                    .into());
             }
         };
         let Some(name) = table.remove(*tag) else {

@@ -1,7 +1,11 @@
 //! `[temperature]`: the temperature of the run.
 
+use asperity::material::Shift;
+use asperity::{Error, finding};
+
 use super::history_file;
 use super::keys::*;
+use crate::Code;
 use crate::quantity::Temperature as Kelvin;
 
 /// The temperature of the bodies that have a `shift`.
@@ -9,7 +13,7 @@ use crate::quantity::Temperature as Kelvin;
 #[serde(deny_unknown_fields)]
 pub struct Temperature {
     /// Absolute temperature over time, the same for both bodies.
-    #[schemars(example = serde_json::json!({ "kind": "ramp", "from": "20 °C", "to": "60 °C", "duration": "100 s" }))]
+    #[schemars(example = serde_json::json!({ "kind": "constant", "value": "60 °C" }))]
     history: TemperatureHistory,
 }
 
@@ -60,15 +64,50 @@ pub struct Temperatures {
 }
 
 impl Temperature {
-    /// The temperatures; `matters` where a body depends on them.
-    pub fn temperatures(&self, at: &Place<'_>, matters: bool) -> Option<Temperatures> {
-        if !matters {
+    /// The temperatures, where the `shifts` of the bodies of these names are defined; `unknown` where another body may depend on them.
+    pub fn temperatures(
+        &self,
+        at: &Place<'_>,
+        shifts: &[(&str, &Shift)],
+        unknown: bool,
+    ) -> Option<Temperatures> {
+        if shifts.is_empty() && !unknown {
             let message = "no body depends on it: none has a `shift` (without a `temperature` of its own)";
             let help = "add shift = { model = \"wlf\", ... } to a material, or leave the section out";
             return at.fault(message, "a material with a shift", help);
         }
         let at = at.key("history");
-        let points = match &self.history {
+        let read = self.history.read(&at)?;
+        for (n, (_, kelvin)) in read.points.iter().enumerate() {
+            for (body, shift) in shifts {
+                possible(&self.history.place(&at, n), &format!("the shift of {body}"), shift, *kelvin)?;
+            }
+        }
+        Some(read)
+    }
+}
+
+/// Refuses a temperature \[K\] at which a shift is not defined; `of` names the shift.
+pub fn possible(at: &Place<'_>, of: &str, shift: &Shift, kelvin: f64) -> Option<()> {
+    let Err(Error::Invalid { value, expected, .. }) = shift.ln_factor(kelvin) else { return Some(()) };
+    let help = finding::celsius_meant(kelvin).unwrap_or_default();
+    let message = format!("the temperature is {value}, but must be {expected} ({of})");
+    at.refuse(Code::OutOfRange, message, &expected, &help)
+}
+
+impl TemperatureHistory {
+    /// The key of a point.
+    fn place<'c>(&self, at: &Place<'c>, n: usize) -> Place<'c> {
+        match self {
+            TemperatureHistory::Constant { .. } => at.key("value"),
+            TemperatureHistory::Ramp { .. } => at.key(["from", "to"][n.min(1)]),
+            TemperatureHistory::Table { .. } => at.key("points").item(n),
+            TemperatureHistory::File { .. } => at.key("path"),
+        }
+    }
+
+    fn read(&self, at: &Place<'_>) -> Option<Temperatures> {
+        let points = match self {
             TemperatureHistory::Constant { value } => vec![(0.0, value.get())],
             TemperatureHistory::Ramp { from, to, duration } => {
                 vec![(0.0, from.get()), (duration.get(), to.get())]

@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
+use asperity::finding;
 use serde_json::Value;
 
 use super::error::CaseError;
 use super::text::{Spot, Text, join};
 use super::{read, schema};
+use crate::quantity::Temperature;
 use crate::{Code, choice};
 
 /// Keys of earlier versions: what became of them, and what to do.
@@ -55,8 +57,12 @@ pub fn translate(text: &Text<'_>, error: &toml::de::Error, section: Range<usize>
         let rest = message.strip_prefix(prefix).and_then(|rest| rest.split_once(", expected "));
         if let Some((found, expected)) = rest {
             let is_table = found == "sequence" && expected.starts_with("struct ");
-            let help = format!("write the header in single brackets: [{}]", spot.key);
-            return text.wrong(Code::WrongType, spot, plain(expected), if is_table { &help } else { "" });
+            let help = match plain(expected) {
+                _ if is_table => Some(format!("write the header in single brackets: [{}]", spot.key)),
+                "a table" => as_table(&spot.key, &text.value(&spot)),
+                _ => None,
+            };
+            return text.wrong(Code::WrongType, spot, plain(expected), &help.unwrap_or_default());
         }
     }
     // Scalars say what was expected, what is wrong with the value, and the code.
@@ -81,9 +87,49 @@ pub fn unknown_key(text: &Text<'_>, spot: Spot, name: &str, known: &[&str]) -> C
     let help = match nearest(name, &known) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => "it has none".to_owned(),
-        None => format!("its keys: {names}"),
+        None => deeper(text, table, name, &spot, &known).unwrap_or_else(|| format!("its keys: {names}")),
     };
     text.error(Code::UnknownKey, spot, None, &expected, &help, format!("{table} has no key `{name}`"))
+}
+
+/// Where a key belongs that stands one level too high: `[temperature] value = 40`.
+fn deeper(text: &Text<'_>, table: &str, name: &str, spot: &Spot, known: &[&str]) -> Option<String> {
+    let has = |key: &&&str| !schema::find(&join(&join(table, key), name)).is_empty();
+    let key = known.iter().find(has)?;
+    let value = text.value(&text.of(&spot.key));
+    let help = (name == "value").then(|| as_table(&join(table, key), &value)).flatten();
+    Some(help.unwrap_or_else(|| format!("`{name}` is a key of `{key}`")))
+}
+
+/// How the value of a table is written, where only its value is given: the example of the schema with this value, which stands in
+/// the case as `value`.
+pub fn as_table(key: &str, value: &str) -> Option<String> {
+    let mut example = schema::find(key).iter().find_map(|schema| schema.get("examples")?.get(0).cloned())?;
+    let mut meant = None;
+    if let Some(place) = inner_value(&mut example)
+        && let Ok(given) = value.parse::<toml::Value>()
+    {
+        let is_temperature = place.as_str().is_some_and(|text| text.parse::<Temperature>().is_ok());
+        *place = match given.as_float().or(given.as_integer().map(|whole| whole as f64)) {
+            Some(number) if is_temperature && finding::celsius_meant(number).is_some() => {
+                meant = Some(format!(", or \"{value} K\" if kelvin are meant"));
+                format!("{value} °C").into()
+            }
+            Some(_) if is_temperature => format!("{value} K").into(),
+            _ => serde_json::to_value(given).ok().filter(|given| !given.is_array() && !given.is_object())?,
+        };
+    }
+    let name = key.rsplit('.').next().unwrap_or(key);
+    example.is_object().then(|| format!("write {name} = {}{}", in_toml(&example), meant.unwrap_or_default()))
+}
+
+/// The `value` of a table, or of the tables in it.
+fn inner_value(table: &mut Value) -> Option<&mut Value> {
+    let table = table.as_object_mut()?;
+    match table.contains_key("value") {
+        true => table.get_mut("value"),
+        false => table.values_mut().find_map(inner_value),
+    }
 }
 
 /// A value that is none of the words that its key takes.

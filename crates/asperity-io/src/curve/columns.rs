@@ -236,6 +236,18 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
         }
         // Without names, the columns are in the order of the documentation.
         let order = form.needed.iter().chain(form.pairs().next().into_iter().flatten());
+        let (needed, there) = (order.clone().count(), table.headings.len());
+        // Which ones they are nobody says: the first ones may be a counter and a time.
+        if there > needed {
+            return Err(fault(format!(
+                "no column is named as one of a {} file, and there are {there}, more than the {needed} that are needed ({}); the file has \
+                 {}",
+                form.name,
+                order.map(|role| role.name()).collect::<Vec<_>>().join(", "),
+                table.listed()
+            ))
+            .remedy(Remedy::Column(form.needed[0])));
+        }
         for (n, role) in order.enumerate() {
             if n < table.headings.len() && !places.values().any(|place| *place == n) {
                 places.insert(*role, n);
@@ -400,7 +412,8 @@ fn names(table: &Table, role: Role, form: Form) -> bool {
 
 fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
     let wrong = |what: String| {
-        fault(format!("{} must be {what}, but the columns are {}", role.name(), table.listed()))
+        let message = format!("{} must be {what}, but the columns are {}", role.name(), table.listed());
+        fault(message).remedy(Remedy::Column(role))
     };
     match column {
         Column::Number(n) if *n >= 1 && *n <= table.headings.len() => Ok(n - 1),

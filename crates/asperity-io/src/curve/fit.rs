@@ -10,7 +10,8 @@ use asperity::material::{
 };
 
 use super::error::{CurveError, Fault, Remedy, fault};
-use super::isotherms::{abscissa, at_isotherm, isotherms, point, snap};
+use super::isotherms::{abscissa, at_isotherm, held, isotherms, point, shifted_by, snap};
+use super::sweeps::is_ramp;
 use super::vertical::{self, VerticalRequest};
 use super::{Curves, Kind, Sweep};
 
@@ -131,7 +132,7 @@ impl Fitted {
     pub fn shift_factor(&self, mut kelvin: f64) -> Option<f64> {
         let shift = self.shift.as_ref()?;
         if let Shift::Table { points } = shift {
-            snap(&mut kelvin, points);
+            snap(&mut kelvin, points, is_ramp(self.temperatures.iter().copied()));
         }
         shift.factor(kelvin).ok()
     }
@@ -309,6 +310,11 @@ impl Request {
                 notes.extend(told_of_held(curves, shift));
                 Ok(known(Some(shift.clone())))
             }
+            (ShiftRequest::None, None) if curves.is_ramp() => Err(fault(format!(
+                "the temperature changes from row to row, a ramp ({}): each row needs its shift factor",
+                curves.temperatures()
+            ))
+            .remedy(Remedy::KnownShift)),
             (ShiftRequest::None, None) if curves.sweeps.len() > 1 => {
                 let known: Vec<String> = curves.sweeps.iter().take(20).filter_map(celsius).collect();
                 let message =
@@ -372,11 +378,7 @@ fn master(curves: &Curves, shift: Option<&Shift>) -> Result<(MasterCurve, Vec<us
         return Ok((MasterCurve { x: sweep.x.clone(), curves: sweep.curves.clone() }, sweep.lines.clone()));
     }
     let Some(shift) = shift else { return Err(fault("several temperatures need a shift")) };
-    let mut isotherms = isotherms(curves);
-    if let Shift::Table { points } = shift {
-        isotherms.iter_mut().for_each(|isotherm| snap(&mut isotherm.temperature, points));
-    }
-    let master = master_curve(&isotherms, abscissa(curves.kind), shift);
+    let master = master_curve(&shifted_by(curves, shift), abscissa(curves.kind), shift);
     let lines = match curves.sweeps.as_slice() {
         [sweep] => sweep.lines.clone(),
         _ => Vec::new(),
@@ -399,6 +401,7 @@ fn estimated(
     moduli: ModulusChange,
     notes: &mut Vec<String>,
 ) -> Result<Found, Fault> {
+    held(curves, "a shift")?;
     let isotherms = isotherms(curves);
     if isotherms.len() < 2 {
         return Err(fault("a shift can be estimated from sweeps at two temperatures or more")

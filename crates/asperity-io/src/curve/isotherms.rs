@@ -1,18 +1,20 @@
 //! The sweeps of a file as isotherms, which shifts are estimated from.
 
-use asperity::material::{Abscissa, Isotherm};
+use asperity::material::{Abscissa, Isotherm, Shift};
 
-use super::error::{Fault, fault};
+use super::error::{Fault, Remedy, fault};
 use super::sweeps::SAME_TEMPERATURE;
 use super::{Curves, Kind, Sweep};
 
-/// The temperature of the shift factor that belongs to a sweep: chambers hold it to about a kelvin.
-pub(super) fn snap(temperature: &mut f64, points: &[(f64, f64)]) {
+/// The temperature of the shift factor that belongs to a sweep: chambers hold it to about a kelvin. A row of a `ramp` has its own, up to
+/// the rounding of °C to K.
+pub(super) fn snap(temperature: &mut f64, points: &[(f64, f64)], ramp: bool) {
+    let same = if ramp { 1e-9 } else { SAME_TEMPERATURE };
     let nearest = points.iter().map(|point| point.0).min_by(|a, b| {
         let away = |kelvin: f64| (kelvin - *temperature).abs();
         away(*a).total_cmp(&away(*b))
     });
-    if let Some(kelvin) = nearest.filter(|kelvin| (kelvin - *temperature).abs() <= SAME_TEMPERATURE) {
+    if let Some(kelvin) = nearest.filter(|kelvin| (kelvin - *temperature).abs() <= same) {
         *temperature = kelvin;
     }
 }
@@ -29,6 +31,28 @@ pub(super) fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
     match line {
         Some(line) => fault(message).at(*line),
         None => fault(message),
+    }
+}
+
+/// The sweeps as isotherms, at the temperatures of the shift factors of a table.
+pub(super) fn shifted_by(curves: &Curves, shift: &Shift) -> Vec<Isotherm> {
+    let mut isotherms = isotherms(curves);
+    if let Shift::Table { points } = shift {
+        let ramp = curves.is_ramp();
+        isotherms.iter_mut().for_each(|isotherm| snap(&mut isotherm.temperature, points, ramp));
+    }
+    isotherms
+}
+
+/// Refuses to estimate `what` from the rows of a temperature ramp: no two of them overlap.
+pub(super) fn held(curves: &Curves, what: &str) -> Result<(), Fault> {
+    match curves.is_ramp() {
+        false => Ok(()),
+        true => Err(fault(format!(
+            "the temperature changes from row to row, a ramp; {what} can be estimated only from sweeps over several frequencies at held \
+             temperatures, which overlap"
+        ))
+        .remedy(Remedy::KnownShift)),
     }
 }
 

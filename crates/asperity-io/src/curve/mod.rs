@@ -224,6 +224,18 @@ impl Curves {
         Curves { path: PathBuf::from(name), kind, sweeps, ..Curves::default() }
     }
 
+    /// Whether each row was measured at a temperature of its own, during a temperature ramp.
+    pub fn is_ramp(&self) -> bool {
+        sweeps::is_ramp(self.sweeps.iter().filter_map(|sweep| sweep.temperature))
+    }
+
+    /// The lowest and the highest temperature in words: "-20.0 °C to 60.0 °C"; empty where the file holds none.
+    pub fn temperatures(&self) -> String {
+        let celsius = |sweep: &Sweep| Some(format!("{:.1} °C", sweep.temperature? - 273.15));
+        let ends = self.sweeps.first().and_then(celsius).zip(self.sweeps.last().and_then(celsius));
+        ends.map_or(String::new(), |(coldest, warmest)| format!("{coldest} to {warmest}"))
+    }
+
     /// Number of points.
     pub fn points(&self) -> usize {
         self.sweeps.iter().map(|sweep| sweep.x.len()).sum()

@@ -60,9 +60,9 @@ pub(super) fn sweeps(
     };
     let groups = match held(&sets, temperatures) {
         true if sets.len() > 1 => sets,
-        _ => by_temperature(temperatures, &all)?,
+        _ => by_temperature(kind, temperatures, &all)?,
     };
-    if groups.len() > MOST_SWEEPS {
+    if groups.len() > MOST_SWEEPS && !is_ramp(groups.iter().map(|rows| mean(temperatures, rows))) {
         return Err(fault(format!("there are more than {MOST_SWEEPS} temperatures")));
     }
     let mut found: Vec<Sweep> =
@@ -191,14 +191,25 @@ fn mean(temperatures: &[f64], rows: &[usize]) -> f64 {
     first + rows.iter().map(|row| temperatures[*row] - first).sum::<f64>() / rows.len().max(1) as f64
 }
 
-/// Rows whose temperatures follow each other closely.
-fn by_temperature(temperatures: &[f64], rows: &[usize]) -> Result<Vec<Vec<usize>>, Fault> {
+/// Whether sweeps at these temperatures \[K\], in order, are the rows of a ramp: held temperatures are further apart.
+pub(super) fn is_ramp(temperatures: impl Iterator<Item = f64>) -> bool {
+    let mut before = f64::NEG_INFINITY;
+    temperatures.into_iter().any(|kelvin| kelvin - std::mem::replace(&mut before, kelvin) <= SAME_TEMPERATURE)
+}
+
+/// Rows whose temperatures follow each other closely. The rows of a temperature ramp of a DMA, which has no such groups, are sweeps of
+/// their own: each is a point of E*(omega, T), whatever the temperature was before.
+fn by_temperature(kind: Kind, temperatures: &[f64], rows: &[usize]) -> Result<Vec<Vec<usize>>, Fault> {
     let mut order = rows.to_vec();
     order.sort_by(|a, b| temperatures[*a].total_cmp(&temperatures[*b]));
     let same = |a: &usize, b: &usize| temperatures[*b] - temperatures[*a] <= SAME_TEMPERATURE;
     let mut groups = Vec::new();
     for group in order.chunk_by(same) {
         let (coldest, warmest) = (temperatures[group[0]], temperatures[group[group.len() - 1]]);
+        if warmest - coldest > SPREAD && kind == Kind::Dma {
+            let apart = order.chunk_by(|a, b| temperatures[*a] == temperatures[*b]);
+            return Ok(apart.map(<[usize]>::to_vec).collect());
+        }
         if warmest - coldest > SPREAD {
             return Err(fault(format!(
                 "the temperatures from {coldest:.2} K to {warmest:.2} K follow each other within {SAME_TEMPERATURE} K; \

@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
+use asperity::finding::celsius_meant;
+
 use super::role::{self, Role};
 use crate::quantity::unit::Unit;
 use crate::quantity::{Dimension, Quantity, QuantityError, Temperature, dimension, range};
@@ -86,7 +88,7 @@ pub(super) fn convert(
     let factor = match role {
         Role::Temperature => {
             let coldest = numbers.iter().copied().fold(f64::INFINITY, f64::min);
-            if unit.is_empty() && coldest < LEAST_KELVIN {
+            if unit.is_empty() && celsius_meant(coldest).is_some() {
                 return Err(whole(format!(
                     "has no unit, and {coldest} is hardly a temperature in K: give °C or K"
                 )));
@@ -119,9 +121,6 @@ pub(super) fn convert(
     };
     Ok(numbers.into_iter().map(|value| factor * value).collect())
 }
-
-/// Nobody measures polymers at lower temperatures [K], but numbers in °C are mostly lower.
-const LEAST_KELVIN: f64 = 150.0;
 
 /// The unit in which numbers are taken that name none.
 pub(super) fn taken(role: Role) -> &'static str {

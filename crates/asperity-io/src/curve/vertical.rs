@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::error::{Fault, Remedy, fault};
-use super::isotherms::{abscissa, at_isotherm, isotherms, snap};
+use super::isotherms::{abscissa, at_isotherm, held, shifted_by, snap};
 use super::{Curves, Kind};
 
 /// A vertical shift by name.
@@ -91,10 +91,8 @@ pub(super) fn free(curves: &Curves, shift: Option<&Shift>, factors: &[[f64; 3]])
     let Some(shift) = shift.filter(|_| curves.sweeps.len() > 1) else {
         return Err(fault("vertical shifts that are free need sweeps at two temperatures or more"));
     };
-    let mut isotherms = isotherms(curves);
-    if let Shift::Table { points } = shift {
-        isotherms.iter_mut().for_each(|isotherm| snap(&mut isotherm.temperature, points));
-    }
+    held(curves, "a factor for each sweep")?;
+    let isotherms = shifted_by(curves, shift);
     let decades: Vec<f64> = factors.iter().map(|[.., deviation]| *deviation).collect();
     let found = estimate_vertical(&isotherms, abscissa(curves.kind), shift, &decades)
         .map_err(|error| at_isotherm(curves, &error))?;
@@ -111,12 +109,12 @@ pub(super) fn free(curves: &Curves, shift: Option<&Shift>, factors: &[[f64; 3]])
 /// Values times the factors of their temperatures.
 fn scaled(curves: &Curves, vertical: VerticalShift, uncertainty: &[f64]) -> Result<Corrected, Fault> {
     let (mut curves, mut factors) = (curves.clone(), Vec::new());
-    let kind = curves.kind;
+    let (kind, ramp) = (curves.kind, curves.is_ramp());
     for (n, sweep) in curves.sweeps.iter_mut().enumerate() {
         let Some(kelvin) = sweep.temperature else { continue };
         let mut near = kelvin;
         if let VerticalShift::Table { points } = &vertical {
-            snap(&mut near, points);
+            snap(&mut near, points, ramp);
         }
         let factor = vertical.factor(near).map_err(|error| fault(error.to_string()))?;
         factors.push([kelvin, factor, uncertainty.get(n).copied().unwrap_or(0.0)]);

@@ -4,7 +4,9 @@ use std::f64::consts::TAU;
 use std::io::{Cursor, Write};
 
 use asperity::material::{Modulus, Relaxation, Shift};
-use asperity_io::curve::{Columns, Curves, Kind, Request, ShiftRequest, VerticalRequest};
+use asperity_io::curve::{
+    Column, Columns, Curves, Kind, Remedy, Request, Role, ShiftRequest, VerticalRequest,
+};
 
 fn rubber() -> Relaxation {
     Relaxation::absolute(1e6, &[(5e8, 1e-4), (8e7, 1e-2), (3e6, 2.0)]).unwrap()
@@ -392,5 +394,86 @@ fn a_file_without_a_curve_is_told_by_its_columns() {
         std::fs::write(&path, text).unwrap();
         let told = Curves::kind_of(&path, None).unwrap_err().to_string();
         assert!(told.contains(words), "{told}");
+    }
+}
+
+#[test]
+fn columns_without_names_are_taken_in_order_only_where_there_are_as_many_as_needed() {
+    // A counter before the time: E(t) = 1 MPa + 2 MPa exp(-t/10 s).
+    let modulus = |t: f64| 1e6 + 2e6 * (-t / 10.0).exp();
+    let rows = |row: &dyn Fn(i32, f64) -> String| -> String {
+        (0..40).map(|k| row(k, 10f64.powf(-1.0 + 0.1 * f64::from(k)))).collect()
+    };
+    let read =
+        |text: &str, said: &Columns| Curves::parse("x.csv".as_ref(), text.as_bytes(), Kind::Relaxation, said);
+    let two = rows(&|_, t| format!("{t:.12e} {:.12e}\n", modulus(t)));
+    let kept = read(&two, &Columns::default()).unwrap();
+    assert!((kept.sweeps[0].curves[0][5] / modulus(kept.sweeps[0].x[5]) - 1.0).abs() < 1e-9); // twelve digits in the file
+    for three in [
+        rows(&|k, t| format!("{k} {t:.12e} {:.12e}\n", modulus(t))),
+        format!("a;b;c\n{}", rows(&|k, t| format!("{k};{t:.12e};{:.12e}\n", modulus(t)))),
+    ] {
+        let error = read(&three, &Columns::default()).unwrap_err();
+        assert!(error.message.contains("there are 3, more than the 2"), "{error}");
+        assert_eq!(error.remedy, Some(Remedy::Column(Role::Time)));
+        let said = Columns {
+            columns: [(Role::Time, Column::Number(2)), (Role::Modulus, Column::Number(3))].into(),
+            ..Columns::default()
+        };
+        assert_eq!(read(&three, &said).unwrap().sweeps[0].curves, kept.sweeps[0].curves);
+    }
+}
+
+/// A temperature ramp of the rubber at 1 Hz in steps of 0.5 K, with the shift factor `ln_factor` of the temperature.
+fn ramp(ln_factor: impl Fn(f64) -> f64) -> Curves {
+    let mut text = "T [°C];f [Hz];E' [Pa];E'' [Pa]\n".to_owned();
+    for k in 0..161 {
+        let celsius = -20.0 + 0.5 * f64::from(k);
+        // Without the rounding of the sum, which leaves a table at its end.
+        let kelvin = ((celsius + 273.15) * 1e9).round() / 1e9;
+        let (storage, loss) = rubber().complex(TAU * ln_factor(kelvin).exp());
+        text += &format!("{celsius};1;{storage:.12e};{loss:.12e}\n");
+    }
+    Curves::parse("ramp.csv".as_ref(), text.as_bytes(), Kind::Dma, &Columns::default()).unwrap()
+}
+
+#[test]
+fn a_temperature_ramp_at_one_frequency_becomes_a_master_curve_by_a_given_shift() {
+    let wlf = Shift::Wlf { c1: 8.86, c2: 101.6, reference: 293.15 };
+    let table = Shift::Table {
+        points: (0..9)
+            .map(|k| 253.15 + 10.0 * f64::from(k))
+            .map(|t| (t, wlf.ln_factor(t).unwrap()))
+            .collect(),
+    };
+    for shift in [wlf, table] {
+        let curves = ramp(|kelvin| shift.ln_factor(kelvin).unwrap());
+        assert!(curves.is_ramp() && curves.points() == 161);
+        let request = Request { shift: ShiftRequest::Given(shift), ..Request::default() };
+        let fitted = request.fit(&curves).unwrap();
+        // Each row at its own temperature: the closed form at its reduced frequency, to the twelve digits of the file.
+        for (n, omega) in fitted.data.x.iter().enumerate() {
+            let (storage, loss) = rubber().complex(*omega);
+            assert!((fitted.data.curves[0][n] / storage - 1.0).abs() < 1e-9, "{omega}");
+            assert!((fitted.data.curves[1][n] / loss - 1.0).abs() < 1e-9, "{omega}");
+        }
+        let decades = (fitted.data.x[160] / fitted.data.x[0]).log10();
+        assert!(decades > 8.0, "{decades}"); // 8.86 (40/61.6 + 40/141.6) = 8.25 by the law
+        // Data without scatter: the fit is far closer than the misfit that is told (5 %).
+        assert!(fitted.misfit.max < 0.01, "{}", fitted.misfit.max);
+    }
+}
+
+#[test]
+fn a_ramp_does_not_tell_its_shift() {
+    let wlf = Shift::Wlf { c1: 8.86, c2: 101.6, reference: 293.15 };
+    let curves = ramp(|kelvin| wlf.ln_factor(kelvin).unwrap());
+    let free =
+        Request { shift: ShiftRequest::Given(wlf), vertical: VerticalRequest::Free, ..Request::default() };
+    let estimate = Request { shift: ShiftRequest::Estimate(293.15), ..Request::default() };
+    for request in [Request::default(), estimate, free] {
+        let error = request.fit(&curves).unwrap_err();
+        assert!(error.message.contains("ramp"), "{error}");
+        assert_eq!(error.remedy, Some(Remedy::KnownShift));
     }
 }

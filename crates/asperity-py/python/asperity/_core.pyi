@@ -51,12 +51,15 @@ __all__ = [
     "threads",
     "__version__",
     "LAYERED_STRESS",
+    "POLYMERS",
 ]
 
 def command(words: list[str]) -> int: ...
 
 __version__: str
 LAYERED_STRESS: str
+#: The temperatures at which polymers are used, least and most [K].
+POLYMERS: list[float]
 
 class CaseError(ValueError): ...
 

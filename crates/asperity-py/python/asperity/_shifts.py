@@ -148,14 +148,11 @@ def _vertical(given: Vertical) -> float | tuple[tuple[float, float], ...] | None
     return tuple(pairs)
 
 
-#: Below this temperature no curves of a polymer are shifted [K]: it is one in degrees Celsius.
-_COLD = 100.0
-
-
 def _kelvin(what: str, value: Any) -> float:
     """A temperature [K], with a warning where it looks like one in degrees Celsius."""
     kelvin = number(what, value)
-    if 0.0 < kelvin < _COLD and not carries(value):
+    coldest, _ = _core.POLYMERS
+    if 0.0 < kelvin < coldest and not carries(value):
         words = f"{what} is {kelvin:g} K, which is {kelvin - 273.15:g} °C: temperatures are in K, and {kelvin:g} °C is {kelvin + 273.15:g} K"
         warn_caller(f"{words} [unlikely-unit]")
     return kelvin

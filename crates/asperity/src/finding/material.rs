@@ -1,11 +1,12 @@
 //! Materials: moduli that suggest a wrong unit, and the quality and coverage of fits of measured data.
 
-use super::plausible::{COLD, MODULI, SOFTEST_DATA, TRANSITION};
+use super::plausible::{MODULI, SOFTEST_DATA, TEMPERATURES, TRANSITION};
 use super::words::{digits, si};
 use super::{
     AT_REFERENCE_TEMPERATURE, BEYOND_MATERIAL_DATA, DATA_SCATTER, Finding, MATERIAL_MISFIT, MODULUS_KIND,
     POINTS_LEFT_OUT, SHIFT_UNCERTAIN, TOO_FEW_POINTS, UNLIKELY_UNIT,
 };
+use crate::error::significant;
 use crate::material::{Misfit, Modulus, Reversal};
 use crate::simulation::Simulation;
 
@@ -46,17 +47,28 @@ pub fn unlikely_data(name: &str, [least, most]: [f64; 2], unnamed: bool) -> Opti
     })
 }
 
-/// A temperature \[K\] at which no curves of polymers are shifted; `name` is the body.
+/// What a temperature \[K\] may be that is too low for a polymer: degrees Celsius without their unit.
+pub fn celsius_meant(kelvin: f64) -> Option<String> {
+    let [least, _] = TEMPERATURES;
+    (kelvin < least).then(|| {
+        let number = significant(kelvin, 6);
+        format!("a bare number is in kelvin: write \"{number} °C\" if degrees Celsius are meant")
+    })
+}
+
+/// A temperature \[K\] at which no polymer is used; `name` is the body.
 pub fn unlikely_temperature(name: &str, kelvin: f64) -> Option<Finding> {
-    (kelvin < COLD).then(|| {
+    let [least, most] = TEMPERATURES;
+    let limit = if kelvin < least { least } else { most };
+    (kelvin.is_finite() && !(least..=most).contains(&kelvin)).then(|| {
+        let help = celsius_meant(kelvin).map_or(String::new(), |help| format!(" ({help})"));
         let text = format!(
-            "The material of {name} has a temperature of {} K, which is {} °C. A bare number is in kelvin: write \"{} °C\" if \
-             that is what it is.",
+            "The material of {name} has a temperature of {} K, which is {} °C; polymers are used from {least} K to {most} K. Check its \
+             unit{help}.",
             digits(kelvin),
-            digits(kelvin - 273.15),
-            digits(kelvin)
+            digits(kelvin - 273.15)
         );
-        Finding::warning(UNLIKELY_UNIT, kelvin, COLD, text)
+        Finding::warning(UNLIKELY_UNIT, kelvin, limit, text)
     })
 }
 

@@ -51,10 +51,12 @@ pub use diagnostics::{Diagnostics, Known};
 pub use expected::{Contact, Expected};
 pub use leak::{LeakDiagnostics, LeakState};
 pub use material::{
-    at_reference, beyond_data, contradiction, misfit, misfit_of_both, modulus_kind, points_left_out,
-    reversal, shift_uncertain, too_few_points, unlikely_data, unlikely_modulus, unlikely_temperature,
+    at_reference, beyond_data, celsius_meant, contradiction, misfit, misfit_of_both, modulus_kind,
+    points_left_out, reversal, shift_uncertain, too_few_points, unlikely_data, unlikely_modulus,
+    unlikely_temperature,
 };
 pub use motion::{friction_zero, own_track};
+pub use plausible::TEMPERATURES;
 pub use profile::{of_profile, unlike_profile};
 pub use stress::{
     OF_STRESS, depths_between, stress_depths, stress_times_miss_peak, stress_unresolved, yield_exceeded,

@@ -8,7 +8,7 @@
 //! | depth of the gap | up to 100 domains |
 //! | modulus of a body | 150 Pa to 3 TPa |
 //! | largest modulus of measured data | from 0.1 MPa, if they have no unit or span a glass transition |
-//! | temperature of a material with a shift | from 100 K |
+//! | temperature of a material with a shift | 150 K to 800 K |
 //! | mean pressure of a load | from 1 Pa; and an expected contact of a tenth of a cell or more |
 //! | end of the run | 1 ns to 100 years |
 //!
@@ -35,8 +35,8 @@ pub(super) const MODULI: [f64; 2] = [150.0, 3e12];
 pub(super) const SOFTEST_DATA: f64 = 1e5;
 /// Ratio of moduli across a glass transition.
 pub(super) const TRANSITION: f64 = 100.0;
-/// Below this temperature polymers neither creep nor are measured \[K\].
-pub(super) const COLD: f64 = 100.0;
+/// Temperatures of polymers \[K\]: silicone rubber, the softest in the cold, turns to glass at about 150 K, and none withstands 800 K.
+pub const TEMPERATURES: [f64; 2] = [150.0, 800.0];
 /// The pressure of a sheet of paper \[Pa\].
 const LIGHTEST: f64 = 1.0;
 /// Cells of the smallest contact that a load is meant to make.

@@ -130,7 +130,7 @@ pub fn estimate_shift(
 
 /// At least two isotherms, in order of temperature, without duplicates.
 fn sorted(isotherms: &[Isotherm]) -> Result<Vec<&Isotherm>> {
-    validate(isotherms)?;
+    validate(isotherms, 2)?;
     let mut sorted: Vec<&Isotherm> = isotherms.iter().collect();
     sorted.sort_by(|a, b| a.temperature.total_cmp(&b.temperature));
     require(sorted.len() >= 2, "number of isotherms", sorted.len(), "at least 2")?;

@@ -54,7 +54,7 @@ pub struct MasterCurve {
 /// [`Error::Invalid`] if an isotherm is out of order, has values that are not positive or another number of curves than the
 /// first, or if the shift is not defined at its temperature.
 pub fn master_curve(isotherms: &[Isotherm], abscissa: Abscissa, shift: &Shift) -> Result<MasterCurve> {
-    validate(isotherms)?;
+    validate(isotherms, 1)?;
     let mut points: Vec<(f64, Vec<f64>)> = vec![];
     for isotherm in isotherms {
         let factor = shift.factor(isotherm.temperature)?;
@@ -77,14 +77,16 @@ pub fn master_curve(isotherms: &[Isotherm], abscissa: Abscissa, shift: &Shift) -
     Ok(merge(points))
 }
 
-pub(super) fn validate(isotherms: &[Isotherm]) -> Result<()> {
+/// Checks isotherms of at least this many points.
+pub(super) fn validate(isotherms: &[Isotherm], least: usize) -> Result<()> {
     let Some(first) = isotherms.first() else {
         return Err(Error::invalid("number of isotherms", 0, "at least 1"));
     };
     for isotherm in isotherms {
         positive("temperature of an isotherm", isotherm.temperature, "K (absolute)")?;
         let at = format!("the isotherm at {}", kelvin(isotherm.temperature));
-        require(isotherm.x.len() >= 2, format!("number of points of {at}"), isotherm.x.len(), "at least 2")?;
+        let (points, expected) = (isotherm.x.len(), format!("at least {least}"));
+        require(points >= least, format!("number of points of {at}"), points, &expected)?;
         if isotherm.curves.is_empty() || isotherm.curves.len() != first.curves.len() {
             let expected = format!("{}, and at least 1, as in the first", first.curves.len());
             return Err(Error::invalid(format!("number of curves of {at}"), isotherm.curves.len(), expected));

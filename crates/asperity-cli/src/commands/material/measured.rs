@@ -68,7 +68,16 @@ fn text(curves: &Curves) -> String {
         Kind::Creep => &["compliance"],
         Kind::Dma => &["storage", "loss"],
     };
-    for sweep in &curves.sweeps {
+    if curves.is_ramp() {
+        let rows = counted(curves.sweeps.len(), "temperature");
+        let _ = writeln!(
+            text,
+            "  a temperature ramp, {}: {rows}, {}",
+            curves.temperatures(),
+            counted(curves.points(), "point")
+        );
+    }
+    for sweep in curves.sweeps.iter().filter(|_| !curves.is_ramp()) {
         let at = sweep.temperature.map_or(String::new(), |kelvin| format!("{:7.1} °C: ", celsius(kelvin)));
         let _ = write!(text, "  {at}{}", counted(sweep.x.len(), "point"));
         let _ = write!(text, ", {}", range(&abscissae(curves.kind, sweep), abscissa_unit(curves.kind)));

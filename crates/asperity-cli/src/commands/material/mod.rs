@@ -20,7 +20,7 @@ use crate::failure::Failure;
 use crate::files::Files;
 use crate::format::{counted, quantity};
 use crate::verb::Verb;
-pub(super) use options::columns;
+pub(super) use options::{columns, refused};
 
 impl Verb for Show {
     fn files(&self) -> Files {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use asperity::finding::celsius_meant;
 use asperity::material::{FitOptions, Shift};
 use asperity_io::curve::{
     Column, Columns, CurveError, Curves, Kind, Remedy, Role, ShiftRequest, VerticalRequest, VerticalWord,
@@ -131,10 +132,8 @@ fn split<'t, const N: usize>(text: &'t str, option: &str, wanted: &str) -> Resul
 
 /// A temperature \[K\]. A number without a unit is in kelvin; of a smaller one the unit was forgotten.
 fn temperature(what: &str, text: &str) -> Result<f64, Failure> {
-    /// Nitrogen boils here \[K\]: no shift is measured about a lower temperature.
-    const LEAST: f64 = 77.0;
     let kelvin = read::<Temperature>(what, text)?.get();
-    match kelvin < LEAST && text.trim().parse::<f64>().is_ok() {
+    match celsius_meant(kelvin).is_some() && text.trim().parse::<f64>().is_ok() {
         true => Err(Failure::input(format!(
             "{what} is \"{text}\", but must have a unit: \"{text} °C\" or \"{text} K\""
         ))),

@@ -20,6 +20,7 @@ use asperity::material::{Fractional, Material as Known, Modulus, Shift as ShiftL
 
 use super::keys::*;
 use super::shift::{self, Shift};
+use super::temperature::possible;
 use crate::Code;
 use crate::curve::{Fitted, ShiftRequest, VerticalRequest};
 use measured::Fit;
@@ -205,6 +206,9 @@ impl Material {
             self.without_temperature(at)?;
         }
         let temperature = self.temperature.map(Temperature::get);
+        if let (Some(shift), Some(kelvin)) = (&shift, temperature) {
+            possible(&at.key("temperature"), "its shift", shift, kelvin)?;
+        }
         let window = self.window(at, &model)?;
         Some(Sample { model, name: self.model.name(), shift, vertical, temperature, window })
     }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use asperity::March;
 use asperity::material::{Fractional, Lateral, Relaxation, Shift};
+use asperity_io::Code;
 use asperity_io::case::{Case, CaseError};
 
 use crate::wording;
@@ -523,7 +524,7 @@ fn faults_of_temperature_are_named() {
     says(
         dir,
         &shifted(", temperature = \"-90 °C\""),
-        "body[0].material",
+        "body[0].material.temperature",
         "out-of-range",
         &["temperature is 183.15", "above 191.5"],
     );
@@ -593,8 +594,8 @@ fn faults_of_temperature_are_named() {
     section(
         &zener,
         r#"{ kind = "ramp", from = "20 °C", to = "-100 °C", duration = "1 s" }"#,
-        "body[0].material",
-        &["temperature of point 2", "above 191.5"],
+        "temperature.history.to",
+        &["temperature is 173.15", "above 191.5"],
     );
     section(
         &zener,
@@ -808,4 +809,52 @@ fn a_bare_number_of_degrees_is_told() {
     assert_eq!(of("293.15", "298.15"), 0);
     // Kelvins, where degrees are meant.
     assert_eq!(of("20", "25"), 1);
+    // No polymer is used at 727 °C.
+    assert_eq!(of("293.15", "1000"), 1);
+}
+
+#[test]
+fn a_temperature_that_a_shift_does_not_have_is_refused_at_its_key() {
+    let wlf = r#"{ model = "wlf", c1 = 8.86, c2 = 101.6, reference = "20 °C" }"#;
+    let table = r#"{ model = "table", points = [["0 °C", 2], ["20 °C", 0], ["60 °C", -3]] }"#;
+    for (shift, own, history, key) in [
+        (wlf, "", r#"{ kind = "constant", value = 40 }"#, "value"),
+        (table, "", r#"{ kind = "constant", value = 40.0 }"#, "value"),
+        (wlf, "", r#"{ kind = "ramp", from = "20 °C", to = 40, duration = "1 s" }"#, "to"),
+        (wlf, "", r#"{ kind = "table", points = [["0 s", "20 °C"], ["1 s", 40]] }"#, "points[1]"),
+        (wlf, ", temperature = 40", "", "temperature"),
+    ] {
+        let material = format!(
+            r#"{{ model = "zener", shear = "1 MPa", shear_kelvin = "1 MPa", retardation_time = "1 s", shift = {shift}{own} }}"#
+        );
+        let (more, table) = match history {
+            "" => (String::new(), "body[0].material"),
+            _ => (format!("[temperature]\nhistory = {history}\n"), "temperature.history"),
+        };
+        let errors = Case::parse(&text(&body(&material), &more), Path::new("."), &[]).unwrap_err().errors;
+        assert_eq!((errors.len(), errors[0].code), (1, Code::OutOfRange), "{}", errors[0]);
+        assert_eq!(errors[0].key, format!("{table}.{key}"));
+        assert!(errors[0].help.as_ref().unwrap().contains("\"40 °C\""), "{}", errors[0]);
+        wording::check(&format!("{history}{own}"), Path::new("."), &errors[0]);
+    }
+}
+
+#[test]
+fn a_temperature_that_is_no_table_is_shown_as_one() {
+    let material = r#"{ model = "zener", shear = "1 MPa", shear_kelvin = "1 MPa", retardation_time = "1 s", shift = { model = "arrhenius", energy = "100 kJ/mol", reference = "20 °C" } }"#;
+    let good = text(&body(material), "");
+    for (section, key, line, written) in [
+        ("temperature = 40", "temperature", 2, "\"40 °C\" } }, or \"40 K\""),
+        ("temperature = '40 °C'", "temperature", 2, "value = \"40 °C\""),
+        ("temperature.history = 40", "temperature.history", 2, "\"40 °C\" }, or \"40 K\""),
+        ("temperature.history = 313", "temperature.history", 2, "\"313 K\""),
+        ("temperature.value = 40", "temperature.value", 2, "\"40 °C\" }, or \"40 K\""),
+    ] {
+        let case = format!("\n{section}{good}");
+        let error = &Case::parse(&case, Path::new("."), &[]).unwrap_err().errors[0];
+        assert_eq!((error.key.as_str(), error.line), (key, Some(line)), "{error}");
+        let help = error.help.as_ref().unwrap();
+        assert!(help.contains("history = { kind = \"constant\"") && help.contains(written), "{error}");
+        wording::check(section, Path::new("."), error);
+    }
 }

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use asperity::History;
 use asperity::reference::{HertzSphere, HunterCylinder, Ting, Westergaard};
 use asperity_io::case::Case;
-use asperity_io::converge::{ConvergeOptions, Convergence, ErrorBar, converge};
+use asperity_io::converge::{ConvergeOptions, Convergence, ErrorBar, converge, expected_cost};
 
 use super::common::noise;
 
@@ -280,4 +280,72 @@ fn a_grid_that_cannot_be_halved_is_refined() {
     assert!(found.notes[0].starts_with("half the cells along each side: not possible"), "{:?}", found.notes);
     assert!(found.cost > 4.0, "{}", found.cost);
     assert!(found.bars.iter().all(|bar| bar.error.is_some()), "{:?}", found.bars);
+}
+
+/// A case with another line in place of one that begins so.
+fn with(line: &str) -> String {
+    let key = line.split('=').next().unwrap();
+    let lines = SPHERE.lines().map(|own| if own.starts_with(key) { line } else { own });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+fn time_error(found: &Convergence, name: &str) -> Option<f64> {
+    found.bars.iter().find(|bar| bar.name == name).unwrap().time
+}
+
+#[test]
+fn steps_that_cannot_be_longer_are_halved() {
+    // One step, and a stage with one given time beside one with many: Ting's closed form at their ends.
+    let stages = r#"load = { stages = [
+  { control = "load", history = { kind = "ramp", value = 1e-4, duration = 1.0 }, duration = 1.0, time = { times = [1.0] } },
+  { control = "load", history = { kind = "hold" }, duration = 1.0, steps = 8 } ] }"#;
+    for text in [with("time = { end = 2.0, steps = 1 }"), with("time = { times = [\"1 s\"] }"), with(stages)]
+    {
+        let found = found(&text, false);
+        assert!(found.notes.iter().any(|note| note.contains("instead")), "{:?}", found.notes);
+        let case = Case::parse(&text, "case.toml".as_ref(), &[]).unwrap();
+        let (end, history) =
+            (found.last.unwrap().coordinate.value(), History::Ramp { value: 1e-4, duration: 1.0 });
+        let exact = Ting::new(0.1, &case.conditions.creep, &history, end).unwrap().at(end).unwrap().approach;
+        let bar = found.bars.iter().find(|bar| bar.name == "approach").unwrap();
+        assert!(bar.time.unwrap() > 0.0, "{bar:?}");
+        assert!((bar.value.unwrap() - exact).abs() <= bar.error.unwrap(), "{bar:?} {exact}");
+    }
+}
+
+#[test]
+fn elastic_bodies_need_no_other_steps() {
+    let body = "body = [{ poisson = 0.5, material = { model = \"elastic\", young = \"3 MPa\" } }]";
+    let text = with(body);
+    let mut solved = vec![];
+    let read = |keys: &[String]| Case::parse(&text, "case.toml".as_ref(), keys);
+    let found =
+        converge(&read, None, &ConvergeOptions::default(), &mut |what| solved.push(what.to_owned())).unwrap();
+    assert!(solved.iter().all(|what| !what.contains("steps")), "{solved:?}");
+    assert!(found.bars.iter().all(|bar| bar.time == Some(0.0)), "{:?}", found.bars);
+    let cost = |text: &str| {
+        let read = |keys: &[String]| Case::parse(text, "case.toml".as_ref(), keys);
+        expected_cost(&read(&[]).unwrap(), &read)
+    };
+    // Half of the cells twice, and a quarter of them.
+    assert_eq!(cost(&text), 0.25 * 2.0 + 0.0625);
+    assert_eq!(cost(SPHERE), 0.25 * 2.5 + 0.0625);
+}
+
+#[test]
+fn bodies_with_a_clock_or_layers_have_an_error_of_their_steps() {
+    // Warming rubber, whose creep is kept apart from that of the pair.
+    let warm = format!(
+        "{}\ntemperature = {{ history = {{ kind = \"table\", points = [[\"0 s\", \"20 °C\"], [\"2 s\", \"40 °C\"]] }} }}",
+        SPHERE.replace("retardation_time = \"1 s\" }", "retardation_time = \"1 s\", shift = { model = \"arrhenius\", energy = \"100 kJ/mol\", reference = \"20 °C\" } }")
+    );
+    // A layer on a soft base of another material: waves of different lengths creep differently.
+    let layered = SPHERE.replace(
+        "body = [{ poisson = 0.5, material",
+        "body = [{ base = \"half-space\", poisson = 0.5, layer = [{ thickness = \"0.1 mm\", poisson = 0.45, material = { model = \"elastic\", young = \"3 MPa\" } }], material",
+    );
+    for text in [warm, layered] {
+        let found = found(&text, false);
+        assert!(time_error(&found, "approach").unwrap() > 0.0, "{:?} {:?}", found.bars, found.notes);
+    }
 }

@@ -27,7 +27,12 @@ pub(super) struct Runs {
     /// Other steps and the looser tolerance, on the coarser grid where there is one.
     pub steps: Steps,
     pub loose: Option<Vec<Answer>>,
+    /// Whether the pressure grows without end somewhere as the cells shrink.
+    pub is_singular: bool,
 }
+
+/// Answers that have no value on ever finer grids where the pressure is singular, by how their names begin.
+const OF_LARGEST_PRESSURE: [&str; 3] = ["max_pressure", "max_mises", "first_yield"];
 
 /// What the steps in time cause.
 pub(super) enum Steps {
@@ -68,6 +73,11 @@ fn bar(answer: &Answer, runs: &Runs, extrapolate: bool) -> ErrorBar {
         (value, order) = (double + rest, Some(p));
         // The extrapolated value is off by no more than the step from the finest grid.
         grid = Some(rest.abs().max(fine / 2.0));
+    }
+    if runs.is_singular && OF_LARGEST_PRESSURE.iter().any(|begin| name.starts_with(begin)) {
+        (grid, value, order) = (None, own, None);
+        note =
+            "not resolved: at a sharp edge or tip the pressure grows without end as the cells shrink".into();
     }
     let grids = [half, quarter, double].iter().flatten().count();
     let safety = SAFETY[usize::from(grids < 2)];

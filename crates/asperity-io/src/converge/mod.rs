@@ -28,7 +28,7 @@ use crate::session::{RunError, RunOptions, run};
 use crate::store::{Reader, Status, StoreError};
 use estimate::{Runs, Steps, bars};
 pub use variation::Change;
-use variation::steps_matter;
+use variation::{has_singular_pressure, steps_matter};
 
 /// An answer with its error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -184,6 +184,7 @@ pub fn converge(
         double: answers(double),
         steps,
         loose: answers(loose),
+        is_singular: has_singular_pressure(&case),
     };
     let cost = work.spent / (base.convolutions.max(1) as f64);
     let bars = bars(&base.answers, &runs, options.refine);

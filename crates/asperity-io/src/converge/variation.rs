@@ -1,9 +1,10 @@
 //! The keys of a case that make its grid, its steps or its solver coarser.
 
+use asperity::surface::Part;
 use asperity::{Axis, Course, History, Plasticity, Simulation};
 use toml::{Table, Value};
 
-use crate::case::Case;
+use crate::case::{Case, Surface};
 use crate::quantity::in_si;
 
 /// What is changed.
@@ -101,6 +102,16 @@ pub(super) fn steps_matter(case: &Case) -> bool {
     let is_sine = |course: &Course| matches!(course, Course::Given(History::Sine { .. }));
     let has_cycles = loading.stages.iter().any(|stage| is_sine(&stage.course));
     case.axis() == Axis::Time && (remembers || has_path || has_cycles || case.motion.is_some())
+}
+
+/// Whether a shape of the case has an edge or a tip where the pressure grows without end, and no hardness limits it.
+pub(super) fn has_singular_pressure(case: &Case) -> bool {
+    let is_limited = case.conditions.hardness.is_finite() || case.conditions.hardness_map.is_some();
+    let is_singular = |surface: &Surface| match surface {
+        Surface::Part(Part::Shape { shape, .. }) => shape.has_singular_pressure(),
+        Surface::Part(_) | Surface::File(_) => false,
+    };
+    !is_limited && case.surfaces.iter().any(is_singular)
 }
 
 /// How the keys that give steps change with the length of the steps.

@@ -58,6 +58,24 @@ pub struct ErrorBar {
     pub note: String,
 }
 
+impl ErrorBar {
+    /// An answer with an error whose causes are not told apart.
+    pub fn of(answer: &Answer, error: f64) -> ErrorBar {
+        ErrorBar {
+            name: answer.name.clone(),
+            value: Some(answer.value),
+            unit: answer.unit.to_owned(),
+            error: Some(error),
+            grid: None,
+            time: None,
+            solver: None,
+            at: answer.at.map(|at| at.value()),
+            order: None,
+            note: String::new(),
+        }
+    }
+}
+
 /// The error bars of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::answer::{self, Answer, Units};
+use crate::converge::ErrorBar;
 use crate::readable::quantity;
 use crate::store::{At, FieldKind, Reader, StoreError};
 
@@ -44,6 +45,8 @@ pub struct Answers {
     pub unit: &'static str,
     /// Its value in each result, SI; NaN (in JSON null) where a result does not have it.
     pub values: Vec<f64>,
+    /// Its error in each result, SI; NaN (in JSON null) where that is not known.
+    pub errors: Vec<f64>,
     /// Each value over that of the first result, less 1; NaN (in JSON null) where that says nothing.
     pub changes: Vec<f64>,
 }
@@ -54,22 +57,42 @@ impl Answers {
         self.name.replace('_', " ")
     }
 
-    /// Its value in a result, with a unit that suits it, and, of all but the first, the change: "43 % (+2.1 %)".
+    /// Its value in a result, with a unit that suits it and its error, and, of all but the first, the change and whether that is larger
+    /// than the errors: "43 % ± 1 (+2.1 %, within the errors)".
     pub fn words(&self, n: usize, units: &Units) -> String {
-        let Answers { name, unit, values, changes } = self;
-        let answer = Answer::new(name.clone(), values[n], unit);
-        match changes[n] {
-            _ if values[n].is_nan() => "-".to_owned(),
-            change if n == 0 || !change.is_finite() => answer.words(units),
-            0.0 => format!("{} (same)", answer.words(units)),
-            change if change >= FACTOR => {
-                format!("{} ({} times)", answer.words(units), quantity(1.0 + change, ""))
-            }
+        let Answers { values, changes, .. } = self;
+        if values[n].is_nan() {
+            return "-".to_owned();
+        }
+        let value = self.with_error(n, units);
+        let change = match changes[n] {
+            change if n == 0 || !change.is_finite() => return value,
+            0.0 => "same".to_owned(),
+            change if change >= FACTOR => format!("{} times", quantity(1.0 + change, "")),
             change => {
                 let sign = if change < 0.0 { "-" } else { "+" };
-                format!("{} ({sign}{} %)", answer.words(units), quantity(100.0 * change.abs(), ""))
+                format!("{sign}{} %", quantity(100.0 * change.abs(), ""))
             }
+        };
+        match self.is_larger_than_errors(n) {
+            Some(true) => format!("{value} ({change}, more than the errors)"),
+            Some(false) if values[n] != values[0] => format!("{value} ({change}, within the errors)"),
+            _ => format!("{value} ({change})"),
         }
+    }
+
+    fn with_error(&self, n: usize, units: &Units) -> String {
+        let answer = Answer::new(self.name.clone(), self.values[n], self.unit);
+        match self.errors[n] {
+            error if error.is_finite() => units.plus_minus(&ErrorBar::of(&answer, error)),
+            _ => answer.words(units),
+        }
+    }
+
+    /// Whether a value differs from the first one by more than both errors together; `None` where one of them is not known.
+    fn is_larger_than_errors(&self, n: usize) -> Option<bool> {
+        let error = self.errors[0] + self.errors[n];
+        error.is_finite().then(|| (self.values[n] - self.values[0]).abs() > error)
     }
 }
 
@@ -83,14 +106,17 @@ pub const FACTOR: f64 = 9.0;
 pub fn answers(readers: &[Reader], units: &Units) -> Result<Vec<Answers>, StoreError> {
     let mut all: Vec<Answers> = vec![];
     for (n, reader) in readers.iter().enumerate() {
+        let bars = reader.error_bars();
         for Answer { name, value, unit, .. } in answer::of(reader, &Units::of(reader, units))? {
+            let error = bars.iter().find(|bar| bar.name == name).and_then(|bar| bar.error);
             let place = all.iter().position(|known| known.name == name && known.unit == unit);
             let place = place.unwrap_or_else(|| {
                 let none = vec![f64::NAN; readers.len()];
-                all.push(Answers { name, unit, values: none.clone(), changes: none });
+                all.push(Answers { name, unit, values: none.clone(), errors: none.clone(), changes: none });
                 all.len() - 1
             });
             all[place].values[n] = value;
+            all[place].errors[n] = error.unwrap_or(f64::NAN);
         }
     }
     for Answers { values, changes, .. } in &mut all {
@@ -272,9 +298,26 @@ mod tests {
     #[test]
     fn changes_have_four_digits() {
         let (values, changes) = (vec![1.0; 5], vec![0.0, 0.0, 0.12345678, -0.5, 66.54321]);
-        let answers = Answers { name: "max_pressure".into(), unit: "Pa", values, changes };
+        let errors = vec![f64::NAN; 5];
+        let answers = Answers { name: "max_pressure".into(), unit: "Pa", values, errors, changes };
         let words: Vec<String> = (0..5).map(|n| answers.words(n, &Units::default())).collect();
         assert_eq!(words, ["1 Pa", "1 Pa (same)", "1 Pa (+12.35 %)", "1 Pa (-50 %)", "1 Pa (67.54 times)"]);
+    }
+
+    #[test]
+    fn a_difference_is_compared_with_the_errors() {
+        let (values, changes) = (vec![1.0, 1.3, 1.4, 1.0], vec![0.0, 0.3, 0.4, 0.0]);
+        // Both errors together are 0.35 Pa.
+        let errors = vec![0.2, 0.15, 0.15, f64::NAN];
+        let answers = Answers { name: "max_pressure".into(), unit: "Pa", values, errors, changes };
+        let words: Vec<String> = (0..4).map(|n| answers.words(n, &Units::default())).collect();
+        let expected = [
+            "1.00 Pa ± 0.20",
+            "1.30 Pa ± 0.15 (+30 %, within the errors)",
+            "1.40 Pa ± 0.15 (+40 %, more than the errors)",
+            "1 Pa (same)",
+        ];
+        assert_eq!(words, expected);
     }
 
     #[test]

@@ -10,8 +10,8 @@ const DECADE: f64 = 10.0;
 /// The share of an axis that stays free at each end, so that no point lies on the frame.
 const MARGIN: f64 = 0.04;
 
-/// The values of a curve at one place: of all its seeds.
-type Place = (f64, Vec<f64>);
+/// The values of a curve at one place, of all its seeds, each with its error, NaN where that is not known.
+type Place = (f64, Vec<[f64; 2]>);
 
 /// The figure; `None` where nothing is done yet.
 pub fn figure(plan: &Plan, table: &Table) -> Option<Figure> {
@@ -46,12 +46,15 @@ pub fn figure(plan: &Plan, table: &Table) -> Option<Figure> {
             }
         };
         match curve.iter_mut().find(|(known, _)| *known == x) {
-            Some((_, values)) => values.push(*value),
-            None => curve.push((x, vec![*value])),
+            Some((_, values)) => values.push([*value, answer.errors[row]]),
+            None => curve.push((x, vec![[*value, answer.errors[row]]])),
         }
     }
     let xs: Vec<f64> = curves.iter().flat_map(|(_, places)| places.iter().map(|place| place.0)).collect();
-    let ys: Vec<f64> = answer.values.iter().copied().filter(|value| value.is_finite()).collect();
+    let places = || curves.iter().flat_map(|(_, places)| places);
+    let ys: Vec<f64> =
+        places().flat_map(|(_, values)| ends(values).into_iter().chain([mean(values)])).collect();
+    let ys: Vec<f64> = ys.into_iter().filter(|y| y.is_finite()).collect();
     if xs.is_empty() {
         return None;
     }
@@ -65,29 +68,40 @@ pub fn figure(plan: &Plan, table: &Table) -> Option<Figure> {
     };
     let unit = if answer.unit == "1" { "" } else { answer.unit };
     let y = axis(answer.name.replace('_', " "), unit, &ys);
-    let averaged = curves.iter().any(|(_, places)| places.iter().any(|(_, values)| values.len() > 1));
+    let averaged = places().any(|(_, values)| values.len() > 1);
+    let has_errors = places().any(|(_, values)| values.len() == 1 && values[0][1].is_finite());
     let mut panel = Curves::new("", x, y);
     for (n, (name, places)) in curves.iter().enumerate() {
         panel = drawn(panel, name, places, COLOURS[n % COLOURS.len()]);
     }
     let figure = Figure::new("").with(panel).columns(1).panel_size([360.0, 260.0]);
-    Some(match averaged {
-        true => figure.caption("Mean over the seeds; the bars go from the least to the largest value."),
-        false => figure,
+    Some(match (averaged, has_errors) {
+        (true, _) => figure.caption("Mean over the seeds; the bars go from the least to the largest value."),
+        (false, true) => figure.caption("The bars are the errors of the answers."),
+        (false, false) => figure,
     })
+}
+
+fn mean(values: &[[f64; 2]]) -> f64 {
+    values.iter().map(|[value, _]| value).sum::<f64>() / values.len() as f64
+}
+
+/// The ends of a bar: the least and the largest value, of one value those of its error; NaN without one.
+fn ends(values: &[[f64; 2]]) -> [f64; 2] {
+    match values {
+        [[value, error]] => [value - error, value + error],
+        _ => [f64::min, f64::max]
+            .map(|pick| values.iter().map(|[value, _]| *value).reduce(pick).unwrap_or(f64::NAN)),
+    }
 }
 
 /// Adds a curve through the means, with a bar at each place.
 fn drawn(panel: Curves, name: &str, places: &[Place], colour: &str) -> Curves {
     let mut places = places.to_vec();
     places.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let means = || places.iter().map(|(x, values)| [*x, mean(values)]);
-    let bars = places.iter().filter(|(_, values)| values.len() > 1).flat_map(|(x, values)| {
-        let [low, high] =
-            [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick).unwrap_or(f64::NAN));
-        [[*x, low], [*x, high], [*x, f64::NAN]]
-    });
+    let bars = places.iter().map(|(x, values)| (*x, ends(values))).filter(|(_, [low, _])| low.is_finite());
+    let bars = bars.flat_map(|(x, [low, high])| [[x, low], [x, high], [x, f64::NAN]]);
     panel
         .with(Series::through("", Style::Line, bars).in_colour(colour))
         .with(Series::through(name, Style::Line, means()).in_colour(colour))

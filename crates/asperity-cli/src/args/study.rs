@@ -33,6 +33,9 @@ pub struct Study {
     /// Only the K-th of every N runs, e.g. 3/16: one of N processes that share the folder
     #[arg(long, value_name = "K/N", value_parser = shard)]
     pub shard: Option<[usize; 2]>,
+    /// Compute the errors of the answers of every run too; takes about as long again
+    #[arg(long)]
+    pub error_bars: bool,
     #[command(flatten)]
     pub common: Common,
     /// Unit for leaks or times in what is printed, e.g. --unit leak=ml/year --unit time=h

@@ -3,6 +3,7 @@
 use asperity::step::Row;
 use asperity::{Axis, Grid};
 use asperity_io::answer::{Answer, Units};
+use asperity_io::converge::ErrorBar;
 
 use crate::failure::Failure;
 use crate::format::quantity;
@@ -15,17 +16,28 @@ pub fn line(name: &str, value: impl std::fmt::Display) -> String {
     format!("{name:<WIDTH$} {value}\n")
 }
 
-/// Name and words of each answer.
-pub fn lines(answers: &[Answer], units: &Units) -> Vec<[String; 2]> {
-    let words = |answer: &Answer| {
-        let value = answer.words(units);
-        match answer.note.as_str() {
-            "" => value,
-            note if answer.value.is_nan() => note.to_owned(),
-            note => format!("{value} ({note})"),
-        }
+/// Name and words of each answer, with its error where one of `bars` has it.
+pub fn lines(answers: &[Answer], bars: &[ErrorBar], units: &Units) -> Vec<[String; 2]> {
+    let words = |answer: &Answer| match bars.iter().find(|bar| bar.name == answer.name) {
+        Some(bar) => with_error(answer, bar, units),
+        None => alone(answer, units),
     };
     units.without_second_rate(answers).map(|answer| [answer.label(), words(answer)]).collect()
+}
+
+fn alone(answer: &Answer, units: &Units) -> String {
+    let value = answer.words(units);
+    match answer.note.as_str() {
+        "" => value,
+        note if answer.value.is_nan() => note.to_owned(),
+        note => format!("{value} ({note})"),
+    }
+}
+
+fn with_error(answer: &Answer, bar: &ErrorBar, units: &Units) -> String {
+    let order = bar.order.map_or(String::new(), |order| format!("order {order:.1}"));
+    let more = [order, bar.note.clone(), answer.note.clone()].into_iter().filter(|text| !text.is_empty());
+    [units.with_error(bar)].into_iter().chain(more).collect::<Vec<_>>().join("; ")
 }
 
 /// The row that the answers about the contact belong to: "t = 10 s, the last of 20, under 2 N".

@@ -20,22 +20,21 @@ impl Verb for Converge {
 
     /// Solves the case and its variations, and prints the answers.
     fn run(&self) -> Result<(), Failure> {
-        let units = units(&self.case, &self.common.set, &self.unit)?;
+        let set = [&self.common.set[..], &answers::keys(&self.unit)?].concat();
+        let case = Case::read(&self.case, &set)?;
+        let units = &case.output.units;
         let found = of_case(&self.case, &self.common.set, None, self.refine, self.quiet)?;
         if !self.quiet {
             super::findings::print(&found.findings);
         }
-        crate::print(&match self.json {
-            true => format!("{}\n", object(&found)),
-            false => text(&found, &units),
-        })
+        if self.json {
+            return crate::print(&format!("{}\n", object(&found)));
+        }
+        let grid = &case.conditions.grid;
+        let row = answers::row(&found.answers, units, grid, found.last.as_ref(), found.rows);
+        let row = row.map_or(String::new(), |row| answers::line("of the row at", row));
+        crate::print(&(text(&found, units) + &row))
     }
-}
-
-/// The units that a case and the options choose.
-fn units(case: &Path, set: &[String], options: &[String]) -> Result<Units, Failure> {
-    let set = [set, &answers::keys(options)?].concat();
-    Ok(Case::read(case, &set)?.output.units)
 }
 
 /// The errors of the answers of a case, whose complete result may be there.
@@ -65,18 +64,11 @@ fn object(found: &Convergence) -> Value {
     json!({ "answers": found.bars, "cost": found.cost, "notes": found.notes, "findings": asperity_io::finding::list(&found.findings) })
 }
 
-/// A line for each answer, and what could not be varied.
+/// A line for each answer, and how their errors were found.
 pub fn text(found: &Convergence, units: &Units) -> String {
-    let mut text = String::new();
-    for answer in units.without_second_rate(&found.answers) {
-        let Some(bar) = found.bars.iter().find(|bar| bar.name == answer.name) else { continue };
-        let order = bar.order.map_or(String::new(), |order| format!(", order {order:.1}"));
-        let note = if bar.note.is_empty() { String::new() } else { format!(", {}", bar.note) };
-        text += &answers::line(&answer.label(), units.with_error(bar) + &order + &note);
-    }
-    for note in &found.notes {
-        text += &answers::line("not varied", note);
-    }
-    text += &answers::line("cost", format!("{:.2} times the convolutions of the case", found.cost));
-    text
+    let answers = answers::lines(&found.answers, &found.bars, units);
+    let notes = found.notes.iter().map(|note| ["note".to_owned(), note.clone()]);
+    let cost = format!("{:.2} times the convolutions of the case", found.cost);
+    let lines = answers.into_iter().chain(notes).chain([["cost of the errors".into(), cost]]);
+    lines.map(|[name, words]| answers::line(&name, words)).collect()
 }

@@ -132,7 +132,7 @@ fn print_summary(
     match bars {
         Some(bars) => text += &super::converge::text(bars, &case.output.units),
         None => {
-            let answers = super::answers::lines(&summary.answers, &case.output.units);
+            let answers = super::answers::lines(&summary.answers, &[], &case.output.units);
             text.extend(answers.iter().map(|[name, value]| super::answers::line(name, value)));
         }
     }

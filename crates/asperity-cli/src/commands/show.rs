@@ -95,14 +95,12 @@ fn text(reader: &Reader, at: At, answers: &[Answer], units: &Units) -> Result<St
     if rows.is_empty() {
         return Ok(text);
     }
-    text.extend(super::answers::lines(answers, units).iter().map(|[name, value]| line(name, value)));
+    let lines = super::answers::lines(answers, &reader.error_bars(), units);
+    text.extend(lines.iter().map(|[name, value]| line(name, value)));
     text.extend(
         super::answers::row(answers, units, &reader.header().grid, rows.last(), rows.len())
             .map(|row| line("of the row at", row)),
     );
-    for bar in reader.error_bars() {
-        text += &line(&format!("{} ±", bar.name.replace('_', " ")), units.with_error(&bar));
-    }
     text.push('\n');
     text += &course(reader, &rows, units)?;
     text += &work(reader, &rows);

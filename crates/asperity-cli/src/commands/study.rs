@@ -42,6 +42,7 @@ impl args::Study {
             jobs: self.jobs.map(usize::from),
             threads: None,
             shard: self.shard,
+            error_bars: self.error_bars,
             interrupt: crate::interrupt::flag(),
         };
         if !self.quiet {
@@ -116,6 +117,9 @@ fn draw(study: &Study, table: &Table, units: &Units) -> Result<(), Failure> {
         super::picture::write(&figure, &study.folder.join("study.png"), true)?;
         sheet = sheet.figure("Answer", &figure);
     }
+    if let Some(words) = table.findings() {
+        sheet = sheet.table("Findings", &[vec!["runs with findings".into()], vec![words]]);
+    }
     sheet = sheet.table("Runs", &lines(study, table, units, usize::MAX));
     Ok(sheet.write(&study.folder.join("study.html"), true)?)
 }
@@ -135,7 +139,9 @@ fn object(study: &Study, table: &Table) -> Value {
             "values": values,
             "status": row.state.word(),
             "answers": row.answers,
-            "findings": row.findings,
+            "error_bars": row.bars,
+            "findings": row.findings.len(),
+            "finding_codes": row.codes(),
             "error": error,
             "result": study.result(&row.run).to_string_lossy(),
         })
@@ -183,7 +189,12 @@ fn lines(study: &Study, table: &Table, units: &Units, most: usize) -> Vec<Vec<St
             }
             _ => line.extend(shown.iter().map(|name| {
                 let answer = row.answers.iter().find(|answer| answer.name == *name);
-                answer.map_or_else(|| "-".to_owned(), |answer| answer.words(&units))
+                let bar = row.bars.iter().find(|bar| bar.name == *name);
+                match (answer, bar) {
+                    (None, _) => "-".to_owned(),
+                    (Some(_), Some(bar)) => units.plus_minus(bar),
+                    (Some(answer), None) => answer.words(&units),
+                }
             })),
         }
         lines.push(line);
@@ -212,5 +223,6 @@ fn text(study: &Study, table: &Table, units: &Units) -> String {
     let counts: Vec<String> = counts.map(|word| format!("{} {word}", table.count(word))).collect();
     text += &format!("\n{} of {}", counts.join(", "), counted(table.rows.len(), "run"));
     text += &format!("; table and figure in {}\n", study.folder.display());
+    text.extend(table.findings().map(|words| format!("{words}\n")));
     text
 }

@@ -94,7 +94,13 @@ fn errors_of_answers_are_printed_and_stored() {
     let attributes: Value = object(&std::fs::read_to_string(directory.join("ball.zarr/zarr.json")).unwrap());
     let stored = attributes["attributes"]["error_bars"].as_array().unwrap();
     assert_eq!((stored.len(), &stored[0]), (bars.len(), &bars[0]));
-    assert!(done(&["show", "ball.zarr"], directory).contains("contact area ±"));
+    // An answer and its error stand in one line, once.
+    let shown = done(&["show", "ball.zarr"], directory);
+    let areas: Vec<&str> = shown.lines().filter(|line| line.starts_with("contact area  ")).collect();
+    assert!(areas.len() == 1 && areas[0].contains(" ± ") && areas[0].contains("(grid "), "{shown}");
+    // It says of which row.
+    let told = done(&["converge", "ball.toml", "--quiet"], directory);
+    assert!(told.contains("t = 2 d, the last of 9, under 10 mN"), "{told}");
     done(&["verify-result", "ball.zarr"], directory);
     // Other formats take the list as a text.
     done(&["export", "ball.zarr", "--to", "netcdf"], directory);

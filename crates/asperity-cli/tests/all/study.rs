@@ -254,3 +254,43 @@ fn a_case_may_hold_its_study_and_a_folder_only_that() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(csv(path, "ball-study").lines().count(), 4);
 }
+
+#[test]
+fn a_study_carries_errors_and_findings() {
+    let folder = folder();
+    let path = folder.path();
+    // Of 24 x 20 cells the contact has few, and the shortest wave is left out so that the grid can be halved.
+    let smooth =
+        CASE.replace("shortest = \"0.1 mm\"", "shortest = \"0.4 mm\"").replace("[40, 32]", "[24, 20]");
+    std::fs::write(path.join("ball.toml"), smooth).unwrap();
+    let vary = ["study", "ball.toml", "--vary", "load.history.value=0.5 mN,0.2 N", "-q", "-o", "s"];
+    assert!(asperity(path, &vary).status.success());
+    assert!(!csv(path, "s").contains("contact_area_error"));
+    // The runs that are done get their errors.
+    let output = asperity(path, &[&vary[..], &["--error-bars"]].concat());
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && told.contains(" ± "), "{told}");
+    assert!(told.contains("runs have findings: ") || told.contains("runs has findings: "), "{told}");
+    let table = csv(path, "s");
+    for row in rows(&table) {
+        let reader = Reader::open(&path.join("s").join(row["path"])).unwrap();
+        let bar = reader.error_bars().into_iter().find(|bar| bar.name == "contact_area").unwrap();
+        let stored: f64 = row["contact_area_error [m2]"].parse().unwrap();
+        assert_eq!(Some(stored), bar.error);
+        let codes = reader.findings().iter().map(|finding| finding.code.to_string());
+        assert!(
+            codes.into_iter().all(|code| row["finding_codes"].split(' ').any(|own| own == code)),
+            "{row:?}"
+        );
+    }
+    assert!(rows(&table)[0]["finding_codes"].contains("few-contact-cells"), "{table}");
+    assert!(path.join("s/study.zarr/contact_area_error/zarr.json").is_file());
+    let status = asperity(path, &["study", "status", "s"]);
+    assert!(String::from_utf8(status.stdout).unwrap().contains("few-contact-cells ("));
+    assert!(std::fs::read_to_string(path.join("s/study.html")).unwrap().contains("few-contact-cells ("));
+    // A comparison says whether the loads matter.
+    let (first, second) = (rows(&table)[0]["path"].to_owned(), rows(&table)[1]["path"].to_owned());
+    let output = asperity(path, &["compare", &format!("s/{first}"), &format!("s/{second}")]);
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("more than the errors"), "{told}");
+}

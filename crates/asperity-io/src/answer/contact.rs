@@ -1,8 +1,11 @@
 //! Area, pressure, approach and load of a contact.
 
+use std::f64::consts::FRAC_PI_4;
+
 use asperity::quantities::ROW_COLUMNS;
+use asperity::spots::labels;
 use asperity::step::Row;
-use asperity::{Axis, Control};
+use asperity::{Axis, Boundary, Control};
 use ndarray::ArrayView2;
 
 use super::Answer;
@@ -32,10 +35,12 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
     }
     let mut answers: Vec<Answer> = names.into_iter().filter_map(column).collect();
     let edge = edge(reader, row)?;
+    let share = of_rim(edge, row.contact_area);
     for answer in &mut answers {
         answer.resolution = match answer.name.as_str() {
             "contact_area" | "contact_area_corrected" => edge,
             "contact_fraction" => edge / grid.extents().iter().product::<f64>(),
+            "max_pressure" | "approach" | "load" => share * answer.value.abs(),
             _ => 0.0,
         };
     }
@@ -43,35 +48,48 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
     Ok(answers)
 }
 
-/// How far the counted area may be off because cells touch as a whole \[m², on a line m\]: each straight piece of the edge of the contact
-/// lies somewhere within half a cell of where it is counted, independently of the others. With pieces of l cells this is
-/// sqrt(sum l²)/2 cells. 0 where the result stores no map of the contact.
+/// How far the counted area may be off because cells touch as a whole \[m², on a line m\]. The rim of a spot lies within half a cell of
+/// where it is counted, and the whole rim of a small or regular spot may lie off in the same direction: then the area of the spot is off
+/// by half a cell times the length of the rim. That is π/4 of the length of the cells' sides, which is 4/π of that of the rim in the mean
+/// over its directions; on a line both ends count. The spots are independent of each other, so the squares add. 0 where the result stores
+/// no map of the contact.
 fn edge(reader: &Reader, row: &Row) -> Result<f64> {
     if reader.contact_kind().is_none() || reader.field_times().is_empty() {
         return Ok(0.0);
     }
+    let header = reader.header();
     let states = reader.contact_states(At::Time(row.coordinate.value()))?;
-    let touches = states.mapv(|state| state > 0);
-    let pieces = squares_of_pieces(touches.view()) + squares_of_pieces(touches.t());
-    Ok(0.5 * pieces.sqrt() * reader.header().grid.cell_area())
+    let boundary = if header.is_periodic() { Boundary::Periodic } else { Boundary::Free };
+    let sides = sides_of_spots(labels(boundary, states.view(), |state| *state > 0).view(), boundary);
+    let along = if header.grid.is_line() { 1.0 } else { FRAC_PI_4 };
+    let squares: f64 = sides.iter().map(|n| (0.5 * along * f64::from(*n)).powi(2)).sum();
+    Ok(squares.sqrt() * header.grid.cell_area())
 }
 
-/// Sum of the squares of the lengths of the pieces of edge between one row of cells and the next.
-fn squares_of_pieces(touches: ArrayView2<'_, bool>) -> f64 {
-    let mut sum = 0.0;
-    for (one, next) in touches.outer_iter().zip(touches.outer_iter().skip(1)) {
-        let (mut length, mut side) = (0_u32, 0);
-        for (a, b) in one.iter().zip(next) {
-            let now = i32::from(*a) - i32::from(*b);
-            if now != side {
-                sum += f64::from(length).powi(2);
-                (length, side) = (0, now);
+/// How far approach, load and pressure may be off, relative, because cells touch as a whole. With the radius a off by da the approach
+/// under a given load, a²/(3 R) + F/(2 E* a), is off by (da/a)² of it (Hertz: it is least at the right radius). A contact of a few cells
+/// may have its rim one cell off; `edge`, half a cell along the rim, is the share da/a of the area then.
+fn of_rim(edge: f64, area: f64) -> f64 {
+    if area > 0.0 { (edge / area).min(1.0).powi(2) } else { 0.0 }
+}
+
+/// How many sides of cells each spot has towards cells that do not touch.
+fn sides_of_spots(spots: ArrayView2<'_, u32>, boundary: Boundary) -> Vec<u32> {
+    let mut sides = vec![0; spots.iter().max().map_or(0, |most| *most as usize)];
+    for lines in [spots, spots.t()] {
+        let count = lines.nrows();
+        // A line of cells has no sides along itself.
+        let pairs = if boundary == Boundary::Periodic && count > 1 { count } else { count.saturating_sub(1) };
+        for n in 0..pairs {
+            for (a, b) in lines.row(n).iter().zip(lines.row((n + 1) % count)) {
+                match [*a, *b] {
+                    [spot, 0] | [0, spot] if spot > 0 => sides[spot as usize - 1] += 1,
+                    _ => {}
+                }
             }
-            length += u32::from(now != 0);
         }
-        sum += f64::from(length).powi(2);
     }
-    sum
+    sides
 }
 
 /// How much the approach has grown since the load is held, or which share of the load has relaxed since the approach is held.
@@ -92,4 +110,22 @@ fn while_held(rows: &[Row], held_approach: bool) -> Option<Answer> {
         false => Answer::new("creep", last.approach - first.approach, "m"),
     })
     .filter(|answer| answer.value != 0.0 && (answer.unit != "1" || answer.value.abs() > NOISE))
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::array;
+
+    use super::*;
+
+    #[test]
+    fn sides_are_counted_spot_by_spot() {
+        // A spot of three cells and one of one cell.
+        let spots = array![[0, 0, 0, 0], [1, 1, 0, 0], [1, 0, 0, 2], [0, 0, 0, 0]];
+        assert_eq!(sides_of_spots(spots.view(), Boundary::Free), [6, 3]);
+        // The border of a free domain is no side, and a periodic domain has none.
+        let whole = array![[0, 0, 0, 0], [1, 1, 0, 0], [1, 0, 0, 1], [0, 0, 0, 0]];
+        assert_eq!(sides_of_spots(whole.view(), Boundary::Periodic), [10]);
+        assert_eq!(sides_of_spots(array![[0], [1], [1], [0]].view(), Boundary::Periodic), [2]);
+    }
 }

@@ -26,6 +26,9 @@ const CHOICES: [(&str, &[Powers], &str); 2] = [
     ("time", &[TIME], "s, min, h, day, year"),
 ];
 
+/// How the names of answers begin that may be less than 0; the others are not.
+const SIGNED: [&str; 6] = ["approach", "creep", "relaxation", "load", "friction", "loss"];
+
 /// Why a unit cannot be chosen.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum UnitError {
@@ -186,22 +189,35 @@ impl Units {
         }
     }
 
-    /// An answer with its error: "42.3 % ± 0.8".
+    /// An answer with its error: "42.3 % ± 0.8"; where the error is as large as the answer, what is known of it: "not determined: less
+    /// than 28 h".
     pub fn plus_minus(&self, bar: &ErrorBar) -> String {
         let Some(value) = bar.value else { return "none".into() };
         if value == 0.0 && bar.error == Some(0.0) {
             return self.number(value, &bar.unit);
         }
-        let shown = self.shown_for(&bar.name, &bar.unit, value);
+        let shown = self.shown_for(&bar.name, &bar.unit, value.abs().max(bar.error.unwrap_or(0.0)));
         let unit = if shown.text.is_empty() { String::new() } else { format!(" {}", shown.text) };
-        let error = bar.error.map_or("unknown".to_owned(), |error| rounded(bar, &shown, error));
-        format!("{}{unit} ± {error}", rounded(bar, &shown, value))
+        match bar.error {
+            Some(error) if error >= value.abs() => {
+                let [low, high] = [value - error, value + error].map(|end| outward(shown.factor * end));
+                match SIGNED.iter().any(|name| bar.name.starts_with(name)) {
+                    true => format!("not determined: between {low} and {high}{unit}"),
+                    false => format!("not determined: less than {high}{unit}"),
+                }
+            }
+            error => {
+                let error = error.map_or("unknown".to_owned(), |error| rounded(bar, &shown, error));
+                format!("{}{unit} ± {error}", rounded(bar, &shown, value))
+            }
+        }
     }
 
     /// The same with what the grid, the steps and the solver cause of the error, all in one unit:
     /// "42.3 % ± 0.8 (grid 0.8, time 0.1, solver 0.0)".
     pub fn with_error(&self, bar: &ErrorBar) -> String {
-        let shown = self.shown_for(&bar.name, &bar.unit, bar.value.unwrap_or(0.0));
+        let largest = bar.value.unwrap_or(0.0).abs().max(bar.error.unwrap_or(0.0));
+        let shown = self.shown_for(&bar.name, &bar.unit, largest);
         if bar.value.is_none() || (bar.value, bar.error) == (Some(0.0), Some(0.0)) {
             return self.plus_minus(bar);
         }
@@ -260,6 +276,20 @@ impl Units {
     }
 }
 
+/// An end of an interval with two digits, rounded away from 0.
+fn outward(number: f64) -> String {
+    if number == 0.0 {
+        return "0".into();
+    }
+    let digit = 10f64.powi(number.abs().log10().floor() as i32 - 1);
+    let rounded = number.signum() * (number.abs() / digit * (1.0 - 1e-12)).ceil() * digit;
+    let places = (-digit.log10().round()).clamp(0.0, 12.0) as usize;
+    match (1e-4..1e6).contains(&rounded.abs()) {
+        true => format!("{rounded:.places$}"),
+        false => format!("{rounded:.1e}"),
+    }
+}
+
 /// A number of an answer in the unit shown: with two digits of the error, or five of the value where the error is less.
 fn rounded(bar: &ErrorBar, shown: &Shown, number: f64) -> String {
     let value = shown.factor * bar.value.unwrap_or(0.0);
@@ -271,9 +301,10 @@ fn rounded(bar: &ErrorBar, shown: &Shown, number: f64) -> String {
     let places = match error {
         None | Some(0.0) => places(value, 4.0),
         Some(error) if value == 0.0 => places(error, 2.0),
-        Some(error) => places(error, 2.0).max(places(value, 2.0)).min(places(value, 5.0)),
+        Some(error) => places(error, 2.0).min(places(value, 5.0)),
     } as usize;
-    match value == 0.0 || (1e-4..1e6).contains(&value.abs()) {
+    let largest = value.abs().max(error.unwrap_or(0.0));
+    match largest == 0.0 || (1e-4..1e6).contains(&largest) {
         true => format!("{:.places$}", number * shown.factor),
         false => format!("{:.3e}", number * shown.factor),
     }
@@ -305,11 +336,29 @@ mod tests {
         assert_eq!(units.with_error(&fraction), "42.26 % ± 0.81 (grid 0.80, time 0.10, solver 0.00)");
         let approach = bar("approach", "m", 1.021_4e-6, [9.1e-9, 0.0, 0.0]);
         assert_eq!(units.plus_minus(&approach), "1.0214 µm ± 0.0091");
-        // A time that is known to a day or so keeps two digits.
-        let tight = bar("tight_from", "s", 15_566.0, [0.0, 93_600.0, 0.0]);
-        assert_eq!(units.plus_minus(&tight), "4.3 h ± 26.0");
         let unknown = ErrorBar { error: None, ..approach };
         assert_eq!(units.plus_minus(&unknown), "1.021 µm ± unknown");
+    }
+
+    #[test]
+    fn an_answer_smaller_than_its_error_is_a_bound() {
+        let units = Units::default();
+        // 15 566 s + 93 600 s = 30.32 h.
+        let tight = bar("tight_from", "s", 15_566.0, [0.0, 93_600.0, 0.0]);
+        assert_eq!(units.plus_minus(&tight), "not determined: less than 31 h");
+        assert!(
+            units.with_error(&tight).ends_with("less than 31 h (grid 0, time 26, solver 0)"),
+            "{}",
+            units.with_error(&tight)
+        );
+        let leak = bar("leak_rate", "m3/s", 0.0, [2.5e-15, 0.0, 0.0]);
+        assert_eq!(units.plus_minus(&leak), "not determined: less than 2.5e-15 m³/s");
+        let approach = bar("approach", "m", -1e-9, [3.02e-9, 0.0, 0.0]);
+        assert_eq!(units.plus_minus(&approach), "not determined: between -4.1 and 2.1 nm");
+        assert_eq!(
+            ["0.034", "-11", "1.0e7", "0.1"].map(|text| outward(text.parse().unwrap())),
+            ["0.034", "-11", "1.0e7", "0.10"]
+        );
     }
 
     #[test]

@@ -7,7 +7,9 @@
 //!
 //! The estimate of the grid is multiplied by a factor of safety. What the steps and the tolerance cause is how much the answer moves with
 //! steps of twice the length and ten times the tolerance: from above, as the errors of the run itself are smaller than those of the
-//! coarser one. The error is the root of the sum of the three squares.
+//! coarser one. With steps of half the length it is twice what the answer moves: an error that falls as the power p of the length is
+//! |Q(t) - Q(t/2)|/(1 - 2^-p), which is twice the difference for p = 1 and less for a larger p. The error is the root of the sum of the
+//! three squares.
 
 use super::ErrorBar;
 use crate::answer::Answer;
@@ -22,11 +24,24 @@ pub(super) struct Runs {
     pub half: Option<Vec<Answer>>,
     pub quarter: Option<Vec<Answer>>,
     pub double: Option<Vec<Answer>>,
-    /// Longer steps and the looser tolerance, on the coarser grid where there is one.
-    pub long: Option<Vec<Answer>>,
+    /// Other steps and the looser tolerance, on the coarser grid where there is one.
+    pub steps: Steps,
     pub loose: Option<Vec<Answer>>,
-    /// Whether the steps in time can cause an error.
-    pub has_steps: bool,
+    /// Whether the pressure grows without end somewhere as the cells shrink.
+    pub is_singular: bool,
+}
+
+/// Answers that have no value on ever finer grids where the pressure is singular, by how their names begin.
+const OF_LARGEST_PRESSURE: [&str; 3] = ["max_pressure", "max_mises", "first_yield"];
+
+/// What the steps in time cause.
+pub(super) enum Steps {
+    /// No error.
+    Nothing,
+    /// It is not known: they could be made neither longer nor shorter.
+    Unknown,
+    /// An error as large as the distance from these answers times `factor`.
+    Varied { answers: Vec<Answer>, factor: f64 },
 }
 
 /// The answer of a run by its name; NaN if the run has it without a value.
@@ -59,6 +74,11 @@ fn bar(answer: &Answer, runs: &Runs, extrapolate: bool) -> ErrorBar {
         // The extrapolated value is off by no more than the step from the finest grid.
         grid = Some(rest.abs().max(fine / 2.0));
     }
+    if runs.is_singular && OF_LARGEST_PRESSURE.iter().any(|begin| name.starts_with(begin)) {
+        (grid, value, order) = (None, own, None);
+        note =
+            "not resolved: at a sharp edge or tip the pressure grows without end as the cells shrink".into();
+    }
     let grids = [half, quarter, double].iter().flatten().count();
     let safety = SAFETY[usize::from(grids < 2)];
     // Times and velocities are known to the distance of the rows, areas to the cells.
@@ -69,15 +89,17 @@ fn bar(answer: &Answer, runs: &Runs, extrapolate: bool) -> ErrorBar {
     grid = grid.map(|grid| safety * grid.max(of_cells));
     // The steps and the tolerance are varied on the coarser grid.
     let from = if runs.half.is_some() { half } else { Some(own) };
-    let moved = |run: &Option<Vec<Answer>>| Some((at(run)? - from?).abs());
-    let time = match runs.has_steps {
-        true => moved(&runs.long).map(|time| time.max(of_rows)),
-        false => Some(of_rows),
+    let moved =
+        |run: Option<&Vec<Answer>>| Some((of(run, name).filter(|value| value.is_finite())? - from?).abs());
+    let time = match &runs.steps {
+        Steps::Nothing => Some(of_rows),
+        Steps::Unknown => None,
+        Steps::Varied { answers, factor } => moved(Some(answers)).map(|time| (factor * time).max(of_rows)),
     };
     if time.is_none() && note.is_empty() {
         note = "the steps were not varied: their error is not known".into();
     }
-    let solver = moved(&runs.loose);
+    let solver = moved(runs.loose.as_ref());
     let error = match (grid, time, solver) {
         (Some(grid), Some(time), Some(solver)) => Some((grid * grid + time * time + solver * solver).sqrt()),
         _ => None,

@@ -5,7 +5,7 @@
 //!
 //! - **grid**: half and, where possible, a quarter of the cells along each side. Where the cells cannot be halved (roughness whose
 //!   shortest wave has too few cells then) the grid is refined instead.
-//! - **time**: steps twice as long.
+//! - **time**: steps twice as long; where that is not possible, half as long. Elastic contacts at rest have no such error.
 //! - **solver**: ten times the tolerance.
 //!
 //! The second and the third are measured on the coarser grid, where they cost little. All together take less than the run itself where
@@ -19,15 +19,16 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use asperity::finding::Finding;
-use asperity::{Axis, Simulation};
+use asperity::step::Row;
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{self, Answer, Units};
 use crate::case::{Case, CaseErrors};
 use crate::session::{RunError, RunOptions, run};
 use crate::store::{Reader, Status, StoreError};
-use estimate::{Runs, bars};
+use estimate::{Runs, Steps, bars};
 pub use variation::Change;
+use variation::{has_singular_pressure, steps_matter};
 
 /// An answer with its error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,6 +58,24 @@ pub struct ErrorBar {
     pub note: String,
 }
 
+impl ErrorBar {
+    /// An answer with an error whose causes are not told apart.
+    pub fn of(answer: &Answer, error: f64) -> ErrorBar {
+        ErrorBar {
+            name: answer.name.clone(),
+            value: Some(answer.value),
+            unit: answer.unit.to_owned(),
+            error: Some(error),
+            grid: None,
+            time: None,
+            solver: None,
+            at: answer.at.map(|at| at.value()),
+            order: None,
+            note: String::new(),
+        }
+    }
+}
+
 /// The error bars of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
@@ -64,6 +83,10 @@ pub struct Convergence {
     pub answers: Vec<Answer>,
     /// The same with their errors.
     pub bars: Vec<ErrorBar>,
+    /// How many rows the case has.
+    pub rows: usize,
+    /// The last of them.
+    pub last: Option<Row>,
     /// Where the numbers of the case may be off.
     pub findings: Vec<Finding>,
     /// What was solved in addition to the case, and what could not be, in words.
@@ -127,6 +150,7 @@ struct Work<'a> {
 struct Solved {
     answers: Vec<Answer>,
     rows: usize,
+    last: Option<Row>,
     findings: Vec<Finding>,
     convolutions: u64,
 }
@@ -163,35 +187,37 @@ pub fn converge(
     };
     let coarse: &[Change] = if half.is_some() { &[Change::HalfCells] } else { &[] };
     let with = |change| [coarse, &[change]].concat();
-    let long = work.longer_steps(&with(Change::LongSteps), half.as_ref().or(Some(&base)), &mut notes)?;
+    let steps = match steps_matter(&case) {
+        true => work.other_steps(coarse, half.as_ref().unwrap_or(&base), &mut notes)?,
+        false => Steps::Nothing,
+    };
     let loose = work.vary(&with(Change::LooseSolver), &mut notes)?;
     if options.refine && half.is_none() {
         notes.push("not extrapolated: that needs an answer with half the cells too".into());
     }
-    // Without memory and without motion the steps cause nothing; a sweep has none.
-    let Simulation { creep, thermal, layers, .. } = &case.conditions;
-    let remembers =
-        !creep.terms.is_empty() || creep.fluidity != 0.0 || !thermal.is_empty() || layers.is_some();
-    let timeless = !remembers && case.motion.is_none();
-    let has_steps = case.axis() == Axis::Time && !timeless;
     let answers = |solved: Option<Solved>| solved.map(|solved| solved.answers);
     let runs = Runs {
         half: answers(half),
         quarter: answers(quarter),
         double: answers(double),
-        long: answers(long),
+        steps,
         loose: answers(loose),
-        has_steps,
+        is_singular: has_singular_pressure(&case),
     };
     let cost = work.spent / (base.convolutions.max(1) as f64);
     let bars = bars(&base.answers, &runs, options.refine);
-    Ok(Convergence { answers: base.answers, bars, findings: base.findings, notes, cost })
+    let Solved { answers, rows, last, findings, .. } = base;
+    Ok(Convergence { answers, bars, rows, last, findings, notes, cost })
 }
 
 /// What the error bars of a case take, about, over what the case itself takes.
 pub fn expected_cost(case: &Case, read: &Read<'_>) -> f64 {
     let is_possible = |change: Change| change.overrides(case).is_ok_and(|keys| read(&keys).is_ok());
-    let steps = if Change::LongSteps.overrides(case).is_ok() { 0.5 } else { 0.0 };
+    let steps = match steps_matter(case) {
+        true if is_possible(Change::LongSteps) => 0.5,
+        true => 2.0,
+        false => 0.0,
+    };
     // A looser tolerance takes less, but never more.
     match is_possible(Change::HalfCells) {
         true => 0.25 * (2.0 + steps) + if is_possible(Change::QuarterCells) { 0.0625 } else { 0.0 },
@@ -200,22 +226,37 @@ pub fn expected_cost(case: &Case, read: &Read<'_>) -> f64 {
 }
 
 impl Work<'_> {
-    /// The answers with longer steps; `None` and a note where they are the steps of `before`, because breaks of the history end them.
-    fn longer_steps(
+    /// The answers with steps of twice the length, or, where those are not possible or no fewer, of half the length.
+    fn other_steps(
         &mut self,
-        changes: &[Change],
-        before: Option<&Solved>,
+        coarse: &[Change],
+        before: &Solved,
         notes: &mut Vec<String>,
-    ) -> Result<Option<Solved>, ConvergeError> {
-        let Some(long) = self.vary(changes, notes)? else { return Ok(None) };
-        if before.is_some_and(|before| long.rows >= before.rows) {
-            notes.push(
-                "steps of twice the length: there are no fewer of them, as the history has its breaks there"
+    ) -> Result<Steps, ConvergeError> {
+        let mut why = vec![];
+        if let Some(long) = self.vary(&[coarse, &[Change::LongSteps]].concat(), &mut why)? {
+            if long.rows < before.rows {
+                return Ok(Steps::Varied { answers: long.answers, factor: 1.0 });
+            }
+            why.push(
+                "steps of twice the length: there are no fewer of them: the history, the material or the motion asks for them"
                     .into(),
             );
-            return Ok(None);
         }
-        Ok(Some(long))
+        notes.extend(why);
+        // Breaks of the history may lie where steps of half the length end.
+        for change in [Change::HalfSteps, Change::QuarterSteps] {
+            let Some(short) = self.vary(&[coarse, &[change]].concat(), notes)? else { break };
+            if short.rows > before.rows {
+                let name = change.name();
+                notes.push(format!("{name} instead: their error is twice what they move an answer"));
+                return Ok(Steps::Varied { answers: short.answers, factor: 2.0 });
+            }
+        }
+        notes.push(
+            "the steps were not varied: neither longer nor shorter ones change the number of rows".into(),
+        );
+        Ok(Steps::Unknown)
     }
 
     /// The answers with these changes; `None` and a note where the case does not allow them.
@@ -275,5 +316,6 @@ impl Work<'_> {
 fn solved(reader: &Reader) -> Result<Solved, ConvergeError> {
     let answers = answer::of(reader, &Units::default())?;
     let findings = reader.findings().to_vec();
-    Ok(Solved { answers, rows: reader.len(), findings, convolutions: reader.work().convolutions })
+    let last = reader.rows()?.pop();
+    Ok(Solved { answers, rows: reader.len(), last, findings, convolutions: reader.work().convolutions })
 }

@@ -45,7 +45,7 @@ impl Header {
     /// rigid base.
     pub fn is_up_to_a_constant(&self) -> bool {
         self.grid.is_line()
-            && self.setup.get("boundary").and_then(Value::as_str) != Some("periodic")
+            && !self.is_periodic()
             && self.setup.get("layer_rigid_base").and_then(Value::as_bool) != Some(true)
     }
 
@@ -58,6 +58,11 @@ impl Header {
         };
         let word = self.setup.get("boundary").and_then(Value::as_str)?;
         Some(format!("{} {bodies}", if word == "periodic" { "periodic" } else { "free" }))
+    }
+
+    /// Whether the domain repeats itself.
+    pub fn is_periodic(&self) -> bool {
+        self.setup.get("boundary").and_then(Value::as_str) == Some("periodic")
     }
 
     /// What each stage prescribes; empty where the result does not say it.

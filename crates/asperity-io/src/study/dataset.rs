@@ -103,12 +103,19 @@ fn arrays(study: &Study, table: &Table) -> Vec<Array> {
     for column in &table.answers {
         let attributes = json!({ "units": column.unit, "long_name": column.name.replace('_', " ") });
         add(column.name.clone(), Data::Reals(column.values.clone()), attributes);
+        if column.has_errors() {
+            let words = format!("error of the {}", column.name.replace('_', " "));
+            let attributes = json!({ "units": column.unit, "long_name": words });
+            add(format!("{}_error", column.name), Data::Reals(column.errors.clone()), attributes);
+        }
     }
     let rows = || table.rows.iter();
     let findings =
-        rows().map(|row| if row.state == State::Done { row.findings as i64 } else { -1 }).collect();
+        rows().map(|row| if row.state == State::Done { row.findings.len() as i64 } else { -1 }).collect();
     let words = json!({ "long_name": "number of findings, -1 of runs that are not done" });
     add("findings".into(), Data::Counts(findings), words);
+    let codes = rows().map(super::Row::codes).collect();
+    add("finding_codes".into(), Data::Texts(codes), json!({ "long_name": "codes of the findings" }));
     let status = rows().map(|row| row.state.word().to_owned()).collect();
     add("status".into(), Data::Texts(status), json!({ "long_name": "how far the run is" }));
     let error =

@@ -1,10 +1,12 @@
 //! What has become of each run, as its files say.
 
+use std::collections::BTreeSet;
 use std::fs;
 
 use super::folder::Study;
 use super::plan::Run;
 use crate::answer::{self, Answer, Units};
+use crate::converge::ErrorBar;
 use crate::store::{Reader, Status};
 
 /// How far a run is.
@@ -44,31 +46,41 @@ pub struct Row {
     pub state: State,
     /// Its answers, once it is done.
     pub answers: Vec<Answer>,
-    /// Findings of its result.
-    pub findings: usize,
+    /// The errors of its answers, where they were computed.
+    pub bars: Vec<ErrorBar>,
+    /// Codes of the findings of its result, one for each finding.
+    pub findings: Vec<String>,
+}
+
+impl Row {
+    /// The codes of its findings, each once.
+    pub fn codes(&self) -> String {
+        let codes: BTreeSet<&str> = self.findings.iter().map(String::as_str).collect();
+        codes.into_iter().collect::<Vec<_>>().join(" ")
+    }
 }
 
 /// The row of a run.
 pub(super) fn of(study: &Study, run: &Run) -> Row {
-    let row = |state, answers, findings| Row { run: run.clone(), state, answers, findings };
+    let row = |state, answers, findings| Row { run: run.clone(), state, answers, bars: vec![], findings };
     let told =
         fs::read_to_string(study.error_file(run)).ok().map(|text| State::Failed(text.trim().to_owned()));
     let path = study.result(run);
     if !path.exists() {
-        return row(told.unwrap_or(State::Missing), vec![], 0);
+        return row(told.unwrap_or(State::Missing), vec![], vec![]);
     }
     let reader = match Reader::open(&path) {
         Ok(reader) => reader,
-        Err(error) => return row(State::Failed(error.to_string()), vec![], 0),
+        Err(error) => return row(State::Failed(error.to_string()), vec![], vec![]),
     };
-    let findings = reader.findings().len();
+    let findings: Vec<String> = reader.findings().iter().map(|finding| finding.code.to_string()).collect();
     if reader.is_being_written() {
         return row(State::Running, vec![], findings);
     }
     match reader.status() {
         Status::Complete if !reader.lacks_leakage() => {
             match answer::of(&reader, &Units::of(&reader, &Units::default())) {
-                Ok(answers) => row(State::Done, answers, findings),
+                Ok(answers) => Row { bars: reader.error_bars(), ..row(State::Done, answers, findings) },
                 Err(error) => row(State::Failed(error.to_string()), vec![], findings),
             }
         }

@@ -1,8 +1,11 @@
 //! The runs as a table: what varied, how far each run is, its answers.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::folder::Study;
 use super::plan::Run;
 use super::rows::{Row, State};
+use crate::readable::counted;
 
 /// A study as columns.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +36,15 @@ pub struct Column {
     pub unit: &'static str,
     /// Its value in each run, SI; NaN where a run does not have it.
     pub values: Vec<f64>,
+    /// Its error in each run, SI; NaN where it is not known.
+    pub errors: Vec<f64>,
+}
+
+impl Column {
+    /// Whether the error of a run is known.
+    pub fn has_errors(&self) -> bool {
+        self.errors.iter().any(|error| error.is_finite())
+    }
 }
 
 impl Table {
@@ -47,11 +59,14 @@ impl Table {
                 let at = answers.iter().position(is_this).unwrap_or_else(|| {
                     // An answer that not all runs have stands where it stands among the others.
                     let at = last.map_or(0, |last| last + 1);
-                    let values = vec![f64::NAN; rows.len()];
-                    answers.insert(at, Column { name: answer.name.clone(), unit: answer.unit, values });
+                    let (name, none) = (answer.name.clone(), vec![f64::NAN; rows.len()]);
+                    answers
+                        .insert(at, Column { name, unit: answer.unit, values: none.clone(), errors: none });
                     at
                 });
                 answers[at].values[n] = answer.value;
+                let bar = row.bars.iter().find(|bar| bar.name == answer.name);
+                answers[at].errors[n] = bar.and_then(|bar| bar.error).unwrap_or(f64::NAN);
                 last = Some(at);
             }
         }
@@ -69,22 +84,44 @@ impl Table {
         self.rows.iter().filter(|row| row.state.word() == word).count()
     }
 
+    /// Which runs have findings, in words: "3 of 50 runs have findings: few-contact-cells (2 runs), large-slope (1 run)"; `None` without.
+    pub fn findings(&self) -> Option<String> {
+        let mut runs_of: BTreeMap<&str, usize> = BTreeMap::new();
+        for row in &self.rows {
+            let codes: BTreeSet<&str> = row.findings.iter().map(String::as_str).collect();
+            codes.into_iter().for_each(|code| *runs_of.entry(code).or_default() += 1);
+        }
+        let with = self.rows.iter().filter(|row| !row.findings.is_empty()).count();
+        let words = runs_of.iter().map(|(code, runs)| format!("{code} ({})", counted(*runs, "run")));
+        let have = if with == 1 { "has" } else { "have" };
+        let of = counted(self.rows.len(), "run");
+        (with > 0)
+            .then(|| format!("{with} of {of} {have} findings: {}", words.collect::<Vec<_>>().join(", ")))
+    }
+
     /// The table as comma-separated values (RFC 4180): SI, under a line of names with units.
     pub fn csv(&self) -> String {
         let keys = self.keys.iter().map(|key| named(&key.name, key.unit.unwrap_or("")));
-        let answers = self.answers.iter().map(|column| named(&column.name, column.unit));
-        let ends = ["findings", "error", "path"].map(str::to_owned);
+        let answers = self.answers.iter().flat_map(|column| {
+            let error = column.has_errors().then(|| named(&format!("{}_error", column.name), column.unit));
+            [named(&column.name, column.unit)].into_iter().chain(error)
+        });
+        let ends = ["findings", "finding_codes", "error", "path"].map(str::to_owned);
         let mut text = line(keys.chain(["status".to_owned()]).chain(answers).chain(ends));
         for (n, row) in self.rows.iter().enumerate() {
             let values = (0..self.keys.len()).map(|key| match self.number(n, key) {
                 Some(value) => number(value),
                 None => row.run.values[key].text(),
             });
-            let answers = self.answers.iter().map(|column| number(column.values[n]));
+            let answers = self.answers.iter().flat_map(|column| {
+                let error = column.has_errors().then(|| number(column.errors[n]));
+                [number(column.values[n])].into_iter().chain(error)
+            });
             let error =
                 if let State::Failed(why) = &row.state { why.replace('\n', " ") } else { String::new() };
-            let findings = if row.state == State::Done { row.findings.to_string() } else { String::new() };
-            let ends = [findings, error, row.run.name.clone()];
+            let is_done = row.state == State::Done;
+            let findings = if is_done { row.findings.len().to_string() } else { String::new() };
+            let ends = [findings, row.codes(), error, row.run.name.clone()];
             text += &line(values.chain([row.state.word().to_owned()]).chain(answers).chain(ends));
         }
         text

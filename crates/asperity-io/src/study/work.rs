@@ -12,10 +12,11 @@ use super::folder::Study;
 use super::plan::Run;
 use super::rows::{self, Row, State};
 use super::table::Table;
+use crate::converge::{ConvergeOptions, converge};
 use crate::output::write_all;
 use crate::resources::available_memory;
 use crate::session::{self, RunError, RunOptions};
-use crate::store::{Status, StoreError};
+use crate::store::{Status, StoreError, store_error_bars};
 
 /// How a study is worked on.
 #[derive(Clone, Debug, Default)]
@@ -26,6 +27,8 @@ pub struct Options {
     pub threads: Option<usize>,
     /// Only every n-th run, from the k-th on, k from 1: the share (k, n) of one process of several.
     pub shard: Option<[usize; 2]>,
+    /// Whether the errors of the answers are computed too, also of runs that are done without them.
+    pub error_bars: bool,
     /// Stops all runs, within one iteration, when it becomes true.
     pub interrupt: Arc<AtomicBool>,
 }
@@ -89,7 +92,11 @@ impl Study {
         let [share, shares] = options.shard.unwrap_or([1, 1]);
         let own: Vec<usize> = (0..self.runs.len()).filter(|n| n % shares == share - 1).collect();
         let before = self.rows();
-        let is_left = |n: &usize| !matches!(before[*n].state, State::Done | State::Running);
+        let is_left = |n: &usize| match before[*n].state {
+            State::Done => options.error_bars && before[*n].bars.is_empty(),
+            State::Running => false,
+            _ => true,
+        };
         let left: Vec<usize> = own.iter().copied().filter(is_left).rev().collect();
         let threads = options.threads.filter(|n| *n > 0).unwrap_or_else(rayon::current_num_threads);
         let jobs = options.jobs.unwrap_or(threads).min(left.len()).max(1);
@@ -126,8 +133,7 @@ impl Study {
                     };
                     while let Some(n) = self.take(shared, changed, budget, &options.interrupt) {
                         let started = Instant::now();
-                        let done =
-                            pool.install(|| self.compute(&self.runs[n], &before[n], &options.interrupt));
+                        let done = pool.install(|| self.finish(&self.runs[n], &before[n], options));
                         let mut shared = hold(shared);
                         shared.taken -= self.memory.get(n).copied().unwrap_or(0);
                         shared.working -= 1;
@@ -175,6 +181,27 @@ impl Study {
                 return Some(next);
             }
             shared = changed.wait_timeout(shared, PAUSE).unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+
+    /// Runs a case, and computes the errors of its answers where they are wanted. An error is the reason why the run failed.
+    fn finish(&self, run: &Run, before: &Row, options: &Options) -> Result<(), String> {
+        self.compute(run, before, &options.interrupt)?;
+        let now = rows::of(self, run);
+        let Some(base) = self.base.as_ref() else { return Ok(()) };
+        if !options.error_bars || now.state != State::Done || !now.bars.is_empty() {
+            return Ok(());
+        }
+        let path = self.result(run);
+        let overrides = self.plan.overrides(run);
+        let read = |more: &[String]| base.case(&[&overrides, more].concat());
+        let how = ConvergeOptions { refine: false, interrupt: options.interrupt.clone() };
+        match converge(&read, Some(&path), &how, &mut |_| {}) {
+            Ok(found) => {
+                store_error_bars(&path, serde_json::json!(found.bars)).map_err(|error| error.to_string())
+            }
+            Err(_) if options.interrupt.load(Ordering::Relaxed) => Ok(()),
+            Err(error) => Err(format!("no error bars: {error}")),
         }
     }
 

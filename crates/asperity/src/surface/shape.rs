@@ -92,6 +92,22 @@ impl Shape {
         }
     }
 
+    /// Whether the pressure under it grows without end somewhere as the cells shrink: with the distance r as r^-1/2 at the edge of a flat
+    /// punch, as ln(1/r) at the tip of a cone or a wedge (K. L. Johnson, Contact Mechanics, 1985, sections 2.8, 5.2).
+    ///
+    /// ```
+    /// use asperity::surface::Shape;
+    /// assert!(Shape::Cone { slope: 0.1 }.has_singular_pressure() && !Shape::Sphere { radius: 1.0 }.has_singular_pressure());
+    /// ```
+    pub fn has_singular_pressure(&self) -> bool {
+        match self {
+            Shape::Wedge { .. } | Shape::Cone { .. } | Shape::FlatPunch(_) => true,
+            Shape::Sphere { .. } | Shape::Ellipsoid { .. } | Shape::Cylinder { .. } | Shape::Wave { .. } => {
+                false
+            }
+        }
+    }
+
     /// Gap h \[m\] at the offset (x, y) \[m\] from the shape's centre.
     ///
     /// ```

@@ -111,8 +111,7 @@ impl March {
     fn prescribe(&mut self, py: Python<'_>, keys: Bound<'_, PyDict>) -> PyResult<()> {
         let keys = table(&keys)?;
         let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let line = march.simulation().grid.is_line();
-        let (control, course) = given::prescribed(keys, line).map_err(crate::error::alone)?;
+        let (control, course) = given::prescribed(keys, march.simulation()).map_err(crate::error::alone)?;
         march.prescribe(control, course).map_err(|error| raised(py, error))
     }
 

@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use asperity::load::Course;
 use asperity::time::Plan;
-use asperity::{Control, Grid, Programme, Scheme, Simulation, TimeGrid};
+use asperity::{Grid, Programme, Scheme, Simulation, TimeGrid};
 use ndarray::Array2;
 
 use super::body::{self, Body};
 use super::document::Document;
 use super::error::CaseError;
 use super::hardness::{self, Hardness};
+use super::history::Bodies;
 use super::material::Sample;
 use super::pair::{self, Pair};
 use super::place::Checks;
@@ -101,8 +102,8 @@ impl Document {
             time::first_step(shortest.fold(f64::INFINITY, f64::min), course)
         };
         let adhesion = self.adhesion.as_ref().map(|adhesion| adhesion.law(&at("adhesion")));
-        let usual = adhesion.is_some().then_some(Control::Approach);
-        let loading = self.load.programme(&at("load"), line, usual, &first_step);
+        let bodies = Bodies { line, adhere: adhesion.is_some() };
+        let loading = self.load.programme(&at("load"), bodies, &first_step);
         let programme = loading.as_ref().map(|(programme, _)| programme);
         if self.motion.is_none() {
             motion::nothing_moves(&at("surface"), &self.surface);

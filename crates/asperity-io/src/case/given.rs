@@ -8,12 +8,13 @@ use std::path::Path;
 
 use asperity::surface::Part;
 use asperity::time::{Instant, Plan};
-use asperity::{Control, Course, Grid};
+use asperity::{Control, Course, Grid, Simulation};
 use ndarray::Array2;
 use toml::Table;
 
 use super::document::{self, Document};
 use super::error::CaseError;
+use super::history::Bodies;
 use super::load::Load;
 use super::material::Dependence;
 use super::place::Checks;
@@ -101,11 +102,12 @@ pub fn surface(keys: &Table) -> Result<(Grid, Part, bool), CaseErrors> {
     })
 }
 
-/// What the keys `control` and `history` of a stage prescribe; on a `line` loads are per length.
+/// What the keys `control` and `history` of a stage of this simulation prescribe.
 ///
 /// # Errors
 /// [`CaseErrors`] with what is wrong.
-pub fn prescribed(keys: Table, line: bool) -> Result<(Control, Course), CaseErrors> {
+pub fn prescribed(keys: Table, simulation: &Simulation) -> Result<(Control, Course), CaseErrors> {
+    let bodies = Bodies { line: simulation.grid.is_line(), adhere: simulation.traction.is_some() };
     let load = Table::from_iter([("stages".to_owned(), toml::Value::Array(vec![keys.into()]))]);
     let keys = Table::from_iter([("load".to_owned(), load.into())]);
     from_keys(&keys, &Arrays::new(), |text| {
@@ -113,7 +115,7 @@ pub fn prescribed(keys: Table, line: bool) -> Result<(Control, Course), CaseErro
         let load = reader.required::<Load>("load");
         let load = reader.finish(load)?;
         let checks = Checks::new(text, Path::new(""));
-        let made = load.programme(&checks.at("load"), line, None, &|_, _| 0.0);
+        let made = load.programme(&checks.at("load"), bodies, &|_, _| 0.0);
         let stage = made.and_then(|(mut programme, _)| programme.stages.pop());
         stage.map(|stage| (stage.control, stage.course)).ok_or_else(|| checks.into_errors())
     })

@@ -142,45 +142,71 @@ fn table(at: &Place<'_>, points: &[Two<Time, Prescribed>], kind: Kind) -> Option
 /// What a prescribed value is.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Kind {
-    Load,
+    Load(Sign),
     /// Of a line contact.
-    LoadPerLength,
-    Pressure,
+    LoadPerLength(Sign),
+    Pressure(Sign),
     Approach,
     Velocity,
     Position,
 }
 
+/// Which loads the bodies bear.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Sign {
+    /// Bodies only press.
+    Press,
+    /// Bodies that adhere also pull.
+    PressOrPull,
+}
+
+/// What the rest of the case says of the contact.
+#[derive(Clone, Copy)]
+pub struct Bodies {
+    /// Whether it is a line contact, whose loads are per length.
+    pub line: bool,
+    /// Whether the bodies adhere: then a load may be negative, and the control is the approach where the case names none.
+    pub adhere: bool,
+}
+
 impl Kind {
-    pub fn of(control: Control, line: bool) -> Self {
+    pub fn of(control: Control, bodies: Bodies) -> Self {
+        let sign = if bodies.adhere { Sign::PressOrPull } else { Sign::Press };
         match control {
-            Control::Load if line => Kind::LoadPerLength,
-            Control::Load => Kind::Load,
-            Control::Pressure => Kind::Pressure,
+            Control::Load if bodies.line => Kind::LoadPerLength(sign),
+            Control::Load => Kind::Load(sign),
+            Control::Pressure => Kind::Pressure(sign),
             Control::Approach => Kind::Approach,
         }
     }
 
     /// Whether it may not be negative.
     pub fn presses(self) -> bool {
-        matches!(self, Kind::Load | Kind::LoadPerLength | Kind::Pressure)
+        use Sign::Press;
+        matches!(self, Kind::Load(Press) | Kind::LoadPerLength(Press) | Kind::Pressure(Press))
     }
 
-    /// The value in SI, in the dimension that the control has. A load presses; an approach may be negative.
+    /// The value in SI, in the dimension that the control has. A load presses, unless the bodies adhere; an approach may be negative.
     pub fn resolve(self, value: &Prescribed) -> Result<f64, QuantityError> {
+        fn load<D: Dimension>(value: &Prescribed, sign: Sign) -> Result<f64, QuantityError> {
+            match sign {
+                Sign::Press => value.resolve::<D, NonNegative>().map(|v| v.get()),
+                Sign::PressOrPull => value.resolve::<D, Finite>().map(|v| v.get()),
+            }
+        }
         let si = match self {
-            Kind::LoadPerLength => value.resolve::<dimension::ForcePerLength, NonNegative>().map(|v| v.get()),
-            Kind::Load => value.resolve::<dimension::Force, NonNegative>().map(|v| v.get()),
-            Kind::Pressure => value.resolve::<dimension::Pressure, NonNegative>().map(|v| v.get()),
+            Kind::LoadPerLength(sign) => load::<dimension::ForcePerLength>(value, sign),
+            Kind::Load(sign) => load::<dimension::Force>(value, sign),
+            Kind::Pressure(sign) => load::<dimension::Pressure>(value, sign),
             Kind::Approach | Kind::Position => value.resolve::<dimension::Length, Finite>().map(|v| v.get()),
             Kind::Velocity => value.resolve::<dimension::Velocity, Finite>().map(|v| v.get()),
         };
         si.map_err(|QuantityError { code, expected, help }| {
             let help = match (self, help) {
-                (Kind::LoadPerLength, Some(help)) if help.contains("unit of a force;") => {
+                (Kind::LoadPerLength(_), Some(help)) if help.contains("unit of a force;") => {
                     format!("{help}; the domain is a line of cells, so the load is per length along y")
                 }
-                (Kind::Load, Some(help)) if help.contains("unit of a force per length") => {
+                (Kind::Load(_), Some(help)) if help.contains("unit of a force per length") => {
                     format!(
                         "{help}; loads per length are for a line contact, with cells = [N] and size = [\"L\"]"
                     )

@@ -2,7 +2,7 @@
 
 use asperity::{Control, Course, Event, Programme, TimeGrid};
 
-use super::history::{From, History, Kind};
+use super::history::{Bodies, From, History, Kind};
 use super::history_file::Origin;
 use super::keys::*;
 use super::time::{Spacing, Times};
@@ -66,14 +66,12 @@ pub struct Stage {
 }
 
 impl Load {
-    /// What is prescribed, and the files that hold histories. On a `line` loads are per length; `usual` is the control
-    /// where the case names none. `first_step` is the first step of
+    /// What is prescribed, and the files that hold histories. `first_step` is the first step of
     /// logarithmic steps to a time under a course, where the case does not say it.
     pub fn programme(
         &self,
         at: &Place<'_>,
-        line: bool,
-        usual: Option<Control>,
+        bodies: Bodies,
         first_step: &dyn Fn(f64, Option<&Course>) -> f64,
     ) -> Option<(Programme, Vec<Origin>)> {
         let (at, made) = match &self.stages {
@@ -86,19 +84,22 @@ impl Load {
                 }
                 let last = stages.len() - 1;
                 let made: Vec<_> = (stages.iter().enumerate())
-                    .map(|(n, stage)| stage.stage(&at.item(n), line, n == last, first_step))
+                    .map(|(n, stage)| stage.stage(&at.item(n), bodies, n == last, first_step))
                     .collect();
                 (at, made.into_iter().collect::<Option<Vec<_>>>()?)
             }
             None => {
-                let control = self.control.or(usual).or_else(|| at.missing("control", ""));
+                let control = self
+                    .control
+                    .or(bodies.adhere.then_some(Control::Approach))
+                    .or_else(|| at.missing("control", ""));
                 let history = self.history.as_ref().or_else(|| at.missing("history", ""));
                 let (control, history, at) = (control?, history?, at.key("history"));
                 if let History::Hold {} = history {
                     let help = "kind = \"hold\" is only possible in a stage; to apply a load from the start use kind = \"step\"";
-                    history.read(&at, Kind::of(control, line), help)?;
+                    history.read(&at, Kind::of(control, bodies), help)?;
                 }
-                let made = of_history(&at, control, line, history)?;
+                let made = of_history(&at, control, bodies, history)?;
                 (at, vec![made])
             }
         };
@@ -119,7 +120,7 @@ impl Stage {
     fn stage(
         &self,
         at: &Place<'_>,
-        line: bool,
+        bodies: Bodies,
         last: bool,
         first_step: &dyn Fn(f64, Option<&Course>) -> f64,
     ) -> Option<(asperity::Stage, Option<Origin>)> {
@@ -130,7 +131,7 @@ impl Stage {
                 "give it duration = \"10 s\", or until = { approach = \"2 um\" }, { load = \"0.1 N\" } or \"contact-lost\"",
             );
         }
-        let (stage, file) = of_history(&at.key("history"), self.control, line, &self.history)?;
+        let (stage, file) = of_history(&at.key("history"), self.control, bodies, &self.history)?;
         let until = match &self.until {
             None => None,
             Some(Until::ContactLost) => Some(Event::ContactLost),
@@ -138,10 +139,10 @@ impl Stage {
             Some(Until::Pressure(value)) => Some(Event::Pressure(value.get())),
             Some(Until::Number(number, value)) => {
                 let at = at.key("until").key(number.name());
-                Some(Event::Number(*number, at.quantity(until::resolve(*number, value, line))?))
+                Some(Event::Number(*number, at.quantity(until::resolve(*number, value, bodies.line))?))
             }
             Some(Until::Load(value)) => {
-                let load = Kind::of(Control::Load, line).resolve(value);
+                let load = Kind::of(Control::Load, bodies).resolve(value);
                 Some(Event::Load(at.key("until").key("load").quantity(load)?))
             }
         };
@@ -181,10 +182,10 @@ impl Stage {
 fn of_history(
     at: &Place<'_>,
     control: Control,
-    line: bool,
+    bodies: Bodies,
     history: &History,
 ) -> Option<(asperity::Stage, Option<Origin>)> {
-    let kind = Kind::of(control, line);
+    let kind = Kind::of(control, bodies);
     let (course, file) = match history {
         History::Hold {} => (Course::Hold, None),
         History::Ramp { value, from: From::Current, duration } => {

@@ -126,13 +126,11 @@ impl Drive for March {
         let attempt = loop {
             self.row = Some((self.done, step.instant, None));
             let mut attempt = match in_pool(|| self.stepper.attempt(&step)) {
-                Err(Error::PulledOff { load, time, last }) => match self.schedule.retreat(&step) {
-                    Some(shorter) => {
-                        step = shorter;
-                        continue;
-                    }
-                    None => return Err(Error::PulledOff { load, time, last }),
-                },
+                Err(error @ (Error::PulledOff { .. } | Error::NotConverged(_))) => {
+                    let is_known = matches!(error, Error::PulledOff { .. });
+                    step = self.schedule.retreat(&step, is_known).ok_or(error)?;
+                    continue;
+                }
                 attempt => attempt?,
             };
             if let Some(number) = self.schedule.awaited() {

@@ -319,12 +319,14 @@ impl Schedule {
     }
 
     /// What to try after an attempt that found no equilibrium: the longest step with one is found to a thousandth. `None` where steps
-    /// have given lengths and the end of contact is not waited for, or where the last row is the last equilibrium.
-    pub(crate) fn retreat(&mut self, tried: &Interval) -> Option<Interval> {
+    /// have given lengths and the end of contact is not waited for, or where the last row is the last equilibrium. Close to the last one the
+    /// contact converges ever more slowly: an attempt of which it `is_known` only that it did not converge counts as one without, once
+    /// the search is on.
+    pub(crate) fn retreat(&mut self, tried: &Interval, is_known: bool) -> Option<Interval> {
         let without = tried.length();
         let with = match self.search {
             Search::Equilibrium { with, .. } => with,
-            _ if self.size.is_some() || self.awaits_parting() => 0.0,
+            _ if is_known && (self.size.is_some() || self.awaits_parting()) => 0.0,
             _ => return None,
         };
         self.search = Search::Equilibrium { with, without };

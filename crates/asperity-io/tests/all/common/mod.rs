@@ -102,6 +102,8 @@ impl Case {
             Field::Real(FieldKind::Displacement, u.view()),
             Field::Real(FieldKind::Gap, h.view()),
             Field::Real(FieldKind::Pressure, p.view()),
+            Field::Real(FieldKind::ContactPressure, p.view()),
+            Field::Real(FieldKind::AdhesiveTraction, f.view()),
         ];
         let kept: Vec<_> =
             all.into_iter().filter(|f| keep && self.header.fields.contains(&f.kind())).collect();

@@ -136,7 +136,7 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
 pub(super) fn interval_in_words(x: Interval, unit: &str) -> String {
     let [value, low, high] = [x.value, x.low, x.high].map(|x| quantity(x, unit));
     match x.determined {
-        true => format!("{value:<12}{low} to {high}"),
+        true => format!("{value:<11} {low} to {high}"),
         false => format!("not determined by this record ({low} to {high})"),
     }
 }

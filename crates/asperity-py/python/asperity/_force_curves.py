@@ -207,7 +207,8 @@ def read_force_curves(path: str | os.PathLike[str]) -> list[ForceCurve]:
         found = [_curve(data) for data in afmformats.load_data(name)]
     except CaseError:
         raise
-    except Exception as error:  # of any reader, on any damage
+    # Any reader fails in its own way on a damaged file, and that of an unknown format is no Exception.
+    except (Exception, afmformats.errors.FileFormatNotSupportedError) as error:
         raise CaseError(f"{name}: afmformats {afmformats.__version__} cannot read it: {error}") from error
     curves = [curve for curve in found if curve is not None]
     if not curves:

@@ -212,7 +212,7 @@ def fit_indentation(
     (1.0, 5.0)
     """
     choice("model", model, ("viscoelastic", *get_args(Model)))
-    curve = {
+    curve: dict[str, Any] = {
         "branch": branch,
         "control": control,
         "range": range,
@@ -248,7 +248,7 @@ def fit_indentation(
         nu = number("poisson", poisson)
         if not -1.0 < nu <= 0.5:
             raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
-        return fit_force_curve(load, depth, radius=radius, poisson=nu, model=model, **curve)  # type: ignore[arg-type]
+        return fit_force_curve(load, depth, radius=radius, poisson=nu, model=model, **curve)
     columns = [line(what, values) for what, values in (("time", time), ("load", load), ("depth", depth))]
     if len({len(column) for column in columns}) > 1:
         told = ", ".join(f"{what} {len(column)}" for what, column in zip(("time", "load", "depth"), columns))

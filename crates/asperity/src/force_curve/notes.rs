@@ -70,14 +70,13 @@ pub(super) fn notes(fit: &ForceFit, radius: f64, rows: &Rows, options: &ForceOpt
              or a slower retraction"
         ));
     }
-    let apart = (fit.smallest_load - fit.pull_off_force).abs();
-    let seen = PULL * fit.pull_off_force.abs() + 5.0 * rows.noise[0];
-    // Under another control than the load, the smallest load is passed before pull-off.
-    let smallest = rows.contact.iter().map(|row| row[0]).fold(f64::INFINITY, f64::min);
-    let last = rows.contact.last().map_or(smallest, |row| row[0]);
+    // A load at which the sphere came off, other than that of the model. Where rows are far apart the last one lies before pull-off.
     if adhesive && rows.baseline && options.branch == Branch::Retraction {
-        let measured = last - baseline;
-        if (measured - fit.pull_off_force).abs() > seen && apart > seen {
+        let measured = rows.contact.last().map_or(fit.smallest_load, |row| row[0] - baseline);
+        let far = |load: f64| {
+            (load - fit.pull_off_force).abs() > PULL * fit.pull_off_force.abs() + 5.0 * rows.noise[0]
+        };
+        if far(measured) && far(fit.smallest_load) {
             notes.push(format!(
                 "the sphere came off at {measured:.3e} N, and the model under this control comes off at {:.3e} N: the control is another \
                  one, or the material relaxes",

@@ -232,8 +232,9 @@ def _curve(data: Any) -> ForceCurve | None:
     height = None if away is None else -away
     stiffness = metadata.get("spring constant")
     deflection = force / stiffness if stiffness is not None and np.isfinite(stiffness) and stiffness > 0 else None
-    if height is not None and deflection is not None:
-        return ForceCurve(force, height - deflection, deflection, height, metadata)
+    # Where the file states the position of the tip, it counts: formats differ in the sign of their heights.
     if "tip position" in data:
         return ForceCurve(force, -np.array(data["tip position"], dtype=float), deflection, height, metadata)
+    if height is not None and deflection is not None:
+        return ForceCurve(force, height - deflection, deflection, height, metadata)
     return None

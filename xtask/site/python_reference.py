@@ -7,7 +7,7 @@ TOPICS = {
     "Surfaces": ["Surface", "Autocorrelation"],
     "Materials": "Material Elastic Maxwell KelvinVoigt Zener StandardLinearSolid Burgers Prony Creep Springpot FractionalMaxwell FractionalZener Body Layer "
     "layer_compliance".split(),
-    "Fits and shifts": "fit_relaxation fit_creep fit_dma fit_file fit_indentation Fit IndentationFit wlf arrhenius shift_table Shift".split(),
+    "Fits and shifts": "fit_relaxation fit_creep fit_dma fit_file fit_indentation read_force_curves Fit IndentationFit ForceFit ForceCurve wlf arrhenius shift_table Shift".split(),
     "Loads and times": "step ramp ramp_to hold triangle trapezoid sine table History Stage uniform log listed adaptive Times".split(),
     "Motion": "slide steady rubber_friction persson_friction PerssonFriction Magnification".split(),
     "Leakage and stress": "leakage Leakage stress Stress".split(),

@@ -6,6 +6,7 @@ mod contact;
 mod cycles;
 mod error;
 mod fit;
+mod force_curve;
 mod given;
 mod indentation;
 mod kernel;
@@ -36,6 +37,7 @@ mod _core {
         cycles::cycles_of,
         error::{CaseError, ConvergenceError, FormatError},
         fit::{fit, fit_file, read_shift_table},
+        force_curve::fit_force_curve,
         indentation::fit_indentation,
         leakage::{judge_leaks, leakage},
         march::March,

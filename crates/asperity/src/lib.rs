@@ -32,6 +32,7 @@ pub mod cycles;
 pub mod drive;
 pub mod error;
 pub mod finding;
+pub mod force_curve;
 pub mod grid;
 pub mod history;
 pub mod indentation;

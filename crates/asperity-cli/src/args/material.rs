@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use asperity::force_curve::{Branch, ForceModel, PullOffControl};
 use asperity::indentation::Given;
 use asperity::layer::Interface;
 use asperity::material::{LongTime, Moduli, Modulus};
 use asperity_io::curve::{Kind, VerticalWord};
 use asperity_io::material_export::Program;
-use asperity_io::quantity::{Expansion, Length, Number, Time, range};
+use asperity_io::quantity::{Expansion, ForcePerLength, Length, Number, Time, range};
 use clap::Subcommand;
 
 use super::choice;
@@ -173,9 +174,62 @@ pub struct Fit {
     pub force: bool,
 }
 
+/// What `fit-indentation` fits.
+#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
+pub enum Model {
+    Viscoelastic,
+    Hertz,
+    Dmt,
+    Jkr,
+    Maugis,
+}
+
+impl Model {
+    /// The model of a force curve.
+    pub fn elastic(self) -> Option<ForceModel> {
+        Some(match self {
+            Model::Viscoelastic => return None,
+            Model::Hertz => ForceModel::Hertz,
+            Model::Dmt => ForceModel::Dmt,
+            Model::Jkr => ForceModel::Jkr,
+            Model::Maugis => ForceModel::Maugis,
+        })
+    }
+}
+
+/// The options of force curves.
+#[derive(Debug, Default, clap::Args)]
+pub struct ForceCurve {
+    /// Part of a force curve that is fitted: from the largest load on (retraction), or before it (approach) [default: retraction]
+    #[arg(long, value_parser = choice::<Branch>())]
+    pub branch: Option<Branch>,
+    /// What a force curve was controlled by, which decides where the sphere comes off [default: the height of the cantilever with
+    /// --spring-constant, else displacement]
+    #[arg(long, value_parser = choice::<PullOffControl>())]
+    pub control: Option<PullOffControl>,
+    /// Range of the attraction, in place of a fitted transition of --model maugis, and for Tabor's number, e.g. '0.3 nm'
+    #[arg(long, value_name = "LENGTH", value_parser = quantity::<Length<range::Positive>>())]
+    pub range: Option<Length<range::Positive>>,
+    /// Spring constant of a cantilever, e.g. '0.2 N/m': the columns are height (larger towards the sample) and deflection
+    #[arg(long, value_name = "STIFFNESS", value_parser = quantity::<ForcePerLength<range::Positive>>())]
+    pub spring_constant: Option<ForcePerLength<range::Positive>>,
+    /// Deflection of the cantilever per volt, where its column is in volts, e.g. '50 nm'
+    #[arg(long, value_name = "LENGTH", requires = "spring_constant", value_parser = quantity::<Length<range::Positive>>())]
+    pub sensitivity: Option<Length<range::Positive>>,
+    /// Standard uncertainty of the radius (one standard deviation), e.g. '0.2 um' or '2 %'
+    #[arg(long, value_name = "LENGTH")]
+    pub radius_uncertainty: Option<String>,
+    /// Standard uncertainty of the spring constant, e.g. '0.01 N/m' or '5 %'
+    #[arg(long, value_name = "STIFFNESS", requires = "spring_constant")]
+    pub spring_constant_uncertainty: Option<String>,
+    /// Standard uncertainty of the scale of the deflection, e.g. '2 %'
+    #[arg(long, value_name = "SHARE", requires = "spring_constant", value_parser = quantity::<Number<range::NonNegative>>())]
+    pub sensitivity_uncertainty: Option<Number<range::NonNegative>>,
+}
+
 #[derive(Debug, clap::Args)]
 pub struct FitIndentation {
-    /// The record: a text table with columns of time, load and depth
+    /// The record: a text table with columns of time, load and depth, or of height and deflection with --spring-constant
     pub record: PathBuf,
     /// Radius of the sphere, e.g. '5 mm'
     #[arg(long, value_name = "LENGTH", required_unless_present = "cone", conflicts_with = "cone", value_parser = quantity::<Length<range::Positive>>())]
@@ -183,6 +237,13 @@ pub struct FitIndentation {
     /// Slope of a cone instead: rise per length, the cotangent of its half angle
     #[arg(long, value_name = "SLOPE", value_parser = quantity::<Number<range::Positive>>())]
     pub cone: Option<Number<range::Positive>>,
+    /// What is fitted: the relaxation of the body (viscoelastic), or an elastic body to a force curve, without adhesion (hertz) or with it
+    /// (dmt, jkr, maugis); force curves need no column of time
+    #[arg(long, value_enum, default_value = "viscoelastic")]
+    pub model: Model,
+    /// The options of force curves
+    #[command(flatten)]
+    pub curve: ForceCurve,
     /// Poisson's ratio of the body
     #[arg(long, value_name = "NU", default_value = "0.5", allow_hyphen_values = true, value_parser = quantity::<Number<range::Poisson>>())]
     pub poisson: Number<range::Poisson>,
@@ -207,7 +268,7 @@ pub struct FitIndentation {
     /// Fit the depth of first touch too, instead of taking it as 0
     #[arg(long)]
     pub fit_touch: bool,
-    /// Column of a quantity (time, load, depth), by number from 1 or by header; may be given several times
+    /// Column of a quantity (time, load, depth; height, deflection), by number from 1 or by header; may be given several times
     #[arg(long, value_name = "QUANTITY=COLUMN")]
     pub column: Vec<String>,
     /// Unit of a quantity, if the header does not name it; may be given several times

@@ -27,6 +27,10 @@ impl Verb for FitIndentation {
 
     /// Fits a record.
     fn run(&self) -> Result<(), Failure> {
+        if let Some(model) = self.model.elastic() {
+            return super::force_curve::fit(self, model);
+        }
+        super::force_curve::not_given(self)?;
         let profile = match (self.radius, self.cone) {
             (_, Some(slope)) => MdrProfile::Cone { slope: slope.get() },
             (Some(radius), None) => MdrProfile::Sphere { radius: radius.get() },
@@ -129,10 +133,10 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
     text
 }
 
-fn interval_in_words(x: Interval, unit: &str) -> String {
+pub(super) fn interval_in_words(x: Interval, unit: &str) -> String {
     let [value, low, high] = [x.value, x.low, x.high].map(|x| quantity(x, unit));
     match x.determined {
-        true => format!("{value:<12}{low} to {high}"),
+        true => format!("{value:<11} {low} to {high}"),
         false => format!("not determined by this record ({low} to {high})"),
     }
 }

@@ -8,6 +8,7 @@ pub mod converge;
 pub mod export;
 pub mod findings;
 pub mod fit_indentation;
+pub mod force_curve;
 pub mod labels;
 pub mod leak;
 pub mod material;

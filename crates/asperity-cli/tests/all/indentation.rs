@@ -132,3 +132,52 @@ fn slips_are_told() {
     std::fs::write(&turned, good.lines().take(8).collect::<Vec<_>>().join("\n")).unwrap();
     says(&["--radius", "5 mm"], &turned, &["turned.csv", "number of rows"]);
 }
+
+/// Height and deflection of a cantilever of 0.5 N/m, 50 nm/V, on a JKR contact: its points at radii of contact, without noise.
+fn force_curve() -> String {
+    use asperity::reference::{AdhesiveModel, AdhesiveSphere};
+    let sphere = AdhesiveSphere::new(AdhesiveModel::Jkr, 10e-6, 1e6 / 0.75, 5e-3).unwrap();
+    let mut text = "height [um],deflection [V]\n".to_owned();
+    for k in 0..300 {
+        let depth = 0.4e-6 - 2.5e-9 * f64::from(k);
+        let load = sphere.at_approach(depth).unwrap().map_or(0.0, |point| point.load);
+        let bent = load / 0.5;
+        text += &format!("{:.9e},{:.9e}\n", (depth + bent) * 1e6, bent / 50e-9);
+    }
+    text
+}
+
+#[test]
+fn a_force_curve_gives_modulus_and_work() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("curve.csv");
+    std::fs::write(&path, force_curve()).unwrap();
+    let spring = ["--radius", "10 um", "--model", "jkr", "--spring-constant", "0.5 N/m"];
+    let json = |arguments: &[&str]| -> Value {
+        let arguments = [&spring[..], &["--sensitivity", "50 nm", "--json"], arguments].concat();
+        let output = fit(dir.path(), &path, &arguments);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        serde_json::from_str(&text(&output.stdout)).unwrap()
+    };
+    let found = json(&["-o", "pad.toml", "--plot", "fit.svg"]);
+    // Exact but for ten digits: the fit is limited by the rounding that it takes as noise, 1e-7 of the ranges.
+    assert!((found["young"][0].as_f64().unwrap() / 1e6 - 1.0).abs() < 1e-4, "{found}");
+    assert!((found["work"][0].as_f64().unwrap() / 5e-3 - 1.0).abs() < 1e-4, "{found}");
+    assert!(std::fs::read_to_string(dir.path().join("pad.toml")).unwrap().contains("elastic"));
+    assert!(dir.path().join("fit.svg").exists());
+    // Stated uncertainties: w ∝ k/R, 1.96 standard deviations of ln w.
+    let stated = json(&["--radius-uncertainty", "3 %", "--spring-constant-uncertainty", "0.02 N/m"]);
+    let half = (stated["work"][2].as_f64().unwrap() / stated["work"][0].as_f64().unwrap()).ln() / 1.959_964;
+    assert!((half - 0.05).abs() < 1e-4, "{half}");
+    for (arguments, words) in [
+        (&spring[..], "volt"),
+        (&["--radius", "10 um", "--model", "jkr", "--terms", "1"], "--terms"),
+        (&["--radius", "10 um", "--range", "1 nm"], "--range"),
+        (&["--cone", "0.1", "--model", "dmt"], "--cone"),
+        (&["--radius", "10 um", "--model", "jkr", "--radius-uncertainty", "2 N"], "--radius-uncertainty"),
+    ] {
+        let output = fit(dir.path(), &path, arguments);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(text(&output.stderr).contains(words), "{}", text(&output.stderr));
+    }
+}

@@ -117,9 +117,21 @@ pub(super) fn convert(
         }
         Role::TanDelta => scale::<dimension::Number>(unit).map_err(whole)?,
         Role::Load => scale::<dimension::Force>(unit).map_err(whole)?,
-        Role::Depth => scale::<dimension::Length>(unit).map_err(whole)?,
+        Role::Deflection if is_voltage(unit) => {
+            if unit == "mV" {
+                1e-3
+            } else {
+                1.0
+            }
+        }
+        Role::Depth | Role::Height | Role::Deflection => scale::<dimension::Length>(unit).map_err(whole)?,
     };
     Ok(numbers.into_iter().map(|value| factor * value).collect())
+}
+
+/// Whether a deflection is measured in volts.
+pub(super) fn is_voltage(unit: &str) -> bool {
+    matches!(unit, "V" | "mV")
 }
 
 /// The unit in which numbers are taken that name none.

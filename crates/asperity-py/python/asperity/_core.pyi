@@ -23,6 +23,7 @@ __all__ = [
     "March",
     "fit",
     "fit_file",
+    "fit_force_curve",
     "fit_indentation",
     "Body",
     "layer_compliance",
@@ -237,6 +238,19 @@ def fit_file(
     units: dict[str, str],
     sheet: str | None,
     options: dict[str, Any],
+) -> dict[str, Any]: ...
+def fit_force_curve(
+    loads: _Floats,
+    depths: _Floats,
+    radius: float,
+    model: str,
+    branch: str,
+    control: str | None,
+    range: float | None,
+    spring_constant: float | None,
+    radius_uncertainty: float,
+    load_uncertainty: float,
+    sensitivity_uncertainty: float,
 ) -> dict[str, Any]: ...
 def fit_indentation(
     times: _Floats,

@@ -8,7 +8,7 @@ numbers of terms that the record allows.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any, Literal, get_args, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ import numpy.typing as npt
 from . import _core, _html
 from ._arrays import Floats, choice, count, line, number
 from ._core import CaseError
+from ._force_curves import ForceFit, Model, fit_force_curve
 from ._histories import one_of
 from ._materials import Prony
 from ._sealed import ReadOnlyArrays
@@ -73,6 +74,46 @@ class IndentationFit(ReadOnlyArrays):
         return _html.table(rows, ("", "value", "95 % from", "to"))
 
 
+@overload
+def fit_indentation(
+    time: Any,
+    load: Any,
+    depth: Any,
+    /,
+    *,
+    radius: float | None = None,
+    slope: float | None = None,
+    poisson: float,
+    model: Literal["viscoelastic"] = "viscoelastic",
+    given: str | None = None,
+    terms: int | None = None,
+    long_time: LongTime = "free",
+    fit_touch: bool = False,
+    thickness: float | None = None,
+    interface: Interface = "bonded",
+    hardness: float | None = None,
+    name: str | None = None,
+    springs: int = 150,
+    max_misfit: float = 0.1,
+) -> IndentationFit: ...
+@overload
+def fit_indentation(
+    time: Any,
+    load: Any,
+    depth: Any,
+    /,
+    *,
+    radius: float,
+    poisson: float,
+    model: Model,
+    branch: str = "retraction",
+    control: str | None = None,
+    range: float | None = None,
+    spring_constant: float | None = None,
+    radius_uncertainty: float = 0.0,
+    spring_constant_uncertainty: float = 0.0,
+    sensitivity_uncertainty: float = 0.0,
+) -> ForceFit: ...
 def fit_indentation(
     time: Any,
     load: Any,
@@ -92,8 +133,17 @@ def fit_indentation(
     name: str | None = None,
     springs: int = 150,
     max_misfit: float = 0.1,
-) -> IndentationFit:
-    """Fits the relaxation modulus of a half-space, or of a thin sample, to a record of its indentation by a rigid sphere or cone.
+    model: str = "viscoelastic",
+    branch: str = "retraction",
+    control: str | None = None,
+    range: float | None = None,
+    spring_constant: float | None = None,
+    radius_uncertainty: float = 0.0,
+    spring_constant_uncertainty: float = 0.0,
+    sensitivity_uncertainty: float = 0.0,
+) -> IndentationFit | ForceFit:
+    """Fits the relaxation modulus of a half-space, or of a thin sample, to a record of its indentation by a rigid sphere or cone; or, with
+    a `model` of an elastic sphere, its modulus and work of adhesion to a force curve.
 
     Parameters
     ----------
@@ -111,6 +161,19 @@ def fit_indentation(
     hardness, name : of the material
     springs : of the one-dimensional model
     max_misfit : largest rms misfit over the largest value before the record is refused
+    model : "viscoelastic", or "hertz", "dmt", "jkr" or "maugis": an elastic half-space with the adhesion of that model. The times are
+        then not used and may be None; baseline and contact point are fitted; the options above, `radius` and `poisson` aside, do
+        not go with it, those below do
+    branch : "retraction" (from the largest load on) or "approach"
+    control : "load" or "displacement", where the sphere comes off; by default that of the spring, where its constant is given, else displacement
+    range : of the attraction [m], for "maugis" in place of a fitted transition, and for Tabor's number of the other models
+    spring_constant : of the cantilever whose deflection is the load [N/m]
+    radius_uncertainty, spring_constant_uncertainty : standard uncertainties (one standard deviation) [m], [N/m]; the intervals hold them
+    sensitivity_uncertainty : standard uncertainty of the deflection's sensitivity over its value
+
+    Returns
+    -------
+    IndentationFit, or ForceFit with a `model` of an elastic sphere
 
     Raises
     ------
@@ -138,7 +201,54 @@ def fit_indentation(
     ... )
     >>> round(thin / 10e3, 1), bool(1.3 < thick / 10e3 < 1.6)
     (1.0, True)
+
+    A sphere of 10 um that is pulled off a body of 1 MPa (DMT: 4/3 E* sqrt(R) d^(3/2) - 2 pi R w).
+
+    >>> depth = np.linspace(0.5e-6, -0.2e-6, 200)
+    >>> contact = 4 / 3 * (1e6 / 0.75) * np.sqrt(10e-6) * np.maximum(depth, 0.0) ** 1.5 - 2 * np.pi * 10e-6 * 5e-3
+    >>> force = np.where(depth > 0.0, contact, 0.0)
+    >>> pulled = asp.fit_indentation(None, force, depth, radius=10e-6, poisson=0.5, model="dmt", range=1e-6)
+    >>> round(pulled.young[0] / 1e6, 3), round(pulled.work[0] * 1e3, 3)
+    (1.0, 5.0)
     """
+    choice("model", model, ("viscoelastic", *get_args(Model)))
+    curve: dict[str, Any] = {
+        "branch": branch,
+        "control": control,
+        "range": range,
+        "spring_constant": spring_constant,
+        "radius_uncertainty": radius_uncertainty,
+        "spring_constant_uncertainty": spring_constant_uncertainty,
+        "sensitivity_uncertainty": sensitivity_uncertainty,
+    }
+    of_curve = {"branch": "retraction", "radius_uncertainty": 0.0, "spring_constant_uncertainty": 0.0, "sensitivity_uncertainty": 0.0}
+    of_record = {
+        "slope": (slope, None),
+        "given": (given, None),
+        "terms": (terms, None),
+        "long_time": (long_time, "free"),
+        "fit_touch": (fit_touch, False),
+        "thickness": (thickness, None),
+        "interface": (interface, "bonded"),
+        "hardness": (hardness, None),
+        "name": (name, None),
+        "springs": (springs, 150),
+        "max_misfit": (max_misfit, 0.1),
+    }
+    if model == "viscoelastic":
+        for what, told in curve.items():
+            if told != of_curve.get(what):
+                raise CaseError(f"{what} goes with a model of an elastic sphere: give model, one of {', '.join(get_args(Model))}")
+    else:
+        for what, (told, default) in of_record.items():
+            if told != default:
+                raise CaseError(f"{what} goes with the model \"viscoelastic\", but model is {model!r}: leave it out")
+        if radius is None:
+            raise CaseError("radius is missing: the models of force curves are those of a sphere")
+        nu = number("poisson", poisson)
+        if not -1.0 < nu <= 0.5:
+            raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
+        return fit_force_curve(load, depth, radius=radius, poisson=nu, model=model, **curve)
     columns = [line(what, values) for what, values in (("time", time), ("load", load), ("depth", depth))]
     if len({len(column) for column in columns}) > 1:
         told = ", ".join(f"{what} {len(column)}" for what, column in zip(("time", "load", "depth"), columns))

@@ -1,5 +1,6 @@
 //! Materials: relaxation, creep, storage and loss over decades, and fits beside the points that they are made of.
 
+mod force_curve;
 mod indentation;
 mod measured;
 mod shift;
@@ -9,6 +10,7 @@ use std::f64::consts::TAU;
 use asperity::material::{Material, Modulus};
 use asperity_io::case::WaveReport;
 
+pub use self::force_curve::force_curve;
 pub use self::indentation::indentation;
 pub use self::measured::{fit, isotherms};
 pub use self::shift::{Factors, shift_factors};

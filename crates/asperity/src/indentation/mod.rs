@@ -30,7 +30,7 @@ mod control;
 mod least_squares;
 mod model;
 mod nested;
-mod noise;
+pub(crate) mod noise;
 mod notes;
 mod parameters;
 mod select;
@@ -43,6 +43,12 @@ use crate::error::{Error, Result, require};
 use crate::layer::Interface;
 use crate::material::{LongTime, Relaxation, RelaxationTerm};
 use crate::reference::MdrProfile;
+
+pub(crate) use least_squares::invert;
+pub(crate) use notes::{ALIKE, unlikely_radius};
+pub(crate) use spectrum::durbin_watson;
+#[cfg(test)]
+pub(crate) use tests::Noise as TestNoise;
 
 use average::Average;
 use least_squares::Solution;
@@ -149,7 +155,7 @@ impl Interval {
         self.low <= value && value <= self.high
     }
 
-    fn new(value: f64, [low, high]: [f64; 2]) -> Self {
+    pub(crate) fn new(value: f64, [low, high]: [f64; 2]) -> Self {
         Interval { value, low, high, determined: high <= DETERMINED * low }
     }
 }
@@ -281,7 +287,9 @@ pub fn fit_indentation(
         notes: vec![],
     };
     fit.notes = notes::notes(&fit, options);
-    fit.notes.extend(notes::unlikely_radius(&profile));
+    if let MdrProfile::Sphere { radius } = profile {
+        fit.notes.extend(unlikely_radius(radius));
+    }
     Ok(fit)
 }
 

@@ -17,7 +17,7 @@ const MEDIAN: f64 = 0.454_936;
 const FEWEST: usize = 12;
 
 /// Variance of the noise of each row.
-pub(super) fn variances(times: &[f64], values: &[f64]) -> Vec<f64> {
+pub(crate) fn variances(times: &[f64], values: &[f64]) -> Vec<f64> {
     let largest = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let (mut small, mut large) = (vec![], vec![]);
     for k in 0..values.len().saturating_sub(3) {

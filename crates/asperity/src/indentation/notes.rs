@@ -1,10 +1,9 @@
 //! Notes that the user should know before relying on a fit.
 
 use super::{IndentationFit, IndentationOptions, Interval, UNENDING};
-use crate::reference::MdrProfile;
 
 /// Durbin-Watson number below which residuals are correlated.
-const ALIKE: f64 = 1.5;
+pub(crate) const ALIKE: f64 = 1.5;
 /// Probability of the number of terms of the best fit below which others are reported.
 const SURE: f64 = 0.5;
 /// Smallest probability of another number that is reported.
@@ -16,13 +15,10 @@ const EQUILIBRIUM: &str = "the equilibrium modulus";
 const RADII: std::ops::Range<f64> = 1e-9..0.5;
 
 /// A radius that looks like one in another unit.
-pub(super) fn unlikely_radius(profile: &MdrProfile) -> Option<String> {
-    match profile {
-        MdrProfile::Sphere { radius } if !RADII.contains(radius) => Some(format!(
-            "the radius is {radius:e} m, which is unlikely for an indenter: numbers without a unit are in metres"
-        )),
-        _ => None,
-    }
+pub(crate) fn unlikely_radius(radius: f64) -> Option<String> {
+    (!RADII.contains(&radius)).then(|| {
+        format!("the radius is {radius:e} m, which is unlikely for an indenter: numbers without a unit are in metres")
+    })
 }
 
 pub(super) fn notes(fit: &IndentationFit, options: &IndentationOptions) -> Vec<String> {

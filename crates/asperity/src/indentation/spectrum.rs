@@ -160,7 +160,7 @@ fn deviation(residuals: &[f64], parameters: &Parameters) -> f64 {
 
 /// Σ (r_k - r_(k-1))²/Σ r_k², 2 (1 - ρ) where ρ is the correlation of neighbours (J. Durbin & G. S. Watson, Biometrika 37
 /// (1950) 409).
-pub(super) fn durbin_watson(residuals: &[f64]) -> f64 {
+pub(crate) fn durbin_watson(residuals: &[f64]) -> f64 {
     let squares = dot(residuals, residuals);
     let jumps: f64 = residuals.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
     if squares > 0.0 { jumps / squares } else { 2.0 }

@@ -6,6 +6,7 @@
 //! | case | type | source |
 //! |---|---|---|
 //! | elastic sphere, ellipsoid, cylinder | [`HertzSphere`], [`HertzEllipse`], [`HertzLine`] | Hertz 1881 |
+//! | elastic sphere with adhesion: DMT, JKR, Maugis | [`AdhesiveSphere`] | Maugis 1992 |
 //! | elastic sphere with hardness | [`CappedHertz`] | ring displacements of Love 1929 |
 //! | elastic cone, flat punch; punch under any history | [`SneddonCone`], [`CircularPunch`] | Sneddon 1965 |
 //! | elastic waves; wave on a viscoelastic body | [`Westergaard`], [`WestergaardStep`] | Westergaard 1939 |
@@ -17,6 +18,7 @@
 //! | friction and contact area of a rough surface, an estimate | [`Persson`] | Persson 2001, Yang & Persson 2008 |
 //! | any elastic contact on a small grid | [`Dense`], [`gauss_seidel`] | Wilton et al. 1984 |
 
+mod adhesive_sphere;
 mod bessel;
 mod capped_hertz;
 mod dense;
@@ -35,6 +37,10 @@ mod sneddon;
 mod ting;
 mod westergaard;
 
+pub(crate) use adhesive_sphere::BarPoint;
+pub use adhesive_sphere::{
+    AdhesiveModel, AdhesivePoint, AdhesiveSphere, carpick_alpha, maugis_lambda, tabor,
+};
 pub use capped_hertz::CappedHertz;
 pub use dense::Dense;
 pub use elliptic::{Elliptic, elliptic};

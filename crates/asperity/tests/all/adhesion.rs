@@ -216,7 +216,7 @@ fn the_pull_off_of_a_viscoelastic_sphere_grows_from_the_elastic_one_to_its_stren
     // The frozen contact is a flat punch that pulls off at once: its strength times its area, and the ring around it in which the gap is
     // within the range.
     let start = rows(retraction(1e3, 1));
-    let held = start.iter().filter(|row| row.stage == 0).last().unwrap();
+    let held = start.iter().rfind(|row| row.stage == 0).unwrap();
     let reach = held.contact_area / (PI * WORK) * exponential(0.93).strength();
     assert!(frozen > -1.3 * reach && frozen < -reach, "{frozen} {reach}");
 }

@@ -118,4 +118,10 @@ roles! {
     /// Depth of an indentation.
     Depth "depth" ["m", "um"]
         "depth indentation displacement indentationdepth approach h d";
+    /// Way of a cantilever's base towards the sample.
+    Height "height" ["m", "um"]
+        "height z piezo zpiezo piezoheight heightmeasured measuredheight heightpiezo zsensor höhe";
+    /// Deflection of a cantilever, a length or a voltage.
+    Deflection "deflection" ["m", "nm"]
+        "deflection defl verticaldeflection cantileverdeflection auslenkung";
 }

@@ -1,0 +1,213 @@
+//! `asperity fit-indentation --model jkr`: modulus and work of adhesion from a force curve.
+
+use std::fmt::Write as _;
+
+use asperity::force_curve::{ForceFit, ForceModel, ForceOptions, ForceRecord, fit_force_curve};
+use asperity::indentation::Interval;
+use asperity::layer::Interface;
+use asperity::material::{LongTime, Modulus};
+use asperity_io::choice;
+use asperity_io::curve::{Cantilever, ForceTable, MaterialOf};
+use asperity_io::output::write_all;
+use asperity_io::quantity::{Dimension, Number, Quantity, dimension, range};
+use asperity_report::material::force_curve as picture;
+use serde_json::{Value, json};
+
+use super::fit_indentation::interval_in_words;
+use super::material::columns;
+use crate::args::FitIndentation;
+use crate::failure::Failure;
+use crate::format::quantity;
+
+/// Refuses options of force curves where the relaxation is fitted.
+pub fn not_given(args: &FitIndentation) -> Result<(), Failure> {
+    let curve = &args.curve;
+    for (option, given) in [
+        ("--branch", curve.branch.is_some()),
+        ("--control", curve.control.is_some()),
+        ("--range", curve.range.is_some()),
+        ("--spring-constant", curve.spring_constant.is_some()),
+        ("--radius-uncertainty", curve.radius_uncertainty.is_some()),
+    ] {
+        if given {
+            return Err(Failure::input(format!(
+                "{option} goes with a force curve: give --model hertz, dmt, jkr or maugis"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Fits a force curve.
+pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
+    let word = choice::word(&model);
+    for (option, given) in [
+        ("--cone", args.cone.is_some()),
+        ("--thickness", args.thickness.is_some()),
+        ("--interface", args.interface != Interface::Bonded),
+        ("--given", args.given.is_some()),
+        ("--terms", args.terms.is_some()),
+        ("--long-time", args.long_time != LongTime::Free),
+        ("--fit-touch", args.fit_touch),
+    ] {
+        if given {
+            return Err(Failure::input(format!(
+                "{option} goes with --model viscoelastic, but the model is {word}, a sphere on an elastic half-space: leave it out"
+            )));
+        }
+    }
+    let radius =
+        args.radius.ok_or_else(|| Failure::input(format!("--radius is needed for --model {word}")))?.get();
+    let curve = &args.curve;
+    let spring = curve.spring_constant.map(Quantity::get);
+    let cantilever = spring.map(|spring_constant| Cantilever {
+        spring_constant,
+        sensitivity: curve.sensitivity.map(Quantity::get),
+    });
+    let share =
+        |option: &str, text: &Option<String>, of: f64, dimension: fn(&str) -> Result<f64, String>| match text
+        {
+            None => Ok(0.0),
+            Some(text) => relative(text, of, dimension)
+                .map_err(|why| Failure::input(format!("{option} is \"{text}\", but {why}"))),
+        };
+    let options = ForceOptions {
+        model,
+        branch: curve.branch.unwrap_or_default(),
+        control: curve.control,
+        range: curve.range.map(Quantity::get),
+        radius_uncertainty: share(
+            "--radius-uncertainty",
+            &curve.radius_uncertainty,
+            radius,
+            of::<dimension::Length>,
+        )?,
+        spring_constant: spring,
+        load_uncertainty: share(
+            "--spring-constant-uncertainty",
+            &curve.spring_constant_uncertainty,
+            spring.unwrap_or(1.0),
+            of::<dimension::ForcePerLength>,
+        )?,
+        sensitivity_uncertainty: curve.sensitivity_uncertainty.map_or(0.0, Quantity::get),
+    };
+    let table = ForceTable::read(&args.record, &columns(&args.column, &args.unit)?, cantilever)?;
+    let record = ForceRecord { loads: &table.loads, depths: &table.depths };
+    let fit = fit_force_curve(radius, &record, &options).map_err(Failure::about(args.record.display()))?;
+    let of = MaterialOf { modulus: args.modulus, poisson: args.poisson.get() };
+    let block = block(args, &fit, of);
+    if let Some(path) = &args.output {
+        write_all(path, args.force, block.as_bytes())?;
+    }
+    if let Some(path) = &args.plot {
+        let title = super::title(&args.record);
+        super::picture::write(&picture(&title, &table, &fit), path, args.force)?;
+    }
+    if args.json {
+        let mut object = json_of(&fit, of);
+        object["notes"] = json!(table.notes.iter().chain(&fit.notes).collect::<Vec<_>>());
+        object["output"] = json!(args.output);
+        object["material"] = json!(block);
+        return crate::print(&format!("{object}\n"));
+    }
+    let mut text = report(args, &table, &fit, of);
+    match &args.output {
+        Some(path) => {
+            let _ = writeln!(text, "written     {}", path.display());
+        }
+        None => text = format!("{text}\n{block}"),
+    }
+    crate::print(&text)
+}
+
+/// A quantity of a dimension in SI, not negative.
+fn of<D: Dimension>(text: &str) -> Result<f64, String> {
+    let quantity = text.parse::<Quantity<D, range::NonNegative>>();
+    quantity.map(Quantity::get).map_err(|error| error.help.unwrap_or(format!("must be {}", error.expected)))
+}
+
+/// An uncertainty over its value: a share in per cent, or a quantity.
+fn relative(text: &str, value: f64, quantity: fn(&str) -> Result<f64, String>) -> Result<f64, String> {
+    if text.trim_end().ends_with('%') {
+        let share = text.parse::<Number<range::NonNegative>>();
+        return share.map(Number::get).map_err(|error| format!("must be {}", error.expected));
+    }
+    quantity(text).map(|x| x / value)
+}
+
+fn report(args: &FitIndentation, table: &ForceTable, fit: &ForceFit, of: MaterialOf) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| text += &format!("{name:<12}{value}\n");
+    line("record", args.record.display().to_string());
+    let [contact, free] = fit.used;
+    line("rows", format!("{}: {contact} fitted in contact, {free} of the free sphere", table.loads.len()));
+    line("model", choice::word(&fit.model).to_owned());
+    line("misfit", format!("{:.3} % of the range (rms)", 100.0 * fit.relative_rms));
+    line("", format!("{:<12}95 % interval", "value"));
+    let symbol = if of.modulus == Modulus::Young { "E" } else { "G" };
+    line(symbol, interval_in_words(of.of(fit.contact_modulus), "Pa"));
+    if fit.model != ForceModel::Hertz {
+        line("work", interval_in_words(fit.work, "J/m2"));
+    }
+    if let (Some(lambda), Some(range)) = (fit.lambda, fit.range) {
+        line("lambda", interval_in_words(lambda, ""));
+        line("range", interval_in_words(range, "m"));
+    }
+    line("touch", interval_in_words(fit.touch, "m"));
+    line("baseline", interval_in_words(fit.baseline, "N"));
+    if fit.model != ForceModel::Hertz {
+        let [model, measured] = [fit.pull_off_force, fit.smallest_load].map(|x| quantity(x, "N"));
+        line("pull-off", format!("{model} in the model; smallest load {measured}"));
+        line("Tabor", format!("{:.3e}", fit.tabor));
+    }
+    table.notes.iter().chain(&fit.notes).for_each(|note| line("note", note.clone()));
+    text
+}
+
+/// The material under a `[[body]]`, and what else was found in remarks.
+fn block(args: &FitIndentation, fit: &ForceFit, of: MaterialOf) -> String {
+    let modulus = of.of(fit.contact_modulus);
+    let measure = choice::word(&of.modulus);
+    let name = args.record.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let mut text =
+        format!("# From the force curve {name}, model {}; 95 % intervals.\n", choice::word(&fit.model));
+    if fit.model != ForceModel::Hertz {
+        let _ = writeln!(
+            text,
+            "# Work of adhesion {:e} J/m2 ({:.3e} to {:.3e}).",
+            fit.work.value, fit.work.low, fit.work.high
+        );
+    }
+    let _ = writeln!(
+        text,
+        "poisson = {:?}\nmaterial = {{ model = \"elastic\", {measure} = \"{:e} Pa\" }}  # {:.3e} to {:.3e} Pa",
+        of.poisson, modulus.value, modulus.low, modulus.high
+    );
+    text
+}
+
+fn json_of(fit: &ForceFit, of: MaterialOf) -> Value {
+    // What is not determined has no value, and JSON no infinity: null.
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let interval = |x: Interval| json!([x.determined.then_some(x.value), finite(x.low), finite(x.high)]);
+    json!({
+        "model": choice::word(&fit.model),
+        "modulus": of.modulus,
+        "poisson": of.poisson,
+        choice::word(&of.modulus): interval(of.of(fit.contact_modulus)),
+        "work": interval(fit.work),
+        "transition": fit.lambda.map(interval),
+        "range": fit.range.map(interval),
+        "alpha": fit.alpha,
+        "touch": interval(fit.touch),
+        "baseline": interval(fit.baseline),
+        "confidence": 0.95,
+        "pull_off_force": fit.pull_off_force,
+        "smallest_load": fit.smallest_load,
+        "tabor": fit.tabor,
+        "contact_radius": fit.contact_radius,
+        "rows": fit.rows.len(),
+        "relative_rms": fit.relative_rms,
+        "durbin_watson": fit.durbin_watson,
+    })
+}

@@ -1,0 +1,240 @@
+"""Force curves of spheres: modulus and work of adhesion, and curves from the files of instruments."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Any, Literal, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core, _html
+from ._arrays import Floats, choice, line, number
+from ._core import CaseError
+from ._sealed import ReadOnlyArrays
+
+#: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it.
+Interval = tuple[float, float, float]
+Model = Literal["hertz", "dmt", "jkr", "maugis"]
+Branch = Literal["retraction", "approach"]
+Control = Literal["load", "displacement"]
+
+
+@dataclass(frozen=True, eq=False)
+class ForceFit(ReadOnlyArrays):
+    """Modulus and work of adhesion of a force curve. Made by :func:`fit_indentation` with a `model`."""
+
+    #: "hertz", "dmt", "jkr" or "maugis".
+    model: str
+    #: Young's modulus [Pa] and work of adhesion [J/m2] (0 for Hertz), as (value, low, high).
+    young: Interval
+    work: Interval
+    #: Maugis' lambda, 0.1 and less for DMT and 5 and more for JKR, and the range [m] of the attraction; None for other models.
+    transition: Interval | None
+    range: Interval | None
+    #: The transition from DMT (0) to JKR (1) as alpha of Carpick, Ogletree and Salmeron; None for other models.
+    alpha: float | None
+    #: Depth of first touch [m] and load of the free sphere [N], as (value, low, high).
+    touch: Interval
+    baseline: Interval
+    #: Load at pull-off of the model [N], and smallest load of the record, both without the baseline.
+    pull_off_force: float
+    smallest_load: float
+    #: Tabor's number: from `transition`, or from the range that was given, else 0.3 nm.
+    tabor: float
+    #: Largest radius of the contact [m].
+    contact_radius: float
+    #: Numbers of the rows that were fitted, and the load of the model there [N].
+    rows: npt.NDArray[np.int64]
+    predicted: Floats
+    #: Root mean square of the distance from the curve, each channel over its range.
+    relative_rms: float
+    #: Near 2 for independent errors; well below where the model bends away from the record.
+    durbin_watson: float
+    #: What should be known before the numbers are believed.
+    notes: list[str]
+
+    def _lines(self) -> list[tuple[str, Interval]]:
+        lines = [("E [Pa]", self.young), ("work of adhesion [J/m2]", self.work)]
+        if self.transition is not None and self.range is not None:
+            lines += [("lambda", self.transition), ("range [m]", self.range)]
+        return lines
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name} {value:.4g} ({low:.4g} to {high:.4g})" for name, (value, low, high) in self._lines())
+        return f"<ForceFit {self.model} of {len(self.rows)} rows: {told}>"
+
+    def _repr_html_(self) -> str:
+        rows = [(name, *(f"{x:.5g}" if x == x else "not determined" for x in values)) for name, values in self._lines()]
+        return _html.table(rows, ("", "value", "95 % from", "to"))
+
+
+def fit_force_curve(
+    load: Any,
+    depth: Any,
+    *,
+    radius: Any,
+    poisson: float,
+    model: str,
+    branch: str,
+    control: str | None,
+    range: float | None,
+    spring_constant: float | None,
+    radius_uncertainty: float,
+    spring_constant_uncertainty: float,
+    sensitivity_uncertainty: float,
+) -> ForceFit:
+    """What :func:`fit_indentation` does with a `model`."""
+    loads, depths = line("load", load), line("depth", depth)
+    if len(loads) != len(depths):
+        raise CaseError(f"the columns must have the same length; there are: load {len(loads)}, depth {len(depths)}")
+    choice("branch", branch, get_args(Branch))
+    if control is not None:
+        choice("control", control, get_args(Control))
+    size = number("radius", radius)
+    spring = None if spring_constant is None else number("spring_constant", spring_constant)
+    if spring is None and spring_constant_uncertainty:
+        raise CaseError("spring_constant_uncertainty is that of a spring constant: give spring_constant too")
+    if spring is None and sensitivity_uncertainty:
+        raise CaseError("sensitivity_uncertainty changes the deflection: give spring_constant too")
+    shares = (
+        number("radius_uncertainty", radius_uncertainty) / size if size else 0.0,
+        number("spring_constant_uncertainty", spring_constant_uncertainty) / (spring or 1.0),
+        number("sensitivity_uncertainty", sensitivity_uncertainty),
+    )
+    reach = None if range is None else number("range", range)
+    found = _core.fit_force_curve(loads, depths, size, model, branch, control, reach, spring, *shares)
+    factor = 1.0 - poisson**2
+
+    def interval(told: tuple[float, float, float, bool] | None, factor: float = 1.0) -> Any:
+        if told is None:
+            return None
+        value, low, high, determined = told
+        return (factor * value if determined else float("nan"), factor * low, factor * high)
+
+    modulus = found.pop("contact_modulus")
+    own = {name: interval(found[name]) for name in ("work", "transition", "range", "touch", "baseline")}
+    rows = np.asarray(found["rows"], dtype=np.int64)
+    return ForceFit(**{**found, **own, "rows": rows}, young=interval(modulus, factor))
+
+
+@dataclass(frozen=True, eq=False)
+class ForceCurve(ReadOnlyArrays):
+    """Approach and retraction of a sphere, in the order of the measurement. Made by :func:`read_force_curves`, or with
+    :meth:`from_deflection`.
+
+    Examples
+    --------
+    >>> import asperity as asp, numpy as np
+    >>> height = np.linspace(-1e-6, 1e-6, 5)
+    >>> curve = asp.ForceCurve.from_deflection(height, [0.0, 0.0, 0.0, 2.0, 4.0], spring_constant=0.5, sensitivity=50e-9)
+    >>> curve.force[-1], round(curve.depth[-1] * 1e9)                 # 4 V are 200 nm, 100 nN
+    (np.float64(1e-07), 800)
+    """
+
+    #: Load [N]; pressing is positive.
+    force: Floats
+    #: Depth [m]: height less deflection, deeper is larger. Its zero is that of the instrument; the fit finds the first touch.
+    depth: Floats
+    #: Deflection of the cantilever [m]; None where the file holds no spring constant.
+    deflection: Floats | None = None
+    #: Way of the cantilever's base towards the sample [m].
+    height: Floats | None = None
+    #: What the file says, by its words in SI units: "spring constant" [N/m], "sensitivity" [m/V], "grid index x", ...
+    metadata: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def from_deflection(
+        cls,
+        height: Any,
+        deflection: Any,
+        /,
+        *,
+        spring_constant: float,
+        sensitivity: float | None = None,
+        metadata: dict[str, Any] | None = None,
+    ) -> ForceCurve:
+        """From the way of the cantilever's base towards the sample [m] and the deflection.
+
+        Parameters
+        ----------
+        height : [m], larger towards the sample
+        deflection : [m], or [V] where `sensitivity` is given; positive when pressing
+        spring_constant : of the cantilever [N/m]
+        sensitivity : of the deflection [m/V]
+        metadata : to keep with the curve
+        """
+        way, bent = line("height", height), line("deflection", deflection)
+        if len(way) != len(bent):
+            raise CaseError(f"the columns must have the same length; there are: height {len(way)}, deflection {len(bent)}")
+        stiffness = number("spring_constant", spring_constant)
+        scale = 1.0 if sensitivity is None else number("sensitivity", sensitivity)
+        for what, value in (("spring_constant", stiffness), ("sensitivity", scale)):
+            if not 0.0 < value < float("inf"):
+                raise CaseError(f"{what} is {value}, but must be finite and greater than 0")
+        bent = scale * bent
+        told = {"spring constant": stiffness, **({} if sensitivity is None else {"sensitivity": scale}), **(metadata or {})}
+        return cls(stiffness * bent, way - bent, bent, way, told)
+
+    def __repr__(self) -> str:
+        return f"<ForceCurve of {len(self.force)} points, loads {self.force.min():.4g} to {self.force.max():.4g} N>"
+
+
+def read_force_curves(path: str | os.PathLike[str]) -> list[ForceCurve]:
+    """The force curves of a file of an atomic force microscope or a nanoindenter, by the package `afmformats`.
+
+    JPK, Asylum Research, NT-MDT, AFM workshop, Optics11 and other files; a map gives one curve per pixel, with "grid index x" and
+    "grid index y" in its `metadata`. The spring constant is the one that the file states.
+
+    Parameters
+    ----------
+    path : of the file
+
+    Raises
+    ------
+    ImportError : without the package: ``pip install 'asperity[afm]'``
+    CaseError : no file, a format that the package does not know, a file that it cannot read, or no curve with force and height
+    """
+    try:
+        import afmformats  # type: ignore[import-not-found, import-untyped, unused-ignore]
+    except ImportError:
+        raise ImportError("files of force curves are read by afmformats: pip install 'asperity[afm]'") from None
+    name = os.fspath(path)
+    if not os.path.isfile(name):
+        raise CaseError(f"{name}: no such file")
+    try:
+        found = [_curve(data) for data in afmformats.load_data(name)]
+    except CaseError:
+        raise
+    # Any reader fails in its own way on a damaged file, and the package's own errors are no Exceptions.
+    except (
+        Exception,
+        afmformats.errors.AFMFileFormatError,
+        afmformats.errors.MissingMetaDataError,
+        afmformats.meta.MetaDataMissingError,
+    ) as error:
+        raise CaseError(f"{name}: afmformats {afmformats.__version__} cannot read it: {error}") from error
+    curves = [curve for curve in found if curve is not None]
+    if not curves:
+        raise CaseError(f"{name} holds no curve of force over height or tip position")
+    return curves
+
+
+def _curve(data: Any) -> ForceCurve | None:
+    """A curve of afmformats, whose heights and tip positions grow away from the sample."""
+    metadata = {key: data.metadata[key] for key in data.metadata}
+    if "force" not in data:
+        return None
+    force = np.array(data["force"], dtype=float)
+    heights = (np.array(data[name], dtype=float) for name in ("height (measured)", "height (piezo)") if name in data)
+    away = next(heights, None)
+    height = None if away is None else -away
+    stiffness = metadata.get("spring constant")
+    deflection = force / stiffness if stiffness is not None and np.isfinite(stiffness) and stiffness > 0 else None
+    # Where the file states the position of the tip, it counts: formats differ in the sign of their heights.
+    if "tip position" in data:
+        return ForceCurve(force, -np.array(data["tip position"], dtype=float), deflection, height, metadata)
+    if height is not None and deflection is not None:
+        return ForceCurve(force, height - deflection, deflection, height, metadata)
+    return None

@@ -1,0 +1,57 @@
+//! Modulus and work of adhesion from a force curve.
+
+use asperity::force_curve::{ForceOptions, ForceRecord, fit_force_curve as fit};
+use asperity::indentation::Interval;
+use asperity_io::choice;
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::raised;
+use crate::given::{choose, entries};
+use crate::wait::detached;
+
+/// Fits a force curve of a sphere; uncertainties are standard ones over the value. Intervals are (value, low, high, determined).
+#[pyfunction]
+#[pyo3(signature = (loads, depths, radius, model, branch, control, range, spring_constant, radius_uncertainty, load_uncertainty, sensitivity_uncertainty))]
+#[allow(clippy::too_many_arguments)]
+pub fn fit_force_curve<'py>(
+    py: Python<'py>,
+    loads: PyReadonlyArray1<'_, f64>,
+    depths: PyReadonlyArray1<'_, f64>,
+    radius: f64,
+    model: &str,
+    branch: &str,
+    control: Option<&str>,
+    range: Option<f64>,
+    spring_constant: Option<f64>,
+    radius_uncertainty: f64,
+    load_uncertainty: f64,
+    sensitivity_uncertainty: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let [loads, depths] = [loads, depths].map(|column| column.as_array().to_vec());
+    let options = ForceOptions {
+        model: choose("model", model)?,
+        branch: choose("branch", branch)?,
+        control: control.map(|word| choose("control", word)).transpose()?,
+        range,
+        spring_constant,
+        radius_uncertainty,
+        load_uncertainty,
+        sensitivity_uncertainty,
+    };
+    let record = ForceRecord { loads: &loads, depths: &depths };
+    let fit = detached(py, || fit(radius, &record, &options))?.map_err(|error| raised(py, error))?;
+    let interval = |x: Interval| (x.value, x.low, x.high, x.determined);
+    let out = PyDict::new(py);
+    out.set_item("model", choice::word(&fit.model))?;
+    out.set_item("contact_modulus", interval(fit.contact_modulus))?;
+    out.set_item("work", interval(fit.work))?;
+    out.set_item("transition", fit.lambda.map(interval))?;
+    out.set_item("range", fit.range.map(interval))?;
+    out.set_item("touch", interval(fit.touch))?;
+    out.set_item("baseline", interval(fit.baseline))?;
+    out.set_item("predicted", fit.predicted.into_pyarray(py))?;
+    entries!(out, fit; rows alpha pull_off_force smallest_load tabor contact_radius relative_rms durbin_watson notes);
+    Ok(out)
+}

@@ -1,0 +1,119 @@
+//! Notes that the user should know before relying on a fit.
+
+use super::rows::Rows;
+use super::{ATOMIC, Branch, ForceFit, ForceModel, ForceOptions};
+use crate::indentation::{ALIKE, unlikely_radius};
+
+/// Tabor numbers at which JKR begins to hold and DMT ceases to.
+const SOFT: f64 = 3.0;
+const STIFF: f64 = 0.3;
+/// Smallest number of rows with attraction.
+const FEW: usize = 10;
+/// Radius of the contact over that of the sphere beyond which the paraboloid is another body: its load is 4 % off.
+const WIDE: f64 = 0.3;
+/// Relative distance of measured and modelled pull-off force that is told.
+const PULL: f64 = 0.1;
+/// Spring constant over contact stiffness: outside, one of deflection and depth is a small difference or below its noise.
+const CANTILEVER: [f64; 2] = [0.01, 100.0];
+
+pub(super) fn notes(fit: &ForceFit, radius: f64, rows: &Rows, options: &ForceOptions) -> Vec<String> {
+    let mut notes = vec![];
+    let adhesive = fit.model != ForceModel::Hertz;
+    if !fit.contact_modulus.determined {
+        notes.push(
+            "the modulus is not determined by this record: its 95 % interval spans more than a factor of 10"
+                .to_owned(),
+        );
+    }
+    if adhesive && !fit.work.determined {
+        notes.push(
+            "the work of adhesion is not determined by this record: its 95 % interval spans more than a factor of 10".to_owned(),
+        );
+    }
+    if fit.lambda.is_some_and(|lambda| !lambda.determined) {
+        notes.push(format!(
+            "the transition parameter lambda is not determined by this record (alpha {:.2}, 0 for DMT and 1 for JKR): give the range of \
+             the attraction, or use the model `{}`",
+            fit.alpha.unwrap_or_default(),
+            if fit.alpha > Some(0.5) { "jkr" } else { "dmt" }
+        ));
+    }
+    let range = match options.range {
+        Some(range) => format!("the given range of {range:.2e} m"),
+        None => format!("a range of {:.1} nm, usual between solids; give yours", 1e9 * ATOMIC),
+    };
+    match fit.model {
+        ForceModel::Jkr if fit.tabor < SOFT => notes.push(format!(
+            "Tabor's number is {:.2e} with {range}, and JKR holds above {SOFT}: use the model `maugis`{}",
+            fit.tabor,
+            if fit.tabor < STIFF { " or `dmt`" } else { "" }
+        )),
+        ForceModel::Dmt if fit.tabor > STIFF => notes.push(format!(
+            "Tabor's number is {:.2e} with {range}, and DMT holds below {STIFF}: use the model `maugis`{}",
+            fit.tabor,
+            if fit.tabor > SOFT { " or `jkr`" } else { "" }
+        )),
+        _ => {}
+    }
+    if !rows.baseline {
+        notes.push(
+            "the load of the free sphere is taken as 0: the fitted part of the record has no flat end, so pull-off is outside of the record and \
+             the baseline is not fitted"
+                .to_owned(),
+        );
+    }
+    let baseline = fit.baseline.value;
+    let attracted = rows.contact.iter().filter(|row| row[0] < baseline - rows.noise[0]).count();
+    if adhesive && attracted < FEW {
+        notes.push(format!(
+            "{attracted} rows show attraction, and the work of adhesion rests on them: record at least {FEW}, with more points per second \
+             or a slower retraction"
+        ));
+    }
+    // A load at which the sphere came off, other than that of the model. Where rows are far apart the last one lies before pull-off.
+    if adhesive && rows.baseline && options.branch == Branch::Retraction {
+        let measured = rows.contact.last().map_or(fit.smallest_load, |row| row[0] - baseline);
+        let far = |load: f64| {
+            (load - fit.pull_off_force).abs() > PULL * fit.pull_off_force.abs() + 5.0 * rows.noise[0]
+        };
+        if far(measured) && far(fit.smallest_load) {
+            notes.push(format!(
+                "the sphere came off at {measured:.3e} N, and the model under this control comes off at {:.3e} N: the control is another \
+                 one, or the material relaxes",
+                fit.pull_off_force
+            ));
+        }
+    }
+    if fit.contact_radius > WIDE * radius {
+        notes.push(format!(
+            "the contact is {:.2} times as wide as the sphere: the model takes the sphere as a paraboloid, good below {WIDE}",
+            fit.contact_radius / radius
+        ));
+    }
+    if fit.durbin_watson < ALIKE {
+        notes.push(format!(
+            "the residuals follow each other (Durbin-Watson number {:.2}, near 2 where they are independent): the model bends away from the \
+             record (relaxation, plastic flow, drift of the baseline, a substrate) or the noise is not white; the intervals are wider for it, \
+             but a systematic error is not in them",
+            fit.durbin_watson
+        ));
+    }
+    if let Some(spring) = options.spring_constant {
+        // dW/dd = 2 E* a
+        let ratio = spring / (2.0 * fit.contact_modulus.value * fit.contact_radius);
+        if ratio < CANTILEVER[0] {
+            notes.push(format!(
+                "the cantilever is {:.0} times as soft as the contact at the largest load: the depth is a small difference of height and \
+                 deflection, and an error of 1 % of the sensitivity changes it by more than itself; use a stiffer cantilever",
+                1.0 / ratio
+            ));
+        } else if ratio > CANTILEVER[1] {
+            notes.push(format!(
+                "the cantilever is {ratio:.0} times as stiff as the contact at the largest load: its deflection is a small part of the height; use \
+                 a softer cantilever"
+            ));
+        }
+    }
+    notes.extend(unlikely_radius(radius));
+    notes
+}

@@ -1,0 +1,162 @@
+//! Force curves of known spheres.
+
+use rayon::prelude::*;
+
+use super::*;
+use crate::error::Error;
+use crate::indentation::TestNoise as Noise;
+
+const RADIUS: f64 = 10e-6;
+const MODULUS: f64 = 1.3e6;
+const WORK: f64 = 5e-3;
+
+fn law(model: ForceModel) -> AdhesiveModel {
+    match model {
+        ForceModel::Hertz => AdhesiveModel::Hertz,
+        ForceModel::Dmt => AdhesiveModel::Dmt,
+        ForceModel::Jkr => AdhesiveModel::Jkr,
+        ForceModel::Maugis => AdhesiveModel::Maugis { lambda: 0.9 },
+    }
+}
+
+/// Retraction from 0.5 um: loads and depths with touch at 0.2 um, a baseline of 3 nN and this noise of load and depth.
+fn curve(model: ForceModel, n: usize, noise: [f64; 2], seed: u64) -> [Vec<f64>; 2] {
+    let sphere = AdhesiveSphere::new(law(model), RADIUS, MODULUS, WORK).unwrap();
+    let mut random = Noise(seed);
+    let row = |k: usize| {
+        let depth = 0.5e-6 - 1.5e-6 * k as f64 / n as f64;
+        let load = sphere.at_approach(depth).unwrap().map_or(0.0, |point| point.load);
+        [load + 3e-9 + noise[0] * random.normal(), depth + 0.2e-6 + noise[1] * random.normal()]
+    };
+    let rows: Vec<[f64; 2]> = (0..n).map(row).collect();
+    [0, 1].map(|k| rows.iter().map(|row| row[k]).collect())
+}
+
+fn fit(model: ForceModel, [loads, depths]: &[Vec<f64>; 2], options: ForceOptions) -> ForceFit {
+    fit_force_curve(RADIUS, &ForceRecord { loads, depths }, &ForceOptions { model, ..options }).unwrap()
+}
+
+const MODELS: [ForceModel; 4] = [ForceModel::Hertz, ForceModel::Dmt, ForceModel::Jkr, ForceModel::Maugis];
+
+#[test]
+fn exact_curves_give_their_numbers_back() {
+    for model in MODELS {
+        let fit = fit(model, &curve(model, 200, [0.0; 2], 1), ForceOptions::default());
+        // The noise of rounding is 1e-7 of the ranges, and 200 rows determine ln E and ln w to better than 1e-5.
+        assert!((fit.contact_modulus.value / MODULUS - 1.0).abs() < 1e-4, "{model:?} {fit:?}");
+        assert!(
+            model == ForceModel::Hertz || (fit.work.value / WORK - 1.0).abs() < 1e-4,
+            "{model:?} {fit:?}"
+        );
+        assert!(
+            (fit.touch.value - 0.2e-6).abs() < 1e-10 && (fit.baseline.value - 3e-9).abs() < 1e-11,
+            "{fit:?}"
+        );
+        if let Some(lambda) = fit.lambda {
+            assert!((lambda.value / 0.9 - 1.0).abs() < 1e-3, "{lambda:?}");
+        }
+    }
+}
+
+/// 95 % intervals of 50 records each hold the truth in at least 45: fewer happen by chance to one of 30 such intervals
+/// (binomial, 0.95), and the seeds are fixed.
+#[test]
+fn intervals_hold_the_truth() {
+    for model in MODELS {
+        let held = |seed| {
+            // Pull-off forces of 0.24 to 0.31 uN: noise of about 1 % of it, and of 1 nm in the depth.
+            let fit = fit(model, &curve(model, 120, [2e-9, 1e-9], seed), ForceOptions::default());
+            let adhesive = model != ForceModel::Hertz;
+            [
+                usize::from(fit.contact_modulus.holds(MODULUS)),
+                usize::from(!adhesive || fit.work.holds(WORK)),
+                usize::from(fit.lambda.is_none_or(|lambda| lambda.holds(0.9))),
+            ]
+        };
+        let held = (1..=50u64).into_par_iter().map(held).collect::<Vec<_>>();
+        let held = [0, 1, 2].map(|k| held.iter().map(|held| held[k]).sum::<usize>());
+        assert!(held.iter().all(|n| *n >= 45), "{model:?} {held:?}");
+    }
+}
+
+#[test]
+fn stated_uncertainties_widen_the_intervals() {
+    let record = curve(ForceModel::Jkr, 200, [2e-9, 1e-9], 7);
+    let half = |interval: Interval| (interval.high / interval.value).ln() / WIDTH;
+    let plain = fit(ForceModel::Jkr, &record, ForceOptions::default());
+    let radius =
+        fit(ForceModel::Jkr, &record, ForceOptions { radius_uncertainty: 0.04, ..Default::default() });
+    let added = |wide: Interval, narrow: Interval| (half(wide).powi(2) - half(narrow).powi(2)).sqrt();
+    // E* ∝ R^(-1/2), w ∝ 1/R.
+    assert!((added(radius.contact_modulus, plain.contact_modulus) - 0.02).abs() < 1e-9);
+    assert!((added(radius.work, plain.work) - 0.04).abs() < 1e-9);
+    // The scaling itself: the same record with a radius of 4 % more.
+    let [loads, depths] = &record;
+    let options = ForceOptions { model: ForceModel::Jkr, ..Default::default() };
+    let larger = fit_force_curve(1.04 * RADIUS, &ForceRecord { loads, depths }, &options).unwrap();
+    assert!((larger.contact_modulus.value / plain.contact_modulus.value * 1.04f64.sqrt() - 1.0).abs() < 1e-5);
+    assert!((larger.work.value / plain.work.value * 1.04 - 1.0).abs() < 1e-5);
+    // The unit of load, and the sensitivity of a cantilever of 1 N/m: 0.2 uN is a deflection of 0.2 um.
+    let spring = ForceOptions { spring_constant: Some(1.0), load_uncertainty: 0.1, ..Default::default() };
+    assert!(half(fit(ForceModel::Jkr, &record, spring).work) > 0.1);
+    let tilted = ForceOptions { sensitivity_uncertainty: 0.02, load_uncertainty: 0.0, ..spring };
+    let tilted = fit(ForceModel::Jkr, &record, tilted);
+    let moved = [
+        loads.iter().map(|w| 1.02 * w).collect(),
+        depths.iter().zip(loads).map(|(d, w)| d - 0.02 * w / 1.0).collect(),
+    ];
+    let there =
+        fit(ForceModel::Jkr, &moved, ForceOptions { spring_constant: Some(1.0), ..Default::default() });
+    let by = (there.contact_modulus.value / tilted.contact_modulus.value).ln().abs();
+    let told = added(tilted.contact_modulus, plain.contact_modulus);
+    // Linear to a tenth at 2 %.
+    assert!((told / by - 1.0).abs() < 0.15, "{told} {by}");
+}
+
+#[test]
+fn notes_name_what_may_be_wrong() {
+    let note = |fit: &ForceFit, word: &str| fit.notes.iter().any(|note| note.contains(word));
+    let record = curve(ForceModel::Jkr, 200, [2e-9, 1e-9], 3);
+    let jkr = fit(ForceModel::Jkr, &record, ForceOptions::default());
+    assert!(jkr.notes.is_empty(), "{:?}", jkr.notes);
+    let far = fit(ForceModel::Jkr, &record, ForceOptions { range: Some(1e-6), ..Default::default() });
+    assert!(note(&far, "Tabor"), "{:?}", far.notes);
+    let dmt = fit(ForceModel::Dmt, &curve(ForceModel::Dmt, 200, [2e-9, 1e-9], 3), ForceOptions::default());
+    assert!(note(&dmt, "Tabor"), "{:?}", dmt.notes);
+    // Past the smallest load, before the sphere comes off.
+    let [loads, depths] = curve(ForceModel::Jkr, 200, [0.0, 0.0], 3).map(|column| column[..75].to_vec());
+    let loads: Vec<f64> = loads.iter().map(|w| w - 3e-9).collect();
+    let cut = fit(ForceModel::Jkr, &[loads, depths], ForceOptions::default());
+    assert!(note(&cut, "outside of the record"), "{:?}", cut.notes);
+    // A cantilever of 1 mN/m.
+    let soft = fit(
+        ForceModel::Jkr,
+        &record,
+        ForceOptions {
+            spring_constant: Some(1e-3),
+            control: Some(PullOffControl::Displacement),
+            ..Default::default()
+        },
+    );
+    assert!(note(&soft, "cantilever"), "{:?}", soft.notes);
+}
+
+#[test]
+fn what_is_no_force_curve_is_refused() {
+    let [loads, depths] = curve(ForceModel::Hertz, 200, [2e-9, 1e-9], 3);
+    let refused = |loads: &[f64], depths: &[f64], model| {
+        let options = ForceOptions { model, ..Default::default() };
+        match fit_force_curve(RADIUS, &ForceRecord { loads, depths }, &options) {
+            Err(Error::Invalid { what, .. }) => what,
+            other => panic!("{other:?}"),
+        }
+    };
+    assert!(refused(&loads, &depths, ForceModel::Jkr).contains("attraction"));
+    let turned: Vec<f64> = depths.iter().map(|d| -d).collect();
+    assert!(refused(&loads, &turned, ForceModel::Hertz).contains("depth"));
+    assert!(refused(&loads[..150], &depths, ForceModel::Hertz).contains("number of depths"));
+    let rising: Vec<f64> = loads.iter().rev().copied().collect();
+    assert!(refused(&rising, &depths, ForceModel::Hertz).contains("rows of the branch"));
+    assert!(refused(&[f64::NAN; 200], &depths, ForceModel::Hertz).contains("load of row 1"));
+    assert!(refused(&[0.0; 200], &depths, ForceModel::Hertz).contains("rows of the branch"));
+}

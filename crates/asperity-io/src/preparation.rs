@@ -172,15 +172,18 @@ impl Step {
 impl Crop {
     fn settle(self, surface: &Surface) -> Result<Operation> {
         let ([nx, ny], spacing) = (surface.grid().cells(), surface.grid().spacing());
+        // Along a profile only the values along x count.
+        let along = |y: usize, of_line: usize| if surface.grid().is_line() { of_line } else { y };
         let middle = |cells: [usize; 2]| [nx.saturating_sub(cells[0]) / 2, ny.saturating_sub(cells[1]) / 2];
         match self {
-            Crop::Cells { cells, from } => {
+            Crop::Cells { cells: [x, y], from } => {
+                let (cells, from) = ([x, along(y, 1)], from.map(|[x, y]| [x, along(y, 0)]));
                 Ok(Operation::Crop { from: from.unwrap_or_else(|| middle(cells)), cells })
             }
             Crop::Lengths { size, corner } => {
                 // Saturates: what does not fit is refused by the crop itself, with its numbers.
                 let count = |axis: usize, length: f64| (length / spacing[axis]).round() as usize;
-                let cells = [count(0, size[0]), count(1, size[1])];
+                let cells = [count(0, size[0]), along(count(1, size[1]), 1)];
                 let Some(corner) = corner else { return Ok(Operation::Crop { from: middle(cells), cells }) };
                 if let Some(length) = corner.into_iter().find(|length| *length < 0.0) {
                     return Err(Error::invalid(
@@ -189,7 +192,7 @@ impl Crop {
                         "0 m or more, from the corner of the surface",
                     ));
                 }
-                Ok(Operation::Crop { from: [count(0, corner[0]), count(1, corner[1])], cells })
+                Ok(Operation::Crop { from: [count(0, corner[0]), along(count(1, corner[1]), 0)], cells })
             }
             Crop::Defined => match process::defined_extent(surface) {
                 Some((from, cells)) => Ok(Operation::Crop { from, cells }),
@@ -225,6 +228,20 @@ mod tests {
         assert_eq!(crop(Crop::Lengths { size, corner: Some([1.0, 1.5]) }).unwrap(), (13.0, cells));
         assert_eq!(crop(Crop::Lengths { size, corner: None }).unwrap(), (32.0, cells));
         assert_eq!(crop(Crop::Defined).unwrap(), (0.0, [10, 6]));
+    }
+
+    #[test]
+    fn along_a_profile_the_values_along_x_count() {
+        let heights = Array2::from_shape_fn((10, 1), |(i, _)| i as f64);
+        let profile = Surface::new(Grid::line(10, 10.0).unwrap(), heights).unwrap();
+        for crop in [
+            Crop::Cells { cells: [4, 4], from: Some([2, 2]) },
+            Crop::Lengths { size: [4.0, 4.0], corner: Some([2.0, 2.0]) },
+        ] {
+            let part = prepare(profile.clone(), &[Step::Crop(crop)], None).unwrap().surface;
+            assert_eq!(part.heights().iter().copied().collect::<Vec<_>>(), [2.0, 3.0, 4.0, 5.0]);
+            assert!(part.grid().is_line() && part.grid().size()[0] == 4.0);
+        }
     }
 
     #[test]

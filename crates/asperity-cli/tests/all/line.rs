@@ -163,6 +163,49 @@ fn a_profile_is_described_and_makes_a_surface() {
 }
 
 #[test]
+fn a_profile_is_cropped_levelled_and_filtered_like_a_map() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    // Two sines of 10 and 100 points, 1 and 4 um high, on a slope; 400 points every micrometre.
+    let height = |i: usize| {
+        let wave = |points: f64| (std::f64::consts::TAU * i as f64 / points).sin();
+        wave(10.0) + 4.0 * wave(100.0) + 0.01 * i as f64
+    };
+    let rows: String = (0..400).map(|i| format!("{}; {}\n", i, height(i))).collect();
+    std::fs::write(path.join("p.csv"), format!("x [um]; z [um]\n{rows}")).unwrap();
+    let process = |ops: &[&str], output: &str| {
+        let mut words = vec!["surface", "process", "p.csv", "-o", output, "--json", "--force"];
+        words.extend(ops.iter().flat_map(|op| ["--op", op]));
+        asperity(path, &words)
+    };
+    let heights = |file: &str| -> Vec<f64> {
+        let text = std::fs::read_to_string(path.join(file)).unwrap();
+        let number = |line: &str| line.split_once('\t')?.1.parse().ok();
+        text.lines().filter_map(number).collect()
+    };
+    let output = process(&["crop size=300um corner=100um"], "part.txt");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let part = heights("part.txt");
+    assert_eq!(part.len(), 300);
+    // Rounding of metres.
+    assert!(part.iter().enumerate().all(|(i, z)| (z - 1e-6 * height(100 + i)).abs() < 1e-15));
+    // Without the slope and the long sine, the short one is left. The least-squares line of the long sine, 4 um high over 4 whole
+    // waves, rises by R = 6*4/(4 pi) = 1.9 um. Of this line the filter keeps the waves k > 8 of 2R/(2 pi k): a mean square of
+    // (R/pi)^2/2/8 = 0.02 um^2 beside the 0.5 um^2 of the sine, and 0.015 um at the short wave itself: 4 % of the rms.
+    let output = process(&["level=plane", "filter longest=50um"], "short.txt");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let rms = (heights("short.txt").iter().map(|z| z * z).sum::<f64>() / 400.0).sqrt();
+    assert!((rms / (1e-6 / 2f64.sqrt()) - 1.0).abs() < 0.04, "{rms}");
+    // What was written is a profile again, as long as it was.
+    let again = asperity(path, &["surface", "info", "part.txt", "--json"]);
+    let found: serde_json::Value = serde_json::from_slice(&again.stdout).unwrap();
+    assert!(found["format"] == "profile" && (found["size"][0].as_f64().unwrap() / 3e-4 - 1.0).abs() < 1e-12);
+    let refused = process(&["level=plane"], "map.npz");
+    let told = String::from_utf8_lossy(&refused.stderr);
+    assert!(refused.status.code() == Some(2) && told.contains("-o profile.txt"), "{told}");
+}
+
+#[test]
 fn a_map_of_a_profile_tells_its_height_and_slope_beside_those_of_the_profile() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path();

@@ -81,6 +81,73 @@ fn a_case_with_own_files_passes_the_check_and_says_what_is_missing() {
     }
 }
 
+fn example(name: &str) -> String {
+    format!("{}/../../examples/data/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The number behind a key: `from = "1e-3 m/s"`.
+fn number(text: &str, key: &str) -> f64 {
+    let rest = text.split_once(&format!("{key} = \"")).unwrap().1;
+    rest.split([' ', '"']).next().unwrap().parse().unwrap()
+}
+
+#[test]
+fn an_indentation_keeps_its_indenter_and_layer_and_prescribes_what_the_test_controlled() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = example("silicone-indentation.csv");
+    let run = |words: &[&str]| {
+        let done = asperity(folder.path(), words);
+        assert!(done.status.success(), "{words:?}: {}", told(&done));
+        String::from_utf8_lossy(&done.stdout).into_owned()
+    };
+    let test = ["--radius", "5 mm", "--thickness", "2 mm", "--interface", "slip", "-o", "pad.toml"];
+    run(&[&["fit-indentation", &record][..], &test].concat());
+    run(&["new", "--from", &record, "--material", "pad.toml", "--for", "indentation", "own.toml"]);
+    let text = std::fs::read_to_string(folder.path().join("own.toml")).unwrap();
+    assert!(text.contains("radius = \"5e-3 m\"\n") && !text.contains("# YOUR VALUE: of the ball"), "{text}");
+    // examples/data/README.md: the depth was controlled; 100 um are held until 15 s.
+    let held = "[\"1.500000e1 s\", \"1.000000e-4 m\"]";
+    assert!(text.contains("control = \"approach\"") && text.contains(held), "{text}");
+    assert!(text.contains("[[body.layer]]\ninterface = \"slip\"") && text.contains("thickness = \"2e-3 m\""));
+    let checked = run(&["check", "own.toml"]);
+    assert!(checked.contains("2 mm"), "{checked}");
+}
+
+#[test]
+fn friction_is_at_the_reference_of_the_shift_over_the_velocities_of_the_master_curve() {
+    let folder = files();
+    let dma = example("rubber-dma.csv");
+    let new = |material: &str| {
+        let words =
+            ["new", "--from", "face.npz", "--material", material, "--for", "friction", "own.toml", "--force"];
+        let made = asperity(folder.path(), &words);
+        assert!(made.status.success(), "{}", told(&made));
+        std::fs::read_to_string(folder.path().join("own.toml")).unwrap()
+    };
+    let measured = new(&dma);
+    // The sweep nearest to the temperature of a room, as `material fit` takes it; the data have one at 20 °C.
+    assert!(
+        measured.contains("reference = \"20.00 °C\"") && measured.contains("value = \"20.00 °C\""),
+        "{measured}"
+    );
+    assert!(measured.contains("within the data of the material at 20.00 °C"), "{measured}");
+    // The master curve covers decades more than a sweep of 0.1 Hz to 100 Hz.
+    let [from, to] = ["from", "to"].map(|key| number(&measured, key));
+    assert!(to / from > 1e5, "{from} {to}");
+    // Fitted before about another temperature: that one, and the times that the fit states.
+    let shift = ["--estimate-shift", "0 °C", "-o", "fitted.toml"];
+    let fitted = asperity(folder.path(), &[&["material", "fit", &dma][..], &shift].concat());
+    assert!(fitted.status.success(), "{}", told(&fitted));
+    let block = std::fs::read_to_string(folder.path().join("fitted.toml")).unwrap();
+    let text = new("fitted.toml");
+    assert!(text.contains("value = \"273.15 K\""), "{text}");
+    // Waves of a tenth of the 60 um: v = lambda/(2 pi t), to the four digits that are written.
+    let last = block.split_once("window = [").unwrap().1.split('"').nth(3).unwrap();
+    let last: f64 = last.trim_end_matches(" s").parse().unwrap();
+    assert!((number(&text, "from") * std::f64::consts::TAU * last / 6e-6 - 1.0).abs() < 1e-3, "{text}");
+    assert!(asperity(folder.path(), &["check", "own.toml"]).status.success());
+}
+
 #[test]
 fn what_no_case_can_be_made_of_is_refused() {
     let folder = files();

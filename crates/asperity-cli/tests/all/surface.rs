@@ -258,6 +258,39 @@ fn steps_are_done_in_order_and_recorded() {
 }
 
 #[test]
+fn info_tells_heights_as_stored_and_without_their_plane() {
+    let dir = tempfile::tempdir().unwrap();
+    // Rows and columns of alternating signs, 1 nm, on a plane of 3 nm per column and 1 nm per row.
+    let (n, plane) = (32_usize, [3.0, 1.0]);
+    let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let height = |i: usize, j: usize| sign(i) * sign(j) + plane[0] * i as f64 + plane[1] * j as f64;
+    let line = |j: usize| (0..n).map(|i| height(i, j).to_string()).collect::<Vec<_>>().join(" ") + "\n";
+    std::fs::write(dir.path().join("tilted.txt"), (0..n).map(line).collect::<String>()).unwrap();
+    let info = ["info", "tilted.txt", "--size", "32 um", "--height-unit", "nm"];
+    let found = json(dir.path(), &[&info[..], &["--json"]].concat());
+    let of = |value: &Value, key: &str| value[key].as_f64().unwrap();
+    // Mean square of equally spaced steps: (n^2 - 1)/12 of each; the signs add 1 but for the share of order 1/n^2 that the
+    // plane takes of them.
+    let square = (n * n - 1) as f64 / 12.0;
+    let tilted = (square * (plane[0] * plane[0] + plane[1] * plane[1]) + 1.0).sqrt() * 1e-9;
+    let share = 1.0 / (n * n) as f64;
+    assert!((of(&found, "sq") / tilted - 1.0).abs() < share, "{found}");
+    let levelled = &found["levelled"];
+    assert!((of(levelled, "sq") / 1e-9 - 1.0).abs() < share, "{levelled}");
+    assert!((of(levelled, "sa") / 1e-9 - 1.0).abs() < share && of(levelled, "mean").abs() < 1e-20);
+    // The whole gradient of the plane, 10^(1/2) nm/um, is in the one and not in the other; differences over a sign are 2 nm.
+    let [with, without] = [of(&found, "sdq"), of(levelled, "sdq")].map(|sdq| sdq * sdq * 1e6);
+    assert!(((with - without) / 10.0 - 1.0).abs() < 0.05, "{with} {without}");
+    let table = stdout(&surface(dir.path(), &info));
+    assert!(table.contains("as stored") && table.contains("levelled"), "{table}");
+    let row = table.lines().find(|line| line.starts_with("Sq ")).unwrap();
+    assert!(row.contains(" nm") && row.contains("1 nm"), "{row}");
+    // A periodic surface has no plane.
+    let periodic = json(dir.path(), &[&info[..], &["--json", "--periodic"]].concat());
+    assert_eq!((&periodic["levelled"], &periodic["sq"]), (&Value::Null, &found["sq"]));
+}
+
+#[test]
 fn info_tells_a_table_and_draws_a_picture() {
     let dir = tempfile::tempdir().unwrap();
     assert!(surface(dir.path(), &rough(&["-o", "a.npz"])).status.success());

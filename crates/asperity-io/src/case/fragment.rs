@@ -27,6 +27,9 @@ const FIRST_KEYS: [(&str, &str); 8] = [
     ("outliers", "threshold"),
 ];
 
+/// Keys of the steps with a value along x and one along y.
+const PAIRS: [&str; 4] = ["cells", "size", "from", "corner"];
+
 /// A step of a preparation from words: its name and its keys as in `process` of a case file.
 ///
 /// ```
@@ -38,6 +41,7 @@ const FIRST_KEYS: [(&str, &str); 8] = [
 /// let crop = step("crop size=50um,40um corner=0m,10um");
 /// let size = [50e-6, 40e-6];
 /// assert_eq!(crop, Ok(Step::Crop(Crop::Lengths { size, corner: Some([0.0, 10e-6]) })));
+/// assert_eq!(step("crop size=50um"), step("crop size=50um,50um"));
 /// assert!(step("level=plain").unwrap_err().contains("did you mean \"plane\"?"));
 /// assert!(step("outlier=6").unwrap_err().contains("did you mean \"outliers\"?"));
 /// ```
@@ -57,7 +61,12 @@ pub fn step(words: &str) -> Result<Step, String> {
         (Some(_), None) => String::new(),
         (None, _) => rest.to_owned(),
     };
-    let mut operation = Table::from_iter(keys(&rest)?);
+    // One value is that of a square; along a profile only the first counts.
+    let of_square = |(key, value): (String, Value)| match value {
+        value if value.is_array() || !PAIRS.contains(&key.as_str()) => (key, value),
+        one => (key, Value::Array(vec![one.clone(), one])),
+    };
+    let mut operation: Table = keys(&rest)?.into_iter().map(of_square).collect();
     operation.insert("op".into(), name.into());
     let mut surface = Table::from_iter([("kind".into(), "file".into()), ("path".into(), "".into())]);
     surface.insert("process".into(), Value::Array(vec![operation.into()]));

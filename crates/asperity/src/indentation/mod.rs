@@ -198,6 +198,16 @@ pub struct IndentationFit {
     pub notes: Vec<String>,
 }
 
+/// The channel that the test of a record controlled: the one whose history needs fewer straight pieces, or the one with less noise if
+/// both need the same number.
+///
+/// # Errors
+/// [`Error::Invalid`] for a record that [`fit_indentation`] refuses.
+pub fn controlled(record: &IndentationRecord) -> Result<Given> {
+    check::record(record)?;
+    Ok(control::controlled(record.times, record.loads, record.depths))
+}
+
 /// Fits the contact relaxation modulus of a half-space to a record of its indentation by a rigid body of revolution.
 ///
 /// ```

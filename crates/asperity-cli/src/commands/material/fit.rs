@@ -17,7 +17,7 @@ use crate::format::quantity;
 use crate::verb::Verb;
 
 /// Room temperature \[K\]: shifts are estimated about the sweep nearest to it where no reference is given.
-const ROOM: f64 = 293.15;
+pub const ROOM: f64 = 293.15;
 
 impl Verb for Fit {
     fn files(&self) -> Files {
@@ -71,7 +71,7 @@ impl Verb for Fit {
 }
 
 /// Several temperatures without a shift: it is estimated, about the temperature nearest to that of a room.
-fn estimated_unless_known(shift: ShiftRequest, curves: &mut Curves) -> ShiftRequest {
+pub fn estimated_unless_known(shift: ShiftRequest, curves: &mut Curves) -> ShiftRequest {
     let several = curves.sweeps.len() > 1 && !curves.is_ramp() && curves.held.shift().is_none();
     let temperatures = curves.sweeps.iter().filter_map(|sweep| sweep.temperature);
     let nearest = temperatures.min_by(|a, b| (a - ROOM).abs().total_cmp(&(b - ROOM).abs()));

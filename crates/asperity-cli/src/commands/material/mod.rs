@@ -20,6 +20,7 @@ use crate::failure::Failure;
 use crate::files::Files;
 use crate::format::{counted, quantity};
 use crate::verb::Verb;
+pub(super) use fit::{ROOM, estimated_unless_known};
 pub(super) use options::{columns, refused};
 
 impl Verb for Show {

@@ -1,16 +1,18 @@
 //! A commented case with one's own files: what the files say is filled in; what only the user knows has an example value and
 //! the remark [`YOURS`].
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use asperity::material::Modulus;
-use asperity_io::curve::{Columns, Curves, Indentation, Kind};
+use asperity::indentation::{Given, IndentationRecord, controlled};
+use asperity::material::{Modulus, Shift};
+use asperity_io::curve::{Columns, Curves, Indentation, Kind, Request, ShiftRequest};
 use asperity_io::output::write_all;
 use asperity_io::topography::Topography;
 
 use crate::args::{New, Purpose, SurfaceFile};
+use crate::commands::material::{ROOM, estimated_unless_known, refused};
 use crate::commands::surface;
 use crate::failure::Failure;
 use crate::format::{extent, quantity};
@@ -41,16 +43,17 @@ pub(super) fn write(args: &New, purpose: Purpose, from: &Path, material: &Path) 
         _ => None,
     };
     let text = match record {
-        Some(record) => indentation_of(&record, from, &material),
+        Some(record) => indentation_of(&record, from, &material)?,
         None => of_surface(args, purpose, from, &folder, &material)?,
     };
     write_all(&path, args.force, text.as_bytes())?;
     let missing = marked(&text);
     let shown = path.display();
-    crate::messages::message!(
-        "wrote {shown}; example values that only you know, marked \"YOUR VALUE\": {}. Then: asperity check {shown}",
-        missing.join(", ")
-    );
+    let examples = match missing.as_slice() {
+        [] => String::new(),
+        keys => format!("; example values that only you know, marked \"YOUR VALUE\": {}", keys.join(", ")),
+    };
+    crate::messages::message!("wrote {shown}{examples}. Then: asperity check {shown}");
     Ok(())
 }
 
@@ -77,6 +80,8 @@ struct Material {
     times: Option<[f64; 2]>,
     /// The reference temperature in words, where the times depend on the temperature.
     reference: Option<String>,
+    /// The lines of `[[surface]]` that make the indenter of the test, as `fit-indentation` wrote it.
+    indenter: Option<String>,
 }
 
 impl Material {
@@ -85,9 +90,9 @@ impl Material {
             return Material::written(path);
         }
         let kind = Curves::kind_of(path, None)?;
-        let curves = Curves::read(path, kind, &Columns::default())?;
+        let mut curves = Curves::read(path, kind, &Columns::default())?;
         let ends = extent(curves.sweeps.iter().flat_map(|sweep| sweep.x.iter().copied()));
-        let (model, measure_key, range, times) = match kind {
+        let (model, measure_key, range, mut times) = match kind {
             Kind::Dma => {
                 let hertz = ends.map(|omega| quantity(omega / TAU, "Hz"));
                 ("dma", "modulus", hertz, [1.0 / ends[1], 1.0 / ends[0]])
@@ -118,15 +123,30 @@ impl Material {
         let _ = writeln!(text, "{measure_key} = \"{measure}\"{unknown}");
         let mut reference = None;
         if celsius.len() > 1 {
-            // The middle one of the temperatures: its neighbours overlap on both sides.
-            let middle = format!("{:.2} °C", celsius[celsius.len() / 2]);
-            let _ = writeln!(
-                text,
-                "shift = {{ model = \"estimated\", reference = \"{middle}\" }}   # or your WLF: {{ model = \"wlf\", c1 = 8.86, c2 = \"101.6 K\", reference = \"{middle}\" }}"
-            );
-            reference = Some(middle);
+            let held = curves.held.shift().is_some();
+            let shift = estimated_unless_known(ShiftRequest::None, &mut curves);
+            // A ramp does not tell its shift: the law that the user will write is about the temperature of a room.
+            let mut kelvin = ROOM;
+            if !curves.is_ramp() {
+                let measure = curves.measure.unwrap_or(Modulus::Young);
+                let fitted =
+                    Request { measure, shift, ..Request::default() }.fit(&curves).map_err(refused)?;
+                kelvin = fitted.shift.as_ref().and_then(Shift::reference).unwrap_or(ROOM);
+                times = fitted.window;
+            }
+            let about = format!("{:.2} °C", kelvin - 273.15);
+            let law = format!("{{ model = \"wlf\", c1 = 8.86, c2 = \"101.6 K\", reference = \"{about}\" }}");
+            if curves.is_ramp() {
+                let _ = writeln!(text, "shift = {law}   {YOURS}the law of your material");
+            } else if !held {
+                let _ = writeln!(
+                    text,
+                    "shift = {{ model = \"estimated\", reference = \"{about}\" }}   # or your WLF: {law}"
+                );
+            }
+            reference = Some(about);
         }
-        Ok(Material { text, times: (times[0] > 0.0).then_some(times), reference })
+        Ok(Material { text, times: (times[0] > 0.0).then_some(times), reference, indenter: None })
     }
 
     /// What `material fit -o` or `fit-indentation -o` wrote.
@@ -147,8 +167,28 @@ impl Material {
             );
             text.insert_str(0, &line);
         }
-        let reference = text.contains("shift =").then(|| "20 °C".to_owned());
-        Ok(Material { text: text.trim_end().to_owned() + "\n", times: None, reference })
+        let reference = text.contains("shift =").then(|| {
+            // A table of factors names no reference.
+            quoted(&text, "reference = ").unwrap_or("20 °C").to_owned()
+        });
+        let indenter = text.lines().find_map(|line| line.strip_prefix(INDENTER)).map(|line| {
+            line.trim_end_matches('.').split(", ").map(|key| format!("{key}\n")).collect::<String>()
+        });
+        let seconds = |text: &str| text.trim_matches(['"', ' ']).trim_end_matches(" s").parse::<f64>().ok();
+        let times = text.split_once("window = [").and_then(|(_, rest)| {
+            let (first, last) = rest.split(']').next()?.split_once(',')?;
+            Some([seconds(first)?, seconds(last)?])
+        });
+        if has(&text, "thickness") {
+            // The layer of the test, on its rigid base.
+            let interface = quoted(&text, "interface = ").unwrap_or("bonded").to_owned();
+            let lines = text
+                .lines()
+                .filter(|line| !line.starts_with("# The sample") && !line.starts_with("# of the test"));
+            let lines: String = lines.map(|line| format!("{line}\n")).collect();
+            text = format!("base = \"rigid\"\n[[body.layer]]\ninterface = \"{interface}\"\n{lines}");
+        }
+        Ok(Material { text: text.trim_end().to_owned() + "\n", times, reference, indenter })
     }
 
     fn body(&self) -> String {
@@ -156,7 +196,7 @@ impl Material {
         if let Some(reference) = &self.reference {
             let _ = write!(
                 text,
-                "\n[temperature]\nhistory = {{ kind = \"constant\", value = \"{reference}\" }}   {YOURS}of the contact\n"
+                "\n[temperature]\nhistory = {{ kind = \"constant\", value = \"{reference}\" }}   {YOURS}of the contact; this is the reference of the shift\n"
             );
         }
         text
@@ -166,6 +206,14 @@ impl Material {
     fn end(&self) -> f64 {
         self.times.map_or(100.0, |[_, last]| one_digit(last))
     }
+}
+
+/// How the line begins in which `fit-indentation` keeps the indenter of the test.
+const INDENTER: &str = "# Indenter of the test, as [[surface]]: ";
+
+/// The text in quotes behind the first `key`.
+fn quoted<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+    text.split_once(key)?.1.strip_prefix('"')?.split('"').next()
 }
 
 /// The largest number of one digit that is not above a value: 2e3 of 2.9e3.
@@ -214,11 +262,7 @@ fn of_surface(
     text += &domain(&topography, purpose);
     text += &surface_part(args, &topography, &relative(from, folder), purpose);
     if purpose == Purpose::Indentation {
-        let _ = write!(
-            text,
-            "\n[[surface]]\nkind = \"sphere\"\nradius = \"{}\"   {YOURS}of the ball\n",
-            plain(10.0 * topography.size[0], "m")
-        );
+        text += &indenter(material, 10.0 * topography.size[0]);
     }
     text += &material.body();
     text += &match purpose {
@@ -316,48 +360,69 @@ fn friction(topography: &Topography, material: &Material) -> String {
     let [from, to] =
         material.times.map_or([1e-3, 1.0], |[first, last]| [length / (TAU * last), length / (TAU * first)]);
     let decades = (to / from).log10().max(1.0);
+    let at = material.reference.as_ref().map_or(String::new(), |reference| format!(" at {reference}"));
     let count = (3.0 * decades).ceil() as usize + 1;
     format!(
-        "\n[load]\ncontrol = \"pressure\"                  # nominal\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure\n\n[motion]\ndirection = \"x\"                       {YOURS}of sliding: \"x\", \"y\" or an angle\n\n[motion.steady]                       # these velocities deform waves of {} within the data of the material\nvelocities = {{ from = \"{:.3e} m/s\", to = \"{:.3e} m/s\", count = {count}, spacing = \"log\" }}   {YOURS}velocities\n\n[solver]\ntolerance = 1e-4\n\n[output]\nfields = [\"pressure\"]\nevery = 7\n",
+        "\n[load]\ncontrol = \"pressure\"                  # nominal\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure\n\n[motion]\ndirection = \"x\"                       {YOURS}of sliding: \"x\", \"y\" or an angle\n\n[motion.steady]                       # these velocities deform waves of {} within the data of the material{at}\nvelocities = {{ from = \"{:.3e} m/s\", to = \"{:.3e} m/s\", count = {count}, spacing = \"log\" }}   {YOURS}velocities\n\n[solver]\ntolerance = 1e-4\n\n[output]\nfields = [\"pressure\"]\nevery = 7\n",
         quantity(length, "m"),
         from,
         to.max(10.0 * from),
     )
 }
 
-/// An indentation by the loads of a record.
-fn indentation_of(record: &Indentation, from: &Path, material: &Material) -> String {
-    /// Points of the load in the case.
+/// The indenter of the test, or a ball with this radius \[m\] as an example.
+fn indenter(material: &Material, radius: f64) -> String {
+    let keys = material.indenter.clone().unwrap_or_else(|| {
+        format!("kind = \"sphere\"\nradius = \"{}\"   {YOURS}of the ball\n", plain(radius, "m"))
+    });
+    format!("\n[[surface]]\n{keys}")
+}
+
+/// The radius \[m\] of the contact at a depth: (R d)^(1/2) under a ball, 2 d/(pi slope) under a cone.
+fn contact_radius(indenter: &str, depth: f64) -> Option<f64> {
+    let ball = quoted(indenter, "radius = ").and_then(|text| text.trim_end_matches(" m").parse::<f64>().ok());
+    let cone = || indenter.split_once("slope = ")?.1.trim().parse::<f64>().ok();
+    ball.map(|radius| (radius * depth).sqrt()).or_else(|| Some(2.0 * depth / (PI * cone()?)))
+}
+
+/// An indentation by what the test controlled: its depths or its loads.
+fn indentation_of(record: &Indentation, from: &Path, material: &Material) -> Result<String, Failure> {
+    /// Points of the history in the case.
     const POINTS: usize = 40;
+    let columns = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
+    let given = controlled(&columns).map_err(Failure::about(from.display()))?;
+    let (control, values, unit) = match given {
+        Given::Depth => ("approach", &record.depths, "m"),
+        Given::Load => ("load", &record.loads, "N"),
+    };
     let start = record.times.first().copied().unwrap_or_default();
     let every = record.times.len().div_ceil(POINTS).max(1);
     let last = record.times.len().saturating_sub(1);
-    let peak = (0..=last).max_by(|a, b| record.loads[*a].total_cmp(&record.loads[*b]));
+    let peak = (0..=last).max_by(|a, b| values[*a].total_cmp(&values[*b]));
     let mut points: Vec<String> = vec![];
     for n in (0..=last).filter(|n| n % every == 0 || *n == last || Some(*n) == peak) {
-        points.push(format!(
-            "  [\"{:.6e} s\", \"{:.6e} N\"],",
-            record.times[n] - start,
-            record.loads[n].max(0.0)
-        ));
+        let (time, value) = (record.times[n] - start, values[n].max(0.0));
+        points.push(format!("  [\"{time:.6e} s\", \"{value:.6e} {unit}\"],"));
     }
     let deepest = record.depths.iter().copied().fold(0.0, f64::max).max(1e-9);
     // A ball whose contact radius, sqrt(R d), is a tenth of its own radius.
-    let radius = one_digit(100.0 * deepest);
-    let size = one_digit(8.0 * (radius * deepest).sqrt()).max(1e-9);
+    let indenter = indenter(material, one_digit(100.0 * deepest));
+    let radius = contact_radius(&indenter, deepest).unwrap_or(10.0 * deepest);
+    let size = one_digit(8.0 * radius).max(1e-9);
     let [low, high] = [0.0, record.loads.iter().copied().fold(0.0, f64::max)];
-    format!(
+    Ok(format!(
         "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved.\n\
-         title = {}\n\n[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n\n[[surface]]\nkind = \"sphere\"\nradius = \"{radius:e} m\"   {YOURS}of the ball\n{}\n[load]                                # {} rows of the record, {} to {}, depth up to {}\ncontrol = \"load\"\nhistory = {{ kind = \"table\", points = [\n{}\n] }}\n\n[time]\nend = \"{:.6e} s\"\nsteps = 80\n\n[output]\nfields = [\"pressure\", \"displacement\"]\nevery = 10\n",
+         title = {}\n\n[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n{indenter}{}\n[load]                                # {} rows of the record, {} to {}, depth up to {}\ncontrol = \"{control}\"{}# what the test controlled; the other channel is the response\nhistory = {{ kind = \"table\", points = [\n{}\n] }}\n\n[time]\nend = \"{:.6e} s\"\nsteps = 80\n\n[output]\nfields = [\"pressure\", \"displacement\"]\nevery = 10\n",
         toml(&format!("Indentation: {}", surface::name(from))),
         material.body(),
         record.times.len(),
         quantity(low, "N"),
         quantity(high, "N"),
         quantity(deepest, "m"),
+        " ".repeat(16),
         points.join("\n"),
         record.times.get(last).copied().unwrap_or(1.0) - start,
-    )
+    ))
 }
 
 /// A number with its unit in full digits, to be read again.

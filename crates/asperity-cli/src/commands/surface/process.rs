@@ -1,4 +1,4 @@
-//! `asperity surface process`: a measured surface prepared step by step.
+//! `asperity surface process`: a measured surface or profile prepared step by step.
 
 use asperity::surface::statistics::Extent;
 use asperity_io::topography::Topography;
@@ -17,6 +17,9 @@ impl Verb for SurfaceProcess {
     fn run(&self) -> Result<(), Failure> {
         let format = super::target(&self.to.output, self.to.to.as_deref())?;
         let steps = super::steps(&self.op)?;
+        if let Some(profile) = super::profile::open(&self.file)? {
+            return super::profile::process(self, profile, format, &steps);
+        }
         let mut topography = super::open(&self.file)?;
         let name = self.file.file.display().to_string();
         let prepared = super::prepared(&name, super::map(&name, &topography)?, &steps)?;

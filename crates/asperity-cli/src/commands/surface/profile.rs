@@ -1,17 +1,18 @@
-//! Profiles: `asperity surface info` of a file with one or two columns, and `asperity surface from-profile`.
+//! Profiles: `asperity surface info` and `process` of a file with one or two columns, and `asperity surface from-profile`.
 
 use asperity::Grid;
 use asperity::finding;
 use asperity::surface::profile::{ProfileParameters, ProfileSpectrum, roughness};
 use asperity::surface::statistics::Extent;
 use asperity::surface::{Fill, Level, Operation};
+use asperity_io::output::write_all;
 use asperity_io::preparation::{Step, prepare};
 use asperity_io::quantity::Length;
-use asperity_io::topography::{Profile, ReadOptions, read_profile};
+use asperity_io::topography::{Format, Profile, ReadOptions, read_profile};
 use asperity_report::figure::{Axis, Curves, Figure, Series, Style};
 use serde_json::json;
 
-use crate::args::{SurfaceFile, SurfaceFromProfile, SurfaceInfo};
+use crate::args::{SurfaceFile, SurfaceFromProfile, SurfaceInfo, SurfaceProcess};
 use crate::failure::Failure;
 use crate::files::Files;
 use crate::format::{extent, quantity};
@@ -119,6 +120,47 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
         text += &format!("  {finding}\n");
     }
     crate::print(&text)
+}
+
+/// Prepares the profile, writes it as two columns of text, and prints its parameters.
+pub(super) fn process(
+    args: &SurfaceProcess,
+    profile: Profile,
+    format: Format,
+    steps: &[Step],
+) -> Result<(), Failure> {
+    let name = args.file.file.display().to_string();
+    let to = &args.to;
+    if format != Format::Text {
+        return Err(Failure::input(format!(
+            "{name} is a profile, and {format} holds maps; a profile is written as text: -o profile.txt"
+        )));
+    }
+    let done = super::prepared(&name, profile.surface, steps)?;
+    let history: Vec<String> = profile.history.into_iter().chain(done.history).collect();
+    let spacing = done.surface.grid().spacing()[0];
+    let step = |step: &String| format!("# {step}\n");
+    let mut text: String = history.iter().map(step).collect();
+    text += "x [m]\tz [m]\n";
+    for (i, z) in done.surface.heights().iter().enumerate() {
+        let z = if z.is_nan() { "nan".to_owned() } else { format!("{z:e}") };
+        text += &format!("{:e}\t{z}\n", i as f64 * spacing);
+    }
+    write_all(&to.output, to.force, text.as_bytes())?;
+    let history = history.iter().map(|step| format!("in the file: {step}")).collect();
+    let written = Profile { surface: done.surface, history, metadata: profile.metadata };
+    let shown = SurfaceInfo {
+        file: SurfaceFile { file: to.output.clone(), size: None, height_unit: None, channel: None },
+        periodic: false,
+        longest: None,
+        shortest: None,
+        cutoff: None,
+        circle: None,
+        plot: to.plot.clone(),
+        force: to.force,
+        json: to.json,
+    };
+    info(&shown, written)
 }
 
 fn figure(name: &str, heights: &[f64], spacing: f64, spectrum: &ProfileSpectrum) -> Figure {

@@ -4,7 +4,10 @@ use std::path::Path;
 
 use asperity::finding::{self, Finding};
 use asperity::surface::Surface as Map;
-use asperity::surface::statistics::{BearingCurve, Extent, SelfAffineFit, Summary};
+use asperity::surface::statistics::{
+    BearingCurve, Extent, HeightStatistics, SelfAffineFit, SlopeStatistics, Summary,
+};
+use asperity::surface::{Level, Operation};
 use asperity_io::topography::Topography;
 use asperity_report::surface::picture;
 use serde_json::{Value, json};
@@ -24,6 +27,8 @@ pub struct SurfaceSummary<'a> {
     map: Map,
     extent: Extent,
     summary: Summary,
+    /// Heights and slopes without the plane of the surface; a periodic surface has none.
+    levelled: Option<(HeightStatistics, Option<SlopeStatistics>)>,
     bearing: BearingCurve,
     /// What is known beside the heights.
     told: Vec<Finding>,
@@ -35,8 +40,15 @@ impl<'a> SurfaceSummary<'a> {
         let map = super::map(name, topography)?;
         let failed = Failure::about(name);
         let summary = Summary::of(&map, extent).map_err(&failed)?;
+        let levelled = match extent {
+            Extent::Periodic => None,
+            Extent::Finite => {
+                let level = Operation::Level(Level::Plane).apply(&map).map_err(&failed)?;
+                Some((HeightStatistics::of(&level).map_err(&failed)?, SlopeStatistics::of(&level).ok()))
+            }
+        };
         let bearing = BearingCurve::of(&map, LEVELS).map_err(failed)?;
-        Ok(SurfaceSummary { name, topography, map, extent, summary, bearing, told: vec![] })
+        Ok(SurfaceSummary { name, topography, map, extent, summary, levelled, bearing, told: vec![] })
     }
 
     /// With findings that the heights alone do not show.
@@ -81,26 +93,16 @@ impl<'a> SurfaceSummary<'a> {
         let (h, slopes) = (&summary.heights, summary.slopes);
         let waves = summary.waves.as_ref();
         let heights: Vec<_> = SHARES.iter().map(|share| self.bearing.height_at(*share).ok()).collect();
-        json!({
+        let mut object = statistics(h, slopes.as_ref());
+        let more = json!({
+            "levelled": self.levelled.map(|(heights, slopes)| statistics(&heights, slopes.as_ref())),
             "format": topography.format.name(),
             "shape": [nx, ny],
             "size": topography.size,
             "undefined": topography.undefined(),
-            "min": h.min,
-            "max": h.max,
-            "mean": h.mean,
-            "sq": h.sq,
-            "sdq": slopes.map(|s| s.sdq),
             "h00": at(0, 0),
             "h10": at(1, 0),
             "h01": at(0, 1),
-            "sa": h.sa,
-            "ssk": h.ssk,
-            "sku": h.sku,
-            "sp": h.sp,
-            "sv": h.sv,
-            "sz": h.sz,
-            "sdr": slopes.map(|s| s.sdr),
             "moments": waves.map(|w| json!({
                 "m0": w.moments.m0,
                 "m2": w.moments.m2,
@@ -124,7 +126,11 @@ impl<'a> SurfaceSummary<'a> {
             "channel": topography.channel,
             "channels": topography.channels,
             "history": topography.history().collect::<Vec<_>>(),
-        })
+        });
+        if let (Value::Object(object), Value::Object(more)) = (&mut object, more) {
+            object.extend(more);
+        }
+        object
     }
 
     /// What was found about the heights and the fit, and what is known beside them.
@@ -159,22 +165,37 @@ impl<'a> SurfaceSummary<'a> {
             let channels = topography.channels.iter().enumerate().map(|(n, name)| format!("{n}: {name}"));
             line("channels", channels.collect::<Vec<_>>().join(", "), "");
         }
+        let range = |h: &HeightStatistics| {
+            // A mean of rounding errors is none.
+            let mean = if h.mean.abs() < 1e-12 * h.sq { 0.0 } else { h.mean };
+            format!("{} to {}, mean {}", metres(h.min), metres(h.max), metres(mean))
+        };
         let h = &summary.heights;
-        // A mean of rounding errors is none.
-        let mean = if h.mean.abs() < 1e-12 * h.sq { 0.0 } else { h.mean };
-        line("heights", format!("{} to {}, mean {}", metres(h.min), metres(h.max), metres(mean)), "");
-        line("Sa", metres(h.sa), "mean deviation from the mean height");
-        line("Sq", metres(h.sq), "rms deviation from the mean height");
-        line("Sz", metres(h.sz), "highest peak to deepest pit");
-        line("Ssk", format!("{:.3}", h.ssk), "skewness, negative for plateaus with valleys");
-        line("Sku", format!("{:.3}", h.sku), "kurtosis, 3 for a Gaussian surface");
-        if let Some(slopes) = summary.slopes {
-            line("Sdq", format!("{:.4}", slopes.sdq), "rms gradient");
-            line(
-                "Sdr",
-                format!("{:.4} %", 100.0 * slopes.sdr),
-                "developed area over projected area, minus 1",
-            );
+        line("heights", range(h), "");
+        if let Some((level, _)) = &self.levelled {
+            line("", range(level), "without the plane of the surface");
+            line("", "as stored".into(), "levelled");
+        }
+        // A row of both: of the heights as stored and of the levelled ones.
+        let mut row = |name: &str, of: &dyn Fn(&HeightStatistics) -> String, words: &str| match &self.levelled
+        {
+            Some((level, _)) => line(name, of(h), &format!("{:<16}{words}", of(level))),
+            None => line(name, of(h), words),
+        };
+        row("Sa", &|h| metres(h.sa), "mean deviation from the mean height");
+        row("Sq", &|h| metres(h.sq), "rms deviation from the mean height");
+        row("Sz", &|h| metres(h.sz), "highest peak to deepest pit");
+        row("Ssk", &|h| format!("{:.3}", h.ssk), "skewness, negative for plateaus with valleys");
+        row("Sku", &|h| format!("{:.3}", h.sku), "kurtosis, 3 for a Gaussian surface");
+        if let Some(slopes) = &summary.slopes {
+            let level = self.levelled.and_then(|(_, slopes)| slopes);
+            let mut row = |name: &str, of: &dyn Fn(&SlopeStatistics) -> String, words: &str| match &level {
+                Some(level) => line(name, of(slopes), &format!("{:<16}{words}", of(level))),
+                None => line(name, of(slopes), words),
+            };
+            row("Sdq", &|s| format!("{:.4}", s.sdq), "rms gradient");
+            let words = "developed area over projected area, minus 1";
+            row("Sdr", &|s| format!("{:.4} %", 100.0 * s.sdr), words);
         }
         if let Some(waves) = &summary.waves {
             let m = &waves.moments;
@@ -222,4 +243,22 @@ impl<'a> SurfaceSummary<'a> {
         }
         text
     }
+}
+
+/// The parameters of ISO 25178-2 of heights and slopes, under their keys.
+fn statistics(h: &HeightStatistics, slopes: Option<&SlopeStatistics>) -> Value {
+    json!({
+        "min": h.min,
+        "max": h.max,
+        "mean": h.mean,
+        "sq": h.sq,
+        "sdq": slopes.map(|s| s.sdq),
+        "sa": h.sa,
+        "ssk": h.ssk,
+        "sku": h.sku,
+        "sp": h.sp,
+        "sv": h.sv,
+        "sz": h.sz,
+        "sdr": slopes.map(|s| s.sdr),
+    })
 }

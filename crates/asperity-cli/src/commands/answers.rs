@@ -2,8 +2,9 @@
 
 use asperity::step::Row;
 use asperity::{Axis, Grid};
-use asperity_io::answer::{Answer, Units};
+use asperity_io::answer::{self, Answer, Units};
 use asperity_io::converge::ErrorBar;
+use asperity_io::store::Reader;
 
 use crate::failure::Failure;
 use crate::format::quantity;
@@ -68,14 +69,46 @@ pub fn units(options: &[String]) -> Result<Units, Failure> {
             let message = "expected a name and a unit, e.g. --unit leak=ml/year or --unit time=h";
             return Err(Failure::input(format!("--unit {option}: {message}")));
         };
-        let chosen = units.choose(name.trim(), unit.trim());
+        let name = name.trim();
+        if let Some(earlier) = units.text(name) {
+            let message = format!("{name} has the unit {earlier} already; give one unit for each");
+            return Err(Failure::input(format!("--unit {option}: {message}")));
+        }
+        let chosen = units.choose(name, unit.trim());
         chosen.map_err(|error| Failure::input(format!("--unit {option}: {error}")))?;
     }
     Ok(units)
 }
 
+/// The units of a command for results: those of the options, with which the others of the case of the first result hold. A unit that no
+/// number of any result has is noted.
+pub fn units_of(options: &[String], readers: &[Reader]) -> Result<Units, Failure> {
+    let given = units(options)?;
+    if !given.is_empty() {
+        let mut found = vec![];
+        for reader in readers {
+            found.extend(answer::of(reader, &given)?);
+        }
+        note_unused(&given, &found);
+    }
+    Ok(readers.first().map_or(given.clone(), |first| Units::of(first, &given)))
+}
+
+/// Notes each unit of the options that none of the answers can be given in: of leaks where nothing leaks, of times where no time passes.
+pub fn note_unused(given: &Units, answers: &[Answer]) {
+    let is_used = |name: &str| match name {
+        "leak" => answers.iter().any(|answer| answer.name.starts_with("leak_rate")),
+        _ => answers
+            .iter()
+            .any(|answer| answer.unit == "s" || answer.at.is_some_and(|at| at.axis() == Axis::Time)),
+    };
+    for (name, unit) in given.chosen().filter(|(name, _)| !answers.is_empty() && !is_used(name)) {
+        let why = if name == "leak" { "there is no leak rate" } else { "no time passes" };
+        crate::messages::message!("note: --unit {name}={unit} changes nothing: {why} in what is shown");
+    }
+}
+
 /// The same as keys of a case.
-pub fn keys(options: &[String]) -> Result<Vec<String>, Failure> {
-    units(options)?;
-    Ok(options.iter().map(|option| format!("output.units.{option}")).collect())
+pub fn keys(units: &Units) -> Vec<String> {
+    units.chosen().map(|(name, unit)| format!("output.units.{name}={unit}")).collect()
 }

@@ -31,7 +31,7 @@ impl Verb for args::Compare {
                 words(other)
             )));
         }
-        let units = Units::of(first, &super::answers::units(&self.unit)?);
+        let units = super::answers::units_of(&self.unit, &readers)?;
         let labels = super::labels::of(&self.labels, &readers)?;
         let answers = answers(&readers, &units)?;
         let others = readers[1..].iter().map(|other| compare::compare(first, other));

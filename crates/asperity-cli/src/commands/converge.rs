@@ -20,10 +20,12 @@ impl Verb for Converge {
 
     /// Solves the case and its variations, and prints the answers.
     fn run(&self) -> Result<(), Failure> {
-        let set = [&self.common.set[..], &answers::keys(&self.unit)?].concat();
+        let given = answers::units(&self.unit)?;
+        let set = [&self.common.set[..], &answers::keys(&given)].concat();
         let case = Case::read(&self.case, &set)?;
         let units = &case.output.units;
         let found = of_case(&self.case, &self.common.set, None, self.refine, self.quiet)?;
+        answers::note_unused(&given, &found.answers);
         if !self.quiet {
             super::findings::print(&found.findings);
         }

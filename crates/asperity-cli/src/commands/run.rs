@@ -23,7 +23,8 @@ impl Verb for Run {
     /// Runs the case, tells the progress on stderr and a summary on stdout.
     fn run(&self) -> Result<(), Failure> {
         let mut set = self.common.set.clone();
-        set.extend(super::answers::keys(&self.unit)?);
+        let units = super::answers::units(&self.unit)?;
+        set.extend(super::answers::keys(&units));
         let case = Case::read(&self.case, &set)?;
         print_materials(self, &case);
         let known = print_findings(self, &case.findings, &[]);
@@ -39,6 +40,7 @@ impl Verb for Run {
         match done {
             Ok(summary) => {
                 print_findings(self, &summary.findings, &known);
+                super::answers::note_unused(&units, &summary.answers);
                 let bars = match self.error_bars && summary.status == Status::Complete {
                     true => Some(error_bars(self, &set, &summary)?),
                     false => None,

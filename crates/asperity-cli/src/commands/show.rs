@@ -26,7 +26,7 @@ impl Verb for ShowResult {
     fn run(&self) -> Result<(), Failure> {
         let reader = Reader::open(&self.result)?;
         let at = instant(&reader, self.time.as_deref())?;
-        let units = Units::of(&reader, &super::answers::units(&self.unit)?);
+        let units = super::answers::units_of(&self.unit, std::slice::from_ref(&reader))?;
         let answers = answer::of(&reader, &units)?;
         units.check(&answers).map_err(|error| Failure::input(error.to_string()))?;
         crate::print(&if self.json {

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity_io::answer::Units;
+use asperity_io::answer::{Answer, Units};
 use asperity_io::store::Reader;
 use asperity_io::study::{Event, Options, Outcome, Row, State, Study, StudyError, Table};
 use asperity_report::sheet::Sheet;
 use serde_json::{Value, json};
 
+use super::answers::{note_unused, units};
 use crate::args::{self, StudyAction, StudyFolder};
 use crate::failure::Failure;
 use crate::format::{counted, duration};
@@ -34,7 +35,7 @@ impl Verb for args::Study {
 
 impl args::Study {
     fn work(&self, case: &Path) -> Result<(), Failure> {
-        let units = super::answers::units(&self.unit)?;
+        let units = units(&self.unit)?;
         let folder = self.output.clone().unwrap_or_else(|| usual(case));
         let zip = (self.zip || self.product).then_some(self.zip);
         let study = Study::new(case, &self.vary, zip, &self.common.set, &folder).map_err(failure)?;
@@ -97,11 +98,11 @@ fn told(event: &Event<'_>, units: &Units) -> String {
 
 fn status(args: &StudyFolder) -> Result<(), Failure> {
     let study = Study::open(&args.folder).map_err(failure)?;
-    print(&study, &study.table(study.rows()), args.json, &super::answers::units(&args.unit)?)
+    print(&study, &study.table(study.rows()), args.json, &units(&args.unit)?)
 }
 
 fn collect(args: &StudyFolder) -> Result<(), Failure> {
-    let units = super::answers::units(&args.unit)?;
+    let units = units(&args.unit)?;
     let study = Study::open(&args.folder).map_err(failure)?;
     let table = study.collect().map_err(failure)?;
     draw(&study, &table, &units)?;
@@ -125,6 +126,8 @@ fn draw(study: &Study, table: &Table, units: &Units) -> Result<(), Failure> {
 }
 
 fn print(study: &Study, table: &Table, as_json: bool, units: &Units) -> Result<(), Failure> {
+    let answers: Vec<Answer> = table.rows.iter().flat_map(|row| row.answers.clone()).collect();
+    note_unused(units, &answers);
     crate::print(&if as_json { format!("{}\n", object(study, table)) } else { text(study, table, units) })
 }
 

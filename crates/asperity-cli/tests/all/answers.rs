@@ -69,6 +69,25 @@ fn answers_come_first_in_the_units_wanted() {
         let told = String::from_utf8_lossy(&refused.stderr).into_owned();
         assert!(refused.status.code() == Some(2) && told.contains(words), "{told}");
     }
+    // A second unit for the same, and a unit of what the result does not have.
+    for command in [&["show", "ball.zarr"][..], &["run", "ball.toml", "--force"], &["converge", "ball.toml"]]
+    {
+        let twice = [command, &["--unit", "time=h", "--unit", "time = day"]].concat();
+        let refused = asperity(&twice, directory);
+        let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(refused.status.code() == Some(2) && told.contains("time has the unit h already"), "{told}");
+    }
+    let plot = ["plot", "ball.zarr", "evolution", "--force", "-o", "a.svg"];
+    let run = ["run", "ball.toml", "--force", "--json"];
+    for command in [&["show", "ball.zarr"][..], &["compare", "ball.zarr", "ball.zarr"], &plot, &run] {
+        let idle = asperity(&[command, &["--unit", "leak=ml/year", "--unit", "time=h"]].concat(), directory);
+        let told = String::from_utf8_lossy(&idle.stderr).into_owned();
+        assert!(
+            idle.status.success() && told.contains("note: --unit leak=ml/year changes nothing"),
+            "{told}"
+        );
+        assert!(!told.contains("time=h changes nothing"), "{told}");
+    }
     let refused = asperity(&["check", "ball.toml", "--set", "output.units.time=m"], directory);
     let told = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert!(refused.status.code() == Some(2) && told.contains("output.units.time"), "{told}");

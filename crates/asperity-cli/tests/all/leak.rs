@@ -258,3 +258,46 @@ fn a_tight_seal_is_said_to_be_tight_everywhere() {
         text(&pictures.stderr)
     );
 }
+
+#[test]
+fn a_leak_is_said_to_be_of_a_patch_and_given_per_metre_of_seal() {
+    let place = tempfile::tempdir().unwrap();
+    let directory = place.path();
+    std::fs::write(directory.join("seal.toml"), CASE).unwrap();
+    let patch = ["--set", "domain.size=[\"2 mm\", \"1 mm\"]", "--set", "domain.cells=[32, 16]"];
+    let few = ["--set", "time.steps=2", "--set", "output.every=1", "--set", "solver.tolerance=1e-8"];
+    let run = [&["run", "seal.toml", "--quiet"][..], &patch, &few].concat();
+    let told = text(&asperity(&run, directory).stdout);
+    assert!(told.contains("of a patch 1 mm wide and 2 mm along the flow; per m of such a seal "), "{told}");
+    // What is printed has four digits.
+    let per_metre = |direction: &str, more: &[&str]| -> f64 {
+        let leak = [&["leak", "seal.zarr", "--no-store", "--direction", direction][..], more].concat();
+        let told = text(&asperity(&leak, directory).stdout);
+        let number = told.split("per m of such a seal ").nth(1).and_then(|rest| rest.split(' ').next());
+        number.and_then(|number| number.parse().ok()).unwrap_or_else(|| panic!("{told}"))
+    };
+    let (x, y) = (per_metre("x", &[]), per_metre("y", &[]));
+    // The waves are the same along both axes, so the conductance of a square is too: a metre of seal leaks with the drop over the length.
+    assert!((y / x / 2.0 - 1.0).abs() < 1e-3, "{x} {y}");
+    let rate = data(&["leak", "seal.zarr", "--json"], directory)["leak_rate"].clone();
+    let last = rate.as_array().unwrap().last().unwrap().as_f64().unwrap();
+    assert!((x * 1e-3 / last - 1.0).abs() < 1e-3, "{x} {rate}");
+    // A year has 365.25 days; a ml is 1e-6 m³.
+    let year = per_metre("x", &["--unit", "leak=ml/year"]);
+    assert!((year / x / (1e6 * 31_557_600.0) - 1.0).abs() < 2e-3, "{year} {x}");
+    assert!(asperity(&["report", "seal.zarr", "-o", "seal.html"], directory).status.success());
+    assert!(std::fs::read_to_string(directory.join("seal.html")).unwrap().contains("of a patch 1 mm wide"));
+    // What flows round a contact with closed sides is no property of a metre.
+    let closed = text(&asperity(&["leak", "seal.zarr", "--no-store", "--sides", "closed"], directory).stdout);
+    assert!(closed.contains("the leak rate is of a patch") && !closed.contains("per m"), "{closed}");
+    // Nothing has a liquid as a mass, and a map has no time.
+    refused(&["leak", "seal.zarr", "--unit", "leak=g/year"], directory, &["--unit", "density is not known"]);
+    map(directory);
+    let of_map = ["leak", "--gap", "gap.txt", "--size", "160 um,40 um", "--height-unit", "um"];
+    let water =
+        ["--pressure-drop", "2 bar", "--viscosity", "1 mPa s", "--unit", "leak=ml/h", "--unit", "time=h"];
+    let output = asperity(&[&of_map[..], &water].concat(), directory);
+    assert!(text(&output.stderr).contains("time=h changes nothing"), "{}", text(&output.stderr));
+    // 0.433e-18 m³ · 2e5 Pa / (12 · 1e-3 Pa s) · 40/160 in ml/h.
+    assert!(text(&output.stdout).contains("leak rate             0.00649"), "{}", text(&output.stdout));
+}

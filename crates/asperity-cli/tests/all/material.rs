@@ -171,6 +171,14 @@ fn a_fit_says_what_is_wrong() {
         (&[rubber, "--wlf", "8.86, 101.6, 20"], &["reference of --wlf", "20 °C"]),
         (&["plain.csv", "--kind", "creep", "--column", "tim=1"], &["--column", "tim", "time, modulus"]),
         (&["plain.csv", "--kind", "creep", "--unit", "time"], &["--unit", "QUANTITY="]),
+        (
+            &["plain.csv", "--kind", "relaxation", "--unit", "time=s", "--unit", "time=h"],
+            &["--unit is given twice for time", "\"s\""],
+        ),
+        (
+            &["plain.csv", "--kind", "relaxation", "--unit", "temperature=K"],
+            &["a unit is given", "temperature"],
+        ),
         (&["plain.csv", "--kind", "relaxation", "--window", "1 s"], &["--window"]),
         (&["plain.csv", "--kind", "relaxation", "--max-terms", "0"], &["most terms"]),
         (&["plain.csv", "--kind", "relaxation", "--plot", "p.gif"], &["p.gif: the ending"]),

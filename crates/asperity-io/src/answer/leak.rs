@@ -9,7 +9,7 @@ pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     let Some(leaks) = LeakHistory::of(reader)? else { return Ok(vec![]) };
     let times = leaks.column("leak_time");
     let percolates = leaks.column("percolates");
-    let note = leaks.note();
+    let note = leaks.note(units);
     let mut answers: Vec<Answer> = leaks
         .table
         .series()
@@ -19,9 +19,9 @@ pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
         .collect();
     // The rate that is counted at 0 °C is the usual one of a gas.
     answers.sort_by_key(|answer| answer.name != "leak_rate_standard");
-    if let Some(first) = answers.first_mut() {
-        first.note = note;
-    }
+    // Of the two rates of a gas one is shown.
+    let noted = answers.iter().filter(|answer| answer.name != "hydraulic_gap").count().max(1);
+    answers.iter_mut().take(noted).for_each(|answer| answer.note.clone_from(&note));
     let open = percolates.iter().rposition(|open| *open != 0.0);
     let first = open.map_or(0, |open| open + 1);
     if let Some(tight) = times.get(first) {

@@ -118,6 +118,16 @@ impl Units {
             .is_some_and(|unit| unit.powers == MASS_RATE)
     }
 
+    /// What units were chosen for, with the units.
+    pub fn chosen(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.0.iter().map(|(name, unit)| (name.as_str(), unit.as_str()))
+    }
+
+    /// The unit chosen for `name`, as it was written.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.0.get(name).map(String::as_str)
+    }
+
     /// Whether none was chosen.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -128,10 +138,17 @@ impl Units {
     /// # Errors
     /// [`UnitError::Unfit`].
     pub fn check(&self, answers: &[Answer]) -> Result<(), UnitError> {
+        let leaks = answers.iter().filter(|answer| answer.name.starts_with("leak_rate"));
+        self.check_leak(&leaks.map(|leak| leak.unit).collect::<Vec<_>>())
+    }
+
+    /// The same for leak rates in these SI units.
+    ///
+    /// # Errors
+    /// [`UnitError::Unfit`].
+    pub fn check_leak(&self, rates: &[&str]) -> Result<(), UnitError> {
         let Some(unit) = self.0.get("leak") else { return Ok(()) };
-        let leaks: Vec<&Answer> =
-            answers.iter().filter(|answer| answer.name.starts_with("leak_rate")).collect();
-        if leaks.is_empty() || leaks.iter().any(|leak| self.leak(1.0, leak.unit).is_some()) {
+        if rates.is_empty() || rates.iter().any(|si| self.leak(1.0, si).is_some()) {
             return Ok(());
         }
         Err(UnitError::Unfit {

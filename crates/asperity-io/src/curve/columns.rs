@@ -256,6 +256,13 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
     }
     let missing = form.needed.iter().find(|role| !places.contains_key(role)).copied();
     let missing = missing.or_else(|| one_pair(&mut places, form, said));
+    if let (None, Some(role)) = (missing, said.units.keys().find(|role| !places.contains_key(*role))) {
+        return Err(fault(format!(
+            "a unit is given for `{}`, but no column holds it; the file has {}",
+            role.name(),
+            table.listed()
+        )));
+    }
     match missing {
         None => once(table, &places, said).map(|()| places),
         Some(role) => {

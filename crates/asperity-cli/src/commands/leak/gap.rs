@@ -4,10 +4,10 @@ use std::path::Path;
 
 use asperity::finding::LeakDiagnostics;
 use asperity::{Boundary, Grid};
-use asperity_io::answer::MBAR_LITRE;
+use asperity_io::answer::{MBAR_LITRE, Units};
 use asperity_io::case::leak as checked;
 use asperity_io::finding;
-use asperity_io::leakage::Leakage;
+use asperity_io::leakage::{Fluid, Leakage};
 use ndarray::Array2;
 use serde_json::{Value, json};
 
@@ -34,8 +34,18 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         None => None,
     };
     warn_of_heights(path, &gap.heights);
+    let units = crate::commands::answers::units(&args.unit)?;
+    if let Some(unit) = units.text("time") {
+        crate::messages::message!("note: --unit time={unit} changes nothing: a map of the gap has no time");
+    }
     let leak = checked(&options::keys(&args.fluid), Boundary::Periodic)
         .map_err(|message| Failure::Input(with_options(&message)))?;
+    let rates: &[&str] = match leak.fluid {
+        None => &[],
+        Some(Fluid::Liquid { .. }) => &["m3/s"],
+        Some(Fluid::Gas { .. }) => &["kg/s", "Pa m3/s"],
+    };
+    super::check(&units, rates)?;
     let (nx, ny) = gap.heights.dim();
     let grid = Grid::new([nx, ny], gap.size).map_err(Failure::about(path.display()))?;
     let contact = contact.as_ref().map(|contact| contact.view());
@@ -58,7 +68,7 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         object["findings"] = finding::list(&findings);
         format!("{object}\n")
     } else {
-        format!("Leakage of {}\n\n{}", leak.words(), text(&state))
+        format!("Leakage of {}\n\n{}", leak.words(), text(&state, &units))
     };
     crate::print(&text)
 }
@@ -100,7 +110,7 @@ fn object(state: &Leakage) -> Value {
     })
 }
 
-fn text(state: &Leakage) -> String {
+fn text(state: &Leakage, units: &Units) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| text += &format!("{name:<22}{value}\n");
     if state.percolates {
@@ -122,12 +132,15 @@ fn text(state: &Leakage) -> String {
         line("conductance [m3]", format!("xx {xx:.6e}, xy {xy:.6e}, yx {yx:.6e}, yy {yy:.6e}"));
     }
     if let Some(rate) = state.leak_rate {
+        // Of a gas, mass and standard rate are in proportion.
+        let per = state.leak_rate_standard.map(|standard| if rate == 0.0 { 0.0 } else { standard / rate });
         let one = |rate: f64| match state.leak_rate_standard {
+            _ if units.text("leak").is_some() => units.rate(rate, per.map(|per| per * rate)),
             Some(_) => format!("{rate:.4e} kg/s"),
             None => format!("{rate:.4e} m3/s"),
         };
         line("leak rate", one(rate));
-        if let Some(standard) = state.leak_rate_standard {
+        if let (Some(standard), None) = (state.leak_rate_standard, units.text("leak")) {
             let mbar = MBAR_LITRE * standard;
             line("", format!("{standard:.4e} Pa m3/s at 0 degC, {mbar:.4e} mbar l/s"));
         }

@@ -71,6 +71,10 @@ fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         }
     };
     super::findings::print(&history.findings);
+    let series = history.table.series();
+    let rates: Vec<&str> =
+        series.iter().filter(|one| one.name.starts_with("leak_rate")).map(|one| one.units).collect();
+    check(&units, &rates)?;
     let text = if args.json { object(path, &history) } else { text(&history, &units) };
     crate::print(&text)
 }
@@ -89,6 +93,14 @@ fn asked(args: &args::Leak, reader: &Reader) -> Result<Leak, Failure> {
         Some(list) => Leak { times: super::times(list)?, ..leak },
         None => leak,
     })
+}
+
+/// Refuses a unit for leaks in which none of these rates can be given, and notes one where there is no rate.
+fn check(units: &Units, rates: &[&str]) -> Result<(), Failure> {
+    if let (Some(unit), true) = (units.text("leak"), rates.is_empty()) {
+        message!("note: the unit {unit} for leaks changes nothing: without a fluid there is no leak rate");
+    }
+    units.check_leak(rates).map_err(|error| Failure::input(format!("--unit: {error}")))
 }
 
 fn observe(done: usize, of: usize) {
@@ -164,6 +176,9 @@ fn text(history: &LeakHistory, units: &Units) -> String {
     }
     if column("leak_resolved").contains(&0.0) {
         text += "? see the findings\n";
+    }
+    if let Some(patch) = history.patch(units) {
+        text += &format!("the leak rate is {patch}\n");
     }
     let tight = words::tight(times, column("percolates"), units);
     if !tight.is_empty() {

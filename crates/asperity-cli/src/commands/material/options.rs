@@ -62,7 +62,16 @@ fn pairs(option: &str, texts: &[String]) -> Result<BTreeMap<Role, String>, Failu
             role.trim().parse::<Role>().map_err(|error| Failure::input(format!("{option}: {error}")))?;
         Ok((role, value.trim().to_owned()))
     };
-    texts.iter().map(pair).collect()
+    let mut pairs = BTreeMap::new();
+    for (role, value) in texts.iter().map(pair).collect::<Result<Vec<_>, Failure>>()? {
+        if let Some(earlier) = pairs.insert(role, value) {
+            let name = role.name();
+            return Err(Failure::input(format!(
+                "{option} is given twice for {name}, first \"{earlier}\"; give it once for each quantity"
+            )));
+        }
+    }
+    Ok(pairs)
 }
 
 pub fn shift(args: &Fit) -> Result<ShiftRequest, Failure> {

@@ -68,7 +68,7 @@ pub enum Error {
     /// No equilibrium under the prescribed load: the surfaces that adhered are pulled off; the rows so far are complete.
     #[error(
         "no equilibrium at t = {time} s: the load {} N is below pull-off (last stable load {} N, at an approach of {} m); \
-         prescribe the approach to follow the contact through it, or end the stage there with until = \"contact-lost\"",
+         prescribe the approach to follow the contact through it, or let a stage that begins above it end with until = \"contact-lost\"",
         significant(*load, 4), significant(last[0], 6), significant(last[1], 6)
     )]
     PulledOff {

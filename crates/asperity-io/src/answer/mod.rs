@@ -114,9 +114,11 @@ fn decisive(reader: &Reader, rows: &[Row]) -> Result<Option<usize>> {
         return Ok(Some(last));
     }
     // Of equal loads the last one: rounding must not choose.
-    let most = rows.iter().map(|row| row.load).fold(0.0, f64::max);
-    let peak = rows.iter().rposition(|row| row.load >= most * (1.0 - SAME));
-    Ok(peak.filter(|row| rows[*row].contact_fraction > 0.0).or(Some(last)))
+    let touching = || rows.iter().filter(|row| row.contact_fraction > 0.0).map(|row| row.load);
+    let most = touching().fold(f64::NEG_INFINITY, f64::max);
+    let peak =
+        rows.iter().rposition(|row| row.contact_fraction > 0.0 && row.load >= most - SAME * most.abs());
+    Ok(peak.or(Some(last)))
 }
 
 /// Loss angle, loss and stiffness of the last full cycle of a sine.

@@ -84,6 +84,7 @@ pub struct Diagnostics {
     /// Errors of the time steps that are too large by themselves: number of the row, error, load; and the largest load of the run.
     coarse: Vec<(usize, f64, f64)>,
     heaviest: f64,
+    touches: bool,
     /// Thickness of a body on a free domain, and its contacts.
     thickness: Option<f64>,
     widest: Widest,
@@ -116,6 +117,7 @@ impl Diagnostics {
             controls: simulation.loading.stages.iter().map(|stage| stage.control).collect(),
             coarse: vec![],
             heaviest: 0.0,
+            touches: false,
             thickness: known.thickness.filter(|_| free),
             widest: Widest::default(),
             earlier_balance: None,
@@ -208,9 +210,10 @@ impl Diagnostics {
         self.rows += 1;
         self.held.see(index, row, control == Control::Approach);
         self.deepest = self.deepest.max(row.approach);
-        self.heaviest = self.heaviest.max(row.load);
+        self.heaviest = self.heaviest.max(row.load.abs());
+        self.touches |= row.contact_area > 0.0;
         if let Some(error) = row.time_error.filter(|error| *error > time::COARSE) {
-            self.coarse.push((index, error, row.load));
+            self.coarse.push((index, error, row.load.abs()));
         }
         self.resolution.see(index, contact);
         self.strain.see(index, row, contact);
@@ -238,7 +241,7 @@ impl Diagnostics {
             found.push(domain::at_border(&self.grid, self.confined, needed, &words).at([first, last]));
         }
         // The first row alone is the start of a ramp.
-        if self.rows > 1 && self.heaviest == 0.0 {
+        if self.rows > 1 && !self.touches {
             found.push(never());
         }
         found.extend(self.resolution.findings());

@@ -142,7 +142,10 @@ impl Stepper {
                 return Err(Error::NotConverged(report));
             }
             Err(Error::PulledOff { load, .. }) => {
-                let last = [self.state.loads[0], self.state.before.approach];
+                let StepState { before, now, loads, .. } = &mut self.state;
+                let last = [loads[0], before.approach];
+                // The best state is that of the last row.
+                now.clone_from(before);
                 return Err(Error::PulledOff { load, time: step.instant.time, last });
             }
             Err(error) => return Err(error),

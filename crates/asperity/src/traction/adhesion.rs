@@ -27,7 +27,7 @@ use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
 use crate::operator::plan;
 use crate::simulation::Simulation;
-use asperity_sweep::{each, sums};
+use asperity_sweep::{each, minimum, sums};
 use std::sync::Arc;
 
 /// A cell snaps on its own above a trap number of 1; below this one the answer does not depend on the grid.
@@ -193,6 +193,15 @@ impl TractionLaw for Adhesion {
         if simulation.motion.is_some() {
             let expected = "none: adhesion acts between surfaces that do not slide";
             return Err(Error::invalid("motion of an adhesive contact", "given", expected).of("motion"));
+        }
+        let hardness = simulation.hardness_of_cells().map_or(simulation.hardness, |cells| minimum(&cells));
+        if self.work > 0.0 && hardness <= self.strength() {
+            let expected = format!(
+                "more than the strength of the adhesion, {:e} Pa: where the attraction exceeds it, cells in contact only pull. Raise \
+                 the hardness or the range",
+                self.strength()
+            );
+            return Err(Error::invalid("hardness", format!("{hardness:e} Pa"), expected).of("adhesion.range"));
         }
         let own = own_response(&simulation.grid, simulation.boundary, &simulation.kernel)?;
         let trap = self.trap(simulation.relaxed(), own);

@@ -40,7 +40,7 @@ use crate::operator::Operator;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::step::{Loader, saved};
-use asperity_sweep::{each, sum, sums, zeros};
+use asperity_sweep::{each, is_zero, minimum, sum, sums, zeros};
 use extrapolation::Extrapolation;
 
 /// Forces below this share of the largest one of the run are none.
@@ -240,8 +240,9 @@ impl TractionSolver {
             Run { own: self, solver, operator, options, tolerance, interrupt, total: Outcome::default() };
         match problem.prescribed {
             Prescribed::Approach(_) => run.solve(problem)?,
-            Prescribed::Load(load) => match run.solve(problem) {
+            Prescribed::Load(load) => match run.solve_under(problem, load) {
                 Err(Error::Infeasible { .. }) if run.own.law.is_attraction() => {
+                    self.now.copy_from(&self.last);
                     return Err(Error::PulledOff { load, time: f64::NAN, last: [f64::NAN; 2] });
                 }
                 Err(Error::Infeasible { .. }) => run.search_approach(problem, load, state.approach)?,
@@ -272,6 +273,15 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
+    /// The loop under a load. Surfaces that nothing has brought together yet are brought to first touch, where they adhere.
+    fn solve_under(&mut self, problem: &Problem, load: f64) -> Result<()> {
+        if load <= 0.0 && self.own.law.is_attraction() && is_zero(&self.own.last.bound) {
+            let first_touch = Prescribed::Approach(minimum(problem.gap));
+            self.solve(&Problem { prescribed: first_touch, ..*problem })?;
+        }
+        self.solve(problem)
+    }
+
     /// The loop. [`Error::Infeasible`] where a prescribed load leaves none to the contact.
     fn solve(&mut self, problem: &Problem) -> Result<()> {
         self.own.extrapolation.clear();
@@ -320,7 +330,7 @@ impl Run<'_> {
         let prescribed = match problem.prescribed {
             Prescribed::Load(load) => {
                 let carried = load - cell_area * sum(bound);
-                if carried <= 0.0 {
+                if carried < 0.0 {
                     return Err(Error::Infeasible { parameter: String::new(), load: carried, max: 0.0 });
                 }
                 Prescribed::Load(carried)

@@ -298,6 +298,30 @@ fn a_run_resumed_before_its_jump_has_the_same_bits() {
 }
 
 #[test]
+fn a_load_of_nothing_holds_the_bodies_together_and_a_pull_below_pull_off_parts_them() {
+    let under = |load: f64| {
+        let base = sphere(64, exponential(0.93), &[(0.0, 0.0), (1.0, 0.0)], 1);
+        let history = History::Step { value: load * PI * WORK };
+        let loading = Loading { control: Control::Load, history }.into();
+        March::new(Simulation { loading, ..base }).unwrap().advance().map(|step| step.unwrap().row())
+    };
+    // The branch of a contact that was pressed before: the same state.
+    let pressed = rows(unloading(TimeGrid::Uniform { end: 1.0, steps: 8 }, Some(Event::ContactLost)));
+    for (load, row) in [(0.0, under(0.0)), (-1.0, under(-1.0))] {
+        let row = row.unwrap();
+        let before = pressed.iter().find(|row| (row.load / (PI * WORK) - load).abs() < 1e-6).unwrap();
+        assert!((row.approach - before.approach).abs() < 2e-3 * unit(), "{load}: {row:?} {before:?}");
+        assert!((row.contact_area / before.contact_area - 1.0).abs() < 0.02);
+    }
+    assert!(matches!(under(-1.8), Err(Error::PulledOff { .. })));
+    // Without adhesion a load of nothing presses nothing.
+    let base = sphere(64, Adhesion::new(0.0, 1e-3), &[(0.0, 0.0), (1.0, 0.0)], 1);
+    let loading = Loading { control: Control::Load, history: History::Step { value: 0.0 } }.into();
+    let row = March::new(Simulation { loading, ..base }).unwrap().advance().unwrap().unwrap().row();
+    assert_eq!(row.contact_area, 0.0);
+}
+
+#[test]
 fn what_adhesion_cannot_do_is_refused() {
     let of = |adhesion| {
         March::new(sphere(32, adhesion, &[(0.0, 0.0), (1.0, 1.0)], 1)).err().map(|e| e.to_string())
@@ -307,6 +331,11 @@ fn what_adhesion_cannot_do_is_refused() {
     assert!(of(Adhesion { allow_unresolved: true, ..Adhesion::new(WORK, 1e-3) }).is_none());
     assert!(of(Adhesion::new(-1.0, 1e-3)).unwrap().contains("work of adhesion"));
     assert!(of(Adhesion::new(1.0, 0.0)).unwrap().contains("range"));
+    let soft = Simulation {
+        hardness: 0.5 * exponential(0.5).strength(),
+        ..sphere(32, exponential(0.5), &[(0.0, 0.0), (1.0, 1.0)], 1)
+    };
+    assert!(March::new(soft).err().unwrap().to_string().contains("strength"));
     let mut stiff = sphere(32, exponential(0.5), &[(0.0, 0.0), (1.0, 1.0)], 1);
     stiff.quantities = Quantities::of([Quantity::ContactStiffness]);
     assert!(March::new(stiff).err().unwrap().to_string().contains("adhesive"));

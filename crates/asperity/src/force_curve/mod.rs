@@ -148,9 +148,9 @@ const MISFIT: f64 = 0.1;
 /// ```
 /// use asperity::force_curve::{ForceModel, ForceOptions, ForceRecord, fit_force_curve};
 /// use asperity::reference::{AdhesiveModel, AdhesiveSphere};
-/// // A sphere of 10 um on 1 MPa (E*) with 50 mJ/m², pulled off from 0.4 um on.
+/// // A sphere of 10 um on 1 MPa (E*) with 50 mJ/m², pulled off from 1.2 um on.
 /// let truth = AdhesiveSphere::new(AdhesiveModel::Jkr, 10e-6, 1e6, 0.05)?;
-/// let depths: Vec<f64> = (0..300).map(|k| 0.4e-6 - 6e-9 * f64::from(k)).collect();
+/// let depths: Vec<f64> = (0..300).map(|k| 1.2e-6 - 6e-9 * f64::from(k)).collect();
 /// let mut loads = vec![];
 /// for depth in &depths {
 ///     loads.push(truth.at_approach(*depth)?.map_or(0.0, |point| point.load));

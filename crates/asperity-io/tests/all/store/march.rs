@@ -45,18 +45,22 @@ fn go(march: &mut March, writer: &mut Writer, end: usize) {
     let shape = march.simulation().grid.shape();
     let (mut gap, mut displacement) = (Array2::zeros(shape), Array2::zeros(shape));
     let (mut contact, mut flattening) = (Array2::zeros(shape), Array2::zeros(shape));
+    let mut attraction = Array2::zeros(shape);
     while writer.len() < end {
         let Some(step) = march.advance().unwrap() else { break };
         step.gap_into(&mut gap);
         step.displacement_into(&mut displacement);
         step.contact_into(&mut contact);
         step.flattening_into(&mut flattening);
+        step.adhesive_traction_into(&mut attraction);
         let fields = [
             Field::Real(FieldKind::Pressure, step.pressure()),
             Field::Real(FieldKind::Gap, gap.view()),
             Field::Real(FieldKind::Displacement, displacement.view()),
             Field::Contact(contact.view()),
             Field::Real(FieldKind::Flattening, flattening.view()),
+            Field::Real(FieldKind::ContactPressure, step.contact_pressure()),
+            Field::Real(FieldKind::AdhesiveTraction, attraction.view()),
         ];
         let kept = if step.index() % 3 == 0 { &fields[..] } else { &[] };
         writer.append_with(&step.row(), step.quantities(), kept).unwrap();

@@ -20,10 +20,10 @@ pub enum FieldKind {
     Contact,
     /// Permanent flattening, in m: what the undeformed gap has gained; with plasticity = "accumulate".
     Flattening,
-    /// Pressure of the cells in contact, in Pa, 0 or more; with [adhesion], where `pressure` is less by the attraction.
+    /// Pressure of the cells in contact, in Pa, 0 or more; with adhesion, where `pressure` is less by the attraction.
     #[serde(rename = "contact_pressure")]
     ContactPressure,
-    /// Attraction between the surfaces, in Pa; with [adhesion].
+    /// Attraction between the surfaces, in Pa; with adhesion.
     #[serde(rename = "adhesive_traction")]
     AdhesiveTraction,
 }

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 use asperity_io::store::{At, FieldKind, Reader, Status};
 use serde_json::Value;
 
+use crate::asperity;
+
 /// The repository's root.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -14,10 +16,6 @@ fn root() -> PathBuf {
 
 fn example(name: &str) -> PathBuf {
     root().join("examples").join(name)
-}
-
-fn asperity(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_asperity")).args(arguments).current_dir(directory).output().unwrap()
 }
 
 fn stdout(output: &Output) -> String {

@@ -1,18 +1,16 @@
 //! Findings as a user meets them: on the terminal, in JSON, in the result, and as errors under --strict.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use asperity::finding::CODES;
 use asperity_io::store::{Reader, Status};
 use serde_json::Value;
 
+use crate::asperity;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn asperity(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_asperity")).args(arguments).current_dir(directory).output().unwrap()
 }
 
 fn stdout(output: &Output) -> String {

@@ -1,10 +1,11 @@
 //! Line contacts as a user of the command meets them.
 
 use std::path::Path;
-use std::process::{Command, Output};
 
 use asperity_io::store::{At, FieldKind, Reader};
 use serde_json::Value;
+
+use crate::asperity;
 
 const CASE: &str = r#"
 title = "roller"
@@ -28,10 +29,6 @@ fields = ["pressure", "gap", "displacement", "contact"]
 quantities = ["contact_spots", "largest_spot", "contact_perimeter"]
 every = 2
 "#;
-
-fn asperity(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_asperity")).args(arguments).current_dir(directory).output().unwrap()
-}
 
 /// Standard output of a command that succeeds.
 fn done(directory: &Path, arguments: &[&str]) -> String {

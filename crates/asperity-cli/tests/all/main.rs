@@ -13,3 +13,17 @@ mod plot;
 mod stress;
 mod study;
 mod surface;
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// The program with these arguments, in a directory.
+fn command(directory: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_asperity"));
+    command.args(arguments).current_dir(directory);
+    command
+}
+
+fn asperity(directory: &Path, arguments: &[&str]) -> Output {
+    command(directory, arguments).output().unwrap()
+}

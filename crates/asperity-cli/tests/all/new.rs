@@ -1,11 +1,8 @@
 //! `asperity new`: a case with one's own files.
 
-use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
-fn asperity(folder: &Path, words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_asperity")).args(words).current_dir(folder).output().unwrap()
-}
+use crate::asperity;
 
 fn told(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()

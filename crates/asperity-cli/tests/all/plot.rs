@@ -1,7 +1,8 @@
 //! The options of `asperity plot`, and its animations.
 
 use std::path::Path;
-use std::process::{Command, Output};
+
+use crate::asperity;
 
 /// A ball on rubber with six stored instants, small enough for a test.
 const CASE: &str = r#"
@@ -27,10 +28,6 @@ path = "ball.zarr"
 fields = ["pressure", "gap"]
 every = 2
 "#;
-
-fn asperity(directory: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_asperity")).args(arguments).current_dir(directory).output().unwrap()
-}
 
 fn result() -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();

@@ -9,6 +9,8 @@ use asperity_io::answer::{self, Units};
 use asperity_io::store::Reader;
 use serde_json::Value;
 
+use crate::{asperity, command};
+
 /// A rough ball on rubber, some hundredths of a second.
 const CASE: &str = r#"
 title = "ball"
@@ -44,16 +46,6 @@ fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("ball.toml"), CASE).unwrap();
     folder
-}
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_asperity"));
-    command.args(arguments).current_dir(folder);
-    command
-}
-
-fn asperity(folder: &Path, arguments: &[&str]) -> Output {
-    command(folder, arguments).output().unwrap()
 }
 
 fn study(folder: &Path, arguments: &[&str]) -> Output {

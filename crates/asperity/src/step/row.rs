@@ -205,8 +205,8 @@ impl<'a> Step<'a> {
     /// Attraction between the surfaces \[Pa\], 0 or more: contact pressure less pressure.
     pub fn adhesive_traction_into(&self, traction: &mut Array2<f64>) {
         traction.fill(0.0);
-        if let Some(law) = self.traction {
-            traction.iter_mut().zip(law.bound()).for_each(|(t, b)| *t = -b);
+        if let Some(bound) = self.other_traction() {
+            traction.zip_mut_with(&bound, |t, b| *t = -b);
         }
     }
 

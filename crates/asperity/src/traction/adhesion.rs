@@ -175,6 +175,12 @@ pub fn own_response(grid: &Grid, boundary: Boundary, kernel: &Arc<dyn Kernel>) -
     Ok(response[middle])
 }
 
+/// Cells along x and y with which a trap number on this grid falls to [`FINE_TRAP`].
+pub(super) fn cells_needed(grid: &Grid, trap: f64) -> [usize; 2] {
+    let factor = (trap / FINE_TRAP).max(1.0);
+    grid.cells().map(|n| if n == 1 { 1 } else { (n as f64 * factor).ceil() as usize })
+}
+
 impl TractionLaw for Adhesion {
     fn start(&self, _grid: &Grid) -> Box<dyn SurfaceTraction> {
         Box::new(Attraction { law: *self })
@@ -208,14 +214,10 @@ impl TractionLaw for Adhesion {
         if trap <= LARGEST_TRAP || self.allow_unresolved {
             return Ok(());
         }
-        let [nx, ny] = simulation.grid.cells();
-        let factor = trap / FINE_TRAP;
-        let needed = |n: usize| if n == 1 { 1.0 } else { (n as f64 * factor).ceil() };
+        let [nx, ny] = cells_needed(&simulation.grid, trap);
         let expected = format!(
             "at most {LARGEST_TRAP}, better {FINE_TRAP}: these cells snap into and out of contact one by one, which makes false forces and \
-             hysteresis. Take {} x {} cells, or a longer range; allow_unresolved = true runs it all the same",
-            needed(nx),
-            needed(ny)
+             hysteresis. Take {nx} x {ny} cells, or a longer range; allow_unresolved = true runs it all the same"
         );
         Err(Error::invalid("trap number of the adhesion", format!("{trap:.3}"), expected)
             .of("adhesion.range"))

@@ -124,6 +124,8 @@ pub(crate) struct TractionSolver {
     /// Of the last solve.
     passes: usize,
     residual: f64,
+    /// Σ γ(g) of the last pass \[Pa m\], where the law has it.
+    potential: Option<f64>,
 }
 
 /// The parts of a total traction.
@@ -186,6 +188,7 @@ impl TractionSolver {
             scale: 0.0,
             passes: 0,
             residual: 0.0,
+            potential: None,
         }
     }
 
@@ -220,7 +223,7 @@ impl TractionSolver {
         Some(match quantity {
             Quantity::AdhesiveLoad => -cell_area * sum(&self.now.bound),
             Quantity::RepulsiveLoad => cell_area * sum(&self.now.contact.pressure),
-            Quantity::AdhesionEnergy => cell_area * self.law.energy(&self.gap)?,
+            Quantity::AdhesionEnergy => cell_area * self.potential?,
             Quantity::OuterIterations => self.passes as f64,
             Quantity::AdhesionResidual => self.residual,
             _ => return None,
@@ -313,7 +316,7 @@ impl Run<'_> {
                 let failed = !is_attraction && (rises || pass.residual > 2.0 * best);
                 own.extrapolation.step(&mut own.now.bound, &own.next, failed);
                 let [least, most] = own.law.limits();
-                own.now.bound.iter_mut().for_each(|b| *b = b.clamp(least, most));
+                each(&mut own.now.bound, &own.next[..], |b, _| *b = b.clamp(least, most));
             }
             best = best.min(pass.residual);
             energy = pass.energy.map_or(energy, |now| now.min(energy));
@@ -355,14 +358,15 @@ impl Run<'_> {
             [(next - b).abs(), next.abs() + q, t * (kb + kq), t]
         });
         own.scale = own.scale.max(size);
-        let potential = own.law.energy(&own.gap);
+        own.potential = own.law.energy(&own.gap);
         let of_load = if matches!(problem.prescribed, Prescribed::Load(_)) { w * total } else { 0.0 };
         Ok(Pass {
             outcome,
             residual: if change > 0.0 { change / size.max(LEAST * own.scale) } else { 0.0 },
-            energy: potential.map(|potential| 0.5 * c * work + potential - of_load),
+            energy: own.potential.map(|potential| 0.5 * c * work + potential - of_load),
         })
     }
+
     /// The approach at which the tractions carry `load`, from `start` on: enclosed by growing steps, found by the Illinois form of
     /// false position.
     fn search_approach(&mut self, problem: &Problem, load: f64, start: f64) -> Result<()> {

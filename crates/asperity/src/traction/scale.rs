@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use super::adhesion::{FINE_TRAP, own_response};
+use super::adhesion::{cells_needed, own_response};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::simulation::Simulation;
@@ -22,7 +22,7 @@ pub struct AdhesionScale {
     pub strength: f64,
     /// c k max|dσ/dg| of the relaxed bodies: 1 where each cell snaps on its own.
     pub trap: f64,
-    /// Cells along x and y with which it is [`FINE_TRAP`].
+    /// Cells along x and y with which it is [`FINE_TRAP`](super::FINE_TRAP).
     pub cells_needed: [usize; 2],
     /// One over the rms curvature of the gap \[m\]; infinite where it is flat.
     pub radius: f64,
@@ -44,8 +44,6 @@ impl AdhesionScale {
         let Simulation { grid, boundary, kernel, gap, .. } = simulation;
         let compliance = simulation.relaxed();
         let trap = law.trap(compliance, own_response(grid, *boundary, kernel)?);
-        let factor = (trap / FINE_TRAP).max(1.0);
-        let needed = |n: usize| if n == 1 { 1 } else { (n as f64 * factor).ceil() as usize };
         let [rms, middle] = curvatures(grid, *boundary, gap);
         let radius = 1.0 / rms;
         let tabor = law.tabor(radius, compliance);
@@ -56,7 +54,7 @@ impl AdhesionScale {
             range: law.range,
             strength: law.strength(),
             trap,
-            cells_needed: grid.cells().map(needed),
+            cells_needed: cells_needed(grid, trap),
             radius,
             tabor,
             expected_pull_off: is_round.then(|| work * pull_off(1.157 * tabor)),

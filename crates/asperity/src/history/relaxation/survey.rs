@@ -7,9 +7,9 @@ use super::estimate::{LATE, ROUNDING};
 use crate::contact::Hardness;
 
 kernel! {
-    /// Over the cells in contact at either end, and last over those at the end, at the start and at both: of what bends the course of u, where also
-    /// cells apart that would overlap count; of U', U and |u'|; of what bends it below the hardness; of cells; of the largest
-    /// pressures; of cells.
+    /// In this order, over the cells in contact at either end of the step: what bends the course of u (here cells apart that would
+    /// overlap count too), U', U, |u'|, what bends it in cells below the hardness; the number of cells in contact at the end; the hardness
+    /// of those below it; the number of cells in contact at the start, and at both ends.
     pub(super) struct Sums<'a> {
         cells {
             u: &'a [f64], third: &'a [f64], rigid_before: &'a [f64], p: &'a [f64], unit: &'a [f64],

@@ -42,7 +42,7 @@ cargo xtask TASK
 ";
 
 /// What the Python side of the tests and figures imports.
-const PYTHON_PACKAGES: [&str; 15] = [
+const PYTHON_PACKAGES: [&str; 16] = [
     "numpy",
     "xarray",
     "zarr",
@@ -55,6 +55,8 @@ const PYTHON_PACKAGES: [&str; 15] = [
     "maturin",
     "pytest",
     "mypy",
+    // files of force curves
+    "afmformats",
     // studies on a cluster, and the notebooks
     "distributed",
     "nbclient",

@@ -67,16 +67,18 @@ pub enum Error {
     },
     /// No equilibrium under the prescribed load: the surfaces that adhered are pulled off; the rows so far are complete.
     #[error(
-        "no equilibrium at t = {time} s: the load {} N is below pull-off (last stable load {} N, at an approach of {} m); \
+        "no equilibrium at t = {time} s: the load {} {unit} is below pull-off (last stable load {} {unit}, at an approach of {} m); \
          prescribe the approach to follow the contact through it, or let a stage that begins above it end with until = \"contact-lost\"",
         significant(*load, 4), significant(last[0], 6), significant(last[1], 6)
     )]
     PulledOff {
-        /// Prescribed load \[N\].
+        /// Prescribed load \[N\], per length \[N/m\] on a line of cells.
         load: f64,
+        /// The unit of loads.
+        unit: &'static str,
         /// Time \[s\].
         time: f64,
-        /// Load \[N\] and approach \[m\] of the last row.
+        /// Load and approach \[m\] of the last row.
         last: [f64; 2],
     },
     /// The run was interrupted on request; the rows so far are complete.

@@ -105,7 +105,7 @@ pub struct New {
     /// What the case is for: a case with your own files in place of a starter case
     #[arg(long = "for", value_name = "PURPOSE", value_enum, requires = "from", requires = "material")]
     pub purpose: Option<Purpose>,
-    /// The measured surface; for an indentation also a record of time, load and depth
+    /// The measured surface; for an indentation and adhesion also a record of time, load and depth
     #[arg(long, value_name = "FILE", requires = "purpose")]
     pub from: Option<PathBuf>,
     /// The measured material: a table of a DMA, relaxation or creep test, or what `material fit -o` or `fit-indentation -o` wrote

@@ -141,12 +141,12 @@ impl Stepper {
                 self.outcome = report.outcome();
                 return Err(Error::NotConverged(report));
             }
-            Err(Error::PulledOff { load, .. }) => {
+            Err(Error::PulledOff { load, unit, .. }) => {
                 let StepState { before, now, loads, .. } = &mut self.state;
                 let last = [loads[0], before.approach];
                 // The best state is that of the last row.
                 now.clone_from(before);
-                return Err(Error::PulledOff { load, time: step.instant.time, last });
+                return Err(Error::PulledOff { load, unit, time: step.instant.time, last });
             }
             Err(error) => return Err(error),
         }

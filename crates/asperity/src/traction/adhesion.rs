@@ -116,13 +116,6 @@ impl Adhesion {
         compliance * own * self.steepest()
     }
 
-    /// Tabor's number of a sphere of this radius \[m\] on bodies of 1/E* = `compliance` \[1/Pa\], (R w²/(E*² range³))^(1/3): the
-    /// elastic lengthening at pull-off over the range. Below 0.1 adhesion acts as a load besides (DMT), above 5 only at the edge
-    /// of the contact (JKR).
-    pub fn tabor(&self, radius: f64, compliance: f64) -> f64 {
-        libm::cbrt(radius * (self.work * compliance).powi(2) / self.range.powi(3))
-    }
-
     /// # Errors
     /// [`Error::Invalid`] that names the argument.
     pub fn validate(&self) -> Result<()> {

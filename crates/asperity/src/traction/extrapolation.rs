@@ -1,19 +1,20 @@
 //! Extrapolation of a fixed-point iteration b <- B(b) from its last passes (D. G. Anderson, J. ACM 12 (1965) 547).
 
-use asperity_sweep::{dot, each};
+use asperity_sweep::{dot, each, zeros};
 
 /// Passes that are looked back to.
 const DEPTH: usize = 2;
 
-/// The last passes, latest last: b and f = B - b.
+/// The last passes, latest last: b and f = B - b; and fields of passes that are forgotten.
 #[derive(Default)]
 pub(super) struct Extrapolation {
     passes: Vec<[Vec<f64>; 2]>,
+    free: Vec<[Vec<f64>; 2]>,
 }
 
 impl Extrapolation {
     pub(super) fn clear(&mut self) {
-        self.passes.clear();
+        self.free.append(&mut self.passes);
     }
 
     /// Sets `bound` to B of the last pass, where `bound` was extrapolated beyond it, and forgets the others; `false` where it was not.
@@ -21,25 +22,27 @@ impl Extrapolation {
         if self.passes.len() < 2 {
             return false;
         }
-        let Some([b, f]) = self.passes.pop() else { return false };
-        self.passes.clear();
+        let Some([b, f]) = self.passes.last() else { return false };
         each(bound, (&b[..], &f[..]), |to, (b, f)| *to = b + f);
+        self.clear();
         true
     }
 
     /// Sets `bound` to the next b after a pass that gave `next` = B(b). Where the pass `failed`, half a plain step from the pass
     /// before it.
     pub(super) fn step(&mut self, bound: &mut [f64], next: &[f64], failed: bool) {
-        if failed && let Some([b, f]) = self.passes.pop() {
-            bound.iter_mut().zip(b.iter().zip(&f)).for_each(|(to, (b, f))| *to = b + 0.5 * f);
-            self.passes.clear();
+        if failed && let Some([b, f]) = self.passes.last() {
+            each(bound, (&b[..], &f[..]), |to, (b, f)| *to = b + 0.5 * f);
+            self.clear();
             return;
         }
-        let f: Vec<f64> = next.iter().zip(&*bound).map(|(next, b)| next - b).collect();
         if self.passes.len() > DEPTH {
-            self.passes.remove(0);
+            self.free.push(self.passes.remove(0));
         }
-        self.passes.push([bound.to_vec(), f]);
+        let [mut b, mut f] = self.free.pop().unwrap_or_else(|| [zeros(bound.len()), zeros(bound.len())]);
+        b.copy_from_slice(bound);
+        each(&mut f, (next, &b[..]), |f, (next, b)| *f = next - b);
+        self.passes.push([b, f]);
         let weights = self.weights();
         bound.fill(0.0);
         for ([b, f], weight) in self.passes.iter().zip(&weights) {

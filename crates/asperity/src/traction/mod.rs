@@ -29,7 +29,7 @@ mod tests;
 use std::sync::atomic::AtomicBool;
 
 pub use adhesion::{Adhesion, AdhesionLaw, FINE_TRAP, LARGEST_TRAP, own_response};
-pub use scale::{AdhesionScale, pull_off};
+pub use scale::AdhesionScale;
 
 use crate::contact::{
     ContactState, Outcome, Prescribed, Problem, Solver, SolverOptions, Task, not_converged,
@@ -233,7 +233,7 @@ impl TractionSolver {
     /// Solves for the total traction, which `state` holds in the end; its approach is where the search starts.
     ///
     /// # Errors
-    /// [`Error::NotConverged`], [`Error::PulledOff`], and those of the contact and of the law.
+    /// [`Error::NotConverged`], after which `state` holds the last pass; [`Error::PulledOff`]; those of the contact and of the law.
     pub(crate) fn solve(&mut self, solver: &mut Solver, task: Task) -> Result<Outcome> {
         let Task { operator, problem, options, state, interrupt } = task;
         self.now.copy_from(&self.last);
@@ -241,26 +241,30 @@ impl TractionSolver {
         let tolerance = self.tolerance.unwrap_or(options.tolerance);
         let mut run =
             Run { own: self, solver, operator, options, tolerance, interrupt, total: Outcome::default() };
-        match problem.prescribed {
-            Prescribed::Approach(_) => run.solve(problem)?,
+        let solved = match problem.prescribed {
+            Prescribed::Approach(_) => run.solve(problem),
             Prescribed::Load(load) => match run.solve_under(problem, load) {
                 Err(Error::Infeasible { .. }) if run.own.law.is_attraction() => {
+                    let (unit, last) = (run.operator.grid().units("N"), [f64::NAN; 2]);
                     self.now.copy_from(&self.last);
-                    return Err(Error::PulledOff { load, time: f64::NAN, last: [f64::NAN; 2] });
+                    return Err(Error::PulledOff { load, unit, time: f64::NAN, last });
                 }
-                Err(Error::Infeasible { .. }) => run.search_approach(problem, load, state.approach)?,
-                solved => solved?,
+                Err(Error::Infeasible { .. }) => run.search_approach(problem, load, state.approach),
+                solved => solved,
             },
+        };
+        let total = run.total;
+        if !matches!(solved, Ok(()) | Err(Error::NotConverged(_))) {
+            return solved.map(|()| total);
         }
-        let (total, residual) = (run.total, run.total.residual);
-        self.residual = residual;
+        self.residual = total.residual;
         let Tractions { bound, contact } = &self.now;
         each(&mut state.pressure, (&contact.pressure[..], &bound[..]), |t, (q, b)| *t = q + b);
         let images = (&contact.unit_displacement[..], &self.image[..]);
         each(&mut state.unit_displacement, images, |u, (kq, kb)| *u = kq + kb);
         state.approach = contact.approach;
         state.rounding = contact.rounding + 1.0;
-        Ok(total)
+        solved.map(|()| total)
     }
 }
 
@@ -321,7 +325,8 @@ impl Run<'_> {
             best = best.min(pass.residual);
             energy = pass.energy.map_or(energy, |now| now.min(energy));
         }
-        Err(not_converged("surface traction", self.options, &self.total))
+        let options = SolverOptions { tolerance: self.tolerance, ..*self.options };
+        Err(not_converged("surface traction", &options, &self.total))
     }
 
     fn pass(&mut self, problem: &Problem) -> Result<Pass> {

@@ -5,6 +5,7 @@
 //! the observed error: approach and peak pressure converge as (dx/a)^2, an area is known to a fraction of its last ring of cells,
 //! and invariants hold to the tolerance of the solver.
 
+mod adhesion;
 mod elastic;
 mod energy;
 mod invariants;
@@ -49,7 +50,7 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 31] = [
+pub const CASES: [Case; 35] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
@@ -81,6 +82,10 @@ pub const CASES: [Case; 31] = [
     ("hertz-energy", energy::hertz),
     ("energy-balance", energy::balance),
     ("lasting-dents", energy::dents),
+    ("jkr-wave", adhesion::wave),
+    ("maugis-sphere", adhesion::maugis),
+    ("adhesive-sphere", adhesion::adhesive_sphere),
+    ("adhesive-retraction", adhesion::retraction),
 ];
 
 /// The checks of one case.

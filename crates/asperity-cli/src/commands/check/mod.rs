@@ -132,10 +132,8 @@ fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
     if let Some(adhesion) = &inputs.adhesion {
         let (work, range) = (quantity(adhesion.work, "J/m2"), quantity(adhesion.range, "m"));
         let strength = quantity(adhesion.strength, "Pa");
-        line(
-            "adhesion",
-            format!("{work} over {range}, {strength} at most; Tabor's number {:.2}", adhesion.tabor),
-        );
+        let tabor = adhesion.tabor.map_or(String::new(), |tabor| format!("; Tabor's number {tabor:.2}"));
+        line("adhesion", format!("{work} over {range}, {strength} at most{tabor}"));
         let [nx, ny] = adhesion.cells_needed;
         let fine = if adhesion.trap <= FINE_TRAP {
             "fine enough".to_owned()

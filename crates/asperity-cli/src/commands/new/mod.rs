@@ -1,5 +1,6 @@
 //! `asperity new`: a starter case, or a case with one's own files.
 
+mod adhesion;
 mod own;
 
 use std::path::PathBuf;

@@ -11,6 +11,7 @@ use asperity_io::curve::{Columns, Curves, Indentation, Kind, Request, ShiftReque
 use asperity_io::output::write_all;
 use asperity_io::topography::Topography;
 
+use super::adhesion;
 use crate::args::{New, Purpose, SurfaceFile};
 use crate::commands::material::{ROOM, estimated_unless_known, refused};
 use crate::commands::surface;
@@ -18,17 +19,12 @@ use crate::failure::Failure;
 use crate::format::{extent, quantity};
 
 /// The remark behind a value that only the user knows.
-const YOURS: &str = "# YOUR VALUE: ";
+pub(super) const YOURS: &str = "# YOUR VALUE: ";
 /// Cells along a side of a case at most; a finer surface is resampled.
 const MOST_CELLS: usize = 512;
 
 /// Writes the case.
 pub(super) fn write(args: &New, purpose: Purpose, from: &Path, material: &Path) -> Result<(), Failure> {
-    if purpose == Purpose::Adhesion {
-        return Err(Failure::input(
-            "--for is \"adhesion\", but contacts that stick are not computed yet; choose seal, friction, contact or indentation",
-        ));
-    }
     if args.path.is_some() {
         return Err(Failure::input(
             "with --for give one PATH, that of the case; a template has no own files",
@@ -39,11 +35,11 @@ pub(super) fn write(args: &New, purpose: Purpose, from: &Path, material: &Path) 
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let material = Material::of(material, &folder)?;
     let record = match purpose {
-        Purpose::Indentation => Indentation::read(from, &Columns::default()).ok(),
+        Purpose::Indentation | Purpose::Adhesion => Indentation::read(from, &Columns::default()).ok(),
         _ => None,
     };
     let text = match record {
-        Some(record) => indentation_of(&record, from, &material)?,
+        Some(record) => indentation_of(&record, purpose, from, &folder, &material)?,
         None => of_surface(args, purpose, from, &folder, &material)?,
     };
     write_all(&path, args.force, text.as_bytes())?;
@@ -217,7 +213,7 @@ fn quoted<'a>(text: &'a str, key: &str) -> Option<&'a str> {
 }
 
 /// The largest number of one digit that is not above a value: 2e3 of 2.9e3.
-fn one_digit(value: f64) -> f64 {
+pub(super) fn one_digit(value: f64) -> f64 {
     let power = 10f64.powf(value.log10().floor());
     // Rounded in decimal, so that it reads "0.3" and not "0.30000000000000004".
     format!("{:.0e}", (value / power + 1e-9).floor() * power).parse().unwrap_or(value)
@@ -249,6 +245,7 @@ fn of_surface(
         Purpose::Seal => "Leak of a seal",
         Purpose::Friction => "Friction over the velocity",
         Purpose::Indentation => "Ball with a rough surface",
+        Purpose::Adhesion => "Adhesion of a rough surface",
         _ => "Contact of a rough surface",
     };
     let mut text = String::from(
@@ -265,11 +262,24 @@ fn of_surface(
         text += &indenter(material, 10.0 * topography.size[0]);
     }
     text += &material.body();
-    text += &match purpose {
+    let rest = match purpose {
         Purpose::Friction => friction(&topography, material),
+        Purpose::Adhesion => {
+            let [low, high] = extent(topography.heights.iter().copied());
+            adhesion::retraction(high - low, material.end())
+        }
         _ => in_time(purpose, material),
     };
-    Ok(text)
+    Ok(with_adhesion(text, rest, purpose, folder))
+}
+
+/// The two parts of a case, with `[adhesion]` between them where it is for that.
+fn with_adhesion(before: String, after: String, purpose: Purpose, folder: &Path) -> String {
+    let section = match purpose {
+        Purpose::Adhesion => adhesion::section(&before, &after, folder),
+        _ => String::new(),
+    };
+    [before, section, after].concat()
 }
 
 fn domain(topography: &Topography, purpose: Purpose) -> String {
@@ -385,13 +395,22 @@ fn contact_radius(indenter: &str, depth: f64) -> Option<f64> {
     ball.map(|radius| (radius * depth).sqrt()).or_else(|| Some(2.0 * depth / (PI * cone()?)))
 }
 
-/// An indentation by what the test controlled: its depths or its loads.
-fn indentation_of(record: &Indentation, from: &Path, material: &Material) -> Result<String, Failure> {
+/// An indentation by what the test controlled: its depths or its loads. Bodies that stick are moved by the depth, through the largest
+/// tension.
+fn indentation_of(
+    record: &Indentation,
+    purpose: Purpose,
+    from: &Path,
+    folder: &Path,
+    material: &Material,
+) -> Result<String, Failure> {
     /// Points of the history in the case.
     const POINTS: usize = 40;
     let columns = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
     let given = controlled(&columns).map_err(Failure::about(from.display()))?;
+    let sticks = purpose == Purpose::Adhesion;
     let (control, values, unit) = match given {
+        _ if sticks => ("approach", &record.depths, "m"),
         Given::Depth => ("approach", &record.depths, "m"),
         Given::Load => ("load", &record.loads, "N"),
     };
@@ -401,7 +420,7 @@ fn indentation_of(record: &Indentation, from: &Path, material: &Material) -> Res
     let peak = (0..=last).max_by(|a, b| values[*a].total_cmp(&values[*b]));
     let mut points: Vec<String> = vec![];
     for n in (0..=last).filter(|n| n % every == 0 || *n == last || Some(*n) == peak) {
-        let (time, value) = (record.times[n] - start, values[n].max(0.0));
+        let (time, value) = (record.times[n] - start, values[n].max(if sticks { f64::MIN } else { 0.0 }));
         points.push(format!("  [\"{time:.6e} s\", \"{value:.6e} {unit}\"],"));
     }
     let deepest = record.depths.iter().copied().fold(0.0, f64::max).max(1e-9);
@@ -409,12 +428,17 @@ fn indentation_of(record: &Indentation, from: &Path, material: &Material) -> Res
     let indenter = indenter(material, one_digit(100.0 * deepest));
     let radius = contact_radius(&indenter, deepest).unwrap_or(10.0 * deepest);
     let size = one_digit(8.0 * radius).max(1e-9);
-    let [low, high] = [0.0, record.loads.iter().copied().fold(0.0, f64::max)];
-    Ok(format!(
+    let [low, high] = extent(record.loads.iter().copied());
+    let title = if sticks { "Pull-off" } else { "Indentation" };
+    let by = if sticks { "# the depth of the test, through the pull-off" } else { "# what the test controlled; the other channel is the response" };
+    let before = format!(
         "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved.\n\
-         title = {}\n\n[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n{indenter}{}\n[load]                                # {} rows of the record, {} to {}, depth up to {}\ncontrol = \"{control}\"{}# what the test controlled; the other channel is the response\nhistory = {{ kind = \"table\", points = [\n{}\n] }}\n\n[time]\nend = \"{:.6e} s\"\nsteps = 80\n\n[output]\nfields = [\"pressure\", \"displacement\"]\nevery = 10\n",
-        toml(&format!("Indentation: {}", surface::name(from))),
+         title = {}\n\n[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n{indenter}{}",
+        toml(&format!("{title}: {}", surface::name(from))),
         material.body(),
+    );
+    let after = format!(
+        "\n[load]                                # {} rows of the record, {} to {}, depth up to {}\ncontrol = \"{control}\"{}{by}\nhistory = {{ kind = \"table\", points = [\n{}\n] }}\n\n[time]\nend = \"{:.6e} s\"\nsteps = 80\n\n[output]\nfields = [\"pressure\", \"displacement\"]\nevery = 10\n",
         record.times.len(),
         quantity(low, "N"),
         quantity(high, "N"),
@@ -422,11 +446,12 @@ fn indentation_of(record: &Indentation, from: &Path, material: &Material) -> Res
         " ".repeat(16),
         points.join("\n"),
         record.times.get(last).copied().unwrap_or(1.0) - start,
-    ))
+    );
+    Ok(with_adhesion(before, after, purpose, folder))
 }
 
 /// A number with its unit in full digits, to be read again.
-fn plain(value: f64, unit: &str) -> String {
+pub(super) fn plain(value: f64, unit: &str) -> String {
     format!("{value:e} {unit}")
 }
 

@@ -32,7 +32,9 @@ pub(super) fn section(before: &str, after: &str, folder: &Path) -> String {
                           against the contact";
             of(digits, remark)
         }
-        None => of(1e-6, &format!("{YOURS}as short as the cells allow; asperity check prints the trap number")),
+        None => {
+            of(1e-6, &format!("{YOURS}as short as the cells allow; asperity check prints the trap number"))
+        }
     }
 }
 

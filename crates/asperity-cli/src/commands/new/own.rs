@@ -430,7 +430,11 @@ fn indentation_of(
     let size = one_digit(8.0 * radius).max(1e-9);
     let [low, high] = extent(record.loads.iter().copied());
     let title = if sticks { "Pull-off" } else { "Indentation" };
-    let by = if sticks { "# the depth of the test, through the pull-off" } else { "# what the test controlled; the other channel is the response" };
+    let by = if sticks {
+        "# the depth of the test, through the pull-off"
+    } else {
+        "# what the test controlled; the other channel is the response"
+    };
     let before = format!(
         "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved.\n\
          title = {}\n\n[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n{indenter}{}",

@@ -42,7 +42,7 @@ pub(super) fn section(before: &str, after: &str, folder: &Path) -> String {
 /// material is known.
 pub(super) fn retraction(height: f64, end: f64) -> String {
     let half = super::own::one_digit(0.5 * end);
-    let away = plain(-super::own::one_digit(0.5 * height), "m");
+    let away = plain(-super::own::one_digit(0.1 * height), "m");
     format!(
         "\n[[load.stages]]\ncontrol = \"pressure\"                  # mean over the surface\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure that \
          brings them together\nduration = \"{half} s\"                      {YOURS}how long they are pressed\nsteps = 20\n\

@@ -62,7 +62,10 @@ fn marked(text: &str) -> Vec<String> {
             table = line.split(']').next().unwrap_or_default().trim_matches(['[', ']']);
         }
         if let Some((key, _)) = line.split_once('=').filter(|_| line.contains(YOURS)) {
-            keys.push(format!("{table}.{}", key.trim()));
+            let key = format!("{table}.{}", key.trim());
+            if !keys.contains(&key) {
+                keys.push(key);
+            }
         }
     }
     keys

@@ -8,6 +8,8 @@ use crate::indentation::noise;
 const FEWEST: usize = 20;
 const FREE: usize = 5;
 const MOST: usize = 1_000_000;
+/// The fit takes means of neighbouring rows, so that no more than this number are left: between them the curve is straight.
+const FITTED: usize = 1000;
 /// Larger numbers are not plausible measurements.
 const LARGEST: f64 = 1e30;
 /// Standard deviations of the load beyond which an attraction is not noise: a million normal numbers reach 5.
@@ -118,13 +120,27 @@ impl Rows {
         Ok(Rows { contact, free, baseline, noise, spans: [of_loads, of_depths], rest, numbers })
     }
 
+    /// Means of neighbouring rows, as many as are fitted.
+    pub(super) fn averaged(&self) -> Rows {
+        let count = (self.contact.len() + self.free.len()).div_ceil(FITTED);
+        let contact =
+            self.contact.chunks(count).map(|rows| [0, 1].map(|k| mean_of(rows.iter().map(|row| row[k]))));
+        Rows {
+            contact: contact.collect(),
+            free: self.free.chunks(count).map(mean).collect(),
+            noise: self.noise.map(|deviation| deviation / (count as f64).sqrt()),
+            numbers: vec![],
+            ..*self
+        }
+    }
+
     /// Loads and depths with the scale of the deflection larger by this fraction.
     pub(super) fn with_deflection(&self, change: f64, stiffness: f64) -> Rows {
         let contact = self.contact.iter().map(|[w, d]| [w * (1.0 + change), d - change * w / stiffness]);
         Rows {
             contact: contact.collect(),
             free: self.free.iter().map(|w| w * (1.0 + change)).collect(),
-            numbers: self.numbers.clone(),
+            numbers: vec![],
             rest: self.rest * (1.0 + change),
             ..*self
         }
@@ -175,7 +191,12 @@ fn scatter(noise: f64, count: usize) -> f64 {
 }
 
 fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
+    mean_of(values.iter().copied())
+}
+
+fn mean_of(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    values.sum::<f64>() / count
 }
 
 fn median(values: &[f64]) -> f64 {

@@ -80,6 +80,21 @@ fn intervals_hold_the_truth() {
 }
 
 #[test]
+fn long_records_are_fitted_by_means_that_keep_the_intervals() {
+    let held = |seed| {
+        let fit =
+            fit(ForceModel::Jkr, &curve(ForceModel::Jkr, 5000, [2e-9, 1e-9], seed), ForceOptions::default());
+        assert_eq!(fit.rows.len(), fit.predicted.len());
+        // 2 nN of some 0.6 uN and 1 nm of 0.8 um, as they were added to the rows.
+        assert!(fit.relative_rms < 5e-3 && fit.used.iter().sum::<usize>() == fit.rows.len(), "{fit:?}");
+        [fit.contact_modulus.holds(MODULUS), fit.work.holds(WORK)].map(usize::from)
+    };
+    let held = (1..=50u64).into_par_iter().map(held).collect::<Vec<_>>();
+    let held = [0, 1].map(|k| held.iter().map(|held| held[k]).sum::<usize>());
+    assert!(held.iter().all(|n| *n >= 45), "{held:?}");
+}
+
+#[test]
 fn stated_uncertainties_widen_the_intervals() {
     let record = curve(ForceModel::Jkr, 200, [2e-9, 1e-9], 7);
     let half = |interval: Interval| (interval.high / interval.value).ln() / WIDTH;

@@ -148,8 +148,8 @@ pub fn labels(readers: &[Reader], names: &[String]) -> Vec<String> {
     }
     let keys: Vec<&str> = differ.iter().map(|(key, _)| key.as_str()).collect();
     let word = |key: &str, value: &Option<String>| match value {
-        Some(value) => format!("{} = {}", short(key, &keys), value.trim_matches('"')),
-        None => format!("no {}", short(key, &keys)),
+        Some(value) => format!("{} = {}", called(key, &keys), value.trim_matches('"')),
+        None => format!("no {}", called(key, &keys)),
     };
     let label =
         |n: usize| differ.iter().map(|(key, values)| word(key, &values[n])).collect::<Vec<_>>().join(", ");
@@ -159,6 +159,21 @@ pub fn labels(readers: &[Reader], names: &[String]) -> Vec<String> {
         if is_twice(label) { format!("{label} ({name})") } else { label.clone() }
     };
     labels.iter().zip(names).map(named).collect()
+}
+
+/// How a key is called in legends and tables: by its shortest end that says what it is and that no other of these keys has, "load" for
+/// "load.history.value".
+pub fn called(key: &str, all: &[&str]) -> String {
+    /// Ends that do not say what they are of.
+    const UNSAID: [&str; 2] = [".value", ".history"];
+    fn said(key: &str) -> &str {
+        UNSAID.iter().find_map(|end| key.strip_suffix(end)).map_or(key, said)
+    }
+    let others: Vec<&str> = all.iter().filter(|other| **other != key).map(|other| said(other)).collect();
+    match others.contains(&said(key)) {
+        true => short(key, all).to_owned(),
+        false => short(said(key), &others).replace('.', " "),
+    }
 }
 
 /// The shortest end of a key that no other of these keys has: "value" of "load.history.value".
@@ -335,6 +350,12 @@ mod tests {
             ["load.history.value", "temperature.history.value", "surface[0].seed", "surface[1].seed", "end"]
         );
         assert_eq!(short("surface.0.seed", &["surface.0.seed", "load.value"]), "seed");
+        let names = all.map(|key| called(key, &all));
+        assert_eq!(names, ["load", "temperature", "surface[0] seed", "surface[1] seed", "end"]);
+        let stages = ["load.stages.0.history.value", "load.stages.1.history.value"];
+        assert_eq!(called(stages[1], &stages), "stages 1");
+        let both = ["load.value", "load.history.value"];
+        assert_eq!(called(both[0], &both), "load.value");
     }
 
     #[test]

@@ -95,6 +95,18 @@ def test_parameters_of_solve_labels_and_failures(sphere):
     assert np.array_equal(data.approach.sel(material="stiff", load_given=0.002), alone.approach)
 
 
+def test_a_parameter_keeps_its_name_and_points_have_their_findings(sphere):
+    def pressed(x):
+        return asp.solve(sphere, zener(), load=x, times=[1.0], progress=False)
+
+    data = asp.study(pressed, {"x": [1e-3, -1.0]})
+    assert data.sizes["x"] == 2 and data.findings.values.tolist()[1] == -1
+    # 32 cells across 1 mm are few under 1 mN.
+    assert "few-contact-cells" in data.finding_codes.values[0] and data.findings.values[0] >= 1
+    fields = asp.study(pressed, {"x": [1e-3]}, fields=["gap"])
+    assert fields.sizes["x_given"] == 1 and fields.gap.dims[-2:] == ("x", "y")
+
+
 def test_points_of_different_length_are_padded(sphere):
     points = [dict(times=[1.0], load=0.001), dict(times=[1.0, 2.0, 3.0], load=0.002)]
     data = asp.study(dict(surface=sphere, material=zener()), points)

@@ -56,6 +56,23 @@ def test_the_dataset_on_disk_is_the_same(tmp_path):
     assert list(stored.status.values) == ["done", "done"]
 
 
+def test_each_run_has_its_errors_and_findings_and_a_large_table_does_not_stop_it(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    # 80 runs: their table as JSON is longer than a pipe holds.
+    vary = {"load.history.value": [f"{n} mN" for n in range(1, 81)]}
+    data = asp.study(CASE, vary=vary, directory=tmp_path / "s", error_bars=True)
+    one = asp.open(data.path[3].item())
+    bars = {bar.name: bar.error for bar in one.error_bars}
+    assert float(data.contact_area_error[3]) == bars["contact_area"] > 0.0
+    assert int(data.findings[3]) == len(one.findings)
+    assert data.finding_codes[3].item() == " ".join(sorted({finding["code"] for finding in one.findings}))
+    stored = xarray.open_zarr(tmp_path / "s" / "study.zarr")
+    for name in ("contact_area_error", "findings", "finding_codes"):
+        np.testing.assert_array_equal(stored[name], data[name])
+    with pytest.raises(asp.CaseError, match="error_bars"):
+        asp.study(CASE, {"load.history.value": ["1 mN"]}, error_bars=True)
+
+
 def test_what_is_wrong_is_an_error_of_the_case(tmp_path):
     with pytest.raises(asp.CaseError, match="load.history.value is"):
         asp.study(CASE, vary={"load.history.value": ["1 m"]}, directory=tmp_path / "s")

@@ -35,7 +35,7 @@ pub fn figure(plan: &Plan, table: &Table) -> Option<Figure> {
     for (row, value) in answer.values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
         let Some(x) = place(row) else { continue };
         let word = |n: &usize| {
-            format!("{} = {}", plan.short(&table.keys[*n].name), table.rows[row].run.values[*n].text())
+            format!("{} = {}", plan.called(&table.keys[*n].name), table.rows[row].run.values[*n].text())
         };
         let name = others.iter().map(word).collect::<Vec<_>>().join(", ");
         let curve = match curves.iter_mut().find(|(known, _)| *known == name) {
@@ -58,7 +58,7 @@ pub fn figure(plan: &Plan, table: &Table) -> Option<Figure> {
     if xs.is_empty() {
         return None;
     }
-    let label = table.keys[across].name.clone();
+    let label = plan.called(&table.keys[across].name);
     let x = match table.keys[across].unit {
         Some(unit) => axis(label, unit, &xs),
         None => {
@@ -74,12 +74,23 @@ pub fn figure(plan: &Plan, table: &Table) -> Option<Figure> {
     for (n, (name, places)) in curves.iter().enumerate() {
         panel = drawn(panel, name, places, COLOURS[n % COLOURS.len()]);
     }
-    let figure = Figure::new("").with(panel).columns(1).panel_size([360.0, 260.0]);
+    let figure =
+        Figure::new(title(plan, table).unwrap_or_default()).with(panel).columns(1).panel_size([360.0, 260.0]);
     Some(match (averaged, has_errors) {
         (true, _) => figure.caption("Mean over the seeds; the bars go from the least to the largest value."),
         (false, true) => figure.caption("The bars are the errors of the answers."),
         (false, false) => figure,
     })
+}
+
+/// "contact area over load and seed": the answer of the figure, and what was varied.
+pub fn title(plan: &Plan, table: &Table) -> Option<String> {
+    let keys: Vec<String> = plan.vary.iter().map(|varied| plan.called(&varied.key)).collect();
+    let keys = match keys.split_last()? {
+        (last, []) => last.clone(),
+        (last, others) => format!("{} and {last}", others.join(", ")),
+    };
+    Some(format!("{} over {keys}", table.answers.first()?.name.replace('_', " ")))
 }
 
 fn mean(values: &[[f64; 2]]) -> f64 {

@@ -14,7 +14,12 @@ use crate::verb::Verb;
 impl Verb for args::Compare {
     /// Prints the tables.
     fn run(&self) -> Result<(), Failure> {
-        let readers = self.results.iter().map(|path| Reader::open(path)).collect::<Result<Vec<_>, _>>()?;
+        let readers = super::labels::open(&self.results)?;
+        if readers.len() < 2 {
+            return Err(Failure::input(
+                "two results or more are compared, and only one of these is a result",
+            ));
+        }
         let kind = |reader: &Reader| (reader.header().grid.is_line(), reader.header().axis());
         let first = &readers[0];
         if let Some(other) = readers.iter().find(|reader| kind(reader) != kind(first)) {

@@ -1,6 +1,7 @@
-//! What several results are called: by the option --label, or by what differs between their cases.
+//! Several results: which of the named files they are, and what they are called: by the option --label, or by what differs between
+//! their cases.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use asperity_io::compare;
 use asperity_io::store::Reader;
@@ -8,6 +9,18 @@ use asperity_io::store::Reader;
 use crate::args::Labels;
 use crate::failure::Failure;
 use crate::format::counted;
+
+/// Opens results. Of several paths, such as those of `study/*`, files and the table of a study are no results; they are left out and told.
+pub fn open(paths: &[PathBuf]) -> Result<Vec<Reader>, Failure> {
+    let is_other = |path: &Path| path.is_file() || asperity_io::study::is_dataset(path);
+    let (others, results): (Vec<&PathBuf>, Vec<&PathBuf>) = paths.iter().partition(|path| is_other(path));
+    if results.is_empty() || others.is_empty() {
+        return Ok(paths.iter().map(|path| Reader::open(path)).collect::<Result<_, _>>()?);
+    }
+    let names: Vec<String> = others.iter().map(|path| path.display().to_string()).collect();
+    crate::messages::message!("left out, as no results: {}", names.join(", "));
+    Ok(results.into_iter().map(|path| Reader::open(path)).collect::<Result<_, _>>()?)
+}
 
 /// A label for each result.
 pub fn of(options: &Labels, readers: &[Reader]) -> Result<Vec<String>, Failure> {

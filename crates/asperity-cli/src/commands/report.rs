@@ -27,7 +27,7 @@ impl Verb for Report {
             [result] => self.output.clone().unwrap_or_else(|| result.with_extension("html")),
             _ => self.output.clone().unwrap_or_else(|| PathBuf::from("report.html")),
         };
-        let readers = self.results.iter().map(|path| Reader::open(path)).collect::<Result<Vec<_>, _>>()?;
+        let readers = super::labels::open(&self.results)?;
         let labels = super::labels::of(&self.labels, &readers)?;
         match &readers[..] {
             [reader] => {

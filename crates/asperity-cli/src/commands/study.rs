@@ -113,15 +113,19 @@ fn collect(args: &StudyFolder) -> Result<(), Failure> {
 fn draw(study: &Study, table: &Table, units: &Units) -> Result<(), Failure> {
     let name = study.folder.canonicalize().ok();
     let name = name.and_then(|folder| Some(folder.file_name()?.to_string_lossy().into_owned()));
-    let mut sheet = Sheet::new(name.unwrap_or_else(|| "study".into()));
+    let name = name.unwrap_or_else(|| "study".into());
+    let mut sheet = Sheet::new(match asperity_report::study::title(&study.plan, table) {
+        Some(title) => format!("{name}: {title}"),
+        None => name,
+    });
     if let Some(figure) = asperity_report::study::figure(&study.plan, table) {
         super::picture::write(&figure, &study.folder.join("study.png"), true)?;
         sheet = sheet.figure("Answer", &figure);
     }
+    sheet = sheet.table("Runs", &lines(study, table, units, usize::MAX));
     if let Some(words) = table.findings() {
         sheet = sheet.table("Findings", &[vec!["runs with findings".into()], vec![words]]);
     }
-    sheet = sheet.table("Runs", &lines(study, table, units, usize::MAX));
     Ok(sheet.write(&study.folder.join("study.html"), true)?)
 }
 
@@ -178,7 +182,7 @@ fn lines(study: &Study, table: &Table, units: &Units, most: usize) -> Vec<Vec<St
     let reader = done.and_then(|row| Reader::open(&study.result(&row.run)).ok());
     let units = reader.map_or_else(|| units.clone(), |reader| Units::of(&reader, units));
     let shown: Vec<&str> = table.answers.iter().map(|column| column.name.as_str()).take(most).collect();
-    let keys = study.plan.vary.iter().map(|varied| study.plan.short(&varied.key).to_owned());
+    let keys = study.plan.vary.iter().map(|varied| study.plan.called(&varied.key));
     let head = keys.chain(["status".into()]).chain(shown.iter().map(|name| name.replace('_', " ")));
     let mut lines: Vec<Vec<String>> = vec![head.collect()];
     for row in &table.rows {

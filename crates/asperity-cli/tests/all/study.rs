@@ -235,7 +235,7 @@ fn a_case_may_hold_its_study_and_a_folder_only_that() {
         (&["--set", "time.steps=10"][..], "line 25 was `steps = 20` and is `steps = 10`"),
         (&["--product"], "made with --zip"),
         (&["--vary", "time.steps=5,10"], "it varies surface.1.seed, load.history.value, not"),
-        (&["--vary", "surface.1.seed=1,7"], "a run with seed = 2, value = 0.2"),
+        (&["--vary", "surface.1.seed=1,7"], "a run with seed = 2, load = 0.2"),
     ] {
         let output = study(more);
         let told = String::from_utf8_lossy(&output.stderr);
@@ -285,4 +285,13 @@ fn a_study_carries_errors_and_findings() {
     let output = asperity(path, &["compare", &format!("s/{first}"), &format!("s/{second}")]);
     let told = String::from_utf8(output.stdout).unwrap();
     assert!(told.contains("more than the errors"), "{told}");
+    // As `compare s/*`: what is no result is left out, and told.
+    let others = ["study.csv", "study.json", "study.png", "study.html", "study.zarr"];
+    let names =
+        others.iter().copied().chain([first.as_str(), second.as_str()]).map(|name| format!("s/{name}"));
+    let all: Vec<String> = ["compare".to_owned()].into_iter().chain(names).collect();
+    let output = asperity(path, &all.iter().map(String::as_str).collect::<Vec<_>>());
+    let left_out = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && left_out.contains("s/study.zarr"), "{left_out}");
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), told);
 }

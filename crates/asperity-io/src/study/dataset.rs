@@ -34,7 +34,7 @@ enum Data {
 /// Writes the group of a table in place of an older one.
 pub(super) fn write(study: &Study, table: &Table) -> Result<(), StudyError> {
     let path = study.folder.join(NAME);
-    if path.exists() && !is_ours(&path) {
+    if path.exists() && !is_dataset(&path) {
         let message = format!(
             "{} was not written by asperity study; move it away, it would be replaced",
             path.display()
@@ -59,7 +59,8 @@ pub(super) fn write(study: &Study, table: &Table) -> Result<(), StudyError> {
     partial.finish().map_err(fail())
 }
 
-fn is_ours(path: &Path) -> bool {
+/// Whether this is the table of a study.
+pub fn is_dataset(path: &Path) -> bool {
     let text = fs::read_to_string(path.join("zarr.json")).unwrap_or_default();
     let document: Value = serde_json::from_str(&text).unwrap_or_default();
     document["attributes"].get(MARK).is_some()

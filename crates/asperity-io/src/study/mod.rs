@@ -27,6 +27,7 @@ use std::path::PathBuf;
 use crate::case::CaseErrors;
 use crate::store::StoreError;
 
+pub use dataset::is_dataset;
 pub use folder::Study;
 pub use plan::{Plan, Run, Varied};
 pub use rows::{Row, State};

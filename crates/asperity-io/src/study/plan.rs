@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::StudyError;
 use super::values::{self, Value};
 use crate::case::study::{Base, Written};
-use crate::compare::short;
+use crate::compare::{called, short};
 use crate::digest::md5;
 use crate::readable::counted;
 
@@ -155,18 +155,21 @@ impl Plan {
         }
     }
 
-    /// What tells a run from the others, for people: "value = 0.3 N, seed = 2".
+    /// What tells a run from the others, for people: "load = 0.3 N, seed = 2".
     pub fn label(&self, run: &Run) -> String {
         let pairs = self.vary.iter().zip(&run.values);
         let words: Vec<String> =
-            pairs.map(|(varied, value)| format!("{} = {}", self.short(&varied.key), value.text())).collect();
+            pairs.map(|(varied, value)| format!("{} = {}", self.called(&varied.key), value.text())).collect();
         words.join(", ")
     }
 
-    /// The shortest end of a key that no other key of the study has: "value" of "load.history.value".
-    pub fn short<'k>(&self, key: &'k str) -> &'k str {
-        let all: Vec<&str> = self.vary.iter().map(|varied| varied.key.as_str()).collect();
-        short(key, &all)
+    /// How a key is called among those that vary: "load" for "load.history.value".
+    pub fn called(&self, key: &str) -> String {
+        called(key, &self.keys())
+    }
+
+    fn keys(&self) -> Vec<&str> {
+        self.vary.iter().map(|varied| varied.key.as_str()).collect()
     }
 
     /// The name of the result with these values: readable, and, by its digest, of no other values.
@@ -179,7 +182,7 @@ impl Plan {
         };
         let (mut name, mut whole) = (String::new(), String::new());
         for (varied, value) in self.vary.iter().zip(values) {
-            name += &format!("{}-{}_", plain(self.short(&varied.key)), plain(&value.text()));
+            name += &format!("{}-{}_", plain(short(&varied.key, &self.keys())), plain(&value.text()));
             whole += &format!("{}={}\n", varied.key, value.source());
         }
         name.truncate(LONGEST);
@@ -204,10 +207,10 @@ mod tests {
         assert_eq!(
             labels[..4],
             [
-                "value = 0.1 N, seed = 1",
-                "value = 0.1 N, seed = 2",
-                "value = 0.1 N, seed = 3",
-                "value = 1 N, seed = 1"
+                "load = 0.1 N, seed = 1",
+                "load = 0.1 N, seed = 2",
+                "load = 0.1 N, seed = 3",
+                "load = 1 N, seed = 1"
             ]
         );
         assert_eq!((labels.len(), product.shape()), (6, vec![2, 3]));
@@ -215,10 +218,7 @@ mod tests {
         assert!(product.runs()[0].name.starts_with("value-0.1N_seed-1_"), "{}", product.runs()[0].name);
         let zip = plan(&[("a.value", "1,2"), ("b.value", "3,4")], true);
         let labels: Vec<String> = zip.runs().iter().map(|run| zip.label(run)).collect();
-        assert_eq!(
-            (labels, zip.shape()),
-            (vec!["a.value = 1, b.value = 3".into(), "a.value = 2, b.value = 4".into()], vec![2])
-        );
+        assert_eq!((labels, zip.shape()), (vec!["a = 1, b = 3".into(), "a = 2, b = 4".into()], vec![2]));
     }
 
     #[test]

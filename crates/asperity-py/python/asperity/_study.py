@@ -38,7 +38,9 @@ if TYPE_CHECKING:
     import xarray
 
 #: Names that a parameter may not have in the dataset.
-_TAKEN = {*COLUMNS, *FIELDS, *LEAKS, "leak_step", "status", "error", "steps", "step", "point", "x", "y", "field_step", "field_time"}
+_TAKEN = {*COLUMNS, *FIELDS, *LEAKS, "leak_step", "status", "error", "findings", "finding_codes", "steps", "step", "point"}
+#: And where the dataset holds fields.
+_TAKEN_BY_FIELDS = {"x", "y", "field_step", "field_time"}
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].*?)?\s*")
 
 
@@ -51,6 +53,7 @@ def study(
     zip: bool = False,
     folder: str | os.PathLike[str] | None = None,
     fields: Sequence[str] = (),
+    error_bars: bool = False,
     workers: int | None = None,
     threads: int | None = None,
     client: Any = None,
@@ -75,6 +78,7 @@ def study(
     folder : where the result of every point is stored. When a study is called again, finished points are read from it,
         stopped ones continue, and new ones are solved. Without a folder only the dataset is kept.
     fields : fields that become part of the dataset: "pressure", "gap", "displacement", "contact", "flattening"
+    error_bars : compute the errors of the answers too, as ``asperity study --error-bars`` does; with `vary` or `directory`
     workers : number of processes; default: the number of processors, or of points if that is smaller
     threads : threads of each process; default: the number of processors divided by the number of workers
     client : a ``dask.distributed.Client``, whose workers solve the points, each with its own number of threads; they must be
@@ -85,8 +89,8 @@ def study(
     Returns
     -------
     xarray.Dataset : the numbers of all rows with dimensions (parameters..., step), NaN beyond the last row of a point;
-        `time` of each step, common to all points or for each; `steps` (number of rows), `status` ("complete" or "failed") and
-        `error` (the reason) of each point ("interrupted" in the dataset of a study that was stopped). A parameter with the same name as one of these gets the suffix "_given". Points that
+        `time` of each step, common to all points or for each; `steps` (number of rows), `status` ("complete" or "failed"),
+        `error` (the reason), `findings` (their number, -1 without a result) and `finding_codes` of each point ("interrupted" in the dataset of a study that was stopped). A parameter with the same name as one of these gets the suffix "_given". Points that
         are not all combinations have the dimension `point`.
 
     Raises
@@ -121,7 +125,9 @@ def study(
     if vary is not None or directory is not None:
         if over is not None or folder is not None or client is not None:
             raise CaseError("vary and directory make a study of the command: leave out over, folder and client")
-        return study_in_folder(case, vary, directory, zip, workers, threads, not progress)
+        return study_in_folder(case, vary, directory, zip, error_bars, workers, threads, not progress)
+    if error_bars:
+        raise CaseError("error_bars belong to a study of the command: give vary= or directory=")
     if over is None:
         raise CaseError("over is missing: give the values of the parameters, as in over={'load': [0.1, 0.5]}")
     plan = _Plan(over, zip)
@@ -425,7 +431,8 @@ def _dataset(
 ) -> xarray.Dataset:
     import xarray
 
-    given = {name: f"{name}_given" if name in _TAKEN else name for name in plan.names}
+    taken = _TAKEN | _TAKEN_BY_FIELDS if names else _TAKEN
+    given = {name: f"{name}_given" if name in taken else name for name in plan.names}
     dims = tuple(given.values()) if plan.product else ("point",)
     coordinates: dict[str, Any] = {}
     for name, column in plan.labels.items():
@@ -457,6 +464,11 @@ def _dataset(
     columns["steps"] = (dims, steps.reshape(plan.shape), {"units": "1", "long_name": "number of rows"})
     columns["status"] = (dims, np.array([answer[0] for answer in answers]).reshape(plan.shape), {"long_name": "status"})
     columns["error"] = (dims, np.array([answer[1] for answer in answers]).reshape(plan.shape), {"long_name": "why it failed"})
+    findings = [None if result is None else result.findings for result in results]
+    counts = np.array([-1 if held is None else len(held) for held in findings])
+    codes = np.array([" ".join(sorted({finding["code"] for finding in held or ()})) for held in findings])
+    columns["findings"] = (dims, counts.reshape(plan.shape), {"long_name": "number of findings, -1 without a result"})
+    columns["finding_codes"] = (dims, codes.reshape(plan.shape), {"long_name": "codes of the findings"})
     _add_leaks(columns, coordinates, plan, dims, results)
     if names:
         _add_fields(columns, coordinates, plan, dims, results, names)

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,7 +21,14 @@ if TYPE_CHECKING:
 
 
 def study_in_folder(
-    case: Any, vary: Mapping[str, Any] | None, directory: Any, zipped: bool, jobs: int | None, threads: int | None, quiet: bool
+    case: Any,
+    vary: Mapping[str, Any] | None,
+    directory: Any,
+    zipped: bool,
+    error_bars: bool,
+    jobs: int | None,
+    threads: int | None,
+    quiet: bool,
 ) -> xarray.Dataset:
     """Runs ``asperity study`` and returns its table: a dimension for each key, or `run` where values go together."""
     path = _case_file(case, directory)
@@ -30,19 +38,25 @@ def study_in_folder(
     words += [] if directory is None else ["-o", os.fspath(directory)]
     for option, value in (("--jobs", jobs), ("--threads", threads)):
         words += [] if value is None else [option, str(value)]
-    words += ["--zip"] * zipped + ["-q"] * quiet
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8") as process:
+    words += ["--zip"] * zipped + ["--error-bars"] * error_bars + ["-q"] * quiet
+    # A pipe for the table would fill up, and stop the command, while this reads what it tells.
+    with (
+        tempfile.TemporaryFile("w+", encoding="utf-8") as table,
+        subprocess.Popen(words, stdout=table, stderr=subprocess.PIPE, encoding="utf-8") as process,
+    ):
         try:
-            assert process.stderr is not None and process.stdout is not None
+            assert process.stderr is not None
             told = []
             for line in process.stderr:
                 told.append(line)
                 if not quiet:
                     sys.stderr.write(line)
-            text = process.stdout.read()
+            process.wait()
         except KeyboardInterrupt:
             process.terminate()
             raise
+        table.seek(0)
+        text = table.read()
     if process.returncode == 2:
         raise CaseError("".join(told).removeprefix("error: ").strip())
     if not text:
@@ -89,15 +103,29 @@ def _dataset(found: dict[str, Any]) -> xarray.Dataset:
         attributes = {"long_name": key["key"], **({"units": key["unit"]} if key["unit"] else {})}
         coordinates[key["key"]] = ("run" if zipped else key["key"], np.array(key["values"]), attributes)
     columns: dict[str, Any] = {}
+
+    def note(n: int, name: str, unit: str, words: str, value: float | None) -> None:
+        if name not in columns:
+            columns[name] = (dims, np.full(len(runs), np.nan), {"units": unit, "long_name": words})
+        columns[name][1][n] = np.nan if value is None else value
+
     for n, run in enumerate(runs):
+        errors = {bar["name"]: bar["error"] for bar in run["error_bars"]}
         for answer in run["answers"]:
-            name = answer["name"]
-            if name not in columns:
-                attributes = {"units": answer["unit"], "long_name": name.replace("_", " ")}
-                columns[name] = (dims, np.full(len(runs), np.nan), attributes)
-            columns[name][1][n] = np.nan if answer["value"] is None else answer["value"]
+            name, unit = answer["name"], answer["unit"]
+            words = name.replace("_", " ")
+            note(n, name, unit, words, answer["value"])
+            if name in errors:
+                note(n, f"{name}_error", unit, f"error of the {words}", errors[name])
     columns = {name: (dims, values.reshape(shape), attributes) for name, (dims, values, attributes) in columns.items()}
-    for name, words in (("status", "how far the run is"), ("error", "why the run failed"), ("result", "path of the result")):
+    findings = np.array([run["findings"] if run["status"] == "done" else -1 for run in runs]).reshape(shape)
+    columns["findings"] = (dims, findings, {"long_name": "number of findings, -1 of runs that are not done"})
+    for name, words in (
+        ("finding_codes", "codes of the findings"),
+        ("status", "how far the run is"),
+        ("error", "why the run failed"),
+        ("result", "path of the result"),
+    ):
         values = np.array([run[name] or "" for run in runs]).reshape(shape)
         columns[name if name != "result" else "path"] = (dims, values, {"long_name": words})
     return xarray.Dataset(columns, coords=coordinates, attrs={"study": found["study"]})

@@ -295,7 +295,8 @@ fn multiples(ends: [f64; 2], factor: f64, digit: u32, power: i32) -> Ticks {
 
 /// Ticks at powers of ten, two at least; over less than two decades also at 2 and 5 times them.
 fn decades(ends: [f64; 2], factor: f64, wanted: f64) -> Ticks {
-    let shift = factor.log10().round();
+    // Not whole where the unit is a minute or an hour.
+    let shift = factor.log10();
     let ends = [ends[0] + shift, ends[1] + shift];
     let span = ends[1] - ends[0];
     let coarsest = (span / wanted.max(1.0)).ceil().max(1.0) as i64;
@@ -394,6 +395,17 @@ mod tests {
         assert_eq!(ticks, ["10⁻³", "0.01", "0.1", "1"]);
         let (_, ticks) = texts(&Axis::log("modulus", "Pa"), [1.1e9, 1.9e9]);
         assert_eq!(ticks, ["1.2", "1.4", "1.6", "1.8"]);
+    }
+
+    #[test]
+    fn ticks_in_a_unit_that_is_no_power_of_ten_stand_on_the_axis() {
+        let [low, high] = [7.2e3, 3e6];
+        let ruler = Ruler::new(&Axis::log("time", "s"), [low, high], 0.0, 5.0);
+        assert_eq!(ruler.title, "time [d]");
+        let all = ruler.ticks.iter().map(|(value, _)| *value).chain(ruler.minor.iter().copied());
+        assert!(all.into_iter().all(|value| value >= low * (1.0 - 1e-9) && value <= high * (1.0 + 1e-9)));
+        let day = ruler.ticks.iter().find(|(_, text)| text == "1").unwrap().0;
+        assert!((day / 86400.0 - 1.0).abs() < 1e-12);
     }
 
     #[test]

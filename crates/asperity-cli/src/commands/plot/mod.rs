@@ -61,7 +61,7 @@ impl Verb for args::Plot {
             });
         };
         options::check(self, plot)?;
-        let readers = self.results.iter().map(|path| Reader::open(path)).collect::<Result<Vec<_>, _>>()?;
+        let readers = super::labels::open(&self.results)?;
         crate::commands::answers::units_of(&self.unit, &readers)?;
         let all: Vec<(String, Reader)> =
             super::labels::of(&self.labels, &readers)?.into_iter().zip(readers).collect();

@@ -20,9 +20,9 @@ fn sample((thickness, poisson, interface): (f64, f64, String)) -> PyResult<Sampl
 }
 
 /// Fits the contact relaxation modulus to a record; `profile` is "sphere" with its radius or "cone" with its slope. `thin` is
-/// thickness, Poisson's ratio and interface of a sample on a rigid base. Intervals are (value, low, high, determined).
+/// thickness, Poisson's ratio and interface of a sample on a rigid base; `uncertainties` those of radius and thickness, relative. Intervals are (value, low, high, determined).
 #[pyfunction]
-#[pyo3(signature = (times, loads, depths, profile, number, given, terms, long_time, fit_touch, thin, springs, limit))]
+#[pyo3(signature = (times, loads, depths, profile, number, given, terms, long_time, fit_touch, thin, springs, limit, uncertainties))]
 #[allow(clippy::too_many_arguments)]
 pub fn fit_indentation<'py>(
     py: Python<'py>,
@@ -38,6 +38,7 @@ pub fn fit_indentation<'py>(
     thin: Option<(f64, f64, String)>,
     springs: usize,
     limit: f64,
+    uncertainties: [f64; 2],
 ) -> PyResult<Bound<'py, PyDict>> {
     let [times, loads, depths] = [times, loads, depths].map(|column| column.as_array().to_vec());
     let profiles =
@@ -50,6 +51,8 @@ pub fn fit_indentation<'py>(
         layer: thin.map(sample).transpose()?,
         springs,
         limit,
+        radius_uncertainty: uncertainties[0],
+        thickness_uncertainty: uncertainties[1],
     };
     let profile = choose_among("profile", profile, &profiles)?;
     let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };

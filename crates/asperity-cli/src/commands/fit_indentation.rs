@@ -13,6 +13,7 @@ use asperity_io::output::write_all;
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
 
+use super::force_curve::share_of_length;
 use super::material::{columns, refused};
 use crate::args::FitIndentation;
 use crate::failure::Failure;
@@ -46,6 +47,18 @@ impl Verb for FitIndentation {
             long_time: self.long_time,
             fit_touch: self.fit_touch,
             layer,
+            radius_uncertainty: match self.radius {
+                Some(radius) => {
+                    share_of_length("--radius-uncertainty", &self.radius_uncertainty, radius.get())?
+                }
+                None => 0.0,
+            },
+            thickness_uncertainty: match layer {
+                Some(SampleLayer { thickness, .. }) => {
+                    share_of_length("--thickness-uncertainty", &self.thickness_uncertainty, thickness)?
+                }
+                None => 0.0,
+            },
             ..IndentationOptions::default()
         };
         let record = Indentation::read(&self.record, &columns).map_err(refused)?;

@@ -27,7 +27,6 @@ pub fn not_given(args: &FitIndentation) -> Result<(), Failure> {
         ("--control", curve.control.is_some()),
         ("--range", curve.range.is_some()),
         ("--spring-constant", curve.spring_constant.is_some()),
-        ("--radius-uncertainty", curve.radius_uncertainty.is_some()),
     ] {
         if given {
             return Err(Failure::input(format!(
@@ -64,24 +63,12 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
         spring_constant,
         sensitivity: curve.sensitivity.map(Quantity::get),
     });
-    let share =
-        |option: &str, text: &Option<String>, of: f64, dimension: fn(&str) -> Result<f64, String>| match text
-        {
-            None => Ok(0.0),
-            Some(text) => relative(text, of, dimension)
-                .map_err(|why| Failure::input(format!("{option} is \"{text}\", but {why}"))),
-        };
     let options = ForceOptions {
         model,
         branch: curve.branch.unwrap_or_default(),
         control: curve.control,
         range: curve.range.map(Quantity::get),
-        radius_uncertainty: share(
-            "--radius-uncertainty",
-            &curve.radius_uncertainty,
-            radius,
-            of::<dimension::Length>,
-        )?,
+        radius_uncertainty: share_of_length("--radius-uncertainty", &args.radius_uncertainty, radius)?,
         spring_constant: spring,
         load_uncertainty: share(
             "--spring-constant-uncertainty",
@@ -118,6 +105,22 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
         None => text = format!("{text}\n{block}"),
     }
     crate::print(&text)
+}
+
+/// The uncertainty of a length over its value, 0 where it is not stated.
+pub fn share_of_length(option: &str, text: &Option<String>, length: f64) -> Result<f64, Failure> {
+    share(option, text, length, of::<dimension::Length>)
+}
+
+fn share(
+    option: &str,
+    text: &Option<String>,
+    value: f64,
+    dimension: fn(&str) -> Result<f64, String>,
+) -> Result<f64, Failure> {
+    let Some(text) = text else { return Ok(0.0) };
+    relative(text, value, dimension)
+        .map_err(|why| Failure::input(format!("{option} is \"{text}\", but {why}")))
 }
 
 /// A quantity of a dimension in SI, not negative.

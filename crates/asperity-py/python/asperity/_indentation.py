@@ -82,6 +82,7 @@ def fit_indentation(
     /,
     *,
     radius: float | None = None,
+    radius_uncertainty: float = 0.0,
     slope: float | None = None,
     poisson: float,
     model: Literal["viscoelastic"] = "viscoelastic",
@@ -90,6 +91,7 @@ def fit_indentation(
     long_time: LongTime = "free",
     fit_touch: bool = False,
     thickness: float | None = None,
+    thickness_uncertainty: float = 0.0,
     interface: Interface = "bonded",
     hardness: float | None = None,
     name: str | None = None,
@@ -128,6 +130,7 @@ def fit_indentation(
     long_time: LongTime = "free",
     fit_touch: bool = False,
     thickness: float | None = None,
+    thickness_uncertainty: float = 0.0,
     interface: Interface = "bonded",
     hardness: float | None = None,
     name: str | None = None,
@@ -168,7 +171,8 @@ def fit_indentation(
     control : "load" or "displacement", where the sphere comes off; by default that of the spring, where its constant is given, else displacement
     range : of the attraction [m], for "maugis" in place of a fitted transition, and for Tabor's number of the other models
     spring_constant : of the cantilever whose deflection is the load [N/m]
-    radius_uncertainty, spring_constant_uncertainty : standard uncertainties (one standard deviation) [m], [N/m]; the intervals hold them
+    radius_uncertainty, thickness_uncertainty, spring_constant_uncertainty : standard uncertainties (one standard deviation) [m], [m],
+        [N/m]; the intervals hold them
     sensitivity_uncertainty : standard uncertainty of the deflection's sensitivity over its value
 
     Returns
@@ -217,11 +221,10 @@ def fit_indentation(
         "control": control,
         "range": range,
         "spring_constant": spring_constant,
-        "radius_uncertainty": radius_uncertainty,
         "spring_constant_uncertainty": spring_constant_uncertainty,
         "sensitivity_uncertainty": sensitivity_uncertainty,
     }
-    of_curve = {"branch": "retraction", "radius_uncertainty": 0.0, "spring_constant_uncertainty": 0.0, "sensitivity_uncertainty": 0.0}
+    of_curve = {"branch": "retraction", "spring_constant_uncertainty": 0.0, "sensitivity_uncertainty": 0.0}
     of_record = {
         "slope": (slope, None),
         "given": (given, None),
@@ -229,6 +232,7 @@ def fit_indentation(
         "long_time": (long_time, "free"),
         "fit_touch": (fit_touch, False),
         "thickness": (thickness, None),
+        "thickness_uncertainty": (thickness_uncertainty, 0.0),
         "interface": (interface, "bonded"),
         "hardness": (hardness, None),
         "name": (name, None),
@@ -248,7 +252,7 @@ def fit_indentation(
         nu = number("poisson", poisson)
         if not -1.0 < nu <= 0.5:
             raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
-        return fit_force_curve(load, depth, radius=radius, poisson=nu, model=model, **curve)
+        return fit_force_curve(load, depth, radius=radius, radius_uncertainty=radius_uncertainty, poisson=nu, model=model, **curve)
     columns = [line(what, values) for what, values in (("time", time), ("load", load), ("depth", depth))]
     if len({len(column) for column in columns}) > 1:
         told = ", ".join(f"{what} {len(column)}" for what, column in zip(("time", "load", "depth"), columns))
@@ -263,7 +267,15 @@ def fit_indentation(
     if thickness is None and interface != "bonded":
         raise CaseError("interface is that of a thin sample to its base: give its thickness too")
     thin = None if thickness is None else (number("thickness", thickness), nu, interface)
-    how = given, most, long_time, bool(fit_touch), thin, count("springs", springs), number("max_misfit", max_misfit)
+    if thickness is None and thickness_uncertainty:
+        raise CaseError("thickness_uncertainty is that of a thin sample: give its thickness too")
+    if radius is None and radius_uncertainty:
+        raise CaseError("radius_uncertainty is that of a sphere, but slope is given")
+    shares = tuple(
+        number(f"{what}_uncertainty", own) / number(what, length) if own and length else 0.0
+        for what, own, length in (("radius", radius_uncertainty, radius), ("thickness", thickness_uncertainty, thickness))
+    )
+    how = given, most, long_time, bool(fit_touch), thin, count("springs", springs), number("max_misfit", max_misfit), (shares[0], shares[1])
     found = _core.fit_indentation(columns[0], columns[1], columns[2], profile, number(what, shape), *how)
     # E = E* (1 - nu^2)
     factor = 1.0 - nu**2

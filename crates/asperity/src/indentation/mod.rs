@@ -27,6 +27,7 @@ mod average;
 mod blocks;
 mod check;
 mod control;
+mod geometry;
 mod least_squares;
 mod model;
 mod nested;
@@ -96,6 +97,10 @@ pub struct IndentationOptions {
     pub layer: Option<SampleLayer>,
     /// Largest misfit (rms, over the largest value) before a record is refused, default 0.1.
     pub limit: f64,
+    /// Standard uncertainty of the radius of the sphere over its value, default 0; the intervals of the moduli hold it.
+    pub radius_uncertainty: f64,
+    /// The same of the thickness of the sample.
+    pub thickness_uncertainty: f64,
 }
 
 impl Default for IndentationOptions {
@@ -108,6 +113,8 @@ impl Default for IndentationOptions {
             springs: 150,
             layer: None,
             limit: 0.1,
+            radius_uncertainty: 0.0,
+            thickness_uncertainty: 0.0,
         }
     }
 }
@@ -141,6 +148,8 @@ pub struct Interval {
     pub determined: bool,
 }
 
+/// Half width of a 95 % interval in standard deviations.
+pub(crate) const WIDTH: f64 = 1.959_964;
 /// Largest ratio of the ends of an interval of a determined parameter.
 const DETERMINED: f64 = 10.0;
 /// An interval of the longest time that reaches beyond this number of lengths of the record is cut by the prior, which ends at
@@ -153,6 +162,16 @@ impl Interval {
     /// Whether a value lies within.
     pub fn holds(&self, value: f64) -> bool {
         self.low <= value && value <= self.high
+    }
+
+    /// The interval where a factor of the value is uncertain too: its logarithm has this variance.
+    fn widened(self, variance: f64) -> Self {
+        let half = |end: f64| ((end / self.value).ln().powi(2) + WIDTH * WIDTH * variance).sqrt();
+        if variance == 0.0 || self.value <= 0.0 {
+            return self;
+        }
+        let low = if self.low > 0.0 { self.value * (-half(self.low)).exp() } else { self.low };
+        Interval { low, high: self.value * half(self.high).exp(), ..self }
     }
 
     pub(crate) fn new(value: f64, [low, high]: [f64; 2]) -> Self {
@@ -280,6 +299,10 @@ pub fn fit_indentation(
         false => Interval::new(0.0, [0.0, 0.0]),
     };
     let [value, low, high] = [touch.value, touch.low, touch.high].map(|x| model.depth_scale() * x);
+    let deepest = record.depths.iter().copied().fold(0.0, f64::max);
+    let stated = geometry::variance(profile, options, deepest)?;
+    let terms = terms.into_iter().map(|[modulus, time]| [modulus.widened(stated), time]).collect();
+    let [equilibrium, instantaneous] = [equilibrium, instantaneous].map(|modulus| modulus.widened(stated));
     let mut fit = IndentationFit {
         terms,
         relaxation,

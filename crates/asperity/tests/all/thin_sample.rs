@@ -65,3 +65,31 @@ fn the_modulus_of_a_thin_sample_comes_back() {
         assert!(wrong.instantaneous.value / unit > 1.1, "{}", wrong.instantaneous.value / unit);
     }
 }
+
+#[test]
+fn stated_uncertainties_of_radius_and_thickness_widen_the_intervals() {
+    let [times, loads, depths] = record(0.05, 0.5, Interface::Bonded);
+    let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };
+    let fit = |radius: f64, thickness: f64, [radius_uncertainty, thickness_uncertainty]: [f64; 2]| {
+        let layer = Some(SampleLayer { thickness, poisson: 0.5, interface: Interface::Bonded });
+        let options = IndentationOptions {
+            terms: Some(1),
+            layer,
+            radius_uncertainty,
+            thickness_uncertainty,
+            ..IndentationOptions::default()
+        };
+        fit_indentation(MdrProfile::Sphere { radius }, &record, &options).unwrap().instantaneous
+    };
+    let plain = fit(1.0, 0.05, [0.0; 2]);
+    let variance = |x: asperity::indentation::Interval| ((x.high / x.value).ln() / 1.959_964).powi(2);
+    for (lengths, stated) in [([1.02, 0.05], [0.02, 0.0]), ([1.0, 0.05 * 1.02], [0.0, 0.02])] {
+        let moved = fit(lengths[0], lengths[1], [0.0; 2]).value;
+        let by = (moved / plain.value).ln().abs();
+        let told = (variance(fit(1.0, 0.05, stated)) - variance(plain)).sqrt();
+        // The effect is that at the largest depth; shallow rows have a little less of it, and 2 % are not nothing.
+        assert!((told / by - 1.0).abs() < 0.15, "{told} {by}");
+    }
+    let options = IndentationOptions { thickness_uncertainty: 0.1, ..IndentationOptions::default() };
+    assert!(fit_indentation(MdrProfile::Sphere { radius: 1.0 }, &record, &options).is_err());
+}

@@ -95,16 +95,18 @@ def test_parameters_of_solve_labels_and_failures(sphere):
     assert np.array_equal(data.approach.sel(material="stiff", load_given=0.002), alone.approach)
 
 
-def test_a_parameter_keeps_its_name_and_points_have_their_findings(sphere):
-    def pressed(x):
-        return asp.solve(sphere, zener(), load=x, times=[1.0], progress=False)
+def pressed(x):
+    ball = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
+    return asp.solve(ball, zener(), load=x, times=[1.0], progress=False)
 
-    data = asp.study(pressed, {"x": [1e-3, -1.0]})
+
+def test_a_parameter_keeps_its_name_and_points_have_their_findings():
+    data = asp.study(pressed, {"x": [1e-6, -1.0]})
     assert data.sizes["x"] == 2 and data.findings.values.tolist()[1] == -1
-    # 32 cells across 1 mm are few under 1 mN.
+    # 1 uN presses two or three cells of 31 um.
     assert "few-contact-cells" in data.finding_codes.values[0] and data.findings.values[0] >= 1
-    fields = asp.study(pressed, {"x": [1e-3]}, fields=["gap"])
-    assert fields.sizes["x_given"] == 1 and fields.gap.dims[-2:] == ("x", "y")
+    fields = asp.study(pressed, {"x": [1e-3]}, fields=["pressure"])
+    assert fields.sizes["x_given"] == 1 and fields.pressure.dims[-2:] == ("x", "y")
 
 
 def test_points_of_different_length_are_padded(sphere):

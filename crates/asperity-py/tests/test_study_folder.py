@@ -62,7 +62,7 @@ def test_each_run_has_its_errors_and_findings_and_a_large_table_does_not_stop_it
     vary = {"load.history.value": [f"{n} mN" for n in range(1, 81)]}
     data = asp.study(CASE, vary=vary, directory=tmp_path / "s", error_bars=True)
     one = asp.open(data.path[3].item())
-    bars = {bar.name: bar.error for bar in one.error_bars}
+    bars = {bar["name"]: bar["error"] for bar in one.error_bars}
     assert float(data.contact_area_error[3]) == bars["contact_area"] > 0.0
     assert int(data.findings[3]) == len(one.findings)
     assert data.finding_codes[3].item() == " ".join(sorted({finding["code"] for finding in one.findings}))

@@ -40,9 +40,19 @@ impl Sheet {
 
     /// The same page with a figure more.
     pub fn figure(mut self, heading: &str, figure: &Figure) -> Sheet {
-        let (heading, picture) = (escaped(heading), STANDARD.encode(figure.to_svg()));
+        let data =
+            |figure: &Figure| format!("data:image/svg+xml;base64,{}", STANDARD.encode(figure.to_svg()));
+        // On a phone the panels stand one below the other.
+        let narrow = match figure.panels.len() {
+            0 | 1 => String::new(),
+            _ => {
+                let column = data(&figure.clone().columns(1));
+                format!("<source media=\"(max-width: 640px)\" srcset=\"{column}\">")
+            }
+        };
+        let (heading, picture) = (escaped(heading), data(figure));
         self.body += &format!(
-            "<h2>{heading}</h2>\n<p><img alt=\"{heading}\" src=\"data:image/svg+xml;base64,{picture}\"></p>\n"
+            "<h2>{heading}</h2>\n<p><picture>{narrow}<img alt=\"{heading}\" src=\"{picture}\"></picture></p>\n"
         );
         self
     }

@@ -64,9 +64,9 @@ pub fn unlike_profile(made: &ProfileSurface) -> Vec<Finding> {
     }
     if (made.slope - held).abs() > SHARE * held {
         let text = format!(
-            "The map has the rms slope {} along each direction, the profile {}: no surface that is the same in all \
-             directions has both the height and the slope of this profile. Its waves lie in a narrow band, as those of a ground or \
-             turned surface. Generate a surface with a lay, or use the profile in a line contact.",
+            "The map has the rms slope {} along each direction, the profile {}: no surface that is the same in all directions has \
+             this profile, for its spectrum has a peak or rises towards shorter waves somewhere, as that of a surface with a lay (ground, \
+             turned), with chatter or with steps. Generate a surface with a lay, or use the profile in a line contact.",
             digits(made.slope),
             digits(held)
         );

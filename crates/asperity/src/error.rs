@@ -72,7 +72,7 @@ pub enum Error {
          largest tension, or let a stage that begins under a weaker pull end with until = \"contact-lost\"",
         si(*load, unit),
         last.map_or(String::new(), |[load, approach]| {
-            format!(" (last stable load {}, at an approach of {})", si(load, unit), si(approach, "m"))
+            format!(" (last row: {} at an approach of {})", si(load, unit), si(approach, "m"))
         })
     )]
     PulledOff {

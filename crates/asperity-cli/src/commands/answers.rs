@@ -57,7 +57,11 @@ pub fn row(
             format!("{place}, the last of {rows}, under {}", quantity(last.load, grid.units("N")))
         }
         (Axis::Velocity, _) => format!("{place}, with the largest friction"),
-        _ => format!("{place}, with the largest load; nothing touches at the end"),
+        _ => {
+            let adheres = answers.iter().any(|answer| answer.name == "pull_off_force");
+            let largest = if adheres { "approach" } else { "load" };
+            format!("{place}, with the largest {largest}; nothing touches at the end")
+        }
     })
 }
 

@@ -9,7 +9,7 @@
 //! | every contact | `contact_area`, `contact_area_corrected`, `contact_fraction`, `max_pressure`, `approach` and `creep` where the load is given, `load` and `relaxation` where the approach is |
 //! | with stress | `max_mises`, `max_mises_depth`, `first_yield_load` |
 //!
-//! They are those of the last row; if nothing touches there, of the row with the largest load; of a sweep, of the velocity with the largest
+//! They are those of the last row; if nothing touches there, of the row with the largest load, of surfaces that adhere with the largest approach; of a sweep, of the velocity with the largest
 //! friction. Summaries, comparisons, reports, error bars and studies all read them here.
 
 mod adhesion;
@@ -113,11 +113,12 @@ fn decisive(reader: &Reader, rows: &[Row]) -> Result<Option<usize>> {
     if rows[last].contact_fraction > 0.0 {
         return Ok(Some(last));
     }
-    // Of equal loads the last one: rounding must not choose.
-    let touching = || rows.iter().filter(|row| row.contact_fraction > 0.0).map(|row| row.load);
+    // Of equal ones the last: rounding must not choose. Where surfaces adhere, the load may be tensile throughout.
+    let value = |row: &Row| if reader.header().adhesion().is_some() { row.approach } else { row.load };
+    let touching = || rows.iter().filter(|row| row.contact_fraction > 0.0).map(value);
     let most = touching().fold(f64::NEG_INFINITY, f64::max);
     let peak =
-        rows.iter().rposition(|row| row.contact_fraction > 0.0 && row.load >= most - SAME * most.abs());
+        rows.iter().rposition(|row| row.contact_fraction > 0.0 && value(row) >= most - SAME * most.abs());
     Ok(peak.or(Some(last)))
 }
 

@@ -4,6 +4,9 @@ use super::rows::Rows;
 use super::{ATOMIC, Branch, ForceFit, ForceModel, ForceOptions};
 use crate::indentation::{ALIKE, unlikely_radius};
 
+/// Noise of the depth over its range beyond which the rows are no longer near their points of the curve.
+const NOISY: f64 = 0.02;
+
 /// Tabor numbers at which JKR begins to hold and DMT ceases to.
 const SOFT: f64 = 3.0;
 const STIFF: f64 = 0.3;
@@ -61,6 +64,21 @@ pub(super) fn notes(fit: &ForceFit, radius: f64, rows: &Rows, options: &ForceOpt
              the baseline is not fitted"
                 .to_owned(),
         );
+    }
+    if rows.drift > 0.0 {
+        notes.push(format!(
+            "the load of the free sphere drifts by {:.3e} N: the same drift under the contact changes modulus and work of adhesion and is not in \
+             the intervals; subtract it from the record first",
+            rows.drift
+        ));
+    }
+    let share = rows.noise[1] / rows.spans[1];
+    if share > NOISY {
+        notes.push(format!(
+            "the noise of the depth is {:.1} % of its range: the fit makes the body up to as many per cent too stiff, and the intervals are too \
+             narrow; average more rows, or press deeper",
+            100.0 * share
+        ));
     }
     let baseline = fit.baseline.value;
     let attracted = rows.contact.iter().filter(|row| row[0] < baseline - rows.noise[0]).count();

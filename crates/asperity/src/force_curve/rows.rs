@@ -18,6 +18,9 @@ const SEEN: f64 = 5.0;
 const FLAT: f64 = 0.1;
 /// Noise below this fraction of the range of a channel is that of rounding.
 const EXACT: f64 = 1e-7;
+/// No channel is taken as known so many times as well as the other one, each over its range: of exact depths every row near pull-off would
+/// bound the curve, though it lies anywhere between two rows.
+const BETTER: f64 = 3.0;
 
 /// The rows of the branch, from the largest load to the free sphere.
 pub(super) struct Rows {
@@ -31,6 +34,8 @@ pub(super) struct Rows {
     pub(super) noise: [f64; 2],
     /// Largest less smallest load and depth in contact.
     pub(super) spans: [f64; 2],
+    /// How much the load of the free sphere changes over its rows \[N\]; 0 where that may be noise.
+    pub(super) drift: f64,
     /// Load of the free sphere, to begin with.
     pub(super) rest: f64,
     numbers: Vec<usize>,
@@ -81,12 +86,16 @@ impl Rows {
             values.iter().fold([low, high], |[low, high], x| [low.min(*x), high.max(*x)])
         };
         let steps: Vec<f64> = (0..loads.len()).map(|k| k as f64).collect();
-        let deviation = |values: &[f64]| {
-            let variances = noise::variances(&steps, values);
+        let ranges = [&loads, &depths].map(|values| {
             let [low, high] = span(values);
-            (variances.iter().sum::<f64>() / variances.len() as f64).sqrt().max(EXACT * (high - low))
+            high - low
+        });
+        let share = |k: usize, values: &[f64]| {
+            let variances = noise::variances(&steps, values);
+            ((variances.iter().sum::<f64>() / variances.len() as f64).sqrt() / ranges[k]).max(EXACT)
         };
-        let noise = [deviation(&loads), deviation(&depths)];
+        let shares = [share(0, &loads), share(1, &depths)];
+        let noise = [0, 1].map(|k| ranges[k] * shares[k].max(shares[1 - k] / BETTER));
         require(
             noise[0] > 0.0 && noise[1] > 0.0,
             "load and depth of the branch",
@@ -119,7 +128,11 @@ impl Rows {
             format!("at least {}, with loads above the noise", FEWEST / 2),
         )?;
         let numbers = numbers.into_iter().take(contact.len() + free.len()).collect();
-        Ok(Rows { contact, free, baseline, noise, spans: [of_loads, of_depths], rest, numbers })
+        let third = free.len() / 3;
+        // The means of the first and the last third are two thirds of the rows apart.
+        let drift = if third > 0 { 1.5 * drift(&free, third) } else { 0.0 };
+        let drift = if drift > 1.5 * scatter(noise[0], third) { drift } else { 0.0 };
+        Ok(Rows { contact, free, baseline, noise, spans: [of_loads, of_depths], rest, drift, numbers })
     }
 
     /// Means of neighbouring rows, as many as are fitted.

@@ -33,7 +33,7 @@ pub enum AdhesiveModel {
     Jkr,
     /// Maugis: a constant traction up to a gap.
     Maugis {
-        /// λ, greater than 0; 1.157 times Tabor's number.
+        /// λ, greater than 0; (9/(2π))^(1/3) = 1.13 times Tabor's number of the range w/s0.
         lambda: f64,
     },
 }

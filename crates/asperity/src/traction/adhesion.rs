@@ -140,10 +140,10 @@ impl Adhesion {
         .map_err(|error| error.of("range"))?;
         let tolerance = self.tolerance;
         require(
-            (1e-12..=0.1).contains(&tolerance),
+            (1e-14..=0.1).contains(&tolerance),
             "tolerance of the adhesion",
             tolerance,
-            "from 1e-12 to 0.1",
+            "from 1e-14 to 0.1",
         )
         .map_err(|error| error.of("tolerance"))
     }
@@ -155,12 +155,14 @@ impl Adhesion {
 /// Those of the kernel.
 pub fn own_response(grid: &Grid, boundary: Boundary, kernel: &Arc<dyn Kernel>) -> Result<f64> {
     // The cells around a cell hardly matter, but of a line contact the whole domain does.
-    let [nx, ny] = grid.cells();
-    let few = |n: usize| if grid.is_line() { n } else { n.min(16) };
-    let [dx, dy] = grid.spacing();
-    let cells = [few(nx), few(ny)];
-    let grid = Grid::new(cells, [cells[0] as f64 * dx, cells[1] as f64 * dy])?;
-    let boundary = if grid.is_line() { boundary } else { Boundary::Free };
+    let cells = if grid.is_line() { grid.cells() } else { grid.cells().map(|n| n.min(16)) };
+    let (grid, boundary) = match grid.is_line() {
+        true => (*grid, boundary),
+        false => {
+            let [dx, dy] = grid.spacing();
+            (Grid::new(cells, [cells[0] as f64 * dx, cells[1] as f64 * dy])?, Boundary::Free)
+        }
+    };
     let mut operator = plan(grid, boundary, kernel.clone())?;
     let mut unit = vec![0.0; grid.len()];
     let middle = cells[0] / 2 * cells[1] + cells[1] / 2;
@@ -289,5 +291,16 @@ mod tests {
         let own = own_response(&grid, Boundary::Free, &kernel).unwrap();
         // 4 ln(1 + sqrt 2)/pi; the single precision of the plan.
         assert!((own * 64.0 / 1.122_199_5 - 1.0).abs() < 1e-6, "{}", own * 64.0);
+    }
+
+    #[test]
+    fn the_own_response_of_a_periodic_line_is_the_sum_of_its_waves() {
+        let (n, side) = (128_usize, 2e-4);
+        let kernel: Arc<dyn Kernel> = Arc::new(crate::kernel::HalfSpace);
+        let own = own_response(&Grid::line(n, side).unwrap(), Boundary::Periodic, &kernel).unwrap();
+        // u = 2 p/|q| of each of n waves with the amplitude p/n, but for the mean.
+        let waves = (1..n / 2).map(|m| 2.0 / m as f64).sum::<f64>() + 2.0 / n as f64;
+        let sum = side / (std::f64::consts::PI * n as f64) * waves;
+        assert!((own / sum - 1.0).abs() < 1e-12, "{own} {sum}");
     }
 }

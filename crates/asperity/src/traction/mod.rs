@@ -326,7 +326,8 @@ impl Run<'_> {
             energy = pass.energy.map_or(energy, |now| now.min(energy));
         }
         let options = SolverOptions { tolerance: self.tolerance, ..*self.options };
-        Err(not_converged("surface traction", &options, &self.total))
+        let method = if self.own.law.is_attraction() { "adhesion" } else { "surface traction" };
+        Err(not_converged(method, &options, &self.total))
     }
 
     fn pass(&mut self, problem: &Problem) -> Result<Pass> {

@@ -62,8 +62,10 @@ impl AdhesionScale {
             trap,
             cells_needed: cells_needed(grid, trap),
             radius,
-            tabor: is_half_space.then(|| tabor(radius, modulus, law.work, law.range)),
-            expected_pull_off: is_round.then(pull_off).flatten(),
+            tabor: is_half_space
+                .then(|| tabor(radius, modulus, law.work, law.range))
+                .filter(|tabor| tabor.is_finite()),
+            expected_pull_off: is_round.then(pull_off).flatten().filter(|force| *force > 0.0),
         }))
     }
 }

@@ -9,6 +9,7 @@ use super::{Check, Checks, rows, shape_on};
 use crate::drive::{Drive, March};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
+use crate::kernel::{HalfSpace, Kernel};
 use crate::load::{Control, Course, History, Loading, Programme, Stage};
 use crate::material::{Creep, CreepTerm};
 use crate::quantities::{Quantities, Quantity};
@@ -16,10 +17,13 @@ use crate::simulation::Simulation;
 use crate::step::Row;
 use crate::surface::Shape;
 use crate::time::TimeGrid;
-use crate::traction::{Adhesion, AdhesionLaw};
+use crate::traction::{Adhesion, AdhesionLaw, own_response};
 
 /// Work of adhesion of the spheres \[J/m²\]; their radius is 1 m, E* = 1 Pa.
 const WORK: f64 = 1e-4;
+
+/// The trap number of the wave; c = 1.
+const TRAP: f64 = 0.99;
 
 /// (π² w² R/K²)^(1/3) with K = 4 E*/3, the unit of their approach \[m\].
 fn unit() -> f64 {
@@ -54,16 +58,18 @@ pub(super) fn wave() -> Result<Vec<Check>> {
     let mut checks = Checks::new("jkr-wave", "Johnson, Int. J. Solids Struct. 32 (1995) 423");
     // h (1 - cos 2πx/λ), h = 0.02, λ = 1, E* = 1, α = 0.2: the mean pressure at pull-off for a range much shorter than all else.
     let (work, n) = (7.89568352087e-5, 512);
-    let grid = Grid::new([n, 1], [1.0, 1.0])?;
+    let grid = Grid::line(n, 1.0)?;
     let gap = Array2::from_shape_fn((n, 1), |(i, _)| 0.02 * (1.0 - (2.0 * PI * grid.x(i)).cos()));
-    // As short as the cells allow: a trap number of 0.3 of a square cell.
-    let range = (1.122 * work / n as f64 / 0.3).sqrt();
+    // As short as the cells allow.
+    let kernel: Arc<dyn Kernel> = Arc::new(HalfSpace);
+    let own = own_response(&grid, Boundary::Periodic, &kernel)?;
+    let range = (own * work / TRAP).sqrt();
     let points = vec![(0.0, 0.0), (1.0, -0.006)];
     let found = rows(Simulation {
         boundary: Boundary::Periodic,
         loading: Loading { control: Control::Approach, history: History::Table { points } }.into(),
         times: TimeGrid::Uniform { end: 1.0, steps: 120 },
-        traction: Some(Arc::new(Adhesion { allow_unresolved: true, ..Adhesion::new(work, range) })),
+        traction: Some(Arc::new(Adhesion::new(work, range))),
         ..Simulation::new(grid, gap)
     })?;
     let least = found.iter().map(|row| row.mean_pressure).fold(0.0, f64::min);

@@ -50,12 +50,12 @@ pub(super) fn section(before: &str, after: &str, folder: &Path) -> String {
 /// material is known.
 pub(super) fn retraction(height: f64, end: f64) -> String {
     let half = super::own::one_digit(0.5 * end);
-    let away = quantity(-super::own::one_digit(0.1 * height), "m");
+    let away = quantity(-super::own::one_digit(0.5 * height), "m");
     format!(
         "\n[[load.stages]]\ncontrol = \"pressure\"                  # mean over the surface\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure that \
          brings them together\nduration = \"{half} s\"                      {YOURS}how long they are pressed\nsteps = 30\nspacing = \"log\"                       # the material relaxes fast at first\nfirst = \"{} s\"\n\
          \n[[load.stages]]\ncontrol = \"approach\"\nhistory = {{ kind = \"ramp\", from = \"current\", value = \"{away}\", duration = \"{half} s\" }}   {YOURS}how fast \
-         they part\nduration = \"{half} s\"\nsteps = 100\nuntil = \"contact-lost\"\n\
+         they part\nduration = \"{half} s\"\nsteps = 200\nuntil = \"contact-lost\"\n\
          \n[time]\nend = \"{} s\"\nsteps = 1\n\n[output]\nfields = [\"pressure\", \"gap\"]\nevery = 20\n",
         super::own::one_digit(1e-4 * half),
         2.0 * half

@@ -62,11 +62,15 @@ impl Sheet {
         self
     }
 
-    /// The same page with a figure more.
+    /// The same page with a figure more, whose panels stand below one another on a phone.
     pub fn figure(mut self, heading: &str, figure: &Figure) -> Sheet {
-        let (heading, picture) = (escaped(heading), STANDARD.encode(figure.to_svg()));
+        let heading = escaped(heading);
+        let data =
+            |figure: &Figure| format!("data:image/svg+xml;base64,{}", STANDARD.encode(figure.to_svg()));
+        let [wide, narrow] = [data(figure), data(&figure.clone().columns(1))];
         self.body += &format!(
-            "<h2>{heading}</h2>\n<p><img alt=\"{heading}\" src=\"data:image/svg+xml;base64,{picture}\"></p>\n"
+            "<h2>{heading}</h2>\n<picture><source media=\"(max-width: 560px)\" srcset=\"{narrow}\">\
+             <img alt=\"{heading}\" src=\"{wide}\"></picture>\n"
         );
         self
     }

@@ -194,7 +194,8 @@ impl Verb for SurfaceFromProfile {
                 "{name} is no profile: it needs two columns of text, position and height, or one column of heights with --size LENGTH"
             )));
         };
-        let (mut history, gaps) = (profile.history, finding::gaps_of_profile("the profile of the file", profile.gaps));
+        let (mut history, gaps) =
+            (profile.history, finding::gaps_of_profile("the profile of the file", profile.gaps));
         let done = super::prepared(&name, profile.surface, &super::steps(&self.op)?)?;
         history.extend(done.history);
         let profile = done.surface;

@@ -20,7 +20,7 @@ function summary() {
   $("findings").hidden = !state.findings.length;
   $("finding-list").replaceChildren(...state.findings.map((finding) =>
     make("li", { class: finding.severity }, make("b", {}, finding.severity), ` ${finding.text} `, make("code", {}, finding.code))));
-  $("headline").replaceChildren(...state.headline.map(([name, value]) => make("div", {}, make("b", {}, value.replace(/ (?=±)|(?<=±) |(?<=^\S+) (?=\S+ ±)/g, "\u00a0")), make("span", {}, name))));
+  $("headline").replaceChildren(...state.headline.map(([name, value]) => make("div", {}, make("b", {}, value.replace(/ (?=±)|(?<=±) |(?<=^\S+) (?=\S+( ±|$))/g, "\u00a0")), make("span", {}, name))));
   $("facts").replaceChildren(...terms(state.facts));
 }
 

@@ -63,8 +63,6 @@ pub fn isotherms(title: &str, measured: &Measured) -> Figure {
     Figure::new(title).with_all(panels).caption(caption)
 }
 
-/// Frequencies that a figure over temperature tells apart.
-const FREQUENCIES: usize = 7;
 /// Frequencies that agree to this share are one: instruments round them.
 const SAME: f64 = 0.01;
 
@@ -80,7 +78,7 @@ fn over_temperature(title: &str, measured: &Measured) -> Option<Figure> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let lines: Vec<Vec<[f64; 4]>> =
         points.chunk_by(|a, b| b[0] - a[0] <= SAME * a[0]).map(<[[f64; 4]]>::to_vec).collect();
-    if lines.is_empty() || lines.len() > FREQUENCIES {
+    if lines.is_empty() || lines.len() > COLOURS.len() {
         return None;
     }
     let panels: [(&str, Axis, fn(&[f64; 4]) -> f64); 3] = [
@@ -96,8 +94,7 @@ fn over_temperature(title: &str, measured: &Measured) -> Option<Figure> {
             let name = if lines.len() > 1 { quantity(line[0][0], "Hz") } else { String::new() };
             for (name, style) in [(name, Style::Line), (String::new(), Style::Points)] {
                 let through = line.iter().map(|point| [point[1], value(point)]);
-                panel =
-                    panel.with(Series::through(name, style, through).in_colour(COLOURS[n % COLOURS.len()]));
+                panel = panel.with(Series::through(name, style, through).in_colour(COLOURS[n]));
             }
         }
         panel

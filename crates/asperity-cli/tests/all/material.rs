@@ -446,6 +446,9 @@ fn a_temperature_ramp_is_shown_over_temperature() {
     let told = String::from_utf8(output.stdout).unwrap();
     let ramp = "a temperature ramp, -30.0 °C to 30.0 °C: 21 temperatures, 21 points, 1 Hz";
     assert!(output.status.success() && told.contains(ramp) && !told.contains("1 point,"), "{told}");
+    // No two of its temperatures overlap.
+    let output = asperity(path, &["material", "fit", "ramp.csv"]);
+    assert!(output.status.code() == Some(2) && stderr(&output).contains("a ramp"), "{}", stderr(&output));
     let picture = std::fs::read_to_string(path.join("ramp.svg")).unwrap();
     assert!(picture.contains("temperature [°C]") && !picture.contains("frequency [Hz]"));
 }

@@ -64,6 +64,9 @@ const PYTHON_PACKAGES: [&str; 16] = [
     "ipykernel",
 ];
 
+/// Other programs that tests and a notebook compare with; where they cannot be installed, these are skipped.
+const PEERS: [&str; 3] = ["tamaas", "ContactMechanics", "SurfaceTopography"];
+
 type Done = Result<(), String>;
 
 fn main() -> ExitCode {
@@ -148,7 +151,14 @@ fn python() -> Result<PathBuf, String> {
     let python = interpreter("target/python");
     let imports = format!("import {}", PYTHON_PACKAGES.join(", "));
     let complete = Command::new(&python).args(["-c", &imports]).output().is_ok_and(|o| o.status.success());
-    if complete { Ok(python) } else { python_in("target/python", &PYTHON_PACKAGES) }
+    let python = if complete { python } else { python_in("target/python", &PYTHON_PACKAGES)? };
+    let imports = format!("import {}", PEERS.join(", "));
+    if !Command::new(&python).args(["-c", &imports]).output().is_ok_and(|o| o.status.success())
+        && let Err(message) = python_in("target/python", &PEERS)
+    {
+        eprintln!("xtask: {message}: comparisons with these programs are left out");
+    }
+    Ok(python)
 }
 
 /// A Python in a virtual environment in this folder, with what pip installs by these words.

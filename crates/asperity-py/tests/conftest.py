@@ -8,7 +8,7 @@ import os
 import pytest
 
 STRICT = "ASPERITY_COMMAND" in os.environ or "CI" in os.environ
-#: Programs that `cargo xtask test` does not install: a test that compares with one of them may be skipped.
+#: Programs that `cargo xtask test` does not install, or only where it can: a test that compares with one of them may be skipped.
 OTHERS = ("ContactMechanics", "SurfaceTopography", "tamaas", "pint", "cf_xarray", "pandas")
 
 skipped = []

@@ -23,6 +23,9 @@ def test_there_are_notebooks_without_outputs():
 def test_a_notebook_runs(path):
     for needed in ("nbclient", "nbformat", "ipykernel", "matplotlib", "xarray"):
         pytest.importorskip(needed)
+    if "other-programs" in path.stem:
+        for peer in ("tamaas", "ContactMechanics"):
+            pytest.importorskip(peer)
     import nbclient
     import nbformat
 

@@ -41,6 +41,10 @@ function robustLog(map, contact) {
 function endsOf(map, kind, log, contact) {
   if (kind.colours === "states") return [0, 2];
   if (log) return robustLog(map, contact);
+  if (kind.colours === "diverging") {
+    const most = Math.max(...robust(map, contact).map(Math.abs));
+    return [-most, most];
+  }
   return kind.colours === "pressure" ? [0, fence(map)] : robust(map, contact);
 }
 

@@ -74,7 +74,7 @@ async function showMap() {
   const stale = () => kind !== field() || instant !== state.instants[chosen.instant];
   const map = await mapOf(kind, index);
   if (!map || stale()) return;
-  const touches = ["pressure", "contact"].includes(kind.name) ? map.max > 0 : state.series.contact_area[instant.row] > 0;
+  const touches = kind.colours === "pressure" || kind.name === "contact" ? map.max > 0 : state.series.contact_area[instant.row] > 0;
   $("map-title").textContent = `${kind.title} at ${moment(instant)}${touches ? "" : ": no contact"}`;
   if (state.grid.line) await showOverTime(kind, instant, stale);
   else {

@@ -11,6 +11,9 @@ document.documentElement.dataset.theme = dark.matches ? "dark" : "light";
 dark.addEventListener("change", (event) => theme(event.matches ? "dark" : "light"));
 $("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
 
+// A number stays with its unit and its error.
+const unbroken = (value) => value.replace(/([\d)]) ([^\s±]+)(?= ±|$)/, "$1\u00a0$2").replace(" ± ", "\u00a0±\u00a0");
+
 function summary() {
   $("title").textContent = state.title;
   document.title = state.title;
@@ -20,7 +23,7 @@ function summary() {
   $("findings").hidden = !state.findings.length;
   $("finding-list").replaceChildren(...state.findings.map((finding) =>
     make("li", { class: finding.severity }, make("b", {}, finding.severity), ` ${finding.text} `, make("code", {}, finding.code))));
-  $("headline").replaceChildren(...state.headline.map(([name, value]) => make("div", {}, make("b", {}, value.replace(/ (?=±)|(?<=±) |(?<=^\S+) (?=\S+( ±|$))/g, "\u00a0")), make("span", {}, name))));
+  $("headline").replaceChildren(...state.headline.map(([name, value]) => make("div", {}, make("b", {}, unbroken(value)), make("span", {}, name))));
   $("facts").replaceChildren(...terms(state.facts));
 }
 

@@ -64,13 +64,18 @@ impl Sheet {
 
     /// The same page with a figure more, whose panels stand below one another on a phone.
     pub fn figure(mut self, heading: &str, figure: &Figure) -> Sheet {
-        let heading = escaped(heading);
         let data =
             |figure: &Figure| format!("data:image/svg+xml;base64,{}", STANDARD.encode(figure.to_svg()));
-        let [wide, narrow] = [data(figure), data(&figure.clone().columns(1))];
+        let narrow = match figure.panels.len() {
+            0 | 1 => String::new(),
+            _ => {
+                let column = data(&figure.clone().columns(1));
+                format!("<source media=\"(max-width: 560px)\" srcset=\"{column}\">")
+            }
+        };
+        let (heading, picture) = (escaped(heading), data(figure));
         self.body += &format!(
-            "<h2>{heading}</h2>\n<picture><source media=\"(max-width: 560px)\" srcset=\"{narrow}\">\
-             <img alt=\"{heading}\" src=\"{wide}\"></picture>\n"
+            "<h2>{heading}</h2>\n<p><picture>{narrow}<img alt=\"{heading}\" src=\"{picture}\"></picture></p>\n"
         );
         self
     }

@@ -1,5 +1,6 @@
 //! The errors, with the numbers that a user needs to correct the input.
 
+use crate::finding::si;
 use thiserror::Error;
 
 /// The error of every fallible call of this crate.
@@ -67,9 +68,12 @@ pub enum Error {
     },
     /// No equilibrium under the prescribed load: the surfaces that adhered are pulled off; the rows so far are complete.
     #[error(
-        "no equilibrium at t = {time} s: the load {} {unit} is below pull-off (last stable load {} {unit}, at an approach of {} m); \
-         prescribe the approach to follow the contact through it, or let a stage that begins above it end with until = \"contact-lost\"",
-        significant(*load, 4), significant(last[0], 6), significant(last[1], 6)
+        "no equilibrium at t = {time} s: under {} the surfaces come off{}; prescribe the approach to follow the contact through its \
+         largest tension, or let a stage that begins under a weaker pull end with until = \"contact-lost\"",
+        si(*load, unit),
+        last.map_or(String::new(), |[load, approach]| {
+            format!(" (last stable load {}, at an approach of {})", si(load, unit), si(approach, "m"))
+        })
     )]
     PulledOff {
         /// Prescribed load \[N\], per length \[N/m\] on a line of cells.
@@ -78,8 +82,8 @@ pub enum Error {
         unit: &'static str,
         /// Time \[s\].
         time: f64,
-        /// Load and approach \[m\] of the last row.
-        last: [f64; 2],
+        /// Load and approach \[m\] of the last row in contact; `None` where there is none.
+        last: Option<[f64; 2]>,
     },
     /// The run was interrupted on request; the rows so far are complete.
     #[error("interrupted")]

@@ -160,8 +160,16 @@ fn report(args: &FitIndentation, table: &ForceTable, fit: &ForceFit, of: Materia
     line("baseline", interval_in_words(fit.baseline, "N"));
     if fit.model != ForceModel::Hertz {
         let [model, measured] = [fit.pull_off_force, fit.smallest_load].map(|x| quantity(x, "N"));
-        line("pull-off", format!("{model} in the model; smallest load {measured}"));
-        line("Tabor", format!("{:.3e}", fit.tabor));
+        line(
+            "tension",
+            format!("{measured} at most in the record; the model comes off at {model} under this control"),
+        );
+        let range = match (fit.lambda, args.curve.range) {
+            (Some(lambda), _) if !lambda.determined => ", not determined by this record",
+            (None, None) => ", with a range of 0.3 nm, usual between solids (--range)",
+            _ => "",
+        };
+        line("Tabor", format!("{}{range}", quantity(fit.tabor, "")));
     }
     table.notes.iter().chain(&fit.notes).for_each(|note| line("note", note.clone()));
     text

@@ -125,8 +125,12 @@ fn draw(study: &Study, table: &Table, units: &Units) -> Result<(), Failure> {
         sheet = sheet.figure("Answer", &figure);
     }
     sheet = sheet.table("Runs", &lines(study, table, units, usize::MAX));
-    if let Some(words) = table.findings() {
-        sheet = sheet.table("Findings", &[vec!["runs with findings".into()], vec![words]]);
+    let findings = table.runs_of_findings();
+    if !findings.is_empty() {
+        let of = format!("runs of {}", table.rows.len());
+        let lines = findings.iter().map(|(code, runs)| vec![(*code).to_owned(), runs.to_string()]);
+        let lines: Vec<Vec<String>> = [vec!["finding".to_owned(), of]].into_iter().chain(lines).collect();
+        sheet = sheet.table("Findings", &lines);
     }
     Ok(sheet.write(&study.folder.join("study.html"), true)?)
 }

@@ -11,13 +11,15 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Vec<Answer> {
     let header = reader.header();
     // Of loads that are equal but for rounding the last.
     let least = rows.iter().map(|row| row.load).fold(0.0, f64::min);
-    let least = rows.iter().rfind(|row| row.load < 0.0 && row.load <= least * (1.0 - SAME));
-    let Some(row) = least.filter(|_| header.adhesion().is_some() && header.axis() == Axis::Time) else {
+    let at = rows.iter().rposition(|row| row.load < 0.0 && row.load <= least * (1.0 - SAME));
+    let Some((at, row)) =
+        at.map(|at| (at, &rows[at])).filter(|_| header.adhesion().is_some() && header.axis() == Axis::Time)
+    else {
         return vec![];
     };
-    let is_open =
-        rows.last().is_some_and(|last| last.coordinate == row.coordinate && last.contact_fraction > 0.0);
-    let note = if is_open { "still in contact there, at the end of the run" } else { "" };
+    let comes_off = rows[at..].iter().any(|row| row.contact_fraction == 0.0);
+    let note =
+        if comes_off { "" } else { "the largest tension of a run in which the surfaces do not come off" };
     vec![
         Answer::new("pull_off_force", row.load, header.grid.units("N")).with_note(note).at(row),
         Answer::new("pull_off_approach", row.approach, "m").at(row),

@@ -191,13 +191,14 @@ impl<'c> Place<'c> {
         }
         let names: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
         let (path, names) = (&self.key, names.join(" or "));
-        let (code, message) = match given.is_empty() {
-            true => (Code::MissingKey, format!("{path} needs {names}")),
+        let (code, message, expected) = match given.is_empty() {
+            true => (Code::MissingKey, format!("{path} needs {names}"), names),
             false => {
-                (Code::Conflict, format!("{path} has {}, but needs only one of them", given.join(" and ")))
+                let message = format!("{path} has {}, but needs only one of them", given.join(" and "));
+                (Code::Conflict, message, format!("only one of {names}"))
             }
         };
-        self.push(|text, spot| text.error(code, spot, None, &names, "", message))
+        self.push(|text, spot| text.error(code, spot, None, &expected, "", message))
     }
 
     /// Refuses keys of the table that something else excludes; `None` where one is given. `why` ends the message

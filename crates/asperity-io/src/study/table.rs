@@ -84,13 +84,19 @@ impl Table {
         self.rows.iter().filter(|row| row.state.word() == word).count()
     }
 
-    /// Which runs have findings, in words: "3 of 50 runs have findings: few-contact-cells (2 runs), large-slope (1 run)"; `None` without.
-    pub fn findings(&self) -> Option<String> {
+    /// The codes of findings, with how many runs have each.
+    pub fn runs_of_findings(&self) -> BTreeMap<&str, usize> {
         let mut runs_of: BTreeMap<&str, usize> = BTreeMap::new();
         for row in &self.rows {
             let codes: BTreeSet<&str> = row.findings.iter().map(String::as_str).collect();
             codes.into_iter().for_each(|code| *runs_of.entry(code).or_default() += 1);
         }
+        runs_of
+    }
+
+    /// Which runs have findings, in words: "3 of 50 runs have findings: few-contact-cells (2 runs), large-slope (1 run)"; `None` without.
+    pub fn findings(&self) -> Option<String> {
+        let runs_of = self.runs_of_findings();
         let with = self.rows.iter().filter(|row| !row.findings.is_empty()).count();
         let words = runs_of.iter().map(|(code, runs)| format!("{code} ({})", counted(*runs, "run")));
         let have = if with == 1 { "has" } else { "have" };

@@ -17,7 +17,8 @@ use super::{Format, Problem, ReadOptions, TopographyError, format, unpack};
 
 /// Spacings that agree to this share of their mean are equal: instruments round their positions.
 const EVEN: f64 = 1e-3;
-/// A spacing of more than this many usual ones is a gap.
+
+/// Where neighbouring points are farther apart than so many times the median, points between them are missing.
 const GAP: f64 = 3.0;
 
 /// A profile that was read.
@@ -121,7 +122,7 @@ fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Problem> {
         z = resampled(&x, &z, spacing);
         history.push(format!(
             "resampled from {count} unevenly spaced points (spacings up to {:.3} times the mean) to {count} evenly spaced ones, \
-             straight in between",
+             straight in between; undefined where neighbours are more than {GAP} times the median spacing apart",
             1.0 + off
         ));
     }
@@ -136,18 +137,24 @@ fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Problem> {
     Ok(Profile { surface: made.map_err(wrong)?, history, metadata: columns.metadata, gaps })
 }
 
-/// Share of the length between neighbours with heights that are more than [`GAP`] usual spacings, the median, apart.
-fn gaps(x: &[f64], z: &[f64]) -> f64 {
+/// The largest spacing that is no gap.
+fn largest_spacing(x: &[f64]) -> f64 {
     let mut spacings: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
     spacings.sort_by(f64::total_cmp);
-    let usual = spacings[spacings.len() / 2];
+    GAP * spacings[spacings.len() / 2]
+}
+
+/// Share of the length that lies in gaps, between points or without heights.
+fn gaps(x: &[f64], z: &[f64]) -> f64 {
+    let largest = largest_spacing(x);
     let measured: Vec<f64> = x.iter().zip(z).filter(|(_, z)| z.is_finite()).map(|(x, _)| *x).collect();
-    let wide = measured.windows(2).map(|pair| pair[1] - pair[0]).filter(|apart| *apart > GAP * usual);
+    let wide = measured.windows(2).map(|pair| pair[1] - pair[0]).filter(|apart| *apart > largest);
     wide.sum::<f64>() / (x[x.len() - 1] - x[0])
 }
 
-/// Heights at evenly spaced places, straight between the points; undefined where a neighbour is.
+/// Heights at evenly spaced places, straight between the points; undefined where a neighbour is, and in gaps.
 fn resampled(x: &[f64], z: &[f64], spacing: f64) -> Vec<f64> {
+    let largest = largest_spacing(x);
     let mut after = 1;
     let mut at = |k: usize| {
         let place = x[0] + k as f64 * spacing;
@@ -158,6 +165,7 @@ fn resampled(x: &[f64], z: &[f64], spacing: f64) -> Vec<f64> {
         match share {
             0.0 => z[after - 1],
             1.0 => z[after],
+            _ if x[after] - x[after - 1] > largest => f64::NAN,
             _ => z[after - 1] + share * (z[after] - z[after - 1]),
         }
     };
@@ -175,6 +183,18 @@ mod tests {
 
     fn message(text: &str, options: &ReadOptions) -> String {
         profile_of(text.as_bytes(), options).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn missing_points_stay_undefined() {
+        // Ten points every micrometre, of which those from 3 to 6 are missing.
+        let points = [0, 1, 2, 7, 8, 9, 10, 11, 12, 13].map(|x| format!("{x} {}\n", 10 * x));
+        let profile = read(&format!("x [um] z [um]\n{}", points.concat()));
+        // Places every 13/9 um: 2.89, 4.33 and 5.78 um lie in the gap.
+        assert_eq!(profile.surface.undefined(), 3);
+        let heights = profile.surface.heights().to_owned();
+        assert!((heights[(5, 0)] - 10e-6 * 5.0 * 13.0 / 9.0).abs() < 1e-12, "{heights}");
+        assert!(profile.history.iter().any(|step| step.contains("undefined")), "{:?}", profile.history);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What a page knows besides its maps.
 
+use asperity::Coordinate;
 use asperity::cycles::Cycle;
 use asperity_io::answer::{self, Answer, Units};
 use asperity_io::converge::ErrorBar;
@@ -90,7 +91,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "cycles": each_cycle(reader)?,
         "evolution": evolution(reader, theory.is_some())?,
         "solver": panels::of_work(reader)?.iter().map(panel).collect::<Vec<_>>(),
-        "fields": maps.fields.iter().map(field).collect::<Vec<_>>(),
+        "fields": maps.fields.iter().map(|kind| field(*kind, reader)).collect::<Vec<_>>(),
         "instants": instants.collect::<Vec<_>>(),
         "note": note,
         "colours": {
@@ -174,9 +175,11 @@ fn panel(panel: &RowPanel) -> Value {
     json!([panel.title, panel.label, lines, panel.states])
 }
 
-fn field(kind: &FieldKind) -> Value {
-    let (label, colours) = look(*kind);
+fn field(kind: FieldKind, reader: &Reader) -> Value {
+    let (label, colours) = look(kind);
+    let is_tension = kind == FieldKind::Pressure && reader.header().adhesion().is_some();
     let colours = match colours {
+        _ if is_tension => "diverging",
         Some(Colours::Pressure) => "pressure",
         // The page itself leaves the gap of cells in contact light.
         Some(_) => "sequential",
@@ -209,9 +212,25 @@ fn headline(answers: &[Answer], units: &Units, bars: &[ErrorBar], last: Option<&
         Some(bar) => units.plus_minus(bar),
         None => answer.words(units),
     };
-    let mut lines: Vec<[String; 2]> =
-        units.without_second_rate(answers).map(|answer| [answer.label(), words(answer)]).collect();
-    let at = answers.iter().find_map(|answer| answer.at).or(last.map(|row| row.coordinate));
-    lines.extend(at.map(|at| [at.axis().name().to_owned(), units.number(at.value(), at.axis().unit())]));
+    let note = |answer: &Answer| match answer.note.as_str() {
+        "" => String::new(),
+        note => format!(" ({note})"),
+    };
+    let line = |answer: &Answer| [answer.label() + &note(answer), words(answer)];
+    let mut lines: Vec<[String; 2]> = units.without_second_rate(answers).map(line).collect();
+    let mut at: Vec<(Coordinate, &str)> = vec![];
+    for answer in answers {
+        if let Some(own) = answer.at.filter(|own| at.iter().all(|(known, _)| known != own)) {
+            at.push((own, &answer.name));
+        }
+    }
+    if at.is_empty() {
+        at.extend(last.map(|row| (row.coordinate, "")));
+    }
+    let many = at.len() > 1;
+    lines.extend(at.iter().map(|(at, name)| {
+        let of = if many { format!(" of the {}", name.replace('_', " ")) } else { String::new() };
+        [at.axis().name().to_owned() + &of, units.number(at.value(), at.axis().unit())]
+    }));
     lines
 }

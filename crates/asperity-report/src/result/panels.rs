@@ -76,7 +76,9 @@ pub(crate) fn of_evolution(reader: &Reader) -> Result<Vec<RowPanel>, StoreError>
         RowFigure::Evolution(place) => Some(place),
         _ => None,
     })?;
-    if let Some(pressure) = panels.iter_mut().find(|panel| panel.label == "pressure") {
+    // Where surfaces adhere, most of the tension acts outside of the contact.
+    let has_mean = reader.header().adhesion().is_none();
+    if let Some(pressure) = panels.iter_mut().find(|panel| panel.label == "pressure" && has_mean) {
         pressure.lines.push(("mean over the contact", CONTACT_PRESSURE));
     }
     let mut changing = vec![];

@@ -63,6 +63,7 @@ pub use stress::{
 };
 pub use surface::{hurst, of_heights};
 pub use thin::thin_body;
+pub(crate) use words::si;
 
 /// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -42,7 +42,7 @@ pub fn of_profile(name: &str, profile: &Surface) -> Option<Finding> {
 pub fn gaps_of_profile(name: &str, bridged: f64) -> Option<Finding> {
     (bridged > 0.0).then(|| {
         let text = format!(
-            "{} % of the length of {name} lies in gaps between its points, which are bridged by straight lines: they have no short waves, \
+            "{} % of the length of {name} lies in gaps between its points, which fills bridge by straight lines: these have no short waves, \
              so slopes are too low by about half of this share, and places in the gaps are a guess. Measure again, or crop the profile to a part \
              without gaps.",
             digits(100.0 * bridged)

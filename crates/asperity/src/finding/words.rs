@@ -3,7 +3,7 @@
 use crate::error::significant;
 
 /// Three digits and a prefix: `si(2.5e-5, "m")` is "25 µm". Powers of a unit have no prefix.
-pub(super) fn si(value: f64, unit: &str) -> String {
+pub(crate) fn si(value: f64, unit: &str) -> String {
     const PREFIXES: [(&str, i32); 8] =
         [("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9), ("T", 12)];
     if value == 0.0 || !value.is_finite() {

@@ -103,7 +103,9 @@ impl Rows {
             return invalid(
                 "attraction of the force curve",
                 format!("{:.3e} N at most, with a noise of {:.3e} N", rest - smallest, noise[0]),
-                format!("at least {SEEN} times the noise; without adhesion use the model `hertz`"),
+                format!(
+                    "at least {SEEN} times the noise; where the sphere is pulled, the load must be negative: turn the sign of the column; without adhesion use the model `hertz`"
+                ),
             );
         }
         let [of_loads, of_depths] = [0, 1].map(|k| {

@@ -143,7 +143,7 @@ impl Stepper {
             }
             Err(Error::PulledOff { load, unit, .. }) => {
                 let StepState { before, now, loads, .. } = &mut self.state;
-                let last = [loads[0], before.approach];
+                let last = (!is_zero(&before.pressure)).then_some([loads[0], before.approach]);
                 // The best state is that of the last row.
                 now.clone_from(before);
                 return Err(Error::PulledOff { load, unit, time: step.instant.time, last });

@@ -215,6 +215,13 @@ impl<'a> Step<'a> {
         let (c, w) = (self.compliance, self.state.approach);
         let cells = self.state.unit_displacement.iter().zip(self.gap);
         gap.iter_mut().zip(cells).for_each(|(gap, (u, h))| *gap = c * u + h - w);
+        // Where other tractions act, contact is known to their tolerance only.
+        if self.traction.is_some() {
+            let cells = gap.iter_mut().zip(self.contact_cells()).enumerate();
+            cells
+                .filter(|(n, (_, q))| **q > 0.0 && **q < self.hardness.at(*n))
+                .for_each(|(_, (gap, _))| *gap = 0.0);
+        }
     }
 
     /// Normal displacement u = integral C d(Kp) of both surfaces together \[m\]; of a free line contact against the end of the

@@ -32,6 +32,8 @@ use std::sync::Arc;
 
 /// A cell snaps on its own above a trap number of 1; below this one the answer does not depend on the grid.
 pub const FINE_TRAP: f64 = 0.5;
+/// Larger works of adhesion \[J/m²\] are seldom meant.
+const MOST_WORK: f64 = 10.0;
 /// Above this number no run begins, unless it is allowed.
 pub const LARGEST_TRAP: f64 = 1.0;
 
@@ -208,9 +210,15 @@ impl TractionLaw for Adhesion {
             return Ok(());
         }
         let [nx, ny] = cells_needed(&simulation.grid, trap);
+        let doubt = match self.work > MOST_WORK {
+            true => {
+                format!(" Is the work of adhesion meant, {} J/m2? Surfaces have 0.001 to 1 J/m2.", self.work)
+            }
+            false => String::new(),
+        };
         let expected = format!(
             "at most {LARGEST_TRAP}, better {FINE_TRAP}: these cells snap into and out of contact one by one, which makes false forces and \
-             hysteresis. Take {nx} x {ny} cells, or a longer range; allow_unresolved = true runs it all the same"
+             hysteresis. Take {nx} x {ny} cells, or a longer range; allow_unresolved = true runs it all the same.{doubt}"
         );
         Err(Error::invalid("trap number of the adhesion", format!("{trap:.3}"), expected)
             .of("adhesion.range"))

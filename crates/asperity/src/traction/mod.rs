@@ -245,9 +245,9 @@ impl TractionSolver {
             Prescribed::Approach(_) => run.solve(problem),
             Prescribed::Load(load) => match run.solve_under(problem, load) {
                 Err(Error::Infeasible { .. }) if run.own.law.is_attraction() => {
-                    let (unit, last) = (run.operator.grid().units("N"), [f64::NAN; 2]);
+                    let unit = run.operator.grid().units("N");
                     self.now.copy_from(&self.last);
-                    return Err(Error::PulledOff { load, unit, time: f64::NAN, last });
+                    return Err(Error::PulledOff { load, unit, time: f64::NAN, last: None });
                 }
                 Err(Error::Infeasible { .. }) => run.search_approach(problem, load, state.approach),
                 solved => solved,

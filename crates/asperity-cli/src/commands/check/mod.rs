@@ -127,7 +127,8 @@ fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
         line("expected", format!("{of} {radius}, {cells:.0} cells across{strain}"));
     } else if let Some(shares) = inputs.expected_contact_share {
         let share = range(case, shares, |share| format!("{:.2} %", 100.0 * share));
-        line("expected", format!("share of the domain in contact {share}{strain}"));
+        let without = if inputs.adhesion.is_some() { ", without adhesion" } else { "" };
+        line("expected", format!("share of the domain in contact{without} {share}{strain}"));
     }
     if let Some(adhesion) = &inputs.adhesion {
         let (work, range) = (quantity(adhesion.work, "J/m2"), quantity(adhesion.range, "m"));
@@ -142,7 +143,10 @@ fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
         };
         line("trap number", format!("{:.3} of {FINE_TRAP}: {fine}", adhesion.trap));
         if let Some(force) = adhesion.expected_pull_off {
-            line("pull-off", format!("{} expected of an elastic sphere", quantity(force, "N")));
+            line(
+                "pull-off",
+                format!("{} expected of a relaxed sphere; a fast one takes more", quantity(-force, "N")),
+            );
         }
     }
     lines

@@ -5,19 +5,28 @@ use std::path::Path;
 use asperity::traction::AdhesionScale;
 use asperity_io::case::Case;
 
-use super::own::{YOURS, plain};
+use super::own::YOURS;
+use crate::format::quantity;
 
 /// The trap number of the case: below 0.5 the answer does not depend on the grid.
 const TRAP: f64 = 0.4;
 
-/// `[adhesion]` of the case that consists of these two texts, with the shortest range that its cells resolve.
+/// How the line of a fitted force curve begins that holds the work of adhesion.
+const WORK: &str = "# Work of adhesion ";
+
+/// `[adhesion]` of the case that consists of these two texts, with the shortest range that its cells resolve; with the work of adhesion that
+/// `fit-indentation` wrote with the material.
 pub(super) fn section(before: &str, after: &str, folder: &Path) -> String {
+    let fitted =
+        before.lines().find_map(|line| line.strip_prefix(WORK)?.split_once(" J/m2")?.0.parse::<f64>().ok());
+    let work = match fitted {
+        Some(work) => format!("work = \"{work:.3e} J/m2\"               # of the force curve"),
+        None => format!(
+            "work = \"50 mJ/m2\"                     {YOURS}energy that parts a unit area; 20 to 100 mJ/m2 of clean, dry surfaces"
+        ),
+    };
     let of = |range: f64, remark: &str| {
-        format!(
-            "\n[adhesion]\nwork = \"50 mJ/m2\"                     {YOURS}energy that parts a unit area; 20 to 100 mJ/m2 of clean, dry surfaces\n\
-             range = \"{}\"                    {remark}\n",
-            plain(range, "m")
-        )
+        format!("\n[adhesion]\n{work}\nrange = \"{}\"                       {remark}\n", quantity(range, "m"))
     };
     let trap = |range: f64| {
         let case = Case::parse(&[before, &of(range, ""), after].concat(), folder, &[]).ok()?;
@@ -28,8 +37,7 @@ pub(super) fn section(before: &str, after: &str, folder: &Path) -> String {
         Some(trap) => {
             let range = (trap / TRAP).sqrt();
             let digits = format!("{range:.1e}").parse().unwrap_or(range);
-            let remark = "# the shortest one that these cells resolve (trap number 0.4): a wider range changes little while it is small \
-                          against the contact";
+            let remark = "# the shortest that these cells resolve (trap number 0.4), for this work";
             of(digits, remark)
         }
         None => {
@@ -42,13 +50,14 @@ pub(super) fn section(before: &str, after: &str, folder: &Path) -> String {
 /// material is known.
 pub(super) fn retraction(height: f64, end: f64) -> String {
     let half = super::own::one_digit(0.5 * end);
-    let away = plain(-super::own::one_digit(0.1 * height), "m");
+    let away = quantity(-super::own::one_digit(0.1 * height), "m");
     format!(
         "\n[[load.stages]]\ncontrol = \"pressure\"                  # mean over the surface\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure that \
-         brings them together\nduration = \"{half} s\"                      {YOURS}how long they are pressed\nsteps = 20\n\
+         brings them together\nduration = \"{half} s\"                      {YOURS}how long they are pressed\nsteps = 30\nspacing = \"log\"                       # the material relaxes fast at first\nfirst = \"{} s\"\n\
          \n[[load.stages]]\ncontrol = \"approach\"\nhistory = {{ kind = \"ramp\", from = \"current\", value = \"{away}\", duration = \"{half} s\" }}   {YOURS}how fast \
          they part\nduration = \"{half} s\"\nsteps = 100\nuntil = \"contact-lost\"\n\
          \n[time]\nend = \"{} s\"\nsteps = 1\n\n[output]\nfields = [\"pressure\", \"gap\"]\nevery = 20\n",
+        super::own::one_digit(1e-4 * half),
         2.0 * half
     )
 }

@@ -427,6 +427,11 @@ fn indentation_of(
         points.push(format!("  [\"{time:.6e} s\", \"{value:.6e} {unit}\"],"));
     }
     let deepest = record.depths.iter().copied().fold(0.0, f64::max).max(1e-9);
+    if sticks && record.depths.iter().all(|depth| *depth >= 0.0) {
+        crate::messages::message!(
+            "note: the depths of the record do not fall below 0, where bodies that stick come off: add points to the history"
+        );
+    }
     // A ball whose contact radius, sqrt(R d), is a tenth of its own radius.
     let indenter = indenter(material, one_digit(100.0 * deepest));
     let radius = contact_radius(&indenter, deepest).unwrap_or(10.0 * deepest);
@@ -458,7 +463,7 @@ fn indentation_of(
 }
 
 /// A number with its unit in full digits, to be read again.
-pub(super) fn plain(value: f64, unit: &str) -> String {
+fn plain(value: f64, unit: &str) -> String {
     format!("{value:e} {unit}")
 }
 

@@ -167,7 +167,7 @@ pub fn fit_file<'py>(
 /// Of sweeps at several temperatures whose shift the file does not hold, the one nearest to that of a room \[K\].
 fn reference_of_several(curves: &Curves) -> Option<f64> {
     const ROOM: f64 = 293.15;
-    let several = curves.sweeps.len() > 1 && !curves.is_ramp() && curves.held.shift().is_none();
+    let several = curves.sweeps.len() > 1 && !curves.is_over_temperature() && curves.held.shift().is_none();
     let temperatures = curves.sweeps.iter().filter_map(|sweep| sweep.temperature);
     temperatures.min_by(|a, b| (a - ROOM).abs().total_cmp(&(b - ROOM).abs())).filter(|_| several)
 }

@@ -176,7 +176,7 @@ class Chart {
 
   size() {
     const width = Math.max(this.box.clientWidth, 200);
-    return { width, height: Math.round(Math.min(Math.max(width * 0.52, 190), 300)) };
+    return { width, height: Math.round(Math.min(Math.max(width * 0.52, 220), 300)) };
   }
 
   /** Ticks of an axis as it is shown now: values in SI and texts in the unit shown. */

@@ -11,8 +11,8 @@ document.documentElement.dataset.theme = dark.matches ? "dark" : "light";
 dark.addEventListener("change", (event) => theme(event.matches ? "dark" : "light"));
 $("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
 
-// A number stays with its unit, and a line breaks before its error.
-const unbroken = (value) => value.replace(/([\d)]) ([^\s±]+)(?= ±|$)/, "$1\u00a0$2").replace("± ", "±\u00a0");
+// A number stays with its unit and its error.
+const unbroken = (value) => value.replace(/([\d)]) ([^\s±]+)(?= ±|$)/, "$1\u00a0$2").replace(" ± ", "\u00a0±\u00a0");
 
 function summary() {
   $("title").textContent = state.title;

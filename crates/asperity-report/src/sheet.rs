@@ -16,9 +16,27 @@ pub struct Sheet {
 }
 
 /// What the pages of results do not need.
-const TABLES: &str = ".wide { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }\
-    th, td { text-align: left; padding: 4px 14px 4px 0; border-bottom: 1px solid var(--rule); white-space: nowrap; }\
-    th { color: var(--soft); font-weight: 500; } img { max-width: 100%; height: auto; background: #fff; }";
+const TABLES: &str = "\
+    .wide { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+    th, td { text-align: left; padding: 4px 14px 4px 0; border-bottom: 1px solid var(--rule); white-space: nowrap; }
+    th { color: var(--soft); font-weight: 500; } td:first-child { color: var(--soft); }
+    img { max-width: 100%; height: auto; background: #fff; border-radius: 4px; }
+    /* On a phone each row is a block, and each cell a line with the head of its column. */
+    @media (max-width: 560px) {
+      tr:first-child { display: none; } table, tbody, tr, td { display: block; }
+      tr { padding: 8px 0; border-bottom: 1px solid var(--rule); }
+      td { border: 0; padding: 1px 0; white-space: normal; overflow-wrap: anywhere; }
+      td:first-child { font-weight: 600; color: var(--ink); }
+      td[data-head]:not([data-head=\"\"]) { display: grid; grid-template-columns: 9em 1fr; gap: 10px; }
+      td[data-head]::before { content: attr(data-head); color: var(--soft); font-weight: 400; }
+    }";
+
+/// The dark colours of the pages of results, where the system is dark: this page has no script that chooses.
+fn dark() -> String {
+    let (_, after) = STYLE.split_once(":root[data-theme=\"dark\"]").unwrap_or_default();
+    let (colours, _) = after.split_once('}').unwrap_or_default();
+    format!("@media (prefers-color-scheme: dark) {{ :root{colours}}} }}")
+}
 
 impl Sheet {
     /// A page with this title.
@@ -30,24 +48,29 @@ impl Sheet {
     pub fn table(mut self, heading: &str, rows: &[Vec<String>]) -> Sheet {
         self.body += &format!("<h2>{}</h2>\n<div class=\"wide\"><table>\n", escaped(heading));
         for (n, row) in rows.iter().enumerate() {
-            let tag = if n == 0 { "th" } else { "td" };
-            let cells: String = row.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect();
+            let cell = |(column, cell): (usize, &String)| match (n, rows[0].get(column)) {
+                (0, _) => format!("<th>{}</th>", escaped(cell)),
+                (_, head) => {
+                    let head = escaped(head.map_or("", String::as_str));
+                    format!("<td data-head=\"{head}\">{}</td>", escaped(cell))
+                }
+            };
+            let cells: String = row.iter().enumerate().map(cell).collect();
             self.body += &format!("<tr>{cells}</tr>\n");
         }
         self.body += "</table></div>\n";
         self
     }
 
-    /// The same page with a figure more.
+    /// The same page with a figure more, whose panels stand below one another on a phone.
     pub fn figure(mut self, heading: &str, figure: &Figure) -> Sheet {
         let data =
             |figure: &Figure| format!("data:image/svg+xml;base64,{}", STANDARD.encode(figure.to_svg()));
-        // On a phone the panels stand one below the other.
         let narrow = match figure.panels.len() {
             0 | 1 => String::new(),
             _ => {
                 let column = data(&figure.clone().columns(1));
-                format!("<source media=\"(max-width: 640px)\" srcset=\"{column}\">")
+                format!("<source media=\"(max-width: 560px)\" srcset=\"{column}\">")
             }
         };
         let (heading, picture) = (escaped(heading), data(figure));
@@ -69,8 +92,9 @@ impl Sheet {
         format!(
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <meta name=\"generator\" content=\"asperity\">\n<title>{title}</title>\n<style>\n{STYLE}\n{TABLES}\n</style>\n\
+             <meta name=\"generator\" content=\"asperity\">\n<title>{title}</title>\n<style>\n{STYLE}\n{}\n{TABLES}\n</style>\n\
              </head>\n<body>\n<header><h1>{title}</h1></header>\n<main>\n{}</main>\n</body>\n</html>\n",
+            dark(),
             self.body
         )
     }
@@ -95,5 +119,14 @@ mod tests {
             assert!(!page.contains(markup), "{markup}");
         }
         assert!(page.contains("<th>&lt;script&gt;</th>") && page.contains("<p class=\"note\">&amp;</p>"));
+    }
+
+    #[test]
+    fn a_narrow_page_shows_the_head_of_its_column_beside_each_cell_and_a_dark_one_the_dark_colours() {
+        let rows = [["", "load = 1 N"], ["Contact area", "2 mm²"]].map(|row| row.map(String::from).to_vec());
+        let page = Sheet::new("two").table("Answers", &rows).html();
+        assert!(page.contains("<td data-head=\"load = 1 N\">2 mm²</td>"), "{page}");
+        let (_, dark) = page.split_once("(prefers-color-scheme: dark) { :root {").unwrap();
+        assert!(dark.trim_start().starts_with("--paper: #14181c"), "{dark}");
     }
 }

@@ -3,7 +3,8 @@
 
 use asperity_io::study::{Plan, Table};
 
-use crate::figure::{Axis, COLOURS, Curves, Figure, Series, Style};
+use crate::figure::{Axis, Curves, Figure, Series, Style};
+use crate::result::colour_among;
 
 /// An axis is logarithmic where its values span this factor.
 const DECADE: f64 = 10.0;
@@ -72,7 +73,7 @@ pub fn figure(plan: &Plan, table: &Table) -> Option<Figure> {
     let has_errors = places().any(|(_, values)| values.len() == 1 && values[0][1].is_finite());
     let mut panel = Curves::new("", x, y);
     for (n, (name, places)) in curves.iter().enumerate() {
-        panel = drawn(panel, name, places, COLOURS[n % COLOURS.len()]);
+        panel = drawn(panel, name, places, &colour_among(n, curves.len()));
     }
     let figure =
         Figure::new(title(plan, table).unwrap_or_default()).with(panel).columns(1).panel_size([360.0, 260.0]);

@@ -93,7 +93,9 @@ fn told(event: &Event<'_>, units: &Units) -> String {
         State::Failed(why) => format!("failed: {why}"),
         state => state.word().to_owned(),
     };
-    format!("{}/{}  {}: {came} ({})", event.ended, event.of, event.label, duration(event.seconds))
+    let no_errors = event.no_errors.as_ref().map(|why| format!("; no error bars: {why}")).unwrap_or_default();
+    let seconds = duration(event.seconds);
+    format!("{}/{}  {}: {came}{no_errors} ({seconds})", event.ended, event.of, event.label)
 }
 
 fn status(args: &StudyFolder) -> Result<(), Failure> {

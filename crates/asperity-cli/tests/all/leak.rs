@@ -159,6 +159,16 @@ fn a_run_stores_its_leaks_and_other_fluids_can_follow() {
         assert!(done.status.success(), "{}", text(&done.stderr));
         assert!(std::fs::read_to_string(directory.join(what)).unwrap().contains("Leak rate"));
     }
+    // Time as asked for; evenly spaced times are on a linear axis otherwise. A map has no such axis.
+    let drawn = |options: &[&str]| {
+        let start = ["plot", "seal.zarr", "leak", "--force", "-o", "axis.svg"];
+        let done = asperity(&[&start[..], options].concat(), directory);
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        std::fs::read_to_string(directory.join("axis.svg")).unwrap()
+    };
+    let [usual, linear, log] = [drawn(&[]), drawn(&["--linear-time"]), drawn(&["--log-time"])];
+    assert!(usual == linear && usual != log);
+    refused(&["plot", "seal.zarr", "gap", "--log-time"], directory, &["--log-time", "over time"]);
     // An option changes what it names and nothing else: the inlet of the air, whose pressure is stored as the case asks.
     let changed = asperity(&["leak", "seal.zarr", "--inlet", "1.002 bar", "--json"], directory);
     let told: Value = serde_json::from_slice(&changed.stdout).unwrap();

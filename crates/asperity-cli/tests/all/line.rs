@@ -246,6 +246,13 @@ fn a_map_of_a_profile_tells_its_height_and_slope_beside_those_of_the_profile() {
     {
         assert!(history.contains(words), "{words}: {history}");
     }
+    // A part without points is told with its share: 300 of 2999 spacings.
+    let part: String =
+        (0..3000).filter(|i| !(1001..1300).contains(i)).map(|i| format!("{i} {}\n", height(i))).collect();
+    std::fs::write(path.join("gap.txt"), format!("# x [um] z [nm]\n{part}")).unwrap();
+    let output = asperity(path, &["surface", "info", "gap.txt"]);
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert!(told.contains("10 % of the length") && told.contains("[profile-gaps]"), "{told}");
     // The wave is far above two cells: nothing is said to fall.
     let (_, _, note) = made(&["--op", "outliers=6", "--op", "fill=harmonic"]);
     assert!(note.contains("would need 3000 x 3000") && !note.contains("fall"), "{note}");

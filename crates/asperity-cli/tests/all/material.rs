@@ -430,3 +430,25 @@ fn moduli_that_grow_with_temperature_take_a_vertical_shift() {
     let alone = stderr(&fit(&["--expansion", "6e-4 1/K"]));
     assert!(alone.contains("--vertical density"), "{alone}");
 }
+
+#[test]
+fn a_temperature_ramp_is_shown_over_temperature() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let rows: String =
+        (0..21).map(|n| format!("{}, 1, {}, {}\n", 3 * n - 30, 400 - 15 * n, 80 - 3 * n)).collect();
+    std::fs::write(
+        path.join("ramp.csv"),
+        format!("temperature [°C], frequency [Hz], storage [MPa], loss [MPa]\n{rows}"),
+    )
+    .unwrap();
+    let output = asperity(path, &["material", "show", "ramp.csv", "--plot", "ramp.svg"]);
+    let told = String::from_utf8(output.stdout).unwrap();
+    let ramp = "a temperature ramp, -30.0 °C to 30.0 °C: 21 temperatures, 21 points, 1 Hz";
+    assert!(output.status.success() && told.contains(ramp) && !told.contains("1 point,"), "{told}");
+    // No two of its temperatures overlap.
+    let output = asperity(path, &["material", "fit", "ramp.csv"]);
+    assert!(output.status.code() == Some(2) && stderr(&output).contains("a ramp"), "{}", stderr(&output));
+    let picture = std::fs::read_to_string(path.join("ramp.svg")).unwrap();
+    assert!(picture.contains("temperature [°C]") && !picture.contains("frequency [Hz]"));
+}

@@ -248,6 +248,27 @@ fn a_case_may_hold_its_study_and_a_folder_only_that() {
 }
 
 #[test]
+#[cfg(unix)]
+fn a_run_stays_whose_error_bars_fail_and_gets_them_later() {
+    let folder = folder();
+    let path = folder.path();
+    let vary = ["study", "ball.toml", "--vary", "load.history.value=0.2 N", "--error-bars", "-o", "s"];
+    // Without a place for the other grids.
+    let output = crate::command(path, &vary).env("TMPDIR", path.join("nowhere")).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && told.contains("no error bars: no temporary directory"), "{told}");
+    let names = || std::fs::read_dir(path.join("s")).unwrap().map(|entry| entry.unwrap().file_name());
+    assert!(
+        !names().any(|name| name.to_string_lossy().ends_with(".error")),
+        "{:?}",
+        names().collect::<Vec<_>>()
+    );
+    assert_eq!(rows(&csv(path, "s"))[0]["status"], "done");
+    assert!(asperity(path, &vary).status.success());
+    assert!(csv(path, "s").contains("contact_area_error"));
+}
+
+#[test]
 fn a_study_carries_errors_and_findings() {
     let folder = folder();
     let path = folder.path();

@@ -310,7 +310,7 @@ impl Request {
                 notes.extend(told_of_held(curves, shift));
                 Ok(known(Some(shift.clone())))
             }
-            (ShiftRequest::None, None) if curves.is_ramp() => Err(fault(format!(
+            (ShiftRequest::None, None) if curves.is_over_temperature() => Err(fault(format!(
                 "the temperature changes from row to row, a ramp ({}): each row needs its shift factor",
                 curves.temperatures()
             ))

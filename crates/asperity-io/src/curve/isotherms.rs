@@ -46,7 +46,7 @@ pub(super) fn shifted_by(curves: &Curves, shift: &Shift) -> Vec<Isotherm> {
 
 /// Refuses to estimate `what` from the rows of a temperature ramp: no two of them overlap.
 pub(super) fn held(curves: &Curves, what: &str) -> Result<(), Fault> {
-    match curves.is_ramp() {
+    match curves.is_over_temperature() {
         false => Ok(()),
         true => Err(fault(format!(
             "the temperature changes from row to row, a ramp; {what} can be estimated only from sweeps over several frequencies at held \

@@ -231,6 +231,13 @@ impl Curves {
         sweeps::is_ramp(self.sweeps.iter().filter_map(|sweep| sweep.temperature))
     }
 
+    /// Whether a DMA was measured over temperature rather than over frequency: each row, or each single point of a frequency, has a
+    /// temperature of its own.
+    pub fn is_over_temperature(&self) -> bool {
+        let single = |sweep: &Sweep| sweep.x.len() == 1 && sweep.temperature.is_some();
+        self.kind == Kind::Dma && (self.is_ramp() || self.sweeps.len() > 2 && self.sweeps.iter().all(single))
+    }
+
     /// The lowest and the highest temperature in words: "-20.0 °C to 60.0 °C"; empty where the file holds none.
     pub fn temperatures(&self) -> String {
         let celsius = |sweep: &Sweep| Some(format!("{:.1} °C", sweep.temperature? - 273.15));

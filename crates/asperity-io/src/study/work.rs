@@ -39,6 +39,8 @@ pub struct Event<'a> {
     pub label: String,
     /// What came of it.
     pub row: &'a Row,
+    /// Why its answers have no errors, where they were wanted.
+    pub no_errors: Option<String>,
     /// So many runs of this process have ended, these before it included that were done already.
     pub ended: usize,
     /// Runs of this process.
@@ -184,25 +186,24 @@ impl Study {
         }
     }
 
-    /// Runs a case, and computes the errors of its answers where they are wanted. An error is the reason why the run failed.
-    fn finish(&self, run: &Run, before: &Row, options: &Options) -> Result<(), String> {
+    /// Runs a case, and computes the errors of its answers where they are wanted. An error is the reason why the run failed; a text
+    /// is the reason why its answers have no errors.
+    fn finish(&self, run: &Run, before: &Row, options: &Options) -> Result<Option<String>, String> {
         self.compute(run, before, &options.interrupt)?;
         let now = rows::of(self, run);
-        let Some(base) = self.base.as_ref() else { return Ok(()) };
+        let Some(base) = self.base.as_ref() else { return Ok(None) };
         if !options.error_bars || now.state != State::Done || !now.bars.is_empty() {
-            return Ok(());
+            return Ok(None);
         }
         let path = self.result(run);
         let overrides = self.plan.overrides(run);
         let read = |more: &[String]| base.case(&[&overrides, more].concat());
         let how = ConvergeOptions { refine: false, interrupt: options.interrupt.clone() };
-        match converge(&read, Some(&path), &how, &mut |_| {}) {
-            Ok(found) => {
-                store_error_bars(&path, serde_json::json!(found.bars)).map_err(|error| error.to_string())
-            }
-            Err(_) if options.interrupt.load(Ordering::Relaxed) => Ok(()),
-            Err(error) => Err(format!("no error bars: {error}")),
-        }
+        let found = converge(&read, Some(&path), &how, &mut |_| {}).map_err(|error| error.to_string());
+        let stored = found.and_then(|found| {
+            store_error_bars(&path, serde_json::json!(found.bars)).map_err(|error| error.to_string())
+        });
+        Ok(stored.err().filter(|_| !options.interrupt.load(Ordering::Relaxed)))
     }
 
     /// Runs a case, or goes on with it. An error is the reason why it failed.
@@ -243,7 +244,7 @@ impl Study {
     fn note(
         &self,
         n: usize,
-        done: Result<(), String>,
+        done: Result<Option<String>, String>,
         shared: &mut MutexGuard<'_, Shared<'_>>,
         of: usize,
         seconds: f64,
@@ -269,7 +270,8 @@ impl Study {
         shared.ended += 1;
         let row = rows::of(self, run);
         let label = self.plan.label(run);
-        (shared.observe)(&Event { label, row: &row, ended: shared.ended, of, seconds });
+        let no_errors = done.ok().flatten();
+        (shared.observe)(&Event { label, row: &row, no_errors, ended: shared.ended, of, seconds });
     }
 }
 

@@ -30,6 +30,8 @@ pub struct Profile {
     pub history: Vec<String>,
     /// What else the file says.
     pub metadata: Vec<(String, String)>,
+    /// Share of its length in gaps between its points or without heights.
+    pub gaps: f64,
 }
 
 /// The profile of a file, or `None` where its content is none (one or two columns of text).
@@ -115,6 +117,7 @@ fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Problem> {
             return Err(Problem::MissingSize { format: Format::Text, detail });
         }
     };
+    let gaps = gaps(&x, &z);
     if off > EVEN {
         z = resampled(&x, &z, spacing);
         history.push(format!(
@@ -131,14 +134,27 @@ fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Problem> {
     });
     let wrong =
         |error: asperity::Error| Problem::malformed("the profile", error, "a line of positive length");
-    Ok(Profile { surface: made.map_err(wrong)?, history, metadata: columns.metadata })
+    Ok(Profile { surface: made.map_err(wrong)?, history, metadata: columns.metadata, gaps })
+}
+
+/// The largest spacing that is no gap.
+fn largest_spacing(x: &[f64]) -> f64 {
+    let mut spacings: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    spacings.sort_by(f64::total_cmp);
+    GAP * spacings[spacings.len() / 2]
+}
+
+/// Share of the length that lies in gaps, between points or without heights.
+fn gaps(x: &[f64], z: &[f64]) -> f64 {
+    let largest = largest_spacing(x);
+    let measured: Vec<f64> = x.iter().zip(z).filter(|(_, z)| z.is_finite()).map(|(x, _)| *x).collect();
+    let wide = measured.windows(2).map(|pair| pair[1] - pair[0]).filter(|apart| *apart > largest);
+    wide.sum::<f64>() / (x[x.len() - 1] - x[0])
 }
 
 /// Heights at evenly spaced places, straight between the points; undefined where a neighbour is, and in gaps.
 fn resampled(x: &[f64], z: &[f64], spacing: f64) -> Vec<f64> {
-    let mut spacings: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    spacings.sort_by(f64::total_cmp);
-    let largest = GAP * spacings[spacings.len() / 2];
+    let largest = largest_spacing(x);
     let mut after = 1;
     let mut at = |k: usize| {
         let place = x[0] + k as f64 * spacing;
@@ -233,6 +249,22 @@ mod tests {
         assert!(message("z [nm]\n1,0\n2,0\n0,5\n", &long).contains("--height-unit"));
         assert!(message("1\n2\n", &ReadOptions::default()).contains("--height-unit"));
         assert!(message("z [nm]\n1\n2\n", &ReadOptions::default()).contains("--size '4 mm'"));
+    }
+
+    #[test]
+    fn gaps_are_a_share_of_the_length_whether_points_or_heights_are_missing() {
+        let line = |points: &[u32], bad: &[u32]| {
+            let height = |x: &u32| if bad.contains(x) { "nan".to_owned() } else { format!("{}", x % 3) };
+            points.iter().map(|x| format!("{x} {}\n", height(x))).collect::<String>()
+        };
+        let all: Vec<u32> = (0..=20).collect();
+        let without: Vec<u32> = (0..=20).filter(|x| !(5..=8).contains(x)).collect();
+        let share = |text: &str| read(&format!("# x [mm] z [um]\n{text}")).gaps;
+        assert_eq!(share(&line(&all, &[])), 0.0);
+        // From 4 to 9 of 20.
+        assert_eq!([share(&line(&without, &[])), share(&line(&all, &[5, 6, 7, 8]))], [0.25; 2]);
+        // Single points without heights are filled from their neighbours on both sides.
+        assert_eq!(share(&line(&all, &[5, 11])), 0.0);
     }
 
     #[test]

@@ -4,14 +4,17 @@ use std::f64::consts::TAU;
 
 use asperity::material::{MasterCurve, Shift};
 use asperity_io::curve::{Curves as Measured, Fitted, Kind, Sweep};
-use asperity_io::readable::counted;
+use asperity_io::readable::{counted, quantity};
 
 use super::decades;
 use super::shift::{self, Factors, celsius, shift_factors, vertical_shift_factors};
-use crate::figure::{Axis, Curves, Figure, Key, Palette, Series, Style, extent};
+use crate::figure::{Axis, COLOURS, Curves, Figure, Key, Palette, Series, Style, extent};
 
 /// Measured curves in the colours of their temperatures, from the coldest (dark) to the warmest (bright).
 pub fn isotherms(title: &str, measured: &Measured) -> Figure {
+    if let Some(figure) = over_temperature(title, measured) {
+        return figure;
+    }
     let (x, scale) = match measured.kind {
         Kind::Dma => (Axis::log("frequency", "Hz"), TAU),
         _ => (Axis::log("time", "s"), 1.0),
@@ -58,6 +61,47 @@ pub fn isotherms(title: &str, measured: &Measured) -> Figure {
         counted(measured.points(), "point")
     );
     Figure::new(title).with_all(panels).caption(caption)
+}
+
+/// Frequencies that agree to this share are one: instruments round them.
+const SAME: f64 = 0.01;
+
+/// A temperature ramp: storage, loss and loss factor over temperature, a line for each frequency. `None` for what is none, or has many
+/// frequencies.
+fn over_temperature(title: &str, measured: &Measured) -> Option<Figure> {
+    let mut points: Vec<[f64; 4]> = vec![];
+    for sweep in measured.sweeps.iter().filter(|_| measured.is_over_temperature()) {
+        let (kelvin, [storage, loss]) = (sweep.temperature?, sweep.curves.as_slice()) else { return None };
+        let rows = sweep.x.iter().zip(storage).zip(loss);
+        points.extend(rows.map(|((x, storage), loss)| [x / TAU, celsius(kelvin), *storage, *loss]));
+    }
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let lines: Vec<Vec<[f64; 4]>> =
+        points.chunk_by(|a, b| b[0] - a[0] <= SAME * a[0]).map(<[[f64; 4]]>::to_vec).collect();
+    if lines.is_empty() || lines.len() > COLOURS.len() {
+        return None;
+    }
+    let panels: [(&str, Axis, fn(&[f64; 4]) -> f64); 3] = [
+        ("Storage", Axis::log("storage modulus", "Pa"), |point| point[2]),
+        ("Loss", Axis::log("loss modulus", "Pa"), |point| point[3]),
+        ("Loss factor", Axis::log("tan delta", ""), |point| point[3] / point[2]),
+    ];
+    let panels = panels.into_iter().map(|(name, y, value)| {
+        let mut panel = Curves::new(name, Axis::linear("temperature [°C]", ""), y);
+        for (n, line) in lines.iter().enumerate() {
+            let mut line = line.clone();
+            line.sort_by(|a, b| a[1].total_cmp(&b[1]));
+            let name = if lines.len() > 1 { quantity(line[0][0], "Hz") } else { String::new() };
+            for (name, style) in [(name, Style::Line), (String::new(), Style::Points)] {
+                let through = line.iter().map(|point| [point[1], value(point)]);
+                panel = panel.with(Series::through(name, style, through).in_colour(COLOURS[n]));
+            }
+        }
+        panel
+    });
+    let at = if lines.len() == 1 { format!(" at {}", quantity(lines[0][0][0], "Hz")) } else { String::new() };
+    let caption = format!("Temperature ramp{at}, {}.", counted(measured.points(), "point"));
+    Some(Figure::new(title).with_all(panels).caption(caption))
 }
 
 /// Colour of points without a temperature.

@@ -46,6 +46,7 @@ pub use rows::is_logarithmic;
 pub use stress::stress_figure;
 pub(crate) use temperature::at_rows as temperature_at_rows;
 pub use temperature::temperatures;
+pub(crate) use together::colour as colour_among;
 pub use together::together;
 
 use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series};

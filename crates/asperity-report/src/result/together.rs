@@ -108,7 +108,7 @@ const MOST: usize = 48;
 
 /// The colour of a result by its number among `count`: one that nobody mixes up with another or, of more results than there are such
 /// colours, one of a scale from the first result (dark) to the last (bright).
-fn colour(n: usize, count: usize) -> String {
+pub(crate) fn colour(n: usize, count: usize) -> String {
     /// The brightest colours are hard to see on white.
     const BRIGHTEST: f64 = 0.9;
     if count <= COLOURS.len() {

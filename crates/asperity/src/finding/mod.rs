@@ -57,7 +57,7 @@ pub use material::{
 };
 pub use motion::{friction_zero, own_track};
 pub use plausible::TEMPERATURES;
-pub use profile::{of_profile, unlike_profile};
+pub use profile::{gaps_of_profile, of_profile, unlike_profile};
 pub use stress::{
     OF_STRESS, depths_between, stress_depths, stress_times_miss_peak, stress_unresolved, yield_exceeded,
 };
@@ -206,6 +206,8 @@ codes! {
     HURST_UNCERTAIN = "hurst-uncertain";
     /// Heights far from all others.
     OUTLIERS = "outliers";
+    /// Parts of a profile were not measured.
+    PROFILE_GAPS = "profile-gaps";
     /// A map made from a profile has another height or slope than the profile.
     UNLIKE_PROFILE = "unlike-profile";
     /// A number that suggests a wrong unit.

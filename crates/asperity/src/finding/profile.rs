@@ -2,7 +2,7 @@
 
 use super::surface::slope;
 use super::words::{digits, si};
-use super::{Finding, OUTLIERS, UNLIKE_PROFILE};
+use super::{Finding, OUTLIERS, PROFILE_GAPS, UNLIKE_PROFILE};
 use crate::surface::process::Outliers;
 use crate::surface::profile::ProfileSurface;
 use crate::surface::{Fill, Level, Operation, Surface};
@@ -38,6 +38,19 @@ pub fn of_profile(name: &str, profile: &Surface) -> Option<Finding> {
     })
 }
 
+/// A profile parts of which were not measured: `bridged` is the share of its length that lies in gaps, which straight lines bridge.
+pub fn gaps_of_profile(name: &str, bridged: f64) -> Option<Finding> {
+    (bridged > 0.0).then(|| {
+        let text = format!(
+            "{} % of the length of {name} lies in gaps between its points, which fills bridge by straight lines: these have no short waves, \
+             so slopes are too low by about half of this share, and places in the gaps are a guess. Measure again, or crop the profile to a part \
+             without gaps.",
+            digits(100.0 * bridged)
+        );
+        Finding::warning(PROFILE_GAPS, bridged, 0.0, text)
+    })
+}
+
 /// Slope and height of a map that differ from those of its profile by more than a tenth.
 pub fn unlike_profile(made: &ProfileSurface) -> Vec<Finding> {
     let [held, whole] = made.rms_slope;
@@ -46,8 +59,9 @@ pub fn unlike_profile(made: &ProfileSurface) -> Vec<Finding> {
     let mut found = vec![];
     if held < (1.0 - SHARE) * whole {
         let text = format!(
-            "The map has no waves below {shortest}. In the profile they are part of the rms slope: {} of all its waves, {} of those that \
-             the map holds. Areas are too large and pressures too small, unless the short waves do not matter. More cells hold them.",
+            "The map holds the waves of {shortest} to {longest} only. The rms slope of the profile is {} of all its waves, {} of those that \
+             the map holds: areas are too large and pressures too small, unless the other waves do not matter. More cells hold shorter \
+             waves, a longer map longer ones.",
             digits(whole),
             digits(held)
         );
@@ -56,7 +70,7 @@ pub fn unlike_profile(made: &ProfileSurface) -> Vec<Finding> {
     if height < (1.0 - SHARE) * whole_height {
         let text = format!(
             "The map has the rms height {}, the profile {}: the map holds the waves of {shortest} to {longest} only. A map as \
-             long as the profile holds all long waves.",
+             long as the profile, with its spacing, holds them all.",
             si(height, "m"),
             si(whole_height, "m")
         );
@@ -64,16 +78,46 @@ pub fn unlike_profile(made: &ProfileSurface) -> Vec<Finding> {
     }
     if (made.slope - held).abs() > SHARE * held {
         let text = format!(
-            "The map has the rms slope {} along each direction, the profile {}: no surface that is the same in all directions has \
-             this profile, for its spectrum has a peak or rises towards shorter waves somewhere, as that of a surface with a lay (ground, \
-             turned), with chatter or with steps. Generate a surface with a lay, or use the profile in a line contact.",
+            "The map has the rms slope {} along each direction, the profile {}. {}",
             digits(made.slope),
-            digits(held)
+            digits(held),
+            reasons(made)
         );
         let limit = held * (1.0 + SHARE.copysign(made.slope - held));
         found.push(Finding::warning(UNLIKE_PROFILE, made.slope, limit, text));
     }
     found
+}
+
+/// Why a map has another slope than its profile: its waves lie elsewhere than those of the profile; or the height of the profile was
+/// given to it by its long waves, which are part of the slope.
+fn reasons(made: &ProfileSurface) -> String {
+    let ([height, slope], held) = (made.isotropic, made.rms_slope[0]);
+    let mut found = vec![];
+    if (slope - held).abs() > 0.5 * SHARE * held {
+        let text =
+            "The waves of the map lie elsewhere in the rings of the spectrum than those of the profile";
+        found.push(format!(
+            "{text}: with them the slope is {}. A longer map has more of them.",
+            digits(slope)
+        ));
+    }
+    if (made.slope - slope).abs() > 0.5 * SHARE * held {
+        let [changed, way] = match made.slope < slope {
+            true => ["lowered", "higher"],
+            false => ["raised", "lower"],
+        };
+        found.push(format!(
+            "An isotropic surface with the spectrum of this profile is {way}, of the rms height {} and the slope {}: to give it the \
+             height of the profile, {}, the waves longer than {} were {changed}, and they are part of the slope. If the surface has a lay \
+             (ground, turned), generate one with a lay, or use the profile in a line contact; if these waves are form, filter them first.",
+            si(height, "m"),
+            digits(slope),
+            si(made.rms_height[0], "m"),
+            si(made.changed_beyond, "m")
+        ));
+    }
+    found.join(" ")
 }
 
 #[cfg(test)]
@@ -125,6 +169,14 @@ mod tests {
         assert!((made.slope / found - 1.0).abs() < 0.03, "{} {found}", made.slope);
         assert_eq!(told(&made), [made.slope]);
         assert!(made.slope < 0.8 * slope);
+        // Without the height of the profile the map has its slope, and the text says that the height took it away.
+        assert!((made.isotropic[1] / made.rms_slope[0] - 1.0).abs() < 0.05, "{made:?}");
+        assert!(made.isotropic[0] > made.rms_height[0], "{made:?}");
+        let [finding] = &unlike_profile(&made)[..] else { panic!("{made:?}") };
+        assert!(
+            finding.text.contains("were lowered") && !finding.text.contains("lie elsewhere"),
+            "{finding}"
+        );
         for seed in 0..4 {
             let (_, made) = map(&rough(seed), 512, 5.12e-4);
             assert_eq!(told(&made), [0.0; 0], "{seed}: {made:?}");

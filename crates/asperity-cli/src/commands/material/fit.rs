@@ -72,7 +72,7 @@ impl Verb for Fit {
 
 /// Several temperatures without a shift: it is estimated, about the temperature nearest to that of a room.
 pub fn estimated_unless_known(shift: ShiftRequest, curves: &mut Curves) -> ShiftRequest {
-    let several = curves.sweeps.len() > 1 && !curves.is_ramp() && curves.held.shift().is_none();
+    let several = curves.sweeps.len() > 1 && !curves.is_over_temperature() && curves.held.shift().is_none();
     let temperatures = curves.sweeps.iter().filter_map(|sweep| sweep.temperature);
     let nearest = temperatures.min_by(|a, b| (a - ROOM).abs().total_cmp(&(b - ROOM).abs()));
     match (&shift, nearest) {
@@ -95,7 +95,7 @@ fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
     let sheet = curves.sheet.as_ref().map_or(String::new(), |name| format!(", sheet \"{name}\""));
     line("data", format!("{}{sheet} ({}, {modulus})", args.data.display(), curves.kind.name()));
     line("points", format!("{} fitted of {}", fitted.data.x.len(), curves.points()));
-    if curves.is_ramp() {
+    if curves.is_over_temperature() {
         line("ramp", curves.temperatures());
     } else if !fitted.temperatures.is_empty() {
         let shown: Vec<String> = fitted.temperatures.iter().map(|t| format!("{:.1}", celsius(*t))).collect();

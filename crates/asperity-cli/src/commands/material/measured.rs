@@ -68,16 +68,17 @@ fn text(curves: &Curves) -> String {
         Kind::Creep => &["compliance"],
         Kind::Dma => &["storage", "loss"],
     };
-    if curves.is_ramp() {
+    if curves.is_over_temperature() {
         let rows = counted(curves.sweeps.len(), "temperature");
         let _ = writeln!(
             text,
-            "  a temperature ramp, {}: {rows}, {}",
+            "  a temperature ramp, {}: {rows}, {}, {}",
             curves.temperatures(),
-            counted(curves.points(), "point")
+            counted(curves.points(), "point"),
+            frequencies(curves)
         );
     }
-    for sweep in curves.sweeps.iter().filter(|_| !curves.is_ramp()) {
+    for sweep in curves.sweeps.iter().filter(|_| !curves.is_over_temperature()) {
         let at = sweep.temperature.map_or(String::new(), |kelvin| format!("{:7.1} °C: ", celsius(kelvin)));
         let _ = write!(text, "  {at}{}", counted(sweep.x.len(), "point"));
         let _ = write!(text, ", {}", range(&abscissae(curves.kind, sweep), abscissa_unit(curves.kind)));
@@ -94,6 +95,13 @@ fn text(curves: &Curves) -> String {
     }
     curves.notes.iter().for_each(|note| text += &format!("\n  note: {note}\n"));
     text
+}
+
+/// "1 Hz", or the ends of several.
+fn frequencies(curves: &Curves) -> String {
+    let all: Vec<f64> = curves.sweeps.iter().flat_map(|sweep| abscissae(curves.kind, sweep)).collect();
+    let [least, most] = extent(all.iter().copied()).map(|end| quantity(end, "Hz"));
+    if least == most { least } else { format!("{least} to {most}") }
 }
 
 fn abscissa_unit(kind: Kind) -> &'static str {

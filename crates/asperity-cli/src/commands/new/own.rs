@@ -126,7 +126,7 @@ impl Material {
             let shift = estimated_unless_known(ShiftRequest::None, &mut curves);
             // A ramp does not tell its shift: the law that the user will write is about the temperature of a room.
             let mut kelvin = ROOM;
-            if !curves.is_ramp() {
+            if !curves.is_over_temperature() {
                 let measure = curves.measure.unwrap_or(Modulus::Young);
                 let fitted =
                     Request { measure, shift, ..Request::default() }.fit(&curves).map_err(refused)?;
@@ -135,7 +135,7 @@ impl Material {
             }
             let about = format!("{:.2} °C", kelvin - 273.15);
             let law = format!("{{ model = \"wlf\", c1 = 8.86, c2 = \"101.6 K\", reference = \"{about}\" }}");
-            if curves.is_ramp() {
+            if curves.is_over_temperature() {
                 let _ = writeln!(text, "shift = {law}   {YOURS}the law of your material");
             } else if !held {
                 let _ = writeln!(

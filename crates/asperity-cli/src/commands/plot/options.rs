@@ -43,6 +43,10 @@ pub(super) fn check(args: &args::Plot, plot: Plot) -> Result<(), Failure> {
     if args.animate.is_some() && !plot.is_of_an_instant() {
         return refused("--animate", "it does not show one time of the result".to_owned());
     }
+    let scale = if args.log_time { "--log-time" } else { "--linear-time" };
+    if (args.log_time || args.linear_time) && !plot.is_over_time() {
+        return refused(scale, "it is for figures over time".to_owned());
+    }
     let window = if args.from.is_some() { "--from" } else { "--to" };
     if (args.from.is_some() || args.to.is_some()) && !plot.is_over_time() && args.animate.is_none() {
         return refused(

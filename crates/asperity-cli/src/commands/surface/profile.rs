@@ -71,11 +71,12 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
     let name = args.file.file.display().to_string();
     let failed = Failure::about(&name);
     let (stored, undefined) = (profile.surface.clone(), profile.surface.undefined());
+    let gaps = finding::gaps_of_profile("the profile of the file", profile.gaps);
     let size = stored.grid().size()[0];
     let (heights, spacing, history) = prepared(&name, profile, args)?;
     let found = ProfileParameters::of(&heights, spacing).map_err(&failed)?;
     let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(&failed)?;
-    let told = finding::of_profile("the profile", &stored);
+    let told: Vec<_> = gaps.into_iter().chain(finding::of_profile("the profile", &stored)).collect();
     let [low, high] = extent(stored.heights().iter().copied());
     if let Some(path) = &args.plot {
         crate::commands::picture::write(&figure(&name, &heights, spacing, &spectrum), path, args.force)?;
@@ -87,7 +88,7 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
             "ra": found.ra, "rq": found.rq, "rz": found.rz, "rt": found.rt, "rsk": found.rsk, "rku": found.rku,
             "rsm": found.rsm, "rdq": found.rdq,
             "wave_number": spectrum.wave_numbers(), "power": spectrum.power,
-            "findings": asperity_io::finding::list(told.as_slice()),
+            "findings": asperity_io::finding::list(&told),
         });
         return crate::print(&format!("{object}\n"));
     }
@@ -116,7 +117,7 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
     if args.cutoff.is_none() {
         text += "  without --cutoff: the parameters of the primary profile (Pa, Pq, ...)\n";
     }
-    if let Some(finding) = told {
+    for finding in told {
         text += &format!("  {finding}\n");
     }
     crate::print(&text)
@@ -148,7 +149,7 @@ pub(super) fn process(
     }
     write_all(&to.output, to.force, text.as_bytes())?;
     let history = history.iter().map(|step| format!("in the file: {step}")).collect();
-    let written = Profile { surface: done.surface, history, metadata: profile.metadata };
+    let written = Profile { surface: done.surface, history, metadata: profile.metadata, gaps: profile.gaps };
     let shown = SurfaceInfo {
         file: SurfaceFile { file: to.output.clone(), size: None, height_unit: None, channel: None },
         periodic: false,
@@ -193,7 +194,8 @@ impl Verb for SurfaceFromProfile {
                 "{name} is no profile: it needs two columns of text, position and height, or one column of heights with --size LENGTH"
             )));
         };
-        let mut history = profile.history;
+        let (mut history, gaps) =
+            (profile.history, finding::gaps_of_profile("the profile of the file", profile.gaps));
         let done = super::prepared(&name, profile.surface, &super::steps(&self.op)?)?;
         history.extend(done.history);
         let profile = done.surface;
@@ -232,9 +234,8 @@ impl Verb for SurfaceFromProfile {
         history.push(row("the surface", held, made.slope) + &changed);
         history.push(row("the same waves of the profile", held, slope));
         history.push(row("all waves of the profile", whole, whole_slope));
-        let told =
-            finding::of_profile("the profile", &profile).into_iter().chain(finding::unlike_profile(&made));
-        let told = told.collect();
+        let told = gaps.into_iter().chain(finding::of_profile("the profile", &profile));
+        let told = told.chain(finding::unlike_profile(&made)).collect();
         let topography = super::roughness(format, made.heights, size, history);
         super::finish(&self.to, &topography, Extent::Periodic, |summary| summary.told(told))?;
         if let Some([x, y]) = wanted {

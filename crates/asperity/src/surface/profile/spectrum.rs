@@ -61,6 +61,9 @@ pub struct ProfileSurface {
     pub rms_slope: [f64; 2],
     /// Rms slope of the surface along a direction, the mean over all directions: (sum of q^2 <z^2>/2 over its waves)^(1/2).
     pub slope: f64,
+    /// Rms height \[m\] and slope of the isotropic surface of the profile's spectrum on this grid, before it was given the height of the
+    /// profile.
+    pub isotropic: [f64; 2],
     /// Longest and shortest wave of the surface \[m\].
     pub waves: [f64; 2],
     /// Waves longer than this \[m\] have less than half the power that the profile's spectrum gives them (or more than twice, where it
@@ -260,20 +263,22 @@ impl ProfileSpectrum {
         };
         let a = root(|a| (total(a) > target) == lower, lowest, 1e3 * highest);
         let scale = target / total(a);
-        let mut slope_square = 0.0;
+        let (mut slope_square, mut isotropic_square) = (0.0, 0.0);
         for (ky, kx) in vectors(&columns) {
             let wave = &mut columns[ky][kx.rem_euclid(grid.cells()[0] as i64) as usize];
             let q = length(ky, kx);
-            let square = match ring_of(q) {
+            let (isotropic, square) = match ring_of(q) {
                 Some(ring) if counts[ring] > 0.0 => {
-                    scale * squares[ring] * factor(wave_numbers[ring], a) / counts[ring]
+                    let isotropic = squares[ring] / counts[ring];
+                    (isotropic, scale * isotropic * factor(wave_numbers[ring], a))
                 }
-                _ => 0.0,
+                _ => (0.0, 0.0),
             };
             // The phase of the wave is random, its mean square is not.
             let size = wave.norm();
             // Both waves of the pair.
             slope_square += q * q * square;
+            isotropic_square += q * q * isotropic;
             *wave *= if size > 0.0 { square.sqrt() / size } else { 0.0 };
         }
         let all: f64 =
@@ -283,6 +288,7 @@ impl ProfileSpectrum {
             rms_height: [target.sqrt(), self.square.sqrt()],
             rms_slope: [(slope * all).sqrt(), all.sqrt()],
             slope: slope_square.sqrt(),
+            isotropic: [there.sqrt(), isotropic_square.sqrt()],
             waves: [TAU / lowest.max(longest), TAU / highest],
             changed_beyond: TAU / a,
         })

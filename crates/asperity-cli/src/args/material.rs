@@ -216,11 +216,11 @@ pub struct ForceCurve {
     /// Deflection of the cantilever per volt, where its column is in volts, e.g. '50 nm'
     #[arg(long, value_name = "LENGTH", requires = "spring_constant", value_parser = quantity::<Length<range::Positive>>())]
     pub sensitivity: Option<Length<range::Positive>>,
-    /// Standard uncertainty of the radius (one standard deviation), e.g. '0.2 um' or '2 %'
+    /// Standard uncertainty of the radius (one standard deviation), e.g. '0.2 um' or '2 %', with any model
     #[arg(long, value_name = "LENGTH")]
     pub radius_uncertainty: Option<String>,
-    /// Standard uncertainty of the spring constant, e.g. '0.01 N/m' or '5 %'
-    #[arg(long, value_name = "STIFFNESS", requires = "spring_constant")]
+    /// Standard uncertainty of the spring constant, e.g. '0.01 N/m' or '5 %'; of records of load, with any model, '5 %' of the load
+    #[arg(long, value_name = "STIFFNESS")]
     pub spring_constant_uncertainty: Option<String>,
     /// Standard uncertainty of the scale of the deflection, e.g. '2 %'
     #[arg(long, value_name = "SHARE", requires = "spring_constant", value_parser = quantity::<Number<range::NonNegative>>())]
@@ -250,6 +250,9 @@ pub struct FitIndentation {
     /// Thickness of a thin sample on a rigid base, e.g. '5 um' [default: much thicker than the contact is wide]
     #[arg(long, value_name = "LENGTH", value_parser = quantity::<Length<range::Positive>>())]
     pub thickness: Option<Length<range::Positive>>,
+    /// Standard uncertainty of the thickness (one standard deviation), e.g. '0.1 um' or '2 %'
+    #[arg(long, value_name = "LENGTH", requires = "thickness")]
+    pub thickness_uncertainty: Option<String>,
     /// Contact of the thin sample with its base
     #[arg(long, value_parser = choice::<Interface>(), default_value = "bonded", requires = "thickness")]
     pub interface: Interface,

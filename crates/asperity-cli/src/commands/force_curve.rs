@@ -27,7 +27,6 @@ pub fn not_given(args: &FitIndentation) -> Result<(), Failure> {
         ("--control", curve.control.is_some()),
         ("--range", curve.range.is_some()),
         ("--spring-constant", curve.spring_constant.is_some()),
-        ("--radius-uncertainty", curve.radius_uncertainty.is_some()),
     ] {
         if given {
             return Err(Failure::input(format!(
@@ -41,9 +40,14 @@ pub fn not_given(args: &FitIndentation) -> Result<(), Failure> {
 /// Fits a force curve.
 pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
     let word = choice::word(&model);
+    if args.thickness.is_some() {
+        return Err(Failure::input(format!(
+            "--thickness does not go with --model {word}: its closed form is that of a half-space, and for adhesion on a thin sample there is \
+             none; --model viscoelastic --terms 0 fits an elastic thin sample without adhesion"
+        )));
+    }
     for (option, given) in [
         ("--cone", args.cone.is_some()),
-        ("--thickness", args.thickness.is_some()),
         ("--interface", args.interface != Interface::Bonded),
         ("--given", args.given.is_some()),
         ("--terms", args.terms.is_some()),
@@ -64,13 +68,6 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
         spring_constant,
         sensitivity: curve.sensitivity.map(Quantity::get),
     });
-    let share =
-        |option: &str, text: &Option<String>, of: f64, dimension: fn(&str) -> Result<f64, String>| match text
-        {
-            None => Ok(0.0),
-            Some(text) => relative(text, of, dimension)
-                .map_err(|why| Failure::input(format!("{option} is \"{text}\", but {why}"))),
-        };
     let options = ForceOptions {
         model,
         branch: curve.branch.unwrap_or_default(),
@@ -79,14 +76,14 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
         radius_uncertainty: share(
             "--radius-uncertainty",
             &curve.radius_uncertainty,
-            radius,
+            Some(radius),
             of::<dimension::Length>,
         )?,
         spring_constant: spring,
         load_uncertainty: share(
             "--spring-constant-uncertainty",
             &curve.spring_constant_uncertainty,
-            spring.unwrap_or(1.0),
+            spring,
             of::<dimension::ForcePerLength>,
         )?,
         sensitivity_uncertainty: curve.sensitivity_uncertainty.map_or(0.0, Quantity::get),
@@ -120,19 +117,28 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
     crate::print(&text)
 }
 
-/// A quantity of a dimension in SI, not negative.
-fn of<D: Dimension>(text: &str) -> Result<f64, String> {
-    let quantity = text.parse::<Quantity<D, range::NonNegative>>();
-    quantity.map(Quantity::get).map_err(|error| error.help.unwrap_or(format!("must be {}", error.expected)))
+/// A stated uncertainty over the value of its quantity; 0 where none is stated.
+pub(super) fn share(
+    option: &str,
+    text: &Option<String>,
+    value: Option<f64>,
+    quantity: fn(&str) -> Result<f64, String>,
+) -> Result<f64, Failure> {
+    let Some(text) = text else { return Ok(0.0) };
+    let share = if text.trim_end().ends_with('%') {
+        let share = text.parse::<Number<range::NonNegative>>();
+        share.map(Number::get).map_err(|error| format!("must be {}", error.expected))
+    } else {
+        let value = value.ok_or_else(|| "its quantity is not given: state it in %".to_owned());
+        value.and_then(|value| Ok(quantity(text)? / value))
+    };
+    share.map_err(|why| Failure::input(format!("{option} is \"{text}\", but {why}")))
 }
 
-/// An uncertainty over its value: a share in per cent, or a quantity.
-fn relative(text: &str, value: f64, quantity: fn(&str) -> Result<f64, String>) -> Result<f64, String> {
-    if text.trim_end().ends_with('%') {
-        let share = text.parse::<Number<range::NonNegative>>();
-        return share.map(Number::get).map_err(|error| format!("must be {}", error.expected));
-    }
-    quantity(text).map(|x| x / value)
+/// A quantity of a dimension in SI, not negative.
+pub(super) fn of<D: Dimension>(text: &str) -> Result<f64, String> {
+    let quantity = text.parse::<Quantity<D, range::NonNegative>>();
+    quantity.map(Quantity::get).map_err(|error| error.help.unwrap_or(format!("must be {}", error.expected)))
 }
 
 fn report(args: &FitIndentation, table: &ForceTable, fit: &ForceFit, of: MaterialOf) -> String {

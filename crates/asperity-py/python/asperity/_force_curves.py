@@ -94,15 +94,7 @@ def fit_force_curve(
         choice("control", control, get_args(Control))
     size = number("radius", radius)
     spring = None if spring_constant is None else number("spring_constant", spring_constant)
-    if spring is None and spring_constant_uncertainty:
-        raise CaseError("spring_constant_uncertainty is that of a spring constant: give spring_constant too")
-    if spring is None and sensitivity_uncertainty:
-        raise CaseError("sensitivity_uncertainty changes the deflection: give spring_constant too")
-    shares = (
-        number("radius_uncertainty", radius_uncertainty) / size if size else 0.0,
-        number("spring_constant_uncertainty", spring_constant_uncertainty) / (spring or 1.0),
-        number("sensitivity_uncertainty", sensitivity_uncertainty),
-    )
+    shares = share("radius", radius_uncertainty, size), *cantilever_shares(spring, spring_constant_uncertainty, sensitivity_uncertainty)
     reach = None if range is None else number("range", range)
     found = _core.fit_force_curve(loads, depths, size, model, branch, control, reach, spring, *shares)
     factor = 1.0 - poisson**2
@@ -117,6 +109,22 @@ def fit_force_curve(
     own = {name: interval(found[name]) for name in ("work", "transition", "range", "touch", "baseline")}
     rows = np.asarray(found["rows"], dtype=np.int64)
     return ForceFit(**{**found, **own, "rows": rows}, young=interval(modulus, factor))
+
+
+def share(what: str, uncertainty: Any, value: float | None) -> float:
+    """The standard uncertainty of a quantity over its value; 0 where none is stated."""
+    name = f"{what}_uncertainty"
+    stated = number(name, uncertainty)
+    if stated and not value:
+        raise CaseError(f"{name} is that of {what}: give {what} too")
+    return stated / value if value else 0.0
+
+
+def cantilever_shares(spring: float | None, spring_constant_uncertainty: Any, sensitivity_uncertainty: Any) -> tuple[float, float]:
+    """The uncertainties of the scales of load and deflection."""
+    if spring is None and sensitivity_uncertainty:
+        raise CaseError("sensitivity_uncertainty changes the deflection: give spring_constant too")
+    return share("spring_constant", spring_constant_uncertainty, spring), number("sensitivity_uncertainty", sensitivity_uncertainty)
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,7 +25,9 @@ pub(crate) fn values(reader: &Reader, name: &str) -> Result<Vec<f64>, StoreError
     if name != CONTACT_PRESSURE {
         return reader.series(name);
     }
-    let rows = reader.series("load")?.into_iter().zip(reader.series("contact_area")?);
+    // Of an adhesive contact without the attraction.
+    let pressed = if reader.header().adhesion().is_some() { "repulsive_load" } else { "load" };
+    let rows = reader.series(pressed)?.into_iter().zip(reader.series("contact_area")?);
     Ok(rows.map(|(load, area)| load / area).collect())
 }
 

@@ -22,7 +22,7 @@ mod search;
 mod tests;
 
 use crate::error::{Error, Result, non_negative, positive, require};
-use crate::indentation::Interval;
+use crate::indentation::{Interval, WIDTH};
 use crate::reference::{AdhesiveModel, AdhesiveSphere, carpick_alpha, maugis_lambda, tabor};
 use rows::Rows;
 use search::{Found, Problem};
@@ -136,8 +136,6 @@ pub struct ForceFit {
 
 /// Range of the attraction between solids where none is given \[m\].
 const ATOMIC: f64 = 0.3e-9;
-/// Half width of a 95 % interval in standard deviations.
-const WIDTH: f64 = 1.959_964;
 /// A change of the deflection's scale for its effect on the result.
 const CHANGE: f64 = 1e-3;
 /// Largest relative distance from the curve.

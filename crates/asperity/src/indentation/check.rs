@@ -39,7 +39,7 @@ pub(super) fn options(options: &IndentationOptions) -> Result<()> {
         0,
         "at least 1 for a fluid",
     )?;
-    Ok(())
+    super::stated::check(options)
 }
 
 pub(super) fn record(record: &IndentationRecord) -> Result<()> {

@@ -21,7 +21,8 @@
 //! **Intervals.** 95 %, from an average over all numbers of terms, for solids and fluids, each with its probability (nested
 //! sampling on a record that is linear in the moduli near the best fit). They therefore do not assume that the number of terms is
 //! correct, nor that the record determines each parameter to a few percent. The seed is fixed: the same record gives the same
-//! intervals. An interval that spans more than a factor of 10 is reported as "not determined by this record".
+//! intervals. An interval that spans more than a factor of 10 is reported as "not determined by this record". Stated uncertainties of the
+//! radius, the thickness and the scales of load and deflection are added in squares.
 
 mod average;
 mod blocks;
@@ -36,6 +37,7 @@ mod parameters;
 mod select;
 mod spectrum;
 mod start;
+mod stated;
 #[cfg(test)]
 mod tests;
 
@@ -54,6 +56,7 @@ use average::Average;
 use least_squares::Solution;
 use model::Model;
 use parameters::Parameters;
+use stated::Stated;
 
 /// A record of an indentation; three columns of one length. The body is undisturbed before the first row.
 #[derive(Clone, Copy, Debug)]
@@ -96,6 +99,17 @@ pub struct IndentationOptions {
     pub layer: Option<SampleLayer>,
     /// Largest misfit (rms, over the largest value) before a record is refused, default 0.1.
     pub limit: f64,
+    /// Standard uncertainty of the radius over the radius, or of the slope of a cone over the slope; default 0. The intervals contain this and
+    /// the other uncertainties.
+    pub radius_uncertainty: f64,
+    /// Standard uncertainty of the thickness of a thin sample over the thickness, default 0.
+    pub thickness_uncertainty: f64,
+    /// Standard uncertainty of the scale of the load, such as that of a spring constant, over its value; default 0.
+    pub load_uncertainty: f64,
+    /// Spring constant of the cantilever whose deflection is the load \[N/m\].
+    pub spring_constant: Option<f64>,
+    /// Standard uncertainty of the scale of the deflection over its value, default 0; needs the spring constant.
+    pub sensitivity_uncertainty: f64,
 }
 
 impl Default for IndentationOptions {
@@ -108,6 +122,11 @@ impl Default for IndentationOptions {
             springs: 150,
             layer: None,
             limit: 0.1,
+            radius_uncertainty: 0.0,
+            thickness_uncertainty: 0.0,
+            load_uncertainty: 0.0,
+            spring_constant: None,
+            sensitivity_uncertainty: 0.0,
         }
     }
 }
@@ -141,6 +160,8 @@ pub struct Interval {
     pub determined: bool,
 }
 
+/// Half width of a 95 % interval in standard deviations.
+pub(crate) const WIDTH: f64 = 1.959_964;
 /// Largest ratio of the ends of an interval of a determined parameter.
 const DETERMINED: f64 = 10.0;
 /// An interval of the longest time that reaches beyond this number of lengths of the record is cut by the prior, which ends at
@@ -262,12 +283,21 @@ pub fn fit_indentation(
     }
     let average = Average::new(&model, &parameters, &best, &residuals, options)?;
 
+    let stated = Stated::new(&model, &parameters, &best.at, profile, options)?;
+
     let relaxation = parameters.relaxation(&best.at);
     let instantaneous = average.interval(relaxation.instantaneous(), |draw| Some(draw.instantaneous()));
-    let mut equilibrium = average.interval(relaxation.equilibrium, |draw| Some(draw.equilibrium));
+    let instantaneous = stated.widen(instantaneous, Relaxation::instantaneous);
+    let equilibrium = average.interval(relaxation.equilibrium, |draw| Some(draw.equilibrium));
+    let mut equilibrium = stated.widen_equilibrium(equilibrium);
     equilibrium.determined |= equilibrium.high <= NEGLIGIBLE * instantaneous.value;
     let term = |(k, term): (usize, &RelaxationTerm)| {
-        [average.term(term.modulus, k, 0), average.term(term.relaxation_time, k, 1)]
+        [
+            stated.widen(average.term(term.modulus, k, 0), |relaxation| relaxation.terms[k].modulus),
+            stated.widen(average.term(term.relaxation_time, k, 1), |relaxation| {
+                relaxation.terms[k].relaxation_time
+            }),
+        ]
     };
     let terms: Vec<[Interval; 2]> = relaxation.terms.iter().enumerate().map(term).collect();
     // A body whose longest time has no end within the prior may relax to any smaller modulus.
@@ -285,7 +315,7 @@ pub fn fit_indentation(
         relaxation,
         equilibrium,
         instantaneous,
-        touch: Interval { value, low, high, determined: true },
+        touch: stated.widen_touch(Interval { value, low, high, determined: true }),
         given,
         predicted: rows.iter().map(|row| prediction.values[*row]).collect(),
         rows,

@@ -104,7 +104,7 @@ def _of_adhesion(told: dict[str, Any] | None) -> str:
     reach = f"the range {quantity(told['range'], 'm')} (largest attraction {quantity(told['strength'], 'Pa')})"
     law = f" after the law {told['law']}" if "law" in told else ""
     sphere = f", Tabor's number {told['tabor']:.2g}" if told.get("tabor") is not None else ""
-    return f"The surfaces attract each other{law}, with the work of adhesion {quantity(told['work'], 'J/m²')} and {reach}{sphere}; the trap number of the grid is {told['trap']:.2g}."
+    return f"The surfaces attract each other{law}, with the work of adhesion {1e3 * told['work']:.4g} mJ/m² and {reach}{sphere}; the trap number of the grid is {told['trap']:.2g}."
 
 
 def _of_load(result: Result, setup: dict[str, Any]) -> str:

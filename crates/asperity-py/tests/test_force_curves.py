@@ -28,6 +28,28 @@ def test_a_jkr_curve_gives_its_numbers_back():
     assert np.log(wide.work[2] / wide.work[0]) / 1.959964 == pytest.approx(0.05, rel=1e-3)
 
 
+def test_fits_draw_record_and_model():
+    plt = pytest.importorskip("matplotlib.pyplot")
+    load, depth = jkr()
+    fit = asp.fit_indentation(None, load + 1e-8, depth - 3e-7, model="jkr", **SPHERE)
+    ax = fit.plot(color="k")
+    measured, model = ax.lines
+    # From the free sphere and the first touch, in nanometres and micronewtons.
+    np.testing.assert_allclose(measured.get_xdata(), depth[fit.rows] * 1e9, atol=0.2)
+    assert ax.get_xlabel() == "depth [nm]" and model.get_color() == "k"
+    np.testing.assert_allclose(model.get_ydata(), measured.get_ydata(), atol=1e-3 * np.abs(measured.get_ydata()).max())
+    time = np.linspace(0.0, 10.0, 101)
+    depth = 1e-6 * np.minimum(time, 1.0)
+    load = 4 / 3 * 1e6 / 0.75 * np.sqrt(10e-6) * depth**1.5
+    for given in ("depth", "load"):
+        fit = asp.fit_indentation(time, load, depth, terms=0, given=given, **SPHERE)
+        assert fit.plot(ax=ax) is ax
+        measured, model = ax.lines[-2:]
+        # 150 springs: 1/150² and the digits.
+        np.testing.assert_allclose(model.get_ydata()[20:], measured.get_ydata()[20:], rtol=1e-3)
+    plt.close("all")
+
+
 def test_what_does_not_go_together_is_told():
     load, depth = jkr()
     for given, word in [

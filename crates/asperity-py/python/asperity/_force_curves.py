@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,9 @@ from . import _core, _html
 from ._arrays import Floats, choice, line, number
 from ._core import CaseError
 from ._sealed import ReadOnlyArrays
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
 #: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it.
 Interval = tuple[float, float, float]
@@ -45,8 +48,10 @@ class ForceFit(ReadOnlyArrays):
     tabor: float
     #: Largest radius of the contact [m].
     contact_radius: float
-    #: Numbers of the rows that were fitted, and the load of the model there [N].
+    #: Numbers of the rows that were fitted, load [N] and depth [m] that were measured there, and the load of the model.
     rows: npt.NDArray[np.int64]
+    load: Floats
+    depth: Floats
     predicted: Floats
     #: Root mean square of the distance from the curve, each channel over its range.
     relative_rms: float
@@ -54,6 +59,14 @@ class ForceFit(ReadOnlyArrays):
     durbin_watson: float
     #: What should be known before the numbers are believed.
     notes: list[str]
+
+    def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
+        """Load over depth, from the load of the free sphere and the depth of first touch: the record as points, the model as a line, which
+        takes the further arguments."""
+        from .plot import over_depth
+
+        depth, baseline = self.depth - self.touch[0], self.baseline[0]
+        return over_depth((depth, self.load - baseline), (depth, self.predicted - baseline), ax, style)
 
     def _lines(self) -> list[tuple[str, Interval]]:
         lines = [("E [Pa]", self.young), ("work of adhesion [J/m2]", self.work)]
@@ -108,7 +121,7 @@ def fit_force_curve(
     modulus = found.pop("contact_modulus")
     own = {name: interval(found[name]) for name in ("work", "transition", "range", "touch", "baseline")}
     rows = np.asarray(found["rows"], dtype=np.int64)
-    return ForceFit(**{**found, **own, "rows": rows}, young=interval(modulus, factor))
+    return ForceFit(**{**found, **own, "rows": rows, "load": loads[rows], "depth": depths[rows]}, young=interval(modulus, factor))
 
 
 def share(what: str, uncertainty: Any, value: float | None) -> float:

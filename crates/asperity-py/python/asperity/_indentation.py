@@ -8,7 +8,7 @@ numbers of terms that the record allows.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, get_args, overload
+from typing import TYPE_CHECKING, Any, Literal, get_args, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +21,9 @@ from ._histories import one_of
 from ._materials import Prony
 from ._sealed import ReadOnlyArrays
 from ._words import Interface, LongTime
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
 #: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it: the ends
 #: are more than a factor of 10 apart.
@@ -40,8 +43,10 @@ class IndentationFit(ReadOnlyArrays):
     touch: Interval
     #: "depth" or "load": the channel that the test controlled.
     given: str
-    #: Times [s] and model of the other channel [N or m] at the rows that were used.
+    #: Times [s], load [N] and depth [m] of the record, and model of the other channel [N or m], at the rows that were used.
     time: Floats
+    load: Floats
+    depth: Floats
     predicted: Floats
     #: Numbers of these rows.
     rows: npt.NDArray[np.int64]
@@ -58,6 +63,13 @@ class IndentationFit(ReadOnlyArrays):
     notes: list[str]
     #: The material of the best fit, what is not determined included.
     material: Prony
+
+    def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
+        """Load over depth: the record as points, the model as a line, which takes the further arguments."""
+        from .plot import over_depth
+
+        model = (self.depth, self.predicted) if self.given == "depth" else (self.predicted, self.load)
+        return over_depth((self.depth, self.load), model, ax, style)
 
     def __repr__(self) -> str:
         low, high = self.equilibrium[1:]
@@ -293,7 +305,7 @@ def fit_indentation(
         "instantaneous": interval(found["instantaneous"], factor),
         "touch": interval(found["touch"]),
         "rows": rows,
-        "time": columns[0][rows],
+        **{what: column[rows] for what, column in zip(("time", "load", "depth"), columns)},
     }
     material = Prony(
         equilibrium=factor * found["equilibrium"][0],

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import choice, number
+from ._arrays import Floats, choice, number
 from ._core import CaseError
 from ._drawing import (
     _axes,
@@ -657,6 +657,17 @@ def fitted(fit: Fit, ax: Axes | None) -> Any:
     letter = "E" if fit.modulus == "young" else "G"
     names = {"relaxation": f"{letter}(t) [Pa]", "creep": f"{'D' if letter == 'E' else 'J'}(t) [1/Pa]"}
     ax.set_ylabel(names.get(fit.kind, f"{letter}′, {letter}″ [Pa]"))
+    _legend(ax)
+    return ax
+
+
+def over_depth(measured: tuple[Floats, Floats], model: tuple[Floats, Floats], ax: Axes | None, style: dict[str, Any]) -> Axes:
+    """Load over depth of a test, as points, and of its model, as a line."""
+    ax = _axes(ax, style)
+    deep = _scale(ax, "depth", _largest(measured[0]), "m", axis="x")
+    up = _scale(ax, "load", _largest(measured[1]), "N")
+    ax.plot(measured[0] * deep, measured[1] * up, ".", markersize=3, color="0.6", label="measured")
+    ax.plot(model[0] * deep, model[1] * up, **{"label": "model", **style})
     _legend(ax)
     return ax
 

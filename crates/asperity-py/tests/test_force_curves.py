@@ -43,8 +43,9 @@ def test_fits_draw_record_and_model():
     load = 4 / 3 * 1e6 / 0.75 * np.sqrt(10e-6) * depth**1.5
     for given in ("depth", "load"):
         fit = asp.fit_indentation(time, load, depth, terms=0, given=given, **SPHERE)
-        assert fit.plot(ax=ax) is ax
-        measured, model = ax.lines[-2:]
+        ax = fit.plot()
+        assert ax.get_ylabel() == {"depth": "load [µN]", "load": "depth [µm]"}[given] and ax.get_xlabel() == "time [s]"
+        measured, model = ax.lines
         # 150 springs: 1/150² and the digits.
         np.testing.assert_allclose(model.get_ydata()[20:], measured.get_ydata()[20:], rtol=1e-3)
     plt.close("all")

@@ -63,10 +63,10 @@ class ForceFit(ReadOnlyArrays):
     def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Load over depth, from the load of the free sphere and the depth of first touch: the record as points, the model as a line, which
         takes the further arguments."""
-        from .plot import over_depth
+        from .plot import recorded
 
-        depth, baseline = self.depth - self.touch[0], self.baseline[0]
-        return over_depth((depth, self.load - baseline), (depth, self.predicted - baseline), ax, style)
+        along, baseline = ("depth", "m", self.depth - self.touch[0]), self.baseline[0]
+        return recorded(along, "load", self.load - baseline, self.predicted - baseline, ax, style)
 
     def _lines(self) -> list[tuple[str, Interval]]:
         lines = [("E [Pa]", self.young), ("work of adhesion [J/m2]", self.work)]

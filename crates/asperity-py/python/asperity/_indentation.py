@@ -65,11 +65,11 @@ class IndentationFit(ReadOnlyArrays):
     material: Prony
 
     def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
-        """Load over depth: the record as points, the model as a line, which takes the further arguments."""
-        from .plot import over_depth
+        """The channel that was fitted over time: the record as points, the model as a line, which takes the further arguments."""
+        from .plot import recorded
 
-        model = (self.depth, self.predicted) if self.given == "depth" else (self.predicted, self.load)
-        return over_depth((self.depth, self.load), model, ax, style)
+        name, measured = ("load", self.load) if self.given == "depth" else ("depth", self.depth)
+        return recorded(("time", "s", self.time), name, measured, self.predicted, ax, style)
 
     def __repr__(self) -> str:
         low, high = self.equilibrium[1:]

@@ -661,13 +661,14 @@ def fitted(fit: Fit, ax: Axes | None) -> Any:
     return ax
 
 
-def over_depth(measured: tuple[Floats, Floats], model: tuple[Floats, Floats], ax: Axes | None, style: dict[str, Any]) -> Axes:
-    """Load over depth of a test, as points, and of its model, as a line."""
+def recorded(along: tuple[str, str, Floats], name: str, measured: Floats, model: Floats, ax: Axes | None, style: dict[str, Any]) -> Axes:
+    """The load or depth of a test as points, and of its model as a line, over what `along` has: name, unit and numbers."""
     ax = _axes(ax, style)
-    deep = _scale(ax, "depth", _largest(measured[0]), "m", axis="x")
-    up = _scale(ax, "load", _largest(measured[1]), "N")
-    ax.plot(measured[0] * deep, measured[1] * up, ".", markersize=3, color="0.6", label="measured")
-    ax.plot(model[0] * deep, model[1] * up, **{"label": "model", **style})
+    words, unit, over = along
+    across = over * _scale(ax, words, _largest(over), unit, axis="x")
+    up = _scale(ax, name, _largest(measured), {"load": "N", "depth": "m"}[name])
+    ax.plot(across, measured * up, ".", markersize=3, color="0.6", label="measured")
+    ax.plot(across, model * up, **{"label": "model", **style})
     _legend(ax)
     return ax
 

@@ -198,8 +198,9 @@ class Plots:
             contact = _Panel("contact area", "m", 2, [("counted", area), ("corrected", result.contact_area_corrected)])
         if np.any(result.capped_area > 0):
             contact.curves.append(("at the hardness", result.capped_area))
-        # Of an adhesive contact without the attraction.
-        pressed = result.repulsive_load if "repulsive_load" in result._table else load
+        # Of an adhesive contact: what presses on the cells that touch, less the attraction there, which is the largest.
+        adhesion = result._setup.get("adhesion")
+        pressed = result.repulsive_load - adhesion["strength"] * area if adhesion else load
         over_contact = np.divide(pressed, area, out=np.full(area.shape, np.nan), where=area > 0)
         pressures = [("nominal mean", result.mean_pressure), ("largest", result.max_pressure), ("mean over the contact", over_contact)]
         third = _Panel("load", result.units("load"), 1, [("", load)])
@@ -242,7 +243,8 @@ class Plots:
 
     def pressure(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the pressure at the stored time nearest to `time` [s] (of a sweep: velocity [m/s]), or with that index; default the
-        last. Its colours begin at 0, and what is out of contact is light, unless `norm`, or a `vmin` other than 0, is given. A narrow domain is
+        last. Its colours begin at 0, and what is out of contact is light, unless `norm`, or a `vmin` other than 0, is given; with adhesion 0
+        is in their middle. A narrow domain is
         stretched, as its title says, where `aspect` is not given. Of a line contact a curve over x."""
         return self._map("pressure", "inferno", (time, velocity, index), ax, style)
 

@@ -25,10 +25,12 @@ pub(crate) fn values(reader: &Reader, name: &str) -> Result<Vec<f64>, StoreError
     if name != CONTACT_PRESSURE {
         return reader.series(name);
     }
-    // Of an adhesive contact without the attraction.
-    let pressed = if reader.header().adhesion().is_some() { "repulsive_load" } else { "load" };
+    // Of an adhesive contact: what presses on the cells that touch, less the attraction there, which is the largest.
+    let adhesion = reader.header().adhesion();
+    let strength = adhesion.and_then(|adhesion| adhesion.get("strength")?.as_f64()).unwrap_or(0.0);
+    let pressed = if adhesion.is_some() { "repulsive_load" } else { "load" };
     let rows = reader.series(pressed)?.into_iter().zip(reader.series("contact_area")?);
-    Ok(rows.map(|(load, area)| load / area).collect())
+    Ok(rows.map(|(load, area)| load / area - strength).collect())
 }
 
 /// Adds a line to the panel of its title, or to a new one.

@@ -17,10 +17,16 @@ use crate::reference::MdrProfile;
 /// A change for its effect on the result: large compared with where the search ends, and the effect is linear to its square.
 const CHANGE: f64 = 1e-2;
 
+/// A material and the depth of first touch.
+type Fitted = (Relaxation, f64);
+
+/// The fit with a quantity that many times as large.
+type Refit<'a> = &'a dyn Fn(f64) -> Result<Fitted>;
+
 /// A relative uncertainty, and the fits with more and less of its quantity.
 struct Source {
     uncertainty: f64,
-    sides: [(Relaxation, f64); 2],
+    sides: [Fitted; 2],
 }
 
 /// All stated uncertainties.
@@ -88,21 +94,21 @@ impl Stated {
             let moved = depths.iter().zip(&loads).map(|(d, load)| d - (times - 1.0) * load / stiffness);
             fit(profile, options, [loads.iter().map(|load| times * load).collect(), moved.collect()])
         };
-        let sources: [(f64, &dyn Fn(f64) -> Result<(Relaxation, f64)>); 4] = [
+        let sources: [(f64, Refit); 4] = [
             (options.radius_uncertainty, &of_radius),
             (options.thickness_uncertainty, &of_thickness),
             (options.load_uncertainty, &of_load),
             (options.sensitivity_uncertainty, &of_deflection),
         ];
         let stated = sources.into_iter().filter(|(uncertainty, _)| *uncertainty > 0.0);
-        let source = |(uncertainty, fit): (f64, &dyn Fn(f64) -> Result<(Relaxation, f64)>)| {
+        let source = |(uncertainty, fit): (f64, Refit)| {
             Ok(Source { uncertainty, sides: [fit(1.0 + CHANGE)?, fit(1.0 - CHANGE)?] })
         };
         Ok(Stated(stated.map(source).collect::<Result<_>>()?))
     }
 
     /// Standard deviation of a number of the fit.
-    fn deviation(&self, of: impl Fn(&(Relaxation, f64)) -> f64) -> f64 {
+    fn deviation(&self, of: impl Fn(&Fitted) -> f64) -> f64 {
         let parts = self.0.iter().map(|source| {
             let [up, down] = source.sides.each_ref().map(&of);
             source.uncertainty * (up - down) / (2.0 * CHANGE)

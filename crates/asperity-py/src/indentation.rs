@@ -20,9 +20,10 @@ fn sample((thickness, poisson, interface): (f64, f64, String)) -> PyResult<Sampl
 }
 
 /// Fits the contact relaxation modulus to a record; `profile` is "sphere" with its radius or "cone" with its slope. `thin` is
-/// thickness, Poisson's ratio and interface of a sample on a rigid base; `uncertainties` those of radius and thickness, relative. Intervals are (value, low, high, determined).
+/// thickness, Poisson's ratio and interface of a sample on a rigid base; `uncertainties` are those of the size of the profile, the thickness,
+/// the load and the sensitivity, over their values. Intervals are (value, low, high, determined).
 #[pyfunction]
-#[pyo3(signature = (times, loads, depths, profile, number, given, terms, long_time, fit_touch, thin, springs, limit, uncertainties))]
+#[pyo3(signature = (times, loads, depths, profile, number, given, terms, long_time, fit_touch, thin, springs, limit, uncertainties, spring_constant))]
 #[allow(clippy::too_many_arguments)]
 pub fn fit_indentation<'py>(
     py: Python<'py>,
@@ -38,12 +39,20 @@ pub fn fit_indentation<'py>(
     thin: Option<(f64, f64, String)>,
     springs: usize,
     limit: f64,
-    uncertainties: [f64; 2],
+    uncertainties: [f64; 4],
+    spring_constant: Option<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let [times, loads, depths] = [times, loads, depths].map(|column| column.as_array().to_vec());
     let profiles =
         [("sphere", MdrProfile::Sphere { radius: number }), ("cone", MdrProfile::Cone { slope: number })];
+    let [radius_uncertainty, thickness_uncertainty, load_uncertainty, sensitivity_uncertainty] =
+        uncertainties;
     let options = IndentationOptions {
+        radius_uncertainty,
+        thickness_uncertainty,
+        load_uncertainty,
+        spring_constant,
+        sensitivity_uncertainty,
         given: given.map(|word| choose("given", word)).transpose()?,
         terms,
         long_time: choose("long_time", long_time)?,
@@ -51,8 +60,6 @@ pub fn fit_indentation<'py>(
         layer: thin.map(sample).transpose()?,
         springs,
         limit,
-        radius_uncertainty: uncertainties[0],
-        thickness_uncertainty: uncertainties[1],
     };
     let profile = choose_among("profile", profile, &profiles)?;
     let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };

@@ -145,3 +145,23 @@ def test_any_relaxation_or_creep_function_becomes_a_material():
 def test_functions_of_no_passive_material_are_refused(make, words):
     with pytest.raises(asp.CaseError, match=words):
         make()
+
+
+def test_labelled_values_are_a_table_of_their_times():
+    xr = pytest.importorskip("xarray")
+    minutes = ("time", [0.0, 1.0, 2.0], {"units": "min"})
+    measured = xr.DataArray([0.0, 1.0, 2.0], dims="time", coords={"time": minutes}, attrs={"units": "mN"})
+    expected = asp.table([(0.0, 0.0), (60.0, 1e-3), (120.0, 2e-3)])
+    assert repr(asp.table(measured)) == repr(expected)
+    found = asp.solve(BALL, asp.Elastic(young=1e6, poisson=0.5), load=measured, times=[30.0, 120.0], fields=[])
+    assert found.load == pytest.approx([0.0, 0.5e-3, 1e-3, 2e-3])
+    with pytest.raises(asp.CaseError, match="load is a history in|must be in m"):
+        asp.solve(BALL, asp.Elastic(young=1e6, poisson=0.5), approach=measured, times=[30.0, 120.0])
+    with pytest.raises(asp.CaseError, match="no times"):
+        asp.table(xr.DataArray([0.0, 1.0]))
+    pd = pytest.importorskip("pandas")
+    assert asp.table(pd.Series([0.0, 1e-3, 2e-3], index=[0.0, 60.0, 120.0])) == expected
+    with pytest.raises(asp.CaseError, match="datetime"):
+        asp.table(pd.Series([0.0, 1e-3], index=pd.to_datetime(["2020-01-01", "2020-01-02"])))
+    with pytest.raises(asp.CaseError, match="pairs of numbers"):
+        asp.table(pd.DataFrame(np.zeros((2, 3))))

@@ -76,6 +76,10 @@ def test_a_surface_is_an_array_and_equals_another(rough):
 def test_a_topography_and_a_labelled_array_are_surfaces(rough):
     measured = asp.Surface(Topography(rough))
     assert np.allclose(measured.heights, rough.heights, rtol=1e-12) and measured.size == pytest.approx(rough.size, rel=1e-12)
+    # A size that is another one than its own is not taken in place of it.
+    assert asp.Surface(Topography(rough), size=rough.size) == measured
+    with pytest.raises(asp.CaseError, match="size is .* but the topography has the size"):
+        asp.Surface(Topography(rough), size=(1.0, 1.0))
     # What does not repeat is not taken as periodic; what does is not pressed as a single body without a word.
     repeating = Topography(rough)
     repeating.is_periodic = True

@@ -48,6 +48,8 @@ def test_words_get_a_hint(ball, zener):
         (lambda: asp.Layer(thickness=1.0, material=zener, interface="glued"), "'bonded' or 'slip'"),
         (lambda: asp.persson_friction(ball, zener, pressure=1.0, velocities=[1.0], correction="persn"), "'yang-persson' or 'none'"),
         (lambda: asp.solve(ball, zener, on_step=5, **solve), "on_step is 5"),
+        (lambda: asp.solve(ball, zener, quantities=["pressure_histogram"], largest_pressure=-1.0, **solve), "largest_pressure is -1 Pa"),
+        (lambda: asp.solve(ball, zener, quantities=["gap_histogram"], largest_gap=float("nan"), **solve), "largest_gap is nan m"),
         (lambda: asp.run({}, set={"load.history.value": object()}), "load.history.value is .*as text"),
     ):
         with pytest.raises(asp.CaseError, match=told):

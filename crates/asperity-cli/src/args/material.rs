@@ -216,8 +216,11 @@ pub struct ForceCurve {
     /// Deflection of the cantilever per volt, where its column is in volts, e.g. '50 nm'
     #[arg(long, value_name = "LENGTH", requires = "spring_constant", value_parser = quantity::<Length<range::Positive>>())]
     pub sensitivity: Option<Length<range::Positive>>,
-    /// Standard uncertainty of the spring constant, e.g. '0.01 N/m' or '5 %'
-    #[arg(long, value_name = "STIFFNESS", requires = "spring_constant")]
+    /// Standard uncertainty of the radius (one standard deviation), e.g. '0.2 um' or '2 %', with any model
+    #[arg(long, value_name = "LENGTH")]
+    pub radius_uncertainty: Option<String>,
+    /// Standard uncertainty of the spring constant, e.g. '0.01 N/m' or '5 %'; of records of load, with any model, '5 %' of the load
+    #[arg(long, value_name = "STIFFNESS")]
     pub spring_constant_uncertainty: Option<String>,
     /// Standard uncertainty of the scale of the deflection, e.g. '2 %'
     #[arg(long, value_name = "SHARE", requires = "spring_constant", value_parser = quantity::<Number<range::NonNegative>>())]
@@ -231,9 +234,6 @@ pub struct FitIndentation {
     /// Radius of the sphere, e.g. '5 mm'
     #[arg(long, value_name = "LENGTH", required_unless_present = "cone", conflicts_with = "cone", value_parser = quantity::<Length<range::Positive>>())]
     pub radius: Option<Length<range::Positive>>,
-    /// Standard uncertainty of the radius (one standard deviation), e.g. '0.2 um' or '2 %'
-    #[arg(long, value_name = "LENGTH", requires = "radius")]
-    pub radius_uncertainty: Option<String>,
     /// Slope of a cone instead: rise per length, the cotangent of its half angle
     #[arg(long, value_name = "SLOPE", value_parser = quantity::<Number<range::Positive>>())]
     pub cone: Option<Number<range::Positive>>,
@@ -250,7 +250,7 @@ pub struct FitIndentation {
     /// Thickness of a thin sample on a rigid base, e.g. '5 um' [default: much thicker than the contact is wide]
     #[arg(long, value_name = "LENGTH", value_parser = quantity::<Length<range::Positive>>())]
     pub thickness: Option<Length<range::Positive>>,
-    /// Standard uncertainty of the thickness, e.g. '0.2 um' or '5 %'
+    /// Standard uncertainty of the thickness (one standard deviation), e.g. '0.1 um' or '2 %'
     #[arg(long, value_name = "LENGTH", requires = "thickness")]
     pub thickness_uncertainty: Option<String>,
     /// Contact of the thin sample with its base

@@ -10,10 +10,11 @@ use asperity::material::Modulus;
 use asperity::reference::MdrProfile;
 use asperity_io::curve::{Indentation, IndentationTest, MaterialOf, indentation_block};
 use asperity_io::output::write_all;
+use asperity_io::quantity::{Quantity, dimension};
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
 
-use super::force_curve::share_of_length;
+use super::force_curve::{of, share};
 use super::material::{columns, refused};
 use crate::args::FitIndentation;
 use crate::failure::Failure;
@@ -41,24 +42,16 @@ impl Verb for FitIndentation {
         let layer = self.thickness.map(|depth| SampleLayer { thickness: depth.get(), poisson, interface });
         let of = MaterialOf { modulus: self.modulus, poisson };
         let columns = columns(&self.column, &self.unit)?;
+        let Stated { radius, thickness, load } = Stated::of(self)?;
         let options = IndentationOptions {
+            radius_uncertainty: radius,
+            thickness_uncertainty: thickness,
+            load_uncertainty: load,
             given: self.given,
             terms: self.terms,
             long_time: self.long_time,
             fit_touch: self.fit_touch,
             layer,
-            radius_uncertainty: match self.radius {
-                Some(radius) => {
-                    share_of_length("--radius-uncertainty", &self.radius_uncertainty, radius.get())?
-                }
-                None => 0.0,
-            },
-            thickness_uncertainty: match layer {
-                Some(SampleLayer { thickness, .. }) => {
-                    share_of_length("--thickness-uncertainty", &self.thickness_uncertainty, thickness)?
-                }
-                None => 0.0,
-            },
             ..IndentationOptions::default()
         };
         let record = Indentation::read(&self.record, &columns).map_err(refused)?;
@@ -88,6 +81,31 @@ impl Verb for FitIndentation {
             None => text = format!("{text}\n{block}"),
         }
         crate::print(&text)
+    }
+}
+
+/// The stated uncertainties over their quantities.
+struct Stated {
+    radius: f64,
+    thickness: f64,
+    load: f64,
+}
+
+impl Stated {
+    fn of(args: &FitIndentation) -> Result<Stated, Failure> {
+        let curve = &args.curve;
+        let length = of::<dimension::Length>;
+        let [radius, thickness] = [args.radius, args.thickness].map(|x| x.map(Quantity::get));
+        Ok(Stated {
+            radius: share("--radius-uncertainty", &curve.radius_uncertainty, radius, length)?,
+            thickness: share("--thickness-uncertainty", &args.thickness_uncertainty, thickness, length)?,
+            load: share(
+                "--spring-constant-uncertainty",
+                &curve.spring_constant_uncertainty,
+                None,
+                of::<dimension::ForcePerLength>,
+            )?,
+        })
     }
 }
 

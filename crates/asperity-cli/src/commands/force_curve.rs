@@ -40,9 +40,14 @@ pub fn not_given(args: &FitIndentation) -> Result<(), Failure> {
 /// Fits a force curve.
 pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
     let word = choice::word(&model);
+    if args.thickness.is_some() {
+        return Err(Failure::input(format!(
+            "--thickness does not go with --model {word}: its closed form is that of a half-space, and for adhesion on a thin sample there is \
+             none; --model viscoelastic --terms 0 fits an elastic thin sample without adhesion"
+        )));
+    }
     for (option, given) in [
         ("--cone", args.cone.is_some()),
-        ("--thickness", args.thickness.is_some()),
         ("--interface", args.interface != Interface::Bonded),
         ("--given", args.given.is_some()),
         ("--terms", args.terms.is_some()),
@@ -68,12 +73,17 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
         branch: curve.branch.unwrap_or_default(),
         control: curve.control,
         range: curve.range.map(Quantity::get),
-        radius_uncertainty: share_of_length("--radius-uncertainty", &args.radius_uncertainty, radius)?,
+        radius_uncertainty: share(
+            "--radius-uncertainty",
+            &curve.radius_uncertainty,
+            Some(radius),
+            of::<dimension::Length>,
+        )?,
         spring_constant: spring,
         load_uncertainty: share(
             "--spring-constant-uncertainty",
             &curve.spring_constant_uncertainty,
-            spring.unwrap_or(1.0),
+            spring,
             of::<dimension::ForcePerLength>,
         )?,
         sensitivity_uncertainty: curve.sensitivity_uncertainty.map_or(0.0, Quantity::get),
@@ -107,35 +117,28 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
     crate::print(&text)
 }
 
-/// The uncertainty of a length over its value, 0 where it is not stated.
-pub fn share_of_length(option: &str, text: &Option<String>, length: f64) -> Result<f64, Failure> {
-    share(option, text, length, of::<dimension::Length>)
-}
-
-fn share(
+/// A stated uncertainty over the value of its quantity; 0 where none is stated.
+pub(super) fn share(
     option: &str,
     text: &Option<String>,
-    value: f64,
-    dimension: fn(&str) -> Result<f64, String>,
+    value: Option<f64>,
+    quantity: fn(&str) -> Result<f64, String>,
 ) -> Result<f64, Failure> {
     let Some(text) = text else { return Ok(0.0) };
-    relative(text, value, dimension)
-        .map_err(|why| Failure::input(format!("{option} is \"{text}\", but {why}")))
+    let share = if text.trim_end().ends_with('%') {
+        let share = text.parse::<Number<range::NonNegative>>();
+        share.map(Number::get).map_err(|error| format!("must be {}", error.expected))
+    } else {
+        let value = value.ok_or_else(|| "its quantity is not given: state it in %".to_owned());
+        value.and_then(|value| Ok(quantity(text)? / value))
+    };
+    share.map_err(|why| Failure::input(format!("{option} is \"{text}\", but {why}")))
 }
 
 /// A quantity of a dimension in SI, not negative.
-fn of<D: Dimension>(text: &str) -> Result<f64, String> {
+pub(super) fn of<D: Dimension>(text: &str) -> Result<f64, String> {
     let quantity = text.parse::<Quantity<D, range::NonNegative>>();
     quantity.map(Quantity::get).map_err(|error| error.help.unwrap_or(format!("must be {}", error.expected)))
-}
-
-/// An uncertainty over its value: a share in per cent, or a quantity.
-fn relative(text: &str, value: f64, quantity: fn(&str) -> Result<f64, String>) -> Result<f64, String> {
-    if text.trim_end().ends_with('%') {
-        let share = text.parse::<Number<range::NonNegative>>();
-        return share.map(Number::get).map_err(|error| format!("must be {}", error.expected));
-    }
-    quantity(text).map(|x| x / value)
 }
 
 fn report(args: &FitIndentation, table: &ForceTable, fit: &ForceFit, of: MaterialOf) -> String {

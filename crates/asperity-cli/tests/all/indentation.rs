@@ -175,9 +175,28 @@ fn a_force_curve_gives_modulus_and_work() {
         (&["--radius", "10 um", "--range", "1 nm"], "--range"),
         (&["--cone", "0.1", "--model", "dmt"], "--cone"),
         (&["--radius", "10 um", "--model", "jkr", "--radius-uncertainty", "2 N"], "--radius-uncertainty"),
+        (&["--radius", "10 um", "--model", "jkr", "--thickness", "5 um"], "half-space"),
+        (&["--radius", "10 um", "--spring-constant-uncertainty", "0.1 N/m"], "state it in %"),
     ] {
         let output = fit(dir.path(), &path, arguments);
         assert_eq!(output.status.code(), Some(2));
         assert!(text(&output.stderr).contains(words), "{}", text(&output.stderr));
     }
+}
+
+/// E goes as R^(-1/2) and as the scale of the load.
+#[test]
+fn intervals_of_a_relaxation_contain_stated_uncertainties() {
+    let dir = tempfile::tempdir().unwrap();
+    let half = |more: &[&str]| {
+        let arguments = [&["--radius", "5 mm", "--terms", "2", "--json"], more].concat();
+        let output = fit(dir.path(), &record(), &arguments);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let found: Value = serde_json::from_str(&text(&output.stdout)).unwrap();
+        let [value, high] = [0, 2].map(|k| found["equilibrium"][k].as_f64().unwrap());
+        (high / value).ln() / 1.959_964
+    };
+    let stated = half(&["--radius-uncertainty", "0.4 mm", "--spring-constant-uncertainty", "3 %"]);
+    // Half of 8 %, and 3 %; the search ends where the sum of squares falls by 1e-4 or less.
+    assert!(((stated.powi(2) - half(&[]).powi(2)).sqrt() - 0.05).abs() < 2e-3, "{stated}");
 }

@@ -28,6 +28,7 @@ from ._converge import ErrorBar as ErrorBar, converge as converge
 from ._findings import Finding as Finding, ResultWarning as ResultWarning
 from ._fit import CreepFunction as CreepFunction, Fit as Fit, Relaxation as Relaxation, fit_creep as fit_creep, fit_dma as fit_dma, fit_file as fit_file, fit_relaxation as fit_relaxation
 from ._force_curves import ForceCurve as ForceCurve, ForceFit as ForceFit, read_force_curves as read_force_curves
+from ._force_maps import ForceMap as ForceMap, fit_force_map as fit_force_map
 from ._histories import *
 from ._indentation import IndentationFit as IndentationFit, fit_indentation as fit_indentation
 from ._leakage import Leakage as Leakage, leakage as leakage

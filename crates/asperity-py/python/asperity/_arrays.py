@@ -316,7 +316,8 @@ def points(what: str, value: Any, units: tuple[str, str] = ("", "")) -> list[tup
         value = bare(what, value)
     array = np.asarray(value)
     if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
-        raise CaseError(f"{what} is {value!r}, but must be a list of pairs of numbers")
+        shape = f"has the shape {array.shape}" if array.ndim else f"is {value!r}"
+        raise CaseError(f"{what}: the list {shape}, but must be one of pairs of numbers")
     return [(float(a), float(b)) for a, b in array]
 
 

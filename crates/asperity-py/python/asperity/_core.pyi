@@ -265,7 +265,8 @@ def fit_indentation(
     thin: tuple[float, float, str] | None,
     springs: int,
     limit: float,
-    uncertainties: tuple[float, float],
+    uncertainties: tuple[float, float, float, float],
+    spring_constant: float | None,
 ) -> dict[str, Any]: ...
 def layer_compliance(waves: _Floats, keys: _Keys, time: float) -> _Floats: ...
 def spot_labels(pressure: _Floats, boundary: str) -> npt.NDArray[np.uint32]: ...

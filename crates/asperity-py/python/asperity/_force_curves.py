@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,9 @@ from . import _core, _html
 from ._arrays import Floats, choice, line, number
 from ._core import CaseError
 from ._sealed import ReadOnlyArrays
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
 #: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it.
 Interval = tuple[float, float, float]
@@ -45,8 +48,10 @@ class ForceFit(ReadOnlyArrays):
     tabor: float
     #: Largest radius of the contact [m].
     contact_radius: float
-    #: Numbers of the rows that were fitted, and the load of the model there [N].
+    #: Numbers of the rows that were fitted, load [N] and depth [m] that were measured there, and the load of the model.
     rows: npt.NDArray[np.int64]
+    load: Floats
+    depth: Floats
     predicted: Floats
     #: Root mean square of the distance from the curve, each channel over its range.
     relative_rms: float
@@ -54,6 +59,14 @@ class ForceFit(ReadOnlyArrays):
     durbin_watson: float
     #: What should be known before the numbers are believed.
     notes: list[str]
+
+    def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
+        """Load over depth, from the load of the free sphere and the depth of first touch: the record as points, the model as a line, which
+        takes the further arguments."""
+        from .plot import recorded
+
+        along, baseline = ("depth", "m", self.depth - self.touch[0]), self.baseline[0]
+        return recorded(along, "load", self.load - baseline, self.predicted - baseline, ax, style)
 
     def _lines(self) -> list[tuple[str, Interval]]:
         lines = [("E [Pa]", self.young), ("work of adhesion [J/m2]", self.work)]
@@ -94,15 +107,7 @@ def fit_force_curve(
         choice("control", control, get_args(Control))
     size = number("radius", radius)
     spring = None if spring_constant is None else number("spring_constant", spring_constant)
-    if spring is None and spring_constant_uncertainty:
-        raise CaseError("spring_constant_uncertainty is that of a spring constant: give spring_constant too")
-    if spring is None and sensitivity_uncertainty:
-        raise CaseError("sensitivity_uncertainty changes the deflection: give spring_constant too")
-    shares = (
-        number("radius_uncertainty", radius_uncertainty) / size if size else 0.0,
-        number("spring_constant_uncertainty", spring_constant_uncertainty) / (spring or 1.0),
-        number("sensitivity_uncertainty", sensitivity_uncertainty),
-    )
+    shares = share("radius", radius_uncertainty, size), *cantilever_shares(spring, spring_constant_uncertainty, sensitivity_uncertainty)
     reach = None if range is None else number("range", range)
     found = _core.fit_force_curve(loads, depths, size, model, branch, control, reach, spring, *shares)
     factor = 1.0 - poisson**2
@@ -116,7 +121,23 @@ def fit_force_curve(
     modulus = found.pop("contact_modulus")
     own = {name: interval(found[name]) for name in ("work", "transition", "range", "touch", "baseline")}
     rows = np.asarray(found["rows"], dtype=np.int64)
-    return ForceFit(**{**found, **own, "rows": rows}, young=interval(modulus, factor))
+    return ForceFit(**{**found, **own, "rows": rows, "load": loads[rows], "depth": depths[rows]}, young=interval(modulus, factor))
+
+
+def share(what: str, uncertainty: Any, value: float | None) -> float:
+    """The standard uncertainty of a quantity over its value; 0 where none is stated."""
+    name = f"{what}_uncertainty"
+    stated = number(name, uncertainty)
+    if stated and not value:
+        raise CaseError(f"{name} is that of {what}: give {what} too")
+    return stated / value if value else 0.0
+
+
+def cantilever_shares(spring: float | None, spring_constant_uncertainty: Any, sensitivity_uncertainty: Any) -> tuple[float, float]:
+    """The uncertainties of the scales of load and deflection."""
+    if spring is None and sensitivity_uncertainty:
+        raise CaseError("sensitivity_uncertainty changes the deflection: give spring_constant too")
+    return share("spring_constant", spring_constant_uncertainty, spring), number("sensitivity_uncertainty", sensitivity_uncertainty)
 
 
 @dataclass(frozen=True, eq=False)

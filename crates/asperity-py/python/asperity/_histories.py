@@ -14,7 +14,7 @@ from ._arrays import Floats, choice, count, either, in_hertz, line, number, poin
 from ._core import CaseError, waitable
 from ._parameters import Parameter, call
 from ._sampled import as_points
-from ._units import has_unit, unit_among
+from ._units import has_unit, is_labelled, unit_among
 
 __all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sampled", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
 
@@ -175,11 +175,25 @@ def sine(*, mean: float, amplitude: float, frequency: float) -> History:
 
 
 def table(pairs: Sequence[tuple[float, float]] | npt.NDArray[Any]) -> History:
-    """Linear between (time [s], value) points; two points at one time are a jump; held after the last."""
+    """Linear between (time [s], value) points; two points at one time are a jump; held after the last. A one-dimensional array of xarray with
+    its coordinate, or a series of pandas with its index, has the times of its values."""
+    pairs = _timed(pairs)
     several = isinstance(pairs, (list, tuple)) and all(isinstance(pair, (list, tuple)) and len(pair) == 2 for pair in pairs)
     ends = [pair[1] for pair in pairs] if several else []
     unit = unit_among("the value of a history", ends, _UNITS)
     return History("table", (), tuple(points("points of the table", pairs, ("s", unit or ""))), unit=unit)
+
+
+def _timed(given: Any) -> Any:
+    """The points of a labelled list of values; anything else as it is."""
+    if is_labelled(given) and given.ndim == 1:
+        (name,) = given.dims
+        if name not in getattr(given, "coords", {}):
+            raise CaseError(f"the table has no times: give its dimension {name!r} a coordinate [s]")
+        return [(time, given[n]) for n, time in enumerate(line("time", given.coords[name]))]
+    if hasattr(given, "index") and hasattr(given, "to_numpy") and given.ndim == 1:
+        return [*zip(line("time", given.index.to_numpy()).tolist(), given.to_numpy().tolist())]
+    return given
 
 
 #: A function of time [s].
@@ -363,6 +377,8 @@ def as_history(what: str, value: Any, unit: str | None = None, *, over: Times | 
         if over is None:
             raise CaseError(f"{what} is a function: make a history of it, {what}=asperity.sampled(function, end=...)")
         return _of_function(what, value, over._marks, breaks, _TOLERANCE, unit)
+    if _timed(value) is not value and np.size(value) > 1:
+        value = table(value)
     if not isinstance(value, History):
         return History("step", (number(what, value, unit),), unit=unit if has_unit(value) else None)
     if value.unit not in (None, unit):

@@ -8,7 +8,7 @@ numbers of terms that the record allows.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, get_args, overload
+from typing import TYPE_CHECKING, Any, Literal, get_args, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -16,11 +16,14 @@ import numpy.typing as npt
 from . import _core, _html
 from ._arrays import Floats, choice, count, line, number
 from ._core import CaseError
-from ._force_curves import ForceFit, Model, fit_force_curve
+from ._force_curves import ForceFit, Model, cantilever_shares, fit_force_curve, share
 from ._histories import one_of
 from ._materials import Prony
 from ._sealed import ReadOnlyArrays
 from ._words import Interface, LongTime
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
 #: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it: the ends
 #: are more than a factor of 10 apart.
@@ -40,8 +43,10 @@ class IndentationFit(ReadOnlyArrays):
     touch: Interval
     #: "depth" or "load": the channel that the test controlled.
     given: str
-    #: Times [s] and model of the other channel [N or m] at the rows that were used.
+    #: Times [s], load [N] and depth [m] of the record, and model of the other channel [N or m], at the rows that were used.
     time: Floats
+    load: Floats
+    depth: Floats
     predicted: Floats
     #: Numbers of these rows.
     rows: npt.NDArray[np.int64]
@@ -58,6 +63,13 @@ class IndentationFit(ReadOnlyArrays):
     notes: list[str]
     #: The material of the best fit, what is not determined included.
     material: Prony
+
+    def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
+        """The channel that was fitted over time: the record as points, the model as a line, which takes the further arguments."""
+        from .plot import recorded
+
+        name, measured = ("load", self.load) if self.given == "depth" else ("depth", self.depth)
+        return recorded(("time", "s", self.time), name, measured, self.predicted, ax, style)
 
     def __repr__(self) -> str:
         low, high = self.equilibrium[1:]
@@ -82,7 +94,6 @@ def fit_indentation(
     /,
     *,
     radius: float | None = None,
-    radius_uncertainty: float = 0.0,
     slope: float | None = None,
     poisson: float,
     model: Literal["viscoelastic"] = "viscoelastic",
@@ -91,12 +102,16 @@ def fit_indentation(
     long_time: LongTime = "free",
     fit_touch: bool = False,
     thickness: float | None = None,
-    thickness_uncertainty: float = 0.0,
     interface: Interface = "bonded",
     hardness: float | None = None,
     name: str | None = None,
     springs: int = 150,
     max_misfit: float = 0.1,
+    spring_constant: float | None = None,
+    radius_uncertainty: float = 0.0,
+    thickness_uncertainty: float = 0.0,
+    spring_constant_uncertainty: float = 0.0,
+    sensitivity_uncertainty: float = 0.0,
 ) -> IndentationFit: ...
 @overload
 def fit_indentation(
@@ -130,7 +145,6 @@ def fit_indentation(
     long_time: LongTime = "free",
     fit_touch: bool = False,
     thickness: float | None = None,
-    thickness_uncertainty: float = 0.0,
     interface: Interface = "bonded",
     hardness: float | None = None,
     name: str | None = None,
@@ -142,6 +156,7 @@ def fit_indentation(
     range: float | None = None,
     spring_constant: float | None = None,
     radius_uncertainty: float = 0.0,
+    thickness_uncertainty: float = 0.0,
     spring_constant_uncertainty: float = 0.0,
     sensitivity_uncertainty: float = 0.0,
 ) -> IndentationFit | ForceFit:
@@ -166,13 +181,13 @@ def fit_indentation(
     max_misfit : largest rms misfit over the largest value before the record is refused
     model : "viscoelastic", or "hertz", "dmt", "jkr" or "maugis": an elastic half-space with the adhesion of that model. The times are
         then not used and may be None; baseline and contact point are fitted; the options above, `radius` and `poisson` aside, do
-        not go with it, those below do
+        not go with it, and `branch`, `control` and `range` go with it alone
     branch : "retraction" (from the largest load on) or "approach"
     control : "load" or "displacement", where the sphere comes off; by default that of the spring, where its constant is given, else displacement
     range : of the attraction [m], for "maugis" in place of a fitted transition, and for Tabor's number of the other models
     spring_constant : of the cantilever whose deflection is the load [N/m]
     radius_uncertainty, thickness_uncertainty, spring_constant_uncertainty : standard uncertainties (one standard deviation) [m], [m],
-        [N/m]; the intervals hold them
+        [N/m]; the intervals contain them
     sensitivity_uncertainty : standard uncertainty of the deflection's sensitivity over its value
 
     Returns
@@ -216,22 +231,19 @@ def fit_indentation(
     (1.0, 5.0)
     """
     choice("model", model, ("viscoelastic", *get_args(Model)))
-    curve: dict[str, Any] = {
-        "branch": branch,
-        "control": control,
-        "range": range,
+    curve: dict[str, Any] = {"branch": branch, "control": control, "range": range}
+    of_both: dict[str, Any] = {
         "spring_constant": spring_constant,
+        "radius_uncertainty": radius_uncertainty,
         "spring_constant_uncertainty": spring_constant_uncertainty,
         "sensitivity_uncertainty": sensitivity_uncertainty,
     }
-    of_curve = {"branch": "retraction", "spring_constant_uncertainty": 0.0, "sensitivity_uncertainty": 0.0}
     of_record = {
         "slope": (slope, None),
         "given": (given, None),
         "terms": (terms, None),
         "long_time": (long_time, "free"),
         "fit_touch": (fit_touch, False),
-        "thickness": (thickness, None),
         "thickness_uncertainty": (thickness_uncertainty, 0.0),
         "interface": (interface, "bonded"),
         "hardness": (hardness, None),
@@ -241,9 +253,14 @@ def fit_indentation(
     }
     if model == "viscoelastic":
         for what, told in curve.items():
-            if told != of_curve.get(what):
+            if told != (None if what != "branch" else "retraction"):
                 raise CaseError(f"{what} goes with a model of an elastic sphere: give model, one of {', '.join(get_args(Model))}")
     else:
+        if thickness is not None:
+            raise CaseError(
+                f"thickness is {thickness}, but the model {model!r} has the closed form of a half-space, and there is none for adhesion on a thin"
+                ' sample: leave it out. The model "viscoelastic" with terms=0 fits an elastic thin sample without adhesion'
+            )
         for what, (told, default) in of_record.items():
             if told != default:
                 raise CaseError(f"{what} goes with the model \"viscoelastic\", but model is {model!r}: leave it out")
@@ -252,7 +269,7 @@ def fit_indentation(
         nu = number("poisson", poisson)
         if not -1.0 < nu <= 0.5:
             raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
-        return fit_force_curve(load, depth, radius=radius, radius_uncertainty=radius_uncertainty, poisson=nu, model=model, **curve)
+        return fit_force_curve(load, depth, radius=radius, poisson=nu, model=model, **curve, **of_both)
     columns = [line(what, values) for what, values in (("time", time), ("load", load), ("depth", depth))]
     if len({len(column) for column in columns}) > 1:
         told = ", ".join(f"{what} {len(column)}" for what, column in zip(("time", "load", "depth"), columns))
@@ -267,16 +284,13 @@ def fit_indentation(
     if thickness is None and interface != "bonded":
         raise CaseError("interface is that of a thin sample to its base: give its thickness too")
     thin = None if thickness is None else (number("thickness", thickness), nu, interface)
-    if thickness is None and thickness_uncertainty:
-        raise CaseError("thickness_uncertainty is that of a thin sample: give its thickness too")
-    if radius is None and radius_uncertainty:
-        raise CaseError("radius_uncertainty is that of a sphere, but slope is given")
-    shares = tuple(
-        number(f"{what}_uncertainty", own) / number(what, length) if own and length else 0.0
-        for what, own, length in (("radius", radius_uncertainty, radius), ("thickness", thickness_uncertainty, thickness))
-    )
-    how = given, most, long_time, bool(fit_touch), thin, count("springs", springs), number("max_misfit", max_misfit), (shares[0], shares[1])
-    found = _core.fit_indentation(columns[0], columns[1], columns[2], profile, number(what, shape), *how)
+    how = given, most, long_time, bool(fit_touch), thin, count("springs", springs), number("max_misfit", max_misfit)
+    spring = None if spring_constant is None else number("spring_constant", spring_constant)
+    of_load, of_deflection = cantilever_shares(spring, spring_constant_uncertainty, sensitivity_uncertainty)
+    size = None if radius is None else number("radius", radius)
+    of_size, of_thickness = share("radius", radius_uncertainty, size), share("thickness", thickness_uncertainty, thin and thin[0])
+    stated = (of_size, of_thickness, of_load, of_deflection), spring
+    found = _core.fit_indentation(columns[0], columns[1], columns[2], profile, number(what, shape), *how, *stated)
     # E = E* (1 - nu^2)
     factor = 1.0 - nu**2
 
@@ -291,7 +305,7 @@ def fit_indentation(
         "instantaneous": interval(found["instantaneous"], factor),
         "touch": interval(found["touch"]),
         "rows": rows,
-        "time": columns[0][rows],
+        **{what: column[rows] for what, column in zip(("time", "load", "depth"), columns)},
     }
     material = Prony(
         equilibrium=factor * found["equilibrium"][0],

@@ -45,15 +45,16 @@ def _sentences(result: Result) -> list[str]:
     domain = "periodic domain" if setup.get("boundary") == "periodic" else "free surface"
     strain = " in plane strain" if result.is_line else ""
     return [
-        f"The frictionless normal contact of {material} {bodies}{strain} was computed with asperity {known.get('version', '')}"
+        f"The frictionless {'adhesive ' if setup.get('adhesion') else ''}normal contact of {material} {bodies}{strain} was computed with asperity {known.get('version', '')}"
         f"{', by the model of Spinu and Cerlinca (2017)' if relaxes and not layered else ''}, on {cells_of(result.initial_gap)} of a {domain} of {sides}.",
         _of_materials(setup),
         _of_hardness(setup),
+        _of_adhesion(setup.get("adhesion")),
         _of_load(result, setup),
         _of_motion(result, setup),
         _of_rows(result, setup, relaxes),
         _of_solver(result, setup),
-        "Contact areas are those of the cells under pressure; corrected ones are reduced by a share of their perimeter (Yastrebov, Anciaux and Molinari 2017)."
+        "Contact areas are those of the cells " + ("in contact" if setup.get("adhesion") else "under pressure") + "; corrected ones are reduced by a share of their perimeter (Yastrebov, Anciaux and Molinari 2017)."
         if not result.is_line
         else "",
         _of_errors(result),
@@ -95,6 +96,15 @@ def _of_hardness(setup: dict[str, Any]) -> str:
         return ""
     stays = "stays on unloading" if setup.get("plasticity") == "accumulate" else "disappears on unloading"
     return f"The pressure is cut off at the hardness, {quantity(float(hardness), 'Pa')}; the flattening {stays}."
+
+
+def _of_adhesion(told: dict[str, Any] | None) -> str:
+    if not told:
+        return ""
+    reach = f"the range {quantity(told['range'], 'm')} (largest attraction {quantity(told['strength'], 'Pa')})"
+    law = f" after the law {told['law']}" if "law" in told else ""
+    sphere = f", Tabor's number {told['tabor']:.2g}" if told.get("tabor") is not None else ""
+    return f"The surfaces attract each other{law}, with the work of adhesion {1e3 * told['work']:.4g} mJ/m² and {reach}{sphere}; the trap number of the grid is {told['trap']:.2g}."
 
 
 def _of_load(result: Result, setup: dict[str, Any]) -> str:

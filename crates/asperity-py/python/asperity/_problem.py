@@ -77,6 +77,9 @@ class Problem:
             bodies = [{**body, "hardness": limit} for body in bodies]
         ends = {"pressure": self.largest_pressure, "gap": self.largest_gap}
         histogram = {name: number(f"largest_{name}", end) for name, end in ends.items() if end is not None}
+        for name, end in histogram.items():
+            if not 0.0 < end < float("inf"):
+                raise CaseError(f"largest_{name} is {end:g} {'Pa' if name == 'pressure' else 'm'}, but must be finite and greater than 0")
         keys: dict[str, Any] = {
             "domain": {"cells": list(shape.cells), "size": list(shape.size), "boundary": self.boundary},
             "surface": [{"kind": "array", "array": "heights", "single": bool(shape.metadata.get("single"))}],

@@ -762,7 +762,9 @@ def _of_topography(topography: Any, size: Any) -> tuple[Any, Any, dict[str, Any]
     if not getattr(topography, "is_uniform", True):
         heights, extent, resampled = _even(np.asarray(topography.positions(), dtype=float) * factor, heights, size)
         return heights, extent, {**resampled, **_foreign.told(topography)}
-    extent = [length * factor for length in topography.physical_sizes] if size is None else size
+    extent = [float(length) * factor for length in topography.physical_sizes]
+    if size is not None and not np.allclose(size_of("heights", heights, size), extent, rtol=1e-6, atol=0.0):
+        raise CaseError(f"size is {size!r}, but the topography has the size {tuple(extent)} m: leave size out")
     # What was measured does not repeat beyond its edges.
     known: dict[str, Any] = {"repeats": True} if getattr(topography, "is_periodic", False) else {"format": "SurfaceTopography"}
     return heights, extent, {**known, **_foreign.told(topography)}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import number
+from ._arrays import Floats, choice, number
 from ._core import CaseError
 from ._drawing import (
     _axes,
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
     from ._contact import ElasticCurve
     from ._fit import Fit
+    from ._force_maps import ForceMap
     from ._result import Result
     from ._surface import Surface
     from ._words import Axis, Field
@@ -197,7 +198,10 @@ class Plots:
             contact = _Panel("contact area", "m", 2, [("counted", area), ("corrected", result.contact_area_corrected)])
         if np.any(result.capped_area > 0):
             contact.curves.append(("at the hardness", result.capped_area))
-        over_contact = np.divide(load, area, out=np.full(area.shape, np.nan), where=area > 0)
+        # Of an adhesive contact: what presses on the cells that touch, less the attraction there, which is the largest.
+        adhesion = result._setup.get("adhesion")
+        pressed = result.repulsive_load - adhesion["strength"] * area if adhesion else load
+        over_contact = np.divide(pressed, area, out=np.full(area.shape, np.nan), where=area > 0)
         pressures = [("nominal mean", result.mean_pressure), ("largest", result.max_pressure), ("mean over the contact", over_contact)]
         third = _Panel("load", result.units("load"), 1, [("", load)])
         if result.is_sweep and "friction_coefficient" in result._table:
@@ -239,7 +243,8 @@ class Plots:
 
     def pressure(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the pressure at the stored time nearest to `time` [s] (of a sweep: velocity [m/s]), or with that index; default the
-        last. Its colours begin at 0, and what is out of contact is light, unless `norm`, or a `vmin` other than 0, is given. A narrow domain is
+        last. Its colours begin at 0, and what is out of contact is light, unless `norm`, or a `vmin` other than 0, is given; with adhesion 0
+        is in their middle. A narrow domain is
         stretched, as its title says, where `aspect` is not given. Of a line contact a curve over x."""
         return self._map("pressure", "inferno", (time, velocity, index), ax, style)
 
@@ -362,8 +367,11 @@ class Plots:
         if name == "gap":
             values = self._closed(values, at)
         ax = _axes(ax, style, "map", size)
-        style = {"cmap": colours, **_in_si(style, unit)}
+        given = _in_si(style, unit)
+        style = {"cmap": colours, **given}
         light, told = _light(name, values, style)
+        if name == "pressure" and self._result._setup.get("adhesion"):
+            style, told = _about_zero(values, given), "below 0: the surfaces pull at each other"
         self._tell(ax, at, notes=[_stretched(size, style), told])
         image = _image(ax, values, size, {**(style if name == "pressure" else _robust(values, style)), **light})
         if not light or "vmax" in style or np.any(values > 0):
@@ -406,6 +414,14 @@ class Plots:
         lines = [", ".join(part for part in (place, when) if part), *notes]
         if told := "\n".join(line for line in lines if line):
             ax.set_title(told)
+
+
+def _about_zero(values: Any, style: dict[str, Any]) -> dict[str, Any]:
+    """The style of a map of numbers of both signs, where it gives no colours: 0 in their middle, and light."""
+    if {"cmap", "norm", "vmin", "vmax"} & style.keys():
+        return {"cmap": "RdBu_r", **style}
+    most = _largest(values) or 1.0
+    return {"cmap": "RdBu_r", "vmin": -most, "vmax": most, **style}
 
 
 def _light(name: str, values: Any, style: dict[str, Any]) -> tuple[dict[str, Any], str]:
@@ -644,4 +660,45 @@ def fitted(fit: Fit, ax: Axes | None) -> Any:
     names = {"relaxation": f"{letter}(t) [Pa]", "creep": f"{'D' if letter == 'E' else 'J'}(t) [1/Pa]"}
     ax.set_ylabel(names.get(fit.kind, f"{letter}′, {letter}″ [Pa]"))
     _legend(ax)
+    return ax
+
+
+def recorded(along: tuple[str, str, Floats], name: str, measured: Floats, model: Floats, ax: Axes | None, style: dict[str, Any]) -> Axes:
+    """The load or depth of a test as points, and of its model as a line, over what `along` has: name, unit and numbers."""
+    ax = _axes(ax, style)
+    words, unit, over = along
+    across = over * _scale(ax, words, _largest(over), unit, axis="x")
+    up = _scale(ax, name, _largest(measured), {"load": "N", "depth": "m"}[name])
+    ax.plot(across, measured * up, ".", markersize=3, color="0.6", label="measured")
+    ax.plot(across, model * up, **{"label": "model", **style})
+    _legend(ax)
+    return ax
+
+
+#: What the maps of force curves show.
+_OF_CURVES = {"young": ("Young's modulus", "Pa"), "work": ("work of adhesion", "J/m²")}
+_ENDS = {"": "", "_low": ", lower end of the 95 % interval", "_high": ", upper end of the 95 % interval"}
+
+
+def force_map(found: ForceMap, what: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
+    """A quantity of a map of force curves."""
+    names = {name + end: (words, told, unit) for name, (words, unit) in _OF_CURVES.items() for end, told in _ENDS.items()}
+    words, told, unit = names[choice("quantity", what, tuple(names))]
+    values = getattr(found, what)
+    size = found.size or tuple(float(count) for count in values.shape)
+    ax = _axes(ax, style, "map", size)
+    colours = {"cmap": "viridis", **_in_si(style, unit)}
+    # Intervals may have no upper end.
+    shown_ = np.where(np.isfinite(values), values, np.nan)
+    style = {**_robust(shown_, colours), "cmap": _with(colours["cmap"], bad=_LIGHT)}
+    if found.size is None:
+        image = _placed(ax, shown_, (0, size[0], 0, size[1]), size, style)
+        ax.set_xlabel("x [pixels]")
+        ax.set_ylabel("y [pixels]")
+    else:
+        image = _image(ax, shown_, size, style)
+    _bar(ax, image, words, unit)
+    empty = int(np.sum(np.isnan(shown_)))
+    missing = f"{empty} of {values.size} pixels without a value (light)" if empty else ""
+    ax.set_title("; ".join(part for part in (told.removeprefix(", "), missing, _stretched(size, style)) if part))
     return ax

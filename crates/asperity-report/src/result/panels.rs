@@ -25,8 +25,12 @@ pub(crate) fn values(reader: &Reader, name: &str) -> Result<Vec<f64>, StoreError
     if name != CONTACT_PRESSURE {
         return reader.series(name);
     }
-    let rows = reader.series("load")?.into_iter().zip(reader.series("contact_area")?);
-    Ok(rows.map(|(load, area)| load / area).collect())
+    // Of an adhesive contact: what presses on the cells that touch, less the attraction there, which is the largest.
+    let adhesion = reader.header().adhesion();
+    let strength = adhesion.and_then(|adhesion| adhesion.get("strength")?.as_f64()).unwrap_or(0.0);
+    let pressed = if adhesion.is_some() { "repulsive_load" } else { "load" };
+    let rows = reader.series(pressed)?.into_iter().zip(reader.series("contact_area")?);
+    Ok(rows.map(|(load, area)| load / area - strength).collect())
 }
 
 /// Adds a line to the panel of its title, or to a new one.
@@ -76,9 +80,7 @@ pub(crate) fn of_evolution(reader: &Reader) -> Result<Vec<RowPanel>, StoreError>
         RowFigure::Evolution(place) => Some(place),
         _ => None,
     })?;
-    // Where surfaces adhere, most of the tension acts outside of the contact.
-    let has_mean = reader.header().adhesion().is_none();
-    if let Some(pressure) = panels.iter_mut().find(|panel| panel.label == "pressure" && has_mean) {
+    if let Some(pressure) = panels.iter_mut().find(|panel| panel.label == "pressure") {
         pressure.lines.push(("mean over the contact", CONTACT_PRESSURE));
     }
     let mut changing = vec![];

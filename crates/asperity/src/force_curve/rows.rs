@@ -36,6 +36,8 @@ pub(super) struct Rows {
     pub(super) spans: [f64; 2],
     /// How much the load of the free sphere changes over its rows \[N\]; 0 where that may be noise.
     pub(super) drift: f64,
+    /// Smallest and largest depth in contact.
+    pub(super) depths: [f64; 2],
     /// Load of the free sphere, to begin with.
     pub(super) rest: f64,
     numbers: Vec<usize>,
@@ -81,10 +83,6 @@ impl Rows {
         )?;
         let pick = |column: &[f64]| numbers.iter().map(|row| column[*row]).collect::<Vec<_>>();
         let (loads, depths) = (pick(record.loads), pick(record.depths));
-        let span = |values: &[f64]| {
-            let [low, high] = [f64::INFINITY, f64::NEG_INFINITY];
-            values.iter().fold([low, high], |[low, high], x| [low.min(*x), high.max(*x)])
-        };
         let steps: Vec<f64> = (0..loads.len()).map(|k| k as f64).collect();
         let ranges = [&loads, &depths].map(|values| {
             let [low, high] = span(values);
@@ -117,10 +115,8 @@ impl Rows {
                 ),
             );
         }
-        let [of_loads, of_depths] = [0, 1].map(|k| {
-            let [low, high] = span(&contact.iter().map(|row| row[k]).collect::<Vec<_>>());
-            high - low
-        });
+        let [loads, depths] = [0, 1].map(|k| span(&contact.iter().map(|row| row[k]).collect::<Vec<_>>()));
+        let [of_loads, of_depths] = [loads, depths].map(|[low, high]| high - low);
         require(
             contact.len() >= FEWEST / 2 && of_loads > 3.0 * noise[0] && of_depths > 0.0,
             "number of rows in contact",
@@ -132,7 +128,17 @@ impl Rows {
         // The means of the first and the last third are two thirds of the rows apart.
         let drift = if third > 0 { 1.5 * drift(&free, third) } else { 0.0 };
         let drift = if drift > 1.5 * scatter(noise[0], third) { drift } else { 0.0 };
-        Ok(Rows { contact, free, baseline, noise, spans: [of_loads, of_depths], rest, drift, numbers })
+        Ok(Rows {
+            contact,
+            free,
+            baseline,
+            noise,
+            spans: [of_loads, of_depths],
+            depths,
+            rest,
+            drift,
+            numbers,
+        })
     }
 
     /// Means of neighbouring rows, as many as are fitted.
@@ -151,14 +157,29 @@ impl Rows {
 
     /// Loads and depths with the scale of the deflection larger by this fraction.
     pub(super) fn with_deflection(&self, change: f64, stiffness: f64) -> Rows {
-        let contact = self.contact.iter().map(|[w, d]| [w * (1.0 + change), d - change * w / stiffness]);
+        let moved = self.contact.iter().map(|[w, d]| [w * (1.0 + change), d - change * w / stiffness]);
+        let contact: Vec<[f64; 2]> = moved.collect();
+        let depths = span(&contact.iter().map(|row| row[1]).collect::<Vec<_>>());
         Rows {
-            contact: contact.collect(),
+            contact,
+            depths,
             free: self.free.iter().map(|w| w * (1.0 + change)).collect(),
             numbers: vec![],
             rest: self.rest * (1.0 + change),
             ..*self
         }
+    }
+
+    /// About this number of rows, evenly spaced; `None` where there are few.
+    pub(super) fn thinned(&self, count: usize) -> Option<Rows> {
+        let every = self.contact.len() / count;
+        let thin = |length: usize| (0..length).step_by(every.max(1));
+        (every > 1).then(|| Rows {
+            contact: thin(self.contact.len()).map(|row| self.contact[row]).collect(),
+            free: thin(self.free.len()).map(|row| self.free[row]).collect(),
+            numbers: vec![],
+            ..*self
+        })
     }
 
     pub(super) fn numbers(&self) -> Vec<usize> {
@@ -193,6 +214,12 @@ fn free_of_hertz(loads: &[f64], noise: f64) -> (usize, f64, bool) {
     // A contact that lasts to the end would still lose more of the load there: (1/8)^(3/2) is 4 %.
     let flat = drift(end, third) < 0.01 * (loads[0] - median(end)) + scatter(noise, third);
     if flat { (n, median(end), true) } else { (n, 0.0, false) }
+}
+
+/// Smallest and largest value.
+fn span(values: &[f64]) -> [f64; 2] {
+    let [low, high] = [f64::INFINITY, f64::NEG_INFINITY];
+    values.iter().fold([low, high], |[low, high], x| [low.min(*x), high.max(*x)])
 }
 
 /// Mean of the first rows less that of the last.

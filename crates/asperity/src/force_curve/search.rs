@@ -3,6 +3,8 @@
 
 use std::f64::consts::PI;
 
+use rayon::prelude::*;
+
 use super::rows::Rows;
 use super::{ForceModel, ForceOptions, invalid};
 use crate::error::Result;
@@ -12,7 +14,14 @@ use crate::reference::{AdhesiveModel, AdhesiveSphere, BarPoint, maugis_lambda};
 
 /// Points of the curve among which the nearest is looked for first.
 const POINTS: usize = 64;
+/// Step of the parameter of the curve below which its nearest point is found.
+const NEAR: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 100;
+/// Number of rows of the first search.
+const SOME: usize = 400;
+/// A decrease of the sum of squares below this is slow; this number of consecutive slow decreases ends the search.
+const SLOW: f64 = 1e-8;
+const PATIENCE: usize = 2;
 /// Steps of the differences of the parameters.
 const STEP: f64 = 1e-5;
 /// Values of λ from which the search begins, and its limits: beyond, DMT and JKR differ from Maugis' model by less than any record.
@@ -35,6 +44,7 @@ pub(super) struct Problem<'a> {
 }
 
 /// The best parameters.
+#[derive(Clone)]
 pub(super) struct Found {
     pub(super) at: Vec<f64>,
     /// (J'J)⁻¹ times the variance of the residuals; `None` where the record does not determine the parameters.
@@ -79,64 +89,83 @@ pub(super) struct Nearest {
     pub(super) contact_radius: f64,
 }
 
-/// The curve at some parameters, in the units of the record.
-struct Curve {
+/// Where the curve lies in the units of the record.
+#[derive(Clone, Copy)]
+struct Frame {
     model: AdhesiveModel,
     units: [f64; 2],
     shifts: [f64; 2],
     noise: [f64; 2],
+}
+
+impl Frame {
+    /// Distance of load and depth from a point of the curve, in standard deviations.
+    fn apart(&self, [load, depth]: [f64; 2], point: &BarPoint) -> [f64; 2] {
+        let curve =
+            [self.shifts[1] + self.units[0] * point.load, self.shifts[0] + self.units[1] * point.depth];
+        [(load - curve[0]) / self.noise[0], (depth - curve[1]) / self.noise[1]]
+    }
+
+    /// Change of the curve along its parameter, in standard deviations.
+    fn along(&self, point: &BarPoint) -> [f64; 2] {
+        [self.units[0] * point.load_slope / self.noise[0], self.units[1] * point.depth_slope / self.noise[1]]
+    }
+}
+
+/// The stable branch at some parameters.
+struct Curve {
+    frame: Frame,
     ends: [f64; 2],
     table: Vec<(f64, BarPoint)>,
 }
 
-impl Curve {
-    /// Distance of load and depth in standard deviations at a parameter of the curve, and its slopes.
-    fn apart(&self, [load, depth]: [f64; 2], point: &BarPoint) -> ([f64; 2], [f64; 2]) {
-        let scale = [0, 1].map(|k| self.units[k] / self.noise[k]);
-        let measured = [(load - self.shifts[1]) / self.units[0], (depth - self.shifts[0]) / self.units[1]];
-        let distance = [scale[0] * (measured[0] - point.load), scale[1] * (measured[1] - point.depth)];
-        (distance, [scale[0] * point.load_slope, scale[1] * point.depth_slope])
-    }
+/// The point of the curve that is nearest to a row, at the parameter `u`, and the distance of the row.
+struct Foot {
+    u: f64,
+    point: BarPoint,
+    apart: [f64; 2],
+    /// Whether the branch ends there, so that the distance may have a part along the curve.
+    last: bool,
+}
 
-    /// The nearest point of the stable branch.
-    fn nearest(&self, row: [f64; 2]) -> ([f64; 2], BarPoint) {
-        let squares = |point: &BarPoint| {
-            let ([x, y], _) = self.apart(row, point);
+impl Curve {
+    fn nearest(&self, row: [f64; 2]) -> Foot {
+        let Frame { model, .. } = self.frame;
+        let distance = |point: &BarPoint| {
+            let [x, y] = self.frame.apart(row, point);
             x * x + y * y
         };
-        let mut start = self.ends[0];
-        let mut least = f64::INFINITY;
-        for (u, point) in &self.table {
-            let distance = squares(point);
+        let (mut u, mut least) = (self.ends[0], f64::INFINITY);
+        for (there, point) in &self.table {
+            let distance = distance(point);
             if distance < least {
-                (start, least) = (*u, distance);
+                (u, least) = (*there, distance);
             }
         }
-        let mut u = start;
-        let mut point = self.model.at(u);
-        for _ in 0..40 {
-            let (distance, slope) = self.apart(row, &point);
-            let length = slope[0] * slope[0] + slope[1] * slope[1];
-            let full = (distance[0] * slope[0] + distance[1] * slope[1]) / length;
-            let mut step = full;
-            let mut moved = false;
-            for _ in 0..30 {
+        let mut point = model.at(u);
+        'steps: for _ in 0..40 {
+            let (apart, along) = (self.frame.apart(row, &point), self.frame.along(&point));
+            let mut step = inner(apart, along) / inner(along, along);
+            loop {
                 let next = (u + step).clamp(self.ends[0], self.ends[1]);
-                let there = self.model.at(next);
-                let distance = squares(&there);
-                if distance <= least && next != u {
-                    moved = (next - u).abs() > 1e-13 * (1.0 + u.abs());
+                if (next - u).abs() <= NEAR * (1.0 + u.abs()) {
+                    break 'steps;
+                }
+                let there = model.at(next);
+                let distance = distance(&there);
+                if distance <= least {
                     (u, point, least) = (next, there, distance);
                     break;
                 }
                 step *= 0.5;
             }
-            if !moved {
-                break;
-            }
         }
-        (self.apart(row, &point).0, point)
+        Foot { u, point, apart: self.frame.apart(row, &point), last: u == self.ends[0] }
     }
+}
+
+fn inner([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
+    a * c + b * d
 }
 
 impl<'a> Problem<'a> {
@@ -188,13 +217,18 @@ impl<'a> Problem<'a> {
         [found.deviation(3) * self.rows.spans[1], baseline]
     }
 
-    fn curve(&self, at: &[f64]) -> Curve {
+    fn frame(&self, at: &[f64]) -> Frame {
         let model = self.model(at);
         let units = AdhesiveSphere::of(model, self.radius, at[0].exp(), at[1].exp()).units();
         let [touch, baseline] = self.shifts(at);
-        let largest = |k: usize| self.rows.contact.iter().map(|row| row[k]).fold(f64::NEG_INFINITY, f64::max);
-        let smallest = self.rows.contact.iter().map(|row| row[1]).fold(f64::INFINITY, f64::min);
-        let deepest = (largest(1) - touch) / units[1];
+        Frame { model, units, shifts: [touch, baseline], noise: self.rows.noise }
+    }
+
+    fn curve(&self, at: &[f64]) -> Curve {
+        let frame = self.frame(at);
+        let Frame { model, units, shifts: [touch, _], .. } = frame;
+        let [smallest, largest] = self.rows.depths;
+        let deepest = (largest - touch) / units[1];
         let last = model.beyond(deepest + 0.05 * self.rows.spans[1] / units[1]);
         let first = match model {
             AdhesiveModel::Hertz => ((smallest - touch) / units[1]).min(0.0) - 1.0,
@@ -208,48 +242,40 @@ impl<'a> Problem<'a> {
             let u = first + (last - first) * if model == AdhesiveModel::Hertz { x } else { x * x };
             (u, model.at(u))
         };
-        Curve {
-            model,
-            units,
-            shifts: [touch, baseline],
-            noise: self.rows.noise,
-            ends: [first, last],
-            table: (0..POINTS).map(point).collect(),
-        }
+        Curve { frame, ends: [first, last], table: (0..POINTS).map(point).collect() }
+    }
+
+    /// The nearest points of the rows in contact.
+    fn feet(&self, at: &[f64]) -> Vec<Foot> {
+        let curve = self.curve(at);
+        self.rows.contact.par_iter().with_min_len(256).map(|row| curve.nearest(*row)).collect()
     }
 
     /// Distances in standard deviations: load and depth of each row in contact, then loads of free rows.
-    fn residuals(&self, at: &[f64]) -> Vec<f64> {
-        let curve = self.curve(at);
-        let contact = self.rows.contact.iter().flat_map(|row| curve.nearest(*row).0);
-        let free = self.rows.free.iter().map(|w| (w - curve.shifts[1]) / self.rows.noise[0]);
-        contact.chain(free).collect()
+    fn residuals(&self, at: &[f64], feet: &[Foot]) -> Vec<f64> {
+        let [_, baseline] = self.shifts(at);
+        let free = self.rows.free.iter().map(|w| (w - baseline) / self.rows.noise[0]);
+        feet.iter().flat_map(|foot| foot.apart).chain(free).collect()
     }
 
     pub(super) fn nearest(&self, at: &[f64]) -> Nearest {
-        let curve = self.curve(at);
-        let points: Vec<BarPoint> = self.rows.contact.iter().map(|row| curve.nearest(*row).1).collect();
-        let unit = (curve.units[1] * self.radius).sqrt();
-        let loads = points.iter().map(|point| curve.shifts[1] + curve.units[0] * point.load);
+        let (frame, feet) = (self.frame(at), self.feet(at));
+        let unit = (frame.units[1] * self.radius).sqrt();
+        let loads = feet.iter().map(|foot| frame.shifts[1] + frame.units[0] * foot.point.load);
         Nearest {
-            loads: loads.chain(self.rows.free.iter().map(|_| curve.shifts[1])).collect(),
-            contact_radius: unit * points.iter().map(|point| point.radius).fold(0.0, f64::max),
+            loads: loads.chain(self.rows.free.iter().map(|_| frame.shifts[1])).collect(),
+            contact_radius: unit * feet.iter().map(|foot| foot.point.radius).fold(0.0, f64::max),
         }
     }
 
     /// Root mean square of the distance, each channel over its range.
     pub(super) fn misfit(&self, at: &[f64]) -> f64 {
-        let curve = self.curve(at);
-        let share = |k: usize| self.rows.noise[k] / self.rows.spans[k];
-        let sum: f64 = self
-            .rows
-            .contact
-            .iter()
-            .map(|row| {
-                let [x, y] = curve.nearest(*row).0;
-                (x * share(0)).powi(2) + (y * share(1)).powi(2)
-            })
-            .sum();
+        let share = [0, 1].map(|k| self.rows.noise[k] / self.rows.spans[k]);
+        let square = |foot: &Foot| {
+            let [x, y] = foot.apart;
+            (x * share[0]).powi(2) + (y * share[1]).powi(2)
+        };
+        let sum: f64 = self.feet(at).iter().map(square).sum();
         (sum / self.rows.contact.len() as f64).sqrt()
     }
 
@@ -298,9 +324,13 @@ impl<'a> Problem<'a> {
         Some(shift([modulus.ln(), work.ln()], top[1] - pressed.depth * depth))
     }
 
-    /// The best of the searches.
+    /// The best of the searches, which have some of the rows; all rows from there on.
     pub(super) fn solve(&self) -> Result<Found> {
-        let starts = if self.options.model == ForceModel::Maugis { &STARTS[..] } else { &STARTS[..1] };
+        if let Some(some) = self.rows.thinned(SOME) {
+            let found = Problem { rows: &some, ..*self }.solve()?;
+            return self.solve_from(&found.at);
+        }
+        let starts = if self.free_lambda() { &STARTS[..] } else { &STARTS[..1] };
         let found = starts.iter().filter_map(|lambda| self.solve_from(&self.start(*lambda)?).ok());
         match found.min_by(|a, b| a.squares.total_cmp(&b.squares)) {
             Some(found) => Ok(found),
@@ -324,7 +354,7 @@ impl<'a> Problem<'a> {
         let best = at(found.at[2], found)?;
         let beyond = |other: &Found| other.squares > best.squares + CHI * found.scatter;
         let end = |side: f64, limit: f64| -> Result<(Found, bool)> {
-            let mut inside = at(found.at[2], found)?;
+            let mut inside = best.clone();
             let mut step = 0.1;
             loop {
                 let next = inside.at[2] + side * step;
@@ -358,9 +388,10 @@ impl<'a> Problem<'a> {
     pub(super) fn solve_from(&self, start: &[f64]) -> Result<Found> {
         let fitted = self.fitted();
         let mut at = start.to_vec();
-        let mut residuals = self.residuals(&at);
+        let mut feet = self.feet(&at);
+        let mut residuals = self.residuals(&at, &feet);
         let (mut damping, mut slow) = (1e-3, 0);
-        let mut columns = self.slopes(&at, &fitted);
+        let mut columns = self.slopes(&at, &feet, &fitted);
         for _ in 0..MOST_ITERATIONS {
             let normal = normal(&columns);
             let gradient: Vec<f64> = columns.iter().map(|column| dot(column, &residuals)).collect();
@@ -382,16 +413,17 @@ impl<'a> Problem<'a> {
             let mut trial = at.clone();
             fitted.iter().zip(&step).for_each(|(k, s)| trial[*k] += share * s);
             trial[2] = trial[2].clamp(LAMBDA[0].ln(), LAMBDA[1].ln());
-            let moved = self.residuals(&trial);
+            let there = self.feet(&trial);
+            let moved = self.residuals(&trial, &there);
             let (before, after) = (dot(&residuals, &residuals), dot(&moved, &moved));
             if after < before {
-                (at, residuals) = (trial, moved);
+                (at, feet, residuals) = (trial, there, moved);
                 damping = (damping * 0.2).max(1e-12);
-                slow = if after > before * (1.0 - 1e-6) { slow + 1 } else { 0 };
-                if slow == 3 || longest < 1e-10 {
+                slow = if after > before * (1.0 - SLOW) { slow + 1 } else { 0 };
+                if slow == PATIENCE || longest < 1e-10 {
                     break;
                 }
-                columns = self.slopes(&at, &fitted);
+                columns = self.slopes(&at, &feet, &fitted);
             } else {
                 damping *= 8.0;
                 if damping > 1e10 || longest < 1e-11 {
@@ -399,7 +431,7 @@ impl<'a> Problem<'a> {
                 }
             }
         }
-        let columns = self.slopes(&at, &fitted);
+        let columns = self.slopes(&at, &feet, &fitted);
         // λ at a limit of the transition has no effect.
         let weight = |k: usize| dot(&columns[k], &columns[k]).sqrt();
         let inside = at[2] > LAMBDA[0].ln() + 0.1 && at[2] < LAMBDA[1].ln() - 0.1;
@@ -431,15 +463,36 @@ impl<'a> Problem<'a> {
         contact.chunks_exact(2).map(distance).chain(free.iter().copied()).collect()
     }
 
-    /// Columns of the derivatives of the residuals, by central differences.
-    fn slopes(&self, at: &[f64], fitted: &[usize]) -> Vec<Vec<f64>> {
+    /// Columns of the derivatives of the residuals. A distance is perpendicular to the curve and changes with the part of the curve's motion
+    /// that is: where the nearest point goes along the curve has no effect on it. At the end of the branch the point moves with the end.
+    fn slopes(&self, at: &[f64], feet: &[Foot], fitted: &[usize]) -> Vec<Vec<f64>> {
+        let frame = self.frame(at);
         let column = |k: &usize| {
-            let [up, down] = [STEP, -STEP].map(|step| {
+            let sides @ [up, down] = [STEP, -STEP].map(|step| {
                 let mut there = at.to_vec();
                 there[*k] += step;
-                self.residuals(&there)
+                self.frame(&there)
             });
-            up.iter().zip(&down).map(|(up, down)| (up - down) / (2.0 * STEP)).collect()
+            let bends = up.model != down.model;
+            let [high, low] = match bends && feet.iter().any(|foot| foot.last) {
+                true => sides.map(|side| side.model.end(f64::INFINITY)),
+                false => [0.0; 2],
+            };
+            let end = (high - low) / (2.0 * STEP);
+            let row = |(row, foot): (&[f64; 2], &Foot)| {
+                let [up, down] = sides.map(|side| match bends {
+                    true => side.apart(*row, &side.model.at(foot.u)),
+                    false => side.apart(*row, &foot.point),
+                });
+                let moved = [0, 1].map(|k| (up[k] - down[k]) / (2.0 * STEP));
+                let along = frame.along(&foot.point);
+                let share = if foot.last { end } else { inner(moved, along) / inner(along, along) };
+                [moved[0] - share * along[0], moved[1] - share * along[1]]
+            };
+            let rows = self.rows.contact.par_iter().with_min_len(256).zip(feet.par_iter()).map(row);
+            let contact: Vec<[f64; 2]> = rows.collect();
+            let free = (down.shifts[1] - up.shifts[1]) / (2.0 * STEP * self.rows.noise[0]);
+            contact.into_iter().flatten().chain(self.rows.free.iter().map(|_| free)).collect()
         };
         fitted.iter().map(column).collect()
     }
@@ -447,4 +500,53 @@ impl<'a> Problem<'a> {
 
 fn normal(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
     columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{ForceRecord, PullOffControl};
+    use super::*;
+
+    /// The gradient of the sum of squares follows from the slopes: compared with its differences, at a distance from the best fit, where
+    /// some rows are nearest to the end of the branch.
+    #[test]
+    fn slopes_give_the_gradient() {
+        let sphere = AdhesiveSphere::new(AdhesiveModel::Maugis { lambda: 0.9 }, 10e-6, 1e6, 5e-3).unwrap();
+        let depths: Vec<f64> = (0..120).map(|k| 0.5e-6 - 9e-9 * f64::from(k)).collect();
+        let load = |depth: &f64| sphere.at_approach(*depth).unwrap().map_or(0.0, |point| point.load);
+        let loads: Vec<f64> = depths.iter().map(load).collect();
+        let mut ends = 0;
+        for (model, range) in [
+            (ForceModel::Hertz, None),
+            (ForceModel::Dmt, None),
+            (ForceModel::Jkr, None),
+            (ForceModel::Maugis, None),
+            (ForceModel::Maugis, Some(5e-9)),
+        ] {
+            let control = Some(PullOffControl::Displacement);
+            let options = ForceOptions { model, range, control, ..Default::default() };
+            let mut rows = Rows::new(&ForceRecord { loads: &loads, depths: &depths }, &options).unwrap();
+            rows.noise = [2e-9, 2e-9];
+            let problem = Problem::new(10e-6, &rows, &options);
+            let at = vec![1.1e6f64.ln(), 4.7e-3f64.ln(), 0.7f64.ln(), 0.01, 0.003];
+            let squares = |at: &[f64]| {
+                let residuals = problem.residuals(at, &problem.feet(at));
+                0.5 * dot(&residuals, &residuals)
+            };
+            let (fitted, feet) = (problem.fitted(), problem.feet(&at));
+            ends += feet.iter().filter(|foot| foot.last).count();
+            let residuals = problem.residuals(&at, &feet);
+            for (k, column) in fitted.iter().zip(problem.slopes(&at, &feet, &fitted)) {
+                let [up, down] = [STEP, -STEP].map(|step| {
+                    let mut there = at.clone();
+                    there[*k] += step;
+                    squares(&there)
+                });
+                let (told, found) = (dot(&column, &residuals), (up - down) / (2.0 * STEP));
+                // Differences of a step of 1e-5 have an error of its square, and of a row whose nearest point reaches the end within it.
+                assert!((told - found).abs() < 1e-3 * found.abs().max(1.0), "{model:?} {k} {told} {found}");
+            }
+        }
+        assert!(ends > 0);
+    }
 }

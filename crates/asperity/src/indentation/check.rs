@@ -39,18 +39,7 @@ pub(super) fn options(options: &IndentationOptions) -> Result<()> {
         0,
         "at least 1 for a fluid",
     )?;
-    for (what, value) in [
-        ("relative uncertainty of the radius", options.radius_uncertainty),
-        ("relative uncertainty of the thickness", options.thickness_uncertainty),
-    ] {
-        require((0.0..1.0).contains(&value), what, value, "at least 0 and less than 1")?;
-    }
-    require(
-        options.thickness_uncertainty == 0.0 || options.layer.is_some(),
-        "relative uncertainty of the thickness",
-        options.thickness_uncertainty,
-        "0 without a thin sample",
-    )
+    super::stated::check(options)
 }
 
 pub(super) fn record(record: &IndentationRecord) -> Result<()> {

@@ -21,13 +21,13 @@
 //! **Intervals.** 95 %, from an average over all numbers of terms, for solids and fluids, each with its probability (nested
 //! sampling on a record that is linear in the moduli near the best fit). They therefore do not assume that the number of terms is
 //! correct, nor that the record determines each parameter to a few percent. The seed is fixed: the same record gives the same
-//! intervals. An interval that spans more than a factor of 10 is reported as "not determined by this record".
+//! intervals. An interval that spans more than a factor of 10 is reported as "not determined by this record". Stated uncertainties of the
+//! radius, the thickness and the scales of load and deflection are added in squares.
 
 mod average;
 mod blocks;
 mod check;
 mod control;
-mod geometry;
 mod least_squares;
 mod model;
 mod nested;
@@ -37,6 +37,7 @@ mod parameters;
 mod select;
 mod spectrum;
 mod start;
+mod stated;
 #[cfg(test)]
 mod tests;
 
@@ -55,6 +56,7 @@ use average::Average;
 use least_squares::Solution;
 use model::Model;
 use parameters::Parameters;
+use stated::Stated;
 
 /// A record of an indentation; three columns of one length. The body is undisturbed before the first row.
 #[derive(Clone, Copy, Debug)]
@@ -97,10 +99,17 @@ pub struct IndentationOptions {
     pub layer: Option<SampleLayer>,
     /// Largest misfit (rms, over the largest value) before a record is refused, default 0.1.
     pub limit: f64,
-    /// Standard uncertainty of the radius of the sphere over its value, default 0; the intervals of the moduli hold it.
+    /// Standard uncertainty of the radius over the radius, or of the slope of a cone over the slope; default 0. The intervals contain this and
+    /// the other uncertainties.
     pub radius_uncertainty: f64,
-    /// The same of the thickness of the sample.
+    /// Standard uncertainty of the thickness of a thin sample over the thickness, default 0.
     pub thickness_uncertainty: f64,
+    /// Standard uncertainty of the scale of the load, such as that of a spring constant, over its value; default 0.
+    pub load_uncertainty: f64,
+    /// Spring constant of the cantilever whose deflection is the load \[N/m\].
+    pub spring_constant: Option<f64>,
+    /// Standard uncertainty of the scale of the deflection over its value, default 0; needs the spring constant.
+    pub sensitivity_uncertainty: f64,
 }
 
 impl Default for IndentationOptions {
@@ -115,6 +124,9 @@ impl Default for IndentationOptions {
             limit: 0.1,
             radius_uncertainty: 0.0,
             thickness_uncertainty: 0.0,
+            load_uncertainty: 0.0,
+            spring_constant: None,
+            sensitivity_uncertainty: 0.0,
         }
     }
 }
@@ -162,16 +174,6 @@ impl Interval {
     /// Whether a value lies within.
     pub fn holds(&self, value: f64) -> bool {
         self.low <= value && value <= self.high
-    }
-
-    /// The interval where a factor of the value is uncertain too: its logarithm has this variance.
-    fn widened(self, variance: f64) -> Self {
-        let half = |end: f64| ((end / self.value).ln().powi(2) + WIDTH * WIDTH * variance).sqrt();
-        if variance == 0.0 || self.value <= 0.0 {
-            return self;
-        }
-        let low = if self.low > 0.0 { self.value * (-half(self.low)).exp() } else { self.low };
-        Interval { low, high: self.value * half(self.high).exp(), ..self }
     }
 
     pub(crate) fn new(value: f64, [low, high]: [f64; 2]) -> Self {
@@ -281,12 +283,21 @@ pub fn fit_indentation(
     }
     let average = Average::new(&model, &parameters, &best, &residuals, options)?;
 
+    let stated = Stated::new(&model, &parameters, &best.at, profile, options)?;
+
     let relaxation = parameters.relaxation(&best.at);
     let instantaneous = average.interval(relaxation.instantaneous(), |draw| Some(draw.instantaneous()));
-    let mut equilibrium = average.interval(relaxation.equilibrium, |draw| Some(draw.equilibrium));
+    let instantaneous = stated.widen(instantaneous, Relaxation::instantaneous);
+    let equilibrium = average.interval(relaxation.equilibrium, |draw| Some(draw.equilibrium));
+    let mut equilibrium = stated.widen_equilibrium(equilibrium);
     equilibrium.determined |= equilibrium.high <= NEGLIGIBLE * instantaneous.value;
     let term = |(k, term): (usize, &RelaxationTerm)| {
-        [average.term(term.modulus, k, 0), average.term(term.relaxation_time, k, 1)]
+        [
+            stated.widen(average.term(term.modulus, k, 0), |relaxation| relaxation.terms[k].modulus),
+            stated.widen(average.term(term.relaxation_time, k, 1), |relaxation| {
+                relaxation.terms[k].relaxation_time
+            }),
+        ]
     };
     let terms: Vec<[Interval; 2]> = relaxation.terms.iter().enumerate().map(term).collect();
     // A body whose longest time has no end within the prior may relax to any smaller modulus.
@@ -299,16 +310,12 @@ pub fn fit_indentation(
         false => Interval::new(0.0, [0.0, 0.0]),
     };
     let [value, low, high] = [touch.value, touch.low, touch.high].map(|x| model.depth_scale() * x);
-    let deepest = record.depths.iter().copied().fold(0.0, f64::max);
-    let stated = geometry::variance(profile, options, deepest)?;
-    let terms = terms.into_iter().map(|[modulus, time]| [modulus.widened(stated), time]).collect();
-    let [equilibrium, instantaneous] = [equilibrium, instantaneous].map(|modulus| modulus.widened(stated));
     let mut fit = IndentationFit {
         terms,
         relaxation,
         equilibrium,
         instantaneous,
-        touch: Interval { value, low, high, determined: true },
+        touch: stated.widen_touch(Interval { value, low, high, determined: true }),
         given,
         predicted: rows.iter().map(|row| prediction.values[*row]).collect(),
         rows,

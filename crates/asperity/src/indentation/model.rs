@@ -179,6 +179,18 @@ impl Model {
         (averaged, middle)
     }
 
+    /// The same rows of another test: the model with this indenter, sample, loads and depths.
+    pub(super) fn with(
+        &self,
+        profile: MdrProfile,
+        options: &IndentationOptions,
+        [loads, depths]: [Vec<f64>; 2],
+    ) -> Result<Self> {
+        let changed = Model::new(profile, self.times.clone(), loads, depths, self.given, options)?;
+        let Model { compared, fitted_noise, given_noise, typical, counts, window, .. } = self.clone();
+        Ok(Model { compared, fitted_noise, given_noise, typical, counts, window, ..changed })
+    }
+
     pub(super) fn depth_scale(&self) -> f64 {
         self.depths.iter().copied().fold(0.0, f64::max)
     }

@@ -295,3 +295,49 @@ fn any_numbers_are_answered() {
         }
     }
 }
+
+/// Scaling of a half-space: E ∝ R^(-1/2), and to the unit of load. A layer that is bonded seems softer the thinner it is taken.
+#[test]
+fn stated_uncertainties_widen_the_intervals() {
+    let mut noise = Noise(5);
+    let (times, loads, depths) = record(SPHERE, &one_term(), Given::Depth, 1e-4, 300);
+    let loads = noisy(&loads, 0.01, &mut noise);
+    let fixed = IndentationOptions { terms: Some(1), given: Some(Given::Depth), ..Default::default() };
+    let fit = |options| fit_of(SPHERE, (&times, &loads, &depths), options).unwrap();
+    let plain = fit(fixed);
+    let half = |of: Interval| (of.high / of.value).ln() / WIDTH;
+    let added = |wide: Interval, narrow: Interval| (half(wide).powi(2) - half(narrow).powi(2)).sqrt();
+    let stated = fit(IndentationOptions { radius_uncertainty: 0.08, load_uncertainty: 0.03, ..fixed });
+    // The search ends where the sum of squares falls by 1e-4 or less.
+    for (wide, narrow) in [
+        (stated.equilibrium, plain.equilibrium),
+        (stated.instantaneous, plain.instantaneous),
+        (stated.terms[0][0], plain.terms[0][0]),
+    ] {
+        assert!((added(wide, narrow) - 0.05).abs() < 1e-3, "{}", added(wide, narrow));
+    }
+    assert!((stated.terms[0][1].high / plain.terms[0][1].high - 1.0).abs() < 1e-3, "{stated:?}");
+    // 1e-4 m in a load of 1 N: the deflection of a cantilever of 1e4 N/m. It changes what the fit of the same rows, changed, says.
+    let spring = IndentationOptions { spring_constant: Some(1e4), ..fixed };
+    let stated = fit(IndentationOptions { sensitivity_uncertainty: 0.02, ..spring });
+    let moved: Vec<f64> = depths.iter().zip(&loads).map(|(d, w)| d - 0.02 * w / 1e4).collect();
+    let more: Vec<f64> = loads.iter().map(|w| 1.02 * w).collect();
+    let there = fit_of(SPHERE, (&times, &more, &moved), spring).unwrap();
+    let by = (there.equilibrium.value / plain.equilibrium.value).ln().abs();
+    // Linear to a tenth at 2 %.
+    assert!((added(stated.equilibrium, plain.equilibrium) / by - 1.0).abs() < 0.1, "{by} {stated:?}");
+    let sample = |thickness| Some(SampleLayer { thickness, poisson: 0.5, interface: Interface::Bonded });
+    let thin = IndentationOptions { layer: sample(1e-3), ..fixed };
+    let [plain, thinner] = [1e-3, 0.98e-3].map(|d| fit(IndentationOptions { layer: sample(d), ..thin }));
+    let stated = fit(IndentationOptions { thickness_uncertainty: 0.02, ..thin });
+    let by = (plain.equilibrium.value / thinner.equilibrium.value).ln();
+    assert!(by > 0.0 && (added(stated.equilibrium, plain.equilibrium) / by - 1.0).abs() < 0.1, "{by}");
+    for (options, word) in [
+        (IndentationOptions { thickness_uncertainty: 0.1, ..fixed }, "thickness"),
+        (IndentationOptions { sensitivity_uncertainty: 0.1, ..fixed }, "sensitivity"),
+        (IndentationOptions { radius_uncertainty: f64::NAN, ..fixed }, "radius"),
+    ] {
+        let error = fit_of(SPHERE, (&times, &loads, &depths), options).unwrap_err();
+        assert!(error.to_string().contains(word), "{error}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use super::adhesion::{cells_needed, own_response};
+use super::adhesion::{AdhesionLaw, cells_needed, own_response};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::reference::{AdhesiveModel, AdhesiveSphere, maugis_lambda, tabor};
@@ -15,6 +15,8 @@ const ROUND: f64 = 0.1;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct AdhesionScale {
+    /// The law of the attraction.
+    pub law: AdhesionLaw,
     /// Work of adhesion \[J/m²\].
     pub work: f64,
     /// Range of the attraction \[m\], and its largest value \[Pa\].
@@ -56,6 +58,7 @@ impl AdhesionScale {
             Some(-sphere.pull_off(0.0).load)
         };
         Ok(Some(AdhesionScale {
+            law: law.law,
             work: law.work,
             range: law.range,
             strength: law.strength(),

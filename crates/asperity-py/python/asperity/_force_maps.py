@@ -1,0 +1,155 @@
+"""Maps of force curves: modulus and work of adhesion at each pixel of a grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._arrays import Floats
+from ._core import CaseError
+from ._force_curves import ForceCurve
+from ._indentation import fit_indentation
+from ._sealed import ReadOnlyArrays
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
+
+#: What a map has of each fit, with the unit.
+_QUANTITIES = {"young": "Pa", "work": "J/m2"}
+
+
+@dataclass(frozen=True, eq=False)
+class ForceMap(ReadOnlyArrays):
+    """Maps over the pixels of a grid of force curves, [x, y]; NaN where there is no curve, or none that could be fitted. Made by
+    :func:`fit_force_map`."""
+
+    #: Young's modulus [Pa] with the ends of its 95 % intervals; the value is NaN where the record does not determine it.
+    young: Floats
+    young_low: Floats
+    young_high: Floats
+    #: Work of adhesion [J/m2] with the ends of its 95 % intervals; 0 of the model "hertz".
+    work: Floats
+    work_low: Floats
+    work_high: Floats
+    #: Depth of first touch [m].
+    touch: Floats
+    #: Root mean square of the distance from the curve, each channel over its range.
+    relative_rms: Floats
+    #: Sides of the grid [m], its outer pixels included; None where the curves do not state them.
+    size: tuple[float, float] | None
+    #: Pixels whose curve could not be fitted, with the reason.
+    failures: dict[tuple[int, int], str]
+    #: Pixels whose fit has notes, with the notes.
+    notes: dict[tuple[int, int], list[str]]
+
+    def __repr__(self) -> str:
+        across, up = self.young.shape
+        known = self.young[np.isfinite(self.young)]
+        middle = f", median of E {np.median(known):.4g} Pa" if known.size else ""
+        failed = f", {len(self.failures)} without a fit" if self.failures else ""
+        return f"<ForceMap of {across} x {up} pixels{middle}{failed}>"
+
+    def to_xarray(self) -> Any:
+        """The maps as a dataset over x and y [m], pixels where the curves do not state the size of the grid."""
+        import xarray as xr
+
+        units = {f"{name}{end}": unit for name, unit in _QUANTITIES.items() for end in ("", "_low", "_high")} | {"touch": "m", "relative_rms": "1"}
+        maps = {name: (("x", "y"), getattr(self, name).copy(), {"units": unit}) for name, unit in units.items()}
+        places = {}
+        for name, count, side in zip("xy", self.young.shape, self.size or (None, None)):
+            middles = np.arange(count) if side is None else (np.arange(count) + 0.5) * side / count
+            places[name] = (name, middles, {} if side is None else {"units": "m"})
+        return xr.Dataset(maps, coords=places)
+
+    def plot(self, quantity: str = "young", *, ax: Axes | None = None, **style: Any) -> Axes:
+        """Map of "young" or "work", or of an end of their intervals ("young_low", "work_high", ...); what has no value is light, and the title
+        says how many pixels that are. Further arguments go to matplotlib's ``imshow``."""
+        from .plot import force_map
+
+        return force_map(self, quantity, ax, style)
+
+
+def fit_force_map(curves: Iterable[ForceCurve], /, *, radius: float, poisson: float, model: str, **how: Any) -> ForceMap:
+    """Fits each of the force curves of a grid, such as those of one file of :func:`read_force_curves`.
+
+    A curve that cannot be fitted leaves its pixel without a value and is named in `failures`.
+
+    Parameters
+    ----------
+    curves : with the place of each in its `metadata`: "grid index x", "grid index y", and, of the grid, "grid shape x", "grid shape y" and
+        "grid size x", "grid size y" [m] where they are known
+    radius : of the sphere [m]
+    poisson : Poisson's ratio
+    model : "hertz", "dmt", "jkr" or "maugis"
+    **how : further arguments of :func:`fit_indentation`
+
+    Raises
+    ------
+    CaseError : no curves, a curve without a place, two at one place, or no curve that can be fitted
+
+    Examples
+    --------
+    >>> import asperity as asp, numpy as np
+    >>> depth = np.linspace(0.5e-6, -0.2e-6, 200)
+    >>> def curve(x, young):                                    # Hertz: 4/3 E* sqrt(R) d^(3/2)
+    ...     force = 4 / 3 * young / 0.75 * np.sqrt(10e-6) * np.maximum(depth, 0.0) ** 1.5
+    ...     return asp.ForceCurve(force, depth, metadata={"grid index x": x, "grid index y": 0})
+    >>> found = asp.fit_force_map([curve(0, 1e6), curve(1, 2e6)], radius=10e-6, poisson=0.5, model="hertz")
+    >>> found.young.shape, (found.young / 1e6).round(2).tolist()
+    ((2, 1), [[1.0], [2.0]])
+    """
+    if model == "viscoelastic":
+        raise CaseError('model is "viscoelastic", but a force map takes one of an elastic sphere: hertz, dmt, jkr or maugis')
+    placed: dict[tuple[int, int], ForceCurve] = {}
+    for n, curve in enumerate(curves):
+        if not isinstance(curve, ForceCurve):
+            raise CaseError(f"curve {n} is of the type {type(curve).__name__}, but must be an asperity.ForceCurve")
+        place = _place(n, curve)
+        if place in placed:
+            raise CaseError(f"curve {n} is at the pixel {place} of another one: a map has one curve at each")
+        placed[place] = curve
+    if not placed:
+        raise CaseError("there are no curves")
+    fits, failures = {}, {}
+    for place, curve in placed.items():
+        try:
+            fits[place] = fit_indentation(None, curve.force, curve.depth, radius=radius, poisson=poisson, model=model, **how)  # type: ignore[call-overload]
+        except CaseError as error:
+            failures[place] = str(error)
+    if not fits:
+        place, why = next(iter(failures.items()))
+        raise CaseError(f"none of the {len(placed)} curves can be fitted; at the pixel {place}: {why}")
+    shape = tuple(_side([curve.metadata.get(f"grid shape {axis}") for curve in placed.values()], [place[k] for place in placed]) for k, axis in enumerate("xy"))
+    maps = {name: np.full(shape, np.nan) for name in ForceMap.__annotations__ if name not in ("size", "failures", "notes")}
+    notes = {place: fit.notes for place, fit in fits.items() if fit.notes}
+    for place, fit in fits.items():
+        for name in _QUANTITIES:
+            for end, value in zip(("", "_low", "_high"), getattr(fit, name)):
+                maps[name + end][place] = value
+        maps["touch"][place], maps["relative_rms"][place] = fit.touch[0], fit.relative_rms
+    sides = [{curve.metadata.get(f"grid size {axis}") for curve in placed.values()} for axis in "xy"]
+    known = all(len(side) == 1 and None not in side for side in sides)
+    size = (float(sides[0].pop()), float(sides[1].pop())) if known else None
+    return ForceMap(**maps, size=size, failures=failures, notes=notes)
+
+
+def _place(n: int, curve: ForceCurve) -> tuple[int, int]:
+    """The pixel of a curve."""
+    found = []
+    for axis in "xy":
+        name = f"grid index {axis}"
+        value = curve.metadata.get(name)
+        if value is None:
+            raise CaseError(f'curve {n} has no "{name}" in its metadata, which a map needs')
+        if value != int(value) or value < 0:
+            raise CaseError(f'"{name}" of curve {n} is {value}, but must be a whole number, 0 or greater')
+        found.append(int(value))
+    return found[0], found[1]
+
+
+def _side(stated: list[Any], indices: list[int]) -> int:
+    """Number of pixels along a side: as stated, or as many as the curves need."""
+    return max([int(count) for count in stated if count is not None] + [1 + max(indices)])

@@ -1,0 +1,151 @@
+//! What the stated uncertainties of a test do to the material: the fit is repeated with each quantity slightly changed.
+//!
+//! ```text
+//! variance of ln E = Σ (u d ln E/d ln x)²        x: radius or slope, thickness, scale of the load, scale of the deflection
+//! ```
+//!
+//! On a half-space d ln E/d ln R is -1/2 for a sphere and 1 for the slope of a cone; a layer has no such rule.
+
+use super::least_squares::solve;
+use super::model::Model;
+use super::parameters::Parameters;
+use super::{IndentationOptions, Interval, WIDTH};
+use crate::error::{Result, non_negative, require};
+use crate::material::Relaxation;
+use crate::reference::MdrProfile;
+
+/// A change for its effect on the result: large compared with where the search ends, and the effect is linear to its square.
+const CHANGE: f64 = 1e-2;
+
+/// A material and the depth of first touch.
+type Fitted = (Relaxation, f64);
+
+/// The fit with a quantity that many times as large.
+type Refit<'a> = &'a dyn Fn(f64) -> Result<Fitted>;
+
+/// A relative uncertainty, and the fits with more and less of its quantity.
+struct Source {
+    uncertainty: f64,
+    sides: [Fitted; 2],
+}
+
+/// All stated uncertainties.
+pub(super) struct Stated(Vec<Source>);
+
+pub(super) fn check(options: &IndentationOptions) -> Result<()> {
+    for (what, value) in [
+        ("relative uncertainty of the radius", options.radius_uncertainty),
+        ("relative uncertainty of the thickness", options.thickness_uncertainty),
+        ("relative uncertainty of the load", options.load_uncertainty),
+        ("relative uncertainty of the sensitivity", options.sensitivity_uncertainty),
+    ] {
+        non_negative(what, value, "")?;
+        require(value < 1.0, what, value, "less than 1")?;
+    }
+    require(
+        options.thickness_uncertainty == 0.0 || options.layer.is_some(),
+        "relative uncertainty of the thickness",
+        options.thickness_uncertainty,
+        "0 without a thin sample",
+    )?;
+    require(
+        options.sensitivity_uncertainty == 0.0 || options.spring_constant.is_some(),
+        "relative uncertainty of the sensitivity",
+        options.sensitivity_uncertainty,
+        "0 without a spring constant: it changes the depth by the deflection",
+    )
+}
+
+impl Stated {
+    /// Fits again, from the best fit on.
+    pub(super) fn new(
+        model: &Model,
+        parameters: &Parameters,
+        best: &[f64],
+        profile: MdrProfile,
+        options: &IndentationOptions,
+    ) -> Result<Stated> {
+        let fit = |profile: MdrProfile, options: &IndentationOptions, columns: [Vec<f64>; 2]| {
+            let changed = model.with(profile, options, columns)?;
+            let found = solve(&changed, parameters, best.to_vec())?;
+            let touch = if parameters.touch { found.at[parameters.len() - 1] } else { 0.0 };
+            Ok((parameters.relaxation(&found.at), touch * changed.depth_scale()))
+        };
+        let columns = || [model.loads.clone(), model.depths.clone()];
+        let of_radius = |times: f64| {
+            let profile = match profile {
+                MdrProfile::Sphere { radius } => MdrProfile::Sphere { radius: times * radius },
+                MdrProfile::Cone { slope } => MdrProfile::Cone { slope: times * slope },
+            };
+            fit(profile, options, columns())
+        };
+        let of_thickness = |times: f64| {
+            let mut changed = *options;
+            changed.layer.iter_mut().for_each(|layer| layer.thickness *= times);
+            fit(profile, &changed, columns())
+        };
+        let of_load = |times: f64| {
+            let [loads, depths] = columns();
+            fit(profile, options, [loads.iter().map(|load| times * load).collect(), depths])
+        };
+        let of_deflection = |times: f64| {
+            let [loads, depths] = columns();
+            let stiffness = options.spring_constant.unwrap_or(f64::INFINITY);
+            let moved = depths.iter().zip(&loads).map(|(d, load)| d - (times - 1.0) * load / stiffness);
+            fit(profile, options, [loads.iter().map(|load| times * load).collect(), moved.collect()])
+        };
+        let sources: [(f64, Refit); 4] = [
+            (options.radius_uncertainty, &of_radius),
+            (options.thickness_uncertainty, &of_thickness),
+            (options.load_uncertainty, &of_load),
+            (options.sensitivity_uncertainty, &of_deflection),
+        ];
+        let stated = sources.into_iter().filter(|(uncertainty, _)| *uncertainty > 0.0);
+        let source = |(uncertainty, fit): (f64, Refit)| {
+            Ok(Source { uncertainty, sides: [fit(1.0 + CHANGE)?, fit(1.0 - CHANGE)?] })
+        };
+        Ok(Stated(stated.map(source).collect::<Result<_>>()?))
+    }
+
+    /// Standard deviation of a number of the fit.
+    fn deviation(&self, of: impl Fn(&Fitted) -> f64) -> f64 {
+        let parts = self.0.iter().map(|source| {
+            let [up, down] = source.sides.each_ref().map(&of);
+            source.uncertainty * (up - down) / (2.0 * CHANGE)
+        });
+        parts.map(|part| part * part).sum::<f64>().sqrt()
+    }
+
+    /// The interval of a positive number with its part.
+    pub(super) fn widen(&self, interval: Interval, of: impl Fn(&Relaxation) -> f64) -> Interval {
+        if self.0.is_empty() {
+            return interval;
+        }
+        let Interval { value, low, high, .. } = interval;
+        let half = WIDTH * self.deviation(|(relaxation, _)| of(relaxation).ln());
+        let apart = |ratio: f64| ratio.ln().hypot(half).exp();
+        Interval::new(value, [value / apart(value / low), value * apart(high / value)])
+    }
+
+    /// The equilibrium modulus, whose upper bound alone has a part where it is 0.
+    pub(super) fn widen_equilibrium(&self, interval: Interval) -> Interval {
+        match interval.value > 0.0 {
+            true => self.widen(interval, |relaxation| relaxation.equilibrium),
+            false => {
+                let half = WIDTH * self.deviation(|(relaxation, _)| relaxation.instantaneous().ln());
+                Interval { high: interval.high * half.exp(), ..interval }
+            }
+        }
+    }
+
+    /// The interval of the depth of first touch.
+    pub(super) fn widen_touch(&self, Interval { value, low, high, determined }: Interval) -> Interval {
+        let half = WIDTH * self.deviation(|(_, touch)| *touch);
+        Interval {
+            value,
+            low: value - (value - low).hypot(half),
+            high: value + (high - value).hypot(half),
+            determined,
+        }
+    }
+}

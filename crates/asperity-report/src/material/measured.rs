@@ -81,7 +81,8 @@ fn over_temperature(title: &str, measured: &Measured) -> Option<Figure> {
     if lines.is_empty() || lines.len() > COLOURS.len() {
         return None;
     }
-    let panels: [(&str, Axis, fn(&[f64; 4]) -> f64); 3] = [
+    type OfRow = fn(&[f64; 4]) -> f64;
+    let panels: [(&str, Axis, OfRow); 3] = [
         ("Storage", Axis::log("storage modulus", "Pa"), |point| point[2]),
         ("Loss", Axis::log("loss modulus", "Pa"), |point| point[3]),
         ("Loss factor", Axis::log("tan delta", ""), |point| point[3] / point[2]),

@@ -14,7 +14,7 @@ pub fn figure(answer: &SealAnswer, units: &Units) -> Figure {
         figure = figure.with(curves(panel, &answer.by_time));
     }
     figure.with(conductance(answer)).columns(2).caption(
-        "Thin lines: least and largest of the seeds. Dashed: if the fluid did not open the contact. Where a line ends, the seal is tight.",
+        "Dotted lines: least and largest of the seeds. Dashed: if the fluid did not open the contact. Where a line ends, the seal is tight.",
     )
 }
 

@@ -139,12 +139,17 @@ fn lines(answer: &SealAnswer, units: &Units) -> Vec<[String; 2]> {
         );
     }
     row("opening pressure", opening(answer));
-    row("at", format!("inlet {}, outlet {}, above the pressure around the seal", pa(inlet), pa(outlet)));
+    let time = answer.sweep.times.last().map_or(String::new(), |time| format!("t = {}, ", units.time(*time)));
+    row(
+        "at",
+        format!("{time}inlet {}, outlet {}, above the pressure around the seal", pa(inlet), pa(outlet)),
+    );
     let choked: Vec<_> = answer.flows.iter().filter_map(|flow| flow.choke).collect();
     if let (true, Some(first)) = (leaks, choked.first()) {
         let x = quantity(first.x, "m");
+        let of = if answer.flows.len() > 1 { ", with the first seed" } else { "" };
         let width = quantity(plan.profile.width(), "m");
-        row("narrowest", format!("at {x} of {width} from the inlet, pressed with {}", pa(first.pressed)));
+        row("narrowest", format!("at {x} of {width} from the inlet, pressed with {}{of}", pa(first.pressed)));
     }
     if leaks && answer.one_way.mean > 0.0 {
         let ratio = quantity(answer.leak.mean / answer.one_way.mean, "");
@@ -152,13 +157,8 @@ fn lines(answer: &SealAnswer, units: &Units) -> Vec<[String; 2]> {
     }
     if leaks && answer.growth.is_finite() {
         let growth = quantity(answer.growth, "");
-        row(
-            "how it changes",
-            format!(
-                "in proportion to the length and to 1/viscosity; in proportion to 1/width at the same contact pressures; a tenth more \
-                 pressure: {growth} times"
-            ),
-        );
+        row("in proportion to", "length, 1/viscosity, and 1/width at the same contact pressures".into());
+        row("a tenth more pressure", format!("{growth} times the leak"));
     }
     let seeds: Vec<f64> =
         answer.sweep.seeds.iter().filter_map(|seed| seed.seed.map(|seed| seed as f64)).collect();

@@ -107,7 +107,8 @@ pub fn sweep(
     }
     let refined = plan.pressures / REFINED;
     let most = plan.largest();
-    let values = |from: f64, to: f64, count: usize| format!("{from:.8e} Pa:{to:.8e} Pa:{count}:log");
+    let values =
+        |from: f64, to: f64, count: usize| format!("{} Pa:{} Pa:{count}:log", short(from), short(to));
     let vary = values(most / RANGE, up(most), plan.pressures - refined);
     let mut findings = vec![];
     let mut runs = study(path, &set, plan, &folder.join("sweep"), &vary, options, observe, &mut findings)?;
@@ -134,6 +135,11 @@ pub fn sweep(
     runs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let case = Case::read(path, &set)?;
     Ok(SealSweep { times: times(&runs), seeds: seeds(&runs), findings, size: case.conditions.grid.size() })
+}
+
+/// Seven digits.
+fn short(pressure: f64) -> f64 {
+    format!("{pressure:.6e}").parse().unwrap_or(pressure)
 }
 
 /// Five digits, rounded up.

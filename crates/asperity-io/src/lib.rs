@@ -21,6 +21,7 @@ pub mod preparation;
 pub mod quantity;
 pub mod readable;
 pub mod resources;
+pub mod seal;
 pub mod session;
 pub mod store;
 pub mod stress;

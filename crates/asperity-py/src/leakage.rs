@@ -57,16 +57,16 @@ pub fn leakage<'py>(
 }
 
 /// A state for the diagnostics: row (none for a gap without a run), critical gap (none if nothing passes), cells across it, error
-/// of the gap, pressure drop, contact pressure.
+/// of the gap, pressure drop, mean pressure.
 type State = (Option<usize>, Option<f64>, Option<usize>, f64, Option<f64>, f64);
 
 /// Which leaks the numbers carry, and what was found against the others (a JSON list).
 #[pyfunction]
 pub fn judge_leaks(states: Vec<State>) -> (Vec<bool>, String) {
     let mut diagnostics = LeakDiagnostics::default();
-    let resolved = states.into_iter().map(|(row, gap, width, gap_error, pressure_drop, contact_pressure)| {
+    let resolved = states.into_iter().map(|(row, gap, width, gap_error, pressure_drop, mean_pressure)| {
         let constriction = gap.map(|gap| (gap, width));
-        diagnostics.see(&LeakState { row, constriction, gap_error, pressure_drop, contact_pressure })
+        diagnostics.see(&LeakState { row, constriction, gap_error, pressure_drop, mean_pressure })
     });
     let resolved = resolved.collect();
     (resolved, asperity_io::finding::list(&diagnostics.findings()).to_string())

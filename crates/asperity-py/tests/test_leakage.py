@@ -28,7 +28,7 @@ steps = 4
 [solver]
 tolerance = 1e-9
 [leakage]
-pressure_drop = "100 Pa"
+pressure_drop = "20 Pa"
 viscosity = "1 mPa s"
 [output]
 every = 2
@@ -108,11 +108,11 @@ def test_a_result_leaks_less_as_it_creeps(tmp_path) -> None:
     result = asp.run(case, output=tmp_path / "seal.zarr")
     stored = result.leakage()
     assert stored.leak_rate.attrs["units"] == "m^3/s" and bool((np.diff(stored.leak_rate) <= 0).all())
-    again = result.leakage(pressure_drop=100.0, viscosity=1e-3)
+    again = result.leakage(pressure_drop=20.0, viscosity=1e-3)
     assert np.array_equal(again.leak_rate, stored.leak_rate) and np.array_equal(again.leak_resolved, stored.leak_resolved)
-    gas = result.leakage(gas="air", inlet=1.001e5, outlet=1e5)
+    gas = result.leakage(gas="air", inlet=1.0002e5, outlet=1e5)
     assert gas.leak_rate.attrs["units"] == "kg/s" and "leak_rate_standard" in gas
-    with pytest.warns(asp.ResultWarning, match="tenth"):
+    with pytest.warns(asp.ResultWarning, match="0.02 of the mean pressure"):
         large = result.leakage(pressure_drop=1e5, viscosity=1e-3, field=True)
     assert not large.leak_resolved.any() and large.fluid_pressure.max() <= 1e5
 

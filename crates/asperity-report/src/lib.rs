@@ -7,6 +7,7 @@
 //! - [`leak`] draws the flow through a gap.
 //! - [`material`] shows materials and fits.
 //! - [`paper`] makes the figures of the paper that the method comes from.
+//! - [`seal`] draws the answers about a whole seal.
 //! - [`sheet`] writes tables and figures as one page, [`study`] draws the answers of a study.
 //! - [`surface`] draws a surface with its statistics.
 
@@ -19,6 +20,7 @@ pub mod page;
 pub mod paper;
 pub mod pictures;
 pub mod result;
+pub mod seal;
 pub mod sheet;
 pub mod study;
 pub mod surface;

@@ -46,6 +46,7 @@ pub mod operator;
 pub mod process;
 pub mod quantities;
 pub mod reference;
+pub mod seal;
 mod set;
 pub mod simulation;
 pub mod sliding;

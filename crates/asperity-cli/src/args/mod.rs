@@ -4,6 +4,7 @@ mod leak;
 mod material;
 mod result;
 mod run;
+mod seal;
 mod stress;
 mod study;
 mod surface;
@@ -17,6 +18,7 @@ pub use leak::{FluidOptions, Leak};
 pub use material::{Data, Fit, FitIndentation, Material, MaterialExport, Show};
 pub use result::{Compare, Export, Labels, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
 pub use run::{Check, Converge, New, Purpose, Run, Verify};
+pub use seal::Seal;
 pub use stress::Stress;
 pub use study::{Study, StudyAction, StudyFolder};
 pub use surface::{
@@ -74,6 +76,8 @@ pub enum Command {
     Stress(Stress),
     /// Compute how much a fluid leaks through the gap of a result over time, or of a map of the gap
     Leak(Leak),
+    /// Compute a whole seal of which the case is a patch: how much it leaks and at which pressure it opens
+    Seal(Seal),
     /// Show a material over time and frequency, or fit one to measured curves
     #[command(subcommand)]
     Material(Material),
@@ -121,6 +125,7 @@ impl Command {
             Command::Compare(verb) => verb,
             Command::Stress(verb) => verb,
             Command::Leak(verb) => verb,
+            Command::Seal(verb) => verb,
             Command::Material(Material::Show(verb)) => verb,
             Command::Material(Material::Fit(verb)) => verb,
             Command::Material(Material::Export(verb)) => verb,

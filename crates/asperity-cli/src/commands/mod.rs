@@ -19,6 +19,7 @@ pub mod report;
 pub mod reproduce;
 pub mod run;
 pub mod schema;
+pub mod seal;
 pub mod show;
 pub mod stress;
 pub mod study;

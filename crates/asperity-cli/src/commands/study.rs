@@ -76,7 +76,7 @@ fn usual(case: &Path) -> PathBuf {
     format!("{}-study", case.file_stem().unwrap_or_default().to_string_lossy()).into()
 }
 
-fn failure(error: StudyError) -> Failure {
+pub(super) fn failure(error: StudyError) -> Failure {
     match error {
         StudyError::Case(errors) => Failure::Case(errors),
         error => error.into(),
@@ -84,7 +84,7 @@ fn failure(error: StudyError) -> Failure {
 }
 
 /// A run that has ended, on one line.
-fn told(event: &Event<'_>, units: &Units) -> String {
+pub(super) fn told(event: &Event<'_>, units: &Units) -> String {
     let came = match &event.row.state {
         State::Done => {
             let first = event.row.answers.first();

@@ -10,6 +10,7 @@ mod material;
 mod new;
 mod peers;
 mod plot;
+mod seal;
 mod stress;
 mod study;
 mod surface;

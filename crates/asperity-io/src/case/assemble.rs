@@ -209,12 +209,21 @@ impl Document {
                 }
                 leakage.of_case(&at("leakage"), boundary, points, output, end)
             });
+        let seal = match &self.seal {
+            // A faulty [leakage] is reported already.
+            Some(seal) if self.leakage.is_none() || leakage.is_some() => {
+                Some(seal.plan(&at("seal"), &self.load, &self.surface, leakage.as_ref())?)
+            }
+            _ => None,
+        };
+        let (seal, profile) = seal.map_or((None, None), |(plan, file)| (Some(plan), file));
 
         let (hardness, (_, histories), pair) = (hardness?, loading?, pair?);
         let mut files: Vec<_> = samples().filter_map(Sample::file).collect();
         files.extend(temperatures.iter().flatten().filter_map(|read| read.file.clone()));
         files.extend(hardness.files);
         files.extend(histories);
+        files.extend(profile);
         let usual = pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 };
         let case = Case {
             title: self.title.clone(),
@@ -232,6 +241,7 @@ impl Document {
             output: output?,
             stress,
             leakage,
+            seal,
             motion,
             usual_rows: swept.unwrap_or(usual),
             rows: swept.or(pair.plan.exact.then_some(pair.plan.instants.len())),

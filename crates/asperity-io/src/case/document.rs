@@ -16,6 +16,7 @@ use super::material::Material;
 use super::motion::Motion;
 use super::output::{OutputKeys, Solver};
 use super::read::Reader;
+use super::seal::SealKeys;
 use super::stress::Stress;
 use super::study::Study;
 use super::surface::Surface;
@@ -37,6 +38,7 @@ const SECTIONS: &[&str] = &[
     "motion",
     "adhesion",
     "leakage",
+    "seal",
     "solver",
     "output",
     "stress",
@@ -78,6 +80,9 @@ pub struct Document {
     /// The flow of a fluid through the gap.
     #[schemars(example = serde_json::json!({ "pressure_drop": "2 bar", "viscosity": "1 mPa s" }))]
     pub leakage: Option<LeakageKeys>,
+    /// The whole seal of which the case is a patch; only `asperity seal` computes it.
+    #[schemars(example = serde_json::json!({ "profile": "hertz", "peak": "2 MPa", "width": "1.2 mm", "length": "0.4 m" }))]
+    pub seal: Option<SealKeys>,
     /// How each step is solved.
     #[schemars(default)]
     pub solver: Solver,
@@ -116,6 +121,7 @@ impl Document {
             temperature: reader.table("temperature"),
             adhesion: reader.table("adhesion"),
             leakage: reader.table("leakage"),
+            seal: reader.table("seal"),
             solver: reader.table("solver").unwrap_or_default(),
             output: reader.table("output").unwrap_or_default(),
             stress: reader.table("stress"),

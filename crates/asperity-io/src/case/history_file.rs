@@ -112,12 +112,12 @@ fn cells(line: &str) -> Option<[&str; 2]> {
     <[&str; 2]>::try_from(cells).ok().filter(|cells| cells.iter().all(|cell| !cell.is_empty()))
 }
 
-fn begins_with_number(cell: &str) -> bool {
+pub(super) fn begins_with_number(cell: &str) -> bool {
     cell.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.'))
 }
 
 /// "mN" of "load [mN]" or "load (mN)" or "load/mN"; empty where the header names no unit.
-fn header_unit(cell: &str) -> &str {
+pub(super) fn header_unit(cell: &str) -> &str {
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some((_, rest)) = cell.split_once(open) {
             return rest.rsplit_once(close).map_or(rest, |(unit, _)| unit).trim();
@@ -127,14 +127,14 @@ fn header_unit(cell: &str) -> &str {
 }
 
 /// The cell with the column's unit, where it has none of its own.
-fn with_unit(cell: &str, unit: &str) -> String {
+pub(super) fn with_unit(cell: &str, unit: &str) -> String {
     match cell.parse::<f64>() {
         Ok(_) => format!("{cell} {unit}"),
         Err(_) => cell.to_owned(),
     }
 }
 
-fn sentence(what: &str, cell: &str, error: &QuantityError) -> String {
+pub(super) fn sentence(what: &str, cell: &str, error: &QuantityError) -> String {
     let help = error.help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
     let cell: String = cell.chars().take(40).collect();
     format!("the {what} is {cell:?}, but must be {}{help}", error.expected)

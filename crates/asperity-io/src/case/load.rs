@@ -66,6 +66,11 @@ pub struct Stage {
 }
 
 impl Load {
+    /// The control of a run without stages.
+    pub fn control(&self) -> Option<Control> {
+        self.control
+    }
+
     /// What is prescribed, and the files that hold histories. `first_step` is the first step of
     /// logarithmic steps to a time under a course, where the case does not say it.
     pub fn programme(

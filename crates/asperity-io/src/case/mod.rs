@@ -72,6 +72,7 @@ mod prepare;
 mod read;
 mod roughness;
 mod schema;
+mod seal;
 mod shift;
 mod specimen;
 mod stored_times;
@@ -113,6 +114,7 @@ pub use words::nearest;
 
 use crate::Code;
 use crate::leakage::Leak;
+use crate::seal::SealPlan;
 use crate::stress::StressPlan;
 use document::Document;
 use overrides::Override;
@@ -155,6 +157,8 @@ pub struct Case {
     pub stress: Option<StressPlan>,
     /// The flow through the gap, where it is wanted.
     pub leakage: Option<Leak>,
+    /// The whole seal of which it is a patch, where it is given.
+    pub seal: Option<SealPlan>,
     /// How the contact moves, where it does.
     pub motion: Option<Motion>,
     /// Rows of the result, where known beforehand.

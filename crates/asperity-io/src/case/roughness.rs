@@ -41,6 +41,18 @@ pub struct SelfAffine {
     seed: Whole<0>,
 }
 
+impl SelfAffine {
+    /// The seed of its random numbers.
+    pub(super) fn seed(&self) -> u64 {
+        self.seed.get()
+    }
+
+    /// Its longest wave \[m\], where it is given.
+    pub(super) fn longest_wave(&self) -> Option<f64> {
+        self.longest.map(Length::get)
+    }
+}
+
 /// A published roughness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

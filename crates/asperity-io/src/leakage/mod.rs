@@ -155,7 +155,7 @@ impl Leakage {
             constriction: self.percolates.then_some((self.critical_gap, self.critical_width)),
             gap_error: 0.0,
             pressure_drop: None,
-            contact_pressure: 0.0,
+            mean_pressure: 0.0,
         }
     }
 }

@@ -192,7 +192,7 @@ fn evaluate(
             row: Some(step),
             gap_error: tolerance * displacement.abs(),
             pressure_drop: leak.fluid.as_ref().map(Fluid::pressure_drop),
-            contact_pressure: if row.contact_area > 0.0 { row.load / row.contact_area } else { 0.0 },
+            mean_pressure: row.mean_pressure,
             ..state.alone()
         });
         if let Some(writer) = writer.filter(|_| leak.field) {

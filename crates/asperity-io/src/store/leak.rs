@@ -18,7 +18,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use asperity::Grid;
-use asperity::finding::{CONSTRICTION_UNRESOLVED, FLUID_PRESSURE_LARGE, Finding, LEAK_BELOW_GAP_ERROR};
+use asperity::finding::{CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, Finding, LEAK_BELOW_GAP_ERROR};
 use ndarray::ArrayView2;
 use serde_json::{Map, Value, json};
 
@@ -32,7 +32,7 @@ use crate::finding;
 use crate::leakage::Leakage;
 
 /// Codes of the findings about leaks.
-const CODES: [&str; 3] = [LEAK_BELOW_GAP_ERROR, CONSTRICTION_UNRESOLVED, FLUID_PRESSURE_LARGE];
+const CODES: [&str; 3] = [LEAK_BELOW_GAP_ERROR, CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED];
 /// Attribute of the group that holds what was asked for, as JSON text.
 const ATTRIBUTE: &str = "leakage";
 

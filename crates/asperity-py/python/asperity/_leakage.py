@@ -190,9 +190,8 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
         touching = (gap - result.initial_gap)[contact > 0]
         # The mean displacement in the contact, to which the tolerance is relative.
         displacement = float(touching.mean()) + float(result.approach[step]) if touching.size else 0.0
-        area = float(result.contact_area[step])
         narrowest = found["critical_gap"] if found["percolates"] else None
-        pressure = float(result.load[step]) / area if area > 0 else 0.0
+        pressure = float(result.mean_pressure[step])
         states.append((step, narrowest, found["critical_width"], tolerance * abs(displacement), drop, pressure))
         rows.append(found)
     resolved, told = _core.judge_leaks(states)

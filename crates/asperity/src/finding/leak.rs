@@ -3,15 +3,22 @@
 
 use super::words::{digits, si};
 use super::worst::Worst;
-use super::{CONSTRICTION_UNRESOLVED, FLUID_PRESSURE_LARGE, Finding, LEAK_BELOW_GAP_ERROR};
+use super::{CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, Finding, LEAK_BELOW_GAP_ERROR};
 
 /// Smallest ratio of the critical gap to its error: the leak is proportional to the third power of the gap, so an error of 1/30
 /// means 10 %.
 const ABOVE_ERROR: f64 = 30.0;
 /// Smallest number of cells across the critical constriction.
 const ACROSS: f64 = 4.0;
-/// Largest ratio of the drop of the fluid pressure to the mean pressure in the contact.
-const PRESSURE_SHARE: f64 = 0.1;
+/// Largest ratio of the drop of the fluid pressure to the mean pressure.
+const PRESSURE_SHARE: f64 = 0.02;
+/// Mean pressure over the pressure p1 in the conductance exp(-p/p1): 3 where a fifth of the area touches, 19 near sealing.
+const STEEPNESS: [f64; 2] = [3.0, 19.0];
+
+/// By how much a fluid that opens the contact leaks more, (e^x - 1)/x with x = drop/p1, of a drop over the mean pressure.
+fn opened(share: f64) -> [f64; 2] {
+    STEEPNESS.map(|steepness| (steepness * share).exp_m1() / (steepness * share))
+}
 
 /// The data for the check of a leak.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +31,8 @@ pub struct LeakState {
     pub gap_error: f64,
     /// Drop of the fluid pressure \[Pa\], if the fluid is known.
     pub pressure_drop: Option<f64>,
-    /// Load over contact area \[Pa\]; 0 if there is no contact, and then not checked.
-    pub contact_pressure: f64,
+    /// Load over the area of the domain \[Pa\]; 0 if it is not known, and then not checked.
+    pub mean_pressure: f64,
 }
 
 /// The diagnostics of the leaks of one run.
@@ -44,8 +51,8 @@ impl LeakDiagnostics {
             unresolved |= self.below_error.below(state.row, gap, ABOVE_ERROR * state.gap_error);
             unresolved |= width.is_some_and(|cells| self.narrow.below(state.row, cells as f64, ACROSS));
         }
-        if let Some(drop) = state.pressure_drop.filter(|_| state.contact_pressure > 0.0) {
-            unresolved |= self.pressure.above(state.row, drop, PRESSURE_SHARE * state.contact_pressure);
+        if let Some(drop) = state.pressure_drop.filter(|_| state.mean_pressure > 0.0) {
+            unresolved |= self.pressure.above(state.row, drop, PRESSURE_SHARE * state.mean_pressure);
         }
         !unresolved
     }
@@ -72,14 +79,18 @@ impl LeakDiagnostics {
                 worst.limit
             )
         });
-        let pressure = self.pressure.warning(FLUID_PRESSURE_LARGE, |worst| {
+        let pressure = self.pressure.warning(FLUID_UNCOUPLED, |worst| {
+            let mean = worst.limit / PRESSURE_SHARE;
+            let [low, high] = opened(worst.value / mean);
             format!(
-                "The fluid pressure drops by {}{}, more than a tenth of the mean pressure in the contact, {}. Such a pressure would \
-                 push the bodies apart, which is not computed, so the leak is too small. Use a smaller pressure drop or a larger \
-                 load.",
+                "The fluid pressure drops by {}{}, more than 0.02 of the mean pressure, {}. It would push the bodies apart, which is not \
+                 computed: the true leak is about {} times as large far from sealing (a fifth of the area in contact), and {} times close \
+                 to it. `asperity seal` computes a seal with its fluid pressure.",
                 si(worst.value, "Pa"),
                 worst.place(),
-                si(worst.limit / PRESSURE_SHARE, "Pa")
+                si(mean, "Pa"),
+                digits(low),
+                digits(high)
             )
         });
         [below, narrow, pressure].into_iter().flatten().collect()
@@ -97,7 +108,7 @@ mod tests {
             constriction: Some((31.0, Some(4))),
             gap_error: 1.0,
             pressure_drop: Some(1e5),
-            contact_pressure: 1e6,
+            mean_pressure: 1e7,
         };
         let mut diagnostics = LeakDiagnostics::default();
         assert!(diagnostics.see(&good));
@@ -107,7 +118,7 @@ mod tests {
         assert!(!diagnostics.see(&LeakState { row: Some(2), constriction: Some((20.0, Some(9))), ..good }));
         assert!(!diagnostics.see(&LeakState { row: Some(3), constriction: Some((10.0, Some(3))), ..good }));
         assert!(!diagnostics.see(&LeakState { row: Some(4), constriction: Some((25.0, Some(9))), ..good }));
-        assert!(!diagnostics.see(&LeakState { row: Some(5), pressure_drop: Some(2e5), ..good }));
+        assert!(!diagnostics.see(&LeakState { row: Some(5), pressure_drop: Some(2e6), ..good }));
         let found = diagnostics.findings();
         let numbers: Vec<_> = found.iter().map(|f| (f.code.as_ref(), f.value, f.limit, f.rows)).collect();
         assert_eq!(
@@ -115,8 +126,14 @@ mod tests {
             [
                 (LEAK_BELOW_GAP_ERROR, Some(10.0), Some(30.0), Some([2, 4])),
                 (CONSTRICTION_UNRESOLVED, Some(3.0), Some(4.0), Some([3, 3])),
-                (FLUID_PRESSURE_LARGE, Some(2e5), Some(1e5), Some([5, 5])),
+                (FLUID_UNCOUPLED, Some(2e6), Some(2e5), Some([5, 5])),
             ]
+        );
+        // 0.2 of the mean pressure: (e^0.6 - 1)/0.6 = 1.370, (e^3.8 - 1)/3.8 = 11.50.
+        assert!(
+            found[2].text.contains("1.37 times") && found[2].text.contains("11.5 times"),
+            "{}",
+            found[2].text
         );
         assert!(found[0].text.contains("10 m") && found[0].text.contains("rows 2 to 4"), "{}", found[0].text);
     }

@@ -226,8 +226,20 @@ codes! {
     LEAK_BELOW_GAP_ERROR = "leak-below-gap-error";
     /// The critical constriction of a leak is less than four cells wide.
     CONSTRICTION_UNRESOLVED = "constriction-unresolved";
-    /// The pressure drop of the fluid is more than a tenth of the mean pressure in the contact.
-    FLUID_PRESSURE_LARGE = "fluid-pressure-large";
+    /// The pressure drop of a fluid that does not load the bodies is more than 0.02 of the mean pressure.
+    FLUID_UNCOUPLED = "fluid-uncoupled";
+    /// The fluid lifts a seal.
+    SEAL_LIFTED = "seal-lifted";
+    /// A seal is pressed less than a sweep of its patch begins, and that matters.
+    SEAL_BELOW_SWEEP = "seal-below-sweep";
+    /// A seal is pressed more than a sweep of its patch goes, which leaks to its end.
+    SEAL_BEYOND_SWEEP = "seal-beyond-sweep";
+    /// The patch of a seal is tight at no pressure of the sweep.
+    SEAL_NEVER_TIGHT = "seal-never-tight";
+    /// A seal is not wide against its patch.
+    SEAL_NARROW = "seal-narrow";
+    /// The patch of a seal is not large against the longest wave.
+    SEAL_PATCH_SMALL = "seal-patch-small";
     /// A half-space that is too thin for the contact or the waves.
     THIN_BODY = "thin-body";
     /// The friction force is uncertain.

@@ -1,0 +1,163 @@
+//! `asperity seal` and `[seal]`.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::asperity;
+
+/// p* = pi E* D/lambda of the wave, which closes it \[Pa\].
+const CLOSES: f64 = 31_415.926_535_9;
+/// D^3 of the wave \[m^3\].
+const CUBE: f64 = 1e-21;
+
+/// Valleys along the flow, 10 um apart and 0.2 um deep, on a body of E* = 1 MPa.
+const WAVE: &str = r#"
+[domain]
+cells = [2, 128]
+size = ["0.15625 um", "10 um"]
+boundary = "periodic"
+[[surface]]
+kind = "wave"
+amplitude = "0.1 um"
+wavelength = ["inf", "10 um"]
+[[body]]
+poisson = 0.5
+material = { model = "elastic", young = "0.75 MPa" }
+[load]
+control = "pressure"
+history = { kind = "step", value = "10 kPa" }
+[time]
+end = "1 s"
+steps = 1
+[solver]
+tolerance = 1e-9
+[leakage]
+pressure_drop = "16964.6 Pa"
+viscosity = "1 mPa s"
+[seal]
+profile = "uniform"
+peak = "18849.556 Pa"
+width = "1 mm"
+length = "0.1 m"
+pressures = 24
+"#;
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("wave.toml"), WAVE).unwrap();
+    folder
+}
+
+#[track_caller]
+fn sealed(directory: &Path, more: &[&str]) -> (Value, String) {
+    let done = asperity(directory, &[&["seal", "wave.toml", "--json"][..], more].concat());
+    let told = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(done.status.success(), "{more:?}: {told}");
+    (serde_json::from_slice(&done.stdout).unwrap(), told)
+}
+
+/// In a long channel every section is the dry contact under p0 - P (Westergaard 1939), so the flow is the integral of its T over P:
+/// 0.308927606 D^3 P_in at p0 = 0.6 p*, P_in = 0.54 p*; 7.09196242e-6 D^3 p* at p0 = 1.3 p*, P_in = 0.5 p*, where the outlet is choked.
+#[test]
+fn a_seal_of_valleys_along_the_flow_leaks_and_opens_as_westergaards_wave() {
+    let folder = folder();
+    let (open, told) = sealed(folder.path(), &[]);
+    let leak = open["seal_leak"]["mean"].as_f64().unwrap();
+    // F = T P_in/width, leak = F C/(12 mu) with C = 0.1 m.
+    let of = |integral: f64| integral * CUBE / 1e-3 * 0.1 / 12e-3;
+    let exact = of(0.308_927_606_030_248 * 0.54 * CLOSES);
+    // 128 cells across the valley, and 24 pressures of the sweep.
+    assert!((leak / exact - 1.0).abs() < 0.02, "{leak} {exact}");
+    let one_way = open["seal_leak_one_way"]["mean"].as_f64().unwrap();
+    assert!((one_way / of(0.008_346_595_936_955 * 0.54 * CLOSES) - 1.0).abs() < 0.02, "{one_way}");
+    for (name, factor) in [("seal_leak_per_metre", 10.0), ("seal_leak_ml_per_year", 3.155_76e13)] {
+        // The same number but for rounding.
+        assert!((open[name]["mean"].as_f64().unwrap() / (factor * leak) - 1.0).abs() < 1e-14, "{name}");
+    }
+    assert!(
+        told.contains("seal-never-tight") && open["seal_opening_pressure"]["mean"] == 0.0,
+        "{told} {open}"
+    );
+    // Another length and pressure take the same runs; the flow is in proportion to the length.
+    let changed = ["--set", "seal.length=0.2 m", "--set", "leakage.pressure_drop=9424.778 Pa"];
+    let (more, told) = sealed(folder.path(), &changed);
+    assert!(!told.contains("24/24"), "{told}");
+    let exact = 2.0 * of(0.065_529_888_734_881_61 * 0.3 * CLOSES);
+    assert!((more["seal_leak"]["mean"].as_f64().unwrap() / exact - 1.0).abs() < 0.02, "{more}");
+    for name in ["seal.json", "seal.csv", "seal.html", "seal.png"] {
+        assert!(folder.path().join("wave-seal").join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn a_seal_is_tight_below_its_opening_pressure_chokes_above_it_and_is_lifted() {
+    let folder = folder();
+    let at = |inlet: &str| {
+        let more = [
+            "-o",
+            "tight",
+            "--set",
+            "seal.peak=40840.704 Pa",
+            "--set",
+            inlet,
+            "--set",
+            "solver.tolerance=1e-10",
+        ];
+        sealed(folder.path(), &more)
+    };
+    let (tight, _) = at("leakage.pressure_drop=6283 Pa");
+    assert_eq!(
+        (&tight["seal_leak"]["mean"], &tight["seeds"][0]["state"]),
+        (&serde_json::json!(0.0), &serde_json::json!("tight"))
+    );
+    // The wave closes at p*, and the grid's a few thousandths before it; the refined sweep has it within 0.08 p*.
+    let opening = tight["seal_opening_pressure"]["mean"].as_f64().unwrap() / CLOSES;
+    assert!((0.22..0.31).contains(&opening), "{opening}");
+    let (choked, _) = at("leakage.pressure_drop=15707.963 Pa");
+    let exact = 7.091_962_418_324_565e-6 * CLOSES * CUBE / 1e-3 * 0.1 / 12e-3;
+    let leak = choked["seal_leak"]["mean"].as_f64().unwrap();
+    // Most of it flows where the valley is a few cells wide: its order of magnitude and more.
+    assert!((0.5..2.0).contains(&(leak / exact)), "{leak} {exact}");
+    assert!(choked["seeds"][0]["choke_x"].as_f64().unwrap() > 0.95e-3, "{choked}");
+    let (lifted, told) = at("leakage.pressure_drop=41 kPa");
+    assert!(lifted["seal_leak"]["mean"].is_null() && told.contains("seal-lifted"), "{told}");
+    let strict =
+        ["seal", "wave.toml", "-o", "tight", "--quiet", "--strict", "--set", "seal.peak=40840.704 Pa"];
+    let strict =
+        [&strict[..], &["--set", "leakage.pressure_drop=41 kPa", "--set", "solver.tolerance=1e-10"]].concat();
+    assert_eq!(asperity(folder.path(), &strict).status.code(), Some(1));
+}
+
+#[test]
+fn what_makes_no_seal_is_refused_with_its_key() {
+    let folder = folder();
+    let table = |text: &str| std::fs::write(folder.path().join("p0.csv"), text).unwrap();
+    let refused = |set: &[&str], words: &[&str]| {
+        let set: Vec<&str> = set.iter().flat_map(|set| ["--set", *set]).collect();
+        let done = asperity(folder.path(), &[&["seal", "wave.toml"][..], &set].concat());
+        let told = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert_eq!(done.status.code(), Some(2), "{set:?}: {told}");
+        words.iter().for_each(|word| assert!(told.contains(word), "{set:?}: {word}: {told}"));
+    };
+    refused(&["leakage.pressure_drop=-1 bar"], &["leakage.pressure_drop"]);
+    refused(&["leakage.pressure_drop=0 bar"], &["leakage.pressure_drop"]);
+    refused(&["seal.energising=1.5"], &["seal.energising", "from 0 to 1"]);
+    refused(&["seal.peak=-1 MPa"], &["seal.peak"]);
+    refused(&["seal.profile=hertzian"], &["seal.profile", "hertz"]);
+    refused(&["seal.profile=p0.csv"], &["seal.peak", "seal.width"]);
+    refused(&["seal={ profile = \"p0.csv\", length = \"1 m\" }"], &["seal.profile", "p0.csv"]);
+    refused(&["seal.seeds=3"], &["seal.seeds", "seed"]);
+    refused(&["load.control=load", "load.history.value=1 N"], &["load.control"]);
+    refused(&["leakage={ gas = \"air\", inlet = \"2 bar\", outlet = \"1 bar\" }"], &["liquid"]);
+    refused(&["leakage={}"], &["liquid"]);
+    table("x [mm], p0 [MPa]\n0, 0.1\n1, -0.1\n");
+    refused(&["seal={ profile = \"p0.csv\", length = \"1 m\" }"], &["line 3", "contact pressure"]);
+    table("x [mm], p0 [MPa]\n1, 0.1\n0, 0.2\n");
+    refused(&["seal={ profile = \"p0.csv\", length = \"1 m\" }"], &["line 3", "sort"]);
+    let none = asperity(folder.path(), &["seal", "../none.toml"]);
+    assert_eq!(none.status.code(), Some(2));
+    std::fs::write(folder.path().join("none.toml"), WAVE.split("[seal]").next().unwrap()).unwrap();
+    let none = asperity(folder.path(), &["seal", "none.toml"]);
+    assert!(none.status.code() == Some(2) && String::from_utf8_lossy(&none.stderr).contains("[seal]"));
+}

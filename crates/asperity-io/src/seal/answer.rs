@@ -1,0 +1,158 @@
+//! The answers about a seal: leak, opening pressure, pressure inside, over the inlet pressure and over time.
+
+use asperity::finding::Finding;
+use asperity::seal::{CELLS, Opens, SealFlow, SealState, flow, opening};
+
+use super::sweep::{SealError, SealSweep};
+use super::{SealPlan, findings};
+
+/// ml/year in 1 m^3/s, of years of 365.25 days.
+pub const MILLILITRES_A_YEAR: f64 = 3.155_76e13;
+/// Inlet pressures of the curve.
+const INLETS: usize = 24;
+/// The curve begins at the pressure drop over this.
+const LEAST: f64 = 100.0;
+/// By how much the inlet pressure is raised to say how the leak grows with it.
+const RAISE: f64 = 1.1;
+
+/// A number of all seeds.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Spread {
+    /// Mean.
+    pub mean: f64,
+    /// Least.
+    pub least: f64,
+    /// Largest.
+    pub largest: f64,
+}
+
+impl Spread {
+    /// That of these numbers.
+    pub fn of(values: &[f64]) -> Spread {
+        Spread {
+            mean: values.iter().sum::<f64>() / values.len() as f64,
+            least: values.iter().copied().fold(f64::INFINITY, f64::min),
+            largest: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+}
+
+/// A leak \[m^3/s\] over something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Over {
+    /// Inlet pressure \[Pa\], or time \[s\].
+    pub at: f64,
+    /// The leak.
+    pub leak: Spread,
+    /// The mean leak if the fluid did not open the contact.
+    pub one_way: f64,
+}
+
+/// The answers.
+#[derive(Clone, Debug)]
+pub struct SealAnswer {
+    /// The seal.
+    pub plan: SealPlan,
+    /// The runs of the patch.
+    pub sweep: SealSweep,
+    /// The flow of each seed at the last time.
+    pub flows: Vec<SealFlow>,
+    /// Leak of the whole seal \[m^3/s\].
+    pub leak: Spread,
+    /// The same if the fluid did not open the contact.
+    pub one_way: Spread,
+    /// When each seed opens.
+    pub opens: Vec<Opens>,
+    /// Largest inlet pressure \[Pa\] at which the seed is tight for certain; `None` unless that is known of all.
+    pub opening: Option<Spread>,
+    /// The leak at an inlet pressure a tenth above the outlet's higher, over the leak; NaN where nothing leaks.
+    pub growth: f64,
+    /// Leak over inlet pressure at the last time.
+    pub by_inlet: Vec<Over>,
+    /// Leak over time.
+    pub by_time: Vec<Over>,
+    /// What must be known of them.
+    pub findings: Vec<Finding>,
+}
+
+impl SealAnswer {
+    /// The answers of a sweep.
+    ///
+    /// # Errors
+    /// [`SealError::Core`]: the pressures do not fit the seal.
+    pub fn of(plan: &SealPlan, sweep: SealSweep) -> Result<SealAnswer, SealError> {
+        let [inlet, outlet] = plan.ends;
+        let last = sweep.times.len() - 1;
+        let sigmas: asperity::Result<Vec<_>> =
+            sweep.seeds.iter().map(|seed| seed.conductance(last)).collect();
+        let sigmas = sigmas?;
+        let rate = |flow: f64| flow * plan.length / (12.0 * plan.viscosity);
+        let all = |inlet: f64, time: usize| -> asperity::Result<(Vec<SealFlow>, Over)> {
+            let flows: asperity::Result<Vec<SealFlow>> = sweep
+                .seeds
+                .iter()
+                .map(|seed| flow(&seed.conductance(time)?, &plan.profile, [inlet, outlet]))
+                .collect();
+            let flows = flows?;
+            let leaks: Vec<f64> = flows.iter().map(|flow| rate(flow.flow)).collect();
+            let one_way = Spread::of(&flows.iter().map(|flow| rate(flow.one_way)).collect::<Vec<_>>()).mean;
+            Ok((flows, Over { at: inlet, leak: Spread::of(&leaks), one_way }))
+        };
+        let (flows, now) = all(inlet, last)?;
+        let one_way: Vec<f64> = flows.iter().map(|flow| rate(flow.one_way)).collect();
+        let raised = (outlet + RAISE * (inlet - outlet)).min(plan.reach());
+        let growth = all(raised, last)?.1.leak.mean / now.leak.mean;
+        let drops = (0..INLETS).map(|n| {
+            let least = (inlet - outlet) / LEAST;
+            let from = plan.profile.inlets().map_or(least, |[from, _]| (from - outlet).max(least));
+            outlet + from * ((plan.reach() - outlet) / from).powf(n as f64 / (INLETS - 1) as f64)
+        });
+        let known = |inlet: f64| {
+            plan.profile.inlets().map_or(inlet, |[from, to]| inlet.clamp(from, to)).min(plan.reach())
+        };
+        let by_inlet: asperity::Result<Vec<Over>> =
+            drops.map(|inlet| Ok(all(known(inlet), last)?.1)).collect();
+        let by_time: asperity::Result<Vec<Over>> =
+            (0..=last).map(|time| Ok(Over { at: sweep.times[time], ..all(inlet, time)?.1 })).collect();
+        let opens: Vec<Opens> = sigmas.iter().map(|sigma| opening(sigma, &plan.profile)).collect();
+        let known: Option<Vec<f64>> = opens.iter().map(pressure).collect();
+        let findings = findings::of(plan, &sweep, &sigmas, &flows)?;
+        Ok(SealAnswer {
+            plan: plan.clone(),
+            leak: now.leak,
+            one_way: Spread::of(&one_way),
+            opening: known.map(|known| Spread::of(&known)),
+            growth,
+            by_inlet: by_inlet?,
+            by_time: by_time?,
+            opens,
+            flows,
+            findings,
+            sweep,
+        })
+    }
+
+    /// Whether every seed is in this state.
+    pub fn is(&self, state: SealState) -> bool {
+        self.flows.iter().all(|flow| flow.state == state)
+    }
+
+    /// Places across the seal \[m\], the contact pressure there, and the pressure of the fluid of each seed \[Pa\].
+    pub fn inside(&self) -> (Vec<f64>, Vec<f64>, Vec<Vec<f64>>) {
+        let width = self.plan.profile.width();
+        let x = (0..CELLS).map(|n| (n as f64 + 0.5) / CELLS as f64 * width).collect();
+        let p0 = self.plan.profile.pressures(CELLS, self.plan.ends[0]).unwrap_or_default();
+        let middle =
+            |flow: &SealFlow| flow.pressure.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
+        (x, p0, self.flows.iter().map(middle).collect())
+    }
+}
+
+/// The inlet pressure up to which a seal is tight for certain.
+fn pressure(opens: &Opens) -> Option<f64> {
+    match opens {
+        Opens::Between(low, _) => Some(*low),
+        Opens::Always => Some(0.0),
+        Opens::Never | Opens::Unknown => None,
+    }
+}

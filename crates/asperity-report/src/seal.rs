@@ -1,0 +1,91 @@
+//! The figure of a seal: leak over inlet pressure, pressure inside, leak over time, and the conductance of its patch.
+
+use asperity_io::answer::Units;
+use asperity_io::seal::{Over, SealAnswer};
+
+use crate::figure::{Axis, COLOURS, Curves, Figure, Series, Style};
+
+/// The figure, leaks and times in these units.
+pub fn figure(answer: &SealAnswer, units: &Units) -> Figure {
+    let rate = || Axis::log("leak of the seal", "m3/s").shown_in(Some(units.shown_leak(false)));
+    let mut figure = Figure::new("").with(by_inlet(answer, rate())).with(inside(answer));
+    if answer.by_time.len() > 1 && answer.by_time.iter().any(|over| over.leak.largest > 0.0) {
+        let panel = Curves::new("over time", Axis::log("time", "s").shown_in(units.shown("time")), rate());
+        figure = figure.with(curves(panel, &answer.by_time));
+    }
+    figure.with(conductance(answer)).columns(2).caption(
+        "Dotted lines: least and largest of the seeds. Dashed: if the fluid did not open the contact. Where a line ends, the seal is tight.",
+    )
+}
+
+/// A leak of 0 or without bounds has no place on a logarithmic axis.
+fn drawn(x: f64) -> f64 {
+    if x.is_finite() && x > 0.0 { x } else { f64::NAN }
+}
+
+fn curves(panel: Curves, list: &[Over]) -> Curves {
+    let series = |name: &str, style, of: fn(&Over) -> f64| {
+        Series::through(name, style, list.iter().map(|over| [over.at, drawn(of(over))]))
+    };
+    let colour = COLOURS[0];
+    let mut panel = panel.with(series("leak", Style::Line, |over| over.leak.mean).in_colour(colour));
+    if list.iter().any(|over| over.leak.least != over.leak.largest) {
+        let ends: [fn(&Over) -> f64; 2] = [|over| over.leak.least, |over| over.leak.largest];
+        for of in ends {
+            panel = panel.with(series("", Style::Dotted, of).in_colour(colour));
+        }
+    }
+    panel.with(series("contact not opened", Style::Dashed, |over| over.one_way).in_colour(COLOURS[1]))
+}
+
+fn by_inlet(answer: &SealAnswer, y: Axis) -> Curves {
+    let outlet = answer.plan.ends[1];
+    let above = |over: &Over| Over { at: over.at - outlet, ..*over };
+    let list: Vec<Over> = answer.by_inlet.iter().map(above).collect();
+    let axis = Axis::linear("inlet above outlet", "Pa").spanning(0.0, answer.plan.reach() - outlet);
+    let mut panel = curves(Curves::new("over the inlet pressure", axis, y), &list);
+    let leaks = || {
+        list.iter()
+            .flat_map(|over| [over.leak.least, over.leak.largest, over.one_way])
+            .filter(|x| drawn(*x) > 0.0)
+    };
+    let ends = [leaks().fold(f64::INFINITY, f64::min), leaks().fold(0.0, f64::max)];
+    let opening = answer.opening.map_or(f64::NAN, |opening| opening.mean);
+    for (name, at, colour) in
+        [("opens", opening, COLOURS[2]), ("inlet of the case", answer.plan.ends[0], COLOURS[3])]
+    {
+        let at = at - outlet;
+        if ends[1] > 0.0 && at > 0.0 && at <= answer.plan.reach() - outlet {
+            panel = panel
+                .with(Series::through(name, Style::DashDotted, ends.map(|end| [at, end])).in_colour(colour));
+        }
+    }
+    panel.or_say("tight, or lifted, at all these pressures")
+}
+
+fn inside(answer: &SealAnswer) -> Curves {
+    let (x, p0, fluid) = answer.inside();
+    let axes = [Axis::linear("place across the seal", "m"), Axis::linear("pressure", "Pa")];
+    let [place, pressure] = axes;
+    let panel = Curves::new("inside the seal", place, pressure)
+        .with(Series::new("contact p0", Style::Line, &x, p0).in_colour(COLOURS[1]));
+    fluid.iter().enumerate().fold(panel, |panel, (n, fluid)| {
+        let name = if n == 0 { "fluid" } else { "" };
+        panel.with(Series::new(name, Style::Line, &x, fluid).in_colour(COLOURS[0]))
+    })
+}
+
+fn conductance(answer: &SealAnswer) -> Curves {
+    let axes = [Axis::log("mean pressure on the patch", "Pa"), Axis::log("conductance", "m3")];
+    let [pressure, sigma] = axes;
+    let panel = Curves::new("patch, at the last time", pressure, sigma);
+    let panel = answer.sweep.seeds.iter().enumerate().fold(panel, |panel, (n, seed)| {
+        let last = |point: &(f64, Vec<f64>)| [point.0, drawn(point.1.last().copied().unwrap_or(f64::NAN))];
+        let colour = COLOURS[n % COLOURS.len()];
+        let name = seed.seed.map_or("patch".to_owned(), |seed| format!("seed {seed}"));
+        panel
+            .with(Series::through("", Style::Points, seed.points.iter().map(last)).in_colour(colour))
+            .with(Series::through(name, Style::Line, seed.points.iter().map(last)).in_colour(colour))
+    });
+    panel.or_say("tight at all pressures")
+}

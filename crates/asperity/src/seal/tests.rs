@@ -1,0 +1,184 @@
+//! Against closed forms: an exponential conductance, whose flow is known for every profile, and a power law with a sealing pressure.
+
+use super::*;
+
+/// exp(-p/p1) from 1e-4 to 5; its logarithm is straight, which the cubic keeps.
+fn exponential(p1: f64) -> Conductance {
+    let sweep: Vec<_> =
+        (0..=40).map(|n| 1e-4 * 5e4f64.powf(f64::from(n) / 40.0)).map(|p| (p, (-p / p1).exp())).collect();
+    Conductance::new(&sweep).unwrap()
+}
+
+fn profile(name: &str, peak: f64) -> Profile {
+    let width = 2.0;
+    let shape = match name {
+        "uniform" => Shape::Uniform { peak, width },
+        "hertz" => Shape::Hertz { peak, width },
+        _ => Shape::Parabola { peak, width },
+    };
+    Profile { shape, energising: 0.0 }
+}
+
+/// Half width 1: resistance int exp(p0/p1) over |u| > edge, on one side.
+fn edge(name: &str, peak: f64, p1: f64, below: f64) -> f64 {
+    let p0 = |u: f64| match name {
+        "uniform" => peak,
+        "hertz" => peak * (1.0 - u * u).sqrt(),
+        _ => peak * (1.0 - u * u),
+    };
+    const N: usize = 400_000;
+    let places = (0..N).map(|n| (n as f64 + 0.5) / N as f64).map(p0).filter(|p| *p < below);
+    places.map(|p| (p / p1).exp() / N as f64).sum()
+}
+
+/// Resistance of the whole profile from -1 to 1 and the flow are those of the closed forms (modified Bessel, Struve and error functions).
+/// There the conductance goes on to p < 0; a seal is open instead where p0 < P_in at the inlet, p0 < P_out at the outlet.
+#[test]
+fn an_exponential_conductance_leaks_as_its_closed_form_for_every_profile() {
+    let rows = [
+        ("uniform", 1.0, 0.25, 0.1, 0.0, 109.19630006628849, 0.0011260104448197975),
+        ("uniform", 2.0, 0.25, 1.5, 0.5, 5961.915974083457, 0.01660706638249329),
+        ("uniform", 4.0, 0.5, 3.9, 0.0, 5961.915974083457, 0.20459882261251983),
+        ("hertz", 1.0, 0.25, 0.8, 0.0, 61.46639984192563, 0.09571298407596844),
+        ("hertz", 2.0, 0.25, 1.5, 0.5, 2512.5102381532965, 0.03940677846599493),
+        ("parabola", 1.0, 0.25, 0.1, 0.0, 48.16001211429123, 0.0025530760689703186),
+        ("parabola", 1.0, 0.25, 0.8, 0.0, 48.16001211429123, 0.12215803715571634),
+        ("parabola", 4.0, 0.5, 3.9, 0.0, 1867.9200677600202, 0.6530263311936122),
+    ];
+    for (name, peak, p1, inlet, outlet, resistance, exact) in rows {
+        let open = edge(name, peak, p1, inlet) + edge(name, peak, p1, outlet);
+        let exact = exact * resistance / (resistance - open);
+        let found = flow(&exponential(p1), &profile(name, peak), [inlet, outlet]).unwrap();
+        assert_eq!(found.state, SealState::Leaks);
+        // A uniform profile has no error of the cells; in others an edge of the contact is known to a cell, 1/400 of the width.
+        let tolerance = if name == "uniform" { 1e-6 } else { 4e-3 };
+        assert!(
+            (found.flow / exact - 1.0).abs() < tolerance,
+            "{name} {peak} {inlet}: {} {exact}",
+            found.flow
+        );
+        assert_eq!([found.pressure[0], (found.pressure[CELLS] / 1e-9).round() * 1e-9], [inlet, outlet]);
+        assert!(found.pressure.windows(2).all(|pair| pair[1] <= pair[0]));
+        if name == "uniform" {
+            let centre = p1 * (0.5 * ((inlet / p1).exp() + (outlet / p1).exp())).ln();
+            assert!((found.pressure[CELLS / 2] / centre - 1.0).abs() < 1e-6);
+            let one_way = (inlet - outlet) / resistance;
+            assert!((found.one_way / one_way - 1.0).abs() < 1e-9);
+        }
+    }
+}
+
+/// (1 - p/p_s)^3.45 up to the sealing pressure 1: the flow is the integral of sigma, (1-p)^4.45/4.45, over the width.
+#[test]
+fn a_seal_chokes_opens_and_is_tight_as_the_power_law_says() {
+    let sweep: Vec<_> =
+        (1..=400).map(|n| f64::from(n) / 400.0).map(|p| (p, (1.0 - p).max(0.0).powf(3.45))).collect();
+    let sigma = Conductance::new(&sweep).unwrap();
+    for (peak, inlet, exact) in [(0.6, 0.3, 0.02107267356374089), (1.2, 0.5, 0.0005294190651928427)] {
+        let found = flow(&sigma, &profile("uniform", peak), [inlet, 0.0]).unwrap();
+        // The cubic of ln sigma between 400 points.
+        assert!((found.flow / exact - 1.0).abs() < 1e-4, "{peak}: {}", found.flow);
+    }
+    let lower = flow(&sigma, &profile("uniform", 1.2), [0.5, 0.15]).unwrap();
+    let upper = flow(&sigma, &profile("uniform", 1.2), [0.5, 0.0]).unwrap();
+    // The outlet is choked: its pressure does not matter once 1.2 - P_out > 1.
+    assert!((lower.flow / upper.flow - 1.0).abs() < 1e-9);
+    assert!(upper.choke.unwrap().x > 1.99);
+    let Opens::Between(low, high) = opening(&sigma, &profile("uniform", 1.2)) else { panic!() };
+    assert!((low - 0.2).abs() < 1e-12 && (high - 0.2025).abs() < 1e-12, "{low} {high}");
+    let tight = flow(&sigma, &profile("uniform", 1.2), [0.19, 0.0]).unwrap();
+    assert_eq!((tight.state, tight.flow, tight.one_way), (SealState::Tight, 0.0, 0.0));
+    assert_eq!(opening(&sigma, &profile("uniform", 0.9)), Opens::Always);
+    let energised = |energising| opening(&sigma, &Profile { energising, ..profile("uniform", 1.2) });
+    assert!(matches!(energised(0.5), Opens::Between(low, _) if (low - 0.4).abs() < 1e-12));
+    assert_eq!(energised(1.0), Opens::Never);
+    let lifted = flow(&sigma, &profile("hertz", 1.2), [1.2, 0.0]).unwrap();
+    assert_eq!((lifted.state, lifted.flow), (SealState::Lifted, f64::INFINITY));
+}
+
+/// The flow through a stack of n equal seals, each with the pressures that the stack has at its ends, is that of the stack: the march does
+/// not know where it begins.
+#[test]
+fn a_part_of_a_seal_between_its_own_pressures_has_the_flow_of_the_whole() {
+    let sigma = exponential(0.3);
+    let whole = flow(&sigma, &profile("uniform", 2.0), [1.1, 0.2]).unwrap();
+    for part in [[0, CELLS / 4], [CELLS / 4, CELLS]] {
+        let width = 2.0 * (part[1] - part[0]) as f64 / CELLS as f64;
+        let profile = Profile { shape: Shape::Uniform { peak: 2.0, width }, energising: 0.0 };
+        let ends = part.map(|n| whole.pressure[n]);
+        assert!((flow(&sigma, &profile, ends).unwrap().flow / whole.flow - 1.0).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn the_potential_is_the_integral_of_the_conductance_and_its_inverse_inverts_it() {
+    let sweep = [(0.1, 1.0), (0.3, 0.4), (0.5, 0.41), (1.0, 1e-4), (2.0, 0.0)];
+    let sigma = Conductance::new(&sweep).unwrap();
+    for p in [-0.1, 0.05, 0.1, 0.2, 0.45, 0.99, 1.0, 1.5, 1.9] {
+        let there = sigma.potential(p);
+        assert!((sigma.pressure(there).unwrap() - p).abs() < 1e-6, "{p}");
+        // A central difference of steps of 1e-5: its error is of the order 1e-10 of the curvature.
+        let slope = (sigma.potential(p + 1e-5) - sigma.potential(p - 1e-5)) / 2e-5;
+        assert!((slope - sigma.at(p)).abs() < 2e-4 * sigma.at(p), "{p}: {slope} {}", sigma.at(p));
+    }
+    assert_eq!(sigma.pressure(sigma.potential(2.0) * (1.0 + 1e-9)), None);
+    assert!((sigma.with_below(2.0).potential(1.5) - sigma.potential(1.5) - 0.1).abs() < 1e-12);
+    assert_eq!((sigma.at(0.3), sigma.at(2.5), sigma.sealing_pressure()), (0.4, 0.0, Some(2.0)));
+}
+
+#[test]
+fn what_the_sweep_does_not_tell_is_not_made_up() {
+    let tight = Conductance::new(&[(0.5, 0.0), (1.0, 0.0)]).unwrap();
+    assert_eq!(flow(&tight, &profile("uniform", 0.6), [0.05, 0.0]).unwrap().state, SealState::Tight);
+    let unknown = flow(&tight, &profile("uniform", 0.6), [0.2, 0.0]).unwrap();
+    assert!(unknown.state == SealState::Unknown && unknown.flow.is_nan());
+    let Opens::Between(low, high) = opening(&tight, &profile("uniform", 0.6)) else { panic!() };
+    assert!((low - 0.1).abs() < 1e-12 && (high - 0.6).abs() < 1e-12);
+    let leaks = Conductance::new(&[(0.5, 1.0), (1.0, 0.5)]).unwrap();
+    assert_eq!(opening(&leaks, &profile("uniform", 1.5)), Opens::Unknown);
+    assert_eq!(opening(&leaks, &profile("uniform", 0.9)), Opens::Always);
+}
+
+#[test]
+fn a_profile_from_a_table_is_straight_between_places_and_inlet_pressures() {
+    let table = |inlet, top| Table { inlet, points: vec![(1.0, 0.0), (2.0, top), (3.0, 0.0)] };
+    let shape = Shape::Table(vec![table(0.0, 1.0), table(1.0, 2.0)]);
+    let profile = Profile { shape, energising: 0.0 };
+    profile.validate().unwrap();
+    assert_eq!(
+        (profile.width(), profile.pressures(4, 0.5).unwrap()),
+        (2.0, vec![0.375, 1.125, 1.125, 0.375])
+    );
+    assert_eq!(profile.pressures(4, 1.1), None);
+    assert!(flow(&exponential(0.3), &profile, [1.1, 0.0]).is_err());
+    let bad = |points| {
+        Profile { shape: Shape::Table(vec![Table { inlet: 0.0, points }]), energising: 0.0 }.validate()
+    };
+    for points in [
+        vec![(0.0, 1.0)],
+        vec![(0.0, 1.0), (0.0, 1.0)],
+        vec![(1.0, 1.0), (0.0, 1.0)],
+        vec![(0.0, 1.0), (1.0, -1.0)],
+        vec![(0.0, 0.0), (1.0, 0.0)],
+        vec![(0.0, f64::NAN), (1.0, 1.0)],
+    ] {
+        assert!(bad(points).is_err());
+    }
+}
+
+#[test]
+fn wrong_pressures_are_refused() {
+    let sigma = exponential(0.3);
+    for ends in [[1.0, 1.0], [0.5, 1.0], [f64::NAN, 0.0], [1.0, f64::NEG_INFINITY]] {
+        assert!(flow(&sigma, &profile("uniform", 2.0), ends).is_err());
+    }
+    // A vacuum at the outlet.
+    assert_eq!(flow(&sigma, &profile("uniform", 2.0), [1.0, -1.0]).unwrap().state, SealState::Leaks);
+    for sweep in
+        [vec![], vec![(0.0, 1.0)], vec![(1.0, -1.0)], vec![(1.0, f64::NAN)], vec![(2.0, 1.0), (1.0, 1.0)]]
+    {
+        assert!(Conductance::new(&sweep).is_err());
+    }
+    let energised = Profile { energising: 1.5, ..profile("uniform", 2.0) };
+    assert_eq!(flow(&sigma, &energised, [1.0, 0.0]).unwrap_err().parameter(), "energising");
+}

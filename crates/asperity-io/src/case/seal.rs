@@ -260,7 +260,7 @@ mod tests {
             ("0 mm, -1 MPa", "line 1: the contact pressure is"),
             ("0 mm, 1 MPa\n0 mm, 2 MPa", "line 2: the place 0 m does not lie beyond"),
             ("0 mm, 1 MPa, 2 bar\n0 mm, 2 MPa, 1 bar", "line 2: the inlet pressure"),
-            ("0 mm, 1 MPa\n1 mm", "line 2: there are 1 columns"),
+            ("0 mm, 1 MPa\n1mm", "line 2: there are 1 columns"),
             ("0 mm, 1 mm", "the contact pressure is \"1 mm\""),
         ] {
             let message = parse(text).unwrap_err();

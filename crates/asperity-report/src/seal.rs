@@ -8,7 +8,10 @@ use crate::figure::{Axis, COLOURS, Curves, Figure, Series, Style};
 /// The figure, leaks and times in these units.
 pub fn figure(answer: &SealAnswer, units: &Units) -> Figure {
     let rate = || Axis::log("leak of the seal", "m3/s").shown_in(Some(units.shown_leak(false)));
-    let mut figure = Figure::new("").with(by_inlet(answer, rate())).with(inside(answer));
+    let mut figure = Figure::new("").with(inside(answer));
+    if answer.by_inlet.iter().any(|over| over.leak.largest > 0.0 || over.one_way > 0.0) {
+        figure.panels.insert(0, by_inlet(answer, rate()).into());
+    }
     if answer.by_time.len() > 1 && answer.by_time.iter().any(|over| over.leak.largest > 0.0) {
         let panel = Curves::new("over time", Axis::log("time", "s").shown_in(units.shown("time")), rate());
         figure = figure.with(curves(panel, &answer.by_time));
@@ -60,7 +63,7 @@ fn by_inlet(answer: &SealAnswer, y: Axis) -> Curves {
                 .with(Series::through(name, Style::DashDotted, ends.map(|end| [at, end])).in_colour(colour));
         }
     }
-    panel.or_say("tight, or lifted, at all these pressures")
+    panel
 }
 
 fn inside(answer: &SealAnswer) -> Curves {

@@ -14,7 +14,7 @@ use super::study::told;
 use crate::args;
 use crate::failure::Failure;
 use crate::files::Files;
-use crate::format::quantity;
+use crate::format::{counted, quantity};
 use crate::messages::message;
 use crate::verb::{Threads, Verb};
 
@@ -43,7 +43,12 @@ impl Verb for args::Seal {
             ..Options::default()
         };
         if !self.quiet {
-            message!("{} pressures and {} seeds in {}", plan.pressures, plan.seeds, folder.display());
+            message!(
+                "{} pressures and {} in {}",
+                plan.pressures,
+                counted(plan.seeds, "seed"),
+                folder.display()
+            );
         }
         let mut tell = |event: &asperity_io::study::Event<'_>| {
             if !self.quiet {

@@ -226,7 +226,11 @@ async function showRelief(instant) {
   $("relief").parentElement.hidden = high - low <= rounding;
   $("relief-title").textContent = `Deformed surface at ${moment(instant)}`;
   if (high - low <= rounding) return ($("relief-note").textContent = "The surface is not deformed.");
-  const what = loaded ? { colours: "pressure", low: 0, high: pressure.max, unit: "Pa", label: "pressure" } : { colours: "sequential", low, high, unit: "m", label: "height" };
+  // Tension below zero, of surfaces that adhere.
+  const most = pressure && Math.max(pressure.max, -pressure.min), { colours } = state.fields.find((kind) => kind.name === "pressure") ?? {};
+  const what = loaded
+    ? { colours, low: colours === "diverging" ? -most : 0, high: most, unit: "Pa", label: "pressure" }
+    : { colours: "sequential", low, high, unit: "m", label: "height" };
   relief.show(map.nx, map.ny, z, loaded ? pressure.values : z, what);
   const stretched = `stretched ${digits(Number(relief.stretch().toPrecision(2)))} times against ${relief.sidesNote() ? "the longer side" : "x and y"}${relief.sidesNote()}`;
   $("relief-note").textContent = `Surface of the deformable body, heights from ${words(low, "m")} to ${words(high, "m")}, ${stretched}; coloured by ${loaded ? "pressure" : "height"}. Drag, or use the arrow keys, to turn it.`;

@@ -6,7 +6,7 @@ use asperity::{Axis, Grid};
 use asperity_io::answer::{self, Answer, Units};
 use asperity_io::cycles;
 use asperity_io::store::{At, Reader, StoreError};
-use asperity_report::result::{contact, moment, temperatures};
+use asperity_report::result::{contact, moment, temperatures, with_contact};
 use serde_json::json;
 
 use super::answers::line;
@@ -105,6 +105,7 @@ fn text(reader: &Reader, at: At, answers: &[Answer], units: &Units) -> Result<St
     text += &course(reader, &rows, units)?;
     text += &work(reader, &rows);
     text += &cycle_table(reader)?;
+    let at = with_contact(reader, at)?;
     if let Some(states) = contact(reader, at)? {
         let time = reader.field_times()[reader.index(at)?];
         let size = reader.header().grid.size();

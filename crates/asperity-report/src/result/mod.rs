@@ -231,7 +231,10 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
 const IN_PLACE: &str = " This is the last stored time with contact.";
 
 /// The last stored instant with contact in place of the last one, where nothing touches at that; else the instant itself.
-fn with_contact(reader: &Reader, at: At) -> Result<At, StoreError> {
+///
+/// # Errors
+/// [`StoreError`] where the result is damaged.
+pub fn with_contact(reader: &Reader, at: At) -> Result<At, StoreError> {
     let touches = |index: &usize| -> Result<bool, StoreError> {
         Ok(reader.contact_states(At::Index(*index))?.iter().any(|state| *state > 0))
     };

@@ -157,7 +157,8 @@ impl Plot {
     pub(super) fn shows_contact(self) -> bool {
         matches!(
             self.declaration().shows,
-            Shows::Instant | Shows::Field(FieldKind::Pressure | FieldKind::Contact)
+            Shows::Instant
+                | Shows::Field(FieldKind::Pressure | FieldKind::ContactPressure | FieldKind::Contact)
         )
     }
 

@@ -130,7 +130,7 @@ def fit_force_map(curves: Iterable[ForceCurve], /, *, radius: float, poisson: fl
             for end, value in zip(("", "_low", "_high"), getattr(fit, name)):
                 maps[name + end][place] = value
         maps["touch"][place], maps["relative_rms"][place] = fit.touch[0], fit.relative_rms
-    sides = [{curve.metadata.get(f"grid size {axis}") for curve in placed.values()} for axis in "xy"]
+    sides: list[set[Any]] = [{curve.metadata.get(f"grid size {axis}") for curve in placed.values()} for axis in "xy"]
     known = all(len(side) == 1 and None not in side for side in sides)
     size = (float(sides[0].pop()), float(sides[1].pop())) if known else None
     return ForceMap(**maps, size=size, failures=failures, notes=notes)

@@ -400,7 +400,9 @@ mod tests {
     #[test]
     fn ticks_in_a_unit_that_is_no_power_of_ten_stand_on_the_axis() {
         let [low, high] = [7.2e3, 3e6];
-        let ruler = Ruler::new(&Axis::log("time", "s"), [low, high], 0.0, 5.0);
+        let days = Shown { factor: 1.0 / 86400.0, text: "d".to_owned() };
+        let axis = Axis::log("time", "s").shown_in(Some(days));
+        let ruler = Ruler::new(&axis, [low, high], 0.0, 5.0);
         assert_eq!(ruler.title, "time [d]");
         let all = ruler.ticks.iter().map(|(value, _)| *value).chain(ruler.minor.iter().copied());
         assert!(all.into_iter().all(|value| value >= low * (1.0 - 1e-9) && value <= high * (1.0 + 1e-9)));

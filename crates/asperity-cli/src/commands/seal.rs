@@ -1,6 +1,6 @@
 //! `asperity seal`: a whole seal, of which the case is a patch.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use asperity::seal::{Opens, SealState};
 use asperity_io::answer::Units;
@@ -10,7 +10,7 @@ use asperity_io::study::Options;
 use asperity_report::sheet::Sheet;
 
 use super::answers::units;
-use super::study::told;
+use super::study::{told, usual};
 use crate::args;
 use crate::failure::Failure;
 use crate::files::Files;
@@ -36,7 +36,7 @@ impl Verb for args::Seal {
             let help = "write [seal] with profile, peak, width and length into the case";
             return Err(Failure::input(format!("{} has no [seal]; {help}", self.case.display())));
         };
-        let folder = self.output.clone().unwrap_or_else(|| usual(&self.case));
+        let folder = self.output.clone().unwrap_or_else(|| usual(&self.case, "seal"));
         let options = Options {
             jobs: self.jobs.map(usize::from),
             interrupt: crate::interrupt::flag(),
@@ -70,11 +70,6 @@ impl Verb for args::Seal {
         crate::print(&if self.json { format!("{}\n", answer.object()) } else { text(&rows, &folder) })?;
         super::findings::strict(self.strict, &answer.findings)
     }
-}
-
-/// "o-ring-seal" for "o-ring.toml".
-fn usual(case: &Path) -> PathBuf {
-    format!("{}-seal", case.file_stem().unwrap_or_default().to_string_lossy()).into()
 }
 
 fn failure(error: SealError) -> Failure {

@@ -36,7 +36,7 @@ impl Verb for args::Study {
 impl args::Study {
     fn work(&self, case: &Path) -> Result<(), Failure> {
         let units = units(&self.unit)?;
-        let folder = self.output.clone().unwrap_or_else(|| usual(case));
+        let folder = self.output.clone().unwrap_or_else(|| usual(case, "study"));
         let zip = (self.zip || self.product).then_some(self.zip);
         let study = Study::new(case, &self.vary, zip, &self.common.set, &folder).map_err(failure)?;
         let options = Options {
@@ -71,9 +71,9 @@ impl args::Study {
     }
 }
 
-/// "gel-study" for "gel.toml".
-fn usual(case: &Path) -> PathBuf {
-    format!("{}-study", case.file_stem().unwrap_or_default().to_string_lossy()).into()
+/// The folder that is usual for what a case is solved for: "gel-study" for "gel.toml".
+pub(super) fn usual(case: &Path, what: &str) -> PathBuf {
+    format!("{}-{what}", case.file_stem().unwrap_or_default().to_string_lossy()).into()
 }
 
 pub(super) fn failure(error: StudyError) -> Failure {

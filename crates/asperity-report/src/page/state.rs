@@ -218,18 +218,18 @@ fn headline(answers: &[Answer], units: &Units, bars: &[ErrorBar], last: Option<&
     };
     let line = |answer: &Answer| [answer.label() + &note(answer), words(answer)];
     let mut lines: Vec<[String; 2]> = units.without_second_rate(answers).map(line).collect();
-    let mut at: Vec<(Coordinate, &str)> = vec![];
+    let mut at: Vec<(Coordinate, String)> = vec![];
     for answer in answers {
         if let Some(own) = answer.at.filter(|own| at.iter().all(|(known, _)| known != own)) {
-            at.push((own, &answer.name));
+            at.push((own, answer.label()));
         }
     }
     if at.is_empty() {
-        at.extend(last.map(|row| (row.coordinate, "")));
+        at.extend(last.map(|row| (row.coordinate, String::new())));
     }
     let many = at.len() > 1;
-    lines.extend(at.iter().map(|(at, name)| {
-        let of = if many { format!(" of the {}", name.replace('_', " ")) } else { String::new() };
+    lines.extend(at.iter().map(|(at, label)| {
+        let of = if many { format!(" of the {label}") } else { String::new() };
         [at.axis().name().to_owned() + &of, units.number(at.value(), at.axis().unit())]
     }));
     lines

@@ -23,8 +23,8 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-use crate::error::{Error, Result, non_negative, positive, require};
-use crate::indentation::{Interval, WIDTH};
+use crate::error::{Error, Result, positive, require};
+use crate::indentation::{Interval, SENSITIVITY, WIDTH, check_shares};
 use crate::reference::{AdhesiveModel, AdhesiveSphere, carpick_alpha, maugis_lambda, tabor};
 use rows::Rows;
 use search::{Found, Problem};
@@ -306,20 +306,12 @@ fn check(radius: f64, options: &ForceOptions) -> Result<()> {
             positive(what, value, unit)?;
         }
     }
-    for (what, value) in [
-        ("relative uncertainty of the radius", options.radius_uncertainty),
-        ("relative uncertainty of the load", options.load_uncertainty),
-        ("relative uncertainty of the sensitivity", options.sensitivity_uncertainty),
-    ] {
-        non_negative(what, value, "")?;
-        require(value < 1.0, what, value, "less than 1")?;
-    }
-    require(
-        options.sensitivity_uncertainty == 0.0 || options.spring_constant.is_some(),
-        "relative uncertainty of the sensitivity",
-        options.sensitivity_uncertainty,
-        "0 without a spring constant: it changes the depth by the deflection",
-    )
+    let sources = [
+        ("radius", options.radius_uncertainty),
+        ("load", options.load_uncertainty),
+        (SENSITIVITY, options.sensitivity_uncertainty),
+    ];
+    check_shares(&sources, options.spring_constant)
 }
 
 /// From the ends of the logarithm less that of the value.

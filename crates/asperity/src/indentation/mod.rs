@@ -57,6 +57,7 @@ use least_squares::Solution;
 use model::Model;
 use parameters::Parameters;
 use stated::Stated;
+pub(crate) use stated::{SENSITIVITY, check_shares};
 
 /// A record of an indentation; three columns of one length. The body is undisturbed before the first row.
 #[derive(Clone, Copy, Debug)]

@@ -33,27 +33,41 @@ struct Source {
 pub(super) struct Stated(Vec<Source>);
 
 pub(super) fn check(options: &IndentationOptions) -> Result<()> {
-    for (what, value) in [
-        ("relative uncertainty of the radius", options.radius_uncertainty),
-        ("relative uncertainty of the thickness", options.thickness_uncertainty),
-        ("relative uncertainty of the load", options.load_uncertainty),
-        ("relative uncertainty of the sensitivity", options.sensitivity_uncertainty),
-    ] {
-        non_negative(what, value, "")?;
-        require(value < 1.0, what, value, "less than 1")?;
-    }
+    let sources = [
+        ("radius", options.radius_uncertainty),
+        ("thickness", options.thickness_uncertainty),
+        ("load", options.load_uncertainty),
+        (SENSITIVITY, options.sensitivity_uncertainty),
+    ];
+    check_shares(&sources, options.spring_constant)?;
     require(
         options.thickness_uncertainty == 0.0 || options.layer.is_some(),
         "relative uncertainty of the thickness",
         options.thickness_uncertainty,
         "0 without a thin sample",
-    )?;
-    require(
-        options.sensitivity_uncertainty == 0.0 || options.spring_constant.is_some(),
-        "relative uncertainty of the sensitivity",
-        options.sensitivity_uncertainty,
-        "0 without a spring constant: it changes the depth by the deflection",
     )
+}
+
+/// The name of the scale of the deflection, which needs a spring constant.
+pub(crate) const SENSITIVITY: &str = "sensitivity";
+
+/// Checks the relative uncertainties of these quantities of a test.
+///
+/// # Errors
+/// [`Error::Invalid`](crate::Error::Invalid) that names the quantity.
+pub(crate) fn check_shares(sources: &[(&str, f64)], spring_constant: Option<f64>) -> Result<()> {
+    for (quantity, value) in sources {
+        let what = format!("relative uncertainty of the {quantity}");
+        non_negative(&what, *value, "")?;
+        require(*value < 1.0, what.clone(), value, "less than 1")?;
+        require(
+            *quantity != SENSITIVITY || *value == 0.0 || spring_constant.is_some(),
+            what,
+            value,
+            "0 without a spring constant: it changes the depth by the deflection",
+        )?;
+    }
+    Ok(())
 }
 
 impl Stated {

@@ -85,6 +85,24 @@ pub enum Error {
         /// Load and approach \[m\] of the last row in contact; `None` where there is none.
         last: Option<[f64; 2]>,
     },
+    /// No equilibrium under the prescribed load: the fluid in the gap lifts the surfaces off; the rows so far are complete.
+    #[error(
+        "no equilibrium at t = {time} s: the fluid carries {} more than the load of {} however wide the gap becomes, and lifts the \
+         surfaces off; lower the pressure of the fluid (a film holds the load while inlet and outlet have less than twice the mean pressure \
+         together), raise the load, or prescribe the approach",
+        si(*excess, unit),
+        si(*load, unit)
+    )]
+    LiftedOff {
+        /// Prescribed load \[N\], per length \[N/m\] on a line of cells.
+        load: f64,
+        /// The unit of loads.
+        unit: &'static str,
+        /// What the fluid carries beyond it in the widest gap that was tried.
+        excess: f64,
+        /// Time \[s\].
+        time: f64,
+    },
     /// The run was interrupted on request; the rows so far are complete.
     #[error("interrupted")]
     Interrupted,
@@ -169,6 +187,7 @@ impl Error {
             Error::NotConverged(_) => "not-converged",
             Error::Missed { .. } => "missed-event",
             Error::PulledOff { .. } => "pulled-off",
+            Error::LiftedOff { .. } => "fluid-runaway",
             Error::Interrupted => "interrupted",
         }
     }

@@ -31,6 +31,7 @@ const MOST_EXTREMES: usize = 100_000;
 
 /// A value over time, from t = 0 on.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum History {
     /// `value` from t = 0+ on.
     Step {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use asperity::load::Course;
 use asperity::time::Plan;
+use asperity::traction::TractionLaw;
 use asperity::{Grid, Programme, Scheme, Simulation, TimeGrid};
 use ndarray::Array2;
 
@@ -134,7 +135,8 @@ impl Document {
         let stops = stops.and_then(|((motion, grid), times)| motion.stops(&at("motion"), grid, times.end()));
         let output = self.output.output(&at("output"), times.as_ref(), programme, default_path);
         let output = output.map(|mut output| {
-            if self.adhesion.is_some() && self.output.is_silent_on_fields() {
+            let acts = self.leakage.as_ref().is_some_and(|leakage| leakage.acts());
+            if (self.adhesion.is_some() || acts) && self.output.is_silent_on_fields() {
                 output.fields.insert(FieldKind::ContactPressure);
             }
             output
@@ -178,26 +180,7 @@ impl Document {
         }
         let conditions =
             self.conditions(grid, pair.as_ref(), programme, times.as_ref(), hardness.as_ref(), include);
-        let conditions = match adhesion {
-            None => conditions,
-            Some(law) => law
-                .zip(conditions)
-                .map(|(law, conditions)| Simulation { traction: Some(Arc::new(law)), ..conditions }),
-        };
-        if let Some(conditions) = &conditions {
-            for error in conditions.faults() {
-                checks.root().core::<()>(Err(error));
-            }
-            self.output.possible(&at("output"), conditions, motion.is_some());
-        }
-        if let (Some(pair), Some(grid)) = (&pair, &grid) {
-            pair.resolved(&at("body"), &self.body, grid, boundary);
-        }
         let end = times.as_ref().map(TimeGrid::end);
-        let stress = self.stress.as_ref().zip(grid.as_ref().zip(pair.as_ref())).zip(output.as_ref().zip(end));
-        let stress = stress.and_then(|((stress, (grid, pair)), (output, end))| {
-            stress.of_case(&at("stress"), grid, pair, motion.is_some(), output, end)
-        });
         let leakage =
             self.leakage.as_ref().zip(output.as_ref().zip(end)).and_then(|(leakage, (output, end))| {
                 if line {
@@ -209,6 +192,35 @@ impl Document {
                 }
                 leakage.of_case(&at("leakage"), boundary, points, output, end)
             });
+        let fluid = leakage.as_ref().and_then(|leak| at("leakage").core(leak.traction())).flatten();
+        if fluid.is_some() && (self.adhesion.is_some() || self.seal.is_some()) {
+            let help = "set coupling = \"one-way\", or delete the other section";
+            let why = match self.seal.is_some() {
+                true => "the patch of a [seal] is computed one-way: the seal adds the pressure of the fluid",
+                false => "a fluid does not act on surfaces that adhere here",
+            };
+            at("leakage").key("coupling").fault::<()>(why, "\"one-way\"", help);
+        }
+        let fluid = fluid.map(|fluid| Arc::new(fluid) as Arc<dyn TractionLaw>);
+        let law = match adhesion {
+            None => Some(fluid),
+            Some(adhesion) => adhesion.map(|law| Some(Arc::new(law) as Arc<dyn TractionLaw>)),
+        };
+        let conditions =
+            law.zip(conditions).map(|(traction, conditions)| Simulation { traction, ..conditions });
+        if let Some(conditions) = &conditions {
+            for error in conditions.faults() {
+                checks.root().core::<()>(Err(error));
+            }
+            self.output.possible(&at("output"), conditions, motion.is_some());
+        }
+        if let (Some(pair), Some(grid)) = (&pair, &grid) {
+            pair.resolved(&at("body"), &self.body, grid, boundary);
+        }
+        let stress = self.stress.as_ref().zip(grid.as_ref().zip(pair.as_ref())).zip(output.as_ref().zip(end));
+        let stress = stress.and_then(|((stress, (grid, pair)), (output, end))| {
+            stress.of_case(&at("stress"), grid, pair, motion.is_some(), output, end)
+        });
         let seal = match &self.seal {
             // A faulty [leakage] is reported already.
             Some(seal) if self.leakage.is_none() || leakage.is_some() => {

@@ -14,8 +14,11 @@ use crate::quantity::scalar::schema;
 /// A word, a list or a table.
 #[derive(Clone, Debug)]
 pub enum Form<W, L = Never, T = Never> {
+    /// A text or a number.
     Word(W),
+    /// A list.
     List(L),
+    /// A table.
     Table(T),
 }
 

@@ -107,7 +107,8 @@ pub fn surface(keys: &Table) -> Result<(Grid, Part, bool), CaseErrors> {
 /// # Errors
 /// [`CaseErrors`] with what is wrong.
 pub fn prescribed(keys: Table, simulation: &Simulation) -> Result<(Control, Course), CaseErrors> {
-    let bodies = Bodies { line: simulation.grid.is_line(), adhere: simulation.traction.is_some() };
+    let adhere = simulation.traction.as_ref().is_some_and(|law| law.as_adhesion().is_some());
+    let bodies = Bodies { line: simulation.grid.is_line(), adhere };
     let load = Table::from_iter([("stages".to_owned(), toml::Value::Array(vec![keys.into()]))]);
     let keys = Table::from_iter([("load".to_owned(), load.into())]);
     from_keys(&keys, &Arrays::new(), |text| {

@@ -47,9 +47,15 @@ impl Leak {
     /// # Errors
     /// What is wrong, and what to do.
     pub fn changed(&self, given: LeakageKeys, boundary: Boundary) -> Result<Leak, String> {
+        let drives = given.pressure_drop.is_some() || given.inlet.is_some() || given.outlet.is_some();
+        if self.coupling.is_some() && (drives || given.of_gas().is_some()) {
+            return Err("the fluid has acted on the surfaces of this result; expected the pressures and the fluid of its case; run the case \
+                        again with the others"
+                .into());
+        }
         let mut keys = self.keys();
         let other_kind = match self.fluid {
-            Some(Fluid::Liquid { .. }) => given.of_gas().is_some(),
+            Some(Fluid::Liquid { .. }) => given.of_gas().is_some() || given.inlet.is_some(),
             Some(Fluid::Gas { .. }) => given.pressure_drop.is_some(),
             None => false,
         };
@@ -74,11 +80,15 @@ impl Leak {
             rarefaction: given.rarefaction.or(keys.rarefaction),
             sides: given.sides.or(keys.sides),
             smallest_gap: given.smallest_gap.or(keys.smallest_gap),
+            coupling: None,
+            reference: None,
+            pockets: None,
             times: None,
             field: given.field.or(keys.field),
         };
         let leak = checked(&merged, boundary)?;
-        Ok(Leak { times: self.times.clone(), temperatures: self.temperatures.clone(), ..leak })
+        let (times, temperatures) = (self.times.clone(), self.temperatures.clone());
+        Ok(Leak { times, temperatures, coupling: self.coupling.clone(), ..leak })
     }
 }
 
@@ -96,6 +106,7 @@ mod tests {
             smallest_gap: 3e-10,
             fluid,
             field: true,
+            coupling: None,
             temperatures: vec![(0.0, 300.0)],
             times: Some(vec![1.0]),
         }

@@ -2,15 +2,17 @@
 
 use asperity::Boundary;
 use asperity::leakage::{Rarefaction, Sides, Species};
+use asperity::traction::{Action, Pockets};
 
+use super::history::{History, Kind, Sign};
 use super::keys::*;
 use super::plan::Output;
 use super::stored_times::{StoredTimes, stored_times};
-use crate::leakage::{Fluid, GasKind, Leak, LeakDirection};
+use crate::leakage::{Coupling, Fluid, GasKind, Leak, LeakDirection};
 use crate::store::FieldKind;
 
-/// The flow of a fluid through the gap, from the stored fields: a liquid with `pressure_drop` and `viscosity`, or
-/// a gas with `inlet`, `outlet` and `gas` (or its `viscosity` and `molar_mass`). Without a fluid only the gap is assessed.
+/// The flow of a fluid through the gap, from the stored fields: a liquid with `viscosity` and `pressure_drop`, or `inlet` and
+/// `outlet`; or a gas with `inlet`, `outlet` and `gas` (or its `viscosity` and `molar_mass`). Without a fluid only the gap is assessed.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Leakage")]
@@ -29,12 +31,22 @@ pub struct LeakageKeys {
     pub molar_mass: Option<MolarMass<Positive>>,
     /// Temperature of the gas; that of the run if not given, or 20 °C if the run has none.
     pub temperature: Option<Temperature>,
-    /// Absolute pressure of the gas at the inlet.
+    /// Absolute pressure at the inlet; of a fluid that acts on the surfaces (`coupling`) also a history, with the kinds of load.history.
     #[schemars(example = "3 bar")]
-    pub inlet: Option<Pressure<Positive>>,
-    /// Absolute pressure of the gas at the outlet; 0 for vacuum.
+    #[schemars(example = serde_json::json!({ "kind": "ramp", "value": "3 bar", "duration": "1 s" }))]
+    pub inlet: Option<Form<Pressure<Positive>, Never, Box<History>>>,
+    /// Absolute pressure at the outlet; 0 for vacuum.
     #[schemars(example = "1 bar")]
     pub outlet: Option<Pressure<NonNegative>>,
+    /// Whether the pressure of the fluid acts on the surfaces: "one-way": it does not; "two-way": it opens the contact where it flows;
+    /// "uniform": the pressure of the inlet acts everywhere, which is exact where inlet and outlet have the same pressure. "one-way"
+    /// if not given.
+    pub coupling: Option<CouplingKind>,
+    /// The pressure that the load does not contain: that of the "outlet", or "vacuum"; with `coupling`; "outlet" if not given.
+    pub reference: Option<Reference>,
+    /// The pressure of pockets that neither inlet nor outlet reaches: "kept" from the time when they were cut off, "drained", or
+    /// "connected": fluid creeps into them through contacts with the gap `smallest_gap`. With coupling = "two-way"; "kept" if not given.
+    pub pockets: Option<Pockets>,
     /// How the rarefaction of the gas in narrow gaps is taken into account; "boltzmann" if not given.
     pub rarefaction: Option<Rarefaction>,
     /// What bounds the flow at the sides; "periodic" on a periodic domain and "closed" on a free one if not given.
@@ -51,6 +63,33 @@ pub struct LeakageKeys {
     pub field: Option<bool>,
 }
 
+impl Word for Pressure<Positive> {
+    const FORMS: &'static str = "a pressure such as \"3 bar\", or a history such as { kind = \"ramp\", ... }";
+    const IS_QUANTITY: bool = true;
+}
+
+/// Whether the fluid acts on the surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum CouplingKind {
+    /// It does not.
+    OneWay,
+    /// The pressure of the inlet acts everywhere.
+    Uniform,
+    /// It acts where it flows.
+    TwoWay,
+}
+
+/// What the load does not contain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reference {
+    /// The pressure of the outlet.
+    Outlet,
+    /// Nothing.
+    Vacuum,
+}
+
 /// What is wrong with keys, what was expected, and what to do.
 struct Fault(String, &'static str, &'static str);
 
@@ -61,13 +100,16 @@ impl Fault {
 }
 
 impl LeakageKeys {
+    /// Whether the fluid acts on the surfaces.
+    pub(super) fn acts(&self) -> bool {
+        matches!(self.coupling, Some(CouplingKind::Uniform | CouplingKind::TwoWay))
+    }
+
     /// A key that belongs to a gas, where one is given.
     pub(super) fn of_gas(&self) -> Option<&'static str> {
         let keys = [
             ("gas", self.gas.is_some()),
             ("molar_mass", self.molar_mass.is_some()),
-            ("inlet", self.inlet.is_some()),
-            ("outlet", self.outlet.is_some()),
             ("temperature", self.temperature.is_some()),
             ("rarefaction", self.rarefaction.is_some()),
         ];
@@ -91,10 +133,28 @@ impl LeakageKeys {
             );
         }
         let times = stored_times(&at.key("times"), self.times.as_ref(), output, end);
-        let leak = match checked(self, boundary) {
+        let inlet = match &self.inlet {
+            None => None,
+            Some(Form::Word(pressure)) => Some(held(pressure.get())),
+            Some(Form::Table(table)) => {
+                let kind = Kind::Pressure(Sign::Press);
+                Some(table.read(&at.key("inlet"), kind, "give the pressure as a number or a table")?.0)
+            }
+            Some(Form::List(never)) => match *never {},
+        };
+        let leak = match checked(self, boundary, inlet) {
             Ok(leak) => leak,
             Err(Fault(message, expected, help)) => return at.fault(message, expected, help),
         };
+        let changing = |points: &[(f64, f64)]| points.iter().any(|point| point.1 != points[0].1);
+        let of_run = matches!(leak.fluid, Some(Fluid::Gas { temperature: None, .. }));
+        if leak.coupling.is_some() && of_run && temperatures.is_some_and(changing) {
+            return at.key("coupling").fault(
+                "the rarefaction of a gas that acts on the surfaces is that of one temperature, but that of the run changes",
+                "`temperature` in [leakage]",
+                "give the temperature of the gas; it hardly changes where the surfaces open",
+            );
+        }
         Some(Leak { temperatures: temperatures.unwrap_or_default().to_vec(), times: times?, ..leak })
     }
 }
@@ -104,12 +164,26 @@ impl LeakageKeys {
 /// # Errors
 /// What is wrong, and what to do.
 pub fn leak(keys: &LeakageKeys, boundary: Boundary) -> Result<Leak, String> {
-    checked(keys, boundary)
+    let inlet = match &keys.inlet {
+        Some(Form::Word(pressure)) => Some(held(pressure.get())),
+        None => None,
+        Some(_) => return Err("the pressure of the inlet over time belongs to a case".into()),
+    };
+    if let Some(CouplingKind::Uniform | CouplingKind::TwoWay) = keys.coupling {
+        return Err(
+            "a fluid that acts on the surfaces belongs to a case: it is solved with the contact".into()
+        );
+    }
+    checked(keys, boundary, inlet)
         .map_err(|Fault(message, expected, help)| format!("{message}; expected {expected}; {help}"))
 }
 
-/// The leakage that the keys describe, at all stored times.
-fn checked(keys: &LeakageKeys, boundary: Boundary) -> Result<Leak, Fault> {
+fn held(value: f64) -> asperity::History {
+    asperity::History::Step { value }
+}
+
+/// The leakage that the keys describe, at all stored times, with the pressure of its inlet over time.
+fn checked(keys: &LeakageKeys, boundary: Boundary, inlet: Option<asperity::History>) -> Result<Leak, Fault> {
     let usual = if boundary == Boundary::Periodic { Sides::Periodic } else { Sides::Closed };
     let sides = keys.sides.unwrap_or(usual);
     let direction = keys.direction.unwrap_or_default();
@@ -120,11 +194,13 @@ fn checked(keys: &LeakageKeys, boundary: Boundary) -> Result<Leak, Fault> {
             "set direction to \"x\" or \"y\", or domain.boundary to \"periodic\"",
         ));
     }
+    let fluid = fluid(keys, inlet.as_ref())?;
     Ok(Leak {
         direction,
         sides,
         smallest_gap: keys.smallest_gap.map_or(0.0, |gap| gap.get()),
-        fluid: fluid(keys)?,
+        coupling: coupling(keys, inlet, fluid.as_ref())?,
+        fluid,
         field: keys.field.unwrap_or(false),
         temperatures: vec![],
         times: None,
@@ -137,9 +213,48 @@ fn missing<T>(key: &str, beside: &str, help: &'static str) -> Result<T, Fault> {
 }
 
 const TWO_PRESSURES: &str = "a gas takes absolute pressures: inlet and outlet";
+/// Gases have smaller viscosities \[Pa s\].
+const THINNEST_LIQUID: f64 = 5e-5;
 
-fn fluid(keys: &LeakageKeys) -> Result<Option<Fluid>, Fault> {
-    let Some(of_gas) = keys.of_gas() else {
+/// Inlet, its largest pressure, and outlet; `None` where neither is given.
+fn pressures(
+    keys: &LeakageKeys,
+    inlet: Option<&asperity::History>,
+    beside: &str,
+) -> Result<Option<[f64; 2]>, Fault> {
+    let (inlet, outlet) = match (inlet, keys.outlet) {
+        (None, None) => return Ok(None),
+        (Some(inlet), Some(outlet)) => (inlet.range(f64::MAX)[1], outlet.get()),
+        (None, Some(_)) => return missing("inlet", beside, TWO_PRESSURES),
+        (Some(_), None) => return missing("outlet", beside, TWO_PRESSURES),
+    };
+    let acts_everywhere = keys.coupling == Some(CouplingKind::Uniform);
+    if inlet < outlet || inlet == outlet && !acts_everywhere {
+        let message =
+            format!("the pressure of the inlet, {inlet} Pa, is not above that of the outlet, {outlet} Pa");
+        let help = "exchange them: a flow in the other direction is as large";
+        return Err(Fault::new(message, "inlet above outlet", help));
+    }
+    Ok(Some([inlet, outlet]))
+}
+
+fn fluid(keys: &LeakageKeys, inlet: Option<&asperity::History>) -> Result<Option<Fluid>, Fault> {
+    let of_gas = keys.of_gas();
+    let ends = pressures(keys, inlet, of_gas.unwrap_or("viscosity"))?;
+    if let (None, Some(viscosity), Some([inlet, outlet])) = (of_gas, keys.viscosity, ends) {
+        let viscosity = viscosity.get();
+        if keys.pressure_drop.is_some() {
+            let message = "leakage has `pressure_drop`, and also `inlet` and `outlet`, which give it";
+            return Err(Fault::new(message, "one of the two", "leave one of them out"));
+        }
+        if viscosity < THINNEST_LIQUID {
+            let message = format!("a viscosity of {viscosity} Pa s is that of a gas");
+            let help = "of a gas give `gas`, or viscosity and molar_mass; of a liquid the viscosity with its unit, \"1 mPa s\"";
+            return Err(Fault::new(message, "a liquid, or what the gas is", help));
+        }
+        return Ok(Some(Fluid::Liquid { pressure_drop: inlet - outlet, viscosity }));
+    }
+    let Some(of_gas) = of_gas.or(ends.map(|_| "inlet")) else {
         return match (keys.pressure_drop, keys.viscosity) {
             (None, None) => Ok(None),
             (Some(drop), Some(viscosity)) => {
@@ -156,17 +271,7 @@ fn fluid(keys: &LeakageKeys) -> Result<Option<Fluid>, Fault> {
         let message = format!("leakage has `pressure_drop`, of a liquid, and `{of_gas}`, of a gas");
         return Err(Fault::new(message, "one fluid", TWO_PRESSURES));
     }
-    let (inlet, outlet) = match (keys.inlet, keys.outlet) {
-        (Some(inlet), Some(outlet)) => (inlet.get(), outlet.get()),
-        (None, _) => return missing("inlet", of_gas, TWO_PRESSURES),
-        (_, None) => return missing("outlet", of_gas, TWO_PRESSURES),
-    };
-    if inlet <= outlet {
-        let message =
-            format!("the pressure of the inlet, {inlet} Pa, is not above that of the outlet, {outlet} Pa");
-        let help = "exchange them: a flow in the other direction is as large";
-        return Err(Fault::new(message, "inlet above outlet", help));
-    }
+    let Some([inlet, outlet]) = ends else { return missing("inlet", of_gas, TWO_PRESSURES) };
     Ok(Some(Fluid::Gas {
         kind: kind_of_gas(keys)?,
         temperature: keys.temperature.map(|temperature| temperature.get()),
@@ -174,6 +279,55 @@ fn fluid(keys: &LeakageKeys) -> Result<Option<Fluid>, Fault> {
         outlet,
         rarefaction: keys.rarefaction.unwrap_or_default(),
     }))
+}
+
+/// How the fluid acts on the surfaces.
+fn coupling(
+    keys: &LeakageKeys,
+    inlet: Option<asperity::History>,
+    fluid: Option<&Fluid>,
+) -> Result<Option<Coupling>, Fault> {
+    let action = match keys.coupling.unwrap_or(CouplingKind::OneWay) {
+        CouplingKind::OneWay => None,
+        CouplingKind::Uniform => Some(Action::Everywhere),
+        CouplingKind::TwoWay => Some(Action::Gaps(keys.pockets.unwrap_or_default())),
+    };
+    let needs = |key: &str, kind: &'static str, help| {
+        Err(Fault::new(
+            format!("leakage has `{key}`, but the fluid does not act on the surfaces that way"),
+            kind,
+            help,
+        ))
+    };
+    if keys.pockets.is_some() && !matches!(action, Some(Action::Gaps(_))) {
+        return needs("pockets", "coupling = \"two-way\"", "set coupling, or leave pockets out");
+    }
+    let Some(action) = action else {
+        if keys.reference.is_some() {
+            return needs("reference", "coupling = \"two-way\"", "set coupling, or leave reference out");
+        }
+        if matches!(keys.inlet, Some(Form::Table(_))) {
+            let help = "set coupling = \"two-way\", or give the pressure as a number";
+            return needs("inlet", "a pressure that is held, or coupling = \"two-way\"", help);
+        }
+        return Ok(None);
+    };
+    let (inlet, outlet) = match (inlet, keys.outlet, fluid) {
+        (Some(inlet), Some(outlet), _) => (inlet, outlet.get()),
+        (_, _, Some(Fluid::Liquid { pressure_drop, .. })) => (held(*pressure_drop), 0.0),
+        _ => {
+            return missing(
+                "inlet",
+                "coupling",
+                "give inlet, outlet and viscosity of a liquid; or inlet, outlet and gas",
+            );
+        }
+    };
+    let reference = match keys.reference.unwrap_or(Reference::Outlet) {
+        Reference::Outlet => outlet,
+        Reference::Vacuum => 0.0,
+    };
+    Ok(Some(Coupling { action, inlet, outlet, reference }))
 }
 
 fn kind_of_gas(keys: &LeakageKeys) -> Result<GasKind, Fault> {

@@ -103,6 +103,7 @@ pub use cost::CostEstimate;
 pub use describe::{Description, MaterialReport, Preparation, WaveReport};
 pub use error::{CaseError, CaseErrors};
 pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
+pub use form::Form;
 pub use given::Arrays;
 pub use leakage::{LeakageKeys, leak};
 pub use measured::Measured;
@@ -327,8 +328,8 @@ impl Case {
             };
             wanted.list = Quantity::at_rest().filter(possible).collect();
         }
-        if simulation.traction.is_some() {
-            let of_rows = Quantity::of_adhesion().chain([Quantity::ElasticEnergy]);
+        if let Some(traction) = &simulation.traction {
+            let of_rows = traction.quantities().into_iter().chain([Quantity::ElasticEnergy]);
             let new =
                 |quantity: &Quantity| !wanted.list.contains(quantity) && simulation.allows(*quantity).is_ok();
             let of_rows: Vec<Quantity> = of_rows.filter(new).collect();

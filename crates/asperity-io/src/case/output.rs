@@ -230,17 +230,17 @@ impl OutputKeys {
             let help = "set solver.plasticity = \"accumulate\"";
             at.key("fields").item(n).fault::<()>(message, "another field", help);
         }
-        let adhesive =
-            |kind: &FieldKind| matches!(kind, FieldKind::ContactPressure | FieldKind::AdhesiveTraction);
-        if let Some(n) =
-            self.fields.iter().flatten().position(adhesive).filter(|_| conditions.traction.is_none())
-        {
-            let message = "all pressure is contact pressure in a case without [adhesion]";
-            at.key("fields").item(n).fault::<()>(
-                message,
-                "another field",
-                "take \"pressure\", or add [adhesion]",
-            );
+        let law = conditions.traction.as_deref();
+        let adheres = law.is_some_and(|law| law.as_adhesion().is_some());
+        let lacks = |kind: &FieldKind| match kind {
+            FieldKind::ContactPressure => law.is_none(),
+            FieldKind::AdhesiveTraction => !adheres,
+            _ => false,
+        };
+        if let Some(n) = self.fields.iter().flatten().position(lacks) {
+            let message = "only the contact presses on the surfaces of this case";
+            let help = "take \"pressure\", or add [adhesion], or of the contact pressure leakage.coupling = \"two-way\"";
+            at.key("fields").item(n).fault::<()>(message, "another field", help);
         }
         for (n, quantity) in self.named() {
             let at = at.key("quantities").item(n);

@@ -33,6 +33,7 @@ const UNIONS: &[Union] = &[
     Union("temperature.history", "kind", &[]),
     Union("motion.path", "kind", &[]),
     Union("motion.velocity", "kind", &[]),
+    Union("leakage.inlet", "kind", &[]),
     // A material of its own file.
     Union("material.shift", "model", SHIFT),
     Union("material", "model", MATERIAL),
@@ -199,8 +200,10 @@ impl<'r, 't> Reader<'r, 't> {
         let (span, Union(_, tag, shared)) = (value.span(), union);
         let table = match value.get_mut() {
             DeValue::Table(table) => table,
-            // A velocity may be constant.
-            _ if self.text.at(&span).key == "motion.velocity" => return Ok(()),
+            // These may be constant.
+            _ if ["motion.velocity", "leakage.inlet"].contains(&&self.text.at(&span).key[..]) => {
+                return Ok(());
+            }
             _ => {
                 let expected = format!("a table that begins with the key `{tag}`");
                 let spot = self.text.at(&span);

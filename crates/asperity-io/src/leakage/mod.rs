@@ -8,10 +8,11 @@ pub mod words;
 
 use asperity::finding::LeakState;
 use asperity::leakage::{
-    CellKind, FlowOptions, Gas, Opening, Passages, Rarefaction, Sides, Species, conductance,
+    CellKind, Direction, FlowOptions, Gas, Opening, Passages, Rarefaction, Sides, Species, conductance,
     effective_medium, factor_bytes, gas_flow, leak_rate, liquid, plate, standard,
 };
-use asperity::{Grid, Result};
+use asperity::traction::{Action, FluidPressure};
+use asperity::{Grid, History, Result};
 use ndarray::{Array2, ArrayView2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -47,6 +48,9 @@ pub struct Leak {
     pub smallest_gap: f64,
     /// The fluid; without one only the gap is assessed.
     pub fluid: Option<Fluid>,
+    /// How the fluid acts on the surfaces, where it does.
+    #[serde(default)]
+    pub coupling: Option<Coupling>,
     /// Whether the pressure of the fluid is stored.
     pub field: bool,
     /// Temperature of the run over time (\[s\], \[K\]), straight in between; may be empty.
@@ -55,6 +59,19 @@ pub struct Leak {
     /// Times \[s\] of stored fields; `None` for all that are stored.
     #[serde(default)]
     pub times: Option<Vec<f64>>,
+}
+
+/// How a fluid acts on the surfaces.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Coupling {
+    /// Where.
+    pub action: Action,
+    /// Pressure of the inlet over time \[Pa, absolute\].
+    pub inlet: History,
+    /// Pressure of the outlet \[Pa, absolute\].
+    pub outlet: f64,
+    /// Pressure that the load does not contain \[Pa, absolute\].
+    pub reference: f64,
 }
 
 /// A fluid and what drives it.
@@ -178,11 +195,7 @@ impl Leak {
         contact: Option<ArrayView2<'_, u8>>,
         time: f64,
     ) -> Result<Leakage> {
-        let direction = match self.direction {
-            LeakDirection::X | LeakDirection::Both => asperity::leakage::Direction::X,
-            LeakDirection::Y => asperity::leakage::Direction::Y,
-        };
-        let opening = Opening::new(grid, gap, contact, direction, self.sides, self.smallest_gap)?;
+        let opening = Opening::new(grid, gap, contact, self.axis(), self.sides, self.smallest_gap)?;
         let passages = Passages::of(&opening);
         let options = FlowOptions::default();
         let flow = liquid(&opening, &passages, &options)?;
@@ -190,13 +203,18 @@ impl Leak {
         let medium = effective_medium(&opening).cbrt();
         let place = passages.constriction.map_or([f64::NAN; 2], |c| [grid.x(c.cell[0]), grid.y(c.cell[1])]);
         let hydraulic_gap = flow.hydraulic_gap();
-        let (pressure, rates) = match self.fluid {
+        let (pressure, rates) = match self.fluid_at(time) {
             None => (flow.pressure, [None; 5]),
             Some(Fluid::Liquid { pressure_drop, viscosity }) => {
-                let of = |t: f64| leak_rate(t, &opening, pressure_drop, viscosity).map(Some);
+                // Without a drop nothing flows.
+                let of = |t: f64| match pressure_drop > 0.0 {
+                    true => leak_rate(t, &opening, pressure_drop, viscosity).map(Some),
+                    false => Ok(Some(0.0)),
+                };
                 let rates = [flow.transmissivity, critical.powi(3), medium.powi(3)].map(of);
                 let [rate, junction, medium] = rates;
-                (flow.pressure * pressure_drop, [rate?, None, junction?, medium?, None])
+                let outlet = self.coupling.as_ref().map_or(0.0, |coupling| coupling.outlet);
+                (flow.pressure * pressure_drop + outlet, [rate?, None, junction?, medium?, None])
             }
             Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
                 drop(flow);
@@ -231,6 +249,55 @@ impl Leak {
             cells: passages.map(&opening),
             pressure,
         })
+    }
+
+    /// Direction of the flow that is computed first.
+    fn axis(&self) -> Direction {
+        match self.direction {
+            LeakDirection::Y => Direction::Y,
+            LeakDirection::X | LeakDirection::Both => Direction::X,
+        }
+    }
+
+    /// The fluid with its pressures at a time \[s\].
+    fn fluid_at(&self, time: f64) -> Option<Fluid> {
+        let now = self.coupling.as_ref().map(|coupling| (coupling.inlet.after(time), coupling.outlet));
+        match (self.fluid?, now) {
+            (Fluid::Liquid { viscosity, .. }, Some((inlet, outlet))) => {
+                Some(Fluid::Liquid { pressure_drop: inlet - outlet, viscosity })
+            }
+            (Fluid::Gas { kind, temperature, rarefaction, .. }, Some((inlet, outlet))) => {
+                Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction })
+            }
+            (fluid, None) => Some(fluid),
+        }
+    }
+
+    /// What acts on the surfaces, where the fluid does.
+    pub(crate) fn traction(&self) -> Result<Option<FluidPressure>> {
+        let Some(Coupling { action, inlet, outlet, reference }) = self.coupling.clone() else {
+            return Ok(None);
+        };
+        let (gas, viscosity) = match self.fluid {
+            Some(Fluid::Gas { kind, temperature, rarefaction, .. }) => {
+                let gas = self.gas(kind, temperature, 0.0)?;
+                (Some((gas, rarefaction)), gas.viscosity)
+            }
+            Some(Fluid::Liquid { viscosity, .. }) => (None, viscosity),
+            None => (None, 0.0),
+        };
+        let (direction, sides, smallest_gap) = (self.axis(), self.sides, self.smallest_gap);
+        Ok(Some(FluidPressure {
+            inlet,
+            outlet,
+            reference,
+            gas,
+            viscosity,
+            direction,
+            sides,
+            smallest_gap,
+            action,
+        }))
     }
 
     fn gas(&self, kind: GasKind, temperature: Option<f64>, time: f64) -> Result<Gas> {

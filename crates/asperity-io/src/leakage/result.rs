@@ -191,7 +191,8 @@ fn evaluate(
         let resolved = diagnostics.see(&LeakState {
             row: Some(step),
             gap_error: tolerance * displacement.abs(),
-            pressure_drop: leak.fluid.as_ref().map(Fluid::pressure_drop),
+            // A fluid that acts on the surfaces has opened the gap already.
+            pressure_drop: leak.fluid.as_ref().filter(|_| leak.coupling.is_none()).map(Fluid::pressure_drop),
             mean_pressure: row.mean_pressure,
             ..state.alone()
         });

@@ -1,9 +1,11 @@
 //! Leakage in words: the settings, the leak rate, and the times at which the seal is tight.
 
-use super::{Fluid, GasKind, Leak, LeakDirection, ROOM};
+use super::{Coupling, Fluid, GasKind, Leak, LeakDirection, ROOM};
 use crate::answer::Units;
 use crate::choice;
 use crate::readable::quantity;
+use asperity::History;
+use asperity::traction::Action;
 
 /// 0 degC \[K\].
 const ICE: f64 = 273.15;
@@ -11,10 +13,20 @@ const ICE: f64 = 273.15;
 impl Leak {
     /// The fluid and its pressures: "air at 20 °C from 300 kPa to 100 kPa".
     pub fn fluid_words(&self) -> String {
+        let acts = self.coupling.as_ref().map_or("", |coupling| match coupling.action {
+            Action::Everywhere => ", which presses the surfaces apart everywhere",
+            Action::Gaps(_) => ", which presses the surfaces apart",
+        });
+        self.bare_words() + acts
+    }
+
+    fn bare_words(&self) -> String {
+        let changes = |coupling: &Coupling| !matches!(coupling.inlet, History::Step { .. });
+        let up_to = if self.coupling.as_ref().is_some_and(changes) { "up to " } else { "" };
         match self.fluid {
             None => "no fluid, the gap alone".to_owned(),
             Some(Fluid::Liquid { pressure_drop, viscosity }) => format!(
-                "liquid of {}, pressure drop {}",
+                "liquid of {}, pressure drop {up_to}{}",
                 quantity(viscosity, "Pa s"),
                 quantity(pressure_drop, "Pa")
             ),
@@ -27,7 +39,7 @@ impl Leak {
                     None if !self.temperatures.is_empty() => "the temperature of the run".to_owned(),
                     kelvin => format!("{} °C", (1e3 * (kelvin.unwrap_or(ROOM) - ICE)).round() / 1e3),
                 };
-                format!("{name} at {at} from {} to {}", quantity(inlet, "Pa"), quantity(outlet, "Pa"))
+                format!("{name} at {at} from {up_to}{} to {}", quantity(inlet, "Pa"), quantity(outlet, "Pa"))
             }
         }
     }

@@ -11,9 +11,9 @@ use super::strain::Strain;
 use super::thin::Widest;
 use super::worst::extend;
 use super::{
-    ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE,
-    LARGE_STRAIN, SPOTS_UNRESOLVED, STEPS_TOO_LONG, adhesion, domain, material, plausible, strain, surface,
-    thin, time,
+    ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, FLUID_CHATTER, FLUID_LIFTS,
+    Finding, LARGE_SLOPE, LARGE_STRAIN, SPOTS_UNRESOLVED, SQUEEZE_SLOW, STEPS_TOO_LONG, adhesion, domain,
+    fluid, material, plausible, strain, surface, thin, time,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -76,6 +76,7 @@ pub struct Diagnostics {
     strain: Strain,
     slides: Slides,
     adhesion: adhesion::Border,
+    fluid: fluid::Wet,
     balance: Balance,
     beyond: Beyond,
     /// Where an approach is held while cells are at the hardness, and the control of each stage.
@@ -111,6 +112,7 @@ impl Diagnostics {
             strain: Strain::new(simulation, radius(grid, known.parts)),
             slides: Slides::default(),
             adhesion: adhesion::Border::default(),
+            fluid: fluid::Wet::default(),
             balance: Balance::default(),
             beyond: Beyond::default(),
             held: time::Held::default(),
@@ -157,6 +159,7 @@ impl Diagnostics {
                 }
                 BEYOND_HISTOGRAM => self.beyond.resume(finding),
                 ADHESION_AT_BORDER => self.adhesion.resume(finding),
+                FLUID_LIFTS | FLUID_CHATTER | SQUEEZE_SLOW => self.fluid.resume(finding),
                 ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
                 _ => {}
             }
@@ -173,6 +176,7 @@ impl Diagnostics {
             self.slides.see(index, row.coordinate, &friction);
         }
         self.adhesion.see(step);
+        self.fluid.see(step, row);
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);
         }
@@ -264,6 +268,7 @@ impl Diagnostics {
         found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
         found.extend(self.slides.finding());
         found.extend(self.adhesion.finding());
+        found.extend(self.fluid.findings());
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
         found
@@ -315,5 +320,6 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     found.extend(plausible::unlikely_end(simulation));
     found.extend(time::of(simulation));
     found.extend(adhesion::before(simulation));
+    found.extend(fluid::before(simulation));
     found
 }

@@ -84,8 +84,8 @@ impl LeakDiagnostics {
             let [low, high] = opened(worst.value / mean);
             format!(
                 "The fluid pressure drops by {}{}, more than 0.02 of the mean pressure, {}. It would push the bodies apart, which is not \
-                 computed: the true leak is about {} times as large far from sealing (a fifth of the area in contact), and {} times close \
-                 to it. `asperity seal` computes a seal with its fluid pressure.",
+                 computed here: the true leak is about {} times as large far from sealing (a fifth of the area in contact), and {} times close \
+                 to it. leakage.coupling = \"two-way\" and `asperity seal` compute it.",
                 si(worst.value, "Pa"),
                 worst.place(),
                 si(mean, "Pa"),

@@ -31,6 +31,7 @@ mod diagnostics;
 mod domain;
 mod energy;
 mod expected;
+mod fluid;
 mod histogram;
 mod leak;
 mod material;
@@ -252,6 +253,16 @@ codes! {
     ADHESION_UNRESOLVED = "adhesion-unresolved";
     /// Attraction at the border of a free domain.
     ADHESION_AT_BORDER = "adhesion-at-border";
+    /// The fluid carries all of the load in a film.
+    FLUID_LIFTS = "fluid-lifts";
+    /// Cells whose access to the fluid has no steady state.
+    FLUID_CHATTER = "fluid-chatter";
+    /// A prescribed approach fixes the mean gap of a periodic contact, whatever the fluid does.
+    FLUID_APPROACH_HELD = "fluid-approach-held";
+    /// The fluid acts on the cells of a free domain only.
+    FLUID_ACTS_ON_DOMAIN = "fluid-acts-on-domain";
+    /// The fluid flows out of the gap more slowly than the gap closes.
+    SQUEEZE_SLOW = "squeeze-slow";
 }
 
 #[cfg(test)]

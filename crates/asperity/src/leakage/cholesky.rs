@@ -101,6 +101,11 @@ impl Cholesky {
         Some(Cholesky { symbolic, values: factor, right: vec![0.0; n], cells, scale, work })
     }
 
+    /// The numbers of its cells in the network.
+    pub fn cells(&self) -> impl Iterator<Item = usize> {
+        self.cells.iter().map(|cell| *cell as usize)
+    }
+
     /// out = A^-1 b, and 0 for cells that are not unknowns.
     pub fn solve(&mut self, b: &[f64], out: &mut [f64]) {
         for ((right, cell), scale) in self.right.iter_mut().zip(&self.cells).zip(&self.scale) {

@@ -13,7 +13,7 @@ use ndarray::{Array2, ArrayView2};
 use super::network::{Network, harmonic};
 use super::opening::{Opening, Sides};
 use super::passages::{CellKind, Passages};
-use super::solve::{FlowOptions, Inverse, solve};
+use super::solve::{FlowOptions, Previous};
 use crate::error::{Result, positive};
 
 /// Largest mobility, relative to that of the critical gap.
@@ -65,17 +65,24 @@ pub fn leak_rate(transmissivity: f64, opening: &Opening, pressure_drop: f64, vis
 /// [`Error::NotConverged`](crate::Error::NotConverged) if the iteration (used if the memory does not suffice for a factorisation)
 /// does not converge.
 pub fn liquid(opening: &Opening, passages: &Passages, options: &FlowOptions) -> Result<Flow> {
+    liquid_after(opening, passages, options, &mut Previous::default())
+}
+
+/// The same after a flow through a gap that differs little.
+pub(crate) fn liquid_after(
+    opening: &Opening,
+    passages: &Passages,
+    options: &FlowOptions,
+    previous: &mut Previous,
+) -> Result<Flow> {
     let Some(constriction) = passages.constriction else {
         return Ok(Flow { transmissivity: 0.0, pressure: still(opening, passages, None), iterations: 0 });
     };
     let mobility = mobility(opening, passages, constriction.gap);
-    let mut channel = Channel::new(opening, &mobility);
-    let mut inverse = Inverse::new(&channel.network, options);
-    let mut x = vec![0.0; mobility.len()];
-    let (conductance, iterations) = channel.solve(&mut inverse, &mut x, options)?;
+    let (conductance, iterations) = Channel::new(opening, &mobility).solve(previous, options)?;
     let [length, width] = opening.size();
     let transmissivity = constriction.gap.powi(3) * conductance * length / width;
-    let pressure = still(opening, passages, Some((&mobility, &x)));
+    let pressure = still(opening, passages, Some((&mobility, &previous.x)));
     Ok(Flow { transmissivity, pressure, iterations })
 }
 
@@ -129,20 +136,15 @@ impl Channel {
         Channel { network, inlet, outlet, b }
     }
 
-    /// Solves for the pressure, starting from the given x; returns the conductance, which is the power for a unit drop.
-    pub fn solve(
-        &mut self,
-        inverse: &mut Inverse,
-        x: &mut [f64],
-        options: &FlowOptions,
-    ) -> Result<(f64, usize)> {
-        let last = x.len() - self.outlet.len();
+    /// Solves for the pressure, which `previous` then holds; returns the conductance, which is the power for a unit drop.
+    pub fn solve(&self, previous: &mut Previous, options: &FlowOptions) -> Result<(f64, usize)> {
+        let last = self.b.len() - self.outlet.len();
         let power = |x: &[f64]| -> f64 {
             let at_inlet: f64 = self.inlet.iter().zip(x).map(|(t, x)| t * (1.0 - x).powi(2)).sum();
             let at_outlet: f64 = self.outlet.iter().zip(&x[last..]).map(|(t, x)| t * x * x).sum();
             self.network.power(x, [0.0; 2]) + at_inlet + at_outlet
         };
-        solve(&self.network, inverse, &self.b, x, &power, options)
+        previous.solve(&self.network, &self.b, &power, options)
     }
 }
 

@@ -18,7 +18,7 @@ use super::flow::{Channel, mobility, still};
 use super::gas::{Gas, Rarefaction, STANDARD_TEMPERATURE};
 use super::opening::Opening;
 use super::passages::Passages;
-use super::solve::{FlowOptions, Inverse};
+use super::solve::{FlowOptions, Previous};
 use crate::error::{Error, NotConverged, Result, non_negative, positive};
 
 /// Largest number of passes; usually five are enough.
@@ -28,8 +28,6 @@ const SETTLED: f64 = 1e-9;
 /// The factor of the rarefaction is evaluated at no less than this fraction of the inlet pressure: the resistance below it is
 /// negligible.
 const LEAST_PRESSURE: f64 = 1e-5;
-/// Number of iterations of a pass above which the factorisation is repeated.
-const WORN: usize = 12;
 
 /// The flow of a gas through a gap.
 #[derive(Clone, Debug)]
@@ -92,8 +90,21 @@ pub fn gas_flow(
     passages: &Passages,
     gas: &Gas,
     rarefaction: Rarefaction,
+    pressures: [f64; 2],
+    options: &FlowOptions,
+) -> Result<GasFlow> {
+    gas_flow_after(opening, passages, gas, rarefaction, pressures, options, &mut Previous::default())
+}
+
+/// The same after a flow through a gap that differs little.
+pub(crate) fn gas_flow_after(
+    opening: &Opening,
+    passages: &Passages,
+    gas: &Gas,
+    rarefaction: Rarefaction,
     [inlet, outlet]: [f64; 2],
     options: &FlowOptions,
+    previous: &mut Previous,
 ) -> Result<GasFlow> {
     pressures(inlet, outlet)?;
     let at_rest = |pressure: &mut Array2<f64>| pressure.mapv_inplace(|p| outlet + (inlet - outlet) * p);
@@ -122,16 +133,15 @@ pub fn gas_flow(
     };
     let mut pressure = vec![0.5 * (inlet + outlet); bare.len()];
     let mut channel = Channel::new(opening, &mobility_at(&pressure));
-    let mut inverse = Inverse::new(&channel.network, options);
-    let mut x = vec![0.0; bare.len()];
     let mut conductance = 0.0;
     for pass in 1..=PASSES {
-        let (now, iterations) = channel.solve(&mut inverse, &mut x, options)?;
-        pressure.par_iter_mut().zip(&x).for_each(|(p, x)| *p = pressure_of(*x, *p));
+        let (now, _) = channel.solve(previous, options)?;
+        let x = &previous.x;
+        pressure.par_iter_mut().zip(x).for_each(|(p, x)| *p = pressure_of(*x, *p));
         if (now - conductance).abs() <= SETTLED * now {
             let leak = plate(gas, rarefaction, critical, opening.size(), [inlet, outlet])?;
             let [length, width] = opening.size();
-            let mut map = still(opening, passages, Some((&bare, &x)));
+            let mut map = still(opening, passages, Some((&bare, x)));
             map.mapv_inplace(|x| if x.is_nan() { x } else { pressure_of(x, inlet) });
             return Ok(GasFlow {
                 leak_rate: leak * now * length / width,
@@ -142,9 +152,6 @@ pub fn gas_flow(
         }
         conductance = now;
         channel = Channel::new(opening, &mobility_at(&pressure));
-        if iterations > WORN {
-            inverse = Inverse::new(&channel.network, options);
-        }
     }
     Err(NotConverged::of("the flow of the gas through the gap", PASSES, f64::NAN, SETTLED))
 }

@@ -72,5 +72,9 @@ pub use passages::{CellKind, Constriction, Passages};
 pub use solve::FlowOptions;
 pub use tensor::conductance;
 
+pub(crate) use flow::liquid_after;
+pub(crate) use gas_flow::gas_flow_after;
+pub(crate) use solve::Previous;
+
 #[cfg(test)]
 mod tests;

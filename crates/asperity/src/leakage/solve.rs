@@ -8,7 +8,7 @@
 use super::cholesky::{Cholesky, factor_bytes};
 use super::multigrid::Multigrid;
 use super::network::Network;
-use crate::error::{NotConverged, Result};
+use crate::error::{Error, NotConverged, Result};
 use asperity_sweep::{dot, each};
 
 /// Options of the flow solver.
@@ -29,8 +29,8 @@ impl Default for FlowOptions {
 
 /// An approximate inverse of a network's matrix.
 pub(super) enum Inverse {
-    /// Exact up to rounding.
-    Factor(Box<Cholesky>),
+    /// Exact up to rounding; cells that the network has since are scaled by one over their diagonal.
+    Factor(Box<Cholesky>, Vec<(usize, f64)>),
     /// One cycle.
     Cycle(Multigrid),
 }
@@ -40,14 +40,31 @@ impl Inverse {
         let unknowns = network.diagonal().iter().filter(|d| **d > 0.0).count();
         let factor = if factor_bytes(unknowns) <= options.memory { Cholesky::new(network) } else { None };
         match factor {
-            Some(factor) => Inverse::Factor(Box::new(factor)),
+            Some(factor) => Inverse::Factor(Box::new(factor), vec![]),
             None => Inverse::Cycle(Multigrid::new(network)),
+        }
+    }
+
+    /// The same for a network that differs little from the one that was factorised.
+    fn renew(&mut self, network: &Network) {
+        match self {
+            Inverse::Factor(factor, added) => {
+                let diagonal = network.diagonal();
+                let mut is_new: Vec<bool> = diagonal.iter().map(|d| *d > 0.0).collect();
+                factor.cells().for_each(|cell| is_new[cell] = false);
+                let cells = (0..diagonal.len()).filter(|cell| is_new[*cell]);
+                *added = cells.map(|cell| (cell, diagonal[cell].recip())).collect();
+            }
+            Inverse::Cycle(multigrid) => *multigrid = Multigrid::new(network),
         }
     }
 
     fn apply(&mut self, r: &[f64], z: &mut [f64]) {
         match self {
-            Inverse::Factor(factor) => factor.solve(r, z),
+            Inverse::Factor(factor, added) => {
+                factor.solve(r, z);
+                added.iter().for_each(|(cell, inverse)| z[*cell] = inverse * r[*cell]);
+            }
             Inverse::Cycle(multigrid) => multigrid.cycle(r, z),
         }
     }
@@ -55,9 +72,43 @@ impl Inverse {
     /// The power has converged if it changes by less than this fraction over this number of iterations.
     fn settled(&self) -> (f64, usize) {
         match self {
-            Inverse::Factor(_) => (1e-12, 1),
+            Inverse::Factor(..) => (1e-12, 1),
             Inverse::Cycle(_) => (1e-8, 10),
         }
+    }
+}
+
+/// What a flow leaves for the next one through a gap that differs little: its solution, and the factorisation that it used.
+#[derive(Default)]
+pub(crate) struct Previous {
+    pub(super) x: Vec<f64>,
+    inverse: Option<Inverse>,
+}
+
+/// Iterations with an old factorisation after which a new one is made.
+const WORN: usize = 12;
+
+impl Previous {
+    /// Solves A x = b by [`solve`] from the last x on.
+    pub(super) fn solve(
+        &mut self,
+        network: &Network,
+        b: &[f64],
+        power: &dyn Fn(&[f64]) -> f64,
+        options: &FlowOptions,
+    ) -> Result<(f64, usize)> {
+        self.x.resize(b.len(), 0.0);
+        if let Some(inverse) = &mut self.inverse {
+            inverse.renew(network);
+            let few = FlowOptions { max_iterations: WORN.min(options.max_iterations), ..*options };
+            let limits = if matches!(inverse, Inverse::Cycle(_)) { options } else { &few };
+            match solve(network, inverse, b, &mut self.x, power, limits) {
+                Err(Error::NotConverged(_)) => {}
+                solved => return solved,
+            }
+        }
+        let inverse = self.inverse.insert(Inverse::new(network, options));
+        solve(network, inverse, b, &mut self.x, power, options)
     }
 }
 

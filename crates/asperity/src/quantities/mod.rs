@@ -158,9 +158,30 @@ quantities! {
     /// Σ γ(g): potential energy of the attraction, 0 where the surfaces are far apart, in J.
     AdhesionEnergy = "adhesion_energy" ["J"] "adhesion energy", Adhesion, ("Energy", "energy", "adhesion");
     /// Passes of the loop around the contact solver.
-    OuterIterations = "outer_iterations" ["1"] "passes of the adhesion", Adhesion, ("Passes of the adhesion", "number", "");
+    OuterIterations = "outer_iterations" ["1"] "passes of the loop over the tractions", Traction, ("Passes of the loop over the tractions", "number", "");
     /// Change of the attraction in the last of them, relative to all forces between the surfaces.
     AdhesionResidual = "adhesion_residual" ["1"] "change of the adhesion in the last pass", Adhesion, ("Change of the adhesion in the last pass", "share", "");
+    /// Load that the fluid carries on the open cells, in N; of a contact with a fluid that acts on it, as the nine that follow.
+    FluidLoad = "fluid_load" ["N"] "load on the fluid", Fluid, ("Parts of the load", "load", "fluid");
+    /// Load on the cells in contact, in N. The load is the sum.
+    ContactLoad = "contact_load" ["N"] "load on the contact", Fluid, ("Parts of the load", "load", "contact");
+    /// Pressure of the fluid at the inlet, in Pa.
+    InletPressure = "inlet_pressure" ["Pa"] "pressure of the fluid at the inlet", Fluid, ("Pressure of the fluid", "pressure", "at the inlet");
+    /// Whether the gap connects inlet and outlet: 1 or 0.
+    Percolates = "connected" ["1"] "whether the gap connects inlet and outlet", Fluid, ("Inlet and outlet", "connected", "");
+    /// Whether the fluid carries all of the load in a film without contact: 1 or 0.
+    Film = "film" ["1"] "film without contact", Fluid, ("Film", "without contact", "");
+    /// Area of the pockets, which neither inlet nor outlet reaches, in m2.
+    PocketArea = "pocket_area" ["m2"] "area of the pockets", Fluid, ("Area of the pockets", "area", ""),
+        on a line ["m"] "length of the pockets" ("Length of the pockets", "length");
+    /// Largest pressure in a pocket, in Pa; 0 where there is none.
+    PocketPressureMax = "pocket_pressure_max" ["Pa"] "largest pressure in a pocket", Fluid, ("Pressure of the fluid", "pressure", "in a pocket");
+    /// Cells whose access to the fluid changed again and again in the loop and was then held.
+    LatchedCells = "latched_cells" ["1"] "cells whose access to the fluid was held", Fluid, ("Held cells", "number", "");
+    /// Spread of the conductance of the gap over the last 20 passes, relative.
+    LeakSpread = "leak_spread" ["1"] "spread of the leak over the last passes", Fluid, ("Spread of the leak", "share", "");
+    /// Change of the fluid's tractions in the last pass, relative to all forces between the surfaces.
+    FluidResidual = "fluid_residual" ["1"] "change of the fluid's tractions in the last pass", Fluid, ("Change in the last pass", "share", "");
     /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.
     Velocity = "velocity" ["m/s"] "velocity", Motion, ("Velocity", "velocity", "");
     /// Distance that the contact has moved, in m.
@@ -214,8 +235,10 @@ enum Kind {
     Energy,
     /// The step or the response of the contact: known only in runs in time.
     Response,
-    /// A contact with adhesion: every row has it.
+    /// A contact with tractions that depend on the gap, with adhesion, with a fluid: every row has it.
+    Traction,
     Adhesion,
+    Fluid,
     /// A contact in motion: every row has it, or only on request.
     Motion,
     MotionOnRequest,
@@ -233,14 +256,23 @@ pub struct Panel {
 }
 
 impl Quantity {
-    /// The quantities of every contact, moving or not, with adhesion or without.
+    /// The quantities of every contact, moving or not, with other tractions or without.
     pub fn at_rest() -> impl Iterator<Item = Quantity> {
-        Quantity::ALL.into_iter().filter(|quantity| !quantity.is_of_motion() && !quantity.is_of_adhesion())
+        Quantity::ALL.into_iter().filter(|quantity| !quantity.is_of_motion() && !quantity.is_of_traction())
     }
 
     /// The quantities that every row of an adhesive contact has.
     pub fn of_adhesion() -> impl Iterator<Item = Quantity> {
-        Quantity::ALL.into_iter().filter(|quantity| quantity.is_of_adhesion())
+        Quantity::ALL
+            .into_iter()
+            .filter(|quantity| matches!(quantity.declaration().kind, Kind::Adhesion | Kind::Traction))
+    }
+
+    /// The quantities that every row of a contact with a fluid that acts on it has.
+    pub fn of_fluid() -> impl Iterator<Item = Quantity> {
+        Quantity::ALL
+            .into_iter()
+            .filter(|quantity| matches!(quantity.declaration().kind, Kind::Fluid | Kind::Traction))
     }
 
     /// The quantities that every row of a contact in motion has.
@@ -319,9 +351,9 @@ impl Quantity {
         matches!(self.declaration().kind, Kind::Motion | Kind::MotionOnRequest)
     }
 
-    /// Whether it belongs to a contact with adhesion.
-    pub fn is_of_adhesion(self) -> bool {
-        self.declaration().kind == Kind::Adhesion
+    /// Whether it belongs to a contact with tractions that depend on the gap.
+    pub fn is_of_traction(self) -> bool {
+        matches!(self.declaration().kind, Kind::Adhesion | Kind::Fluid | Kind::Traction)
     }
 
     /// Whether it needs the memory of [`Spots`](crate::spots::Spots), because connected cells are found.

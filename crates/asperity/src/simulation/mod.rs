@@ -19,7 +19,7 @@ use crate::process::Motion;
 use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
 use crate::spots::Spots;
 use crate::time::{Plan, TimeGrid};
-use crate::traction::TractionLaw;
+use crate::traction::{TractionLaw, TractionSolver};
 
 /// How the pressure varies over a time step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -130,6 +130,7 @@ impl Simulation {
     /// The instants at which steps end in addition to those of the grid.
     pub(crate) fn stops(&self) -> Vec<f64> {
         let mut stops = self.include.clone();
+        stops.extend(self.traction.iter().flat_map(|law| law.breaks(self.times.end())));
         // A travel that is too long is refused by `validate`.
         stops.extend(self.motion.iter().flat_map(|motion| motion.stops(self).unwrap_or_default()));
         stops
@@ -175,6 +176,7 @@ impl Simulation {
             + history::bytes(self)
             // the gap with its dents
             + has(self.plasticity == Plasticity::Accumulate, 8 * n)
+            + self.traction.as_ref().map_or(0, |law| TractionSolver::bytes(&**law, grid))
             + has(self.quantities.has(Quantity::ContactStiffness), ContactStiffness::bytes(grid, self.boundary))
             + has(self.quantities.list.iter().any(|q| q.connects()), Spots::bytes(grid))
     }

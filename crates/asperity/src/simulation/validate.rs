@@ -99,9 +99,19 @@ impl Simulation {
             "one that is solved for layers that creep differently. Leave it out, or give all layers and bodies the same relative \
              creep"
         } else if quantity == Quantity::ContactStiffness && self.traction.is_some() {
-            "one that an adhesive contact has: its stiffness includes that of the attraction and is infinite where cells snap"
-        } else if quantity.is_of_adhesion() && self.traction.is_none() {
-            "one that the rows have. Only an adhesive contact has this one: add [adhesion]"
+            "one that a contact under other tractions has: its stiffness includes theirs and is infinite where cells snap"
+        } else if quantity.is_of_traction() && !self.has_traction_with(quantity) {
+            match Quantity::of_adhesion().any(|own| own == quantity) {
+                true => "one that the rows have. Only an adhesive contact has this one: add [adhesion]",
+                false => {
+                    "one that the rows have. Only a contact that a fluid acts on has this one: set leakage.coupling to \"two-way\""
+                }
+            }
+        } else if is_energy
+            && quantity != Quantity::ElasticEnergy
+            && self.traction.as_ref().is_some_and(|law| law.as_fluid().is_some())
+        {
+            "one that does not need the work of the fluid, which is not known. The elastic energy does not"
         } else {
             return Ok(());
         };
@@ -206,10 +216,14 @@ impl Simulation {
         require(self.motion.is_none(), "motion", "motion", "given".into(), expected)
     }
 
+    fn has_traction_with(&self, quantity: Quantity) -> bool {
+        self.traction.as_ref().is_some_and(|law| law.quantities().contains(&quantity))
+    }
+
     /// What goes with a traction besides the contact.
     fn validate_traction(&self) -> Result<()> {
         let Some(traction) = &self.traction else { return Ok(()) };
-        let expected = "\"cap\" where the surfaces adhere";
+        let expected = "\"cap\" where other tractions act on the surfaces";
         require(self.plasticity == Plasticity::Cap, "plasticity", "\"accumulate\"", expected)
             .map_err(|error| error.of("solver.plasticity"))?;
         traction.check(self)

@@ -9,6 +9,7 @@ use crate::contact::{
 use crate::error::Result;
 use crate::operator::Operator;
 use crate::simulation::Simulation;
+use crate::time::Instant;
 use crate::traction::TractionSolver;
 
 pub(crate) struct StepContact {
@@ -51,7 +52,7 @@ impl StepContact {
             changes: false,
             options: simulation.solver,
             hardness: CutOff { all: simulation.hardness, of_cells: simulation.hardness_of_cells() },
-            traction: law.map(|law| TractionSolver::new(law, &simulation.grid)),
+            traction: law.map(|law| TractionSolver::new(law, &simulation.grid, simulation.solver.tolerance)),
             interrupt: None,
         }
     }
@@ -98,6 +99,11 @@ impl StepContact {
         self.operator.apply_into(&known.pressure, &mut known.unit_displacement);
         known.rounding = 1.0;
         1
+    }
+
+    /// The instant that is solved for.
+    pub(super) fn begin(&mut self, at: &Instant) {
+        self.traction.iter_mut().for_each(|traction| traction.begin(at));
     }
 
     pub(crate) fn solve(

@@ -133,6 +133,7 @@ impl Stepper {
         let prescribed = step.prescribed(self.simulation.grid.area());
         let start = self.guess(&step, prescribed);
         self.step = Some(step.clone());
+        self.contact.begin(&step.instant);
         let StepState { now, gap, compliance, .. } = &mut self.state;
         match self.contact.solve(start, gap, *compliance, prescribed, now) {
             Ok(outcome) => self.outcome = self.outcome.then(outcome),
@@ -147,6 +148,9 @@ impl Stepper {
                 // The best state is that of the last row.
                 now.clone_from(before);
                 return Err(Error::PulledOff { load, unit, time: step.instant.time, last });
+            }
+            Err(Error::LiftedOff { load, unit, excess, .. }) => {
+                return Err(Error::LiftedOff { load, unit, excess, time: step.instant.time });
             }
             Err(error) => return Err(error),
         }

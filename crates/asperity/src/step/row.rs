@@ -194,7 +194,7 @@ impl<'a> Step<'a> {
     }
 
     pub(crate) fn contact_cells(&self) -> &'a [f64] {
-        self.traction.map_or(&self.state.pressure, |traction| traction.contact()[1])
+        self.traction.map_or(&self.state.pressure, TractionSolver::pressing)
     }
 
     /// The traction besides the contact \[Pa\], shape (nx, ny): negative where the surfaces pull at each other.

@@ -92,7 +92,7 @@ impl Stepper {
         self.state.save_own(to);
         to.within("history", |to| self.history.save(to));
         if let Some(traction) = self.contact.traction() {
-            to.within("traction", |to| traction.save_own(to));
+            to.within("traction", |to| traction.save(to));
         }
         to.value("processes", &self.processes.len());
         for process in &self.processes {

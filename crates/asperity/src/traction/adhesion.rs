@@ -26,6 +26,7 @@ use crate::error::{Error, Result, positive, require};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
 use crate::operator::plan;
+use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use asperity_sweep::{each, minimum, sums};
 use std::sync::Arc;
@@ -183,8 +184,12 @@ impl TractionLaw for Adhesion {
         Box::new(Attraction { law: *self })
     }
 
-    fn tolerance(&self) -> Option<f64> {
-        Some(self.tolerance)
+    fn tolerances(&self, _contact: f64) -> [f64; 2] {
+        [self.tolerance, 0.1 * self.tolerance]
+    }
+
+    fn quantities(&self) -> Vec<Quantity> {
+        Quantity::of_adhesion().collect()
     }
 
     fn as_adhesion(&self) -> Option<&Adhesion> {

@@ -10,11 +10,15 @@ const DEPTH: usize = 2;
 pub(super) struct Extrapolation {
     passes: Vec<[Vec<f64>; 2]>,
     free: Vec<[Vec<f64>; 2]>,
+    /// The pass of the least residual, and the share of its f that is tried next where a pass fails.
+    best: Option<[Vec<f64>; 2]>,
+    share: f64,
 }
 
 impl Extrapolation {
     pub(super) fn clear(&mut self) {
         self.free.append(&mut self.passes);
+        self.free.extend(self.best.take());
     }
 
     /// Sets `bound` to B of the last pass, where `bound` was extrapolated beyond it, and forgets the others; `false` where it was not.
@@ -28,18 +32,26 @@ impl Extrapolation {
         true
     }
 
-    /// Sets `bound` to the next b after a pass that gave `next` = B(b). Where the pass `failed`, half a plain step from the pass
-    /// before it.
-    pub(super) fn step(&mut self, bound: &mut [f64], next: &[f64], failed: bool) {
-        if failed && let Some([b, f]) = self.passes.last() {
-            each(bound, (&b[..], &f[..]), |to, (b, f)| *to = b + 0.5 * f);
-            self.clear();
+    /// Sets `bound` to the next b after a pass that gave `next` = B(b). Where the pass `failed`, half a plain step from the best pass so
+    /// far, then a quarter, and so on.
+    pub(super) fn step(&mut self, bound: &mut [f64], next: &[f64], failed: bool, is_best: bool) {
+        if failed && let Some([b, f]) = &self.best {
+            self.share *= 0.5;
+            let share = self.share;
+            each(bound, (&b[..], &f[..]), |to, (b, f)| *to = b + share * f);
+            self.free.append(&mut self.passes);
             return;
+        }
+        if is_best {
+            let [mut b, mut f] = self.best.take().unwrap_or_else(|| self.spare(bound.len()));
+            b.copy_from_slice(bound);
+            each(&mut f, (next, &b[..]), |f, (next, b)| *f = next - b);
+            (self.best, self.share) = (Some([b, f]), 1.0);
         }
         if self.passes.len() > DEPTH {
             self.free.push(self.passes.remove(0));
         }
-        let [mut b, mut f] = self.free.pop().unwrap_or_else(|| [zeros(bound.len()), zeros(bound.len())]);
+        let [mut b, mut f] = self.spare(bound.len());
         b.copy_from_slice(bound);
         each(&mut f, (next, &b[..]), |f, (next, b)| *f = next - b);
         self.passes.push([b, f]);
@@ -48,6 +60,10 @@ impl Extrapolation {
         for ([b, f], weight) in self.passes.iter().zip(&weights) {
             each(bound, (&b[..], &f[..]), |to, (b, f)| *to += weight * (b + f));
         }
+    }
+
+    fn spare(&mut self, cells: usize) -> [Vec<f64>; 2] {
+        self.free.pop().unwrap_or_else(|| [zeros(cells), zeros(cells)])
     }
 
     /// Weights of sum 1 whose combination of the f is least: 1 for the latest, less what those of the passes before it take.

@@ -1,6 +1,6 @@
 //! The options of a leakage as keys of `[leakage]`.
 
-use asperity_io::case::LeakageKeys;
+use asperity_io::case::{Form, LeakageKeys};
 
 use crate::args::FluidOptions;
 
@@ -13,8 +13,11 @@ pub fn keys(options: &FluidOptions) -> LeakageKeys {
         gas: options.gas,
         molar_mass: options.molar_mass,
         temperature: options.temperature,
-        inlet: options.inlet,
+        inlet: options.inlet.map(Form::Word),
         outlet: options.outlet,
+        coupling: None,
+        reference: None,
+        pockets: None,
         rarefaction: options.rarefaction,
         sides: options.sides,
         smallest_gap: options.smallest_gap,

@@ -3,6 +3,7 @@
 mod cost;
 mod errors;
 mod examples;
+mod fluid;
 mod hostile;
 mod layers;
 mod line;

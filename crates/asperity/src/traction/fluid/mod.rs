@@ -1,0 +1,379 @@
+//! The pressure of a fluid in the gap, which opens the contact.
+//!
+//! ```text
+//! open cells that reach both reservoirs     Reynolds: div(g³ grad P) = 0, of a gas div(g³ Q grad P²/2) = 0
+//! that reach one of them                    the pressure of that reservoir
+//! that reach neither, a pocket              what it had when it was cut off (see `pockets`)
+//! contact cells beside open ones            b = mean of the pressures beside them (see `beside`)
+//! contact cells inside                      b = 0: fluid gets in only from an edge, one cell per pass
+//! ```
+//!
+//! Pressures of the fluid are absolute; the surfaces feel P less the reference, which the load does not contain. Without the rule of
+//! the edges a contact cell could hold any pressure between 0 and that of the fluid, and the edge would be stuck as if the
+//! contact were tough, an error that falls only with the square root of the cell.
+//!
+//! Under a uniform pressure P of all the gap the total pressure of a periodic contact is P + that of the dry contact under the load
+//! W - P A, whatever the bodies remember: there the loop ends after two passes.
+//!
+//! Flow has no energy: the safeguard of the loop is its residual. Where the access of a cell to the fluid changes again and again
+//! from pass to pass, no fixed point exists; such cells are held (see `latch`).
+//!
+//! Sources: A. G. Shvarts & V. A. Yastrebov, J. Mech. Phys. Solids 113 (2018) 140 (trapped fluid) and Tribol. Int. 126 (2018) 116 (flow
+//! and contact).
+
+mod beside;
+mod latch;
+mod pockets;
+#[cfg(test)]
+mod tests;
+
+use std::collections::VecDeque;
+
+use ndarray::{Array2, ArrayView2};
+
+pub use pockets::Pockets;
+
+use super::{SurfaceTraction, TractionLaw};
+use crate::error::{Error, Result, non_negative, require};
+use crate::grid::Grid;
+use crate::leakage::{
+    CellKind, Direction, FlowOptions, Gas, Opening, Passages, Previous, Rarefaction, Sides, factor_bytes,
+    gas_flow_after, liquid_after,
+};
+use crate::load::History;
+use crate::quantities::Quantity;
+use crate::simulation::Simulation;
+use crate::time::Instant;
+use asperity_sweep::minimum;
+use beside::Beside;
+use latch::Latch;
+use pockets::Contents;
+
+/// Tolerances of the loop and of the contact of a pass over that of a contact alone: gaps at the narrowest places are small.
+const TOLERANCES: [f64; 2] = [10.0, 0.1];
+/// Passes over which the spread of the conductance is told, after cells may be held.
+const RECENT: usize = 20;
+
+/// Where the fluid acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Action {
+    /// The pressure of the inlet acts everywhere, also between cells in contact: exact where inlet and outlet have the same
+    /// pressure and the fluid reaches all of the gap.
+    Everywhere,
+    /// In the open cells, by the flow between the reservoirs; and in pockets.
+    Gaps(Pockets),
+}
+
+/// A fluid that acts on the surfaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FluidPressure {
+    /// Pressure of the inlet over time \[Pa, absolute\].
+    pub inlet: History,
+    /// Pressure of the outlet \[Pa, absolute\].
+    pub outlet: f64,
+    /// Pressure that the load does not contain, that of the surroundings \[Pa, absolute\].
+    pub reference: f64,
+    /// A gas and how its rarefaction counts; `None` for a liquid.
+    pub gas: Option<(Gas, Rarefaction)>,
+    /// Viscosity \[Pa s\]: the time in which a film flows out is told from it.
+    pub viscosity: f64,
+    /// Direction of the flow.
+    pub direction: Direction,
+    /// What bounds it at the sides.
+    pub sides: Sides,
+    /// Gaps up to it are closed \[m\].
+    pub smallest_gap: f64,
+    /// Where it acts.
+    pub action: Action,
+}
+
+impl FluidPressure {
+    /// # Errors
+    /// [`Error::Invalid`] that names the argument.
+    fn validate(&self, end: f64) -> Result<()> {
+        let of = |key: &'static str| move |error: Error| error.of(key);
+        let outlet = non_negative("pressure of the outlet", self.outlet, "Pa").map_err(of("outlet"))?;
+        let [least, most] = self.inlet.range(end);
+        let may_be_equal = self.action == Action::Everywhere || self.gas.is_none();
+        let holds =
+            least.is_finite() && most.is_finite() && (least > outlet || may_be_equal && least == outlet);
+        let expected = format!(
+            "{} that of the outlet, {outlet} Pa, at all times; exchange them for a flow in the other direction",
+            if may_be_equal { "not below" } else { "above" }
+        );
+        require(holds, "pressure of the inlet", format!("{least} Pa"), expected).map_err(of("inlet"))?;
+        let jump = self.inlet.breaks(end).into_iter().find(|t| self.inlet.before(*t) != self.inlet.after(*t));
+        let expected = "none: give the change a time, as a ramp";
+        require(jump.is_none(), "jump of the pressure of the inlet", jump.map_or(0.0, |t| t), expected)
+            .map_err(of("inlet"))?;
+        let lowest = format!("{} Pa", self.reference);
+        let expected = "0 (vacuum) up to the pressure of the outlet";
+        require((0.0..=outlet).contains(&self.reference), "reference of the pressure", lowest, expected)
+            .map_err(of("reference"))?;
+        non_negative("smallest gap that lets the fluid pass", self.smallest_gap, "m")
+            .map_err(of("smallest_gap"))?;
+        if let Action::Gaps(pockets) = self.action {
+            pockets.validate(self.smallest_gap)?;
+        }
+        Ok(())
+    }
+}
+
+impl TractionLaw for FluidPressure {
+    fn start(&self, grid: &Grid) -> Box<dyn SurfaceTraction> {
+        Box::new(InGap::new(self.clone(), grid))
+    }
+
+    fn tolerances(&self, contact: f64) -> [f64; 2] {
+        TOLERANCES.map(|share| share * contact)
+    }
+
+    fn as_fluid(&self) -> Option<&FluidPressure> {
+        Some(self)
+    }
+
+    fn quantities(&self) -> Vec<Quantity> {
+        Quantity::of_fluid().collect()
+    }
+
+    fn breaks(&self, end: f64) -> Vec<f64> {
+        self.inlet.breaks(end)
+    }
+
+    fn bytes(&self, grid: &Grid) -> usize {
+        // The factorisation, and about 30 fields: gap, network, iteration, pressures, pockets, the access of the cells.
+        let factor = factor_bytes(grid.len()).min(FlowOptions::default().memory);
+        if self.action == Action::Everywhere { 0 } else { factor as usize + 30 * 8 * grid.len() }
+    }
+
+    fn check(&self, simulation: &Simulation) -> Result<()> {
+        let end = simulation.times.end();
+        self.validate(end).map_err(|error| error.of("leakage"))?;
+        if simulation.motion.is_some() {
+            let expected = "none: the flow that a sliding surface drags along is not solved";
+            return Err(
+                Error::invalid("motion of a contact that a fluid acts on", "given", expected).of("motion")
+            );
+        }
+        let untouchable = simulation.gap.iter().any(|h| !h.is_finite());
+        let expected = "finite: fluid acts on all of the domain. Cut the surface, or fill its holes";
+        require(!untouchable, "gap of cells that a fluid acts on", "infinite in places", expected)
+            .map_err(|error| error.of("leakage.coupling"))?;
+        let most = self.inlet.range(end)[1] - self.reference;
+        let hardness = simulation.hardness_of_cells().map_or(simulation.hardness, |cells| minimum(&cells));
+        let expected = format!("more than the pressure of the fluid, {most} Pa: no contact could hold it");
+        require(hardness > most, "hardness", format!("{hardness} Pa"), expected)
+            .map_err(|error| error.of("leakage.inlet"))
+    }
+}
+
+/// The fluid of a run.
+struct InGap {
+    law: FluidPressure,
+    grid: Grid,
+    beside: Beside,
+    previous: Previous,
+    contents: Contents,
+    latch: Latch,
+    /// Of the instant \[Pa\].
+    inlet: f64,
+    /// Absolute pressure of each cell of the last pass \[Pa\], NaN in contact; and whether the fluid of a reservoir reaches it.
+    pressure: Vec<f64>,
+    reached: Vec<bool>,
+    /// That of the flow through contacts, where fluid passes through them.
+    inside: Option<Array2<f64>>,
+    /// The least and the largest b that may be.
+    limits: [f64; 2],
+    percolates: bool,
+    /// Conductances of the last passes, of any unit.
+    conductances: VecDeque<f64>,
+}
+
+impl InGap {
+    fn new(law: FluidPressure, grid: &Grid) -> Self {
+        let cells = grid.len();
+        let wraps = law.sides == Sides::Periodic;
+        let rule = match law.action {
+            Action::Everywhere => Pockets::default(),
+            Action::Gaps(pockets) => pockets,
+        };
+        InGap {
+            beside: Beside::new(grid, law.direction, wraps),
+            previous: Previous::default(),
+            contents: Contents::new(rule, law.reference, law.smallest_gap, cells),
+            latch: Latch::new(cells),
+            inlet: law.inlet.after(0.0),
+            pressure: vec![f64::NAN; cells],
+            reached: vec![false; cells],
+            inside: None,
+            limits: [0.0; 2],
+            percolates: false,
+            conductances: VecDeque::new(),
+            grid: *grid,
+            law,
+        }
+    }
+
+    /// Pressures of the cells that fluid flows through, NaN elsewhere, and the conductance.
+    fn flow(&mut self, opening: &Opening, passages: &Passages) -> Result<(Array2<f64>, f64)> {
+        let (options, previous) = (FlowOptions::default(), &mut self.previous);
+        let [inlet, outlet] = [self.inlet, self.law.outlet];
+        match &self.law.gas {
+            Some((gas, rarefaction)) => {
+                let ends = [inlet, outlet];
+                let flow = gas_flow_after(opening, passages, gas, *rarefaction, ends, &options, previous)?;
+                Ok((flow.pressure, flow.leak_rate))
+            }
+            None => {
+                let flow = liquid_after(opening, passages, &options, previous)?;
+                Ok((flow.pressure.mapv_into(|x| outlet + (inlet - outlet) * x), flow.transmissivity))
+            }
+        }
+    }
+
+    /// Sets `pressure` and `reached` from the gap and the contact pressure.
+    fn find_pressures(&mut self, gap: &[f64], contact: &[f64]) -> Result<()> {
+        let shape = self.grid.shape();
+        let touches = Array2::from_shape_fn(shape, |(i, j)| u8::from(contact[i * shape.1 + j] > 0.0));
+        let gap_view = ArrayView2::from_shape(shape, gap)
+            .map_err(|error| Error::invalid("gap", error, "one per cell"))?;
+        let FluidPressure { direction, sides, smallest_gap, outlet, .. } = self.law;
+        let open = |contact| Opening::new(&self.grid, gap_view, contact, direction, sides, smallest_gap);
+        let opening = open(Some(touches.view()))?;
+        let passages = Passages::of(&opening);
+        self.percolates = passages.percolates();
+        let (opening, passages) = match self.contents.floor() {
+            None => (opening, passages),
+            // All cells let some fluid pass.
+            Some(floor) => {
+                let floored = Array2::from_shape_fn(shape, |at| {
+                    if touches[at] > 0 { floor } else { gap_view[at].max(floor) }
+                });
+                let opening = Opening::new(&self.grid, floored.view(), None, direction, sides, 0.0)?;
+                let passages = Passages::of(&opening);
+                (opening, passages)
+            }
+        };
+        let (flowing, conductance) = self.flow(&opening, &passages)?;
+        if self.conductances.len() == RECENT {
+            self.conductances.pop_front();
+        }
+        if !self.latch.may_hold() {
+            self.conductances.clear();
+        }
+        self.conductances.push_back(conductance);
+        let kinds = passages.map(&opening);
+        for (cell, (kind, own)) in kinds.iter().zip(&flowing).enumerate() {
+            let is_closed = contact[cell] > 0.0;
+            self.pressure[cell] = match kind {
+                _ if is_closed => f64::NAN,
+                CellKind::Through => *own,
+                CellKind::AtInlet => self.inlet,
+                CellKind::AtOutlet => outlet,
+                CellKind::Closed | CellKind::Pocket => f64::NAN,
+            };
+            self.reached[cell] = !self.pressure[cell].is_nan();
+        }
+        let is_pocket: Vec<bool> = kinds.iter().map(|kind| *kind == CellKind::Pocket).collect();
+        self.contents.fill(&self.beside, &is_pocket, &mut self.pressure);
+        self.inside = self.contents.floor().map(|_| flowing);
+        Ok(())
+    }
+
+    /// The pressure that a cell without fluid takes when it opens, and whether that of a reservoir reaches it; `None` away from fluid.
+    fn at_edge(&self, cell: usize) -> Option<(f64, bool)> {
+        // In the narrowest gaps a gas flows in proportion to its pressure, without rarefaction to the square of it.
+        let is_square = matches!(self.law.gas, Some((_, Rarefaction::Continuum)));
+        let [to, from]: [fn(f64) -> f64; 2] = if is_square { [|p| p * p, f64::sqrt] } else { [|p| p, |p| p] };
+        let ends = [self.inlet, self.law.outlet];
+        let (mut sum, mut weights, mut reached) = (0.0, 0.0, false);
+        for (weight, other) in self.beside.of(cell) {
+            let (p, is_reached) = match other {
+                beside::Other::Cell(other) => (self.pressure[other], self.reached[other]),
+                beside::Other::Reservoir(end) => (ends[end], true),
+            };
+            if !p.is_nan() {
+                sum += weight * to(p);
+                weights += weight;
+                reached |= is_reached;
+            }
+        }
+        let own = self
+            .inside
+            .as_ref()
+            .map_or(f64::NAN, |inside| inside.as_slice().map_or(f64::NAN, |cells| cells[cell]));
+        (weights > 0.0).then(|| (if own.is_nan() { from(sum / weights) } else { own }, reached))
+    }
+}
+
+impl SurfaceTraction for InGap {
+    fn begin(&mut self, at: &Instant) {
+        // Steps end at kinks, and the history has no jumps.
+        self.inlet = self.law.inlet.after(at.time);
+    }
+
+    fn begin_loop(&mut self) {
+        self.latch.clear();
+        self.conductances.clear();
+    }
+
+    fn bound(&mut self, gap: &[f64], contact: &[f64], out: &mut [f64]) -> Result<()> {
+        let reference = self.law.reference;
+        if self.law.action == Action::Everywhere {
+            out.fill(self.inlet - reference);
+            self.limits = [self.inlet - reference; 2];
+            self.percolates = contact.contains(&0.0);
+            return Ok(());
+        }
+        self.find_pressures(gap, contact)?;
+        for (cell, b) in out.iter_mut().enumerate() {
+            let (p, reached) = match self.pressure[cell] {
+                p if p.is_nan() => self.at_edge(cell).unwrap_or((reference, false)),
+                p => (p, self.reached[cell]),
+            };
+            *b = self.latch.hold(cell, reached, p - reference);
+        }
+        self.latch.pass();
+        self.limits = out.iter().fold([0.0_f64; 2], |[least, most], b| [least.min(*b), most.max(*b)]);
+        Ok(())
+    }
+
+    fn limits(&self) -> [f64; 2] {
+        self.limits
+    }
+
+    fn is_displaced(&self) -> bool {
+        true
+    }
+
+    fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        Some(match quantity {
+            Quantity::InletPressure => self.inlet,
+            Quantity::Percolates => f64::from(u8::from(self.percolates)),
+            Quantity::PocketArea => self.contents.cells() as f64 * self.grid.cell_area(),
+            Quantity::PocketPressureMax => self.contents.largest(),
+            Quantity::LatchedCells => self.latch.held() as f64,
+            Quantity::LeakSpread => {
+                let [least, most] = self
+                    .conductances
+                    .iter()
+                    .fold([f64::INFINITY, 0.0_f64], |[least, most], t| [least.min(*t), most.max(*t)]);
+                if self.latch.held() > 0 && most > 0.0 { (most - least) / most } else { 0.0 }
+            }
+            _ => return None,
+        })
+    }
+
+    fn commit(&mut self) {
+        self.contents.commit(&self.pressure);
+    }
+
+    fn memory(&self) -> Vec<&[f64]> {
+        self.contents.memory()
+    }
+
+    fn memory_mut(&mut self) -> Vec<&mut [f64]> {
+        self.contents.memory_mut()
+    }
+}

@@ -1,0 +1,377 @@
+//! The loop around the contact solver.
+
+use std::sync::atomic::AtomicBool;
+
+use super::extrapolation::Extrapolation;
+use super::{SurfaceTraction, TractionLaw};
+use crate::contact::{
+    ContactState, Hardness, Outcome, Prescribed, Problem, Solver, SolverOptions, Task, not_converged,
+};
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::operator::Operator;
+use crate::quantities::Quantity;
+use crate::step::{Loader, Saver, saved};
+use crate::time::Instant;
+use asperity_sweep::{each, is_zero, minimum, sum, sums, zeros};
+
+/// Forces below this share of the largest one of the run are none.
+const LEAST: f64 = 1e-4;
+/// Passes after which a solve is given up.
+const MOST_PASSES: usize = 500;
+/// Passes after which the best one no longer counts.
+const RECENT: usize = 5;
+
+/// The loop around the contact solver.
+pub(crate) struct TractionSolver {
+    law: Box<dyn SurfaceTraction>,
+    /// Of the loop and of the contact of a pass.
+    tolerances: [f64; 2],
+    /// The traction b and the contact pressure q of the last row, with which each attempt begins.
+    last: Tractions,
+    now: Tractions,
+    /// K b, and B of the pass.
+    image: Vec<f64>,
+    next: Vec<f64>,
+    /// h', and then g.
+    shifted: Vec<f64>,
+    gap: Vec<f64>,
+    /// The cut-off of q, and the pressure of the cells in contact, where the law is displaced by contact.
+    cap: Vec<f64>,
+    pressing: Vec<f64>,
+    extrapolation: Extrapolation,
+    /// The largest Σ|B| + Σ q of all passes.
+    scale: f64,
+    /// Of the last solve.
+    passes: usize,
+    residual: f64,
+    /// Σ γ(g) of the last pass \[Pa m\], where the law has it.
+    potential: Option<f64>,
+}
+
+/// The parts of a total traction.
+struct Tractions {
+    /// b \[Pa\].
+    bound: Vec<f64>,
+    /// The contact pressure q with K q.
+    contact: ContactState,
+}
+
+impl Tractions {
+    fn none(cells: usize) -> Self {
+        Tractions { bound: zeros(cells), contact: ContactState::new(cells) }
+    }
+
+    fn copy_from(&mut self, other: &Self) {
+        self.bound.copy_from_slice(&other.bound);
+        let (to, from) = (&mut self.contact, &other.contact);
+        to.pressure.copy_from_slice(&from.pressure);
+        to.unit_displacement.copy_from_slice(&from.unit_displacement);
+        (to.approach, to.rounding) = (from.approach, from.rounding);
+    }
+}
+
+saved! {
+    TractionSolver {
+        "contact": last.contact.approach, last.contact.rounding;
+        "scale": scale;
+    }
+    fields {
+        "bound": last.bound;
+        "contact_pressure": last.contact.pressure;
+        "contact_displacement": last.contact.unit_displacement;
+    }
+}
+
+/// One pass of the loop.
+#[derive(Clone, Copy)]
+struct Pass {
+    outcome: Outcome,
+    /// Σ|B - b| over Σ|B| + Σ q.
+    residual: f64,
+    /// 1/2 <t, c K t> + Σ γ(g), less the work of a prescribed load.
+    energy: Option<f64>,
+}
+
+impl TractionSolver {
+    /// The loop of a law, where a contact alone would be solved to the tolerance `contact`.
+    pub(crate) fn new(law: &dyn TractionLaw, grid: &Grid, contact: f64) -> Self {
+        let (cells, started) = (grid.len(), law.start(grid));
+        TractionSolver {
+            pressing: if started.is_displaced() { zeros(cells) } else { vec![] },
+            cap: vec![],
+            law: started,
+            tolerances: law.tolerances(contact).map(|tolerance| tolerance.max(1e-14)),
+            last: Tractions::none(cells),
+            now: Tractions::none(cells),
+            image: zeros(cells),
+            next: zeros(cells),
+            shifted: zeros(cells),
+            gap: zeros(cells),
+            extrapolation: Extrapolation::default(),
+            scale: 0.0,
+            passes: 0,
+            residual: 0.0,
+            potential: None,
+        }
+    }
+
+    /// Memory that it takes \[bytes\].
+    pub(crate) fn bytes(law: &dyn TractionLaw, grid: &Grid) -> usize {
+        // b, q and K q twice, K b, B, h', g, and the passes of the extrapolation: b and f of three, and of the best one.
+        (6 + 4 + 8) * 8 * grid.len() + law.bytes(grid)
+    }
+
+    /// Saves what the next rows depend on.
+    pub(crate) fn save<'a>(&'a self, to: &mut Saver<'a>) {
+        self.save_own(to);
+        let memory = self.law.memory().into_iter().enumerate();
+        memory.for_each(|(n, field)| to.field(&format!("memory{n}"), field));
+    }
+
+    /// Takes back what `save` gave.
+    ///
+    /// # Errors
+    /// Where it belongs to another simulation.
+    pub(crate) fn load(&mut self, from: &Loader<'_>) -> Result<()> {
+        self.load_own(from)?;
+        for (n, field) in self.law.memory_mut().into_iter().enumerate() {
+            from.field_into(&format!("memory{n}"), field)?;
+        }
+        self.now.copy_from(&self.last);
+        self.press();
+        Ok(())
+    }
+
+    /// The instant that is solved for.
+    pub(crate) fn begin(&mut self, at: &Instant) {
+        self.law.begin(at);
+    }
+
+    /// The step stands.
+    pub(crate) fn commit(&mut self) {
+        self.law.commit();
+        self.last.copy_from(&self.now);
+    }
+
+    /// The contact pressures q of the last row and of the last attempt \[Pa\].
+    pub(crate) fn contact(&self) -> [&[f64]; 2] {
+        [&self.last.contact.pressure, &self.now.contact.pressure]
+    }
+
+    /// The pressure of the cells in contact in the last attempt \[Pa\], 0 elsewhere.
+    pub(crate) fn pressing(&self) -> &[f64] {
+        if self.law.is_displaced() { &self.pressing } else { &self.now.contact.pressure }
+    }
+
+    /// Finds the pressure of the cells in contact: b + q, and q where the law pulls.
+    fn press(&mut self) {
+        let Tractions { bound, contact } = &self.now;
+        let fields = (&bound[..], &contact.pressure[..]);
+        if self.law.is_displaced() {
+            each(&mut self.pressing, fields, |p, (b, q)| *p = if q > 0.0 { q + b.max(0.0) } else { 0.0 });
+        }
+    }
+
+    /// The traction b of the last attempt \[Pa\]; tension is negative.
+    pub(crate) fn bound(&self) -> &[f64] {
+        &self.now.bound
+    }
+
+    /// A quantity of the last attempt on cells of this area \[m²\].
+    pub(crate) fn quantity(&self, quantity: Quantity, cell_area: f64) -> Option<f64> {
+        let of_open = || {
+            let Tractions { bound, contact } = &self.now;
+            sums((&bound[..], &contact.pressure[..]), |(b, q)| [if q > 0.0 { 0.0 } else { b }, b + q])
+        };
+        Some(match quantity {
+            Quantity::FluidLoad => cell_area * of_open()[0],
+            Quantity::ContactLoad => {
+                let [open, all] = of_open();
+                cell_area * (all - open)
+            }
+            Quantity::Film => f64::from(u8::from(is_zero(&self.now.contact.pressure))),
+            Quantity::AdhesiveLoad => -cell_area * sum(&self.now.bound),
+            Quantity::RepulsiveLoad => cell_area * sum(&self.now.contact.pressure),
+            Quantity::AdhesionEnergy => cell_area * self.potential?,
+            Quantity::OuterIterations => self.passes as f64,
+            Quantity::AdhesionResidual | Quantity::FluidResidual => self.residual,
+            other => return self.law.quantity(other),
+        })
+    }
+
+    /// Solves for the total traction, which `state` holds in the end; its approach is where the search starts.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`], after which `state` holds the last pass; [`Error::PulledOff`]; those of the contact and of the law.
+    pub(crate) fn solve(&mut self, solver: &mut Solver, task: Task) -> Result<Outcome> {
+        let Task { operator, problem, options, state, interrupt } = task;
+        self.now.copy_from(&self.last);
+        self.passes = 0;
+        let [tolerance, inner] = self.tolerances;
+        let total = Outcome::default();
+        let mut run = Run { own: self, solver, operator, options, tolerance, inner, interrupt, total };
+        let solved = match problem.prescribed {
+            Prescribed::Approach(_) => run.solve(problem),
+            Prescribed::Load(load) => match run.solve_under(problem, load) {
+                Err(Error::Infeasible { .. }) if run.own.law.is_attraction() => {
+                    let unit = run.operator.grid().units("N");
+                    self.now.copy_from(&self.last);
+                    return Err(Error::PulledOff { load, unit, time: f64::NAN, last: None });
+                }
+                Err(Error::Infeasible { .. }) => run.search_approach(problem, load, state.approach),
+                solved => solved,
+            },
+        };
+        let total = run.total;
+        if !matches!(solved, Ok(()) | Err(Error::NotConverged(_))) {
+            return solved.map(|()| total);
+        }
+        self.residual = total.residual;
+        let Tractions { bound, contact } = &self.now;
+        each(&mut state.pressure, (&contact.pressure[..], &bound[..]), |t, (q, b)| *t = q + b);
+        let images = (&contact.unit_displacement[..], &self.image[..]);
+        each(&mut state.unit_displacement, images, |u, (kq, kb)| *u = kq + kb);
+        state.approach = contact.approach;
+        state.rounding = contact.rounding + 1.0;
+        self.press();
+        solved.map(|()| total)
+    }
+}
+
+/// A solve under way.
+pub(super) struct Run<'a> {
+    own: &'a mut TractionSolver,
+    solver: &'a mut Solver,
+    operator: &'a mut dyn Operator,
+    options: &'a SolverOptions,
+    tolerance: f64,
+    /// Of the contact of a pass.
+    inner: f64,
+    interrupt: Option<&'a AtomicBool>,
+    total: Outcome,
+}
+
+impl Run<'_> {
+    /// The loop under a load. Surfaces that nothing has brought together yet are brought to first touch, where they adhere.
+    fn solve_under(&mut self, problem: &Problem, load: f64) -> Result<()> {
+        if load <= 0.0 && self.own.law.is_attraction() && is_zero(&self.own.last.bound) {
+            let first_touch = Prescribed::Approach(minimum(problem.gap));
+            self.solve(&Problem { prescribed: first_touch, ..*problem })?;
+        }
+        self.solve(problem)
+    }
+
+    /// The loop. [`Error::Infeasible`] where a prescribed load leaves none to the contact.
+    pub(super) fn solve(&mut self, problem: &Problem) -> Result<()> {
+        self.own.extrapolation.clear();
+        self.own.law.begin_loop();
+        // The least residual of late, and how many passes ago: it may grow while fluid advances into the contact.
+        let (mut best, mut age) = (f64::INFINITY, 0);
+        let mut energy = f64::INFINITY;
+        for _ in 0..MOST_PASSES {
+            self.own.passes += 1;
+            let is_attraction = self.own.law.is_attraction();
+            let pass = match self.pass(problem) {
+                // Extrapolated too far.
+                Err(Error::Infeasible { .. })
+                    if is_attraction && self.own.extrapolation.take_back(&mut self.own.now.bound) =>
+                {
+                    continue;
+                }
+                pass => pass?,
+            };
+            self.total = self.total.then(pass.outcome);
+            self.total.convolutions += 1;
+            self.total.residual = pass.residual.max(pass.outcome.residual);
+            if pass.residual <= self.tolerance {
+                return Ok(());
+            }
+            let rises = pass.energy.is_some_and(|now| now > energy + 1e-6 * now.abs());
+            let own = &mut *self.own;
+            // An extrapolation that raised the energy is taken back: of an attraction to the plain pass, which never does. Others may
+            // also diverge.
+            if !(rises && is_attraction && own.extrapolation.take_back(&mut own.now.bound)) {
+                let failed = !is_attraction && (rises || pass.residual > 2.0 * best);
+                age += 1;
+                let is_best = !is_attraction && (pass.residual < best || age > RECENT);
+                if is_best {
+                    (best, age) = (pass.residual, 0);
+                }
+                own.extrapolation.step(&mut own.now.bound, &own.next, failed && !is_best, is_best);
+                let [least, most] = own.law.limits();
+                each(&mut own.now.bound, &own.next[..], |b, _| *b = b.clamp(least, most));
+            }
+            energy = pass.energy.map_or(energy, |now| now.min(energy));
+        }
+        let options = SolverOptions { tolerance: self.tolerance, ..*self.options };
+        let method = if self.own.law.is_attraction() { "adhesion" } else { "surface traction" };
+        Err(not_converged(method, &options, &self.total))
+    }
+
+    fn pass(&mut self, problem: &Problem) -> Result<Pass> {
+        let (own, c) = (&mut *self.own, problem.compliance);
+        let bound = &own.now.bound[..];
+        self.operator.apply_into(bound, &mut own.image);
+        each(&mut own.shifted, (problem.gap, &own.image[..]), |to, (h, u)| *to = h + c * u);
+        let cell_area = self.operator.grid().cell_area();
+        let prescribed = match problem.prescribed {
+            Prescribed::Load(load) => {
+                let carried = load - cell_area * sum(bound);
+                if carried < 0.0 {
+                    return Err(Error::Infeasible { parameter: String::new(), load: carried, max: 0.0 });
+                }
+                Prescribed::Load(carried)
+            }
+            approach => approach,
+        };
+        let mut inner = Problem { gap: &own.shifted, prescribed, ..*problem };
+        if own.law.is_displaced() && !problem.hardness.is_infinite() {
+            own.cap.resize(bound.len(), 0.0);
+            each(&mut own.cap, (problem.hardness, bound), |cap, (hardness, b)| *cap = hardness - b);
+            inner.hardness = Hardness::Cells(&own.cap);
+        }
+        let options = SolverOptions { tolerance: self.inner, ..*self.options };
+        let (solver, contact) = (&mut *self.solver, &mut own.now.contact);
+        let outcome = solver.solve(self.operator, &inner, &options, contact, self.interrupt)?;
+        let w = contact.approach;
+        let fields = (&own.shifted[..], &contact.unit_displacement[..]);
+        each(&mut own.gap, fields, |to, (h, u)| *to = (h + c * u - w).max(0.0));
+        own.law.bound(&own.gap, &contact.pressure, &mut own.next)?;
+        let Tractions { bound, contact } = &own.now;
+        let fields = (
+            (&bound[..], &own.next[..], &contact.pressure[..]),
+            (&own.image[..], &contact.unit_displacement[..]),
+        );
+        let [change, size, work, total] = sums(fields, |((b, next, q), (kb, kq))| {
+            let t = b + q;
+            [(next - b).abs(), next.abs() + q, t * (kb + kq), t]
+        });
+        own.scale = own.scale.max(size);
+        own.potential = own.law.energy(&own.gap);
+        let of_load = if matches!(problem.prescribed, Prescribed::Load(_)) { w * total } else { 0.0 };
+        Ok(Pass {
+            outcome,
+            residual: if change > 0.0 { change / size.max(LEAST * own.scale) } else { 0.0 },
+            energy: own.potential.map(|potential| 0.5 * c * work + potential - of_load),
+        })
+    }
+
+    /// Σ (b + q) of the last pass \[Pa\].
+    pub(super) fn carried(&self) -> f64 {
+        sum(&self.own.now.bound) + sum(&self.own.now.contact.pressure)
+    }
+
+    /// Force that counts as none \[Pa\]: the passes are known to their tolerance.
+    pub(super) fn small(&self) -> f64 {
+        10.0 * self.tolerance * self.own.scale
+    }
+
+    pub(super) fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    pub(super) fn grid(&self) -> &Grid {
+        self.operator.grid()
+    }
+}

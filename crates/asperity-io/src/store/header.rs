@@ -74,6 +74,12 @@ impl Header {
     /// The key of [`Header::controls`] in the setup.
     pub(crate) const CONTROLS: &'static str = "stage_controls";
 
+    /// Whether other tractions than the contact pressure act on the surfaces: adhesion, a fluid.
+    pub(crate) fn has_other_tractions(&self) -> bool {
+        let coupling = self.setup.get("leakage").and_then(|leakage| leakage.get("coupling"));
+        self.adhesion().is_some() || coupling.is_some_and(|coupling| !coupling.is_null())
+    }
+
     /// The numbers of its adhesion, by the names of [`AdhesionScale`](asperity::traction::AdhesionScale).
     pub fn adhesion(&self) -> Option<&Map<String, Value>> {
         self.setup.get(Header::ADHESION).and_then(Value::as_object)

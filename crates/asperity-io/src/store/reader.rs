@@ -298,13 +298,13 @@ impl Reader {
         self.field_map(FieldKind::Contact, at)
     }
 
-    /// The field that shows the contact: the states if they were kept, else the pressure, of surfaces that adhere that of the cells in
+    /// The field that shows the contact: the states if they were kept, else the pressure, where other tractions act too that of the cells in
     /// contact, else the gap.
     pub fn contact_kind(&self) -> Option<FieldKind> {
         let kept = &self.header().fields;
-        let pressure = match self.header().adhesion() {
-            Some(_) => FieldKind::ContactPressure,
-            None => FieldKind::Pressure,
+        let pressure = match self.header().has_other_tractions() {
+            true => FieldKind::ContactPressure,
+            false => FieldKind::Pressure,
         };
         [FieldKind::Contact, pressure, FieldKind::Gap].into_iter().find(|kind| kept.contains(kind))
     }

@@ -184,7 +184,7 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     drop = keys["inlet"] - keys["outlet"] if "inlet" in keys and "outlet" in keys else keys.get("pressure_drop")
     for index, time in enumerate(result.field_times):
         gap = result.field("gap", index=index)
-        contact = contact_of(result, index)
+        contact = result._touches(index=index)
         found = _core.leakage(np.ascontiguousarray(gap), contact, list(result.size), json.dumps(keys), temperatures, float(time))
         step = int(result._field_steps[index])
         touching = (gap - result.initial_gap)[contact > 0]
@@ -203,16 +203,6 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     conductance = None if rows[0]["conductance"] is None else np.array([row["conductance"] for row in rows])
     pressures = np.array([row["pressure"] for row in rows]) if keys.get("field") else None
     return dataset(result, result.field_times, columns, gas, conductance, pressures)
-
-
-def contact_of(result: Result, index: int) -> Any:
-    """Where the surfaces touch: from the field that tells it."""
-    for name in ("contact", "pressure"):
-        if name in result.fields:
-            return np.ascontiguousarray(result.field(name, index=index) > 0, dtype=np.uint8)
-    gap = result.field("gap", index=index)
-    deepest = np.abs(gap[np.isfinite(gap)]).max(initial=0.0)
-    return np.ascontiguousarray(gap <= 1e-9 * deepest, dtype=np.uint8)
 
 
 def stored(result: Result) -> xarray.Dataset:

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._adhesion import Adhesion
+from ._fluid import Fluid
 from ._arrays import as_plane, check_places, choice, count, distinct, field as field_of, in_order, number
 from ._core import CaseError
 from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
@@ -150,6 +151,7 @@ class InStages(InTime):
     approach: History | Function | float | None = None
     stages: Sequence[Stage] | None = None
     adhesion: Adhesion | None = None
+    fluid: Fluid | None = None
 
     alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure", "approach", "stages"), ("surface", "gap")]
 
@@ -157,11 +159,14 @@ class InStages(InTime):
         return {**super().controls(), "approach": self.approach, "stages": self.stages}
 
     def course_keys(self) -> dict[str, Any]:
-        if self.adhesion is None:
-            return super().course_keys()
-        if not isinstance(self.adhesion, Adhesion):
-            raise CaseError(f"adhesion is {self.adhesion!r}, but must be an asperity.Adhesion")
-        return {**super().course_keys(), "adhesion": self.adhesion._keys}
+        keys = super().course_keys()
+        for name, section, kind in (("adhesion", "adhesion", Adhesion), ("fluid", "leakage", Fluid)):
+            if (given := getattr(self, name)) is None:
+                continue
+            if not isinstance(given, kind):
+                raise CaseError(f"{name} is {given!r}, but must be an asperity.{kind.__name__}")
+            keys[section] = given._keys
+        return keys
 
     def load_keys(self, load_unit: str) -> dict[str, Any]:
         if self.stages is None:
@@ -187,6 +192,12 @@ class Run(Problem):
 @dataclass(kw_only=True)
 class Solve(Run, InStages):
     """The arguments of :func:`asperity.solve`."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.fields == ("pressure",) and (self.adhesion is not None or self.fluid is not None):
+            # Which cells touch does not follow from the pressure there.
+            self.fields = ("pressure", "contact_pressure")
 
 
 def bodies_of(material: Any) -> list[Material | Body]:

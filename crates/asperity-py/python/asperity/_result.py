@@ -435,14 +435,23 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         >>> int(result.spots().max())
         8
         """
-        at = dict(time=time, velocity=velocity, index=index)
-        if "contact" in self._fields:
-            touches = np.asarray(self.field("contact", **at) > 0, dtype=np.float64)  # type: ignore[arg-type]
-        else:
-            touches = self.field("pressure", **at)  # type: ignore[arg-type]
+        touches = self._touches(time=time, velocity=velocity, index=index).astype(np.float64)
         boundary = self._setup.get("boundary", "free")
         labels: npt.NDArray[np.uint32] = _core.spot_labels(plain(as_plane(touches)), boundary)
         return labels.reshape(touches.shape)
+
+    def _touches(self, **at: Any) -> npt.NDArray[np.uint8]:
+        """Where the surfaces touch at a stored instant: from the field that tells it."""
+        coupling = (self._setup.get("leakage") or {}).get("coupling")
+        pressure: Field = "contact_pressure" if self._setup.get("adhesion") or coupling else "pressure"
+        for name in ("contact", pressure):
+            if name in self._fields:
+                return np.ascontiguousarray(self.field(name, **at) > 0, dtype=np.uint8)
+        if "gap" not in self._fields:
+            raise CaseError(f'the contact is told by one of the fields "contact", "{pressure}" and "gap"; the result keeps {", ".join(self._fields)}')
+        gap = self.field("gap", **at)
+        deepest = np.abs(gap[np.isfinite(gap)]).max(initial=0.0)
+        return np.ascontiguousarray(gap <= 1e-9 * deepest, dtype=np.uint8)
 
     def to_dataframe(self) -> Any:
         """The rows as pandas.DataFrame, with the time (of a sweep the velocity) as index and a column for each number; units are in

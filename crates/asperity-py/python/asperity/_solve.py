@@ -236,6 +236,8 @@ def solve(given: Solve) -> Result:
     stages : instead, a list of :class:`Stage` s: the control switches at a time or at an event
     adhesion : an attraction between the surfaces, asperity.Adhesion; then loads may be negative, and each row also has "adhesive_load",
         "repulsive_load", "adhesion_energy", "outer_iterations", "adhesion_residual"
+    fluid : a fluid whose pressure opens the contact, asperity.Fluid; each row then also has "fluid_load", "contact_load", "inlet_pressure",
+        "connected", "film", "pocket_area", "pocket_pressure_max", "latched_cells", "leak_spread", "fluid_residual"
     hardness : largest pressure [Pa], for all cells or as array (nx, ny); default: that of the materials
     boundary : "free" (half-space) or "periodic"
     temperature : of the run [K], or (time [s], temperature [K]) points, linear in between and held after the last; it applies
@@ -248,7 +250,7 @@ def solve(given: Solve) -> Result:
         "dissipated_energy", "flattening_work", "external_work", "load_power", and "spot_histogram", "pressure_histogram", "gap_histogram" of that many `bins` up to `largest_pressure` [Pa] (by default the
         hardness) and `largest_gap` [m] (by default that of the undeformed gap)
     fields : fields to keep: "pressure", "gap", "displacement", "contact", "flattening", with adhesion also "contact_pressure",
-        "adhesive_traction"
+        "adhesive_traction", with a fluid "contact_pressure"
     every : keep the fields of every n-th row, and of the first and the last; default: of every row, up to 20 rows
     field_times : instead, times at which fields are kept [s]; each becomes a step
     output : path of a result on disk, which is written row by row; the result that is returned reads its fields from there. `force`

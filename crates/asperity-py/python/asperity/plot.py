@@ -274,7 +274,7 @@ class Plots:
         if "contact" in result.fields:
             states = self._field("contact", at)
         else:
-            states = (self._field("pressure", at) > 0).astype(float)
+            states = result._touches(index=self._row(at)).astype(float)
         ax = _axes(ax, style, "curve" if result.is_line else "map", result.size)
         self._tell(ax, at, notes=[] if result.is_line else [_stretched(result.size, style)])
         if result.is_line:
@@ -393,15 +393,12 @@ class Plots:
         closed = np.abs(gap) < _ROUNDING * max(_largest(result.initial_gap), abs(result.approach[row]))
         if "contact" in result.fields:
             closed |= self._field("contact", at) == 1
-        elif "pressure" in result.fields and result.capped_area[row] == 0:
-            closed |= self._field("pressure", at) > 0
+        elif result.capped_area[row] == 0:
+            closed |= result._touches(index=self._row(at)) > 0
         return np.where(closed, 0.0, gap)
 
     def _touches(self, at: Any) -> bool:
         """Whether the bodies touch at the stored instant."""
-        for name in ("contact", "pressure"):
-            if name in self._result.fields:
-                return bool(np.any(self._field(name, at) > 0))
         return bool(self._result.contact_area[self._result._field_steps[self._row(at)]] > 0)
 
     def _tell(self, ax: Any, at: Any, place: str = "", notes: Sequence[str] = ()) -> None:

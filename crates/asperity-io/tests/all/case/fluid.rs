@@ -66,7 +66,7 @@ fn what_does_not_go_with_it_is_refused_where_it_stands() {
     let moves = "[motion]\nvelocity = \"1 mm/s\"\n[leakage]";
     let rows = [
         (CASE.replace("1.02 bar", "0.9 bar"), "leakage"),
-        (CASE.replace("inlet = \"1.02 bar\"", "inlet = { kind = \"step\" }"), "leakage.inlet"),
+        (CASE.replace("inlet = \"1.02 bar\"", "inlet = { kind = \"step\" }"), "leakage.inlet.value"),
         (
             CASE.replace("inlet = \"1.02 bar\"", "inlet = { kind = \"step\", value = \"2 N\" }"),
             "leakage.inlet.value",

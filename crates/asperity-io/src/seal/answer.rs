@@ -2,6 +2,7 @@
 
 use asperity::finding::Finding;
 use asperity::seal::{CELLS, Conductance, Opens, SealFlow, SealState, flow, opening};
+use rayon::prelude::*;
 
 use super::sweep::{SealError, SealSweep};
 use super::{SealPlan, findings};
@@ -121,7 +122,7 @@ impl SealAnswer {
             true => all(raised, last)?.1.leak.mean / now.leak.mean,
             false => f64::NAN,
         };
-        let drops = (0..INLETS).map(|n| {
+        let drops = (0..INLETS).into_par_iter().map(|n| {
             let least = (inlet - outlet) / LEAST;
             let from = plan.profile.inlets().map_or(least, |[from, _]| (from - outlet).max(least));
             outlet + from * ((plan.reach() - outlet) / from).powf(n as f64 / (INLETS - 1) as f64)
@@ -131,8 +132,10 @@ impl SealAnswer {
         };
         let by_inlet: asperity::Result<Vec<Over>> =
             drops.map(|inlet| Ok(all(known(inlet), last)?.1)).collect();
-        let by_time: asperity::Result<Vec<Over>> =
-            (0..=last).map(|time| Ok(Over { at: sweep.times[time], ..all(inlet, time)?.1 })).collect();
+        let by_time: asperity::Result<Vec<Over>> = (0..=last)
+            .into_par_iter()
+            .map(|time| Ok(Over { at: sweep.times[time], ..all(inlet, time)?.1 }))
+            .collect();
         let sigmas = sigmas(last)?;
         let opens: Vec<Opens> = sigmas.iter().map(|sigma| opening(sigma, &plan.profile, outlet)).collect();
         let known: Option<Vec<f64>> = opens.iter().map(|opens| pressure(opens, outlet)).collect();

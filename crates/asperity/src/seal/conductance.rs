@@ -94,13 +94,15 @@ impl Conductance {
         }
     }
 
-    /// k of F = -k dP/dx where the surface is pressed with `pressed` and the fluid has the pressure `fluid` \[Pa\]: sigma, and of a gas
-    /// what its density and its rarefaction make of it.
-    pub(super) fn flux(&self, pressed: f64, fluid: f64) -> f64 {
+    /// The surface where it is pressed with `pressed` \[Pa\].
+    pub(super) fn pressed(&self, pressed: f64) -> Pressed<'_> {
         let sigma = self.at(pressed);
         match &self.gas {
-            Some(gas) if sigma > 0.0 => sigma * gas.factor(pressed, sigma, fluid),
-            _ => sigma,
+            Some(gas) if sigma > 0.0 => Pressed {
+                sigma: sigma * gas.rest(pressed),
+                gas: Some((gas, gas.critical_gap(pressed, sigma))),
+            },
+            _ => Pressed { sigma, gas: None },
         }
     }
 
@@ -112,5 +114,21 @@ impl Conductance {
     /// Pressures between which sigma is smooth, falling.
     pub(super) fn breaks(&self) -> impl Iterator<Item = f64> + '_ {
         self.tight.into_iter().chain(self.sigma.pressures().iter().rev().copied())
+    }
+}
+
+/// The surface under a pressure.
+#[derive(Clone, Copy)]
+pub(super) struct Pressed<'a> {
+    /// sigma, of a gas times r.
+    sigma: f64,
+    /// The gas and the critical gap.
+    gas: Option<(&'a SealGas, f64)>,
+}
+
+impl Pressed<'_> {
+    /// k of F = -k dP/dx where the fluid has the pressure `fluid` \[Pa\].
+    pub(super) fn flux(&self, fluid: f64) -> f64 {
+        self.gas.map_or(self.sigma, |(gas, critical_gap)| self.sigma * gas.density(critical_gap, fluid))
     }
 }

@@ -22,7 +22,9 @@ pub struct SealGas {
     gas: Gas,
     law: Rarefaction,
     reference: f64,
-    /// Critical gap over hydraulic gap.
+    /// D/(P h) \[1/(Pa m)\].
+    scale: f64,
+    /// h_c over sigma^(1/3).
     narrow: Curve,
     /// r.
     rest: Curve,
@@ -63,19 +65,28 @@ impl SealGas {
         };
         let narrow: Vec<_> = points.iter().map(narrow).collect();
         let rest: Result<Vec<_>> = points.iter().map(rest).collect();
-        Ok(SealGas { gas, law, reference, narrow: Curve::through(&narrow), rest: Curve::through(&rest?) })
+        let (narrow, rest) = (Curve::through(&narrow), Curve::through(&rest?));
+        Ok(SealGas { gas, law, reference, scale: gas.inverse_knudsen_scale(), narrow, rest })
     }
 
-    /// r Q P_a.
-    pub(super) fn factor(&self, pressed: f64, sigma: f64, fluid: f64) -> f64 {
+    /// h_c where the surface is pressed with `pressed` and conducts `sigma`.
+    pub(super) fn critical_gap(&self, pressed: f64, sigma: f64) -> f64 {
+        self.narrow.at(pressed) * sigma.cbrt()
+    }
+
+    /// r where the surface is pressed with `pressed`.
+    pub(super) fn rest(&self, pressed: f64) -> f64 {
+        self.rest.at(pressed)
+    }
+
+    /// Q P_a at a critical gap and a pressure of the fluid.
+    pub(super) fn density(&self, critical_gap: f64, fluid: f64) -> f64 {
         let absolute = (fluid + self.reference).max(VACUUM);
-        let gap = self.narrow.at(pressed) * sigma.cbrt();
-        let rarefied = self.law.factor(self.gas.inverse_knudsen_scale() * absolute * gap);
-        self.rest.at(pressed) * rarefied * absolute
+        self.law.factor(self.scale * absolute * critical_gap) * absolute
     }
 
     /// Mean free path over critical gap where the surface is pressed with `pressed` and conducts `sigma`.
     pub(super) fn knudsen(&self, pressed: f64, sigma: f64, fluid: f64) -> f64 {
-        self.gas.knudsen(fluid + self.reference, self.narrow.at(pressed) * sigma.cbrt())
+        self.gas.knudsen(fluid + self.reference, self.critical_gap(pressed, sigma))
     }
 }

@@ -7,6 +7,7 @@
 //! is exact. P rises in each cell, so a cell that chokes the flow is no stiff step: there P jumps to where sigma begins. F is the flow
 //! with which the march arrives at the inlet pressure.
 
+use super::conductance::Pressed;
 use super::{Conductance, Profile};
 use crate::error::{Error, Result};
 
@@ -23,8 +24,6 @@ const GAUSS: [[f64; 2]; 4] = [
     [0.796_666_477_413_626_7, 0.222_381_034_453_374_48],
     [0.960_289_856_497_536_2, 0.101_228_536_290_376_26],
 ];
-/// Parts of an interval that are integrated one by one.
-const PARTS: usize = 2;
 
 /// How the seal is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,7 +152,8 @@ impl March<'_> {
     fn pressures(&self, flow: f64) -> Vec<f64> {
         let mut pressure = vec![self.ends[1]];
         for p0 in self.p0.iter().rev() {
-            pressure.push(self.rise(*p0, pressure[pressure.len() - 1], flow * self.dx));
+            let cell = Cell::new(self, *p0);
+            pressure.push(cell.rise(pressure[pressure.len() - 1], flow * self.dx));
         }
         pressure.reverse();
         pressure
@@ -164,7 +164,8 @@ impl March<'_> {
         let [inlet, outlet] = self.ends;
         let missed = |log: f64| ((self.pressures(log.exp())[0] - outlet) / (inlet - outlet)).ln();
         // In a single cell as wide as all of them the flow would be this.
-        let alone = |p0: &f64| (self.through(*p0, outlet, inlet) / (self.dx * self.p0.len() as f64)).ln();
+        let alone =
+            |p0: &f64| (Cell::new(self, *p0).through(outlet, inlet) / (self.dx * self.p0.len() as f64)).ln();
         let all = self.p0.iter().map(alone);
         let [mut low, mut high] =
             all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], flow| [low.min(flow), high.max(flow)]);
@@ -199,81 +200,96 @@ impl March<'_> {
         }
         (0.5 * (low + high)).exp()
     }
+}
 
-    fn k(&self, p0: f64, fluid: f64) -> f64 {
-        self.sigma.flux(if self.opens { p0 - fluid } else { p0 }, fluid)
+/// A cell of a march.
+struct Cell<'a> {
+    march: &'a March<'a>,
+    p0: f64,
+    /// The surface, where the fluid does not open it.
+    held: Option<Pressed<'a>>,
+}
+
+impl<'a> Cell<'a> {
+    fn new(march: &'a March<'a>, p0: f64) -> Self {
+        Cell { march, p0, held: (!march.opens).then(|| march.sigma.pressed(p0)) }
+    }
+
+    /// k at a pressure of the fluid.
+    fn k(&self, fluid: f64) -> f64 {
+        self.held.unwrap_or_else(|| self.march.sigma.pressed(self.p0 - fluid)).flux(fluid)
     }
 
     /// Pressures of the fluid above `from` between which k is smooth, rising.
-    fn breaks(&self, p0: f64, from: f64) -> impl Iterator<Item = f64> {
-        let all = self.opens.then(|| self.sigma.breaks().map(move |p| p0 - p));
+    fn breaks(&self, from: f64) -> impl Iterator<Item = f64> {
+        let all = self.march.opens.then(|| self.march.sigma.breaks().map(|p| self.p0 - p));
         all.into_iter().flatten().filter(move |fluid| *fluid > from)
     }
 
     /// The integral of k over the pressure of the fluid.
-    fn through(&self, p0: f64, from: f64, to: f64) -> f64 {
-        let breaks = self.breaks(p0, from).take_while(|fluid| *fluid < to).chain([to]);
-        let part = |low: &mut f64, high: f64| Some(self.integral(p0, std::mem::replace(low, high), high));
+    fn through(&self, from: f64, to: f64) -> f64 {
+        let breaks = self.breaks(from).take_while(|fluid| *fluid < to).chain([to]);
+        let part = |low: &mut f64, high: f64| Some(self.integral(std::mem::replace(low, high), high));
         breaks.scan(from, part).sum()
     }
 
     /// The pressure of the fluid from which the integral of k down to `from` is `amount`.
-    fn rise(&self, p0: f64, from: f64, amount: f64) -> f64 {
+    fn rise(&self, from: f64, amount: f64) -> f64 {
         let (mut low, mut left) = (from, amount);
         // Beyond the last break sigma is constant.
-        let mut step = 0.5 * (self.ends[0] - self.ends[1]);
-        let mut breaks = self.breaks(p0, from);
+        let mut step = 0.5 * (self.march.ends[0] - self.march.ends[1]);
+        let mut breaks = self.breaks(from);
         while low.is_finite() {
             let high = breaks.next().unwrap_or_else(|| {
                 step *= 2.0;
                 low + step
             });
-            let part = self.integral(p0, low, high);
-            if part >= left {
-                return self.within(p0, [low, high], left);
+            if let Some(there) = self.within([low, high], left) {
+                return there;
             }
-            (low, left) = (high, left - part);
+            left -= self.integral(low, high);
+            low = high;
         }
         low
     }
 
-    /// The same between two pressures: Newton's steps, kept between the ends.
-    fn within(&self, p0: f64, [from, to]: [f64; 2], amount: f64) -> f64 {
+    /// The same between two pressures, by Newton's steps that stay between them; `None` where the integral over all is less.
+    fn within(&self, [from, to]: [f64; 2], amount: f64) -> Option<f64> {
         let [mut low, mut high] = [from, to];
-        let inside = |guess: f64, low: f64, high: f64| match guess > low && guess < high {
-            true => guess,
-            false => 0.5 * (low + high),
-        };
-        let mut guess = inside(from + amount / self.k(p0, from), low, high);
+        let mut guess = from + amount / self.k(from);
+        if !(guess > from && guess < to) {
+            if self.integral(from, to) < amount {
+                return None;
+            }
+            guess = 0.5 * (from + to);
+        }
         for _ in 0..200 {
-            let error = self.integral(p0, from, guess) - amount;
-            if error.abs() <= 1e-14 * amount {
-                break;
+            let error = self.integral(from, guess) - amount;
+            if error.abs() <= 1e-13 * amount {
+                return Some(guess);
             }
             if error > 0.0 {
                 high = guess
             } else {
                 low = guess
             }
-            let next = inside(guess - error / self.k(p0, guess), low, high);
+            let newton = guess - error / self.k(guess);
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
             if next == guess {
                 break;
             }
             guess = next;
         }
-        guess
+        // Where k falls, the guesses may have gone up to the end.
+        (high < to).then_some(guess)
     }
 
     /// The integral of k where it is smooth.
-    fn integral(&self, p0: f64, from: f64, to: f64) -> f64 {
-        let half = 0.5 * (to - from) / PARTS as f64;
-        let part = |n: usize| {
-            let middle = from + half * (2 * n + 1) as f64;
-            let pair = |[node, weight]: &[f64; 2]| {
-                weight * (self.k(p0, middle - half * node) + self.k(p0, middle + half * node))
-            };
-            half * GAUSS.iter().map(pair).sum::<f64>()
+    fn integral(&self, from: f64, to: f64) -> f64 {
+        let [middle, half] = [0.5 * (from + to), 0.5 * (to - from)];
+        let pair = |[node, weight]: &[f64; 2]| {
+            weight * (self.k(middle - half * node) + self.k(middle + half * node))
         };
-        (0..PARTS).map(part).sum()
+        half * GAUSS.iter().map(pair).sum::<f64>()
     }
 }

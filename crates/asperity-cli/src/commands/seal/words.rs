@@ -168,11 +168,19 @@ impl Words<'_> {
     }
 }
 
-/// "3 ml/year (1 ml/year to 5 ml/year)".
+/// "3 (1 to 5) ml/year".
 fn with_spread(spread: &Spread, words: impl Fn(f64) -> String) -> String {
-    match spread.least == spread.largest {
-        true => words(spread.mean),
-        false => format!("{} ({} to {})", words(spread.mean), words(spread.least), words(spread.largest)),
+    let [mean, least, largest] = [spread.mean, spread.least, spread.largest].map(words);
+    let split =
+        |words: &'_ str| words.split_once(' ').map(|(number, unit)| [number.to_owned(), unit.to_owned()]);
+    match [&mean, &least, &largest].map(|words| split(words)) {
+        _ if spread.least == spread.largest => mean,
+        [Some([mean, unit]), Some([least, same]), Some([largest, again])]
+            if unit == same && unit == again =>
+        {
+            format!("{mean} ({least} to {largest}) {unit}")
+        }
+        _ => format!("{mean} ({least} to {largest})"),
     }
 }
 

@@ -61,9 +61,9 @@ pub struct SealFlow {
 pub struct Choke {
     /// Place across the seal \[m\] from the inlet.
     pub x: f64,
-    /// p0 - P there \[Pa\].
+    /// p0 - P there \[Pa\], where the fluid enters the cell.
     pub pressed: f64,
-    /// P there \[Pa\].
+    /// P there \[Pa\], likewise.
     pub fluid: f64,
 }
 
@@ -119,9 +119,12 @@ pub fn flow(sigma: &Conductance, profile: &Profile, [inlet, outlet]: [f64; 2]) -
         let drop = |n: usize| pressure[n] - pressure[n + 1];
         drop(*a).total_cmp(&drop(*b))
     });
-    let fluid = |n: usize| 0.5 * (pressure[n] + pressure[n + 1]);
-    let pressed = |n: usize| p0[n] - fluid(n);
-    let choke = steepest.map(|n| Choke { x: (n as f64 + 0.5) * dx, pressed: pressed(n), fluid: fluid(n) });
+    let choke = steepest.map(|n| Choke {
+        x: (n as f64 + 0.5) * dx,
+        pressed: p0[n] - pressure[n],
+        fluid: pressure[n],
+    });
+    let pressed = |n: usize| p0[n] - 0.5 * (pressure[n] + pressure[n + 1]);
     let all = (start..end).map(pressed);
     let pressed = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
     Ok(SealFlow { choke, ..ended(SealState::Leaks, flow, pressure, pressed) })

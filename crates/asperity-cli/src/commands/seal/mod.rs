@@ -52,7 +52,7 @@ impl Verb for args::Seal {
         }
         let mut tell = |event: &asperity_io::study::Event<'_>| {
             if !self.quiet {
-                message!("{}", told(event, &units));
+                message!("{}", told(event, &units, |answer| answer.name == "hydraulic_gap"));
             }
         };
         let swept =

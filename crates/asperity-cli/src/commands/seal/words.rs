@@ -130,9 +130,12 @@ impl Words<'_> {
     }
 
     fn opened(&self) -> Option<String> {
-        let ratio = self.answer.leak.mean / self.answer.one_way.mean;
-        let known = self.leaks() && ratio.is_finite();
-        known.then(|| format!("{} times the leak of the contact that it does not open", number(ratio)))
+        let held = self.answer.one_way.mean;
+        let ratio = self.answer.leak.mean / held;
+        (self.leaks() && !held.is_nan()).then(|| match held > 0.0 {
+            true => format!("{} times the leak of the contact that it does not open", number(ratio)),
+            false => "the contact that it does not open is tight".to_owned(),
+        })
     }
 
     fn proportion(&self) -> Option<String> {

@@ -36,7 +36,8 @@ def test_a_seal_has_the_numbers_of_the_command(tmp_path):
     assert seal.fluid_pressure.shape == (1, seal.x.size) and (np.diff(seal.fluid_pressure) <= 0).all()
     assert "leaks" in repr(seal) and any(found.code == "seal-never-tight" for found in seal.findings)
     data = seal.to_xarray()
-    assert dict(data.sizes) == {"inlet": 24, "time": 2, "x": 400, "seed": 1, "pressure": 8}
+    # A patch that is tight nowhere needs no pressures where it closes: a quarter of the eight.
+    assert dict(data.sizes) == {"inlet": 24, "time": 2, "x": 400, "seed": 1, "pressure": 6}
     assert float(data.leak_time[-1]) == seal.leak.mean and data.leak_inlet.attrs["units"] == "m^3/s"
     # The conductance of valleys falls with the pressure, and the leak grows with the inlet pressure.
     assert (np.diff(data.conductance.isel(seed=0, time=-1)) < 0).all() and (np.diff(data.leak_inlet) > 0).all()
@@ -46,7 +47,7 @@ def test_a_seal_has_the_numbers_of_the_command(tmp_path):
 
 def test_another_length_and_pressure_take_the_same_runs_and_a_lifted_seal_has_no_number(tmp_path):
     seal = asp.seal(CASE, directory=tmp_path / "seal", progress=False)
-    before = {run: os.stat(run / "zarr.json").st_mtime_ns for run in (tmp_path / "seal/sweep").glob("*.zarr")}
+    before = {run: os.stat(run / "zarr.json").st_mtime_ns for run in (tmp_path / "seal/sweep").glob("value-*.zarr")}
     twice = asp.seal(CASE, directory=tmp_path / "seal", set={"seal.length": "0.2 m", "leakage.viscosity": "2 mPa s"}, progress=False)
     assert twice.leak.mean == pytest.approx(seal.leak.mean, rel=1e-14)  # rounding
     wide = asp.seal(CASE, directory=tmp_path / "seal", set={"seal.width": "2 mm"}, progress=False)
@@ -66,11 +67,11 @@ def test_what_is_wrong_is_told():
 
 def test_one_patch_leaks_as_several_in_series_within_the_scatter_of_the_seeds():
     """A uniform pressure at the ends of each patch of a series can only raise the flow (Dirichlet's principle)."""
-    size, cells = 1e-4, 64
+    size, cells = 1e-4, 128
     one, four = [], []
     for seed in (1, 2, 3, 4):
         surface = asp.Surface.self_affine(
-            cells=(cells, cells), size=(size, size), hurst=0.8, longest=size / 4, shortest=size / 16, rms_gradient=0.1, seed=seed
+            cells=(cells, cells), size=(size, size), hurst=0.8, longest=size / 4, shortest=size / 12, rms_gradient=0.1, seed=seed
         )
         contact = asp.elastic(surface, 1e7, pressure=0.1e6, boundary="periodic", tolerance=1e-7)
         for leaks, times in ((one, 1), (four, 4)):

@@ -9,8 +9,6 @@ use super::{SealPlan, findings};
 
 /// Inlet pressures of the curve.
 const INLETS: usize = 24;
-/// The curve begins at the pressure drop over this.
-const LEAST: f64 = 100.0;
 /// By how much the inlet pressure is raised to say how the leak grows with it.
 const RAISE: f64 = 1.1;
 
@@ -118,20 +116,15 @@ impl SealAnswer {
         let rate = plan.leak_of_flow(sweep.times[last])?;
         let one_way = spread(&flows, |flow| rate * flow.one_way);
         let raised = outlet + RAISE * (inlet - outlet);
-        let growth = match raised <= plan.reach() {
+        let reach = plan.reach();
+        let growth = match raised <= reach {
             true => all(raised, last)?.1.leak.mean / now.leak.mean,
             false => f64::NAN,
         };
-        let drops = (0..INLETS).into_par_iter().map(|n| {
-            let least = (inlet - outlet) / LEAST;
-            let from = plan.profile.inlets().map_or(least, |[from, _]| (from - outlet).max(least));
-            outlet + from * ((plan.reach() - outlet) / from).powf(n as f64 / (INLETS - 1) as f64)
-        });
-        let known = |inlet: f64| {
-            plan.profile.inlets().map_or(inlet, |[from, to]| inlet.clamp(from, to)).min(plan.reach())
-        };
-        let by_inlet: asperity::Result<Vec<Over>> =
-            drops.map(|inlet| Ok(all(known(inlet), last)?.1)).collect();
+        let start = plan.profile.inlets().map_or(outlet, |[from, _]| from.max(outlet));
+        let inlets = (1..=INLETS).into_par_iter();
+        let inlets = inlets.map(|n| (start + (reach - start) * n as f64 / INLETS as f64).min(reach));
+        let by_inlet: asperity::Result<Vec<Over>> = inlets.map(|inlet| Ok(all(inlet, last)?.1)).collect();
         let by_time: asperity::Result<Vec<Over>> = (0..=last)
             .into_par_iter()
             .map(|time| Ok(Over { at: sweep.times[time], ..all(inlet, time)?.1 }))

@@ -52,6 +52,8 @@ def test_another_length_and_pressure_take_the_same_runs_and_a_lifted_seal_has_no
     assert twice.leak.mean == pytest.approx(seal.leak.mean, rel=1e-14)  # rounding
     wide = asp.seal(CASE, directory=tmp_path / "seal", set={"seal.width": "2 mm"}, progress=False)
     assert wide.leak.mean == pytest.approx(0.5 * seal.leak.mean, rel=1e-9)  # the march arrives within 1e-12 of the drop
+    tenth = asp.seal(CASE, directory=tmp_path / "seal", set={"leakage.pressure_drop": "11 kPa"}, progress=False)
+    assert tenth.leak.mean == pytest.approx(seal.answer["leak_growth"] * seal.leak.mean, rel=1e-9)
     with pytest.warns(asp.ResultWarning, match="lifts"):
         lifted = asp.seal(CASE, directory=tmp_path / "seal", set={"leakage.pressure_drop": "20 kPa"}, progress=False)
     assert lifted.states == ["lifted"] and np.isnan(lifted.leak.mean) and lifted.usual.keys() == {"ml/year"}

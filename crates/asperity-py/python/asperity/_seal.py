@@ -100,8 +100,12 @@ class Seal(Sealed):
 
         def over(dim: str, key: str) -> dict[str, Any]:
             rows = found[key]
-            parts = {f"leak_{key}{end}": [row["seal_leak"][part] for row in rows] for end, part in (("", "mean"), ("_least", "least"), ("_largest", "largest"))}
-            parts[f"leak_{key}_one_way"] = [row["one_way"] for row in rows]
+            parts = {
+                f"leak_{dim}": [row["seal_leak"]["mean"] for row in rows],
+                f"leak_{dim}_least": [row["seal_leak"]["least"] for row in rows],
+                f"leak_{dim}_largest": [row["seal_leak"]["largest"] for row in rows],
+                f"leak_{dim}_one_way": [row["one_way"] for row in rows],
+            }
             return {name: ((dim,), _numbers(values), {"units": unit, "long_name": leak}) for name, values in parts.items()}
 
         columns = {

@@ -1,20 +1,23 @@
 //! The figure of a seal: leak over inlet pressure, pressure inside, leak over time, and the conductance of its patch.
 
 use asperity_io::answer::Units;
-use asperity_io::seal::{Over, SealAnswer};
+use asperity_io::seal::{Over, SealAnswer, State};
 
 use crate::figure::{Axis, COLOURS, Curves, Figure, Series, Style};
 
 /// The figure, leaks and times in these units.
 pub fn figure(answer: &SealAnswer, units: &Units) -> Figure {
-    let rate = || Axis::log("leak of the seal", "m3/s").shown_in(Some(units.shown_leak(false)));
+    let (unit, scale) = answer.plan.standard().map_or(("m3/s", 1.0), |standard| ("Pa m3/s", standard));
+    let rate = || Axis::log("leak of the seal", unit).shown_in(Some(units.shown_leak(answer.plan.is_gas())));
+    let scaled = |list: &[Over]| list.iter().map(|over| over.times(scale)).collect::<Vec<_>>();
+    let [over_inlet, over_time] = [&answer.by_inlet, &answer.by_time].map(|list| scaled(list));
     let mut figure = Figure::new("").with(inside(answer));
-    if answer.by_inlet.iter().any(|over| over.leak.largest > 0.0 || over.one_way > 0.0) {
-        figure.panels.insert(0, by_inlet(answer, rate()).into());
+    if over_inlet.iter().any(|over| over.leak.largest > 0.0 || over.one_way > 0.0) {
+        figure.panels.insert(0, by_inlet(answer, &over_inlet, rate()).into());
     }
-    if answer.by_time.len() > 1 && answer.by_time.iter().any(|over| over.leak.largest > 0.0) {
+    if over_time.len() > 1 && over_time.iter().any(|over| over.leak.largest > 0.0) {
         let panel = Curves::new("over time", Axis::log("time", "s").shown_in(units.shown("time")), rate());
-        figure = figure.with(curves(panel, &answer.by_time));
+        figure = figure.with(curves(panel, &over_time));
     }
     figure.with(conductance(answer)).columns(2).caption(
         "Dotted lines: least and largest of the seeds. Dashed: if the fluid did not open the contact. Where a line ends, the seal is tight.",
@@ -41,10 +44,10 @@ fn curves(panel: Curves, list: &[Over]) -> Curves {
     panel.with(series("contact not opened", Style::Dashed, |over| over.one_way).in_colour(COLOURS[1]))
 }
 
-fn by_inlet(answer: &SealAnswer, y: Axis) -> Curves {
+fn by_inlet(answer: &SealAnswer, list: &[Over], y: Axis) -> Curves {
     let outlet = answer.plan.ends[1];
     let above = |over: &Over| Over { at: over.at - outlet, ..*over };
-    let list: Vec<Over> = answer.by_inlet.iter().map(above).collect();
+    let list: Vec<Over> = list.iter().map(above).collect();
     let axis = Axis::linear("inlet above outlet", "Pa").spanning(0.0, answer.plan.reach() - outlet);
     let mut panel = curves(Curves::new("over the inlet pressure", axis, y), &list);
     let leaks = || {
@@ -83,7 +86,9 @@ fn conductance(answer: &SealAnswer) -> Curves {
     let [pressure, sigma] = axes;
     let panel = Curves::new("patch, at the last time", pressure, sigma);
     let panel = answer.sweep.seeds.iter().enumerate().fold(panel, |panel, (n, seed)| {
-        let last = |point: &(f64, Vec<f64>)| [point.0, drawn(point.1.last().copied().unwrap_or(f64::NAN))];
+        let last = |point: &(f64, Vec<State>)| {
+            [point.0, drawn(point.1.last().map_or(f64::NAN, |state| state.sigma))]
+        };
         let colour = COLOURS[n % COLOURS.len()];
         let name = seed.seed.map_or("patch".to_owned(), |seed| format!("seed {seed}"));
         panel

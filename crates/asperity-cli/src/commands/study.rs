@@ -51,7 +51,7 @@ impl args::Study {
         }
         let mut tell = |event: &Event<'_>| {
             if !self.quiet {
-                crate::messages::message!("{}", told(event, &units));
+                crate::messages::message!("{}", told(event, &units, |_| true));
             }
         };
         let Outcome { table, interrupted } = study.work(&options, &mut tell).map_err(failure)?;
@@ -84,11 +84,11 @@ pub(super) fn failure(error: StudyError) -> Failure {
 }
 
 /// A run that has ended, on one line.
-pub(super) fn told(event: &Event<'_>, units: &Units) -> String {
+pub(super) fn told(event: &Event<'_>, units: &Units, is_shown: impl Fn(&Answer) -> bool) -> String {
     let came = match &event.row.state {
         State::Done => {
-            let first = event.row.answers.first();
-            first.map_or("done".into(), |answer| format!("{} {}", answer.label(), answer.words(units)))
+            let shown = event.row.answers.iter().find(|answer| is_shown(answer));
+            shown.map_or("done".into(), |answer| format!("{} {}", answer.label(), answer.words(units)))
         }
         State::Failed(why) => format!("failed: {why}"),
         state => state.word().to_owned(),

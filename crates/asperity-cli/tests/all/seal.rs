@@ -149,8 +149,9 @@ fn what_makes_no_seal_is_refused_with_its_key() {
     refused(&["seal={ profile = \"p0.csv\", length = \"1 m\" }"], &["seal.profile", "p0.csv"]);
     refused(&["seal.seeds=3"], &["seal.seeds", "seed"]);
     refused(&["load.control=load", "load.history.value=1 N"], &["load.control"]);
-    refused(&["leakage={ gas = \"air\", inlet = \"2 bar\", outlet = \"1 bar\" }"], &["liquid"]);
-    refused(&["leakage={}"], &["liquid"]);
+    refused(&["leakage={}"], &["fluid"]);
+    table("x [mm], p0 [MPa], P [kPa]\n0, 0.1, 0\n1, 0.1, 0\n0, 0.2, 20\n1, 0.2, 20\n");
+    refused(&["seal={ profile = \"p0.csv\", length = \"1 m\", energising = 0.5 }"], &["seal.energising"]);
     table("x [mm], p0 [MPa]\n0, 0.1\n1, -0.1\n");
     refused(&["seal={ profile = \"p0.csv\", length = \"1 m\" }"], &["line 3", "contact pressure"]);
     table("x [mm], p0 [MPa]\n1, 0.1\n0, 0.2\n");
@@ -160,4 +161,39 @@ fn what_makes_no_seal_is_refused_with_its_key() {
     std::fs::write(folder.path().join("none.toml"), WAVE.split("[seal]").next().unwrap()).unwrap();
     let none = asperity(folder.path(), &["seal", "none.toml"]);
     assert!(none.status.code() == Some(2) && String::from_utf8_lossy(&none.stderr).contains("[seal]"));
+}
+
+/// Helium through the valleys, at pressures that do not open them: the leak of the patch, over the patches in the width and in the length.
+/// Where the pressures open them, it is the sum over P of what the patch leaks.
+#[test]
+fn a_seal_leaks_a_rarefied_gas_as_its_patch() {
+    let folder = folder();
+    let set = |pairs: &[&str]| -> Vec<String> {
+        pairs.iter().flat_map(|pair| ["--set".to_owned(), (*pair).to_owned()]).collect()
+    };
+    let gas = "leakage={ gas = \"helium\", inlet = \"1.0002 bar\", outlet = \"1 bar\" }";
+    let words = set(&[gas, "seal.pressures=8"]);
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let (seal, _) = sealed(folder.path(), &words);
+    let one = set(&[gas, "load.history.value=18849.556 Pa"]);
+    let one: Vec<&str> = one.iter().map(String::as_str).collect();
+    let run =
+        asperity(folder.path(), &[&["run", "wave.toml", "--json", "-o", "patch.zarr"][..], &one].concat());
+    let run: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let answers = run["answers"].as_array().unwrap();
+    let patch =
+        |name: &str| answers.iter().find(|answer| answer["name"] == name).unwrap()["value"].as_f64().unwrap();
+    // The patch is 0.15625 um long along the flow and 10 um wide.
+    let whole = (0.1 / 10e-6) * (0.15625e-6 / 1e-3);
+    for (name, of) in [("seal_leak", "leak_rate"), ("seal_leak_standard", "leak_rate_standard")] {
+        let leak = seal[name]["mean"].as_f64().unwrap();
+        // 20 Pa open the contact by 20/18850 of a conductance that falls about as the 8th power of the pressure.
+        assert!((leak / (whole * patch(of)) - 1.0).abs() < 0.01, "{leak} {}", whole * patch(of));
+    }
+    let standard = seal["seal_leak_standard"]["mean"].as_f64().unwrap();
+    assert!(
+        (seal["seal_leak_sccm"]["mean"].as_f64().unwrap() / (standard / 101_325.0 * 60e6) - 1.0).abs()
+            < 1e-12
+    );
+    assert!(seal["knudsen_number"].as_f64().unwrap() > 0.1, "{}", seal["knudsen_number"]);
 }

@@ -9,7 +9,7 @@ use super::load::Load;
 use super::surface::Surface;
 use super::words::number;
 use crate::digest::md5;
-use crate::leakage::{Fluid, Leak, LeakDirection};
+use crate::leakage::{Leak, LeakDirection};
 use crate::resources::text;
 use crate::seal::{Rough, SealPlan};
 
@@ -68,9 +68,13 @@ impl SealKeys {
             let message = "a seal needs a fluid, but the case has no [leakage]";
             return at.fault(message, "[leakage] with pressure_drop and viscosity", "add the section");
         };
-        let Some(Fluid::Liquid { pressure_drop, viscosity }) = leak.fluid else {
-            let help = "give [leakage] pressure_drop and viscosity in place of a gas; `asperity leak` has gases through a patch";
-            return at.sibling("leakage").fault("a seal is computed for liquids only", "a liquid", help);
+        let Some(fluid) = leak.fluid else {
+            let help = "give [leakage] pressure_drop and viscosity, or gas, inlet and outlet";
+            return at.sibling("leakage").fault(
+                "a seal needs a fluid, but [leakage] has none",
+                "a fluid",
+                help,
+            );
         };
         if load.control() != Some(Control::Pressure) || !at.sibling("load").has("history.value") {
             let help = "set load.control = \"pressure\" and load.history = { kind = \"step\", value = \"...\" }; the value is that of a single run";
@@ -105,7 +109,7 @@ impl SealKeys {
             return at.key("pressures").wrong(format!("a number from 8 to {MOST}"), "");
         }
         let outlet = self.outlet.map_or(0.0, Pressure::get);
-        let inlet = outlet + pressure_drop;
+        let inlet = outlet + fluid.pressure_drop();
         if profile.largest(inlet).is_none() {
             let [from, to] = profile.inlets().unwrap_or_default().map(number);
             let message = format!(
@@ -124,7 +128,16 @@ impl SealKeys {
         };
         let length = self.length.get();
         Some((
-            SealPlan { profile, length, pressures, seeds, rough, patch, ends: [inlet, outlet], viscosity },
+            SealPlan {
+                profile,
+                length,
+                pressures,
+                seeds,
+                rough,
+                patch,
+                ends: [inlet, outlet],
+                leak: leak.clone(),
+            },
             file,
         ))
     }

@@ -300,7 +300,7 @@ impl Leak {
         }))
     }
 
-    fn gas(&self, kind: GasKind, temperature: Option<f64>, time: f64) -> Result<Gas> {
+    pub(crate) fn gas(&self, kind: GasKind, temperature: Option<f64>, time: f64) -> Result<Gas> {
         let temperature = temperature.or_else(|| at(&self.temperatures, time)).unwrap_or(ROOM);
         match kind {
             GasKind::Known(species) => Gas::of(species, temperature),

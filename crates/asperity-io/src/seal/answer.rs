@@ -1,17 +1,14 @@
 //! The answers about a seal: leak, opening pressure, pressure inside, over the inlet pressure and over time.
 
 use asperity::finding::Finding;
-use asperity::seal::{CELLS, Opens, SealFlow, SealState, flow, opening};
+use asperity::seal::{CELLS, Conductance, Opens, SealFlow, SealState, flow, opening};
+use rayon::prelude::*;
 
 use super::sweep::{SealError, SealSweep};
 use super::{SealPlan, findings};
 
-/// ml/year in 1 m^3/s, of years of 365.25 days.
-pub const MILLILITRES_A_YEAR: f64 = 3.155_76e13;
 /// Inlet pressures of the curve.
 const INLETS: usize = 24;
-/// The curve begins at the pressure drop over this.
-const LEAST: f64 = 100.0;
 /// By how much the inlet pressure is raised to say how the leak grows with it.
 const RAISE: f64 = 1.1;
 
@@ -27,17 +24,27 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// That of these numbers.
+    /// That of these numbers; not known where one of them is not.
     pub fn of(values: &[f64]) -> Spread {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        if mean.is_nan() {
+            return Spread { mean, least: mean, largest: mean };
+        }
         Spread {
-            mean: values.iter().sum::<f64>() / values.len() as f64,
+            mean,
             least: values.iter().copied().fold(f64::INFINITY, f64::min),
             largest: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         }
     }
+
+    /// The same times a factor.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Spread {
+        Spread { mean: factor * self.mean, least: factor * self.least, largest: factor * self.largest }
+    }
 }
 
-/// A leak \[m^3/s\] over something.
+/// A leak \[m^3/s; gas kg/s\] over something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Over {
     /// Inlet pressure \[Pa\], or time \[s\].
@@ -46,6 +53,14 @@ pub struct Over {
     pub leak: Spread,
     /// The mean leak if the fluid did not open the contact.
     pub one_way: f64,
+}
+
+impl Over {
+    /// The same with leaks times a factor.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Over {
+        Over { at: self.at, leak: self.leak.times(factor), one_way: factor * self.one_way }
+    }
 }
 
 /// The answers.
@@ -57,7 +72,7 @@ pub struct SealAnswer {
     pub sweep: SealSweep,
     /// The flow of each seed at the last time.
     pub flows: Vec<SealFlow>,
-    /// Leak of the whole seal \[m^3/s\].
+    /// Leak of the whole seal \[m^3/s; gas kg/s\].
     pub leak: Spread,
     /// The same if the fluid did not open the contact.
     pub one_way: Spread,
@@ -65,8 +80,10 @@ pub struct SealAnswer {
     pub opens: Vec<Opens>,
     /// Largest inlet pressure \[Pa\] at which the seed is tight for certain; `None` unless that is known of all.
     pub opening: Option<Spread>,
-    /// The leak at an inlet pressure a tenth above the outlet's higher, over the leak; NaN where nothing leaks.
+    /// The leak where the inlet lies a tenth higher above the outlet, over the leak; NaN where nothing leaks, or the profile is not known.
     pub growth: f64,
+    /// Of a gas: the largest Knudsen number of all seeds, at the critical gap where the pressure falls the most; NaN otherwise.
+    pub knudsen: f64,
     /// Leak over inlet pressure at the last time.
     pub by_inlet: Vec<Over>,
     /// Leak over time.
@@ -83,46 +100,48 @@ impl SealAnswer {
     pub fn of(plan: &SealPlan, sweep: SealSweep) -> Result<SealAnswer, SealError> {
         let [inlet, outlet] = plan.ends;
         let last = sweep.times.len() - 1;
-        let sigmas: asperity::Result<Vec<_>> =
-            sweep.seeds.iter().map(|seed| seed.conductance(last)).collect();
-        let sigmas = sigmas?;
-        let rate = |flow: f64| flow * plan.length / (12.0 * plan.viscosity);
+        let sigmas = |time: usize| -> asperity::Result<Vec<Conductance>> {
+            (0..sweep.seeds.len()).map(|seed| sweep.conductance(plan, seed, time)).collect()
+        };
         let all = |inlet: f64, time: usize| -> asperity::Result<(Vec<SealFlow>, Over)> {
-            let flows: asperity::Result<Vec<SealFlow>> = sweep
-                .seeds
-                .iter()
-                .map(|seed| flow(&seed.conductance(time)?, &plan.profile, [inlet, outlet]))
-                .collect();
+            let flows: asperity::Result<Vec<SealFlow>> =
+                sigmas(time)?.iter().map(|sigma| flow(sigma, &plan.profile, [inlet, outlet])).collect();
             let flows = flows?;
-            let leaks: Vec<f64> = flows.iter().map(|flow| rate(flow.flow)).collect();
-            let one_way = Spread::of(&flows.iter().map(|flow| rate(flow.one_way)).collect::<Vec<_>>()).mean;
-            Ok((flows, Over { at: inlet, leak: Spread::of(&leaks), one_way }))
+            let rate = plan.leak_of_flow(sweep.times[time])?;
+            let leak = spread(&flows, |flow| rate * flow.flow);
+            let one_way = spread(&flows, |flow| rate * flow.one_way).mean;
+            Ok((flows, Over { at: inlet, leak, one_way }))
         };
         let (flows, now) = all(inlet, last)?;
-        let one_way: Vec<f64> = flows.iter().map(|flow| rate(flow.one_way)).collect();
-        let raised = (outlet + RAISE * (inlet - outlet)).min(plan.reach());
-        let growth = all(raised, last)?.1.leak.mean / now.leak.mean;
-        let drops = (0..INLETS).map(|n| {
-            let least = (inlet - outlet) / LEAST;
-            let from = plan.profile.inlets().map_or(least, |[from, _]| (from - outlet).max(least));
-            outlet + from * ((plan.reach() - outlet) / from).powf(n as f64 / (INLETS - 1) as f64)
-        });
-        let known = |inlet: f64| {
-            plan.profile.inlets().map_or(inlet, |[from, to]| inlet.clamp(from, to)).min(plan.reach())
+        let rate = plan.leak_of_flow(sweep.times[last])?;
+        let one_way = spread(&flows, |flow| rate * flow.one_way);
+        let raised = outlet + RAISE * (inlet - outlet);
+        let reach = plan.reach();
+        let growth = match raised <= reach {
+            true => all(raised, last)?.1.leak.mean / now.leak.mean,
+            false => f64::NAN,
         };
-        let by_inlet: asperity::Result<Vec<Over>> =
-            drops.map(|inlet| Ok(all(known(inlet), last)?.1)).collect();
-        let by_time: asperity::Result<Vec<Over>> =
-            (0..=last).map(|time| Ok(Over { at: sweep.times[time], ..all(inlet, time)?.1 })).collect();
-        let opens: Vec<Opens> = sigmas.iter().map(|sigma| opening(sigma, &plan.profile)).collect();
-        let known: Option<Vec<f64>> = opens.iter().map(pressure).collect();
+        let start = plan.profile.inlets().map_or(outlet, |[from, _]| from.max(outlet));
+        let inlets = (1..=INLETS).into_par_iter();
+        let inlets = inlets.map(|n| (start + (reach - start) * n as f64 / INLETS as f64).min(reach));
+        let by_inlet: asperity::Result<Vec<Over>> = inlets.map(|inlet| Ok(all(inlet, last)?.1)).collect();
+        let by_time: asperity::Result<Vec<Over>> = (0..=last)
+            .into_par_iter()
+            .map(|time| Ok(Over { at: sweep.times[time], ..all(inlet, time)?.1 }))
+            .collect();
+        let sigmas = sigmas(last)?;
+        let opens: Vec<Opens> = sigmas.iter().map(|sigma| opening(sigma, &plan.profile, outlet)).collect();
+        let known: Option<Vec<f64>> = opens.iter().map(|opens| pressure(opens, outlet)).collect();
+        let knudsen = flows.iter().zip(&sigmas).filter_map(|(flow, sigma)| knudsen(sigma, flow));
+        let knudsen = knudsen.fold(f64::NAN, f64::max);
         let findings = findings::of(plan, &sweep, &sigmas, &flows)?;
         Ok(SealAnswer {
             plan: plan.clone(),
             leak: now.leak,
-            one_way: Spread::of(&one_way),
+            one_way,
             opening: known.map(|known| Spread::of(&known)),
             growth,
+            knudsen,
             by_inlet: by_inlet?,
             by_time: by_time?,
             opens,
@@ -148,11 +167,21 @@ impl SealAnswer {
     }
 }
 
-/// The inlet pressure up to which a seal is tight for certain.
-fn pressure(opens: &Opens) -> Option<f64> {
+/// A number of all seeds.
+fn spread(flows: &[SealFlow], of: impl Fn(&SealFlow) -> f64) -> Spread {
+    Spread::of(&flows.iter().map(of).collect::<Vec<_>>())
+}
+
+fn knudsen(sigma: &Conductance, flow: &SealFlow) -> Option<f64> {
+    let choke = flow.choke?;
+    sigma.knudsen(choke.pressed, choke.fluid)
+}
+
+/// The inlet pressure up to which a seal is tight for certain; that of the outlet if it leaks at all.
+fn pressure(opens: &Opens, outlet: f64) -> Option<f64> {
     match opens {
         Opens::Between(low, _) => Some(*low),
-        Opens::Always => Some(0.0),
+        Opens::Always => Some(outlet),
         Opens::Never | Opens::Unknown => None,
     }
 }

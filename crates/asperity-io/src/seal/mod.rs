@@ -9,13 +9,17 @@
 
 mod answer;
 mod findings;
+mod fluid;
 mod store;
 mod sweep;
 
 use asperity::seal::Profile;
 
-pub use answer::{MILLILITRES_A_YEAR, Over, SealAnswer, Spread};
-pub use sweep::{SealError, SealSweep, SeedSweep, sweep};
+pub use answer::{Over, SealAnswer, Spread};
+pub use store::yearly;
+pub use sweep::{SealError, SealSweep, SeedSweep, State, sweep};
+
+use crate::leakage::Leak;
 
 /// What a case says of its seal.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,8 +38,8 @@ pub struct SealPlan {
     pub patch: usize,
     /// Pressures \[Pa\] at inlet and outlet, counted as the contact pressure is.
     pub ends: [f64; 2],
-    /// Viscosity of the liquid \[Pa s\].
-    pub viscosity: f64,
+    /// The fluid; there is one.
+    pub leak: Leak,
 }
 
 /// A random roughness.
@@ -62,8 +66,10 @@ impl SealPlan {
 
     /// The largest p0 - P in the seal \[Pa\] at these inlet pressures: the sweep goes up to it.
     pub fn largest(&self) -> f64 {
-        let at = |inlet: f64| self.profile.largest(inlet).unwrap_or(0.0);
-        let ends = [self.ends[0], self.reach()].map(at);
-        ends[0].max(ends[1]) - self.ends[1]
+        let tables = self.profile.inlets_of_tables().unwrap_or_default();
+        let shown = tables.into_iter().filter(|inlet| *inlet < self.reach());
+        let largest =
+            shown.chain([self.ends[0], self.reach()]).filter_map(|inlet| self.profile.largest(inlet));
+        largest.fold(0.0, f64::max) - self.ends[1]
     }
 }

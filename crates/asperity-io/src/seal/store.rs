@@ -5,14 +5,14 @@ use std::path::Path;
 use asperity::seal::{Opens, SealState};
 use serde_json::{Value, json};
 
-use super::answer::{MILLILITRES_A_YEAR, Over, SealAnswer, Spread};
+use super::answer::{Over, SealAnswer, Spread};
+use super::{SealPlan, State};
 use crate::finding;
 use crate::output::{WriteError, write_all};
 
 impl SealAnswer {
     /// The answers as JSON, SI; what is infinite or not known is null.
     pub fn object(&self) -> Value {
-        let times = |factor: f64, spread: &Spread| json!({ "mean": factor * spread.mean, "least": factor * spread.least, "largest": factor * spread.largest });
         let (x, p0, fluid) = self.inside();
         let over = |name: &str, list: &[Over]| {
             let one = |over: &Over| json!({ name: over.at, "seal_leak": over.leak, "one_way": over.one_way });
@@ -20,8 +20,14 @@ impl SealAnswer {
         };
         let seeds = self.sweep.seeds.iter().zip(&self.flows).zip(&self.opens).zip(&fluid).map(
             |(((seed, flow), opens), fluid)| {
-                let points =
-                    seed.points.iter().map(|(p, sigma)| json!({ "pressure": p, "conductance": sigma }));
+                let points = seed.points.iter().map(|(p, states)| {
+                    let all = |of: fn(&State) -> f64| states.iter().map(of).collect::<Vec<_>>();
+                    json!({
+                        "pressure": p,
+                        "conductance": all(|state| state.sigma),
+                        "critical_gap": all(|state| state.critical_gap),
+                    })
+                });
                 json!({
                     "seed": seed.seed,
                     "state": state(flow.state),
@@ -38,10 +44,11 @@ impl SealAnswer {
                 })
             },
         );
-        json!({
+        let mut object = json!({
+            "fluid": if self.plan.is_gas() { "gas" } else { "liquid" },
+            "unit": self.plan.unit(),
             "seal_leak": self.leak,
-            "seal_leak_per_metre": times(1.0 / self.plan.length, &self.leak),
-            "seal_leak_ml_per_year": times(MILLILITRES_A_YEAR, &self.leak),
+            "seal_leak_per_metre": self.leak.times(1.0 / self.plan.length),
             "seal_leak_one_way": self.one_way,
             "seal_opening_pressure": self.opening,
             "leak_growth": self.growth,
@@ -54,7 +61,14 @@ impl SealAnswer {
             "time": self.sweep.times,
             "seeds": seeds.collect::<Vec<_>>(),
             "findings": finding::list(&self.findings),
-        })
+        });
+        for (name, factor) in usual(&self.plan) {
+            object[name] = json!(self.leak.times(factor));
+        }
+        if self.plan.is_gas() {
+            object["knudsen_number"] = json!(self.knudsen);
+        }
+        object
     }
 
     /// The leak over the inlet pressure as comma-separated values, SI.
@@ -65,8 +79,13 @@ impl SealAnswer {
                 .map(|x| if x.is_finite() { format!("{x:e}") } else { String::new() })
                 .join(",")
         };
-        let head = "inlet [Pa],seal_leak [m3/s],least [m3/s],largest [m3/s],one_way [m3/s]".to_owned();
-        [head].into_iter().chain(self.by_inlet.iter().map(line)).map(|line| line + "\r\n").collect()
+        let columns = ["seal_leak", "least", "largest", "one_way"];
+        let head = columns.map(|name| format!("{name} [{}]", self.plan.unit())).join(",");
+        [format!("inlet [Pa],{head}")]
+            .into_iter()
+            .chain(self.by_inlet.iter().map(line))
+            .map(|line| line + "\r\n")
+            .collect()
     }
 
     /// Writes seal.json and seal.csv into the folder of the sweep, in place of older ones.
@@ -76,6 +95,30 @@ impl SealAnswer {
     pub fn write(&self, folder: &Path) -> Result<(), WriteError> {
         write_all(&folder.join("seal.json"), true, format!("{:#}\n", self.object()).as_bytes())?;
         write_all(&folder.join("seal.csv"), true, self.csv().as_bytes())
+    }
+}
+
+/// Seconds in a year of 365.25 days.
+const YEAR: f64 = 31_557_600.0;
+/// mbar l/s in 1 Pa m^3/s.
+const MBAR_LITRE: f64 = 10.0;
+
+/// The leak in a year per SI value: its factor and its unit.
+pub fn yearly(plan: &SealPlan) -> (f64, &'static str) {
+    if plan.is_gas() { (1e3 * YEAR, "g") } else { (1e6 * YEAR, "ml") }
+}
+
+/// The leak in usual units, per SI value.
+fn usual(plan: &SealPlan) -> Vec<(&'static str, f64)> {
+    let (year, _) = yearly(plan);
+    match (plan.standard(), plan.sccm()) {
+        (Some(standard), Some(sccm)) => vec![
+            ("seal_leak_standard", standard),
+            ("seal_leak_mbar_l_per_s", MBAR_LITRE * standard),
+            ("seal_leak_sccm", sccm),
+            ("seal_leak_g_per_year", year),
+        ],
+        _ => vec![("seal_leak_ml_per_year", year)],
     }
 }
 

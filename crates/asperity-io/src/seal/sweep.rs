@@ -9,7 +9,7 @@ use asperity::seal::{Conductance, Shape};
 use super::SealPlan;
 use crate::case::{Case, CaseErrors};
 use crate::store::{Reader, StoreError};
-use crate::study::{Event, Options, Row, State, Study, StudyError};
+use crate::study::{self, Event, Options, Row, Study, StudyError};
 
 /// The sweep begins at the largest pressure over this.
 const RANGE: f64 = 300.0;
@@ -62,23 +62,38 @@ pub struct SealSweep {
 pub struct SeedSweep {
     /// The seed; `None` of a surface without one.
     pub seed: Option<u64>,
-    /// Mean pressure \[Pa\], increasing, and sigma \[m^3\] at each time.
-    pub points: Vec<(f64, Vec<f64>)>,
+    /// Mean pressure \[Pa\], increasing, and the state at each time.
+    pub points: Vec<(f64, Vec<State>)>,
 }
 
 impl SeedSweep {
-    /// The conductance at the n-th time.
+    /// The conductance at the n-th time, for a liquid.
     ///
     /// # Errors
     /// As [`Conductance::new`].
     pub fn conductance(&self, time: usize) -> asperity::Result<Conductance> {
-        let at = |point: &(f64, Vec<f64>)| (point.0, point.1[time]);
+        let at = |point: &(f64, Vec<State>)| (point.0, point.1[time].sigma);
         Conductance::new(&self.points.iter().map(at).collect::<Vec<_>>())
     }
 }
 
-/// One run: pressure, seed, (time, sigma).
-type Run = (f64, Option<u64>, Vec<(f64, f64)>);
+/// What flows through the patch in one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Conductance \[m^3\]; 0 where the patch is tight.
+    pub sigma: f64,
+    /// Critical gap \[m\].
+    pub critical_gap: f64,
+    /// Leak of the patch under the pressures of the case \[kg/s\], of a gas.
+    pub leak_rate: f64,
+}
+
+impl State {
+    const UNKNOWN: State = State { sigma: f64::NAN, critical_gap: f64::NAN, leak_rate: f64::NAN };
+}
+
+/// One run: pressure, seed, (time, state).
+type Run = (f64, Option<u64>, Vec<(f64, State)>);
 
 /// Runs the patch of a case; runs that are done in the folder already stay.
 ///
@@ -100,10 +115,17 @@ pub fn sweep(
         return Err(SealError::Input(message));
     }
     let mut set = set.to_vec();
-    // None of them changes the patch, so that another length, width or pressure takes the same runs.
+    // None of them changes the patch, so that another length, width, liquid or pressure of it takes the same runs.
     set.push("seal.length=1 m".into());
-    if !matches!(plan.profile.shape, Shape::Table(_)) {
-        set.extend(["seal.width=1 m".into(), "leakage.pressure_drop=1 Pa".into()]);
+    let table = matches!(plan.profile.shape, Shape::Table(_));
+    if !table {
+        set.push("seal.width=1 m".into());
+    }
+    if !plan.is_gas() {
+        set.push("leakage.viscosity=1 Pa s".into());
+    }
+    if !table && !plan.is_gas() {
+        set.push("leakage.pressure_drop=1 Pa".into());
     }
     let refined = plan.pressures / REFINED;
     let most = plan.largest();
@@ -111,7 +133,7 @@ pub fn sweep(
         |from: f64, to: f64, count: usize| format!("{} Pa:{} Pa:{count}:log", short(from), short(to));
     let vary = values(most / RANGE, up(most), plan.pressures - refined);
     let mut findings = vec![];
-    let mut runs = study(path, &set, plan, &folder.join("sweep"), &vary, options, observe, &mut findings)?;
+    let mut runs = swept(path, &set, plan, &folder.join("sweep"), &vary, options, observe, &mut findings)?;
     let found = SealSweep { times: times(&runs), seeds: seeds(&runs), findings: vec![], size: [0.0; 2] };
     if found.times.is_empty() {
         let message = "the runs of the sweep have no stored time in common; give [output] times, or steps that do not adapt";
@@ -121,7 +143,7 @@ pub fn sweep(
         // The ends are known already.
         let step = (to / from).powf(1.0 / (refined + 1) as f64);
         let vary = values(from * step, to / step, refined);
-        runs.extend(study(
+        runs.extend(swept(
             path,
             &set,
             plan,
@@ -162,7 +184,7 @@ fn closing(sweep: &SealSweep) -> Result<Option<[f64; 2]>, SealError> {
 }
 
 #[expect(clippy::too_many_arguments, reason = "the two studies differ in three of them")]
-fn study(
+fn swept(
     path: &Path,
     set: &[String],
     plan: &SealPlan,
@@ -194,8 +216,9 @@ fn study(
     for row in &mut table.rows {
         // The fluid is taken into account here.
         row.findings.retain(|code| code != FLUID_UNCOUPLED);
-        if row.state != State::Done {
-            let why = if let State::Failed(why) = &row.state { why.as_str() } else { row.state.word() };
+        if row.state != study::State::Done {
+            let why =
+                if let study::State::Failed(why) = &row.state { why.as_str() } else { row.state.word() };
             let message = format!(
                 "the run with {} has no leak: {why}; the same command tries it again",
                 study.plan.label(&row.run)
@@ -212,16 +235,20 @@ fn run(study: &Study, row: &Row, rough: bool) -> Result<Run, SealError> {
     let reader = Reader::open(&study.result(&row.run))?;
     let pressure = row.run.values[0].number().map_or(f64::NAN, |number| number.0);
     let seed = if rough { row.run.values[1].text().parse().ok() } else { None };
-    let [times, steps, gaps, open] =
-        ["leak_time", "leak_step", "hydraulic_gap", "percolates"].map(|name| reader.leak(name));
-    let (times, steps, gaps, open) = (times?, steps?, gaps?, open?);
+    let leak = |name: &str| reader.leak(name);
+    let (times, steps, open) = (leak("leak_time")?, leak("leak_step")?, leak("percolates")?);
+    let (gaps, critical, rates) = (leak("hydraulic_gap")?, leak("critical_gap")?, leak("leak_rate")?);
     let rows = reader.rows()?;
     let held = |n: &usize| {
         let mean = rows.get(steps[*n] as usize).map_or(0.0, |row| row.mean_pressure);
         (mean / pressure - 1.0).abs() < SAME
     };
-    let sigma = |n: usize| if open[n] > 0.0 { gaps[n].powi(3) } else { 0.0 };
-    let leaks: Vec<(f64, f64)> = (0..times.len()).filter(held).map(|n| (times[n], sigma(n))).collect();
+    let state = |n: usize| State {
+        sigma: if open[n] > 0.0 { gaps[n].powi(3) } else { 0.0 },
+        critical_gap: critical[n],
+        leak_rate: rates[n],
+    };
+    let leaks: Vec<(f64, State)> = (0..times.len()).filter(held).map(|n| (times[n], state(n))).collect();
     match leaks.is_empty() {
         false => Ok((pressure, seed, leaks)),
         true => Err(SealError::Input(format!(
@@ -246,8 +273,9 @@ fn seeds(runs: &[Run]) -> Vec<SeedSweep> {
     let times = times(runs);
     let mut seeds: Vec<SeedSweep> = vec![];
     for (pressure, seed, leaks) in runs {
-        let at =
-            |time: &f64| leaks.iter().find(|leak| is_same(leak.0, *time)).map_or(f64::NAN, |leak| leak.1);
+        let at = |time: &f64| {
+            leaks.iter().find(|leak| is_same(leak.0, *time)).map_or(State::UNKNOWN, |leak| leak.1)
+        };
         let point = (*pressure, times.iter().map(at).collect());
         match seeds.iter_mut().find(|known| known.seed == *seed) {
             Some(known) => known.points.push(point),

@@ -38,6 +38,7 @@ from ._materials import *
 from ._motion import rubber_friction as rubber_friction, slide as slide, steady as steady
 from ._persson import Magnification as Magnification, PerssonFriction as PerssonFriction, persson_friction as persson_friction
 from ._result import Cycle as Cycle, Result as Result, open as open
+from ._seal import Seal as Seal, Spread as Spread, seal as seal
 from ._shifts import Shift as Shift, arrhenius as arrhenius, shift_table as shift_table, wlf as wlf
 from ._solve import March as March, Step as Step, check as check, march as march, run as run, solve as solve
 from ._stress import Stress as Stress, stress as stress

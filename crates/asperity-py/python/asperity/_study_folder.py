@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
-import tempfile
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._command import answered, case_file
 from ._core import CaseError
-from ._solve import _toml, source
+from ._solve import _toml
 
 if TYPE_CHECKING:
     import xarray
@@ -31,53 +28,14 @@ def study_in_folder(
     quiet: bool,
 ) -> xarray.Dataset:
     """Runs ``asperity study`` and returns its table: a dimension for each key, or `run` where values go together."""
-    path = _case_file(case, directory)
-    words = [sys.executable, "-m", "asperity", "study", path, "--json"]
+    words = ["study", case_file(case, directory, "a study")]
     for key, values in (vary or {}).items():
         words += ["--vary", f"{key}={_written(key, values)}"]
     words += [] if directory is None else ["-o", os.fspath(directory)]
     for option, value in (("--jobs", jobs), ("--threads", threads)):
         words += [] if value is None else [option, str(value)]
     words += ["--zip"] * zipped + ["--error-bars"] * error_bars + ["-q"] * quiet
-    # A pipe for the table would fill up, and stop the command, while this reads what it tells.
-    with (
-        tempfile.TemporaryFile("w+", encoding="utf-8") as table,
-        subprocess.Popen(words, stdout=table, stderr=subprocess.PIPE, encoding="utf-8") as process,
-    ):
-        try:
-            assert process.stderr is not None
-            told = []
-            for line in process.stderr:
-                told.append(line)
-                if not quiet:
-                    sys.stderr.write(line)
-            process.wait()
-        except KeyboardInterrupt:
-            process.terminate()
-            raise
-        table.seek(0)
-        text = table.read()
-    if process.returncode == 2:
-        raise CaseError("".join(told).removeprefix("error: ").strip())
-    if not text:
-        raise RuntimeError("".join(told).strip() or f"asperity study ended with exit code {process.returncode}")
-    return _dataset(json.loads(text))
-
-
-def _case_file(case: Any, directory: Any) -> str:
-    """The file of a case; one that is given as text or keys is written into the folder."""
-    try:
-        path, text = source(case)
-    except FileNotFoundError as error:
-        raise CaseError(f"the case {error.filename} cannot be read: {error.strerror}") from None
-    if text is None:
-        return path
-    if directory is None:
-        raise CaseError("a study of a case that is no file needs a folder: give directory=")
-    file = Path(os.fspath(directory), "case.toml")
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(text, encoding="utf-8")
-    return str(file)
+    return _dataset(answered(words, quiet))
 
 
 def _written(key: str, values: Any) -> str:

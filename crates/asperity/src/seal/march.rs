@@ -1,18 +1,29 @@
-//! The pressure of the fluid across a seal: a march of the flux potential S. In a cell of width dx with contact pressure p0
+//! The pressure of the fluid across a seal: a march from the outlet to the inlet. In a cell of width dx with contact pressure p0
 //!
 //! ```text
-//! S(p0 - P_out of the cell) = S(p0 - P_in of the cell) + F dx
+//! int_{P outlet side}^{P inlet side} k(p0 - P, P) dP = F dx,   k = sigma(p0 - P) of a liquid
 //! ```
 //!
-//! is exact, and no step is too long where the seal is choked. F is found by bisection on the pressure at the outlet.
+//! is exact. P rises in each cell, so a cell that chokes the flow is no stiff step: there P jumps to where sigma begins. F is the flow
+//! with which the march arrives at the inlet pressure.
 
+use super::conductance::Pressed;
 use super::{Conductance, Profile};
 use crate::error::{Error, Result};
 
 /// Cells across the seal.
 pub const CELLS: usize = 400;
-/// Halvings of the logarithm of the flow.
-const HALVINGS: usize = 70;
+/// Largest number of marches; usually a dozen.
+const MARCHES: usize = 200;
+/// The march has arrived if the drop is met within this share.
+const ARRIVED: f64 = 1e-12;
+/// Nodes and weights of Gauss and Legendre on \[-1, 1\], one half.
+const GAUSS: [[f64; 2]; 4] = [
+    [0.183_434_642_495_649_8, 0.362_683_783_378_362],
+    [0.525_532_409_916_329, 0.313_706_645_877_887_3],
+    [0.796_666_477_413_626_7, 0.222_381_034_453_374_48],
+    [0.960_289_856_497_536_2, 0.101_228_536_290_376_26],
+];
 
 /// How the seal is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +43,8 @@ pub enum SealState {
 pub struct SealFlow {
     /// How the seal is.
     pub state: SealState,
-    /// F \[Pa m^2\], so that F/(12 mu) is the leak per length \[m^2/s\]; infinite where the seal is lifted, NaN where it is not known.
+    /// F \[Pa m^2\], so that F/(12 mu) is the leak per length \[m^2/s\]; of a gas \[Pa^2 m^2\], F/(12 mu R_s T) \[kg/(m s)\]. Infinite
+    /// where the seal is lifted, NaN where it is not known.
     pub flow: f64,
     /// F with the contact of the dry seal, which the fluid does not open.
     pub one_way: f64,
@@ -49,8 +61,10 @@ pub struct SealFlow {
 pub struct Choke {
     /// Place across the seal \[m\] from the inlet.
     pub x: f64,
-    /// p0 - P there \[Pa\].
+    /// p0 - P there \[Pa\], where the fluid enters the cell.
     pub pressed: f64,
+    /// P there \[Pa\], likewise.
+    pub fluid: f64,
 }
 
 /// The flow between two pressures \[Pa\], inlet and outlet, both counted as the contact pressure is.
@@ -63,18 +77,17 @@ pub fn flow(sigma: &Conductance, profile: &Profile, [inlet, outlet]: [f64; 2]) -
         return Err(Error::invalid("the pressure at the inlet", inlet, expected).of("inlet"));
     }
     profile.validate()?;
-    let Some(p0) = profile.pressures(CELLS, inlet) else {
+    let (Some(p0), Some(largest)) = (profile.pressures(CELLS, inlet), profile.largest(inlet)) else {
         let [from, to] = profile.inlets().unwrap_or_default();
         let expected = format!("a pressure from {from} Pa to {to} Pa, as the profile has");
         return Err(Error::invalid("the pressure at the inlet", inlet, expected).of("inlet"));
     };
     let dx = profile.width() / CELLS as f64;
-    let largest =
-        p0.iter().copied().fold(f64::NEG_INFINITY, f64::max).max(profile.largest(inlet).unwrap_or(0.0));
+    let ends = [inlet, outlet];
     let ended = |state, flow, pressure, pressed| SealFlow {
         state,
         flow,
-        one_way: one_way(sigma, &p0, dx, inlet - outlet),
+        one_way: one_way(sigma, &p0, largest, dx, ends),
         pressure,
         choke: None,
         pressed,
@@ -84,66 +97,202 @@ pub fn flow(sigma: &Conductance, profile: &Profile, [inlet, outlet]: [f64; 2]) -
         return Ok(ended(SealState::Lifted, f64::INFINITY, vec![inlet; CELLS + 1], [0.0; 2]));
     };
     let end = p0.iter().rposition(|p0| *p0 > outlet).map_or(CELLS, |last| last + 1);
-    let first = sigma.ends()[0];
     if let Some(tight) = sigma.sealing_pressure() {
         if largest - inlet >= tight {
-            let closed = p0.iter().position(|p0| p0 - inlet >= tight).unwrap_or(CELLS / 2);
+            let top = || (0..CELLS).max_by(|a, b| p0[*a].total_cmp(&p0[*b])).unwrap_or(0);
+            let closed = p0.iter().position(|p0| p0 - inlet >= tight).unwrap_or_else(top);
             let pressure = (0..=CELLS).map(|n| if n <= closed { inlet } else { outlet }).collect();
             return Ok(ended(SealState::Tight, 0.0, pressure, [tight, largest - outlet]));
         }
         if sigma.last_leaking().is_none() {
-            let pressed = [largest - inlet, first];
+            let pressed = [largest - inlet, tight];
             return Ok(ended(SealState::Unknown, f64::NAN, vec![f64::NAN; CELLS + 1], pressed));
         }
     }
-    let march = |flow: f64| -> Option<Vec<f64>> {
-        let mut pressure = vec![inlet; start + 1];
-        for p0 in &p0[start..end] {
-            let here = pressure[pressure.len() - 1];
-            pressure.push(p0 - sigma.pressure(sigma.potential(p0 - here) + flow * dx)?);
-            if pressure[pressure.len() - 1] < outlet - 10.0 * (inlet - outlet) {
-                return None;
-            }
-        }
-        pressure.resize(CELLS + 1, pressure[pressure.len() - 1]);
-        Some(pressure)
-    };
-    let is_too_much = |flow: f64| march(flow).is_none_or(|pressure| pressure[CELLS] < outlet);
-    // A bracket of the flow, by factors, then halved in its logarithm.
-    let mut high = sigma.at(0.0).max(sigma.at(first)) * (inlet - outlet) / dx;
-    while !is_too_much(high) {
-        high *= 1e3;
-    }
-    let mut low = high;
-    while is_too_much(low) && low > f64::MIN_POSITIVE {
-        (high, low) = (low, 1e-3 * low);
-    }
-    for _ in 0..HALVINGS {
-        let middle = (low * high).sqrt();
-        if is_too_much(middle) { high = middle } else { low = middle }
-    }
-    let pressure = march(low).unwrap_or_else(|| vec![inlet; CELLS + 1]);
+    let march = March { sigma, p0: &p0[start..end], dx, ends, opens: true };
+    let flow = march.flow();
+    let mut pressure = vec![inlet; start];
+    pressure.extend(march.pressures(flow));
+    pressure[start] = inlet;
+    pressure.resize(CELLS + 1, outlet);
     let steepest = (start..end).max_by(|a, b| {
         let drop = |n: usize| pressure[n] - pressure[n + 1];
         drop(*a).total_cmp(&drop(*b))
     });
+    let choke = steepest.map(|n| Choke {
+        x: (n as f64 + 0.5) * dx,
+        pressed: p0[n] - pressure[n],
+        fluid: pressure[n],
+    });
     let pressed = |n: usize| p0[n] - 0.5 * (pressure[n] + pressure[n + 1]);
-    let choke = steepest.map(|n| Choke { x: (n as f64 + 0.5) * dx, pressed: pressed(n) });
     let all = (start..end).map(pressed);
-    let ends = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
-    Ok(SealFlow { choke, ..ended(SealState::Leaks, low, pressure, ends) })
+    let pressed = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
+    Ok(SealFlow { choke, ..ended(SealState::Leaks, flow, pressure, pressed) })
 }
 
-/// F where the fluid does not open the contact: the drop over the sum of the resistances dx/sigma(p0).
-fn one_way(sigma: &Conductance, p0: &[f64], dx: f64, drop: f64) -> f64 {
-    match sigma.last_leaking() {
-        None => {
-            if p0.iter().any(|p0| *p0 >= sigma.ends()[0]) {
-                0.0
-            } else {
-                f64::NAN
+/// F where the fluid does not open the contact.
+fn one_way(sigma: &Conductance, p0: &[f64], largest: f64, dx: f64, ends: [f64; 2]) -> f64 {
+    match (sigma.sealing_pressure(), sigma.last_leaking()) {
+        (Some(tight), _) if largest >= tight => 0.0,
+        (_, None) => f64::NAN,
+        _ => March { sigma, p0, dx, ends, opens: false }.flow(),
+    }
+}
+
+/// A march over cells in which something flows at every pressure above that at which the seal closes.
+struct March<'a> {
+    sigma: &'a Conductance,
+    /// Contact pressure in the cells.
+    p0: &'a [f64],
+    dx: f64,
+    ends: [f64; 2],
+    /// Whether the fluid opens the contact.
+    opens: bool,
+}
+
+impl March<'_> {
+    /// The pressures at the ends of the cells, inlet first, that belong to a flow.
+    fn pressures(&self, flow: f64) -> Vec<f64> {
+        let mut pressure = vec![self.ends[1]];
+        for p0 in self.p0.iter().rev() {
+            let cell = Cell::new(self, *p0);
+            pressure.push(cell.rise(pressure[pressure.len() - 1], flow * self.dx));
+        }
+        pressure.reverse();
+        pressure
+    }
+
+    /// The flow with which the march arrives at the inlet.
+    fn flow(&self) -> f64 {
+        let [inlet, outlet] = self.ends;
+        let missed = |log: f64| ((self.pressures(log.exp())[0] - outlet) / (inlet - outlet)).ln();
+        // In a single cell as wide as all of them the flow would be this.
+        let alone =
+            |p0: &f64| (Cell::new(self, *p0).through(outlet, inlet) / (self.dx * self.p0.len() as f64)).ln();
+        let all = self.p0.iter().map(alone);
+        let [mut low, mut high] =
+            all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], flow| [low.min(flow), high.max(flow)]);
+        let (mut under, mut over) = (missed(low), missed(high));
+        for step in (0..64).map(|n| f64::from(1 << n.min(9))) {
+            if under > 0.0 {
+                (high, over) = (low, under);
+                low -= step;
+                under = missed(low);
+            } else if over < 0.0 {
+                (low, under) = (high, over);
+                high += step;
+                over = missed(high);
             }
         }
-        Some(_) => drop / p0.iter().map(|p0| dx / sigma.at(*p0)).sum::<f64>(),
+        // Illinois: an end that stays counts half.
+        for _ in 0..MARCHES {
+            if high - low <= ARRIVED {
+                break;
+            }
+            let chord = (low * over - high * under) / (over - under);
+            let middle = if chord > low && chord < high { chord } else { 0.5 * (low + high) };
+            let off = missed(middle);
+            if off.abs() <= ARRIVED {
+                return middle.exp();
+            }
+            if off > 0.0 {
+                (high, over, under) = (middle, off, 0.5 * under);
+            } else {
+                (low, under, over) = (middle, off, 0.5 * over);
+            }
+        }
+        (0.5 * (low + high)).exp()
+    }
+}
+
+/// A cell of a march.
+struct Cell<'a> {
+    march: &'a March<'a>,
+    p0: f64,
+    /// The surface, where the fluid does not open it.
+    held: Option<Pressed<'a>>,
+}
+
+impl<'a> Cell<'a> {
+    fn new(march: &'a March<'a>, p0: f64) -> Self {
+        Cell { march, p0, held: (!march.opens).then(|| march.sigma.pressed(p0)) }
+    }
+
+    /// k at a pressure of the fluid.
+    fn k(&self, fluid: f64) -> f64 {
+        self.held.unwrap_or_else(|| self.march.sigma.pressed(self.p0 - fluid)).flux(fluid)
+    }
+
+    /// Pressures of the fluid above `from` between which k is smooth, rising.
+    fn breaks(&self, from: f64) -> impl Iterator<Item = f64> {
+        let all = self.march.opens.then(|| self.march.sigma.breaks().map(|p| self.p0 - p));
+        all.into_iter().flatten().filter(move |fluid| *fluid > from)
+    }
+
+    /// The integral of k over the pressure of the fluid.
+    fn through(&self, from: f64, to: f64) -> f64 {
+        let breaks = self.breaks(from).take_while(|fluid| *fluid < to).chain([to]);
+        let part = |low: &mut f64, high: f64| Some(self.integral(std::mem::replace(low, high), high));
+        breaks.scan(from, part).sum()
+    }
+
+    /// The pressure of the fluid from which the integral of k down to `from` is `amount`.
+    fn rise(&self, from: f64, amount: f64) -> f64 {
+        let (mut low, mut left) = (from, amount);
+        // Beyond the last break sigma is constant.
+        let mut step = 0.5 * (self.march.ends[0] - self.march.ends[1]);
+        let mut breaks = self.breaks(from);
+        while low.is_finite() {
+            let high = breaks.next().unwrap_or_else(|| {
+                step *= 2.0;
+                low + step
+            });
+            if let Some(there) = self.within([low, high], left) {
+                return there;
+            }
+            left -= self.integral(low, high);
+            low = high;
+        }
+        low
+    }
+
+    /// The same between two pressures, by Newton's steps that stay between them; `None` where the integral over all is less.
+    fn within(&self, [from, to]: [f64; 2], amount: f64) -> Option<f64> {
+        let [mut low, mut high] = [from, to];
+        let mut guess = from + amount / self.k(from);
+        if !(guess > from && guess < to) {
+            if self.integral(from, to) < amount {
+                return None;
+            }
+            guess = 0.5 * (from + to);
+        }
+        for _ in 0..200 {
+            let error = self.integral(from, guess) - amount;
+            if error.abs() <= 1e-13 * amount {
+                return Some(guess);
+            }
+            if error > 0.0 {
+                high = guess
+            } else {
+                low = guess
+            }
+            let newton = guess - error / self.k(guess);
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            if next == guess {
+                break;
+            }
+            guess = next;
+        }
+        // Where k falls, the guesses may have gone up to the end.
+        (high < to).then_some(guess)
+    }
+
+    /// The integral of k where it is smooth.
+    fn integral(&self, from: f64, to: f64) -> f64 {
+        let [middle, half] = [0.5 * (from + to), 0.5 * (to - from)];
+        let pair = |[node, weight]: &[f64; 2]| {
+            weight * (self.k(middle - half * node) + self.k(middle + half * node))
+        };
+        half * GAUSS.iter().map(pair).sum::<f64>()
     }
 }

@@ -10,7 +10,8 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `conductance` | sigma(p) from a sweep, its integral S(p) and the inverse of S |
+//! | `conductance`, `curve` | sigma(p) from a sweep |
+//! | `gas` | the density and the rarefaction of a gas |
 //! | `profile` | the contact pressure p0(x) |
 //! | `march` | the pressure of the fluid, the flow, where the seal is choked |
 //! | `opening` | the inlet pressure at which the seal opens |
@@ -27,11 +28,14 @@
 //! ```
 
 mod conductance;
+mod curve;
+mod gas;
 mod march;
 mod opening;
 mod profile;
 
 pub use conductance::Conductance;
+pub use gas::{GasPoint, SealGas};
 pub use march::{CELLS, Choke, SealFlow, SealState, flow};
 pub use opening::{Opens, opening};
 pub use profile::{Profile, Shape, Table};

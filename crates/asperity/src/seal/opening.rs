@@ -9,52 +9,64 @@ use super::{Conductance, Profile};
 /// When a seal opens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Opens {
-    /// It is tight below the first pressure \[Pa\], and leaks above the second one; between them the sweep does not tell.
+    /// It is tight up to the first pressure \[Pa\], and leaks at the second one; between them the sweep does not tell.
     Between(f64, f64),
-    /// It leaks at every inlet pressure.
+    /// It leaks at every inlet pressure that the profile is known for.
     Always,
-    /// It is tight at every inlet pressure, or at all that the profile is known for.
+    /// It is tight at every inlet pressure that the profile is known for.
     Never,
     /// No pressure of the sweep is tight, and the seal is pressed more than all of them: not known.
     Unknown,
 }
 
-/// When a seal with this profile opens.
-pub fn opening(sigma: &Conductance, profile: &Profile) -> Opens {
-    let most = profile.inlets().map_or(0.0, |[least, _]| least);
-    let Some(largest) = profile.largest(most.max(0.0)) else { return Opens::Unknown };
+/// Steps between the inlet pressures of two tables, in which the seal may open and close again.
+const STEPS: usize = 64;
+
+/// When a seal with this profile opens, while the inlet pressure rises from that of the outlet.
+pub fn opening(sigma: &Conductance, profile: &Profile, outlet: f64) -> Opens {
+    let start = profile.inlets().map_or(outlet, |[least, _]| least.max(outlet));
+    let Some(pressed) = profile.pressed(start) else { return Opens::Unknown };
     let Some(tight) = sigma.sealing_pressure() else {
-        return if largest <= sigma.ends()[1] * (1.0 + 1e-9) { Opens::Always } else { Opens::Unknown };
+        return if pressed <= sigma.ends()[1] * (1.0 + 1e-9) { Opens::Always } else { Opens::Unknown };
     };
-    let (Some(low), high) = (at(profile, tight), sigma.last_leaking()) else { return Opens::Never };
-    let high = match high {
-        Some(leaking) => at(profile, leaking),
-        None => at(profile, 0.0),
-    };
-    match (low, high.unwrap_or(f64::INFINITY)) {
-        (_, high) if high <= 0.0 => Opens::Always,
-        (low, high) => Opens::Between(low.max(0.0), high),
+    let leaking = sigma.last_leaking();
+    if leaking.is_some_and(|leaking| pressed <= leaking) {
+        return Opens::Always;
+    }
+    let leaks = falls(profile, start, leaking.unwrap_or(0.0)).unwrap_or(f64::INFINITY);
+    match falls(profile, start, tight) {
+        _ if pressed < tight => Opens::Between(outlet, leaks),
+        Some(opens) => Opens::Between(opens, leaks),
+        None => Opens::Never,
     }
 }
 
-/// The inlet pressure at which the seal is pressed with `pressed`; `None` where it is pressed more at every one.
-fn at(profile: &Profile, pressed: f64) -> Option<f64> {
-    let Some([from, to]) = profile.inlets() else {
-        let missing = profile.largest(0.0)? - pressed;
-        return match profile.energising {
-            _ if missing <= 0.0 => Some(0.0),
-            share if share < 1.0 => Some(missing / (1.0 - share)),
-            _ => None,
-        };
+/// The first inlet pressure from `start` on at which the seal is pressed with `level` at most; `None` where it is pressed more at every one.
+fn falls(profile: &Profile, start: f64, level: f64) -> Option<f64> {
+    let excess = |inlet: f64| profile.pressed(inlet).map(|pressed| pressed - level);
+    if excess(start)? <= 0.0 {
+        return Some(start);
+    }
+    let Some(inlets) = profile.inlets_of_tables() else {
+        let share = 1.0 - profile.energising;
+        return (share > 0.0).then(|| excess(start).map(|missing| start + missing / share)).flatten();
     };
-    let excess = |inlet: f64| profile.largest(inlet).map(|largest| largest - inlet - pressed);
-    let [mut low, mut high] = [from, to];
-    if excess(low)? <= 0.0 {
-        return Some(low);
+    let between = |pair: &[f64]| {
+        let [from, to] = [pair[0].max(start), pair[1].max(start)];
+        (1..=STEPS).map(move |n| from + (to - from) * n as f64 / STEPS as f64)
+    };
+    let mut low = start;
+    for inlet in inlets.windows(2).flat_map(between) {
+        if excess(inlet)? <= 0.0 {
+            return bisected(low, inlet, excess);
+        }
+        low = inlet;
     }
-    if excess(high)? > 0.0 {
-        return None;
-    }
+    None
+}
+
+/// Where a number falls below 0, on its positive side.
+fn bisected(mut low: f64, mut high: f64, excess: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if excess(middle)? > 0.0 { low = middle } else { high = middle }

@@ -71,6 +71,10 @@ impl Profile {
                 positive("the largest contact pressure", "peak", *peak)?;
                 positive("the width of the seal", "width", *width)
             }
+            Shape::Table(tables) if tables.len() > 1 && self.energising > 0.0 => {
+                let expected = "0: the profile over the inlet pressure has what the inlet pressure adds";
+                Err(Error::invalid("the energising factor", self.energising, expected).of("energising"))
+            }
             Shape::Table(tables) => check(tables),
         }
     }
@@ -91,48 +95,86 @@ impl Profile {
     /// p0 in the middles of so many cells across the width, at an inlet pressure \[Pa\]; `None` where no table reaches it.
     pub fn pressures(&self, cells: usize, inlet: f64) -> Option<Vec<f64>> {
         let places = (0..cells).map(|n| (n as f64 + 0.5) / cells as f64);
-        let own = |p: f64| p + self.energising * inlet;
+        let added = self.energising * inlet;
         Some(match &self.shape {
-            Shape::Uniform { peak, .. } => vec![own(*peak); cells],
+            Shape::Uniform { peak, .. } => vec![peak + added; cells],
             Shape::Hertz { peak, .. } => {
-                places.map(|x| own(peak * (1.0 - (2.0 * x - 1.0).powi(2)).sqrt())).collect()
+                places.map(|x| peak * (1.0 - (2.0 * x - 1.0).powi(2)).sqrt() + added).collect()
             }
             Shape::Parabola { peak, .. } => {
-                places.map(|x| own(peak * (1.0 - (2.0 * x - 1.0).powi(2)))).collect()
+                places.map(|x| peak * (1.0 - (2.0 * x - 1.0).powi(2)) + added).collect()
             }
             Shape::Table(tables) => {
-                let after = tables.partition_point(|table| table.inlet < inlet);
-                let [a, b] = match tables.len() {
-                    1 => [&tables[0]; 2],
-                    _ if tables.get(after)?.inlet == inlet => [&tables[after]; 2],
-                    _ => [tables.get(after.checked_sub(1)?)?, &tables[after]],
-                };
-                let share = if a.inlet == b.inlet { 0.0 } else { (inlet - a.inlet) / (b.inlet - a.inlet) };
-                let start = a.points[0].0;
-                let at = |x: f64| (1.0 - share) * a.at(x) + share * b.at(x);
-                places.map(|x| own(at(start + x * self.width()))).collect()
+                let table = Between::of(tables, inlet)?;
+                let start = tables[0].points[0].0;
+                places.map(|x| table.at(start + x * self.width()) + added).collect()
             }
         })
     }
 
     /// The largest p0 \[Pa\] at an inlet pressure; `None` where no table reaches it.
     pub fn largest(&self, inlet: f64) -> Option<f64> {
-        match &self.shape {
-            Shape::Uniform { peak, .. } | Shape::Hertz { peak, .. } | Shape::Parabola { peak, .. } => {
-                Some(peak + self.energising * inlet)
+        let largest = match &self.shape {
+            Shape::Uniform { peak, .. } | Shape::Hertz { peak, .. } | Shape::Parabola { peak, .. } => *peak,
+            // A straight line is largest at an end.
+            Shape::Table(tables) => {
+                let table = Between::of(tables, inlet)?;
+                table.places().map(|x| table.at(x)).fold(0.0, f64::max)
             }
-            Shape::Table(_) => Some(self.pressures(super::CELLS, inlet)?.into_iter().fold(0.0, f64::max)),
+        };
+        Some(largest + self.energising * inlet)
+    }
+
+    /// The largest p0 less the inlet pressure \[Pa\]: what keeps the seal closed.
+    pub fn pressed(&self, inlet: f64) -> Option<f64> {
+        self.largest(inlet).map(|largest| largest - inlet)
+    }
+
+    /// The inlet pressures of several tables; `None` where the contact pressure is known for all of them.
+    pub fn inlets_of_tables(&self) -> Option<Vec<f64>> {
+        match &self.shape {
+            Shape::Table(tables) if tables.len() > 1 => {
+                Some(tables.iter().map(|table| table.inlet).collect())
+            }
+            _ => None,
         }
     }
 
     /// The inlet pressures \[Pa\] that the profile is known for; `None` for all.
     pub fn inlets(&self) -> Option<[f64; 2]> {
-        match &self.shape {
-            Shape::Table(tables) if tables.len() > 1 => {
-                Some([tables[0].inlet, tables[tables.len() - 1].inlet])
-            }
-            _ => None,
-        }
+        let inlets = self.inlets_of_tables()?;
+        Some([*inlets.first()?, *inlets.last()?])
+    }
+}
+
+/// A profile between two tables.
+struct Between<'a> {
+    tables: [&'a Table; 2],
+    /// How far from the first table to the second one.
+    share: f64,
+}
+
+impl<'a> Between<'a> {
+    /// At an inlet pressure; `None` where the tables do not reach it.
+    fn of(tables: &'a [Table], inlet: f64) -> Option<Self> {
+        let after = tables.partition_point(|table| table.inlet < inlet);
+        let [a, b] = match tables.len() {
+            1 => [&tables[0]; 2],
+            _ if tables.get(after)?.inlet == inlet => [&tables[after]; 2],
+            _ => [tables.get(after.checked_sub(1)?)?, &tables[after]],
+        };
+        let share = if a.inlet == b.inlet { 0.0 } else { (inlet - a.inlet) / (b.inlet - a.inlet) };
+        Some(Between { tables: [a, b], share })
+    }
+
+    fn at(&self, x: f64) -> f64 {
+        let [a, b] = self.tables.map(|table| table.at(x));
+        (1.0 - self.share) * a + self.share * b
+    }
+
+    /// Places between which it is straight.
+    fn places(&self) -> impl Iterator<Item = f64> + '_ {
+        self.tables.into_iter().flat_map(|table| table.points.iter().map(|point| point.0))
     }
 }
 
@@ -152,7 +194,7 @@ fn check(tables: &[Table]) -> Result<()> {
     }
     let ends = |table: &Table| [table.points[0].0, table.points[table.points.len() - 1].0];
     for (n, table) in tables.iter().enumerate() {
-        if n > 0 && table.inlet <= tables[n - 1].inlet {
+        if !(table.inlet.is_finite() && (n == 0 || table.inlet > tables[n - 1].inlet)) {
             return wrong(
                 "the inlet pressure of the profile",
                 table.inlet,
@@ -167,7 +209,9 @@ fn check(tables: &[Table]) -> Result<()> {
                 format!("places from {from} m to {to} m at every inlet pressure"),
             );
         }
-        if let Some(pair) = table.points.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
+        if let Some(pair) =
+            table.points.windows(2).find(|pair| !(pair[1].0 > pair[0].0 && pair[1].0.is_finite()))
+        {
             return wrong(
                 "the place in the profile",
                 pair[1].0,

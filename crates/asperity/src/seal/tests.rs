@@ -1,6 +1,8 @@
-//! Against closed forms: an exponential conductance, whose flow is known for every profile, and a power law with a sealing pressure.
+//! Against closed forms: an exponential conductance, whose flow is known for every profile, and a power law with a sealing pressure; gases
+//! between parallel plates.
 
 use super::*;
+use crate::leakage::{Gas, Rarefaction, Species, plate};
 
 /// exp(-p/p1) from 1e-4 to 5; its logarithm is straight, which the cubic keeps.
 fn exponential(p1: f64) -> Conductance {
@@ -84,12 +86,12 @@ fn a_seal_chokes_opens_and_is_tight_as_the_power_law_says() {
     // The outlet is choked: its pressure does not matter once 1.2 - P_out > 1.
     assert!((lower.flow / upper.flow - 1.0).abs() < 1e-9);
     assert!(upper.choke.unwrap().x > 1.99);
-    let Opens::Between(low, high) = opening(&sigma, &profile("uniform", 1.2)) else { panic!() };
+    let Opens::Between(low, high) = opening(&sigma, &profile("uniform", 1.2), 0.0) else { panic!() };
     assert!((low - 0.2).abs() < 1e-12 && (high - 0.2025).abs() < 1e-12, "{low} {high}");
     let tight = flow(&sigma, &profile("uniform", 1.2), [0.19, 0.0]).unwrap();
     assert_eq!((tight.state, tight.flow, tight.one_way), (SealState::Tight, 0.0, 0.0));
-    assert_eq!(opening(&sigma, &profile("uniform", 0.9)), Opens::Always);
-    let energised = |energising| opening(&sigma, &Profile { energising, ..profile("uniform", 1.2) });
+    assert_eq!(opening(&sigma, &profile("uniform", 0.9), 0.0), Opens::Always);
+    let energised = |energising| opening(&sigma, &Profile { energising, ..profile("uniform", 1.2) }, 0.0);
     assert!(matches!(energised(0.5), Opens::Between(low, _) if (low - 0.4).abs() < 1e-12));
     assert_eq!(energised(1.0), Opens::Never);
     let lifted = flow(&sigma, &profile("hertz", 1.2), [1.2, 0.0]).unwrap();
@@ -111,19 +113,15 @@ fn a_part_of_a_seal_between_its_own_pressures_has_the_flow_of_the_whole() {
 }
 
 #[test]
-fn the_potential_is_the_integral_of_the_conductance_and_its_inverse_inverts_it() {
+fn the_conductance_passes_through_the_sweep_and_is_held_outside_of_it() {
     let sweep = [(0.1, 1.0), (0.3, 0.4), (0.5, 0.41), (1.0, 1e-4), (2.0, 0.0)];
     let sigma = Conductance::new(&sweep).unwrap();
-    for p in [-0.1, 0.05, 0.1, 0.2, 0.45, 0.99, 1.0, 1.5, 1.9] {
-        let there = sigma.potential(p);
-        assert!((sigma.pressure(there).unwrap() - p).abs() < 1e-6, "{p}");
-        // A central difference of steps of 1e-5: its error is of the order 1e-10 of the curvature.
-        let slope = (sigma.potential(p + 1e-5) - sigma.potential(p - 1e-5)) / 2e-5;
-        assert!((slope - sigma.at(p)).abs() < 2e-4 * sigma.at(p), "{p}: {slope} {}", sigma.at(p));
+    for (p, known) in sweep {
+        assert!((sigma.at(p) - known).abs() <= 1e-15, "{p}");
     }
-    assert_eq!(sigma.pressure(sigma.potential(2.0) * (1.0 + 1e-9)), None);
-    assert!((sigma.with_below(2.0).potential(1.5) - sigma.potential(1.5) - 0.1).abs() < 1e-12);
-    assert_eq!((sigma.at(0.3), sigma.at(2.5), sigma.sealing_pressure()), (0.4, 0.0, Some(2.0)));
+    assert_eq!((sigma.at(0.0), sigma.at(2.5), sigma.sealing_pressure()), (sigma.at(0.1), 0.0, Some(2.0)));
+    assert_eq!(sigma.with_below(2.0).at(0.05), 2.0 * sigma.at(0.05));
+    assert!((sigma.at(1.5) / (1e-4 * 0.5f64.powf(3.45)) - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -132,11 +130,11 @@ fn what_the_sweep_does_not_tell_is_not_made_up() {
     assert_eq!(flow(&tight, &profile("uniform", 0.6), [0.05, 0.0]).unwrap().state, SealState::Tight);
     let unknown = flow(&tight, &profile("uniform", 0.6), [0.2, 0.0]).unwrap();
     assert!(unknown.state == SealState::Unknown && unknown.flow.is_nan());
-    let Opens::Between(low, high) = opening(&tight, &profile("uniform", 0.6)) else { panic!() };
+    let Opens::Between(low, high) = opening(&tight, &profile("uniform", 0.6), 0.0) else { panic!() };
     assert!((low - 0.1).abs() < 1e-12 && (high - 0.6).abs() < 1e-12);
     let leaks = Conductance::new(&[(0.5, 1.0), (1.0, 0.5)]).unwrap();
-    assert_eq!(opening(&leaks, &profile("uniform", 1.5)), Opens::Unknown);
-    assert_eq!(opening(&leaks, &profile("uniform", 0.9)), Opens::Always);
+    assert_eq!(opening(&leaks, &profile("uniform", 1.5), 0.0), Opens::Unknown);
+    assert_eq!(opening(&leaks, &profile("uniform", 0.9), 0.0), Opens::Always);
 }
 
 #[test]
@@ -181,4 +179,132 @@ fn wrong_pressures_are_refused() {
     }
     let energised = Profile { energising: 1.5, ..profile("uniform", 2.0) };
     assert_eq!(flow(&sigma, &energised, [1.0, 0.0]).unwrap_err().parameter(), "energising");
+}
+
+/// Near the pressure at which it is tight a seal conducts 1e-17 of what it does without pressure; its leak is as accurate as any other.
+#[test]
+fn a_leak_is_accurate_where_the_conductance_spans_many_decades() {
+    let p1 = 0.05;
+    for (peak, inlet, outlet) in [(2.0, 0.05, 0.0), (2.0, 1.9, 0.0), (4.0, 0.1, -1.0)] {
+        let exact = p1 * (f64::exp((inlet - peak) / p1) - f64::exp((outlet - peak) / p1)) / 2.0;
+        let found = flow(&exponential(p1), &profile("uniform", peak), [inlet, outlet]).unwrap();
+        // Sixteen points in each interval of the sweep.
+        assert!((found.flow / exact - 1.0).abs() < 1e-9, "{inlet}: {} {exact}", found.flow);
+    }
+}
+
+#[test]
+fn opening_pressures_count_from_the_outlet() {
+    let sigma = Conductance::new(&[(0.5, 1.0), (1.0, 0.5), (1.1, 0.0)]).unwrap();
+    let at = |peak, outlet| opening(&sigma, &profile("uniform", peak), outlet);
+    // A vacuum at the outlet: tight while 0.9 - P is 1.1 at least.
+    let Opens::Between(low, high) = at(0.9, -1.0) else { panic!() };
+    assert!((low + 0.2).abs() < 1e-12 && (high + 0.1).abs() < 1e-12, "{low} {high}");
+    assert_eq!(at(0.9, 0.0), Opens::Always);
+    // Every inlet pressure above this outlet leaks.
+    assert_eq!(at(1.5, 0.6), Opens::Always);
+    assert!(matches!(at(1.5, 0.45), Opens::Between(low, _) if low == 0.45));
+}
+
+/// Contact pressures 1.5, 1.2, 2.5 at the inlet pressures 0.2, 0.6, 1: p0 - P falls to 0.6 and rises again.
+#[test]
+fn a_seal_that_opens_and_closes_again_has_its_first_opening_pressure() {
+    let table = |inlet, top| Table { inlet, points: vec![(0.0, 0.0), (0.51, top), (1.0, 0.0)] };
+    let shape = Shape::Table(vec![table(0.2, 1.5), table(0.6, 1.2), table(1.0, 2.5)]);
+    let profile = Profile { shape, energising: 0.0 };
+    // The largest pressure lies at a point of the table, not in the middle of a cell.
+    assert_eq!(profile.largest(0.2), Some(1.5));
+    let of = |leaks, tight| {
+        let sigma = Conductance::new(&[(0.5 * leaks, 1.0), (leaks, 0.5), (tight, 0.0)]).unwrap();
+        opening(&sigma, &profile, 0.0)
+    };
+    // 1.3 - 1.75 (P - 0.2) is 1.0 at P = 0.2 + 0.3/1.75.
+    let Opens::Between(low, _) = of(0.9, 1.0) else { panic!() };
+    assert!((low - (0.2 + 0.3 / 1.75)).abs() < 1e-12, "{low}");
+    assert_eq!(of(0.4, 0.5), Opens::Never);
+    assert_eq!(of(1.3, 1.4), Opens::Always);
+    // Below the tables nothing is known.
+    assert!(matches!(of(1.2, 1.4), Opens::Between(low, _) if low == 0.0));
+}
+
+#[test]
+fn tables_over_the_inlet_pressure_are_not_energised_again() {
+    let table = |inlet| Table { inlet, points: vec![(0.0, 1.0), (1.0, 1.0)] };
+    let shape = Shape::Table(vec![table(0.0), table(1.0)]);
+    assert_eq!(Profile { shape, energising: 0.5 }.validate().unwrap_err().parameter(), "energising");
+}
+
+fn air() -> Gas {
+    Gas::of(Species::Air, 293.15).unwrap()
+}
+
+/// A patch of parallel plates at these gaps \[m\] under these pressures \[Pa\].
+fn plates(gaps: &[(f64, f64)], law: Rarefaction, reference: f64) -> Conductance {
+    let (size, ends) = ([1e-4, 1e-4], [3e5, 1e5]);
+    let points: Vec<GasPoint> = gaps
+        .iter()
+        .map(|(pressure, gap)| GasPoint {
+            pressure: *pressure,
+            sigma: gap.powi(3),
+            critical_gap: *gap,
+            leak_rate: plate(&air(), law, *gap, size, ends).unwrap(),
+        })
+        .collect();
+    let sweep: Vec<_> = points.iter().map(|point| (point.pressure, point.sigma)).collect();
+    Conductance::new(&sweep)
+        .unwrap()
+        .of_gas(SealGas::new(air(), law, reference, &points, size, ends).unwrap())
+}
+
+/// sigma = exp(-p/p1) in the continuum: F = p1 [(P_a - p1) e^(P/p1)] between outlet and inlet, over int e^(p0/p1) dx.
+#[test]
+fn a_gas_in_the_continuum_leaks_as_the_closed_form() {
+    let (p1, peak, reference) = (0.25e6, 1e6, 1e5);
+    let gaps: Vec<_> = (0..=20)
+        .map(|n| 1e3 * 2e3f64.powf(f64::from(n) / 20.0))
+        .map(|p| (p, 1e-6 * (-p / (3.0 * p1)).exp()))
+        .collect();
+    let sigma = plates(&gaps, Rarefaction::Continuum, reference);
+    for (inlet, outlet) in [(8e5, 0.0), (1e5, 0.0), (9e5, -1e5)] {
+        let part = |p: f64| p1 * (p + reference - p1) * (p / p1).exp();
+        let exact = 1e-18 * (part(inlet) - part(outlet)) / ((peak / p1).exp() * 2.0);
+        let found = flow(&sigma, &profile("uniform", peak), [inlet, outlet]).unwrap();
+        assert!((found.flow / exact - 1.0).abs() < 1e-9, "{inlet}: {} {exact}", found.flow);
+    }
+}
+
+/// A contact that the pressure of the gas does not open leaks as parallel plates, and as two of them in series, at every law; the vacuum
+/// at the outlet included.
+#[test]
+fn a_rarefied_gas_leaks_as_between_plates() {
+    let leak = |flow: f64| flow / (12.0 * air().viscosity * air().specific_energy());
+    for law in [Rarefaction::Continuum, Rarefaction::Slip, Rarefaction::Boltzmann] {
+        for (ends, gap) in [([1e5, 0.0], 1e-7), ([1e5, -1e5], 3e-8)] {
+            let sigma = plates(&[(1e6, gap), (1e7, gap)], law, 1e5);
+            let found = flow(&sigma, &profile("uniform", 5e6), ends).unwrap();
+            let exact = plate(&air(), law, gap, [2.0, 1.0], ends.map(|p| p + 1e5)).unwrap();
+            // The quadrature does not know where the fit of Q jumps by 0.3 % between its pieces, nor the logarithm towards a vacuum.
+            assert!(
+                (leak(found.flow) / exact - 1.0).abs() < 1e-5,
+                "{law:?} {gap}: {} {exact}",
+                leak(found.flow)
+            );
+            assert!((found.one_way / found.flow - 1.0).abs() < 1e-9);
+        }
+    }
+    // 1 um and 0.2 um, each 0.5 mm long, in an independent solution.
+    let step =
+        Table { inlet: 0.0, points: vec![(0.0, 1e9), (0.4999e-3, 1e9), (0.5001e-3, 2e9), (1e-3, 2e9)] };
+    let profile = Profile { shape: Shape::Table(vec![step]), energising: 0.0 };
+    let exact = [
+        (Rarefaction::Continuum, 1.295_516_732_778_094e-8),
+        (Rarefaction::Slip, 2.994_212_833_885_088e-8),
+        (Rarefaction::Boltzmann, 3.551_748_419_964_744e-8),
+    ];
+    for (law, exact) in exact {
+        let sigma = plates(&[(1e9, 1e-6), (2e9, 2e-7)], law, 1e5);
+        let found = flow(&sigma, &profile, [1e5, 0.0]).unwrap();
+        // One way: the pressures 1 bar and 1 GPa differ.
+        assert!((leak(found.one_way) / exact - 1.0).abs() < 1e-5, "{law:?}: {} {exact}", leak(found.one_way));
+    }
 }

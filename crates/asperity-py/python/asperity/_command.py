@@ -1,0 +1,61 @@
+"""The command, run in a process of its own for its answer in JSON."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ._core import CaseError
+from ._solve import source
+
+
+def answered(words: Sequence[str], quiet: bool) -> dict[str, Any]:
+    """The object that ``asperity WORDS --json`` prints; what it tells goes to stderr unless `quiet`."""
+    told: list[str] = []
+    # A pipe for the answer would fill up, and stop the command, while this reads what it tells.
+    with (
+        tempfile.TemporaryFile("w+", encoding="utf-8") as answer,
+        subprocess.Popen(
+            [sys.executable, "-m", "asperity", *words, "--json"], stdout=answer, stderr=subprocess.PIPE, encoding="utf-8"
+        ) as process,
+    ):
+        try:
+            assert process.stderr is not None
+            for line in process.stderr:
+                told.append(line)
+                if not quiet:
+                    sys.stderr.write(line)
+            process.wait()
+        except KeyboardInterrupt:
+            process.terminate()
+            raise
+        answer.seek(0)
+        text = answer.read()
+    if process.returncode == 2:
+        raise CaseError("".join(told).removeprefix("error: ").strip())
+    if not text:
+        raise RuntimeError("".join(told).strip() or f"asperity {words[0]} ended with exit code {process.returncode}")
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def case_file(case: Any, directory: Any, what: str) -> str:
+    """The file of a case; one that is given as text or keys is written into the folder of `what`."""
+    try:
+        path, text = source(case)
+    except FileNotFoundError as error:
+        raise CaseError(f"the case {error.filename} cannot be read: {error.strerror}") from None
+    if text is None:
+        return path
+    if directory is None:
+        raise CaseError(f"{what} of a case that is no file needs a folder: give directory=")
+    file = Path(os.fspath(directory), "case.toml")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8")
+    return str(file)

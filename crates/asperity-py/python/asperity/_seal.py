@@ -1,0 +1,197 @@
+"""Whole seals: how much leaks across a contact that the fluid opens, and when it opens."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ._arrays import Floats
+from ._command import answered, case_file
+from ._findings import Finding, findings_of, warn
+from ._sealed import Sealed
+from ._solve import overrides
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["Seal", "Spread", "seal"]
+
+#: Usual units of a leak, and their names in the answer.
+_USUAL = {"ml/year": "ml_per_year", "mbar l/s": "mbar_l_per_s", "sccm": "sccm", "g/year": "g_per_year"}
+
+
+class Spread(NamedTuple):
+    """A number of all seeds: NaN where it is not known or has no bound."""
+
+    mean: float
+    least: float
+    largest: float
+
+
+class Seal(Sealed):
+    """A whole seal: numbers as attributes, SI."""
+
+    #: Leak of the whole seal [m^3/s; of a gas kg/s].
+    leak: Spread
+    #: The same per metre of its length.
+    leak_per_metre: Spread
+    #: The leak of the contact that the fluid does not open.
+    leak_one_way: Spread
+    #: The leak in usual units: "ml/year" of a liquid; "mbar l/s" (at 0 degC), "sccm" and "g/year" of a gas.
+    usual: dict[str, Spread]
+    #: Largest inlet pressure at which the seal is tight for certain [Pa]; None unless that is known of every seed.
+    opening_pressure: Spread | None
+    #: Of each seed: "tight", "leaks", "lifted" or "unknown".
+    states: list[str]
+    #: Pressures [Pa] at inlet and outlet, counted as the contact pressure is.
+    inlet: float
+    outlet: float
+    #: Places across the seal [m] from the inlet, the contact pressure there [Pa], and the pressure of the fluid [Pa], shape (seeds, places).
+    x: Floats
+    contact_pressure: Floats
+    fluid_pressure: Floats
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        self._found = found
+        usual = {unit: found[f"seal_leak_{name}"] for unit, name in _USUAL.items() if f"seal_leak_{name}" in found}
+        opening = found["seal_opening_pressure"]
+        self._hold(
+            leak=_spread(found["seal_leak"]),
+            leak_per_metre=_spread(found["seal_leak_per_metre"]),
+            leak_one_way=_spread(found["seal_leak_one_way"]),
+            usual={unit: _spread(spread) for unit, spread in usual.items()},
+            opening_pressure=None if opening is None else _spread(opening),
+            states=[seed["state"] for seed in found["seeds"]],
+            inlet=found["inlet"],
+            outlet=found["outlet"],
+            x=np.array(found["x"]),
+            contact_pressure=np.array(found["contact_pressure"]),
+            fluid_pressure=_numbers([seed["seal_pressure"] for seed in found["seeds"]]),
+        )
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What must be known before the numbers are used (docs/findings.md)."""
+        return findings_of(self._found["findings"], of_case=True)
+
+    @property
+    def answer(self) -> dict[str, Any]:
+        """All numbers, as ``asperity seal --json`` prints them."""
+        return self._found
+
+    def __repr__(self) -> str:
+        state = "/".join(sorted(set(self.states)))
+        return f"<Seal: {state}, leak {self.leak.mean:.3g} {self._found['unit'].replace('m3', 'm^3')}>"
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The leak over `inlet` pressure and `time`, the pressures over `x`, and the conductance of the patch over `pressure`: with the
+        dimension `seed` where they differ from seed to seed."""
+        import xarray
+
+        found, unit, leak = self._found, self._found["unit"].replace("m3", "m^3"), "leak of the seal"
+        seeds = found["seeds"]
+        sweep = seeds[0]["seal_sweep"]
+
+        def of(name: str, unit: str, words: str, dims: tuple[str, ...], values: Any) -> dict[str, Any]:
+            return {name: (dims, _numbers(values), {"units": unit, "long_name": words})}
+
+        def over(dim: str, key: str) -> dict[str, Any]:
+            rows = found[key]
+            parts = {
+                f"leak_{dim}": [row["seal_leak"]["mean"] for row in rows],
+                f"leak_{dim}_least": [row["seal_leak"]["least"] for row in rows],
+                f"leak_{dim}_largest": [row["seal_leak"]["largest"] for row in rows],
+                f"leak_{dim}_one_way": [row["one_way"] for row in rows],
+            }
+            return {name: ((dim,), _numbers(values), {"units": unit, "long_name": leak}) for name, values in parts.items()}
+
+        columns = {
+            **over("inlet", "by_inlet"),
+            **over("time", "by_time"),
+            **of("contact_pressure", "Pa", "contact pressure", ("x",), self.contact_pressure),
+            **of("fluid_pressure", "Pa", "pressure of the fluid", ("seed", "x"), self.fluid_pressure),
+            **of(
+                "conductance",
+                "m^3",
+                "hydraulic gap of the patch, cubed",
+                ("seed", "pressure", "time"),
+                [[point["conductance"] for point in seed["seal_sweep"]] for seed in seeds],
+            ),
+        }
+        coordinates = {
+            **of("inlet", "Pa", "pressure at the inlet", ("inlet",), [row["inlet"] for row in found["by_inlet"]]),
+            **of("time", "s", "time", ("time",), found["time"]),
+            **of("x", "m", "place across the seal", ("x",), self.x),
+            **of("pressure", "Pa", "mean pressure on the patch", ("pressure",), [point["pressure"] for point in sweep]),
+            "seed": [-1 if seed["seed"] is None else seed["seed"] for seed in seeds],
+        }
+        return xarray.Dataset(columns, coords=coordinates)
+
+
+def seal(
+    case: str | os.PathLike[str] | Mapping[str, Any],
+    *,
+    set: dict[str, Any] | Sequence[str] | None = None,
+    directory: str | os.PathLike[str] | None = None,
+    jobs: int | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+) -> Seal:
+    """A whole seal of which the case is a patch, as ``asperity seal`` computes it: with the same numbers and the same folder.
+
+    Each finding of severity "warning" is a :class:`ResultWarning`.
+
+    Parameters
+    ----------
+    case : path of a case file with ``[seal]`` and ``[leakage]``; or its text, or its keys as a dictionary, with a `directory`, from which
+        the files that it names count
+    set : changed keys of the case
+    directory : the folder of the sweep and the answers; the case's name with -seal if not given. A folder that holds the same sweep goes on
+        with it
+    jobs : runs of the patch side by side at most; as many as threads and memory allow if not given
+    threads : of all runs together
+    progress : tell on stderr how far the sweep is
+
+    Raises
+    ------
+    CaseError : the case or the folder is wrong
+    RuntimeError : a run of the patch failed
+
+    Examples
+    --------
+    >>> import asperity as asp, tempfile
+    >>> case = {
+    ...     "domain": {"cells": [2, 64], "size": ["0.3 um", "10 um"]},
+    ...     "surface": [{"kind": "wave", "amplitude": "0.1 um", "wavelength": ["inf", "10 um"]}],
+    ...     "body": [{"poisson": 0.5, "material": {"model": "elastic", "young": "0.75 MPa"}}],
+    ...     "load": {"control": "pressure", "history": {"kind": "step", "value": "10 kPa"}},
+    ...     "time": {"end": "1 s", "steps": 1},
+    ...     "leakage": {"pressure_drop": "10 kPa", "viscosity": "1 mPa s"},
+    ...     "seal": {"profile": "uniform", "peak": "20 kPa", "width": "1 mm", "length": "0.1 m", "pressures": 8},
+    ... }
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     found = asp.seal(case, directory=folder, progress=False)
+    >>> found.states, found.leak.mean > 2 * found.leak_one_way.mean
+    (['leaks'], True)
+    """
+    words = ["seal", case_file(case, directory, "a seal")]
+    for key in overrides(set):
+        words += ["--set", key]
+    words += [] if directory is None else ["-o", os.fspath(directory)]
+    for option, value in (("--jobs", jobs), ("--threads", threads)):
+        words += [] if value is None else [option, str(value)]
+    found = Seal(answered([*words, *["-q"] * (not progress)], not progress))
+    warn(found.findings)
+    return found
+
+
+def _numbers(values: Any) -> Floats:
+    """Numbers, NaN for None."""
+    return np.array(values, dtype=float)
+
+
+def _spread(spread: Mapping[str, float | None]) -> Spread:
+    return Spread(*(np.nan if spread[name] is None else float(spread[name] or 0.0) for name in Spread._fields))

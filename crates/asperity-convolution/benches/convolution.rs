@@ -49,7 +49,8 @@ fn main() {
                     if instructions == Instructions::Portable {
                         continue;
                     }
-                    let mut form = BatchedFft::<f64>::on(instructions, [n, n], lengths, &[spectrum.view()]);
+                    let mut form =
+                        BatchedFft::<f64>::on(instructions, [n, n], lengths, vec![spectrum.view().into()]);
                     let (i, e, mut out) = (input.clone(), exact.clone(), vec![0.0; n * n]);
                     forms.push((
                         format!("{instructions:?} f64"),
@@ -59,7 +60,8 @@ fn main() {
                         }),
                         vec![],
                     ));
-                    let mut form = BatchedFft::<f32>::on(instructions, [n, n], lengths, &[spectrum.view()]);
+                    let mut form =
+                        BatchedFft::<f32>::on(instructions, [n, n], lengths, vec![spectrum.view().into()]);
                     let (i, e, mut out) = (single.clone(), exact.clone(), vec![0.0; n * n]);
                     forms.push((
                         format!("{instructions:?} f32"),

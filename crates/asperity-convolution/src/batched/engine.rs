@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use ndarray::ArrayView2;
 use rayon::prelude::*;
 
+use super::Spectrum;
 use super::complex::Complex;
 use super::factors::Factors;
 use super::leaf::Energy;
@@ -45,15 +46,16 @@ impl<V: Vector> Engine<V> {
         cells: [usize; 2],
         lengths: [usize; 2],
         [along_x, along_y]: [&Factors; 2],
-        spectra: &[ArrayView2<f64>],
+        spectra: Vec<Spectrum<'_>>,
     ) -> Self {
         let [nx, ny] = cells;
         let [mx, my] = lengths;
         let row_plan = Rows::new(ny, Transform::new(along_y, 2 * ny <= my), V::LANES);
         let column_plan = Transform::new(along_x, 2 * nx <= mx);
+        // An array that was handed over is given back before the other memory is taken.
         let blocked =
-            |spectrum: &ArrayView2<f64>| blocked_spectrum(lengths, &row_plan, &column_plan, spectrum.view());
-        let spectra: Vec<Vec<V>> = spectra.iter().map(blocked).collect();
+            |spectrum: Spectrum| blocked_spectrum(lengths, &row_plan, &column_plan, spectrum.view());
+        let spectra: Vec<Vec<V>> = spectra.into_iter().map(blocked).collect();
         let frequencies = row_plan.frequencies(V::LANES);
         let mut columns = vec![0; my / 2 + 1];
         frequencies.iter().enumerate().for_each(|(column, ky)| columns[*ky] = column);

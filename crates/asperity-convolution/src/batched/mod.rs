@@ -55,13 +55,16 @@ mod work;
 mod wrap;
 
 use asperity_sweep::Instructions;
-use ndarray::{Array2, ArrayView2};
+use ndarray::{ArrayView2, CowArray, Ix2};
 
 use engine::Convolve;
 pub use engine::Modify;
 use factors::{Factors, factors};
 pub use real::Real;
 use wrap::wrapped_spectrum;
+
+/// The multipliers S(kx, ky) of a convolution, shape (mx/2 + 1, my/2 + 1): lent, or handed over.
+pub type Spectrum<'a> = CowArray<'a, f64, Ix2>;
 
 /// A planned convolution of real fields with a real, even spectrum, in `f64` or `f32`.
 ///
@@ -96,14 +99,14 @@ impl<T: Real> BatchedFft<T> {
     /// # Panics
     /// If a length is less than the number of cells, a count is 0, or the spectrum has another shape.
     pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
-        Self::with_spectra(cells, lengths, &[spectrum])
+        Self::with_spectra(cells, lengths, vec![spectrum.into()])
     }
 
     /// As [`Self::new`], with several spectra for a [`Chain`] of convolutions; the first is that of [`Self::apply_into`].
     ///
     /// # Panics
     /// Also if there is no spectrum.
-    pub fn with_spectra(cells: [usize; 2], lengths: [usize; 2], spectra: &[ArrayView2<f64>]) -> Self {
+    pub fn with_spectra(cells: [usize; 2], lengths: [usize; 2], spectra: Vec<Spectrum<'_>>) -> Self {
         Self::on(Instructions::available()[0], cells, lengths, spectra)
     }
 
@@ -115,22 +118,20 @@ impl<T: Real> BatchedFft<T> {
         instructions: Instructions,
         cells: [usize; 2],
         lengths: [usize; 2],
-        spectra: &[ArrayView2<f64>],
+        spectra: Vec<Spectrum<'_>>,
     ) -> Self {
         assert!(Instructions::available().contains(&instructions), "{instructions:?} is not available");
         assert!(cells[0] > 0 && cells[1] > 0 && lengths[0] >= cells[0] && lengths[1] >= cells[1]);
         assert!(!spectra.is_empty());
-        for spectrum in spectra {
+        for spectrum in &spectra {
             assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
         }
         if let Some([x, y]) = factors_of(lengths) {
             return BatchedFft { engine: T::plan(instructions, cells, lengths, [&x, &y], spectra) };
         }
         let longer = cells.map(|n| Self::good_length(2 * n - 1));
-        let wrap = |spectrum: &ArrayView2<f64>| wrapped_spectrum(cells, lengths, longer, spectrum.view());
-        let wrapped: Vec<Array2<f64>> = spectra.iter().map(wrap).collect();
-        let wrapped: Vec<ArrayView2<f64>> = wrapped.iter().map(|spectrum| spectrum.view()).collect();
-        Self::on(instructions, cells, longer, &wrapped)
+        let wrap = |spectrum: Spectrum| wrapped_spectrum(cells, lengths, longer, spectrum.view()).into();
+        Self::on(instructions, cells, longer, spectra.into_iter().map(wrap).collect())
     }
 
     /// `output` = S * `input`; both C-order, nx ny cells.
@@ -141,6 +142,16 @@ impl<T: Real> BatchedFft<T> {
         self.engine.forward(input);
         self.engine.multiply(0);
         self.engine.back(output);
+    }
+
+    /// `field` becomes S * `field`; C-order, nx ny cells.
+    ///
+    /// # Panics
+    /// If the length is not nx ny.
+    pub fn apply_in_place(&mut self, field: &mut [T]) {
+        self.engine.forward(field);
+        self.engine.multiply(0);
+        self.engine.back(field);
     }
 
     /// Bytes of a plan with this number of spectra, without the buffers of its threads (a few rows and columns).
@@ -177,7 +188,7 @@ fn factors_of([mx, my]: [usize; 2]) -> Option<[Factors; 2]> {
 ///
 /// // x -> 3 x, squared -> 5 x.
 /// let [three, five] = [3.0, 5.0].map(|s| ndarray::Array2::from_elem((9, 9), s));
-/// let mut plan = BatchedFft::<f64>::with_spectra([16, 16], [16, 16], &[three.view(), five.view()]);
+/// let mut plan = BatchedFft::<f64>::with_spectra([16, 16], [16, 16], vec![three.into(), five.into()]);
 /// let input: Vec<f64> = (0..256).map(f64::from).collect();
 /// let mut output = vec![0.0; 256];
 /// let mut chain = plan.chain(&input);

@@ -12,8 +12,8 @@ impl Real for f32 {}
 
 mod sealed {
     use asperity_sweep::Instructions;
-    use ndarray::ArrayView2;
 
+    use super::super::Spectrum;
     use super::super::engine::{Convolve, Engine};
     use super::super::factors::Factors;
     use super::super::portable::Portable;
@@ -27,7 +27,7 @@ mod sealed {
             cells: [usize; 2],
             lengths: [usize; 2],
             factors: [&Factors; 2],
-            spectra: &[ArrayView2<f64>],
+            spectra: Vec<Spectrum<'_>>,
         ) -> Box<dyn Convolve<Self>>;
     }
 
@@ -40,7 +40,7 @@ mod sealed {
                     cells: [usize; 2],
                     lengths: [usize; 2],
                     factors: [&Factors; 2],
-                    spectra: &[ArrayView2<f64>],
+                    spectra: Vec<Spectrum<'_>>,
                 ) -> Box<dyn Convolve<Self>> {
                     match instructions {
                         #[cfg(target_arch = "x86_64")]

@@ -104,12 +104,14 @@ fn equals_the_plain_transform_on_any_shape() {
         let (input, spectrum) = (field(cells), spectrum(lengths));
         let exact = plain(cells, lengths, &spectrum, &input);
         for instructions in Instructions::available() {
-            let found = apply(BatchedFft::on(instructions, cells, lengths, &[spectrum.view()]), &input);
+            let found =
+                apply(BatchedFft::on(instructions, cells, lengths, vec![spectrum.view().into()]), &input);
             let error = error(&found, &exact);
             // Rounding of a transform: a few 2^-53 per pass, some ten passes in all.
             assert!(error < 4e-15, "{instructions:?} {cells:?} {lengths:?}: {error:e}");
             let single: Vec<f32> = input.iter().map(|x| *x as f32).collect();
-            let found = apply(BatchedFft::on(instructions, cells, lengths, &[spectrum.view()]), &single);
+            let found =
+                apply(BatchedFft::on(instructions, cells, lengths, vec![spectrum.view().into()]), &single);
             let found: Vec<f64> = found.into_iter().map(f64::from).collect();
             let error = self::error(&found, &exact);
             // The same with 2^-24.
@@ -124,7 +126,7 @@ fn assert_same_bits<T: Real>(cells: [usize; 2], lengths: [usize; 2], bits: impl 
     let input: Vec<T> = input.into_iter().map(T::nearest).collect();
     let run = |instructions, threads| -> Vec<u64> {
         on_threads(threads, || {
-            let convolution = BatchedFft::on(instructions, cells, lengths, &[spectrum.view()]);
+            let convolution = BatchedFft::on(instructions, cells, lengths, vec![spectrum.view().into()]);
             apply(convolution, &input).into_iter().map(&bits).collect()
         })
     };
@@ -152,7 +154,8 @@ fn has_the_same_bits_for_any_number_of_lanes() {
     fn run<const N: usize>(cells: [usize; 2], lengths: [usize; 2]) -> Vec<u64> {
         let (x, y) = (factors(lengths[0]).unwrap(), factors(lengths[1] / 2).unwrap());
         let spectrum = spectrum(lengths);
-        let mut engine = Engine::<Portable<f64, N>>::new(cells, lengths, [&x, &y], &[spectrum.view()]);
+        let mut engine =
+            Engine::<Portable<f64, N>>::new(cells, lengths, [&x, &y], vec![spectrum.view().into()]);
         let mut output = vec![0.0; cells[0] * cells[1]];
         engine.forward(&field(cells));
         engine.multiply(0);
@@ -200,8 +203,8 @@ fn a_chain_is_one_convolution_after_the_other() {
             let spectra = [spectrum(lengths), spectrum(lengths).mapv(|s| 1.0 / (0.2 + s))];
             let input: Vec<T> = field(cells).into_iter().map(T::nearest).collect();
             let plan = |instructions, number: &[usize]| {
-                let views: Vec<_> = number.iter().map(|n| spectra[*n].view()).collect();
-                BatchedFft::<T>::on(instructions, cells, lengths, &views)
+                let views = number.iter().map(|n| spectra[*n].view().into()).collect();
+                BatchedFft::<T>::on(instructions, cells, lengths, views)
             };
             let dot =
                 |x: &[T], y: &[T]| -> f64 { x.iter().zip(y).map(|(x, y)| x.widened() * y.widened()).sum() };

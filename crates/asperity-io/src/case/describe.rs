@@ -12,6 +12,7 @@ use super::plan::Surface;
 use super::{Case, Rows};
 use crate::choice;
 use crate::readable::quantity;
+use crate::store::FieldKind;
 use crate::stress::StressDescription;
 
 /// Where the material of a body comes from, and how well it is known.
@@ -176,14 +177,10 @@ pub struct Preparation {
     pub steps: Vec<String>,
 }
 
-/// Memory of the program itself and of its threads, whatever the case \[bytes\].
-const PROGRAM: usize = 21 << 20;
+/// Memory of the program itself, of its threads and of what small fields leave behind, whatever the case \[bytes\].
+const PROGRAM: usize = 40 << 20;
 /// Bytes of a row until the run ends: its time, what the march keeps of it, its numbers in the result.
 const ROW: usize = 120;
-/// Fields that are copied while a checkpoint is stored: what is compressed.
-const KEPT: usize = 2;
-/// The same while a row with fields is stored: the gap too.
-const STORED: usize = 4;
 
 impl Case {
     /// The memory that a run takes at its peak \[bytes\]: what its plans say, and what storing takes.
@@ -194,17 +191,24 @@ impl Case {
             quantities.list = Quantity::at_rest().collect();
         }
         let simulation = Simulation { quantities, ..conditions.clone() };
-        let copies = if self.output.fields.is_empty() { KEPT } else { STORED };
         let stress = self.stress.as_ref().map_or(0, |plan| plan.bytes(&conditions.grid, conditions.boundary));
         let own = match &self.motion {
             Some(motion) if self.axis() == Axis::Velocity => Steady::bytes(&simulation, motion.direction),
             _ => simulation.bytes(),
         };
-        let run = own + copies * 8 * cells + stress;
+        let run = own + self.copies() * cells + stress;
         // The run has given its memory back when the leakage is computed.
         let leak = self.leakage.as_ref().map_or(0, |leak| leak.bytes(cells) as usize);
         let rows = self.usual_rows.saturating_mul(ROW);
         (run.max(leak).saturating_add(rows).saturating_add(PROGRAM)) as u64
+    }
+
+    /// Bytes per cell that are copied where rows with fields are stored: the pressure is stored from where it is, unless it moves.
+    fn copies(&self) -> usize {
+        let moves = self.motion.is_some();
+        let copied = self.output.fields.iter().filter(|kind| moves || **kind != FieldKind::Pressure);
+        let shifted = if moves { FieldKind::Gap.bytes() } else { 0 };
+        (copied.map(|kind| kind.bytes()).sum::<u64>() + shifted) as usize
     }
 
     /// What the case will do.

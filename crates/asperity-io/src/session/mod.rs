@@ -206,10 +206,9 @@ fn run_inside(
     }
     drive.interrupt_with(options.interrupt.clone());
     if let Err(stop) = rows(case, options, &mut *drive, &mut record, observe) {
-        return record.stop(Some(&*drive), stop);
+        return record.stop(Some(drive), stop);
     }
-    let summary = record.end(Some(&*drive), Outcome::new(Status::Complete))?;
-    drop(drive);
+    let summary = record.end(Some(drive), Outcome::new(Status::Complete))?;
     leakage(case, summary, options)
 }
 

@@ -89,11 +89,11 @@ impl Record<'_> {
 
     /// Ends a run that stopped early. If the end of one whose step could not be stored cannot be stored either, the first error is
     /// reported.
-    pub(super) fn stop(self, drive: Option<&dyn Drive>, stop: Stop) -> Result<Summary, RunError> {
+    pub(super) fn stop(self, drive: Option<Box<dyn Drive>>, stop: Stop) -> Result<Summary, RunError> {
         if let Stop::Solve(Error::Interrupted) = stop {
             return self.end(drive, Outcome::new(Status::Interrupted));
         }
-        let best = drive.and_then(|drive| drive.last()).map(|step| Box::new(step.row()));
+        let best = drive.as_ref().and_then(|drive| drive.last()).map(|step| Box::new(step.row()));
         let outcome = Outcome { message: Some(stop.to_string()), ..Outcome::new(Status::Failed) };
         Err(match (stop, self.end(drive, outcome)) {
             (Stop::Solve(source), Ok(summary)) => {
@@ -107,9 +107,14 @@ impl Record<'_> {
         })
     }
 
-    /// Ends the result.
-    pub(super) fn end(mut self, drive: Option<&dyn Drive>, outcome: Outcome) -> Result<Summary, RunError> {
-        let findings = self.findings(drive);
+    /// Ends the result. The memory of the drive is given back before the answers are read from it.
+    pub(super) fn end(
+        mut self,
+        drive: Option<Box<dyn Drive>>,
+        outcome: Outcome,
+    ) -> Result<Summary, RunError> {
+        let findings = self.findings(drive.as_deref());
+        drop(drive);
         self.writer.set_findings(findings.clone());
         let (rows, before) = (self.writer.len(), self.writer.work().clone());
         let outcome = Outcome {

@@ -3,6 +3,7 @@
 use super::ProjectedCg;
 use super::search::Search;
 use super::sweeps::direction::{Conjugate, Products};
+use super::workspace::preconditioned;
 use asperity_sweep::{Set, run};
 
 impl ProjectedCg {
@@ -12,7 +13,8 @@ impl ProjectedCg {
     /// Where the load is given, z and d have their means over S removed; r comes without.
     pub(super) fn make_conjugate(&mut self, search: &mut Search, cells: f64) -> Option<()> {
         let mean_free = search.sum.is_some();
-        let ProjectedCg { residual: r, residual_old: r_old, preconditioned: z, direction: d, .. } = self;
+        let ProjectedCg { residual: r, residual_old: r_old, direction: d, image, .. } = self;
+        let z = &*preconditioned(image);
         let (set, set_old) = (&self.working, &self.working_old);
         let [sum_z, zr, zr_old, sum_r_old, sum_d_old] =
             run(Products { z, r, r_old, d_old: d, set: Set(set) });

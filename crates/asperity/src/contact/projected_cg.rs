@@ -14,6 +14,7 @@ use super::step::{Slope, Step, StepKind};
 use super::sweeps::direction::{Centre, Steepest};
 use super::sweeps::residual::FindWorking;
 use super::sweeps::step::{Advance, Curvature, FindStep};
+use super::workspace::preconditioned;
 use super::{ContactState, Outcome, Problem, ProjectedCg, Task, not_converged, stop_at};
 use crate::error::Result;
 use asperity_sweep::{Min, Set, SetMut, run};
@@ -87,7 +88,8 @@ impl ProjectedCg {
         }
         let mean = if search.sum.is_some() { report.working_mean() } else { 0.0 };
         run(Centre { r: &mut self.residual, set: Set(&self.working), mean, unit: search.unit });
-        self.preconditioner.apply_on_set_into(&self.residual, &self.working, &mut self.preconditioned);
+        let z = preconditioned(&mut self.image);
+        self.preconditioner.apply_on_set_into(&self.residual, &self.working, z);
         self.make_conjugate(search, cells)?;
         let length = search.length * self.preconditioner.unit() * search.unit / search.problem.compliance;
         let sum = search.sum.map(|sum| sum - report.pressure[0] + report.working[2]);
@@ -101,7 +103,7 @@ impl ProjectedCg {
             (&search.state.unit_displacement[..], &mut self.direction[..], &mut self.residual[..]);
         let set = SetMut(&mut self.working);
         run(Steepest { u, gap, d, r, set, compliance, w: report.w, unit: search.unit });
-        // Direction and step are not zero outside of the last working set any more.
+        // The direction is not zero outside of the last working set any more.
         self.working_old.fill(u8::MAX);
         search.product = None;
         search.stalled = 0;
@@ -119,34 +121,37 @@ impl ProjectedCg {
         if slope >= 0.0 || slope.is_nan() {
             return None;
         }
-        search.operator.apply_into(&self.step, &mut self.image);
-        search.convolutions += 1;
-        let (s, image, set) = (&self.step[..], &self.image[..], Set(&self.working));
-        let curvature = search.problem.compliance * run(Curvature { s, image, set });
+        self.convolve_step(search);
+        let Problem { compliance, hardness, .. } = *search.problem;
+        let (p, d, image) = (&search.state.pressure[..], &self.direction[..], &self.image[..]);
+        let curvature = compliance * run(Curvature { p, d, image, set: Set(&self.working), hardness, step });
         let along = Slope { slope, curvature, reach };
         search.update_lengths(step.kind, along.minimum(), square / curvature);
-        self.advance(search, step.line_search(along));
+        self.advance(search, step, step.line_search(along));
         Some(step.kind)
     }
 
-    /// Writes the step s; returns <r, s>, <s, s>, and the largest feasible multiple of s.
+    /// Replaces s by its image K s.
+    pub(super) fn convolve_step(&mut self, search: &mut Search) {
+        search.operator.apply_in_place(&mut self.image);
+        search.convolutions += 1;
+    }
+
+    /// Writes the step s to where its image will be; returns <r, s>, <s, s>, and the largest feasible multiple of s.
     pub(super) fn find_step(&mut self, search: &Search, step: Step) -> (f64, f64, f64) {
-        let Step { length, shift, .. } = step;
         let (p, hardness) = (&search.state.pressure[..], search.problem.hardness);
         let (d, r, set, s) =
-            (&self.direction[..], &self.residual[..], Set(&self.working), &mut self.step[..]);
-        let set_old = Set(&self.working_old);
-        let ([slope, square], Min(reach)) =
-            run(FindStep { p, d, r, set, set_old, hardness, s, length, shift });
+            (&self.direction[..], &self.residual[..], Set(&self.working), &mut self.image[..]);
+        let ([slope, square], Min(reach)) = run(FindStep { p, d, r, set, hardness, s, step });
         (search.unit * slope, square, reach)
     }
 
     /// p += t s, U += t K s.
-    pub(super) fn advance(&mut self, search: &mut Search, t: f64) {
+    pub(super) fn advance(&mut self, search: &mut Search, step: Step, t: f64) {
         let ContactState { pressure: p, unit_displacement: u, .. } = &mut *search.state;
-        let (s, image, set) = (&self.step[..], &self.image[..], Set(&self.working));
+        let (d, image, set) = (&self.direction[..], &self.image[..], Set(&self.working));
         let Problem { gap, compliance, hardness, .. } = *search.problem;
-        let [sum, cells] = run(Advance { p, u, s, image, gap, set, hardness, t, compliance });
+        let [sum, cells] = run(Advance { p, u, d, image, gap, set, hardness, step, t, compliance });
         search.free_gap = (search.sum.is_some() && cells > 0.0).then(|| sum / cells);
         search.state.rounding += 1.0;
         search.iterations += 1;

@@ -41,9 +41,8 @@ impl ProjectedCg {
         let report = self.residual_report(search);
         let Some(step) = self.conjugate_step(search, &report) else { return false };
         self.find_step(search, step);
-        search.operator.apply_into(&self.step, &mut self.image);
-        search.convolutions += 1;
-        self.advance(search, 1.0);
+        self.convolve_step(search);
+        self.advance(search, step, 1.0);
         true
     }
 }

@@ -1,6 +1,6 @@
 //! The state of a contact: what the solver overwrites and the next solve starts from.
 
-use asperity_sweep::zeros;
+use asperity_sweep::is_zero;
 
 /// The share of a solver's tolerance that the rounding error of U may take.
 const ROUNDING_SHARE: f64 = 1e-2;
@@ -19,9 +19,10 @@ pub struct ContactState {
 }
 
 impl ContactState {
-    /// No contact, on a grid of `cells` cells.
+    /// No contact, on a grid of `cells` cells. It takes no memory until it is written.
     pub fn new(cells: usize) -> Self {
-        ContactState { pressure: zeros(cells), unit_displacement: zeros(cells), approach: 0.0, rounding: 0.0 }
+        let [pressure, unit_displacement] = [(); 2].map(|()| vec![0.0; cells]);
+        ContactState { pressure, unit_displacement, approach: 0.0, rounding: 0.0 }
     }
 
     /// Whether the rounding error of U stays below what a solver's `tolerance` shows.
@@ -36,8 +37,11 @@ impl ContactState {
 
     /// No contact, at the approach `approach`.
     pub(super) fn lift_off(&mut self, approach: f64) {
-        self.pressure.fill(0.0);
-        self.unit_displacement.fill(0.0);
+        for field in [&mut self.pressure, &mut self.unit_displacement] {
+            if !is_zero(field) {
+                field.fill(0.0);
+            }
+        }
         self.approach = approach;
         self.rounding = 0.0;
     }

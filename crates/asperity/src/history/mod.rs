@@ -37,6 +37,11 @@ use spectral::Spectral;
 
 /// The memory of the bodies.
 pub(crate) trait History: Send {
+    /// Whether a step may leave a displacement g; else it writes no gap where that is empty.
+    fn remembers(&self) -> bool {
+        true
+    }
+
     /// Takes in the state at the end of the last step and opens the next one: writes `gap` = `rigid` + g.
     fn open(&mut self, step: &Interval, last: &ContactState, rigid: &[f64], gap: &mut [f64]) -> Result<Law>;
 
@@ -189,12 +194,20 @@ pub(crate) fn of(simulation: &Simulation) -> Result<Box<dyn History>> {
     })
 }
 
+/// Fields that relax or flow.
+pub(crate) fn terms(simulation: &Simulation) -> usize {
+    simulation.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum()
+}
+
+/// Whether the history of a simulation remembers anything, see [`History::remembers`].
+pub(crate) fn remembers(simulation: &Simulation) -> bool {
+    simulation.scheme != Scheme::Linear || simulation.layers.is_some() || terms(simulation) > 0
+}
+
 /// Bytes that the history of a simulation takes.
 pub(crate) fn bytes(simulation: &Simulation) -> usize {
-    let n = simulation.grid.len();
+    let (n, terms) = (simulation.grid.len(), terms(simulation));
     // the displacement of the history, and that of a third instant
-    let terms: usize =
-        simulation.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum();
     let fields = match simulation.scheme {
         Scheme::Direct => simulation.plan().instants.len(),
         _ if terms == 0 => 0,

@@ -10,7 +10,7 @@
 
 use std::fmt::Debug;
 
-use ndarray::ArrayView2;
+use ndarray::{Array2, ArrayView2};
 
 /// Plans convolutions.
 pub trait Backend: Debug + Send + Sync {
@@ -30,8 +30,8 @@ pub trait Backend: Debug + Send + Sync {
         &self,
         cells: [usize; 2],
         lengths: [usize; 2],
-        inverse: ArrayView2<f64>,
-        screened: ArrayView2<f64>,
+        inverse: Array2<f64>,
+        screened: Array2<f64>,
     ) -> Box<dyn InversePlan>;
 
     /// Bytes that [`plan_inverse`](Self::plan_inverse) takes.
@@ -42,6 +42,9 @@ pub trait Backend: Debug + Send + Sync {
 pub trait ConvolutionPlan: Send {
     /// u = K p.
     fn apply_into(&mut self, p: &[f64], u: &mut [f64]);
+
+    /// x becomes K x.
+    fn apply_in_place(&mut self, x: &mut [f64]);
 }
 
 /// A planned approximate inverse of K, on all cells and on a set of them (see

@@ -52,6 +52,10 @@ impl Operator for Convolved {
         self.convolution.apply_into(p, u);
     }
 
+    fn apply_in_place(&mut self, x: &mut [f64]) {
+        self.convolution.apply_in_place(x);
+    }
+
     fn self_influence(&self) -> f64 {
         self.self_influence
     }

@@ -102,7 +102,7 @@ impl ApproximateInverse {
                 wave_spectrum(*lengths, size, uniform / unit, |qx, qy| 1.0 / (kernel.symbol(qx, qy) * unit));
             let least = minimum(inverse.as_slice().unwrap_or_default());
             let screened = inverse.mapv(|s| (least + SCREENING) / (s + SCREENING));
-            backend.plan_inverse(grid.cells(), *lengths, inverse.view(), screened.view())
+            backend.plan_inverse(grid.cells(), *lengths, inverse, screened)
         });
         &mut **plan
     }

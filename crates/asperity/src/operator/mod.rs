@@ -38,6 +38,9 @@ pub trait Operator: Send {
     /// u = K p; both C-order of nx ny cells.
     fn apply_into(&mut self, p: &[f64], u: &mut [f64]);
 
+    /// x becomes K x.
+    fn apply_in_place(&mut self, x: &mut [f64]);
+
     /// Displacement of a cell under its own unit pressure, K00 \[m\].
     fn self_influence(&self) -> f64;
 

@@ -29,9 +29,9 @@ impl Process for Flattening {
             _ => 0.0,
         };
         let (p, u) = (&row.now.pressure[..], &row.now.unit_displacement[..]);
-        let cells = (p, u, &row.gap[..], row.hardness);
+        let cells = (p, u, &row.own_gap[..], row.hardness);
         each(row.undeformed.own_mut(), cells, |h, (p, u, gap, most)| *h += overlap(p, u, gap, most));
-        each(row.gap, (p, u, row.hardness), |gap, (p, u, most)| *gap += overlap(p, u, *gap, most));
+        each(row.own_gap, (p, u, row.hardness), |gap, (p, u, most)| *gap += overlap(p, u, *gap, most));
         Ok(())
     }
 

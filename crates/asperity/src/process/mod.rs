@@ -72,8 +72,8 @@ pub(crate) struct Solved<'a> {
     pub(crate) potential: f64,
     /// Loads of both \[N\].
     pub(crate) loads: [f64; 2],
-    /// h0 + g that it was solved with, and h0.
-    pub(crate) gap: &'a mut [f64],
+    /// h0 + g that it was solved with, or nothing where that is h0; and h0.
+    pub(crate) own_gap: &'a mut [f64],
     pub(crate) undeformed: &'a mut UndeformedGap,
     pub(crate) compliance: f64,
     pub(crate) hardness: Hardness<'a>,
@@ -87,6 +87,13 @@ pub(crate) struct Solved<'a> {
     pub(crate) other_work: f64,
     /// Convolutions that the processes took.
     pub(crate) convolutions: usize,
+}
+
+impl Solved<'_> {
+    /// h0 + g that it was solved with \[m\].
+    pub(crate) fn gap(&self) -> &[f64] {
+        self.undeformed.or(self.own_gap)
+    }
 }
 
 /// The processes that a simulation asks for, in the order in which they take in a row.

@@ -153,7 +153,7 @@ impl Moving {
             direction: self.motion.direction,
             slopes: &self.slopes,
             state: row.now,
-            gap: row.gap,
+            gap: row.gap(),
             compliance: row.compliance,
             remembers: row.simulation.parts().any(remembers),
             velocity: self.motion.path.velocity(row.step.instant.time),

@@ -104,6 +104,11 @@ impl Operator for Dense {
         }
     }
 
+    fn apply_in_place(&mut self, x: &mut [f64]) {
+        let p = x.to_vec();
+        self.apply_into(&p, x);
+    }
+
     fn self_influence(&self) -> f64 {
         self.matrix[(0, 0)]
     }

@@ -169,16 +169,27 @@ impl Simulation {
     pub fn bytes(&self) -> usize {
         let (grid, n) = (&self.grid, self.grid.len());
         let has = |wanted: bool, bytes: usize| if wanted { bytes } else { 0 };
+        let (remembers, flattens) = (history::remembers(self), self.plasticity == Plasticity::Accumulate);
         operator::bytes(grid, self.boundary)
             + Solver::bytes(self.solver.method, grid, self.boundary)
-            // pressure and U of two rows, undeformed and remembered gap
-            + 6 * 8 * n
+            // pressure and U, and those of the row before; the undeformed gap, and that of the step
+            + 2 * 8 * n
+            + has(remembers || self.touches_again(), 2 * 8 * n)
+            + 8 * n
+            + has(remembers || flattens, 8 * n)
             + history::bytes(self)
             // the gap with its dents
-            + has(self.plasticity == Plasticity::Accumulate, 8 * n)
+            + has(flattens, 8 * n)
             + self.traction.as_ref().map_or(0, |law| TractionSolver::bytes(&**law, grid))
             + has(self.quantities.has(Quantity::ContactStiffness), ContactStiffness::bytes(grid, self.boundary))
             + has(self.quantities.list.iter().any(|q| q.connects()), Spots::bytes(grid))
+    }
+
+    /// Whether more than one row may be in contact.
+    fn touches_again(&self) -> bool {
+        let plan = self.plan();
+        let apart = |value: f64| value <= 0.0 && self.traction.is_none();
+        !plan.exact || plan.instants.iter().filter(|instant| !apart(instant.value)).count() > 1
     }
 
     /// The quantities of each row, with the ends of their bins.

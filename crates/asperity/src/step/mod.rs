@@ -76,9 +76,9 @@ impl Stepper {
         let mut history = history::of(&simulation)?;
         Ok(Stepper {
             processes: process::of(&simulation, &*operator, &mut *history),
+            state: StepState::new(&simulation, history.remembers()),
             history,
             contact: StepContact::new(&simulation, operator),
-            state: StepState::new(&simulation),
             step: None,
             is_open: false,
             tried: None,
@@ -134,8 +134,8 @@ impl Stepper {
         let start = self.guess(&step, prescribed);
         self.step = Some(step.clone());
         self.contact.begin(&step.instant);
-        let StepState { now, gap, compliance, .. } = &mut self.state;
-        match self.contact.solve(start, gap, *compliance, prescribed, now) {
+        let StepState { now, own_gap, undeformed, compliance, .. } = &mut self.state;
+        match self.contact.solve(start, undeformed.or(own_gap), *compliance, prescribed, now) {
             Ok(outcome) => self.outcome = self.outcome.then(outcome),
             Err(Error::NotConverged(mut report)) => {
                 report.time = Some(step.instant.time);
@@ -177,8 +177,8 @@ impl Stepper {
         }
         self.state.undeformed.begin(self.shift(&step).is_some());
         self.move_gap(&step)?;
-        let StepState { now, before, gap, undeformed, .. } = &mut self.state;
-        let law = self.history.open(&step, now, undeformed.now(), gap)?;
+        let StepState { now, before, own_gap, undeformed, .. } = &mut self.state;
+        let law = self.history.open(&step, now, undeformed.now(), own_gap)?;
         std::mem::swap(now, before);
         (self.is_open, self.tried) = (true, None);
         self.obey(law);
@@ -188,8 +188,8 @@ impl Stepper {
     /// Opens the step under way again, under another load or at another length.
     fn reopen(&mut self, step: &Interval) -> Result<()> {
         self.move_gap(step)?;
-        let StepState { gap, undeformed, .. } = &mut self.state;
-        let law = self.history.reopen(step, undeformed.now(), gap)?;
+        let StepState { own_gap, undeformed, .. } = &mut self.state;
+        let law = self.history.reopen(step, undeformed.now(), own_gap)?;
         self.obey(law);
         Ok(())
     }
@@ -256,7 +256,7 @@ fn solved<'a>(
     contact: &'a mut StepContact,
 ) -> Solved<'a> {
     let Parts { operator, hardness, traction, interrupt } = contact.parts();
-    let StepState { now, before, loads, gap, undeformed, compliance, .. } = state;
+    let StepState { now, before, loads, own_gap, undeformed, compliance, .. } = state;
     let potential = traction
         .and_then(|traction| traction.quantity(Quantity::AdhesionEnergy, simulation.grid.cell_area()));
     Solved {
@@ -267,7 +267,7 @@ fn solved<'a>(
         potential: potential.unwrap_or(0.0),
         now,
         loads: *loads,
-        gap,
+        own_gap,
         undeformed,
         compliance: *compliance,
         hardness,

@@ -332,7 +332,8 @@ impl<'a> Step<'a> {
 impl Stepper {
     /// The state as a row of no time yet.
     pub(crate) fn row(&self) -> Step<'_> {
-        let StepState { now, gap, compliance, undeformed, .. } = &self.state;
+        let StepState { now, compliance, undeformed, .. } = &self.state;
+        let gap = self.state.gap();
         Step {
             recalled: Some(&*self.history),
             undeformed: Some(undeformed),

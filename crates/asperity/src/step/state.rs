@@ -6,7 +6,7 @@ use super::{Loader, Saver, StepContact, Stepper, UndeformedGap, saved};
 use crate::contact::{ContactState, Prescribed};
 use crate::error::Result;
 use crate::history::Ends;
-use crate::simulation::Simulation;
+use crate::simulation::{Plasticity, Simulation};
 use asperity_sweep::{minimum, sum};
 
 pub(super) struct StepState {
@@ -14,8 +14,9 @@ pub(super) struct StepState {
     pub(super) now: ContactState,
     pub(super) before: ContactState,
     pub(super) undeformed: UndeformedGap,
-    /// h0 + g and c of the attempt.
-    pub(super) gap: Vec<f64>,
+    /// h0 + g of the attempt; empty where g is 0 in every step: then the gap is h0.
+    pub(super) own_gap: Vec<f64>,
+    /// c of the attempt.
     pub(super) compliance: f64,
     /// Loads of the last row and of the attempt \[N\].
     pub(super) loads: [f64; 2],
@@ -26,13 +27,16 @@ pub(super) struct StepState {
 }
 
 impl StepState {
-    pub(super) fn new(simulation: &Arc<Simulation>) -> Self {
+    /// `remembers` tells whether the history may leave a displacement g.
+    pub(super) fn new(simulation: &Arc<Simulation>, remembers: bool) -> Self {
         let n = simulation.grid.len();
+        // Flattening changes both gaps.
+        let own = remembers || simulation.plasticity == Plasticity::Accumulate;
         StepState {
             now: ContactState::new(n),
             before: ContactState::new(n),
             undeformed: UndeformedGap::of(simulation),
-            gap: simulation.gap.iter().copied().collect(),
+            own_gap: if own { simulation.gap.iter().copied().collect() } else { vec![] },
             compliance: 0.0,
             loads: [0.0; 2],
             last_length: 0.0,
@@ -43,7 +47,8 @@ impl StepState {
 
     /// Both ends of the step of the attempt.
     pub(super) fn ends<'a>(&'a self, contact: &'a StepContact) -> Ends<'a> {
-        let StepState { now, before, gap, undeformed, .. } = self;
+        let StepState { now, before, undeformed, .. } = self;
+        let gap = self.gap();
         let (pressures, hardness) = (contact.pressures([before, now]), contact.hardness());
         let (rigid, rigid_before) = (undeformed.now(), undeformed.before());
         Ends { before, now, pressures, loads: self.loads, gap, rigid, rigid_before, hardness }
@@ -61,7 +66,12 @@ impl StepState {
 
     /// Approach at which the surfaces without pressure would just touch \[m\].
     pub(super) fn first_touch(&self) -> f64 {
-        minimum(&self.gap)
+        minimum(self.gap())
+    }
+
+    /// h0 + g of the attempt \[m\].
+    pub(super) fn gap(&self) -> &[f64] {
+        self.undeformed.or(&self.own_gap)
     }
 
     /// The attempt stands as a row, after a step of this length.

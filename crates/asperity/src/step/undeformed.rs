@@ -21,6 +21,11 @@ impl UndeformedGap {
         self.own.as_deref().unwrap_or(self.at_start())
     }
 
+    /// The gap h0 + g of a step: `own`, or h0 where that is empty.
+    pub(crate) fn or<'a>(&'a self, own: &'a [f64]) -> &'a [f64] {
+        if own.is_empty() { self.now() } else { own }
+    }
+
     /// At the start of the step under way.
     pub(crate) fn before(&self) -> &[f64] {
         self.before.as_deref().unwrap_or(self.now())

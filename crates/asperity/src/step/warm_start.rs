@@ -9,7 +9,7 @@
 
 use asperity_sweep::simd::Mask;
 
-use super::{Interval, Stepper};
+use super::{Interval, StepState, Stepper};
 use crate::contact::{ContactState, Hardness, Prescribed, SAME_LOAD, Start};
 use crate::grid::Boundary;
 use crate::process::roll;
@@ -182,19 +182,25 @@ impl Stepper {
         }
         let cell_area = self.simulation.grid.cell_area();
         let (hardness, tolerance) = (self.contact.hardness(), self.contact.tolerance());
-        let ContactState { pressure: p, unit_displacement: u, .. } = &mut self.state.now;
-        let ContactState { pressure: p_last, unit_displacement: u_last, .. } = &self.state.before;
+        let StepState { now, before, own_gap, undeformed, compliance, .. } = &mut self.state;
+        let ContactState { pressure: p, unit_displacement: u, .. } = now;
+        let ContactState { pressure: p_last, unit_displacement: u_last, .. } = &*before;
+        let gap = undeformed.or(own_gap);
         let (p, u, p_last, u_last) = (&mut p[..], &mut u[..], &p_last[..], &u_last[..]);
-        let products = run(Products { p: &*p, u: &*u, p_last, u_last, gap: &self.state.gap, hardness });
+        let products = run(Products { p: &*p, u: &*u, p_last, u_last, gap, hardness });
         let [xx, xd, dd, hx, hd, sx, sd, size, capped] = products;
+        if sx == 0.0 && size == 0.0 {
+            // Neither presses.
+            return Start::Pressure;
+        }
         let pair = Pair { energy: [xx, xd, dd], work: [hx, hd], sum: [sx, sd], size, capped };
         let combination = pair.best(&Wanted {
-            compliance: self.state.compliance,
+            compliance: *compliance,
             prescribed,
             cell_area,
             linear,
             tolerance,
-            rounding: 16.0 * f64::EPSILON * self.state.before.approach.abs(),
+            rounding: 16.0 * f64::EPSILON * before.approach.abs(),
         });
         let [total, feasible, outside, kept] = run(Combine { p, u, p_last, u_last, hardness, combination });
         // After a row whose U was computed afresh the next one is, too: the error of the row before it is still in f.
@@ -351,7 +357,7 @@ mod tests {
                     (0..last.len()).map(|n| guess[n] + beside * (last[n] - before[n])).collect();
                 let mut u = vec![0.0; p.len()];
                 stepper.contact.operator.apply_into(&p, &mut u);
-                let terms = p.iter().zip(&u).zip(&stepper.state.gap);
+                let terms = p.iter().zip(&u).zip(stepper.state.gap());
                 terms.map(|((p, u), h)| 0.5 * stepper.state.compliance * p * u + h * p).sum()
             };
             let [less, here, more] = [-0.1, 0.0, 0.1].map(&mut energy);

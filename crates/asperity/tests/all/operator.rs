@@ -136,10 +136,10 @@ impl Backend for Reference {
         &self,
         cells: [usize; 2],
         lengths: [usize; 2],
-        inverse: ArrayView2<f64>,
-        screened: ArrayView2<f64>,
+        inverse: Array2<f64>,
+        screened: Array2<f64>,
     ) -> Box<dyn InversePlan> {
-        let plan = |spectrum| OnRustfft::new(cells, lengths, spectrum);
+        let plan = |spectrum: Array2<f64>| OnRustfft::new(cells, lengths, spectrum.view());
         Box::new(ReferenceInverse { inverse: plan(inverse), screened: plan(screened) })
     }
 
@@ -153,6 +153,11 @@ struct ReferencePlan(OnRustfft);
 impl ConvolutionPlan for ReferencePlan {
     fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
         self.0.apply_into(p, u);
+    }
+
+    fn apply_in_place(&mut self, x: &mut [f64]) {
+        let p = x.to_vec();
+        self.0.apply_into(&p, x);
     }
 }
 

@@ -204,6 +204,7 @@ impl Relaxation {
     fn recall(&self, rules: &Rules, rigid: Option<&[f64]>, gap: &mut [f64]) {
         match rigid {
             _ if !self.is_elastic() => self.states.combine(rules.recalled(), &self.displacement, rigid, gap),
+            Some(_) if gap.is_empty() => {}
             Some(rigid) => gap.copy_from_slice(rigid),
             None => gap.fill(0.0),
         }
@@ -292,6 +293,10 @@ impl History for Relaxation {
             end.driver = strains.iter().sum();
         }
         Ok(())
+    }
+
+    fn remembers(&self) -> bool {
+        !self.is_elastic()
     }
 
     fn recalled(&self, g: &mut [f64]) {

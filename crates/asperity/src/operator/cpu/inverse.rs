@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use asperity_sweep::simd::vectorize;
 use asperity_sweep::{Set, zeros};
-use ndarray::ArrayView2;
+use ndarray::Array2;
 
 use super::super::backend::InversePlan;
 use super::kernels::{Add, Keep, Weigh};
@@ -28,11 +28,11 @@ impl CpuInverse {
     pub(super) fn new(
         cells: [usize; 2],
         lengths: [usize; 2],
-        inverse: ArrayView2<f64>,
-        screened: ArrayView2<f64>,
+        inverse: Array2<f64>,
+        screened: Array2<f64>,
     ) -> Self {
         CpuInverse {
-            fft: BatchedFft::with_spectra(cells, lengths, &[inverse, screened]),
+            fft: BatchedFft::with_spectra(cells, lengths, vec![inverse.into(), screened.into()]),
             row: cells[1],
             adjacent: zeros((cells[0] * cells[1]).div_ceil(8)),
         }

@@ -3,7 +3,7 @@
 mod inverse;
 mod kernels;
 
-use ndarray::ArrayView2;
+use ndarray::{Array2, ArrayView2};
 
 use super::backend::{Backend, ConvolutionPlan, InversePlan};
 use crate::convolution::Convolution;
@@ -32,8 +32,8 @@ impl Backend for Cpu {
         &self,
         cells: [usize; 2],
         lengths: [usize; 2],
-        inverse: ArrayView2<f64>,
-        screened: ArrayView2<f64>,
+        inverse: Array2<f64>,
+        screened: Array2<f64>,
     ) -> Box<dyn InversePlan> {
         Box::new(CpuInverse::new(cells, lengths, inverse, screened))
     }
@@ -46,5 +46,9 @@ impl Backend for Cpu {
 impl ConvolutionPlan for Convolution {
     fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
         Convolution::apply_into(self, p, u);
+    }
+
+    fn apply_in_place(&mut self, x: &mut [f64]) {
+        Convolution::apply_in_place(self, x);
     }
 }

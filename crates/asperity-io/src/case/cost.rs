@@ -4,11 +4,13 @@
 //! cells, because the solver is preconditioned. So the same case with few cells tells it. For the method of Polonsky and Keer,
 //! whose iterations grow with the grid, the number is scaled.
 
+use asperity::quantities::Quantity;
 use asperity::surface::Part;
 use asperity::{Grid, Method, drive};
 use ndarray::Array2;
 
 use super::Case;
+use crate::leakage::Leak;
 
 /// Cells along the longer side, of a plane and of a line.
 const CELLS: usize = 128;
@@ -24,6 +26,8 @@ pub struct CostEstimate {
     pub rows: usize,
     /// Convolutions of the run.
     pub convolutions: usize,
+    /// Flows of a fluid that acts on the surfaces.
+    pub flows: usize,
 }
 
 impl Case {
@@ -41,15 +45,18 @@ impl Case {
         let parts: Option<Vec<Part>> = parts.into_iter().map(|part| sample(part, grid, every)).collect();
         let parts = parts?;
         let simulation = coarse.simulation_of(&parts).ok()?;
-        let mut found = CostEstimate { rows: 0, convolutions: 0 };
+        let mut found = CostEstimate { rows: 0, convolutions: 0, flows: 0 };
         let steady = coarse.steady_of(&parts, &simulation).ok()?;
         let mut drive = drive::of(simulation, steady).ok()?;
+        let flows = self.leakage.as_ref().is_some_and(Leak::flows_with_the_contact);
         let mut reached = 0.0;
         while let Some(step) = drive.advance().ok()? {
             let row = step.row();
             reached = row.coordinate.value();
             found.rows += 1;
             found.convolutions += row.convolutions;
+            let passes = step.quantity(Quantity::OuterIterations).map_or(0.0, |passes| passes[0]);
+            found.flows += if flows { passes as usize } else { 0 };
             if found.convolutions >= ENOUGH || found.rows >= ENOUGH_ROWS {
                 break;
             }
@@ -68,8 +75,8 @@ impl CostEstimate {
     fn completed(self, share: f64, rows: Option<usize>) -> CostEstimate {
         let most = |n: f64| n.round().clamp(0.0, 1e12) as usize;
         let all = rows.unwrap_or_else(|| most(self.rows as f64 / share.max(1e-6)));
-        let each = self.convolutions as f64 / self.rows.max(1) as f64;
-        CostEstimate { rows: all, convolutions: most(each * all as f64) }
+        let of_all = |count: usize| most(count as f64 / self.rows.max(1) as f64 * all as f64);
+        CostEstimate { rows: all, convolutions: of_all(self.convolutions), flows: of_all(self.flows) }
     }
 
     /// The same on a grid so many times finer by the method of Polonsky and Keer, which has no preconditioner: spheres and rough

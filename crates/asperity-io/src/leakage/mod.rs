@@ -251,6 +251,11 @@ impl Leak {
         })
     }
 
+    /// Whether each pass of a contact solves the flow too.
+    pub(crate) fn flows_with_the_contact(&self) -> bool {
+        matches!(self.coupling, Some(Coupling { action: Action::Gaps(_), .. }))
+    }
+
     /// Direction of the flow that is computed first.
     fn axis(&self) -> Direction {
         match self.direction {

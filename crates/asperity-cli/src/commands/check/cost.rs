@@ -17,6 +17,8 @@ const ROW: f64 = 0.5;
 const TERM: f64 = 0.1;
 /// Of the full hereditary sum, one sweep over a field for each past row.
 const PAST: f64 = 0.2;
+/// Time of a flow that begins with the factorisation of the one before, over that of one alone.
+const REUSED: f64 = 0.5;
 /// Bytes of fields that are compressed and stored in a second.
 const STORED: f64 = 150e6;
 /// Time until the first row \[s\].
@@ -44,7 +46,9 @@ pub(super) fn cost(case: &Case, description: &Description) -> Option<Cost> {
     let cells = case.conditions.grid.len() as f64;
     let stored = description.stored_rows.unwrap_or(estimate.rows) as f64;
     let fields = 8.0 * cells * (stored * description.fields.len() as f64 + 1.0);
-    Some(Cost { estimate, seconds: START + units * convolution(case)? + fields / STORED })
+    let flow = if estimate.flows > 0 { REUSED * flow_seconds(case)? } else { 0.0 };
+    let seconds = START + units * convolution(case)? + estimate.flows as f64 * flow + fields / STORED;
+    Some(Cost { estimate, seconds })
 }
 
 /// What a convolution takes here \[s\], timed on a small grid and scaled as N log N.
@@ -72,18 +76,24 @@ fn growth(small: &Grid, large: &Grid) -> f64 {
 /// Cells along a side on which the flow through a gap is timed.
 const TIMED_FLOW: usize = 128;
 
-/// What the leakage takes after the run \[s\]: timed with all cells open on a small grid, and scaled as a sparse factorisation,
-/// N^1.3; about half of the cells of a seal are open.
+/// What the leakage takes after the run \[s\].
 pub(super) fn leak_seconds(case: &Case, description: &Description) -> Option<f64> {
     let leak = case.leakage.as_ref()?;
     let times = leak.times.as_ref().map(Vec::len).or(description.stored_rows)? as f64;
+    Some(times * flow_seconds(case)?)
+}
+
+/// What one flow takes \[s\]: timed with all cells open on a small grid, and scaled as a sparse factorisation, N^1.3; about half of the
+/// cells of a seal are open.
+fn flow_seconds(case: &Case) -> Option<f64> {
+    let leak = case.leakage.as_ref()?;
     let grid =
         case.conditions.grid.with_cells(case.conditions.grid.cells().map(|n| n.min(TIMED_FLOW))).ok()?;
     let gap = ndarray::Array2::from_elem(grid.shape(), 1e-6);
     let start = Instant::now();
     leak.of_gap(&grid, gap.view(), None, 0.0).ok()?;
     let open = 0.5 * case.conditions.grid.len() as f64 / grid.len() as f64;
-    Some(times * start.elapsed().as_secs_f64() * open.powf(1.3))
+    Some(start.elapsed().as_secs_f64() * open.powf(1.3))
 }
 
 /// Cells along a side on which the stress at a depth is timed.

@@ -28,7 +28,7 @@ fn solved(case: &Case) -> CostEstimate {
     let simulation = case.simulation_of(&parts).unwrap();
     let steady = case.steady_of(&parts, &simulation).unwrap();
     let mut drive = drive::of(simulation, steady).unwrap();
-    let mut found = CostEstimate { rows: 0, convolutions: 0 };
+    let mut found = CostEstimate { rows: 0, convolutions: 0, flows: 0 };
     while let Some(step) = drive.advance().unwrap() {
         found.convolutions += step.row().convolutions;
         found.rows += 1;

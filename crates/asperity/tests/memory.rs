@@ -8,12 +8,13 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Cells along a side: so many that the buffers of the threads take less than a byte per cell.
+/// Cells along a side, and threads: their buffers, which are not in what is expected, take 2 bytes per cell.
 const SIDE: usize = 1024;
+const THREADS: usize = 2;
 /// Pressure and displacement of the row before: reserved, and not written before a second row is in contact.
 const ROW_BEFORE: f64 = 16.0;
 
-/// A sphere pressed on a body in one row, or in three of a creep with one term.
+/// A sphere pressed on a body in one row, or in two of a creep with one term.
 fn simulation(boundary: Boundary, creeps: bool) -> Simulation {
     let grid = Grid::new([SIDE, SIDE], [1e-3, 1e-3]).unwrap();
     let sphere = Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] };
@@ -24,7 +25,7 @@ fn simulation(boundary: Boundary, creeps: bool) -> Simulation {
         boundary,
         creep: Creep { instantaneous: 1e-8, terms, fluidity: 0.0 },
         loading: Loading { control: Control::Load, history }.into(),
-        times: TimeGrid::Uniform { end: 1.0, steps: if creeps { 3 } else { 1 } },
+        times: TimeGrid::Uniform { end: 1.0, steps: if creeps { 2 } else { 1 } },
         ..Simulation::new(grid, undeformed_gap(&grid, &[sphere]).unwrap())
     }
 }
@@ -49,10 +50,11 @@ fn a_run_takes_little_memory_and_as_much_as_was_expected() {
         (Boundary::Free, true, 80.0 + 48.0),
         (Boundary::Periodic, true, 64.0 + 48.0),
     ] {
-        let [taken, expected] = taken(boundary, creeps);
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(THREADS).build().unwrap();
+        let [taken, expected] = threads.install(|| taken(boundary, creeps));
         let taken = if creeps { taken } else { taken - ROW_BEFORE };
         assert!(taken <= most, "{boundary:?} {creeps}: {taken} bytes per cell");
         // What is expected of a free domain has room for a contact that comes close to the border: its preconditioner is larger.
-        assert!((0.98..1.15).contains(&(expected / taken)), "{boundary:?} {creeps}: {expected} {taken}");
+        assert!((0.95..1.15).contains(&(expected / taken)), "{boundary:?} {creeps}: {expected} {taken}");
     }
 }

@@ -89,7 +89,7 @@ pub enum Error {
     #[error(
         "no equilibrium at t = {time} s: the fluid carries {} more than the load of {} however wide the gap becomes, and lifts the \
          surfaces off; lower the pressure of the fluid (a film holds the load while inlet and outlet have less than twice the mean pressure \
-         together), raise the load, or prescribe the approach",
+         together), raise the load, let the load come before the pressure (`inlet` over time), or prescribe the approach",
         si(*excess, unit),
         si(*load, unit)
     )]

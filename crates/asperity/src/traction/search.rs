@@ -29,9 +29,8 @@ impl Run<'_> {
         let (mut a, mut fa) = (start, excess(self, start)?);
         let mut step = if fa > 0.0 { -1e-3 } else { 1e-3 } * scale;
         let (mut b, mut fb) = (a, fa);
-        let is_small = |run: &Self, f: f64| {
-            f.abs() <= (10.0 * run.tolerance() * load.abs()).max(cell_area * run.small())
-        };
+        let is_small =
+            |run: &Self, f: f64| f.abs() <= (3.0 * run.tolerance() * load.abs()).max(cell_area * run.small());
         for _ in 0..MOST_APPROACHES {
             if is_small(self, fb) {
                 return Ok(());

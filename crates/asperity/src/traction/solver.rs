@@ -364,7 +364,7 @@ impl Run<'_> {
 
     /// Force that counts as none \[Pa\]: the passes are known to their tolerance.
     pub(super) fn small(&self) -> f64 {
-        10.0 * self.tolerance * self.own.scale
+        3.0 * self.tolerance * self.own.scale
     }
 
     pub(super) fn tolerance(&self) -> f64 {

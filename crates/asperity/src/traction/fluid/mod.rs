@@ -95,12 +95,9 @@ impl FluidPressure {
         let of = |key: &'static str| move |error: Error| error.of(key);
         let outlet = non_negative("pressure of the outlet", self.outlet, "Pa").map_err(of("outlet"))?;
         let [least, most] = self.inlet.range(end);
-        let may_be_equal = self.action == Action::Everywhere || self.gas.is_none();
-        let holds =
-            least.is_finite() && most.is_finite() && (least > outlet || may_be_equal && least == outlet);
+        let holds = least.is_finite() && most.is_finite() && least >= outlet;
         let expected = format!(
-            "{} that of the outlet, {outlet} Pa, at all times; exchange them for a flow in the other direction",
-            if may_be_equal { "not below" } else { "above" }
+            "not below that of the outlet, {outlet} Pa, at all times; exchange them for a flow in the other direction"
         );
         require(holds, "pressure of the inlet", format!("{least} Pa"), expected).map_err(of("inlet"))?;
         let jump = self.inlet.breaks(end).into_iter().find(|t| self.inlet.before(*t) != self.inlet.after(*t));
@@ -220,6 +217,11 @@ impl InGap {
         let (options, previous) = (FlowOptions::default(), &mut self.previous);
         let [inlet, outlet] = [self.inlet, self.law.outlet];
         match &self.law.gas {
+            // At rest.
+            Some(_) if inlet == outlet => {
+                let flow = liquid_after(opening, passages, &options, previous)?;
+                Ok((flow.pressure.mapv_into(|x| if x.is_nan() { x } else { outlet }), flow.transmissivity))
+            }
             Some((gas, rarefaction)) => {
                 let ends = [inlet, outlet];
                 let flow = gas_flow_after(opening, passages, gas, *rarefaction, ends, &options, previous)?;

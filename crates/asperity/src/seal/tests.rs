@@ -188,8 +188,8 @@ fn a_leak_is_accurate_where_the_conductance_spans_many_decades() {
     for (peak, inlet, outlet) in [(2.0, 0.05, 0.0), (2.0, 1.9, 0.0), (4.0, 0.1, -1.0)] {
         let exact = p1 * (f64::exp((inlet - peak) / p1) - f64::exp((outlet - peak) / p1)) / 2.0;
         let found = flow(&exponential(p1), &profile("uniform", peak), [inlet, outlet]).unwrap();
-        // Sixteen points in each interval of the sweep.
-        assert!((found.flow / exact - 1.0).abs() < 1e-9, "{inlet}: {} {exact}", found.flow);
+        // Eight points in each interval of the sweep, over which sigma falls by up to 24 powers of e.
+        assert!((found.flow / exact - 1.0).abs() < 1e-6, "{inlet}: {} {exact}", found.flow);
     }
 }
 

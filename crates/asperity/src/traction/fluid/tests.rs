@@ -295,7 +295,7 @@ fn a_pocket_keeps_the_pressure_that_it_had_when_it_was_cut_off() {
     let of = |pockets: Pockets| {
         let inlet = table(&[(0.0, 0.2), (2.0, 0.2), (3.0, 0.0), (4.0, 0.0)]);
         let fluid = FluidPressure { inlet, action: Action::Gaps(pockets), ..liquid(0.0, 0.0) };
-        let history = table(&[(0.0, 0.3), (0.5, 0.3), (2.0, 0.85), (4.0, 0.85)]);
+        let history = table(&[(0.0, 0.3), (0.5, 0.3), (2.0, 1.1), (4.0, 1.1)]);
         let simulation = Simulation {
             gap: gap.clone(),
             loading: Loading { control: Control::Pressure, history }.into(),
@@ -309,7 +309,8 @@ fn a_pocket_keeps_the_pressure_that_it_had_when_it_was_cut_off() {
     };
     let ((area, kept), (_, drained)) = (of(Pockets::Kept), of(Pockets::Drained));
     assert!(area > 0.0 && drained == 0.0, "{area} {drained}");
-    assert!((kept - 0.2).abs() < 1e-12, "{kept}");
+    // The hollows beside the inlet had most of its pressure; those beside the outlet less.
+    assert!(kept > 0.1 && kept < 0.2, "{kept}");
 }
 
 #[test]

@@ -54,6 +54,7 @@ pub mod spots;
 pub mod step;
 pub mod stress;
 pub mod surface;
+pub mod tangential;
 pub mod time;
 pub mod traction;
 pub mod verification;

@@ -85,6 +85,22 @@ pub enum Error {
         /// Load and approach \[m\] of the last row in contact; `None` where there is none.
         last: Option<[f64; 2]>,
     },
+    /// Friction does not hold the prescribed tangential force; the rows so far are complete.
+    #[error(
+        "gross sliding at t = {time} s: the tangential force {} exceeds {}, the largest that friction holds; lower the force, or \
+         prescribe the displacement (tangential.control = \"displacement\")",
+        si(*force, unit), si(*max, unit)
+    )]
+    Sliding {
+        /// Prescribed tangential force \[N\], per length \[N/m\] on a line of cells.
+        force: f64,
+        /// The largest one.
+        max: f64,
+        /// The unit of forces.
+        unit: &'static str,
+        /// Time \[s\].
+        time: f64,
+    },
     /// The run was interrupted on request; the rows so far are complete.
     #[error("interrupted")]
     Interrupted,
@@ -169,6 +185,7 @@ impl Error {
             Error::NotConverged(_) => "not-converged",
             Error::Missed { .. } => "missed-event",
             Error::PulledOff { .. } => "pulled-off",
+            Error::Sliding { .. } => "gross-sliding",
             Error::Interrupted => "interrupted",
         }
     }

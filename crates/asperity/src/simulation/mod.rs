@@ -18,6 +18,7 @@ use crate::operator;
 use crate::process::Motion;
 use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
 use crate::spots::Spots;
+use crate::tangential::Tangential;
 use crate::time::{Plan, TimeGrid};
 use crate::traction::TractionLaw;
 
@@ -91,6 +92,8 @@ pub struct Simulation {
     pub motion: Option<Motion>,
     /// A traction on the surfaces in addition to the contact pressure, as a function of the gap.
     pub traction: Option<Arc<dyn TractionLaw>>,
+    /// Friction and a load along the surfaces; `None` for none.
+    pub tangential: Option<Arc<Tangential>>,
 }
 
 impl Simulation {
@@ -115,6 +118,7 @@ impl Simulation {
             quantities: Quantities::default(),
             motion: None,
             traction: None,
+            tangential: None,
         }
     }
 
@@ -132,6 +136,7 @@ impl Simulation {
         let mut stops = self.include.clone();
         // A travel that is too long is refused by `validate`.
         stops.extend(self.motion.iter().flat_map(|motion| motion.stops(self).unwrap_or_default()));
+        stops.extend(self.tangential.iter().flat_map(|tangential| tangential.breaks(self.times.end())));
         stops
     }
 

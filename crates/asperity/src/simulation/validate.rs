@@ -47,6 +47,7 @@ impl Simulation {
             self.validate_scheme(),
             self.validate_layers(),
             self.validate_traction(),
+            self.tangential.as_ref().map_or(Ok(()), |tangential| tangential.validate(self)),
             self.validate_jumps(&instants),
         ];
         let stages = 0..self.loading.stages.len();
@@ -102,6 +103,8 @@ impl Simulation {
             "one that an adhesive contact has: its stiffness includes that of the attraction and is infinite where cells snap"
         } else if quantity.is_of_adhesion() && self.traction.is_none() {
             "one that the rows have. Only an adhesive contact has this one: add [adhesion]"
+        } else if quantity.is_of_friction() && self.tangential.is_none() {
+            "one that the rows have. Only a contact under a tangential load has this one: add [friction] and [tangential]"
         } else {
             return Ok(());
         };

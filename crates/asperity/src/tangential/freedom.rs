@@ -2,8 +2,8 @@
 
 use super::vector::{Vector, inner, length, times};
 
-/// A traction this share short of the edge of its disc is inside.
-const EDGE: f64 = 1e-12;
+/// A traction this share short of the edge of its disc is inside. A step along a chord leaves the edge by the square of its angle.
+pub(crate) const EDGE: f64 = 1e-6;
 
 /// Of a cell, to first order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,6 +57,14 @@ impl Freedom {
             Freedom::Fixed => [0.0; 3],
             Freedom::Free => [1.0, 0.0, 1.0],
             Freedom::Along { tangent: [x, y], .. } => [x * x, x * y, y * y],
+        }
+    }
+
+    /// A traction at the edge, exactly there.
+    pub(super) fn snap(self, q: Vector, radius: f64) -> Vector {
+        match self {
+            Freedom::Along { .. } => times(radius / length(q), q),
+            _ => q,
         }
     }
 

@@ -19,13 +19,15 @@ use super::discs::{clip, shift_to_sum};
 use super::freedom::Freedom;
 use super::operator::VectorConvolution;
 use super::vector::{Vector, inner, length, minus, plus, solve, times};
-use crate::contact::stop_at;
+use crate::contact::{SAME_LOAD, stop_at};
 use crate::error::{NotConverged, Result};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Cerruti;
 
 /// Iterations without a halving of the residual before a gradient step.
 const PATIENCE: usize = 10;
+/// The first trial step, over the length that the preconditioner would take on all cells.
+const FIRST_LENGTH: f64 = 0.6;
 /// Iterations after which u is computed afresh.
 const REFRESH: usize = 50;
 
@@ -141,14 +143,28 @@ impl SlipSolver {
         interrupt: Option<&AtomicBool>,
     ) -> Result<SlipOutcome> {
         let mut outcome = SlipOutcome::default();
-        if let Given::Displacement(d) = problem.given {
-            state.displacement = d;
+        state.displacement = match problem.given {
+            Given::Displacement(d) => d,
+            Given::Sum(_) => [0.0; 2],
+        };
+        let [held] = sums(problem.radius, |radius| [radius]);
+        if held == 0.0 {
+            state.traction.fill([0.0; 2]);
+            state.unit.fill([0.0; 2]);
+            return Ok(outcome);
+        }
+        if let Given::Sum(sum) = problem.given
+            && length(sum) >= held * (1.0 - SAME_LOAD)
+        {
+            self.slide(problem, state, times(1.0 / length(sum), sum));
+            outcome.convolutions = 1;
+            return Ok(outcome);
         }
         self.start(problem, state);
         self.convolve(state, &mut outcome);
         let gradient_length = 1.0 / (problem.compliance * self.own);
         let mut search = Search {
-            length: 1.0,
+            length: FIRST_LENGTH,
             gradient_length,
             product: None,
             best: f64::INFINITY,
@@ -160,7 +176,7 @@ impl SlipSolver {
             (outcome.residual, outcome.certificate) = self.report(problem, state, &mut search);
             tracing::debug!(iterations = outcome.iterations, residual = outcome.residual, "slip");
             let converged = outcome.residual <= tolerance;
-            if converged && search.rounding == 0 {
+            if converged && search.is_precise(tolerance) {
                 return Ok(outcome);
             }
             if outcome.iterations == most {
@@ -191,6 +207,21 @@ impl SlipSolver {
             outcome.convolutions += 1;
             search.rounding += 1;
         }
+    }
+
+    /// All cells at the limit, along the direction n of the force. Any d that pulls far enough fits: the least one.
+    fn slide(&mut self, problem: &SlipProblem<'_>, state: &mut Slip, n: Vector) {
+        let SlipProblem { compliance: c, offset, radius, .. } = *problem;
+        each(&mut state.traction, radius, |q, radius| *q = times(radius, n));
+        self.operator.apply_into(&state.traction, &mut state.unit);
+        let across = [-n[1], n[0]];
+        let cells = (&state.unit[..], offset, radius);
+        let [aside, all] = sums(cells, |(u, b, radius)| [radius * inner(across, plus(times(c, u), b)), radius]);
+        let Max(along) = sweep(cells, &|(u, b, radius): (&[Vector], &[Vector], &[f64])| {
+            let moved = |k: usize| inner(n, plus(times(c, u[k]), b[k]));
+            Max((0..u.len()).filter(|k| radius[*k] > 0.0).map(moved).fold(f64::NEG_INFINITY, f64::max))
+        });
+        state.displacement = plus(times(along, n), times(aside / all, across));
     }
 
     /// The traction of the last step, projected onto the discs of this one.
@@ -287,8 +318,9 @@ impl SlipSolver {
         });
         Self::centre(&mut self.direction, &self.free, search.tensor, keeps_sum);
         let step = search.length;
-        each(&mut self.trial, (&state.traction[..], &self.direction[..]), |y, (q, d)| {
-            *y = minus(q, times(step, d));
+        let cells = (&state.traction[..], &self.direction[..], &self.free[..], problem.radius);
+        each(&mut self.trial, cells, |y, (q, d, free, radius)| {
+            *y = minus(free.snap(q, radius), times(step, d));
         });
         let Some((slope, clipped)) = self.find_step(problem, state) else { return false };
         let Some(best) = self.minimum(problem, slope) else { return false };
@@ -389,6 +421,11 @@ impl SlipProblem<'_> {
 }
 
 impl Search {
+    /// Whether the roundings of the steps since u was computed matter less than a hundredth of the tolerance.
+    fn is_precise(&self, tolerance: f64) -> bool {
+        f64::EPSILON * self.rounding as f64 <= 0.01 * tolerance
+    }
+
     fn count_stall(&mut self, residual: f64) {
         if residual < 0.5 * self.best {
             (self.best, self.stalled) = (residual, 0);

@@ -102,7 +102,7 @@ fn the_traction_on_a_rough_sphere_is_the_difference_of_two_normal_ones() {
 
 #[test]
 fn the_work_of_a_step_does_not_grow_with_the_grid() {
-    for (n, boundary) in [(96, Boundary::Free), (384, Boundary::Free), (96, Boundary::Periodic)] {
+    for (n, boundary) in [(48, Boundary::Free), (192, Boundary::Free), (48, Boundary::Periodic)] {
         let grid = Grid::new([n, n], [2.0, 2.0]).unwrap();
         for waves in [0.0, 0.01] {
             let load = 0.3;
@@ -111,10 +111,12 @@ fn the_work_of_a_step_does_not_grow_with_the_grid() {
                 let mut loaded = Loaded::new(grid, boundary, nu, &full.pressure);
                 let shares = [0.2, 0.4, 0.6, 0.4, 0.2, 0.0, -0.3, -0.6];
                 let work = shares.map(|share| {
-                    let along = 0.1 * share;
-                    loaded.force(times(MU * load, [share, along]), 1e-6).convolutions
+                    loaded.force(times(MU * load, [share, 0.1 * share]), 1e-6).convolutions
                 });
-                println!("{n} {boundary:?} {waves} {nu}: {work:?}");
+                let most = work.into_iter().max().unwrap_or(0);
+                // A quarter more for four times as many cells to a side, and for the edges of the spots of a rough contact.
+                let usual = if nu == 0.0 { 20 } else { 30 };
+                assert!(most <= usual + usual / 2, "{n} {boundary:?} {waves} {nu}: {work:?}");
             }
         }
     }

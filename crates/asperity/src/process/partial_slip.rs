@@ -20,11 +20,10 @@ use crate::contact::{ContactState, Hardness, SAME_LOAD};
 use crate::error::{Error, Result};
 use crate::history::{self, Ends, History};
 use crate::kernel::Cerruti;
-use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::step::{Interval, Load, Loader, Saver, UndeformedGap};
 use crate::tangential::{
-    EDGE, Given, Slip, SlipOutcome, SlipProblem, SlipSolver, Tangential, TangentialControl, Vector, inner,
+    EDGE, Given, Slip, SlipProblem, SlipRow, SlipSolver, Tangential, TangentialControl, Vector, inner,
     length, minus, plus, times,
 };
 
@@ -53,19 +52,7 @@ pub(super) struct PartialSlip {
     offset: Vec<Vector>,
     rest: Vec<f64>,
     recalled: Vec<f64>,
-    numbers: Numbers,
-}
-
-/// Of the last row.
-#[derive(Clone, Copy, Debug, Default)]
-struct Numbers {
-    force: Vector,
-    displacement: Vector,
-    stick_area: f64,
-    slip_area: f64,
-    work: f64,
-    stiffness: f64,
-    outcome: SlipOutcome,
+    numbers: SlipRow,
 }
 
 impl PartialSlip {
@@ -93,7 +80,7 @@ impl PartialSlip {
             offset: zeros(n),
             rest: zeros(n),
             recalled: zeros(n),
-            numbers: Numbers::default(),
+            numbers: SlipRow::default(),
         }))
     }
 
@@ -129,7 +116,9 @@ impl PartialSlip {
         let grid = &row.simulation.grid;
         let area = grid.cell_area();
         match self.law.control {
-            TangentialControl::Displacement => Ok(Given::Displacement(minus(value, self.numbers.displacement))),
+            TangentialControl::Displacement => {
+                Ok(Given::Displacement(minus(value, self.numbers.displacement)))
+            }
             TangentialControl::Force if length(value) > most * area * (1.0 + SAME_LOAD) => {
                 let (force, max, unit) = (length(value), most * area, grid.units("N"));
                 Err(Error::Sliding { force, max, unit, time })
@@ -159,7 +148,7 @@ impl PartialSlip {
         });
         let force = times(area, [x, y]);
         let (change, way) = (minus(force, self.numbers.force), length(d));
-        self.numbers = Numbers {
+        self.numbers = SlipRow {
             force,
             displacement: plus(self.numbers.displacement, d),
             stick_area: stick * area,
@@ -188,13 +177,14 @@ impl Process for PartialSlip {
         let problem = SlipProblem { compliance, offset, radius, given, scale };
         let options = &row.simulation.solver;
         let limits = (options.tolerance, options.max_iterations);
-        let outcome = self.solver.solve(&problem, &mut self.slip, limits, row.interrupt).map_err(|error| {
-            let time = row.step.instant.time;
-            match error {
-                Error::NotConverged(report) => crate::NotConverged { time: Some(time), ..report }.into(),
-                other => other,
-            }
-        })?;
+        let outcome =
+            self.solver.solve(&problem, &mut self.slip, limits, row.interrupt).map_err(|error| {
+                let time = row.step.instant.time;
+                match error {
+                    Error::NotConverged(report) => crate::NotConverged { time: Some(time), ..report }.into(),
+                    other => other,
+                }
+            })?;
         self.load = loads[1];
         row.convolutions += outcome.convolutions;
         self.numbers.outcome = outcome;
@@ -219,26 +209,13 @@ impl Process for PartialSlip {
         Ok(())
     }
 
-    fn quantity(&self, quantity: Quantity) -> Option<f64> {
-        let Numbers { force, displacement, stick_area, slip_area, work, stiffness, outcome } = self.numbers;
-        Some(match quantity {
-            Quantity::TangentialForceX => force[0],
-            Quantity::TangentialForceY => force[1],
-            Quantity::TangentialDisplacementX => displacement[0],
-            Quantity::TangentialDisplacementY => displacement[1],
-            Quantity::StickArea => stick_area,
-            Quantity::SlipArea => slip_area,
-            Quantity::SlipWork => work,
-            Quantity::TangentialStiffness => stiffness,
-            Quantity::FrictionIterations => outcome.iterations as f64,
-            Quantity::FrictionResidual => outcome.residual,
-            Quantity::FrictionCertificate => outcome.certificate,
-            _ => return None,
-        })
-    }
-
     fn slip(&self) -> Option<SlipFields<'_>> {
-        Some(SlipFields { traction: &self.slip.traction, slip: &self.slid, slips: &self.slips })
+        Some(SlipFields {
+            traction: &self.slip.traction,
+            slip: &self.slid,
+            slips: &self.slips,
+            numbers: self.numbers,
+        })
     }
 
     fn name(&self) -> &'static str {
@@ -246,7 +223,7 @@ impl Process for PartialSlip {
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
-        let Numbers { force, displacement, work, .. } = &self.numbers;
+        let SlipRow { force, displacement, work, .. } = &self.numbers;
         to.values("numbers", &[&force[0], &force[1], &displacement[0], &displacement[1], work, &self.load]);
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let component = |field: &[Vector]| field.iter().map(|v| v[axis]).collect();
@@ -261,7 +238,7 @@ impl Process for PartialSlip {
     }
 
     fn load(&mut self, from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
-        let Numbers { force: [fx, fy], displacement: [dx, dy], work, .. } = &mut self.numbers;
+        let SlipRow { force: [fx, fy], displacement: [dx, dy], work, .. } = &mut self.numbers;
         from.values_into("numbers", &mut [fx, fy, dx, dy, work, &mut self.load])?;
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let set = |field: &mut [Vector], from: &[f64]| each(field, from, |v, part| v[axis] = part);
@@ -280,7 +257,7 @@ impl Process for PartialSlip {
     }
 }
 
-/// The fields of a row with friction.
+/// What a row tells of friction.
 #[derive(Clone, Copy)]
 pub(crate) struct SlipFields<'a> {
     /// q \[Pa\].
@@ -289,4 +266,5 @@ pub(crate) struct SlipFields<'a> {
     pub(crate) slip: &'a [Vector],
     /// Whether a cell in contact slips.
     pub(crate) slips: &'a [bool],
+    pub(crate) numbers: SlipRow,
 }

@@ -21,10 +21,6 @@
 //! | `adhesive_load`, `repulsive_load` | N | attraction between the surfaces, and load on the cells in contact |
 //! | `adhesion_energy` | J | potential energy of the attraction |
 //! | `outer_iterations`, `adhesion_residual` | | passes of the loop around the contact solver, and the change in the last one |
-//! | `tangential_force_x`, `_y`, `tangential_displacement_x`, `_y` | N, m | load along the surfaces, and the displacement under it |
-//! | `stick_area`, `slip_area`, `slip_work` | m², J | where the surfaces stick and slip, and the work of friction since t = 0 |
-//! | `tangential_stiffness` | N/m | change of the force over that of the displacement in the step |
-//! | `friction_iterations`, `friction_residual`, `friction_certificate` | | work and error of the tangential solver |
 //! | `velocity`, `sliding_distance` | m/s, m | velocity of a contact in motion, and how far it has moved |
 //! | `friction_force`, `side_force` | N | force against motion and across it |
 //! | `friction_coefficient`, `friction_coefficient_total` | | friction force over load, without and with a shear stress on the contact |
@@ -165,32 +161,6 @@ quantities! {
     OuterIterations = "outer_iterations" ["1"] "passes of the adhesion", Adhesion, ("Passes of the adhesion", "number", "");
     /// Change of the attraction in the last of them, relative to all forces between the surfaces.
     AdhesionResidual = "adhesion_residual" ["1"] "change of the adhesion in the last pass", Adhesion, ("Change of the adhesion in the last pass", "share", "");
-    /// Tangential force along x, in N; of a contact with friction, as the ten that follow.
-    TangentialForceX = "tangential_force_x" ["N"] "tangential force along x", Friction, ("Tangential force", "force", "x");
-    /// Tangential force along y, in N.
-    TangentialForceY = "tangential_force_y" ["N"] "tangential force along y", Friction, ("Tangential force", "force", "y");
-    /// Displacement of the bodies against each other along x, in m.
-    TangentialDisplacementX = "tangential_displacement_x" ["m"] "tangential displacement along x", Friction, ("Tangential displacement", "displacement", "x");
-    /// Displacement of the bodies against each other along y, in m.
-    TangentialDisplacementY = "tangential_displacement_y" ["m"] "tangential displacement along y", Friction, ("Tangential displacement", "displacement", "y");
-    /// Area of the cells in contact that stick, in m2.
-    StickArea = "stick_area" ["m2"] "area that sticks", Friction, ("Stick and slip", "area", "stick"),
-        on a line ["m"] "length that sticks" ("Stick and slip", "length");
-    /// Area of the cells in contact whose traction is at the limit of friction, in m2.
-    SlipArea = "slip_area" ["m2"] "area that slips", Friction, ("Stick and slip", "area", "slip"),
-        on a line ["m"] "length that slips" ("Stick and slip", "length");
-    /// Work of friction since t = 0, in J: heat in the surfaces. Over a closed loop it grows by the area of the loop, less what the
-    /// dashpots take.
-    SlipWork = "slip_work" ["J"] "work of friction", Friction, ("Work of friction", "energy", "");
-    /// Change of the tangential force in the step over that of the displacement, along the displacement, in N/m; not a number where
-    /// nothing moves.
-    TangentialStiffness = "tangential_stiffness" ["N/m"] "tangential stiffness over the step", Friction, ("Tangential stiffness", "stiffness", "");
-    /// Iterations of the solver for the tangential tractions.
-    FrictionIterations = "friction_iterations" ["1"] "iterations for the tangential tractions", Friction, ("Work of friction solver", "number", "");
-    /// Largest violation of the conditions of friction, relative.
-    FrictionResidual = "friction_residual" ["1"] "residual of the tangential tractions", Friction, ("Error of the tangential tractions", "relative error", "residual");
-    /// Certified relative error of the tangential tractions in the energy norm.
-    FrictionCertificate = "friction_certificate" ["1"] "certified error of the tangential tractions", Friction, ("Error of the tangential tractions", "relative error", "certificate");
     /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.
     Velocity = "velocity" ["m/s"] "velocity", Motion, ("Velocity", "velocity", "");
     /// Distance that the contact has moved, in m.
@@ -246,8 +216,6 @@ enum Kind {
     Response,
     /// A contact with adhesion: every row has it.
     Adhesion,
-    /// A contact with friction under a tangential load: every row has it.
-    Friction,
     /// A contact in motion: every row has it, or only on request.
     Motion,
     MotionOnRequest,
@@ -267,18 +235,12 @@ pub struct Panel {
 impl Quantity {
     /// The quantities of every contact, moving or not, with adhesion or without.
     pub fn at_rest() -> impl Iterator<Item = Quantity> {
-        let is_special = |quantity: &Quantity| quantity.is_of_motion() || quantity.is_of_adhesion() || quantity.is_of_friction();
-        Quantity::ALL.into_iter().filter(move |quantity| !is_special(quantity))
+        Quantity::ALL.into_iter().filter(|quantity| !quantity.is_of_motion() && !quantity.is_of_adhesion())
     }
 
     /// The quantities that every row of an adhesive contact has.
     pub fn of_adhesion() -> impl Iterator<Item = Quantity> {
         Quantity::ALL.into_iter().filter(|quantity| quantity.is_of_adhesion())
-    }
-
-    /// The quantities that every row of a contact with friction has.
-    pub fn of_friction() -> impl Iterator<Item = Quantity> {
-        Quantity::ALL.into_iter().filter(|quantity| quantity.is_of_friction())
     }
 
     /// The quantities that every row of a contact in motion has.
@@ -355,11 +317,6 @@ impl Quantity {
     /// Whether it belongs to a contact in motion.
     pub fn is_of_motion(self) -> bool {
         matches!(self.declaration().kind, Kind::Motion | Kind::MotionOnRequest)
-    }
-
-    /// Whether it belongs to a contact with friction under a tangential load.
-    pub fn is_of_friction(self) -> bool {
-        self.declaration().kind == Kind::Friction
     }
 
     /// Whether it belongs to a contact with adhesion.

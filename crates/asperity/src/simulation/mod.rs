@@ -18,7 +18,7 @@ use crate::operator;
 use crate::process::Motion;
 use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
 use crate::spots::Spots;
-use crate::tangential::Tangential;
+use crate::tangential::{self, Tangential};
 use crate::time::{Plan, TimeGrid};
 use crate::traction::TractionLaw;
 
@@ -182,6 +182,7 @@ impl Simulation {
             + has(self.plasticity == Plasticity::Accumulate, 8 * n)
             + has(self.quantities.has(Quantity::ContactStiffness), ContactStiffness::bytes(grid, self.boundary))
             + has(self.quantities.list.iter().any(|q| q.connects()), Spots::bytes(grid))
+            + has(self.tangential.is_some(), tangential::bytes(grid, self.boundary) + 2 * history::bytes(self))
     }
 
     /// The quantities of each row, with the ends of their bins.

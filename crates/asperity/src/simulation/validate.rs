@@ -96,6 +96,9 @@ impl Simulation {
         } else if self.scheme == Scheme::Direct && is_energy {
             "one that is no energy. Energies need the springs and dashpots of the material, which scheme = \"direct\" does not \
              use; set time.scheme to \"linear\" or \"constant\""
+        } else if self.tangential.is_some() && is_energy {
+            "one that is no energy: the account of the bodies leaves out what tangential tractions do. Take the work of friction \
+             (SlipRow::work)"
         } else if self.layers.is_some() && (is_energy || quantity == Quantity::ContactStiffness) {
             "one that is solved for layers that creep differently. Leave it out, or give all layers and bodies the same relative \
              creep"
@@ -103,8 +106,6 @@ impl Simulation {
             "one that an adhesive contact has: its stiffness includes that of the attraction and is infinite where cells snap"
         } else if quantity.is_of_adhesion() && self.traction.is_none() {
             "one that the rows have. Only an adhesive contact has this one: add [adhesion]"
-        } else if quantity.is_of_friction() && self.tangential.is_none() {
-            "one that the rows have. Only a contact under a tangential load has this one: add [friction] and [tangential]"
         } else {
             return Ok(());
         };

@@ -12,6 +12,7 @@ use crate::process::{Process, SlipFields, cells};
 use crate::quantities::{Column, Quantity, contact_edges};
 use crate::simulation::Simulation;
 use crate::sliding::Friction;
+use crate::tangential::SlipRow;
 use crate::time::Instant;
 use crate::traction::TractionSolver;
 use asperity_sweep::{Max, kernel, run};
@@ -243,6 +244,11 @@ impl<'a> Step<'a> {
         if let Some(SlipFields { slips, .. }) = self.slip_fields() {
             contact.iter_mut().zip(slips).filter(|(_, slips)| **slips).for_each(|(c, _)| *c = 3);
         }
+    }
+
+    /// What friction does in this row; `None` without a tangential load.
+    pub fn slip_row(&self) -> Option<SlipRow> {
+        Some(self.slip_fields()?.numbers)
     }
 
     fn slip_fields(&self) -> Option<SlipFields<'a>> {

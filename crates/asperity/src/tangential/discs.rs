@@ -94,7 +94,8 @@ mod tests {
             for (share, angle) in [(0.0, 0.0), (0.5, 1.0), (0.99, 2.0), (0.999_999, 4.0)] {
                 let sum = times(share * most, [f64::cos(angle), f64::sin(angle)]);
                 let lambda = shift_to_sum(&y, &radius, sum).unwrap();
-                let found = y.iter().zip(&radius).fold([0.0; 2], |sum, (y, r)| plus(sum, clip(plus(*y, lambda), *r)));
+                let found =
+                    y.iter().zip(&radius).fold([0.0; 2], |sum, (y, r)| plus(sum, clip(plus(*y, lambda), *r)));
                 let miss = length([found[0] - sum[0], found[1] - sum[1]]);
                 assert!(miss <= LARGEST_MISS * most, "{scale} {share}: {miss:e}");
             }

@@ -16,21 +16,34 @@
 mod discs;
 mod freedom;
 mod operator;
+mod pair;
+mod row;
 mod solver;
 #[cfg(test)]
 mod tests;
 mod vector;
 
+pub use pair::PairRatio;
+pub use row::{SlipOutcome, SlipRow};
+
 pub(crate) use freedom::EDGE;
-pub(crate) use solver::{Given, Slip, SlipOutcome, SlipProblem, SlipSolver};
+pub(crate) use solver::{Given, Slip, SlipProblem, SlipSolver};
 pub(crate) use vector::{Vector, inner, length, minus, plus, times};
 
 use ndarray::Array2;
 
 use crate::error::{Error, Result, require};
-use crate::grid::Boundary;
+use crate::grid::{Boundary, Grid};
 use crate::load::History;
 use crate::simulation::Simulation;
+
+/// Bytes that a step with friction takes, without what the bodies remember.
+pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
+    // Ten fields of vectors and the freedom of cells in the solver; eleven fields of vectors and four numbers in the process.
+    8 * grid.len() * (2 * 21 + 4 + 4)
+        + operator::VectorConvolution::bytes(operator::lengths(grid, boundary))
+        + operator::VectorConvolution::bytes(grid.cells())
+}
 
 /// What is prescribed along the surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -44,6 +57,31 @@ pub enum TangentialControl {
 }
 
 /// Friction, and a tangential load over time.
+///
+/// ```
+/// use std::sync::Arc;
+/// use asperity::{drive::March, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
+/// use asperity::tangential::{Tangential, TangentialControl};
+/// // A sphere under 1 N, pulled along x with 0.6 of the force that makes it slide.
+/// let grid = Grid::new([64, 64], [0.6e-3, 0.6e-3])?;
+/// let sphere = Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] };
+/// let (pull, none) = (History::Ramp { value: 0.18, duration: 1.0 }, History::Step { value: 0.0 });
+/// let mut march = March::new(Simulation {
+///     creep: Creep::elastic(1e-9),
+///     loading: Loading { control: Control::Load, history: History::Step { value: 1.0 } }.into(),
+///     tangential: Some(Arc::new(Tangential {
+///         coefficient: 0.3, coefficients: None, shear_limit: f64::INFINITY, poisson: 0.3, coupling: 0.0,
+///         control: TangentialControl::Force, histories: [pull, none],
+///     })),
+///     ..Simulation::new(grid, undeformed_gap(&grid, &[sphere])?)
+/// })?;
+/// march.advance()?;
+/// let row = march.advance()?.and_then(|step| step.slip_row()).unwrap();
+/// // Cattaneo and Mindlin: a circle of (1 - 0.6)^(2/3) of the area sticks.
+/// let share = row.stick_area / (row.stick_area + row.slip_area);
+/// assert!((share / 0.4f64.powf(2.0 / 3.0) - 1.0).abs() < 0.05);
+/// # Ok::<(), asperity::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tangential {
     /// Friction coefficient μ.
@@ -78,7 +116,9 @@ impl Tangential {
     /// The axis along which the force acts, where it has one component only until `end`.
     pub(crate) fn alone(&self, end: f64) -> Option<usize> {
         let is_zero = |axis: usize| self.histories[axis].range(end) == [0.0; 2];
-        (self.control == TangentialControl::Force).then(|| [0, 1].into_iter().find(|axis| is_zero(1 - axis))).flatten()
+        (self.control == TangentialControl::Force)
+            .then(|| [0, 1].into_iter().find(|axis| is_zero(1 - axis)))
+            .flatten()
     }
 
     /// The times at which what is prescribed bends or turns.
@@ -98,9 +138,21 @@ impl Tangential {
             require(holds, what, "given", expected).map_err(|error| error.of("tangential"))
         };
         let is_half_space = simulation.layers.is_none() && simulation.kernel.is_half_space();
-        excludes(is_half_space, "layer under a tangential load", "none: only half-spaces are solved with friction")?;
-        excludes(simulation.motion.is_none(), "motion beside a tangential load", "none: slip follows from [tangential]")?;
-        excludes(simulation.traction.is_none(), "adhesion under a tangential load", "none: both are not solved together")?;
+        excludes(
+            is_half_space,
+            "layer under a tangential load",
+            "none: only half-spaces are solved with friction",
+        )?;
+        excludes(
+            simulation.motion.is_none(),
+            "motion beside a tangential load",
+            "none: slip follows from [tangential]",
+        )?;
+        excludes(
+            simulation.traction.is_none(),
+            "adhesion under a tangential load",
+            "none: both are not solved together",
+        )?;
         let is_free_line = simulation.grid.is_line() && simulation.boundary == Boundary::Free;
         let expected = "periodic: on a free line the displacement is only known up to a constant";
         require(!is_free_line, "boundary of a line contact under a tangential load", "free", expected)
@@ -118,10 +170,16 @@ impl Tangential {
         coefficient("friction coefficient".into(), self.coefficient)?;
         if let Some(map) = &self.coefficients {
             let expected = format!("{:?}, one for each cell", simulation.grid.shape());
-            require(map.dim() == simulation.grid.shape(), "shape of the friction coefficients", format!("{:?}", map.dim()), expected)
-                .map_err(|error| error.of("friction.coefficient"))?;
-            map.indexed_iter()
-                .try_for_each(|((i, j), value)| coefficient(format!("friction coefficient of cell ({i}, {j})"), *value))?;
+            require(
+                map.dim() == simulation.grid.shape(),
+                "shape of the friction coefficients",
+                format!("{:?}", map.dim()),
+                expected,
+            )
+            .map_err(|error| error.of("friction.coefficient"))?;
+            map.indexed_iter().try_for_each(|((i, j), value)| {
+                coefficient(format!("friction coefficient of cell ({i}, {j})"), *value)
+            })?;
         }
         require(self.shear_limit > 0.0, "shear limit", format!("{} Pa", self.shear_limit), "greater than 0")
             .map_err(|error| error.of("friction.shear_limit"))?;

@@ -8,7 +8,7 @@ use super::vector::Vector;
 use crate::convolution::torus::{Spectrum, Torus};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::{Cerruti, Tangential, strip};
-use crate::operator::torus;
+pub(super) use crate::operator::torus as lengths;
 
 /// A convolution of a field of vectors with an even, symmetric tensor.
 pub(crate) struct VectorConvolution {
@@ -23,12 +23,13 @@ pub(crate) struct VectorConvolution {
 impl VectorConvolution {
     /// K of a body, for unit contact compliance.
     pub(crate) fn of(grid: &Grid, boundary: Boundary, body: Cerruti) -> Self {
-        let lengths = torus(grid, boundary);
+        let lengths = lengths(grid, boundary);
         match boundary {
             Boundary::Free if grid.is_line() => {
                 // Plane strain along x; along y the body is sheared only.
                 let strips = strip(grid.spacing()[0], lengths[0] / 2 + 1);
-                let on_line = |k: f64, j: usize| if j == 0 { [k, 0.0, body.transverse() * k] } else { [0.0; 3] };
+                let on_line =
+                    |k: f64, j: usize| if j == 0 { [k, 0.0, body.transverse() * k] } else { [0.0; 3] };
                 Self::of_coefficients(grid, lengths, |i, j| on_line(strips[i], j))
             }
             Boundary::Free => {
@@ -42,7 +43,8 @@ impl VectorConvolution {
 
     /// The inverse of the symbol on a torus that is not padded; the mean counts as half of the longest wave.
     pub(crate) fn approximate_inverse(grid: &Grid, body: Cerruti) -> Self {
-        let longest = if grid.is_line() { grid.size()[0] } else { grid.size().into_iter().fold(0.0, f64::max) };
+        let longest =
+            if grid.is_line() { grid.size()[0] } else { grid.size().into_iter().fold(0.0, f64::max) };
         let first = 0.5 * body.inverse(std::f64::consts::TAU / longest, 0.0)[2];
         Self::of_waves(grid, |qx, qy| match (qx, qy) {
             (0.0, 0.0) => [first, 0.0, first],
@@ -53,6 +55,11 @@ impl VectorConvolution {
     fn new(torus: Torus, cells: usize, spectrum: Vec<Tangential>) -> Self {
         let waves = [0; 2].map(|_| Spectrum(vec![Default::default(); torus.spectrum_len()]));
         VectorConvolution { torus, spectrum, waves, part: vec![0.0; cells] }
+    }
+
+    /// Bytes that one on a torus of these lengths takes: the tensor of each wave and two transforms.
+    pub(super) fn bytes([mx, my]: [usize; 2]) -> usize {
+        mx * (my / 2 + 1) * (3 * 8 + 2 * 16)
     }
 
     /// By a symbol of the waves of the domain.
@@ -87,7 +94,15 @@ impl VectorConvolution {
                 let (i, j) = (n / my, n % my);
                 let k = quadrant[i.min(mx - i) * half + j.min(my - j)][component];
                 // x y is odd in both: of two signs, or of none, halfway around the torus.
-                let sign = |i: usize, m: usize| if 2 * i == m { 0.0 } else if 2 * i > m { -1.0 } else { 1.0 };
+                let sign = |i: usize, m: usize| {
+                    if 2 * i == m {
+                        0.0
+                    } else if 2 * i > m {
+                        -1.0
+                    } else {
+                        1.0
+                    }
+                };
                 if component == 1 { k * sign(i, mx) * sign(j, my) } else { k }
             };
             (0..mx * my).map(number).collect::<Vec<f64>>()

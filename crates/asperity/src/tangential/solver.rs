@@ -18,6 +18,7 @@ use asperity_sweep::{Max, Min, each, smaller, strands, sums, sweep};
 use super::discs::{clip, shift_to_sum};
 use super::freedom::Freedom;
 use super::operator::VectorConvolution;
+use super::row::SlipOutcome;
 use super::vector::{Vector, inner, length, minus, plus, solve, times};
 use crate::contact::{SAME_LOAD, stop_at};
 use crate::error::{NotConverged, Result};
@@ -62,17 +63,6 @@ pub(crate) struct Slip {
     pub(crate) unit: Vec<Vector>,
     /// d \[m\].
     pub(crate) displacement: Vector,
-}
-
-/// How well a step is solved, and the work of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct SlipOutcome {
-    pub(crate) iterations: usize,
-    pub(crate) convolutions: usize,
-    /// Largest violation of the conditions over the displacement under the tractions, weighted by them.
-    pub(crate) residual: f64,
-    /// Certified relative error of the traction in the energy norm.
-    pub(crate) certificate: f64,
 }
 
 pub(crate) struct SlipSolver {
@@ -182,8 +172,15 @@ impl SlipSolver {
             if outcome.iterations == most {
                 let SlipOutcome { iterations, residual, certificate, .. } = outcome;
                 let method = "friction";
-                let report =
-                    NotConverged { method, iterations, residual, tolerance, certificate, time: None, velocity: None };
+                let report = NotConverged {
+                    method,
+                    iterations,
+                    residual,
+                    tolerance,
+                    certificate,
+                    time: None,
+                    velocity: None,
+                };
                 return Err(report.into());
             }
             stop_at(interrupt)?;
@@ -216,7 +213,8 @@ impl SlipSolver {
         self.operator.apply_into(&state.traction, &mut state.unit);
         let across = [-n[1], n[0]];
         let cells = (&state.unit[..], offset, radius);
-        let [aside, all] = sums(cells, |(u, b, radius)| [radius * inner(across, plus(times(c, u), b)), radius]);
+        let [aside, all] =
+            sums(cells, |(u, b, radius)| [radius * inner(across, plus(times(c, u), b)), radius]);
         let Max(along) = sweep(cells, &|(u, b, radius): (&[Vector], &[Vector], &[f64])| {
             let moved = |k: usize| inner(n, plus(times(c, u[k]), b[k]));
             Max((0..u.len()).filter(|k| radius[*k] > 0.0).map(moved).fold(f64::NEG_INFINITY, f64::max))
@@ -275,22 +273,19 @@ impl SlipSolver {
         }
         // What a projected gradient step of the length of one cell would change.
         let cells = (q, radius, u, offset);
-        let ([energy, force, defect], Max(largest)) = sweep(cells, &|(q, radius, u, b): (
-            &[Vector],
-            &[f64],
-            &[Vector],
-            &[Vector],
-        )| {
-            let largest = (0..q.len()).fold(0.0f64, |largest, n| {
-                let r = gradient(u[n], b[n]);
-                largest.max(length(minus(clip(minus(q[n], times(length_, r)), radius[n]), q[n])) / length_)
+        let ([energy, force, defect], Max(largest)) =
+            sweep(cells, &|(q, radius, u, b): (&[Vector], &[f64], &[Vector], &[Vector])| {
+                let largest = (0..q.len()).fold(0.0f64, |largest, n| {
+                    let r = gradient(u[n], b[n]);
+                    largest
+                        .max(length(minus(clip(minus(q[n], times(length_, r)), radius[n]), q[n])) / length_)
+                });
+                let terms = strands(q.len(), |n| {
+                    let r = gradient(u[n], b[n]);
+                    [c * inner(q[n], u[n]), length(q[n]), radius[n] * length(r) + inner(r, q[n])]
+                });
+                (terms, Max(largest))
             });
-            let terms = strands(q.len(), |n| {
-                let r = gradient(u[n], b[n]);
-                [c * inner(q[n], u[n]), length(q[n]), radius[n] * length(r) + inner(r, q[n])]
-            });
-            (terms, Max(largest))
-        });
         let scale = if force > 0.0 { (energy / force).max(problem.scale) } else { problem.scale };
         let residual = if scale > 0.0 { largest / scale } else { 0.0 };
         let certificate = if energy > 0.0 { (defect.max(0.0) / energy).sqrt() } else { 0.0 };
@@ -394,7 +389,11 @@ impl SlipSolver {
             Min((0..q.len()).fold(f64::INFINITY, |reach, n| {
                 let (ss, qs) = (inner(s[n], s[n]), inner(q[n], s[n]));
                 let room = radius[n] * radius[n] - inner(q[n], q[n]);
-                if ss == 0.0 { reach } else { smaller(((qs * qs + ss * room.max(0.0)).sqrt() - qs) / ss, reach) }
+                if ss == 0.0 {
+                    reach
+                } else {
+                    smaller(((qs * qs + ss * room.max(0.0)).sqrt() - qs) / ss, reach)
+                }
             }))
         });
         reach.max(1.0)

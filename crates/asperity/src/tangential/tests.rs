@@ -18,7 +18,9 @@ fn gap(grid: &Grid, waves: f64) -> Vec<f64> {
     let height = |n: usize| {
         let (x, y) = (grid.x(n / ny) / lx, grid.y(n % ny) / ly);
         let round = 0.5 * ((x - 0.5) * lx).powi(2) + 0.5 * ((y - 0.5) * ly).powi(2);
-        round + waves * (f64::cos(5.0 * tau * x + 1.0) * f64::cos(4.0 * tau * y) + f64::cos(9.0 * tau * (x + y)))
+        round
+            + waves
+                * (f64::cos(5.0 * tau * x + 1.0) * f64::cos(4.0 * tau * y) + f64::cos(9.0 * tau * (x + y)))
     };
     let all: Vec<f64> = (0..nx * ny).map(height).collect();
     let least = all.iter().copied().fold(f64::INFINITY, f64::min);
@@ -35,7 +37,9 @@ fn pressed(grid: Grid, boundary: Boundary, gap: &[f64], load: f64) -> ContactSta
         hardness: Hardness::Uniform(f64::INFINITY),
         prescribed: Prescribed::Load(load),
     };
-    Solver::new(options.method, &*operator).solve(&mut *operator, &problem, &options, &mut state, None).unwrap();
+    Solver::new(options.method, &*operator)
+        .solve(&mut *operator, &problem, &options, &mut state, None)
+        .unwrap();
     state
 }
 
@@ -64,7 +68,8 @@ impl Loaded {
 
     fn step(&mut self, given: Given, tolerance: f64) -> SlipOutcome {
         let offset: Vec<Vector> = self.displacement.iter().map(|u| times(-1.0, *u)).collect();
-        let problem = SlipProblem { compliance: 1.0, offset: &offset, radius: &self.radius, given, scale: 1e-12 };
+        let problem =
+            SlipProblem { compliance: 1.0, offset: &offset, radius: &self.radius, given, scale: 1e-12 };
         let outcome = self.solver.solve(&problem, &mut self.slip, (tolerance, 500), None).unwrap();
         self.displacement.copy_from_slice(&self.slip.unit);
         outcome
@@ -110,9 +115,8 @@ fn the_work_of_a_step_does_not_grow_with_the_grid() {
             for nu in [0.0, 0.3, 0.5] {
                 let mut loaded = Loaded::new(grid, boundary, nu, &full.pressure);
                 let shares = [0.2, 0.4, 0.6, 0.4, 0.2, 0.0, -0.3, -0.6];
-                let work = shares.map(|share| {
-                    loaded.force(times(MU * load, [share, 0.1 * share]), 1e-6).convolutions
-                });
+                let work = shares
+                    .map(|share| loaded.force(times(MU * load, [share, 0.1 * share]), 1e-6).convolutions);
                 let most = work.into_iter().max().unwrap_or(0);
                 // A quarter more for four times as many cells to a side, and for the edges of the spots of a rough contact.
                 let usual = if nu == 0.0 { 20 } else { 30 };

@@ -106,22 +106,23 @@ fn the_traction_on_a_rough_sphere_is_the_difference_of_two_normal_ones() {
 }
 
 #[test]
-fn the_work_of_a_step_does_not_grow_with_the_grid() {
-    for (n, boundary) in [(48, Boundary::Free), (192, Boundary::Free), (48, Boundary::Periodic)] {
+fn the_work_of_a_step_hardly_grows_with_the_grid() {
+    let boundary = Boundary::Free;
+    let work = |n: usize, waves: f64, nu: f64| {
         let grid = Grid::new([n, n], [2.0, 2.0]).unwrap();
-        for waves in [0.0, 0.01] {
-            let load = 0.3;
-            let full = pressed(grid, boundary, &gap(&grid, waves), load);
-            for nu in [0.0, 0.3, 0.5] {
-                let mut loaded = Loaded::new(grid, boundary, nu, &full.pressure);
-                let shares = [0.2, 0.4, 0.6, 0.4, 0.2, 0.0, -0.3, -0.6];
-                let work = shares
-                    .map(|share| loaded.force(times(MU * load, [share, 0.1 * share]), 1e-6).convolutions);
-                let most = work.into_iter().max().unwrap_or(0);
-                // A quarter more for four times as many cells to a side, and for the edges of the spots of a rough contact.
-                let usual = if nu == 0.0 { 20 } else { 30 };
-                assert!(most <= usual + usual / 2, "{n} {boundary:?} {waves} {nu}: {work:?}");
-            }
+        let full = pressed(grid, boundary, &gap(&grid, waves), 0.3);
+        let mut loaded = Loaded::new(grid, boundary, nu, &full.pressure);
+        let shares = [0.3, 0.6, 0.0, -0.6];
+        let steps =
+            shares.map(|share| loaded.force(times(MU * 0.3, [share, 0.1 * share]), 1e-6).convolutions);
+        steps.iter().sum::<usize>() as f64 / steps.len() as f64
+    };
+    for (waves, nu) in [(0.0, 0.0), (0.0, 0.5), (0.01, 0.0), (0.01, 0.5)] {
+        // 11 to 16 and 21 to 31 at the time of writing; without the curvature of the discs 55 to 75, and growing with the grid.
+        let most = if nu == 0.0 { 22.0 } else { 40.0 };
+        for n in [48, 128] {
+            let found = work(n, waves, nu);
+            assert!(found <= most, "{n} {waves} {nu}: {found}");
         }
     }
 }

@@ -255,3 +255,44 @@ fn loads_that_are_not_solved_are_refused() {
         }
     }
 }
+
+#[test]
+fn any_course_keeps_the_limit_of_friction_and_loses_work() {
+    // Reversed in every step, along a turning path, under a load that changes and is lost, on a map with frictionless cells.
+    let zigzag: Vec<(f64, f64)> =
+        (0..=10).map(|n| (0.5 * f64::from(n), 0.02 * [0.0, 1.0, -1.0][n as usize % 3])).collect();
+    let cells = [32, 32];
+    let half = Array2::from_shape_fn((32, 32), |(i, j)| if (i + j) % 4 == 0 { 0.0 } else { MU });
+    let turning = [
+        History::Table { points: vec![(0.0, 0.0), (2.5, 0.08), (5.0, 0.0)] },
+        History::Table { points: vec![(0.0, 0.0), (2.5, 0.02), (5.0, 0.09)] },
+    ];
+    let control = TangentialControl::Displacement;
+    let cases = [
+        along(0, 0.3, TangentialControl::Force, &zigzag),
+        Tangential { histories: turning, ..along(0, 0.3, control, &[(0.0, 0.0)]) },
+        Tangential { coefficients: Some(half.clone()), ..along(1, 0.3, control, &[(0.0, 0.0), (5.0, 0.1)]) },
+        Tangential { shear_limit: 0.05, ..along(1, 0.3, control, &[(0.0, 0.0), (5.0, 0.1)]) },
+    ];
+    for (n, tangential) in cases.into_iter().enumerate() {
+        // The load falls to 0.3, and in all but the first case to nothing in between.
+        let least = if n == 0 { 0.3 } else { 0.0 };
+        let points = vec![(0.0, 1.0), (1.0, least), (2.0, least), (5.0, 1.0)];
+        let simulation = Simulation {
+            loading: Loading { control: Control::Load, history: History::Table { points } }.into(),
+            ..sphere(cells[0], 0.3, tangential.clone())
+        };
+        let states = run(simulation).unwrap();
+        for (before, state) in states.iter().zip(&states[1..]) {
+            for ((i, j), p) in state.pressure.indexed_iter() {
+                let mu = tangential.coefficients.as_ref().map_or(MU, |map| map[(i, j)]);
+                let q = f64::hypot(state.traction[0][(i, j)], state.traction[1][(i, j)]);
+                assert!(q <= (mu * p).min(tangential.shear_limit) * (1.0 + 1e-12), "{n} ({i}, {j}): {q} {p}");
+            }
+            // What friction takes is heat, but for the tolerance of the solve.
+            assert!(state.row.work >= before.row.work - 1e-9, "{n}: {} {}", before.row.work, state.row.work);
+        }
+        let area: f64 = states[10].traction[0].sum() * (1.7 / 32.0) * (1.7 / 32.0);
+        assert!((states[10].row.force[0] - area).abs() < 1e-12);
+    }
+}

@@ -86,14 +86,19 @@ impl Torus {
 
     /// F p, p of nx ny cells.
     pub fn transform(&mut self, p: &[f64]) -> Spectrum {
-        let mut all = vec![Complex64::ZERO; self.spectrum_len()];
+        let mut all = Spectrum(vec![Complex64::ZERO; self.spectrum_len()]);
+        self.transform_into(p, &mut all);
+        all
+    }
+
+    /// The same, into a spectrum of [`spectrum_len`](Self::spectrum_len) numbers.
+    pub fn transform_into(&mut self, p: &[f64], all: &mut Spectrum) {
         self.plane.rows_forward(p, &mut self.columns);
         let nx = self.columns.len() / self.plane.waves_along_y();
-        all.par_chunks_mut(self.lengths()[0]).zip(self.columns.par_chunks(nx)).for_each_init(
+        all.0.par_chunks_mut(self.lengths()[0]).zip(self.columns.par_chunks(nx)).for_each_init(
             || self.plane.column(),
             |transforms, (waves, column)| transforms.forward_into(column, waves),
         );
-        Spectrum(all)
     }
 
     /// Σ Re S |p^|² over all waves of the torus, over mx my: by Parseval's theorem a sum over its cells.

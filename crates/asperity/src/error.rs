@@ -88,8 +88,8 @@ pub enum Error {
     /// No equilibrium under the prescribed load: the fluid in the gap lifts the surfaces off; the rows so far are complete.
     #[error(
         "no equilibrium at t = {time} s: the fluid carries {} more than the load of {} however wide the gap becomes, and lifts the \
-         surfaces off; lower the pressure of the fluid (a film holds the load while inlet and outlet have less than twice the mean pressure \
-         together), raise the load, let the load come before the pressure (`inlet` over time), or prescribe the approach",
+         surfaces off; lower the pressure of the fluid (a film holds the load while inlet and outlet together have less than twice the mean \
+         pressure, or with coupling = \"uniform\" the inlet less than the mean pressure), raise the load, let the load come before the pressure (`inlet` over time), or prescribe the approach",
         si(*excess, unit),
         si(*load, unit)
     )]
@@ -100,6 +100,22 @@ pub enum Error {
         unit: &'static str,
         /// What the fluid carries beyond it in the widest gap that was tried.
         excess: f64,
+        /// Time \[s\].
+        time: f64,
+    },
+    /// Friction does not hold the prescribed tangential force; the rows so far are complete.
+    #[error(
+        "gross sliding at t = {time} s: the tangential force {} exceeds {}, the largest that friction holds; lower the force, or \
+         prescribe the displacement (tangential.control = \"displacement\")",
+        si(*force, unit), si(*max, unit)
+    )]
+    Sliding {
+        /// Prescribed tangential force \[N\], per length \[N/m\] on a line of cells.
+        force: f64,
+        /// The largest one.
+        max: f64,
+        /// The unit of forces.
+        unit: &'static str,
         /// Time \[s\].
         time: f64,
     },
@@ -188,6 +204,7 @@ impl Error {
             Error::Missed { .. } => "missed-event",
             Error::PulledOff { .. } => "pulled-off",
             Error::LiftedOff { .. } => "fluid-runaway",
+            Error::Sliding { .. } => "gross-sliding",
             Error::Interrupted => "interrupted",
         }
     }

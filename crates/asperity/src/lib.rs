@@ -15,7 +15,7 @@
 //! - [`material`]: models, conversion between creep and relaxation, contact compliance of a pair;
 //! - [`load`], [`time`]: what is prescribed, and when the state is computed;
 //! - [`simulation`], [`drive`]: what is simulated, and the loops that make rows; [`mod@step`]: one step in time;
-//! - [`history`]: what the bodies remember; [`process`]: motion, flattening, energies; [`traction`]: forces on the surfaces;
+//! - [`history`]: what the bodies remember; [`process`]: motion, flattening, energies; [`tangential`]: friction; [`traction`]: forces on the surfaces;
 //! - [`contact`]: the elastic contact inside every step;
 //! - [`quantities`], [`spots`]: further numbers of each row, on request;
 //! - [`finding`]: where the numbers of a run may be off;
@@ -54,6 +54,7 @@ pub mod spots;
 pub mod step;
 pub mod stress;
 pub mod surface;
+pub mod tangential;
 pub mod time;
 pub mod traction;
 pub mod verification;

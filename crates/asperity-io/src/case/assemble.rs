@@ -212,7 +212,10 @@ impl Document {
             for error in conditions.faults() {
                 checks.root().core::<()>(Err(error));
             }
-            self.output.possible(&at("output"), conditions, motion.is_some());
+            // A faulty fluid is reported already.
+            if leakage.is_some() || !self.leakage.as_ref().is_some_and(|leakage| leakage.acts()) {
+                self.output.possible(&at("output"), conditions, motion.is_some());
+            }
         }
         if let (Some(pair), Some(grid)) = (&pair, &grid) {
             pair.resolved(&at("body"), &self.body, grid, boundary);

@@ -48,9 +48,10 @@ impl Leak {
     /// What is wrong, and what to do.
     pub fn changed(&self, given: LeakageKeys, boundary: Boundary) -> Result<Leak, String> {
         let drives = given.pressure_drop.is_some() || given.inlet.is_some() || given.outlet.is_some();
-        if self.coupling.is_some() && (drives || given.of_gas().is_some()) {
-            return Err("the fluid has acted on the surfaces of this result; expected the pressures and the fluid of its case; run the case \
-                        again with the others"
+        let flows = given.direction.is_some() || given.sides.is_some() || given.smallest_gap.is_some();
+        if self.coupling.is_some() && (drives || flows || given.of_gas().is_some()) {
+            return Err("the fluid has acted on the surfaces of this result; expected the pressures, the flow and the fluid of its case; run \
+                        the case again with the others"
                 .into());
         }
         let mut keys = self.keys();

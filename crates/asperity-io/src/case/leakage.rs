@@ -228,8 +228,7 @@ fn pressures(
         (None, Some(_)) => return missing("inlet", beside, TWO_PRESSURES),
         (Some(_), None) => return missing("outlet", beside, TWO_PRESSURES),
     };
-    let acts_everywhere = keys.coupling == Some(CouplingKind::Uniform);
-    if inlet < outlet || inlet == outlet && !acts_everywhere {
+    if inlet < outlet || inlet == outlet && !keys.acts() {
         let message =
             format!("the pressure of the inlet, {inlet} Pa, is not above that of the outlet, {outlet} Pa");
         let help = "exchange them: a flow in the other direction is as large";
@@ -349,7 +348,7 @@ fn kind_of_gas(keys: &LeakageKeys) -> Result<GasKind, Fault> {
         (None, ..) => missing(
             "gas",
             "inlet",
-            "gas = \"air\", \"nitrogen\", \"oxygen\", \"helium\" or \"hydrogen\"; or give both viscosity and molar_mass",
+            "of a liquid give its viscosity; of a gas gas = \"air\", \"nitrogen\", \"oxygen\", \"helium\" or \"hydrogen\"; or give both viscosity and molar_mass",
         ),
     }
 }

@@ -8,7 +8,7 @@ use asperity_sweep::in_pool;
 
 use super::Drive;
 use crate::contact::{ContactState, Outcome, Start};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::load::{Control, History, Loading};
 use crate::operator::{Operator, plan};
 use crate::simulation::Simulation;
@@ -52,6 +52,8 @@ impl Elastic {
     /// [`Error::Invalid`] naming the quantity.
     pub fn new(simulation: Simulation, asked: impl IntoIterator<Item = (Control, f64)>) -> Result<Self> {
         simulation.validate()?;
+        let expected = "none in elastic contacts of no time: friction is incremental";
+        require(simulation.tangential.is_none(), "tangential load", "given", expected)?;
         let operator = plan(simulation.grid, simulation.boundary, simulation.kernel.clone())?;
         Ok(Elastic {
             contact: StepContact::new(&simulation, operator),

@@ -85,8 +85,8 @@ impl Wet {
         });
         let chatter = self.held.warning(FLUID_CHATTER, |worst| {
             format!(
-                "{} cells opened and closed their access to the fluid again and again{}, and were held: no state has their access one way. \
-                 {}A finer grid or pockets = \"kept\" may help.",
+                "{} cells opened and closed their access to the fluid again and again{}, in the \
+                 solver's loop and were held as if they had it. {}A finer grid may help.",
                 digits(worst.value),
                 worst.place(),
                 if self.spread > 0.0 {

@@ -7,6 +7,8 @@
 //! eps (distance/side)^2. From [`FAR`] sides on, the integral is therefore computed by a Gauss rule, whose error falls as
 //! (side/distance)^(2 points).
 
+use std::f64::consts::PI;
+
 use super::gauss::{GAUSS_3, GAUSS_4, GAUSS_6};
 
 /// Distance, in units of the longest side of the cell, from which the Gauss rule is more accurate.
@@ -25,60 +27,80 @@ const FAR: f64 = 6.0;
 /// assert!((k - 4.0 * (1.0 + 2f64.sqrt()).ln() / std::f64::consts::PI).abs() < 1e-15);
 /// ```
 pub fn love(x: f64, y: f64, side: [f64; 2]) -> f64 {
-    let [dx, dy] = side;
-    if libm::hypot(x, y) >= FAR * dx.max(dy) {
-        return nearly_square(x, y, 0.5 * dx, 0.5 * dy);
-    }
-    // At short distances a long cell is divided into nearly square ones, so that both forms keep their digits.
-    let parts = [(dx / dy).round().max(1.0), (dy / dx).round().max(1.0)];
-    let [a, b] = [0.5 * dx / parts[0], 0.5 * dy / parts[1]];
-    let mut k = 0.0;
-    for m in 0..parts[0] as usize {
-        for n in 0..parts[1] as usize {
-            let px = x.abs() - (2.0 * m as f64 + 1.0 - parts[0]) * a;
-            let py = y.abs() - (2.0 * n as f64 + 1.0 - parts[1]) * b;
-            k += nearly_square(px, py, a, b);
+    OverRectangle { antiderivative: f, share: |_, _| 1.0 }.at(x.abs(), y.abs(), side)
+}
+
+/// (1/pi) times the integral over a rectangle of a function that falls off as 1/r.
+pub(crate) struct OverRectangle {
+    /// F with d²F/dx dy = the function, for short distances.
+    pub(crate) antiderivative: fn(f64, f64) -> f64,
+    /// The function times r, for long ones.
+    pub(crate) share: fn(f64, f64) -> f64,
+}
+
+impl OverRectangle {
+    /// At (x, y) from the centre of a rectangle of these sides.
+    pub(crate) fn at(&self, x: f64, y: f64, side: [f64; 2]) -> f64 {
+        let [dx, dy] = side;
+        if libm::hypot(x, y) >= FAR * dx.max(dy) {
+            return self.nearly_square(x, y, 0.5 * dx, 0.5 * dy);
         }
+        // At short distances a long cell is divided into nearly square ones, so that both forms keep their digits.
+        let parts = [(dx / dy).round().max(1.0), (dy / dx).round().max(1.0)];
+        let [a, b] = [0.5 * dx / parts[0], 0.5 * dy / parts[1]];
+        let mut k = 0.0;
+        for m in 0..parts[0] as usize {
+            for n in 0..parts[1] as usize {
+                let px = x - (2.0 * m as f64 + 1.0 - parts[0]) * a;
+                let py = y - (2.0 * n as f64 + 1.0 - parts[1]) * b;
+                k += self.nearly_square(px, py, a, b);
+            }
+        }
+        k
     }
-    k
-}
 
-fn nearly_square(x: f64, y: f64, a: f64, b: f64) -> f64 {
-    let longest = 2.0 * a.max(b);
-    let distance = (x * x + y * y).sqrt() / longest;
-    let integral = if distance < FAR {
-        closed_form(x, y, a, b)
-    } else if distance < 60.0 {
-        gauss(x, y, a, b, &GAUSS_6)
-    } else if distance < 600.0 {
-        gauss(x, y, a, b, &GAUSS_4)
-    } else {
-        gauss(x, y, a, b, &GAUSS_3)
-    };
-    integral / std::f64::consts::PI
-}
+    fn nearly_square(&self, x: f64, y: f64, a: f64, b: f64) -> f64 {
+        let longest = 2.0 * a.max(b);
+        let distance = (x * x + y * y).sqrt() / longest;
+        let integral = if distance < FAR {
+            self.closed_form(x, y, a, b)
+        } else if distance < 60.0 {
+            self.gauss(x, y, a, b, &GAUSS_6)
+        } else if distance < 600.0 {
+            self.gauss(x, y, a, b, &GAUSS_4)
+        } else {
+            self.gauss(x, y, a, b, &GAUSS_3)
+        };
+        integral / PI
+    }
 
-/// f(x+a,y+b) - f(x-a,y+b) - f(x+a,y-b) + f(x-a,y-b).
-fn closed_form(x: f64, y: f64, a: f64, b: f64) -> f64 {
-    f(x + a, y + b) - f(x - a, y + b) - f(x + a, y - b) + f(x - a, y - b)
+    /// F(x+a,y+b) - F(x-a,y+b) - F(x+a,y-b) + F(x-a,y-b).
+    fn closed_form(&self, x: f64, y: f64, a: f64, b: f64) -> f64 {
+        let f = self.antiderivative;
+        f(x + a, y + b) - f(x - a, y + b) - f(x + a, y - b) + f(x - a, y - b)
+    }
+
+    /// Over the rectangle of half-sides a, b by a product Gauss-Legendre rule.
+    fn gauss<const N: usize>(&self, x: f64, y: f64, a: f64, b: f64, rule: &[(f64, f64); N]) -> f64 {
+        let mut sum = 0.0;
+        for (s, ws) in rule {
+            let dx = x - a * s;
+            for (t, wt) in rule {
+                let dy = y - b * t;
+                sum += ws * wt * (self.share)(dx, dy) / (dx * dx + dy * dy).sqrt();
+            }
+        }
+        a * b * sum
+    }
 }
 
 fn f(x: f64, y: f64) -> f64 {
-    let term = |u: f64, v: f64| if u == 0.0 { 0.0 } else { u * libm::asinh(v / u.abs()) };
-    term(x, y) + term(y, x)
+    sheared(x, y) + sheared(y, x)
 }
 
-/// integral of 1/r over the rectangle of half-sides a, b by a product Gauss-Legendre rule.
-fn gauss<const N: usize>(x: f64, y: f64, a: f64, b: f64, rule: &[(f64, f64); N]) -> f64 {
-    let mut sum = 0.0;
-    for (s, ws) in rule {
-        let dx = x - a * s;
-        for (t, wt) in rule {
-            let dy = y - b * t;
-            sum += ws * wt / (dx * dx + dy * dy).sqrt();
-        }
-    }
-    a * b * sum
+/// u asinh(v/|u|): an antiderivative of 1/r is this and the same with u and v exchanged.
+pub(crate) fn sheared(u: f64, v: f64) -> f64 {
+    if u == 0.0 { 0.0 } else { u * libm::asinh(v / u.abs()) }
 }
 
 #[cfg(test)]

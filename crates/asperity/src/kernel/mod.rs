@@ -3,11 +3,13 @@
 //! They are pure functions of the geometry, without grid, material or time.
 
 mod boussinesq;
+mod cerruti;
 pub(crate) mod gauss;
 mod line;
 mod periodic;
 
 pub use boussinesq::love;
+pub(crate) use cerruti::{Cerruti, Tangential};
 pub use line::strip;
 pub(crate) use line::strip_at;
 pub use periodic::wave_kernel;

@@ -3,16 +3,18 @@
 //! A process sees a step twice: before it is solved it may move the undeformed gap to where it is at the end of the step
 //! (`Process::open`, repeatable at any length), and once the row stands it takes it in (`Process::accept`). The quantities and
 //! fields that it adds to a row it declares by answering for them. Members: motion, stiffness, energies, power of
-//! the load, flattening.
+//! the load, friction, flattening.
 
 mod energy;
 mod flattening;
 mod load_power;
 mod motion;
+mod partial_slip;
 mod stiffness;
 
 pub use motion::{Motion, in_contact_frame};
 pub(crate) use motion::{cells, roll};
+pub(crate) use partial_slip::SlipFields;
 
 use std::sync::atomic::AtomicBool;
 
@@ -46,6 +48,11 @@ pub(crate) trait Process: Send {
 
     /// A quantity of the last row, where it is one of this process.
     fn quantity(&self, _quantity: Quantity) -> Option<f64> {
+        None
+    }
+
+    /// The fields of the last row that friction has.
+    fn slip(&self) -> Option<SlipFields<'_>> {
         None
     }
 
@@ -97,11 +104,14 @@ impl Solved<'_> {
 }
 
 /// The processes that a simulation asks for, in the order in which they take in a row.
+///
+/// # Errors
+/// [`Error::Invalid`](crate::Error::Invalid) where one of them cannot be planned.
 pub(crate) fn of(
     simulation: &Simulation,
     operator: &dyn Operator,
     history: &mut dyn History,
-) -> Vec<Box<dyn Process>> {
+) -> Result<Vec<Box<dyn Process>>> {
     fn boxed<P: Process + 'static>(process: Option<P>) -> Option<Box<dyn Process>> {
         process.map(|process| Box::new(process) as Box<dyn Process>)
     }
@@ -110,7 +120,8 @@ pub(crate) fn of(
         boxed(stiffness::Stiffness::of(simulation, operator)),
         boxed(energy::Energy::of(simulation, history)),
         boxed(load_power::LoadPower::of(simulation)),
+        boxed(partial_slip::PartialSlip::of(simulation)?),
         boxed(flattening::Flattening::of(simulation)),
     ];
-    all.into_iter().flatten().collect()
+    Ok(all.into_iter().flatten().collect())
 }

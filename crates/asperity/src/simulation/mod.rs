@@ -18,6 +18,7 @@ use crate::operator;
 use crate::process::Motion;
 use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
 use crate::spots::Spots;
+use crate::tangential::{self, Tangential};
 use crate::time::{Plan, TimeGrid};
 use crate::traction::{TractionLaw, TractionSolver};
 
@@ -91,6 +92,8 @@ pub struct Simulation {
     pub motion: Option<Motion>,
     /// A traction on the surfaces in addition to the contact pressure, as a function of the gap.
     pub traction: Option<Arc<dyn TractionLaw>>,
+    /// Friction and a load along the surfaces; `None` for none.
+    pub tangential: Option<Arc<Tangential>>,
 }
 
 impl Simulation {
@@ -115,6 +118,7 @@ impl Simulation {
             quantities: Quantities::default(),
             motion: None,
             traction: None,
+            tangential: None,
         }
     }
 
@@ -133,6 +137,7 @@ impl Simulation {
         stops.extend(self.traction.iter().flat_map(|law| law.breaks(self.times.end())));
         // A travel that is too long is refused by `validate`.
         stops.extend(self.motion.iter().flat_map(|motion| motion.stops(self).unwrap_or_default()));
+        stops.extend(self.tangential.iter().flat_map(|tangential| tangential.breaks(self.times.end())));
         stops
     }
 
@@ -183,6 +188,7 @@ impl Simulation {
             + self.traction.as_ref().map_or(0, |law| TractionSolver::bytes(&**law, grid))
             + has(self.quantities.has(Quantity::ContactStiffness), ContactStiffness::bytes(grid, self.boundary))
             + has(self.quantities.list.iter().any(|q| q.connects()), Spots::bytes(grid))
+            + has(self.tangential.is_some(), tangential::bytes(grid, self.boundary) + 2 * history::bytes(self))
     }
 
     /// Whether more than one row may be in contact.

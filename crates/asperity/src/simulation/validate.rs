@@ -47,6 +47,7 @@ impl Simulation {
             self.validate_scheme(),
             self.validate_layers(),
             self.validate_traction(),
+            self.tangential.as_ref().map_or(Ok(()), |tangential| tangential.validate(self)),
             self.validate_jumps(&instants),
         ];
         let stages = 0..self.loading.stages.len();
@@ -95,6 +96,9 @@ impl Simulation {
         } else if self.scheme == Scheme::Direct && is_energy {
             "one that is no energy. Energies need the springs and dashpots of the material, which scheme = \"direct\" does not \
              use; set time.scheme to \"linear\" or \"constant\""
+        } else if self.tangential.is_some() && is_energy {
+            "one that is no energy: the account of the bodies leaves out what tangential tractions do. Take the work of friction \
+             (SlipRow::work)"
         } else if self.layers.is_some() && (is_energy || quantity == Quantity::ContactStiffness) {
             "one that is solved for layers that creep differently. Leave it out, or give all layers and bodies the same relative \
              creep"

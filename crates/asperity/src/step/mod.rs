@@ -75,7 +75,7 @@ impl Stepper {
         let operator = plan(simulation.grid, simulation.boundary, simulation.kernel.clone())?;
         let mut history = history::of(&simulation)?;
         Ok(Stepper {
-            processes: process::of(&simulation, &*operator, &mut *history),
+            processes: process::of(&simulation, &*operator, &mut *history)?,
             state: StepState::new(&simulation, history.remembers()),
             history,
             contact: StepContact::new(&simulation, operator),

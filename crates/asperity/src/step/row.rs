@@ -8,10 +8,11 @@ use crate::contact::{ContactState, Hardness, Outcome};
 use crate::drive::Coordinate;
 use crate::history::History;
 use crate::load::Control;
-use crate::process::{Process, cells};
+use crate::process::{Process, SlipFields, cells};
 use crate::quantities::{Column, Quantity, contact_edges};
 use crate::simulation::Simulation;
 use crate::sliding::Friction;
+use crate::tangential::SlipRow;
 use crate::time::Instant;
 use crate::traction::TractionSolver;
 use asperity_sweep::{Max, kernel, run};
@@ -235,11 +236,33 @@ impl<'a> Step<'a> {
         cells.for_each(|(g, u)| *g += self.compliance * u - datum);
     }
 
-    /// 0 out of contact, 1 in contact, 2 at the hardness.
+    /// 0 out of contact, 1 in contact, 2 at the hardness; 3 where it slips under a tangential load, at the hardness or not.
     pub fn contact_into(&self, contact: &mut Array2<u8>) {
         let state = |p: f64, hardness: f64| u8::from(p > 0.0) + u8::from(p >= hardness);
         let cells = contact.iter_mut().zip(self.contact_cells()).enumerate();
         cells.for_each(|(n, (c, p))| *c = state(*p, self.hardness.at(n)));
+        if let Some(SlipFields { slips, .. }) = self.slip_fields() {
+            contact.iter_mut().zip(slips).filter(|(_, slips)| **slips).for_each(|(c, _)| *c = 3);
+        }
+    }
+
+    /// What friction does in this row; `None` without a tangential load.
+    pub fn slip_row(&self) -> Option<SlipRow> {
+        Some(self.slip_fields()?.numbers)
+    }
+
+    fn slip_fields(&self) -> Option<SlipFields<'a>> {
+        self.processes.iter().find_map(|process| process.slip())
+    }
+
+    /// Tangential traction along an axis, 0 for x and 1 for y \[Pa\]; 0 everywhere without friction.
+    pub fn tangential_traction_into(&self, axis: usize, traction: &mut Array2<f64>) {
+        component_into(self.slip_fields().map(|fields| fields.traction), axis, traction);
+    }
+
+    /// Slip along an axis since t = 0, of each cell while it was in contact \[m\]; 0 everywhere without friction.
+    pub fn slip_into(&self, axis: usize, slip: &mut Array2<f64>) {
+        component_into(self.slip_fields().map(|fields| fields.slip), axis, slip);
     }
 
     /// The numbers of the row.
@@ -375,6 +398,12 @@ kernel! {
         }
         (sums.map(V::sum), Max(peak.largest()))
     }
+}
+
+/// A component of a field of vectors; 0 without one.
+fn component_into(field: Option<&[[f64; 2]]>, axis: usize, to: &mut Array2<f64>) {
+    to.fill(0.0);
+    to.iter_mut().zip(field.unwrap_or_default()).for_each(|(to, v)| *to = v[axis]);
 }
 
 /// The cells as a field.

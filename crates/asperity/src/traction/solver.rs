@@ -284,6 +284,7 @@ impl Run<'_> {
             self.total = self.total.then(pass.outcome);
             self.total.convolutions += 1;
             self.total.residual = pass.residual.max(pass.outcome.residual);
+            if std::env::var("DBG").is_ok() { eprintln!("pass {} res {:.3e} best {best:.2e} b {:.6e} q {:.6e} conv {} presc {:?} held {:?}", self.own.passes, pass.residual, sum(&self.own.now.bound), sum(&self.own.now.contact.pressure), pass.outcome.convolutions, problem.prescribed, self.own.law.quantity(Quantity::LatchedCells)); }
             if pass.residual <= self.tolerance {
                 return Ok(());
             }

@@ -24,6 +24,7 @@ mod operator;
 mod quantities;
 mod sliding;
 mod stages;
+mod tangential;
 mod temperature;
 mod thin_sample;
 mod time_error;

@@ -15,6 +15,8 @@ pub(super) struct Latch {
     changes: Vec<u8>,
     /// b with access to the fluid of a reservoir \[Pa\].
     with_access: Vec<f64>,
+    /// Held against what they are: in this pass so far, and in the last one.
+    counting: usize,
     held: usize,
 }
 
@@ -25,6 +27,7 @@ impl Latch {
             had_access: vec![false; cells],
             changes: vec![0; cells],
             with_access: vec![0.0; cells],
+            counting: 0,
             held: 0,
         }
     }
@@ -32,32 +35,32 @@ impl Latch {
     pub(super) fn clear(&mut self) {
         self.passes = 0;
         self.changes.fill(0);
-        self.held = 0;
+        (self.counting, self.held) = (0, 0);
     }
 
-    /// b of a cell in this pass \[Pa\]: what it is, or what it was with access, if the cell is held.
-    pub(super) fn hold(&mut self, cell: usize, has_access: bool, b: f64) -> f64 {
+    /// b of a cell in this pass \[Pa\]: what it is, or what it was with access, if the cell is held. Where both are the same but for
+    /// `small`, holding it changes nothing.
+    pub(super) fn hold(&mut self, cell: usize, has_access: bool, b: f64, small: f64) -> f64 {
         let changes = &mut self.changes[cell];
-        if self.passes == 0 {
-            self.held = 0;
-        } else if has_access != self.had_access[cell] {
+        if self.passes > 0 && has_access != self.had_access[cell] {
             *changes = changes.saturating_add(1);
         }
         self.had_access[cell] = has_access;
         if has_access {
             self.with_access[cell] = b;
         }
-        match self.passes >= FIRST && *changes >= CHANGES {
-            true => self.with_access[cell],
-            false => b,
+        if !(self.passes >= FIRST && *changes >= CHANGES) {
+            return b;
         }
+        let held = self.with_access[cell];
+        self.counting += usize::from((held - b).abs() > small);
+        held
     }
 
     /// A pass is done.
     pub(super) fn pass(&mut self) {
         self.passes += 1;
-        let is_held = |changes: &&u8| **changes >= CHANGES;
-        self.held = if self.passes > FIRST { self.changes.iter().filter(is_held).count() } else { 0 };
+        self.held = std::mem::take(&mut self.counting);
     }
 
     /// Whether cells may be held in this pass.
@@ -65,7 +68,7 @@ impl Latch {
         self.passes >= FIRST
     }
 
-    /// Cells held in the last pass.
+    /// Cells that were held in the last pass against what they are.
     pub(super) fn held(&self) -> usize {
         self.held
     }

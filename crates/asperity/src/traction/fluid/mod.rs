@@ -178,6 +178,8 @@ struct InGap {
     /// Absolute pressure of each cell of the last pass \[Pa\], NaN in contact; and whether the fluid of a reservoir reaches it.
     pressure: Vec<f64>,
     reached: Vec<bool>,
+    /// The pressure that acts on each open cell, with those that are held \[Pa\]; NaN in contact.
+    acting: Vec<f64>,
     /// That of the flow through contacts, where fluid passes through them.
     inside: Option<Array2<f64>>,
     /// The least and the largest b that may be.
@@ -203,6 +205,7 @@ impl InGap {
             inlet: law.inlet.after(0.0),
             pressure: vec![f64::NAN; cells],
             reached: vec![false; cells],
+            acting: vec![f64::NAN; cells],
             inside: None,
             limits: [0.0; 2],
             percolates: false,
@@ -329,12 +332,15 @@ impl SurfaceTraction for InGap {
             return Ok(());
         }
         self.find_pressures(gap, contact)?;
+        let small = TOLERANCES[0] * 1e-6 * self.inlet.max(self.law.outlet);
         for (cell, b) in out.iter_mut().enumerate() {
             let (p, reached) = match self.pressure[cell] {
                 p if p.is_nan() => self.at_edge(cell).unwrap_or((reference, false)),
                 p => (p, self.reached[cell]),
             };
-            *b = self.latch.hold(cell, reached, p - reference);
+            *b = self.latch.hold(cell, reached, p - reference, small);
+            // What acts on open cells is what they remember.
+            self.acting[cell] = if contact[cell] > 0.0 { f64::NAN } else { *b + reference };
         }
         self.latch.pass();
         self.limits = out.iter().fold([0.0_f64; 2], |[least, most], b| [least.min(*b), most.max(*b)]);
@@ -368,7 +374,7 @@ impl SurfaceTraction for InGap {
     }
 
     fn commit(&mut self) {
-        self.contents.commit(&self.pressure);
+        self.contents.commit(&self.acting);
     }
 
     fn memory(&self) -> Vec<&[f64]> {

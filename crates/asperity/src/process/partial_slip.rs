@@ -1,0 +1,270 @@
+//! Friction under tangential loads: where the surfaces stick and where they slip, after each normal step.
+//!
+//! Friction is incremental. With the pressure p of the row known, the tractions |q| <= μ p of the row, and the slip of the step
+//!
+//! ```text
+//! r = c K q + g - u_n - (d - d_n),      r = 0 where |q| < μ p,      r opposite to q where |q| = μ p
+//! ```
+//!
+//! are those of a convex problem ([`SlipSolver`]). The bodies remember the tangential displacement u as they do the normal one, by a
+//! [`History`] for each component: Poisson's ratio is constant, so C(t) is the same. Friction takes the end of a step for all of it:
+//! exact as long as the slip of a cell keeps its direction and its limit, of first order in the step otherwise. A cell out of contact has
+//! no traction, and comes back free of stress.
+
+use std::sync::Arc;
+
+use asperity_sweep::{each, is_zero, sums, zeros};
+
+use super::{Process, Solved};
+use crate::contact::{ContactState, Hardness, SAME_LOAD};
+use crate::error::{Error, Result};
+use crate::history::{self, Ends, History};
+use crate::kernel::Cerruti;
+use crate::simulation::Simulation;
+use crate::step::{Interval, Load, Loader, Saver, UndeformedGap};
+use crate::tangential::{
+    EDGE, Given, Slip, SlipProblem, SlipRow, SlipSolver, Tangential, TangentialControl, Vector, inner,
+    length, minus, plus, times,
+};
+
+/// Residuals are measured by this share of the displacement under full sliding, at least.
+const SMALLEST_SCALE: f64 = 1e-6;
+
+pub(super) struct PartialSlip {
+    law: Arc<Tangential>,
+    /// The component of the force that acts alone, and it in the last row \[N\].
+    alone: Option<usize>,
+    load: f64,
+    solver: SlipSolver,
+    /// Of both components.
+    memories: [Box<dyn History>; 2],
+    before: [ContactState; 2],
+    now: [ContactState; 2],
+    /// q and K q of the row, and d - d_n of its step.
+    slip: Slip,
+    /// u of the row.
+    displacement: Vec<Vector>,
+    /// Slip of each cell since t = 0, while in contact.
+    slid: Vec<Vector>,
+    /// State of each cell.
+    slips: Vec<bool>,
+    radius: Vec<f64>,
+    offset: Vec<Vector>,
+    rest: Vec<f64>,
+    recalled: Vec<f64>,
+    numbers: SlipRow,
+}
+
+impl PartialSlip {
+    /// `None` without tangential load.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the material has no history.
+    pub(super) fn of(simulation: &Simulation) -> Result<Option<Self>> {
+        let Some(law) = &simulation.tangential else { return Ok(None) };
+        let (grid, n) = (&simulation.grid, simulation.grid.len());
+        let states = || [0; 2].map(|_| ContactState::new(n));
+        Ok(Some(PartialSlip {
+            law: law.clone(),
+            alone: law.alone(simulation.times.end()),
+            load: 0.0,
+            solver: SlipSolver::new(grid, simulation.boundary, Cerruti { poisson: law.poisson }),
+            memories: [history::of(simulation)?, history::of(simulation)?],
+            before: states(),
+            now: states(),
+            slip: Slip { traction: zeros(n), unit: zeros(n), displacement: [0.0; 2] },
+            displacement: zeros(n),
+            slid: zeros(n),
+            slips: vec![false; n],
+            radius: zeros(n),
+            offset: zeros(n),
+            rest: zeros(n),
+            recalled: zeros(n),
+            numbers: SlipRow::default(),
+        }))
+    }
+
+    /// Sets the limits of the tractions; returns their sum, and the displacement under all of them, weighted by them.
+    fn limit(&mut self, row: &Solved<'_>) -> [f64; 2] {
+        let law = &self.law;
+        let cells = (row.contact, 0..row.contact.len());
+        each(&mut self.radius, cells, |radius, (p, n)| *radius = law.limit(n, p));
+        let cells = (&self.radius[..], &row.now.unit_displacement[..]);
+        let c = row.compliance;
+        let [most, moved] = sums(cells, |(radius, u)| [radius, radius * c * u]);
+        [most, if most > 0.0 { moved / most } else { 0.0 }]
+    }
+
+    /// The step, with what is known of the traction: where one component of the force acts alone, u runs in the integral of C dQ.
+    fn step(&self, step: &Interval, most: f64) -> (Interval, [f64; 2]) {
+        let alone = self.alone.map(|axis| self.law.at(step.instant.time)[axis]);
+        let load = if most == 0.0 && self.now.iter().all(|state| is_zero(&state.pressure)) {
+            Load::Apart
+        } else {
+            alone.map_or(Load::Approach, Load::Total)
+        };
+        (step.under(load), alone.map_or([0.0; 2], |force| [self.load, force]))
+    }
+
+    /// What is given of the step.
+    ///
+    /// # Errors
+    /// [`Error::Sliding`] where friction does not hold the force.
+    fn given(&self, row: &Solved<'_>, most: f64) -> Result<Given> {
+        let time = row.step.instant.time;
+        let value = self.law.at(time);
+        let grid = &row.simulation.grid;
+        let area = grid.cell_area();
+        match self.law.control {
+            TangentialControl::Displacement => {
+                Ok(Given::Displacement(minus(value, self.numbers.displacement)))
+            }
+            TangentialControl::Force if length(value) > most * area * (1.0 + SAME_LOAD) => {
+                let (force, max, unit) = (length(value), most * area, grid.units("N"));
+                Err(Error::Sliding { force, max, unit, time })
+            }
+            TangentialControl::Force => Ok(Given::Sum(times(1.0 / area, value))),
+        }
+    }
+
+    /// Where the cells are after the step: displacement, slip, work.
+    fn take_in(&mut self, row: &Solved<'_>, compliance: f64) {
+        let (d, area) = (self.slip.displacement, row.simulation.grid.cell_area());
+        let (q, unit) = (&self.slip.traction[..], &self.slip.unit[..]);
+        let moved = |u: Vector, b: Vector| plus(times(compliance, u), b);
+        each(&mut self.displacement, (unit, &self.offset[..]), |to, (u, b)| *to = plus(*to, moved(u, b)));
+        each(&mut self.slid, (row.contact, unit, &self.offset[..]), |slid, (p, u, b)| {
+            *slid = if p > 0.0 { plus(*slid, minus(moved(u, b), d)) } else { *slid };
+        });
+        each(&mut self.slips, (row.contact, q, &self.radius[..]), |slips, (p, q, radius)| {
+            *slips = p > 0.0 && length(q) >= radius * (1.0 - EDGE);
+        });
+        let cells = (row.contact, q, unit, &self.offset[..], &self.slips[..]);
+        let [x, y, work, stick, slip] = sums(cells, |(p, q, u, b, slips)| {
+            let touches = p > 0.0;
+            let work = if slips { -inner(q, minus(moved(u, b), d)) } else { 0.0 };
+            let count = |is: bool| f64::from(u8::from(is));
+            [q[0], q[1], work, count(touches && !slips), count(slips)]
+        });
+        let force = times(area, [x, y]);
+        let (change, way) = (minus(force, self.numbers.force), length(d));
+        self.numbers = SlipRow {
+            force,
+            displacement: plus(self.numbers.displacement, d),
+            stick_area: stick * area,
+            slip_area: slip * area,
+            work: self.numbers.work + work * area,
+            stiffness: if way > 0.0 { inner(change, d) / (way * way) } else { f64::NAN },
+            outcome: self.numbers.outcome,
+        };
+    }
+}
+
+impl Process for PartialSlip {
+    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        let [most, scale] = self.limit(row);
+        let (step, loads) = self.step(row.step, most);
+        let given = self.given(row, most)?;
+        let mut compliance = 0.0;
+        for axis in 0..2 {
+            let last = &self.now[axis];
+            let law = self.memories[axis].open(&step, last, &self.rest, &mut self.recalled)?;
+            compliance = law.compliance;
+            let cells = (&self.recalled[..], &self.displacement[..]);
+            each(&mut self.offset, cells, |b, (g, u)| b[axis] = g - u[axis]);
+        }
+        let (offset, radius, scale) = (&self.offset[..], &self.radius[..], SMALLEST_SCALE * scale);
+        let problem = SlipProblem { compliance, offset, radius, given, scale };
+        let options = &row.simulation.solver;
+        let limits = (options.tolerance, options.max_iterations);
+        let outcome =
+            self.solver.solve(&problem, &mut self.slip, limits, row.interrupt).map_err(|error| {
+                let time = row.step.instant.time;
+                match error {
+                    Error::NotConverged(report) => crate::NotConverged { time: Some(time), ..report }.into(),
+                    other => other,
+                }
+            })?;
+        self.load = loads[1];
+        row.convolutions += outcome.convolutions;
+        self.numbers.outcome = outcome;
+        self.take_in(row, compliance);
+        std::mem::swap(&mut self.before, &mut self.now);
+        for axis in 0..2 {
+            let now = &mut self.now[axis];
+            each(&mut now.pressure, &self.slip.traction[..], |to, q| *to = q[axis]);
+            each(&mut now.unit_displacement, &self.slip.unit[..], |to, u| *to = u[axis]);
+            let ends = [&self.before[axis], &self.now[axis]];
+            self.memories[axis].close(&Ends {
+                before: ends[0],
+                now: ends[1],
+                pressures: ends.map(|state| &state.pressure[..]),
+                loads,
+                gap: &self.recalled,
+                rigid: &self.rest,
+                rigid_before: &self.rest,
+                hardness: Hardness::Uniform(f64::INFINITY),
+            })?;
+        }
+        Ok(())
+    }
+
+    fn slip(&self) -> Option<SlipFields<'_>> {
+        Some(SlipFields {
+            traction: &self.slip.traction,
+            slip: &self.slid,
+            slips: &self.slips,
+            numbers: self.numbers,
+        })
+    }
+
+    fn name(&self) -> &'static str {
+        "partial_slip"
+    }
+
+    fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
+        let SlipRow { force, displacement, work, .. } = &self.numbers;
+        to.values("numbers", &[&force[0], &force[1], &displacement[0], &displacement[1], work, &self.load]);
+        for (axis, name) in ["x", "y"].into_iter().enumerate() {
+            let component = |field: &[Vector]| field.iter().map(|v| v[axis]).collect();
+            to.within(name, |to| {
+                to.field("traction", &self.now[axis].pressure);
+                to.field("unit_displacement", &self.now[axis].unit_displacement);
+                to.owned_field("displacement", component(&self.displacement));
+                to.owned_field("slip", component(&self.slid));
+                to.within("history", |to| self.memories[axis].save(to));
+            });
+        }
+    }
+
+    fn load(&mut self, from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
+        let SlipRow { force: [fx, fy], displacement: [dx, dy], work, .. } = &mut self.numbers;
+        from.values_into("numbers", &mut [fx, fy, dx, dy, work, &mut self.load])?;
+        for (axis, name) in ["x", "y"].into_iter().enumerate() {
+            let set = |field: &mut [Vector], from: &[f64]| each(field, from, |v, part| v[axis] = part);
+            from.within(name, |from| {
+                let now = &mut self.now[axis];
+                from.field_into("traction", &mut now.pressure)?;
+                from.field_into("unit_displacement", &mut now.unit_displacement)?;
+                set(&mut self.slip.traction, &now.pressure);
+                set(&mut self.slip.unit, &now.unit_displacement);
+                set(&mut self.displacement, &from.field("displacement")?);
+                set(&mut self.slid, &from.field("slip")?);
+                from.within("history", |from| self.memories[axis].load(from))
+            })?;
+        }
+        Ok(())
+    }
+}
+
+/// What a row tells of friction.
+#[derive(Clone, Copy)]
+pub(crate) struct SlipFields<'a> {
+    /// q \[Pa\].
+    pub(crate) traction: &'a [Vector],
+    /// Slip since t = 0 \[m\].
+    pub(crate) slip: &'a [Vector],
+    /// Whether a cell in contact slips.
+    pub(crate) slips: &'a [bool],
+    pub(crate) numbers: SlipRow,
+}

@@ -1,0 +1,205 @@
+//! Tangential loads: friction and partial slip.
+//!
+//! Two bodies that press on each other are also loaded along their surfaces. Where the tangential traction is less than the limit of
+//! friction, |q| < μ p, they stick; where it meets the limit they slip. Under a force less than μ W a part of the contact slips, most of
+//! the time a ring at its edge (Cattaneo 1938; Mindlin 1949).
+//!
+//! ```text
+//! u = C * K q        tangential displacement, both components        (kernel::cerruti)
+//! |q| <= min(μ p, τ) in each cell; the slip of a step is opposite to q where equality holds
+//! ```
+//!
+//! The pressure is that of the normal problem, on which tangential tractions act back where the bodies differ: the pressure is exact for
+//! bodies of like materials, for two incompressible ones, and for an incompressible one on a rigid one; otherwise it is off by the
+//! order of Dundurs' β ([`Tangential::coupling`]), which is neglected. Poisson's ratio does not change in time.
+
+mod discs;
+mod freedom;
+mod operator;
+mod pair;
+mod row;
+mod solver;
+#[cfg(test)]
+mod tests;
+mod vector;
+
+pub use pair::PairRatio;
+pub use row::{SlipOutcome, SlipRow};
+
+pub(crate) use freedom::EDGE;
+pub(crate) use solver::{Given, Slip, SlipProblem, SlipSolver};
+pub(crate) use vector::{Vector, inner, length, minus, plus, times};
+
+use ndarray::Array2;
+
+use crate::error::{Error, Result, require};
+use crate::grid::{Boundary, Grid};
+use crate::load::History;
+use crate::simulation::Simulation;
+
+/// Bytes that a step with friction takes, without what the bodies remember.
+pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
+    // Ten fields of vectors and the freedom of cells in the solver; eleven fields of vectors and four numbers in the process.
+    8 * grid.len() * (2 * 21 + 4 + 4)
+        + operator::VectorConvolution::bytes(operator::lengths(grid, boundary))
+        + operator::VectorConvolution::bytes(grid.cells())
+}
+
+/// What is prescribed along the surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub enum TangentialControl {
+    /// The force, in N.
+    Force,
+    /// The displacement of the bodies against each other, in m.
+    Displacement,
+}
+
+/// Friction, and a tangential load over time.
+///
+/// ```
+/// use std::sync::Arc;
+/// use asperity::{drive::March, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
+/// use asperity::tangential::{Tangential, TangentialControl};
+/// // A sphere under 1 N, pulled along x with 0.6 of the force that makes it slide.
+/// let grid = Grid::new([64, 64], [0.6e-3, 0.6e-3])?;
+/// let sphere = Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] };
+/// let (pull, none) = (History::Ramp { value: 0.18, duration: 1.0 }, History::Step { value: 0.0 });
+/// let mut march = March::new(Simulation {
+///     creep: Creep::elastic(1e-9),
+///     loading: Loading { control: Control::Load, history: History::Step { value: 1.0 } }.into(),
+///     tangential: Some(Arc::new(Tangential {
+///         coefficient: 0.3, coefficients: None, shear_limit: f64::INFINITY, poisson: 0.3, coupling: 0.0,
+///         control: TangentialControl::Force, histories: [pull, none],
+///     })),
+///     ..Simulation::new(grid, undeformed_gap(&grid, &[sphere])?)
+/// })?;
+/// march.advance()?;
+/// let row = march.advance()?.and_then(|step| step.slip_row()).unwrap();
+/// // Cattaneo and Mindlin: a circle of (1 - 0.6)^(2/3) of the area sticks.
+/// let share = row.stick_area / (row.stick_area + row.slip_area);
+/// assert!((share / 0.4f64.powf(2.0 / 3.0) - 1.0).abs() < 0.05);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tangential {
+    /// Friction coefficient μ.
+    pub coefficient: f64,
+    /// The same of each cell, where it differs, shape (nx, ny).
+    pub coefficients: Option<Array2<f64>>,
+    /// Largest traction \[Pa\]; infinite for none.
+    pub shear_limit: f64,
+    /// Poisson's ratio of the pair: the mean of both bodies, weighted by their shear compliances.
+    pub poisson: f64,
+    /// Dundurs' β: how much pressure and tangential traction act on each other, which is neglected.
+    pub coupling: f64,
+    /// What is prescribed.
+    pub control: TangentialControl,
+    /// Its components along x and y over the time of the run.
+    pub histories: [History; 2],
+}
+
+impl Tangential {
+    /// The limit of the traction in a cell under a pressure.
+    pub(crate) fn limit(&self, cell: usize, pressure: f64) -> f64 {
+        let of_cells = self.coefficients.as_ref().and_then(|map| map.as_slice());
+        let coefficient = of_cells.map_or(self.coefficient, |map| map[cell]);
+        (coefficient * pressure.max(0.0)).min(self.shear_limit)
+    }
+
+    /// What is prescribed at a time.
+    pub(crate) fn at(&self, time: f64) -> [f64; 2] {
+        [0, 1].map(|axis| self.histories[axis].after(time))
+    }
+
+    /// The axis along which the force acts, where it has one component only until `end`.
+    pub(crate) fn alone(&self, end: f64) -> Option<usize> {
+        let is_zero = |axis: usize| self.histories[axis].range(end) == [0.0; 2];
+        (self.control == TangentialControl::Force)
+            .then(|| [0, 1].into_iter().find(|axis| is_zero(1 - axis)))
+            .flatten()
+    }
+
+    /// The times at which what is prescribed bends or turns.
+    pub(crate) fn breaks(&self, end: f64) -> Vec<f64> {
+        let of_one = |history: &History| [history.breaks(end), history.extremes(end)].concat();
+        self.histories.iter().flat_map(of_one).collect()
+    }
+
+    /// Checks what can be known before the run.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with the key of the case.
+    pub(crate) fn validate(&self, simulation: &Simulation) -> Result<()> {
+        self.validate_numbers(simulation)?;
+        self.validate_histories(simulation)?;
+        let excludes = |holds: bool, what: &str, expected: &str| {
+            require(holds, what, "given", expected).map_err(|error| error.of("tangential"))
+        };
+        let is_half_space = simulation.layers.is_none() && simulation.kernel.is_half_space();
+        excludes(
+            is_half_space,
+            "layer under a tangential load",
+            "none: only half-spaces are solved with friction",
+        )?;
+        excludes(
+            simulation.motion.is_none(),
+            "motion beside a tangential load",
+            "none: slip follows from [tangential]",
+        )?;
+        excludes(
+            simulation.traction.is_none(),
+            "adhesion under a tangential load",
+            "none: both are not solved together",
+        )?;
+        let is_free_line = simulation.grid.is_line() && simulation.boundary == Boundary::Free;
+        let expected = "periodic: on a free line the displacement is only known up to a constant";
+        require(!is_free_line, "boundary of a line contact under a tangential load", "free", expected)
+            .map_err(|error| error.of("domain.boundary"))?;
+        let expected = "steps of a given length: the error of slip is not estimated, so steps cannot be chosen by it. Take uniform steps";
+        require(!simulation.is_adaptive(), "time steps under a tangential load", "adaptive", expected)
+            .map_err(|error| error.of("time"))
+    }
+
+    fn validate_numbers(&self, simulation: &Simulation) -> Result<()> {
+        let coefficient = |what: String, value: f64| {
+            require(value >= 0.0 && value.is_finite(), what, value, "finite and not negative")
+                .map_err(|error| error.of("friction.coefficient"))
+        };
+        coefficient("friction coefficient".into(), self.coefficient)?;
+        if let Some(map) = &self.coefficients {
+            let expected = format!("{:?}, one for each cell", simulation.grid.shape());
+            require(
+                map.dim() == simulation.grid.shape(),
+                "shape of the friction coefficients",
+                format!("{:?}", map.dim()),
+                expected,
+            )
+            .map_err(|error| error.of("friction.coefficient"))?;
+            map.indexed_iter().try_for_each(|((i, j), value)| {
+                coefficient(format!("friction coefficient of cell ({i}, {j})"), *value)
+            })?;
+        }
+        require(self.shear_limit > 0.0, "shear limit", format!("{} Pa", self.shear_limit), "greater than 0")
+            .map_err(|error| error.of("friction.shear_limit"))?;
+        let sound = self.poisson > -1.0 && self.poisson <= 0.5;
+        require(sound, "Poisson's ratio of the pair", self.poisson, "greater than -1 and at most 0.5")
+    }
+
+    fn validate_histories(&self, simulation: &Simulation) -> Result<()> {
+        let end = simulation.times.end();
+        for (history, axis) in self.histories.iter().zip(["x", "y"]) {
+            let checked = history.validate().and_then(|()| {
+                let jump = history.breaks(end).into_iter().find(|t| history.before(*t) != history.after(*t));
+                jump.map_or(Ok(()), |t| {
+                    let value = format!("{} to {} at t = {t} s", history.before(t), history.after(t));
+                    let expected = "a ramp: after t = 0 a tangential load does not jump";
+                    Err(Error::invalid("jump of the tangential load", value, expected))
+                })
+            });
+            checked.map_err(|error| error.of(&format!("tangential.{axis}")))?;
+        }
+        Ok(())
+    }
+}

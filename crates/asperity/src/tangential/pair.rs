@@ -1,0 +1,72 @@
+//! The pair of bodies under tangential tractions.
+
+use crate::error::{Error, Result};
+use crate::material::Body;
+
+/// Poisson's ratio of a pair, and how much pressure and tangential traction act on each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairRatio {
+    /// The mean of both bodies, weighted by their shear compliances 1/G.
+    pub poisson: f64,
+    /// Dundurs' β = \[(1 - 2 ν1)/G1 - (1 - 2 ν2)/G2\] / \[2 (1 - ν1)/G1 + 2 (1 - ν2)/G2\], at t = 0+.
+    pub coupling: f64,
+}
+
+impl PairRatio {
+    /// Of one body on a rigid one, or of two.
+    ///
+    /// ```
+    /// use asperity::material::{Body, Lateral, Material, Modulus};
+    /// use asperity::tangential::PairRatio;
+    /// let body = |young, ratio| Body {
+    ///     name: "body".into(), hardness: None,
+    ///     material: Material::elastic(Modulus::Young, young).unwrap(), lateral: Lateral::Poisson(ratio),
+    /// };
+    /// // Equal bodies do not act on each other; a rubber and a rigid body hardly do.
+    /// let alike = PairRatio::of(&[body(1e9, 0.3), body(1e9, 0.3)])?;
+    /// assert!((alike.poisson - 0.3).abs() < 1e-15 && alike.coupling == 0.0);
+    /// let stiff = PairRatio::of(&[body(1e9, 0.25)])?;
+    /// assert!((stiff.coupling - 1.0 / 3.0).abs() < 1e-15);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where Poisson's ratio of a body or of the pair changes in time.
+    pub fn of(bodies: &[Body]) -> Result<PairRatio> {
+        let [mut shear, mut weighted, mut coupling, mut contact] = [0.0; 4];
+        let mut ratios = vec![];
+        for (body, sign) in bodies.iter().zip([1.0, -1.0]) {
+            let Some(nu) = body.poisson() else {
+                let expected = "constant in time under a tangential load: the response along the surface would change its form. Give \
+                                poisson in place of bulk_modulus";
+                return Err(Error::invalid(
+                    format!("Poisson's ratio of {}", body.name),
+                    "changing in time",
+                    expected,
+                ));
+            };
+            let own = body.contact_creep()?;
+            // 1/G = 2 C/(1 - ν)
+            let compliance = 2.0 * own.instantaneous / (1.0 - nu);
+            shear += compliance;
+            weighted += nu * compliance;
+            coupling += sign * (1.0 - 2.0 * nu) * compliance;
+            contact += 2.0 * (1.0 - nu) * compliance;
+            ratios.push((nu, own.terms.is_empty() && own.fluidity == 0.0));
+        }
+        let are_alike = ratios.windows(2).all(|pair| (pair[0].0 - pair[1].0).abs() <= 1e-12);
+        let are_elastic = ratios.iter().all(|(_, elastic)| *elastic);
+        if !are_alike && !are_elastic {
+            let values = ratios.iter().map(|(nu, _)| nu.to_string()).collect::<Vec<_>>().join(" and ");
+            let expected = "the same of both bodies under a tangential load, where one of them is viscoelastic: that of the pair would \
+                            change in time";
+            return Err(Error::invalid("Poisson's ratio of the bodies", values, expected));
+        }
+        let poisson = match ratios.first() {
+            Some((nu, _)) if are_alike => *nu,
+            _ => weighted / shear,
+        };
+        let coupling = if contact > 0.0 { coupling / contact } else { 0.0 };
+        Ok(PairRatio { poisson, coupling })
+    }
+}

@@ -1,0 +1,33 @@
+//! The numbers of a row with friction.
+
+/// What friction does in a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SlipRow {
+    /// Tangential force along x and y \[N\].
+    pub force: [f64; 2],
+    /// Displacement of the bodies against each other along x and y since t = 0 \[m\].
+    pub displacement: [f64; 2],
+    /// Area of the cells in contact that stick \[m^2\].
+    pub stick_area: f64,
+    /// Area of the cells in contact whose traction is at the limit of friction \[m^2\].
+    pub slip_area: f64,
+    /// Work of friction since t = 0 \[J\]: heat in the surfaces. Of elastic bodies it grows over a closed loop by the area of the loop.
+    pub work: f64,
+    /// Change of the force in the step over that of the displacement, along the displacement \[N/m\]; NaN where nothing moves.
+    pub stiffness: f64,
+    /// How the tractions were solved.
+    pub outcome: SlipOutcome,
+}
+
+/// How well the tractions of a step are solved, and the work of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SlipOutcome {
+    /// Iterations of the solver.
+    pub iterations: usize,
+    /// Applications of K.
+    pub convolutions: usize,
+    /// Largest violation of the conditions over the displacement under the tractions, weighted by them.
+    pub residual: f64,
+    /// Certified relative error of the traction in the energy norm.
+    pub certificate: f64,
+}

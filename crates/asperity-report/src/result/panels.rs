@@ -28,7 +28,8 @@ pub(crate) fn values(reader: &Reader, name: &str) -> Result<Vec<f64>, StoreError
     // Of an adhesive contact: what presses on the cells that touch, less the attraction there, which is the largest.
     let adhesion = reader.header().adhesion();
     let strength = adhesion.and_then(|adhesion| adhesion.get("strength")?.as_f64()).unwrap_or(0.0);
-    let pressed = if adhesion.is_some() { "repulsive_load" } else { "load" };
+    let has = |name: &str| reader.scalars().iter().any(|series| series.name == name);
+    let pressed = ["repulsive_load", "contact_load"].into_iter().find(|name| has(name)).unwrap_or("load");
     let rows = reader.series(pressed)?.into_iter().zip(reader.series("contact_area")?);
     Ok(rows.map(|(load, area)| load / area - strength).collect())
 }

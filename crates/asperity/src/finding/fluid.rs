@@ -85,12 +85,12 @@ impl Wet {
         });
         let chatter = self.held.warning(FLUID_CHATTER, |worst| {
             format!(
-                "{} cells opened and closed their access to the fluid again and again{}, in the \
-                 solver's loop and were held as if they had it. {}A finer grid may help.",
+                "In the solver's loop the access of {} cells to the fluid changed again and again{}: it has no steady state, or several. They \
+                 were held. {}A finer grid may help.",
                 digits(worst.value),
                 worst.place(),
                 if self.spread > 0.0 {
-                    format!("The leak of such states differs by {} of the largest. ", digits(self.spread))
+                    format!("The conductances of the last passes differ by {} of the largest. ", digits(self.spread))
                 } else {
                     String::new()
                 }

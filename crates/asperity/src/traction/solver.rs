@@ -267,7 +267,7 @@ impl Run<'_> {
         self.own.extrapolation.clear();
         self.own.law.begin_loop();
         // The least residual of late, and how many passes ago: it may grow while fluid advances into the contact.
-        let (mut best, mut age) = (f64::INFINITY, 0);
+        let (mut best, mut age, mut is_damped) = (f64::INFINITY, 0, false);
         let mut energy = f64::INFINITY;
         for _ in 0..MOST_PASSES {
             self.own.passes += 1;
@@ -284,7 +284,6 @@ impl Run<'_> {
             self.total = self.total.then(pass.outcome);
             self.total.convolutions += 1;
             self.total.residual = pass.residual.max(pass.outcome.residual);
-            if std::env::var("DBG").is_ok() { eprintln!("pass {} res {:.3e} best {best:.2e} b {:.6e} q {:.6e} conv {} presc {:?} held {:?}", self.own.passes, pass.residual, sum(&self.own.now.bound), sum(&self.own.now.contact.pressure), pass.outcome.convolutions, problem.prescribed, self.own.law.quantity(Quantity::LatchedCells)); }
             if pass.residual <= self.tolerance {
                 return Ok(());
             }
@@ -296,10 +295,16 @@ impl Run<'_> {
                 let failed = !is_attraction && (rises || pass.residual > 2.0 * best);
                 age += 1;
                 let is_best = !is_attraction && (pass.residual < best || age > RECENT);
+                is_damped |= age > RECENT;
                 if is_best {
                     (best, age) = (pass.residual, 0);
                 }
-                own.extrapolation.step(&mut own.now.bound, &own.next, failed && !is_best, is_best);
+                if is_damped {
+                    // Where extrapolation gains nothing any more, half steps do.
+                    each(&mut own.now.bound, &own.next[..], |b, next| *b = 0.5 * (*b + next));
+                } else {
+                    own.extrapolation.step(&mut own.now.bound, &own.next, failed && !is_best, is_best);
+                }
                 let [least, most] = own.law.limits();
                 each(&mut own.now.bound, &own.next[..], |b, _| *b = b.clamp(least, most));
             }

@@ -1,58 +1,83 @@
-//! Cells whose access to the fluid changes again and again from pass to pass are held at what they had with it.
+//! Cells whose tractions change again and again from pass to pass are held.
 //!
-//! A pocket whose throat opens when it is full and closes when it is empty has no fixed point. Held cells make one: after finitely many
-//! of them the map of a pass is continuous. The state is then a solution for one history of access that is possible.
+//! A pocket whose throat opens when it is full and closes when it is empty has no fixed point, nor has a part of the gap between two throats
+//! that open and close. Held cells make one: after finitely many of them the map of a pass is continuous. The state is then a solution for one
+//! history of access that is possible. First cells are held that gain and lose the access to a reservoir, at what they had with it; later
+//! cells whose traction goes up and down, the largest changes first, at its middle.
 
-/// Pass from which on cells are held.
-const FIRST: usize = 15;
-/// Changes of a cell after which it is held.
+/// Pass from which on cells are held that gain and lose access, and changes after which they are.
+const FIRST: usize = 40;
 const CHANGES: u8 = 4;
+/// Pass from which on cells are held whose traction goes up and down.
+const LATER: usize = 60;
+/// Change of such a traction, over the largest one; a tenth of it every [`DECADE`] passes.
+const SHARE: f64 = 1e-2;
+const DECADE: f64 = 20.0;
 
-/// The access of each cell over the passes of a loop.
+/// What the cells did over the passes of a loop.
 pub(super) struct Latch {
     passes: usize,
-    had_access: Vec<bool>,
-    changes: Vec<u8>,
-    /// b with access to the fluid of a reservoir \[Pa\].
-    with_access: Vec<f64>,
+    cells: Vec<Cell>,
     /// Held against what they are: in this pass so far, and in the last one.
     counting: usize,
     held: usize,
 }
 
+#[derive(Clone, Copy, Default)]
+struct Cell {
+    had_access: bool,
+    accesses: u8,
+    /// b of the last pass, and with access to the fluid of a reservoir \[Pa\].
+    last: f64,
+    with_access: f64,
+    /// Whether b rose, and how often it turned.
+    rose: bool,
+    turns: u8,
+    /// What b is held at.
+    held_at: Option<f64>,
+}
+
 impl Latch {
     pub(super) fn new(cells: usize) -> Self {
-        Latch {
-            passes: 0,
-            had_access: vec![false; cells],
-            changes: vec![0; cells],
-            with_access: vec![0.0; cells],
-            counting: 0,
-            held: 0,
-        }
+        Latch { passes: 0, cells: vec![Cell::default(); cells], counting: 0, held: 0 }
     }
 
     pub(super) fn clear(&mut self) {
         self.passes = 0;
-        self.changes.fill(0);
+        self.cells.fill(Cell::default());
         (self.counting, self.held) = (0, 0);
     }
 
-    /// b of a cell in this pass \[Pa\]: what it is, or what it was with access, if the cell is held. Where both are the same but for
-    /// `small`, holding it changes nothing.
-    pub(super) fn hold(&mut self, cell: usize, has_access: bool, b: f64, small: f64) -> f64 {
-        let changes = &mut self.changes[cell];
-        if self.passes > 0 && has_access != self.had_access[cell] {
-            *changes = changes.saturating_add(1);
+    /// b of a cell in this pass \[Pa\], held where it changes again and again. Changes below `small` are none; `largest` is that of all
+    /// pressures.
+    pub(super) fn hold(
+        &mut self,
+        number: usize,
+        has_access: bool,
+        b: f64,
+        [small, largest]: [f64; 2],
+    ) -> f64 {
+        let cell = &mut self.cells[number];
+        let change = b - cell.last;
+        if self.passes > 0 {
+            cell.accesses = cell.accesses.saturating_add(u8::from(has_access != cell.had_access));
+            let is_turn = change.abs() > small && (change > 0.0) != cell.rose;
+            cell.turns = cell.turns.saturating_add(u8::from(is_turn));
         }
-        self.had_access[cell] = has_access;
+        if change.abs() > small {
+            cell.rose = change > 0.0;
+        }
+        let before = std::mem::replace(&mut cell.last, b);
+        cell.had_access = has_access;
         if has_access {
-            self.with_access[cell] = b;
+            cell.with_access = b;
         }
-        if !(self.passes >= FIRST && *changes >= CHANGES) {
-            return b;
+        if cell.held_at.is_none() && self.passes >= LATER && cell.turns >= CHANGES {
+            let least = SHARE * largest * libm::pow(0.1, (self.passes - LATER) as f64 / DECADE);
+            cell.held_at = (change.abs() > least).then_some(0.5 * (b + before));
         }
-        let held = self.with_access[cell];
+        let gains_and_loses = self.passes >= FIRST && cell.accesses >= CHANGES;
+        let held = cell.held_at.or(gains_and_loses.then_some(cell.with_access)).unwrap_or(b);
         self.counting += usize::from((held - b).abs() > small);
         held
     }
@@ -71,5 +96,32 @@ impl Latch {
     /// Cells that were held in the last pass against what they are.
     pub(super) fn held(&self) -> usize {
         self.held
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_held_that_go_up_and_down_and_no_others() {
+        let mut latch = Latch::new(3);
+        let limits = [1e-6, 1.0];
+        let mut last = [0.0; 3];
+        for pass in 0..90 {
+            let up = f64::from(pass % 2);
+            // One gains and loses access, one goes up and down, one settles.
+            last[0] = latch.hold(0, pass % 2 == 1, 0.5 * up, limits);
+            last[1] = latch.hold(1, true, 0.3 * up, limits);
+            last[2] = latch.hold(2, true, 0.9 + libm::pow(-0.5, f64::from(pass)), limits);
+            latch.pass();
+            if pass == 50 {
+                assert_eq!((last[0], last[1], latch.held()), (0.5, 0.0, 1));
+            }
+        }
+        // After the last pass, an odd one.
+        assert!((last[1] - 0.15).abs() < 1e-12 && (last[2] - 0.9).abs() < 1e-6, "{last:?}");
+        latch.clear();
+        assert_eq!(latch.hold(1, true, 0.3, limits), 0.3);
     }
 }

@@ -51,6 +51,8 @@ use pockets::Contents;
 
 /// Tolerances of the loop and of the contact of a pass over that of a contact alone: gaps at the narrowest places are small.
 const TOLERANCES: [f64; 2] = [10.0, 0.1];
+/// Changes of a pressure below this share of the largest one are none.
+const SMALL: f64 = 1e-5;
 /// Passes over which the spread of the conductance is told, after cells may be held.
 const RECENT: usize = 20;
 
@@ -332,13 +334,14 @@ impl SurfaceTraction for InGap {
             return Ok(());
         }
         self.find_pressures(gap, contact)?;
-        let small = TOLERANCES[0] * 1e-6 * self.inlet.max(self.law.outlet);
+        let largest = (self.inlet - reference).abs().max(self.law.outlet - reference);
+        let limits = [SMALL * largest, largest];
         for (cell, b) in out.iter_mut().enumerate() {
             let (p, reached) = match self.pressure[cell] {
                 p if p.is_nan() => self.at_edge(cell).unwrap_or((reference, false)),
                 p => (p, self.reached[cell]),
             };
-            *b = self.latch.hold(cell, reached, p - reference, small);
+            *b = self.latch.hold(cell, reached, p - reference, limits);
             // What acts on open cells is what they remember.
             self.acting[cell] = if contact[cell] > 0.0 { f64::NAN } else { *b + reference };
         }

@@ -14,7 +14,7 @@ const SQUEEZE_SHARE: f64 = 0.1;
 
 /// What is known before the run.
 pub(super) fn before(simulation: &Simulation) -> Vec<Finding> {
-    if !simulation.traction.as_ref().is_some_and(|law| law.as_fluid().is_some()) {
+    if simulation.traction.as_ref().is_none_or(|law| law.as_fluid().is_none()) {
         return vec![];
     }
     let Simulation { grid, boundary, loading, .. } = simulation;

@@ -68,7 +68,7 @@ impl Wet {
             let rate = (row.mean_gap - before) / instant.dt;
             let squeeze = 12.0 * law.viscosity * rate.abs() * (length / row.mean_gap).powi(2) / row.mean_gap;
             let pressure = of(Quantity::InletPressure) - law.outlet;
-            if squeeze.is_finite() && of(Quantity::Percolates) == 1.0 {
+            if squeeze.is_finite() && of(Quantity::Connected) == 1.0 {
                 self.squeezed.above(index, squeeze, SQUEEZE_SHARE * pressure);
             }
         }

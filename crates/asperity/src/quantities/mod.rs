@@ -168,7 +168,7 @@ quantities! {
     /// Pressure of the fluid at the inlet, in Pa.
     InletPressure = "inlet_pressure" ["Pa"] "pressure of the fluid at the inlet", Fluid, ("Pressure of the fluid", "pressure", "at the inlet");
     /// Whether the gap connects inlet and outlet: 1 or 0.
-    Percolates = "connected" ["1"] "whether the gap connects inlet and outlet", Fluid, ("Inlet and outlet", "connected", "");
+    Connected = "connected" ["1"] "whether the gap connects inlet and outlet", Fluid, ("Inlet and outlet", "connected", "");
     /// Whether the fluid carries all of the load in a film without contact: 1 or 0.
     Film = "film" ["1"] "film without contact", Fluid, ("Film", "without contact", "");
     /// Area of the pockets, which neither inlet nor outlet reaches, in m2.

@@ -295,7 +295,7 @@ impl Run<'_> {
                 let failed = !is_attraction && (rises || pass.residual > 2.0 * best);
                 age += 1;
                 let is_best = !is_attraction && (pass.residual < best || age > RECENT);
-                is_damped |= age > RECENT;
+                is_damped |= !is_attraction && age > RECENT;
                 if is_best {
                     (best, age) = (pass.residual, 0);
                 }

@@ -213,7 +213,7 @@ fn sizes() {
         "domain.cells",
         3,
         "too-large",
-        &["1000000 x 1000000 cells", "181.9 TiB"],
+        &["1000000 x 1000000 cells", "50.9 TiB"],
     );
     says(
         "[32, 16]",

@@ -74,7 +74,7 @@ fn what_does_not_go_with_it_is_refused_where_it_stands() {
         (CASE.replace("viscosity = \"1 mPa s\"", "viscosity = \"18 uPa s\""), "leakage"),
         (CASE.replace("outlet = \"1 bar\"\n", ""), "leakage"),
         (CASE.replace("\"two-way\"", "\"twoway\""), "leakage.coupling"),
-        (CASE.replace("\"two-way\"", "\"two-way\"\npockets = \"connected\""), "leakage.smallest_gap"),
+        (CASE.replace("\"two-way\"", "\"two-way\"\npockets = \"connected\""), "leakage"),
         (one_way.clone() + "pockets = \"kept\"\n", "leakage"),
         (one_way.clone() + "reference = \"vacuum\"\n", "leakage"),
         (one_way.replace("\"1.02 bar\"", "{ kind = \"step\", value = \"1.02 bar\" }"), "leakage"),

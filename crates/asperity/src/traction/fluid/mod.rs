@@ -361,7 +361,7 @@ impl SurfaceTraction for InGap {
     fn quantity(&self, quantity: Quantity) -> Option<f64> {
         Some(match quantity {
             Quantity::InletPressure => self.inlet,
-            Quantity::Percolates => f64::from(u8::from(self.percolates)),
+            Quantity::Connected => f64::from(u8::from(self.percolates)),
             Quantity::PocketArea => self.contents.cells() as f64 * self.grid.cell_area(),
             Quantity::PocketPressureMax => self.contents.largest(),
             Quantity::LatchedCells => self.latch.held() as f64,

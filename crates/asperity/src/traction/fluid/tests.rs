@@ -186,7 +186,7 @@ fn along_a_channel_each_section_is_the_wave_under_its_own_pressure() {
         assert!(least < ratio && ratio < 0.995, "{mean} {inlet}: {ratio}");
         // The loop is done in some ten passes, each of some ten convolutions at most.
         assert!(own.convolutions < 150, "{}", own.convolutions);
-        assert_eq!(((own.of)(Quantity::LatchedCells), (own.of)(Quantity::Percolates)), (0.0, 1.0));
+        assert_eq!(((own.of)(Quantity::LatchedCells), (own.of)(Quantity::Connected)), (0.0, 1.0));
     }
 }
 

@@ -103,7 +103,7 @@ impl Simulation {
             "one that is solved for layers that creep differently. Leave it out, or give all layers and bodies the same relative \
              creep"
         } else if quantity == Quantity::ContactStiffness && self.traction.is_some() {
-            "one that a contact under other tractions has: its stiffness includes theirs and is infinite where cells snap"
+            "one that an adhesive contact, or one that a fluid acts on, has: its stiffness includes theirs and is infinite where cells snap"
         } else if quantity.is_of_traction() && !self.has_traction_with(quantity) {
             match Quantity::of_adhesion().any(|own| own == quantity) {
                 true => "one that the rows have. Only an adhesive contact has this one: add [adhesion]",

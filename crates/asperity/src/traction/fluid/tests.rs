@@ -286,34 +286,6 @@ fn a_small_pressure_opens_in_proportion() {
 }
 
 #[test]
-fn a_pocket_keeps_the_pressure_that_it_had_when_it_was_cut_off() {
-    // Waves along x and y: at a small load the fluid flows around the summits, a large one closes the saddles between the hollows.
-    let base = on_rough(32, 1.0, None);
-    let wave = |k: usize| (2.0 * PI * (k as f64 + 0.5) / 16.0).cos();
-    let gap = Array2::from_shape_fn((32, 32), |(i, j)| (2.0 - wave(i) - wave(j)) / (4.0 * PI));
-    let table = |points: &[(f64, f64)]| History::Table { points: points.to_vec() };
-    let of = |pockets: Pockets| {
-        let inlet = table(&[(0.0, 0.2), (2.0, 0.2), (3.0, 0.0), (4.0, 0.0)]);
-        let fluid = FluidPressure { inlet, action: Action::Gaps(pockets), ..liquid(0.0, 0.0) };
-        let history = table(&[(0.0, 0.3), (0.5, 0.3), (2.0, 1.1), (4.0, 1.1)]);
-        let simulation = Simulation {
-            gap: gap.clone(),
-            loading: Loading { control: Control::Pressure, history }.into(),
-            times: TimeGrid::Uniform { end: 4.0, steps: 16 },
-            traction: Some(Arc::new(fluid)),
-            quantities: Quantities::of(Quantity::of_fluid()),
-            ..base.clone()
-        };
-        let own = answer(simulation);
-        ((own.of)(Quantity::PocketArea), (own.of)(Quantity::PocketPressureMax))
-    };
-    let ((area, kept), (_, drained)) = (of(Pockets::Kept), of(Pockets::Drained));
-    assert!(area > 0.0 && drained == 0.0, "{area} {drained}");
-    // The hollows beside the inlet had most of its pressure; those beside the outlet less.
-    assert!(kept > 0.1 && kept < 0.2, "{kept}");
-}
-
-#[test]
 fn a_run_goes_on_from_its_checkpoint_with_the_same_bits() {
     let inlet = History::Triangle { peak: 0.8, rise: 0.5, fall: 0.5 };
     let simulation = || {

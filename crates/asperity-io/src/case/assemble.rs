@@ -114,6 +114,11 @@ impl Document {
             let help = "delete one of the two sections";
             at("motion").fault::<()>("surfaces that slide do not adhere here", "no [adhesion]", help);
         }
+        if self.motion.is_some() && self.leakage.as_ref().is_some_and(|leakage| leakage.acts()) {
+            let help = "set leakage.coupling = \"one-way\", or delete [motion]";
+            let message = "the flow that a sliding surface drags along is not solved";
+            at("motion").fault::<()>(message, "no fluid that acts on the surfaces", help);
+        }
         let swept = motion.as_ref().and_then(Motion::swept);
         let times = match (&motion, &grid, &self.time) {
             (Some(motion), Some(grid), _) if swept.is_some() => motion.times(&at("motion"), grid),

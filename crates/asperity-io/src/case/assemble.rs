@@ -114,7 +114,8 @@ impl Document {
             let help = "delete one of the two sections";
             at("motion").fault::<()>("surfaces that slide do not adhere here", "no [adhesion]", help);
         }
-        if self.motion.is_some() && self.leakage.as_ref().is_some_and(|leakage| leakage.acts()) {
+        let acts = self.leakage.as_ref().is_some_and(|leakage| leakage.acts());
+        if self.motion.is_some() && acts {
             let help = "set leakage.coupling = \"one-way\", or delete [motion]";
             let message = "the flow that a sliding surface drags along is not solved";
             at("motion").fault::<()>(message, "no fluid that acts on the surfaces", help);
@@ -140,7 +141,6 @@ impl Document {
         let stops = stops.and_then(|((motion, grid), times)| motion.stops(&at("motion"), grid, times.end()));
         let output = self.output.output(&at("output"), times.as_ref(), programme, default_path);
         let output = output.map(|mut output| {
-            let acts = self.leakage.as_ref().is_some_and(|leakage| leakage.acts());
             if (self.adhesion.is_some() || acts) && self.output.is_silent_on_fields() {
                 output.fields.insert(FieldKind::ContactPressure);
             }
@@ -218,7 +218,7 @@ impl Document {
                 checks.root().core::<()>(Err(error));
             }
             // A faulty fluid is reported already.
-            if leakage.is_some() || !self.leakage.as_ref().is_some_and(|leakage| leakage.acts()) {
+            if leakage.is_some() || !acts {
                 self.output.possible(&at("output"), conditions, motion.is_some());
             }
         }

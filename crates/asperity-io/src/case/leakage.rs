@@ -33,7 +33,7 @@ pub struct LeakageKeys {
     pub temperature: Option<Temperature>,
     /// Absolute pressure at the inlet; of a fluid that acts on the surfaces (`coupling`) also a history, with the kinds of load.history.
     #[schemars(example = "3 bar")]
-    #[schemars(example = serde_json::json!({ "kind": "ramp", "value": "3 bar", "duration": "1 s" }))]
+    #[schemars(example = serde_json::json!({ "kind": "table", "points": [["0 s", "1 bar"], ["5 s", "3 bar"]] }))]
     pub inlet: Option<Form<Pressure<Positive>, Never, Box<History>>>,
     /// Absolute pressure at the outlet; 0 for vacuum.
     #[schemars(example = "1 bar")]
@@ -64,7 +64,8 @@ pub struct LeakageKeys {
 }
 
 impl Word for Pressure<Positive> {
-    const FORMS: &'static str = "a pressure such as \"3 bar\", or a history such as { kind = \"ramp\", ... }";
+    const FORMS: &'static str =
+        "a pressure such as \"3 bar\", or a history such as { kind = \"table\", ... }";
     const IS_QUANTITY: bool = true;
 }
 

@@ -21,7 +21,7 @@ class Fluid:
     "drained" or "connected" through contacts with the gap `smallest_gap` [m].
 
     >>> import asperity as asp
-    >>> wave = asp.Surface.wave(cells=(16, 64), size=(1e-3, 1e-3), amplitude=1e-6, wavelength=(None, 1e-3))
+    >>> wave = asp.Surface.wave(cells=(16, 64), size=(1e-3, 1e-3), amplitude=1e-6, wavelength=(float("inf"), 1e-3))
     >>> rubber = asp.Elastic(young=3e6, poisson=0.5)
     >>> water = asp.Fluid(inlet=4e3, outlet=0.0, viscosity=1e-3)
     >>> result = asp.solve(wave, rubber, pressure=5e3, times=[1.0], boundary="periodic", fluid=water)

@@ -78,7 +78,7 @@ pub struct FluidPressure {
     pub reference: f64,
     /// A gas and how its rarefaction counts; `None` for a liquid.
     pub gas: Option<(Gas, Rarefaction)>,
-    /// Viscosity \[Pa s\]: the time in which a film flows out is told from it.
+    /// Viscosity \[Pa s\], from which it is judged whether the flow may be taken as steady.
     pub viscosity: f64,
     /// Direction of the flow.
     pub direction: Direction,
@@ -183,7 +183,7 @@ struct InGap {
     /// The pressure that acts on each open cell, with those that are held \[Pa\]; NaN in contact.
     acting: Vec<f64>,
     /// That of the flow through contacts, where fluid passes through them.
-    inside: Option<Array2<f64>>,
+    inside: Option<Vec<f64>>,
     /// The least and the largest b that may be.
     limits: [f64; 2],
     percolates: bool,
@@ -284,7 +284,7 @@ impl InGap {
         }
         let is_pocket: Vec<bool> = kinds.iter().map(|kind| *kind == CellKind::Pocket).collect();
         self.contents.fill(&self.beside, &is_pocket, &mut self.pressure);
-        self.inside = self.contents.floor().map(|_| flowing);
+        self.inside = self.contents.floor().map(|_| flowing.into_iter().collect());
         Ok(())
     }
 
@@ -306,11 +306,8 @@ impl InGap {
                 reached |= is_reached;
             }
         }
-        let own = self
-            .inside
-            .as_ref()
-            .map_or(f64::NAN, |inside| inside.as_slice().map_or(f64::NAN, |cells| cells[cell]));
-        (weights > 0.0).then(|| (if own.is_nan() { from(sum / weights) } else { own }, reached))
+        let own = self.inside.as_ref().map(|cells| cells[cell]).filter(|p| !p.is_nan());
+        (weights > 0.0).then(|| (own.unwrap_or_else(|| from(sum / weights)), reached))
     }
 }
 

@@ -286,6 +286,34 @@ fn a_small_pressure_opens_in_proportion() {
 }
 
 #[test]
+fn a_pocket_keeps_the_pressure_that_it_had_when_it_was_cut_off() {
+    // Waves along x and y: at a small load the fluid flows around the summits, a larger one closes the saddles between the hollows; then the
+    // inlet loses its pressure.
+    let wave = |k: usize| (2.0 * PI * (k as f64 + 0.5) / 16.0).cos();
+    let gap = Array2::from_shape_fn((32, 32), |(i, j)| (2.0 - wave(i) - wave(j)) / (4.0 * PI));
+    let table = |points: &[(f64, f64)]| History::Table { points: points.to_vec() };
+    let of = |pockets: Pockets| {
+        let inlet = table(&[(0.0, 0.1), (2.0, 0.1), (3.0, 0.0), (4.0, 0.0)]);
+        let history = table(&[(0.0, 0.15), (0.5, 0.15), (2.0, 0.7), (4.0, 0.7)]);
+        let fluid = FluidPressure { inlet, action: Action::Gaps(pockets), ..liquid(0.0, 0.0) };
+        answer(Simulation {
+            gap: gap.clone(),
+            loading: Loading { control: Control::Pressure, history }.into(),
+            times: TimeGrid::Uniform { end: 4.0, steps: 16 },
+            ..on_rough(32, 1.0, Some(fluid))
+        })
+    };
+    let [kept, drained] = [Pockets::Kept, Pockets::Drained].map(of);
+    let pressure = (kept.of)(Quantity::PocketPressureMax);
+    // The hollows beside the inlet had most of its pressure.
+    assert!(pressure > 0.05 && pressure < 0.1, "{pressure}");
+    assert_eq!((drained.of)(Quantity::PocketPressureMax), 0.0);
+    // The fluid in them carries load, and holds them open.
+    assert!((kept.of)(Quantity::FluidLoad) > 0.01 && (drained.of)(Quantity::FluidLoad) == 0.0);
+    assert!(kept.fraction < drained.fraction, "{} {}", kept.fraction, drained.fraction);
+}
+
+#[test]
 fn a_run_goes_on_from_its_checkpoint_with_the_same_bits() {
     let inlet = History::Triangle { peak: 0.8, rise: 0.5, fall: 0.5 };
     let simulation = || {

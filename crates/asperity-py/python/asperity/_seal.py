@@ -164,7 +164,7 @@ def seal(
     --------
     >>> import asperity as asp, tempfile
     >>> case = {
-    ...     "domain": {"cells": [2, 64], "size": ["0.3 um", "10 um"]},
+    ...     "domain": {"cells": [2, 64], "size": ["0.3 um", "10 um"], "boundary": "periodic"},
     ...     "surface": [{"kind": "wave", "amplitude": "0.1 um", "wavelength": ["inf", "10 um"]}],
     ...     "body": [{"poisson": 0.5, "material": {"model": "elastic", "young": "0.75 MPa"}}],
     ...     "load": {"control": "pressure", "history": {"kind": "step", "value": "10 kPa"}},

@@ -45,7 +45,9 @@ templates!(
     "coated-steel",
     "gel-on-glass",
     "adhesive-sphere",
-    "gel-adhesion"
+    "gel-adhesion",
+    "fretting-sphere",
+    "rough-fretting"
 );
 
 /// Cases of the figures of Spinu and Cerlinca (2017), which `asperity reproduce` computes.

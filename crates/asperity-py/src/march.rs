@@ -176,8 +176,7 @@ impl March {
         let last = detached(py, || {
             let march = self.locked();
             let step = march.last()?;
-            let columns =
-                step.columns().iter().map(|column| (column.quantity.name(), column.edges.is_empty()));
+            let columns = step.columns().iter().map(|column| (column.quantity.name(), column.width() == 1));
             let numbers = columns.zip(step.columns()).map(|((name, single), column)| {
                 (name, single, step.quantity(column.quantity).map(<[f64]>::to_vec).unwrap_or_default())
             });
@@ -215,14 +214,7 @@ impl March {
             }
             let mut field = ndarray::Array2::zeros(shape);
             let (shift, boundary) = (step.frame_shift(), march.simulation().boundary);
-            match kind {
-                FieldKind::Gap => step.gap_into(&mut field),
-                FieldKind::Displacement => step.displacement_into(&mut field),
-                FieldKind::Flattening => step.flattening_into(&mut field),
-                FieldKind::ContactPressure => field.assign(&step.contact_pressure()),
-                FieldKind::AdhesiveTraction => step.adhesive_traction_into(&mut field),
-                FieldKind::Pressure | FieldKind::Contact => field.assign(&step.pressure()),
-            }
+            kind.of_step(&step, &mut field);
             // Of a contact that moves, in its frame.
             let beyond = if kind == FieldKind::Pressure { 0.0 } else { f64::NAN };
             Some(Map::Real(process::in_contact_frame(field.view(), boundary, shift, beyond)))

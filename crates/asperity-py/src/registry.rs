@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use crate::error::raised;
 use crate::given::choose;
 
-/// Name, unit, unit on a line of cells, meaning, and kind: "real", "count" or "histogram".
+/// Name, unit, unit on a line of cells, meaning, and kind: "real", "count", "vector" or "histogram".
 type Entry = (&'static str, &'static str, &'static str, &'static str, &'static str);
 
 /// All columns and fields by the part of a result that they belong to.
@@ -25,7 +25,11 @@ pub fn registry(py: Python<'_>) -> PyResult<BTreeMap<&'static str, Vec<Entry>>> 
         (scalar.name, scalar.units, line.units(scalar.units), scalar.long_name, kind)
     });
     let quantities = Quantity::ALL.map(|quantity| {
-        let kind = if quantity.is_histogram() { "histogram" } else { "real" };
+        let kind = match (quantity.components(), quantity.is_histogram()) {
+            (Some(_), _) => "vector",
+            (None, true) => "histogram",
+            (None, false) => "real",
+        };
         (quantity.name(), quantity.units(), quantity.units_on(&line), quantity.long_name(), kind)
     });
     let fields =

@@ -37,7 +37,7 @@ pub struct Stress {
 impl Stress {
     /// Of a pressure on a plane, or on a line, whose size is one length.
     #[new]
-    #[pyo3(signature = (pressure, size, boundary, poisson, transverse))]
+    #[pyo3(signature = (pressure, size, boundary, poisson, transverse, tractions))]
     fn new(
         py: Python<'_>,
         pressure: PyReadonlyArray2<'_, f64>,
@@ -45,6 +45,7 @@ impl Stress {
         boundary: &str,
         poisson: f64,
         transverse: Transverse<'_>,
+        tractions: Option<[PyReadonlyArray2<'_, f64>; 2]>,
     ) -> PyResult<Stress> {
         let boundary = choose("boundary", boundary)?;
         let grid = grid_of(py, pressure.as_array().dim(), &size)?;
@@ -57,6 +58,10 @@ impl Stress {
                     let transverse: Vec<f64> = transverse.as_array().iter().copied().collect();
                     stress.set_transverse(&pressure, &transverse, confined)?;
                 }
+            }
+            if let Some(tractions) = &tractions {
+                let [x, y] = tractions.each_ref().map(|q| q.as_array().iter().copied().collect::<Vec<f64>>());
+                stress.add_tractions([&x, &y])?;
             }
             Ok(Mutex::new(stress))
         };

@@ -21,7 +21,7 @@ def declared() -> str:
 
     def holder(name: str, entries: list[tuple[str, ...]], kind: str) -> str:
         def of(entry: tuple[str, ...]) -> str:
-            return "int" if kind == "float" and entry[-1] == "count" else kind
+            return {"count": "int", "vector": "Floats"}.get(entry[-1], kind) if kind == "float" else kind
 
         return f"class {name}:\n" + "".join(f"    @property\n    def {one[0]}(self) -> {of(one)}: ...\n" for one in entries)
 

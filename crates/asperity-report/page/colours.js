@@ -1,7 +1,7 @@
 // Colours of values: between which ends, linear or logarithmic, and the bar that tells them.
 
 const LUT = Object.fromEntries(Object.entries(state.colours).map(([name, text]) => [name, bytes(text)]));
-const STATES = [["open", [240, 240, 238]], ["contact", [0, 114, 178]], ["at the hardness", [213, 94, 0]]];
+const STATES = [["open", [240, 240, 238]], [state.slips ? "sticking" : "contact", [0, 114, 178]], ["at the hardness", [213, 94, 0]], ["slipping", [230, 159, 0]]];
 const OPEN = [240, 240, 238], TOUCHING = [120, 120, 118], UNDEFINED = [200, 200, 200];
 /** Decades of a logarithmic map at the most. */
 const DECADES = 6;
@@ -10,7 +10,7 @@ const DECADES = 6;
 const OUTLIERS = 1e-3;
 
 /** Whether a gap is that of contact, zero but for rounding; at the hardness the surfaces may overlap, which is a negative gap. */
-const isClosed = (map, contact, n) => Boolean(contact) && (contact.values[n] === 1 || (contact.values[n] === 2 && map.values[n] >= 0));
+const isClosed = (map, contact, n) => Boolean(contact) && (contact.values[n] === 1 || contact.values[n] === 3 || (contact.values[n] === 2 && map.values[n] >= 0));
 
 /** Finite values of a map in rising order, without those of contact where its states are given; of the largest maps a sample. */
 function sorted(map, contact) {
@@ -39,7 +39,7 @@ function robustLog(map, contact) {
 
 /** The ends of one map of a field. */
 function endsOf(map, kind, log, contact) {
-  if (kind.colours === "states") return [0, 2];
+  if (kind.colours === "states") return [0, STATES.length - 1];
   if (log) return robustLog(map, contact);
   if (kind.colours === "diverging") {
     const most = Math.max(...robust(map, contact).map(Math.abs));
@@ -89,7 +89,7 @@ function palette(colours) {
 /** The entry of a value in the palette of {colours, low, high, log}; where `touching`, the gap is that of contact. */
 function entry({ colours, low, high, log }, value, touching) {
   if (isNaN(value)) return NOTHING;
-  if (colours === "states") return FIRST_STATE + Math.min(Math.max(Math.round(value), 0), 2);
+  if (colours === "states") return FIRST_STATE + Math.min(Math.max(Math.round(value), 0), STATES.length - 1);
   if (touching) return CONTACT;
   if (colours === "pressure" && value <= 0) return NO_CONTACT;
   return Math.min(Math.max(Math.round(255 * share(value, low, high, log)), 0), 255);
@@ -124,7 +124,7 @@ function colourBar(canvas, tall, what) {
   const { colours, low, high, log, unit, label, swatches = [], beyond = [false, false] } = what;
   const height = Math.max(tall, 120), [context] = sharp(canvas, height);
   context.clearRect(0, 0, canvas.width, canvas.height);
-  if (colours === "states") return void STATES.reduce((y, [name, fill]) => swatch(context, y + 4, fill, name), 2);
+  if (colours === "states") return void STATES.slice(0, state.slips ? 4 : 3).reduce((y, [name, fill]) => swatch(context, y + 4, fill, name), 2);
   if (what.closed) return void swatches.reduce((y, [fill, name]) => swatch(context, y, fill, name), 4);
   const lut = LUT[colours], foot = swatches.reduce((sum, [, name]) => sum + (context.measureText(name).width > 58 ? 32 : 19), 0);
   const top = beyond[1] ? 34 : 24, bottom = height - 8 - foot - (beyond[0] ? 8 : 0);

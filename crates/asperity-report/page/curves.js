@@ -51,10 +51,25 @@ function forceCurve({ approaching, parting, pull_off }) {
     series: [{ name: "approaching", x, y: gaps(approaching) }, { name: "parting", x, y: gaps(parting) }] };
 }
 
+/** The curves whose displacement is more than the rounding errors of the other one. */
+function moving(curves) {
+  const far = ({ x }) => Math.max(...x.map(Math.abs)), most = Math.max(...curves.map(far));
+  return curves.filter((curve) => far(curve) > 1e-6 * most);
+}
+
+/** Tangential force over tangential displacement, of each component that moves: with friction a loop. */
+function tangentialLoop() {
+  const of = (axis) => ({ name: `along ${axis}`, x: numbers(`tangential_displacement_${axis}`), y: numbers(`tangential_force_${axis}`) });
+  return { title: "Tangential force over displacement", free: true, x: { label: "tangential displacement", unit: "m" },
+    y: { label: "tangential force", unit: state.units.tangential_force_x },
+    series: moving(["x", "y"].map(of)) };
+}
+
 function evolutionPart() {
   const time = state.series.time, events = stages();
   const adheres = Boolean(state.force_curve);
   if (adheres) forces.set([forceCurve(state.force_curve)]);
+  if (state.slips) forces.set([tangentialLoop()]);
   evolution.set(state.evolution.map(([title, label, names, states]) => ({
     title,
     x: rowsAxis(),

@@ -109,7 +109,10 @@ fn while_held(rows: &[Row], held_approach: bool) -> Option<Answer> {
         true => Answer::new("relaxation", 1.0 - last.load / first.load, "1"),
         false => Answer::new("creep", last.approach - first.approach, "m"),
     })
-    .filter(|answer| answer.value != 0.0 && (answer.unit != "1" || answer.value.abs() > NOISE))
+    .filter(|answer| {
+        answer.value != 0.0
+            && answer.value.abs() > NOISE * if answer.unit == "1" { 1.0 } else { last.approach.abs() }
+    })
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | with leakage | `leak_rate` (of a gas also `leak_rate_standard`), `hydraulic_gap`, `tight_from` |
 //! | with adhesion | `pull_off_force`, `pull_off_approach` |
+//! | with a load along the surfaces | `loop_energy` of the last loop, `largest_tangential_force`, `largest_tangential_displacement`, `slip_share`, `slip_work` |
 //! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force` |
 //! | with a sine | `loss_angle`, `dissipated_energy`, `dynamic_stiffness` of the last cycle |
 //! | every contact | `contact_area`, `contact_area_corrected`, `contact_fraction`, `max_pressure`, `approach` and `creep` where the load is given, `load` and `relaxation` where the approach is |
@@ -17,6 +18,7 @@ mod contact;
 mod leak;
 mod motion;
 mod stress;
+mod tangential;
 mod units;
 
 use asperity::step::Row;
@@ -53,7 +55,7 @@ pub struct Answer {
 const SAME: f64 = 1e-6;
 
 /// Numbers without a unit that are shown in percent.
-const SHARES: [&str; 2] = ["contact_fraction", "relaxation"];
+const SHARES: [&str; 3] = ["contact_fraction", "relaxation", "slip_share"];
 
 impl Answer {
     pub(crate) fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Answer {
@@ -96,6 +98,7 @@ pub fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     let Some(decisive) = decisive(reader, &rows)? else { return Ok(vec![]) };
     let mut answers = leak::of(reader, units)?;
     answers.extend(adhesion::of(reader, &rows));
+    answers.extend(tangential::of(reader, &rows)?);
     answers.extend(motion::of(reader, &rows, decisive)?);
     answers.extend(last_cycle(reader)?);
     answers.extend(contact::of(reader, &rows, decisive)?);

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use asperity::load::Course;
+use asperity::tangential::Tangential;
 use asperity::time::Plan;
 use asperity::traction::TractionLaw;
 use asperity::{Grid, Programme, Scheme, Simulation, TimeGrid};
@@ -14,6 +15,7 @@ use super::document::Document;
 use super::error::CaseError;
 use super::hardness::{self, Hardness};
 use super::history::Bodies;
+use super::history_file::Origin;
 use super::material::Sample;
 use super::pair::{self, Pair};
 use super::place::Checks;
@@ -141,6 +143,9 @@ impl Document {
         let stops = stops.and_then(|((motion, grid), times)| motion.stops(&at("motion"), grid, times.end()));
         let output = self.output.output(&at("output"), times.as_ref(), programme, default_path);
         let output = output.map(|mut output| {
+            if self.tangential.is_some() && self.output.is_silent_on_fields() {
+                output.fields.extend([FieldKind::Contact, FieldKind::TractionX, FieldKind::TractionY]);
+            }
             if (self.adhesion.is_some() || acts) && self.output.is_silent_on_fields() {
                 output.fields.insert(FieldKind::ContactPressure);
             }
@@ -211,8 +216,13 @@ impl Document {
             None => Some(fluid),
             Some(adhesion) => adhesion.map(|law| Some(Arc::new(law) as Arc<dyn TractionLaw>)),
         };
-        let conditions =
-            law.zip(conditions).map(|(traction, conditions)| Simulation { traction, ..conditions });
+        let tangential = self.tangential(checks, grid.as_ref(), pair.as_ref());
+        let (tangential, slipped) = tangential.unzip();
+        let conditions = law.zip(conditions).map(|(traction, conditions)| Simulation {
+            traction,
+            tangential,
+            ..conditions
+        });
         if let Some(conditions) = &conditions {
             for error in conditions.faults() {
                 checks.root().core::<()>(Err(error));
@@ -227,7 +237,8 @@ impl Document {
         }
         let stress = self.stress.as_ref().zip(grid.as_ref().zip(pair.as_ref())).zip(output.as_ref().zip(end));
         let stress = stress.and_then(|((stress, (grid, pair)), (output, end))| {
-            stress.of_case(&at("stress"), grid, pair, motion.is_some(), output, end)
+            let kinds = [motion.is_some(), self.tangential.is_some()];
+            stress.of_case(&at("stress"), grid, pair, kinds, output, end)
         });
         let seal = match &self.seal {
             // A faulty [leakage] is reported already.
@@ -243,6 +254,7 @@ impl Document {
         files.extend(temperatures.iter().flatten().filter_map(|read| read.file.clone()));
         files.extend(hardness.files);
         files.extend(histories);
+        files.extend(slipped.into_iter().flatten());
         files.extend(profile);
         let usual = pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 };
         let case = Case {
@@ -274,6 +286,44 @@ impl Document {
         };
         self.domain.fits(&at("domain"), case.conditions.grid.cells(), case.memory_of_run(), or)?;
         Some(case)
+    }
+
+    /// The load along the surfaces, with the files that it is from.
+    fn tangential(
+        &self,
+        checks: &Checks<'_>,
+        grid: Option<&Grid>,
+        pair: Option<&Pair>,
+    ) -> Option<(Arc<Tangential>, Vec<Origin>)> {
+        let at = |section: &str| checks.at(section);
+        let (friction, tangential) = match (&self.friction, &self.tangential) {
+            (Some(friction), Some(tangential)) => (friction, tangential),
+            (None, None) => return None,
+            (Some(_), None) => {
+                let help = "add [tangential], or delete [friction]";
+                return at("friction").fault(
+                    "[friction] does nothing without [tangential]",
+                    "both sections",
+                    help,
+                );
+            }
+            (None, Some(_)) => {
+                let help = "add [friction], or delete [tangential]";
+                return at("tangential").fault(
+                    "nothing holds [tangential] without [friction]",
+                    "both sections",
+                    help,
+                );
+            }
+        };
+        let others = [("motion", self.motion.is_some()), ("seal", self.seal.is_some())];
+        for (section, _) in others.into_iter().filter(|(_, given)| *given) {
+            let message = format!("a load along the surfaces is not solved together with [{section}]");
+            at("tangential").fault::<()>(message, "one of the two sections", "delete one of them");
+        }
+        let bodies = (&at("body"), &pair?.bodies[..]);
+        let (law, files) = tangential.law(&at("tangential"), (&at("friction"), friction), grid, bodies)?;
+        Some((Arc::new(law), files))
     }
 
     /// The simulation as far as the sections give it: without gap and motion.

@@ -5,7 +5,9 @@ use asperity::layer::{Base, Interface, Layered, Stack};
 use asperity::material::{Body, Creep, Shift, VerticalShift};
 use asperity::quantities::Quantity;
 use asperity::sliding::Steady;
+use asperity::tangential::TangentialControl;
 use asperity::{Axis, Course, History, Simulation};
+use ndarray::Array2;
 use serde::Serialize;
 
 use super::plan::Surface;
@@ -105,6 +107,9 @@ pub struct Description {
     /// Least and largest cut-off of the cells \[Pa\], where a file gives them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hardness_of_cells: Option<[f64; 2]>,
+    /// The load along the surfaces, where the case has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<FrictionReport>,
     /// Stages whose history is a sine.
     pub sines: Vec<Sine>,
     /// Last instant \[s\].
@@ -129,6 +134,19 @@ pub struct Description {
     /// The stress below the surface, where it is asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stress: Option<StressDescription>,
+}
+
+/// A load along the surfaces, and what friction is to hold it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrictionReport {
+    /// Least and largest friction coefficient of the cells.
+    pub coefficient: [f64; 2],
+    /// What is prescribed.
+    pub control: TangentialControl,
+    /// Largest magnitude of its components along x and y \[N; of a line contact N/m; m\].
+    pub largest: [f64; 2],
+    /// Dundurs' β, how much pressure and tangential tractions act on each other, which is neglected.
+    pub coupling: f64,
 }
 
 /// A stage whose history is a sine.
@@ -191,7 +209,7 @@ impl Case {
             quantities.list = Quantity::at_rest().collect();
         }
         let simulation = Simulation { quantities, ..conditions.clone() };
-        let stress = self.stress.as_ref().map_or(0, |plan| plan.bytes(&conditions.grid, conditions.boundary));
+        let stress = self.stress.as_ref().map_or(0, |plan| plan.bytes(conditions));
         let own = match &self.motion {
             Some(motion) if self.axis() == Axis::Velocity => Steady::bytes(&simulation, motion.direction),
             _ => simulation.bytes(),
@@ -216,7 +234,7 @@ impl Case {
         let Simulation { grid, boundary, hardness, hardness_map, .. } = &self.conditions;
         let stress = self.stress.as_ref().map(|plan| {
             let instants = plan.times.as_ref().map(Vec::len).or(self.stored_rows());
-            plan.describe(grid, *boundary, instants)
+            plan.describe(&self.conditions, instants)
         });
         let stored_rows = self.stored_rows();
         let creep = self.reference_creep();
@@ -239,9 +257,19 @@ impl Case {
             warnings: self.findings.iter().map(|finding| finding.text.clone()).collect(),
             temperature: self.temperature_range(),
             hardness: hardness.is_finite().then_some(*hardness),
-            hardness_of_cells: hardness_map.as_ref().map(|map| {
-                let pick = |f: fn(f64, f64) -> f64| map.iter().copied().reduce(f).unwrap_or(f64::NAN);
-                [pick(f64::min), pick(f64::max)].map(|of_cell| of_cell.min(*hardness))
+            hardness_of_cells: hardness_map
+                .as_ref()
+                .map(|map| extent(map).map(|of_cell| of_cell.min(*hardness))),
+            friction: self.conditions.tangential.as_ref().map(|law| FrictionReport {
+                coefficient: law.coefficients.as_ref().map_or([law.coefficient; 2], extent),
+                control: law.control,
+                largest: law.histories.each_ref().map(|history| {
+                    history
+                        .range(self.conditions.times.end())
+                        .into_iter()
+                        .fold(0.0, |most: f64, end| most.max(end.abs()))
+                }),
+                coupling: law.coupling,
             }),
             sines: self.sines(),
             end: self.conditions.times.end(),
@@ -319,6 +347,12 @@ impl Case {
             }
         }
     }
+}
+
+/// Least and largest of the cells.
+fn extent(map: &Array2<f64>) -> [f64; 2] {
+    let pick = |f: fn(f64, f64) -> f64| map.iter().copied().reduce(f).unwrap_or(f64::NAN);
+    [pick(f64::min), pick(f64::max)]
 }
 
 /// "10 mm bonded to 2 mm slipping on a rigid base".

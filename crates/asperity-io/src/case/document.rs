@@ -20,6 +20,7 @@ use super::seal::SealKeys;
 use super::stress::Stress;
 use super::study::Study;
 use super::surface::Surface;
+use super::tangential::{Friction, Tangential};
 use super::temperature::Temperature;
 use super::text::Text;
 use super::time::Times;
@@ -37,6 +38,8 @@ const SECTIONS: &[&str] = &[
     "temperature",
     "motion",
     "adhesion",
+    "friction",
+    "tangential",
     "leakage",
     "seal",
     "solver",
@@ -77,6 +80,12 @@ pub struct Document {
     /// An attraction between the surfaces; none if not given.
     #[schemars(example = serde_json::json!({ "work": "50 mJ/m2", "range": "5 nm" }))]
     pub adhesion: Option<Adhesion>,
+    /// Friction between the surfaces, with `tangential`; none if not given.
+    #[schemars(example = serde_json::json!({ "coefficient": 0.3 }))]
+    pub friction: Option<Friction>,
+    /// A load along the surfaces, with `friction`; none if not given.
+    #[schemars(example = serde_json::json!({ "control": "force", "x": { "kind": "ramp", "value": "0.1 N", "duration": "1 s" } }))]
+    pub tangential: Option<Tangential>,
     /// The flow of a fluid through the gap.
     #[schemars(example = serde_json::json!({ "pressure_drop": "2 bar", "viscosity": "1 mPa s" }))]
     pub leakage: Option<LeakageKeys>,
@@ -120,6 +129,8 @@ impl Document {
             },
             temperature: reader.table("temperature"),
             adhesion: reader.table("adhesion"),
+            friction: reader.table("friction"),
+            tangential: reader.table("tangential"),
             leakage: reader.table("leakage"),
             seal: reader.table("seal"),
             solver: reader.table("solver").unwrap_or_default(),

@@ -44,32 +44,40 @@ impl HardnessFile {
     /// The cut-off of each cell \[Pa\]; the file and its MD5.
     pub fn of_cells(&self, at: &Place<'_>, grid: Option<&Grid>) -> Option<(Array2<f64>, (String, String))> {
         let at = at.key("path");
-        let full = at.file(&self.path)?;
-        let name = full.display();
-        let digest = match std::fs::read(&full) {
-            Ok(bytes) => md5(&bytes),
-            Err(error) => {
-                return at.refuse(Code::File, format!("{name} cannot be read: {error}"), "a file", "");
-            }
-        };
-        // The readers of heights read numbers of any kind, where the file does not call them heights.
-        let options =
-            ReadOptions { size: Some([1.0, 1.0]), height_unit: Some(1.0), ..ReadOptions::default() };
-        let numbers = at.data(read(&full, &options), "an array of nx x ny numbers")?;
-        if !matches!(numbers.format, Format::Npy | Format::Npz | Format::Text | Format::Csv) {
-            let what = format!("{name} is a file of heights ({})", numbers.format);
-            return at.refuse(Code::Data, what, "an NPY or NPZ file or a text matrix", "");
-        }
-        let grid = grid?;
-        if numbers.heights.dim() != grid.shape() {
-            let ((mx, my), [nx, ny]) = (numbers.heights.dim(), grid.cells());
-            let what = format!("{name} holds {mx} x {my} numbers, but the domain has {nx} x {ny} cells");
-            return at.refuse(Code::Data, what, "one number for each cell", "axis 0 of an array is x");
-        }
+        let (numbers, file) = numbers_of_cells(&at, &self.path, grid)?;
         let unit = self.unit.map_or(1.0, Pressure::get);
-        let map = numbers.heights.mapv(|number| number * unit);
-        Some((positive(&at, map, &name.to_string())?, (self.path.clone(), digest)))
+        Some((positive(&at, numbers.mapv(|number| number * unit), &file.0)?, file))
     }
+}
+
+/// A number for each cell from a file; the file and its MD5.
+pub fn numbers_of_cells(
+    at: &Place<'_>,
+    path: &str,
+    grid: Option<&Grid>,
+) -> Option<(Array2<f64>, (String, String))> {
+    let full = at.file(path)?;
+    let name = full.display();
+    let digest = match std::fs::read(&full) {
+        Ok(bytes) => md5(&bytes),
+        Err(error) => {
+            return at.refuse(Code::File, format!("{name} cannot be read: {error}"), "a file", "");
+        }
+    };
+    // The readers of heights read numbers of any kind, where the file does not call them heights.
+    let options = ReadOptions { size: Some([1.0, 1.0]), height_unit: Some(1.0), ..ReadOptions::default() };
+    let numbers = at.data(read(&full, &options), "an array of nx x ny numbers")?;
+    if !matches!(numbers.format, Format::Npy | Format::Npz | Format::Text | Format::Csv) {
+        let what = format!("{name} is a file of heights ({})", numbers.format);
+        return at.refuse(Code::Data, what, "an NPY or NPZ file or a text matrix", "");
+    }
+    let grid = grid?;
+    if numbers.heights.dim() != grid.shape() {
+        let ((mx, my), [nx, ny]) = (numbers.heights.dim(), grid.cells());
+        let what = format!("{name} holds {mx} x {my} numbers, but the domain has {nx} x {ny} cells");
+        return at.refuse(Code::Data, what, "one number for each cell", "axis 0 of an array is x");
+    }
+    Some((numbers.heights, (path.to_owned(), digest)))
 }
 
 /// The cut-off of each cell \[Pa\], of the array of this name.

@@ -79,6 +79,7 @@ mod stored_times;
 mod stress;
 pub(crate) mod study;
 mod surface;
+mod tangential;
 mod temperature;
 mod text;
 mod time;
@@ -334,6 +335,11 @@ impl Case {
                 |quantity: &Quantity| !wanted.list.contains(quantity) && simulation.allows(*quantity).is_ok();
             let of_rows: Vec<Quantity> = of_rows.filter(new).collect();
             wanted.list.extend(of_rows);
+        }
+        if simulation.tangential.is_some() {
+            let new: Vec<Quantity> =
+                Quantity::of_tangential().filter(|quantity| !wanted.list.contains(quantity)).collect();
+            wanted.list.extend(new);
         }
         if let Some(motion) = &self.motion {
             // What steady states have no row of, or what displacements that are known up to a constant do not determine.

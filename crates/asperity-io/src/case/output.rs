@@ -42,7 +42,8 @@ pub struct OutputKeys {
     /// The result, relative to the working directory; the case file's name with ".zarr" if not given.
     #[schemars(example = "rough_pmma.zarr")]
     path: Option<String>,
-    /// The fields that are stored; ["pressure", "gap"] if not given, with [adhesion] also "contact_pressure"; [] for none.
+    /// The fields that are stored; ["pressure", "gap"] if not given, with [adhesion] also "contact_pressure", with [tangential] also "contact",
+    /// "traction_x" and "traction_y"; [] for none.
     #[schemars(example = ("pressure", "gap"))]
     fields: Option<Vec<FieldKind>>,
     /// Optional quantities of each row, in addition to load, approach and areas; ["all"] for all that the case allows.
@@ -240,6 +241,12 @@ impl OutputKeys {
         if let Some(n) = self.fields.iter().flatten().position(lacks) {
             let message = "only the contact presses on the surfaces of this case";
             let help = "take \"pressure\", or add [adhesion], or of the contact pressure leakage.coupling = \"two-way\"";
+            at.key("fields").item(n).fault::<()>(message, "another field", help);
+        }
+        let slips = self.fields.iter().flatten().position(|kind| kind.is_of_friction());
+        if let Some(n) = slips.filter(|_| conditions.tangential.is_none()) {
+            let message = "there is no tangential traction and no slip in a case without [tangential]";
+            let help = "leave it out, or add [friction] and [tangential]";
             at.key("fields").item(n).fault::<()>(message, "another field", help);
         }
         for (n, quantity) in self.named() {

@@ -30,6 +30,8 @@ const UNIONS: &[Union] = &[
     Union("body[].layer[].material", "model", MATERIAL),
     Union("load.history", "kind", &[]),
     Union("load.stages[].history", "kind", &[]),
+    Union("tangential.x", "kind", &[]),
+    Union("tangential.y", "kind", &[]),
     Union("temperature.history", "kind", &[]),
     Union("motion.path", "kind", &[]),
     Union("motion.velocity", "kind", &[]),

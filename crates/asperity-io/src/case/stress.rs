@@ -85,13 +85,13 @@ enum Progression {
 }
 
 impl Stress {
-    /// The stress that a case asks for; whether the contact `moves`.
+    /// The stress that a case asks for; whether the contact `moves`, whether it `slips` under a tangential load.
     pub fn of_case(
         &self,
         at: &Place<'_>,
         grid: &Grid,
         pair: &Pair,
-        moves: bool,
+        [moves, slips]: [bool; 2],
         output: &Output,
         end: f64,
     ) -> Option<StressPlan> {
@@ -127,6 +127,13 @@ impl Stress {
             let message =
                 "the stress below the surface is computed from stored pressures, but none are stored";
             return at.fault(message, "stored pressures", "add \"pressure\" to output.fields");
+        }
+        if slips
+            && ![FieldKind::TractionX, FieldKind::TractionY].iter().all(|kind| output.fields.contains(kind))
+        {
+            let message = "the stress below the surface needs the stored tangential tractions, but they are not all stored";
+            let help = "add \"traction_x\" and \"traction_y\" to output.fields";
+            return at.fault(message, "stored tractions", help);
         }
         let times = stored_times(&at.key("times"), self.times.as_ref(), output, end)?;
         Some(StressPlan { times, ..plan })

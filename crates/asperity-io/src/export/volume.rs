@@ -50,7 +50,7 @@ pub fn volume(
     };
     let (grid, index) = (reader.header().grid, reader.index(at)?);
     let mut stress = plan.poisson.transforms(grid, boundary(reader))?;
-    Pressures::new(reader, &plan.poisson)?.give(index, &mut stress)?;
+    Pressures::new(reader, &plan.body, &plan.poisson)?.give(index, &mut stress)?;
     let depths = depths(reader, plan, &[index])?;
     let depths = if form == Form::Image { even(&depths, &grid) } else { depths };
     let lines = lines(&grid, &depths);

@@ -32,13 +32,9 @@ impl Maps {
         let (shift, boundary) = (step.frame_shift(), step.simulation().boundary);
         let has_moved = shift != [0; 2];
         for (kind, field) in &mut self.real {
-            match kind {
-                FieldKind::Gap => step.gap_into(field),
-                FieldKind::Displacement => step.displacement_into(field),
-                FieldKind::Flattening => step.flattening_into(field),
-                FieldKind::ContactPressure => field.assign(&step.contact_pressure()),
-                FieldKind::AdhesiveTraction => step.adhesive_traction_into(field),
-                FieldKind::Pressure | FieldKind::Contact => {}
+            // The pressure is that of the step, where nothing has moved.
+            if *kind != FieldKind::Pressure {
+                kind.of_step(step, field);
             }
             if has_moved {
                 let is_unknown = matches!(kind, FieldKind::Gap | FieldKind::Displacement);

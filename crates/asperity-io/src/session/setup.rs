@@ -101,6 +101,16 @@ pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
     if let Ok(Some(scale)) = AdhesionScale::of(simulation) {
         setup.insert(Header::ADHESION.into(), json!(scale));
     }
+    if let Some(law) = &simulation.tangential {
+        let limit = law.shear_limit.is_finite().then_some(law.shear_limit);
+        setup.insert(
+            Header::FRICTION.into(),
+            json!({
+                "coefficient": law.coefficients.is_none().then_some(law.coefficient), "shear_limit": limit, "control": law.control,
+                "poisson": law.poisson, "coupling": law.coupling,
+            }),
+        );
+    }
     if let Some(leak) = &case.leakage {
         setup.insert("leakage".into(), serde_json::to_value(leak).unwrap_or_default());
     }

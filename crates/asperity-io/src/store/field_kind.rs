@@ -1,5 +1,7 @@
 //! The fields that a result may keep.
 
+use asperity::step::Step;
+use ndarray::Array2;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -16,7 +18,7 @@ pub enum FieldKind {
     Gap,
     /// Normal displacement u, in m.
     Displacement,
-    /// Contact state: 0 out of contact, 1 in contact, 2 at the hardness.
+    /// Contact state: 0 out of contact, 1 in contact, 2 at the hardness, 3 slipping under a tangential load.
     Contact,
     /// Permanent flattening, in m: what the undeformed gap has gained; with plasticity = "accumulate".
     Flattening,
@@ -26,11 +28,29 @@ pub enum FieldKind {
     /// Attraction between the surfaces, in Pa; with adhesion.
     #[serde(rename = "adhesive_traction")]
     AdhesiveTraction,
+    /// Tangential traction along x, in Pa; with [tangential], as those that follow.
+    #[serde(rename = "traction_x")]
+    TractionX,
+    /// Tangential traction along y, in Pa.
+    #[serde(rename = "traction_y")]
+    TractionY,
+    /// Slip along x since t = 0, of each cell while it was in contact, in m.
+    #[serde(rename = "slip_x")]
+    SlipX,
+    /// Slip along y since t = 0, in m.
+    #[serde(rename = "slip_y")]
+    SlipY,
+    /// Length of the path of the slip of each cell since t = 0, in m: four times the amplitude in each cycle to and fro.
+    #[serde(rename = "slip_path")]
+    SlipPath,
+    /// Energy per area that friction has turned into heat in each cell since t = 0, in J/m2.
+    #[serde(rename = "friction_work")]
+    FrictionWork,
 }
 
 impl FieldKind {
     /// Every kind.
-    pub const ALL: [FieldKind; 7] = [
+    pub const ALL: [FieldKind; 13] = [
         FieldKind::Pressure,
         FieldKind::Gap,
         FieldKind::Displacement,
@@ -38,6 +58,12 @@ impl FieldKind {
         FieldKind::Flattening,
         FieldKind::ContactPressure,
         FieldKind::AdhesiveTraction,
+        FieldKind::TractionX,
+        FieldKind::TractionY,
+        FieldKind::SlipX,
+        FieldKind::SlipY,
+        FieldKind::SlipPath,
+        FieldKind::FrictionWork,
     ];
 
     /// Its name in case files and results.
@@ -50,12 +76,46 @@ impl FieldKind {
         choice::parse(name)
     }
 
+    /// Whether only a contact with friction has it.
+    pub fn is_of_friction(self) -> bool {
+        use FieldKind::{FrictionWork, SlipPath, SlipX, SlipY, TractionX, TractionY};
+        matches!(self, TractionX | TractionY | SlipX | SlipY | SlipPath | FrictionWork)
+    }
+
     /// Its unit; "1" where it has none.
     pub fn units(self) -> &'static str {
         match self {
-            FieldKind::Pressure | FieldKind::ContactPressure | FieldKind::AdhesiveTraction => "Pa",
-            FieldKind::Gap | FieldKind::Displacement | FieldKind::Flattening => "m",
+            FieldKind::Pressure
+            | FieldKind::ContactPressure
+            | FieldKind::AdhesiveTraction
+            | FieldKind::TractionX
+            | FieldKind::TractionY => "Pa",
+            FieldKind::Gap
+            | FieldKind::Displacement
+            | FieldKind::Flattening
+            | FieldKind::SlipX
+            | FieldKind::SlipY
+            | FieldKind::SlipPath => "m",
+            FieldKind::FrictionWork => "J/m2",
             FieldKind::Contact => "1",
+        }
+    }
+
+    /// Writes the numbers of a row; of the contact state the pressure.
+    pub fn of_step(self, step: &Step<'_>, field: &mut Array2<f64>) {
+        match self {
+            FieldKind::Pressure | FieldKind::Contact => field.assign(&step.pressure()),
+            FieldKind::Gap => step.gap_into(field),
+            FieldKind::Displacement => step.displacement_into(field),
+            FieldKind::Flattening => step.flattening_into(field),
+            FieldKind::ContactPressure => field.assign(&step.contact_pressure()),
+            FieldKind::AdhesiveTraction => step.adhesive_traction_into(field),
+            FieldKind::TractionX => step.tangential_traction_into(0, field),
+            FieldKind::TractionY => step.tangential_traction_into(1, field),
+            FieldKind::SlipX => step.slip_into(0, field),
+            FieldKind::SlipY => step.slip_into(1, field),
+            FieldKind::SlipPath => step.slip_path_into(field),
+            FieldKind::FrictionWork => step.friction_work_into(field),
         }
     }
 
@@ -78,6 +138,12 @@ impl FieldKind {
             FieldKind::Flattening => "permanent flattening",
             FieldKind::ContactPressure => "pressure of the cells in contact",
             FieldKind::AdhesiveTraction => "attraction between the surfaces",
+            FieldKind::TractionX => "tangential traction along x",
+            FieldKind::TractionY => "tangential traction along y",
+            FieldKind::SlipX => "slip along x since t = 0",
+            FieldKind::SlipY => "slip along y since t = 0",
+            FieldKind::SlipPath => "path of the slip since t = 0",
+            FieldKind::FrictionWork => "work of friction per area since t = 0",
         }
     }
 }

@@ -88,6 +88,9 @@ impl Header {
     /// The key of [`Header::adhesion`] in the setup.
     pub(crate) const ADHESION: &'static str = "adhesion";
 
+    /// The key of the numbers of its friction in the setup.
+    pub(crate) const FRICTION: &'static str = "friction";
+
     /// What its rows follow one another in.
     pub fn axis(&self) -> Axis {
         match self.setup.get("motion").and_then(|motion| motion.get("steady")).and_then(Value::as_bool) {

@@ -63,6 +63,16 @@ impl Series {
         Series { name: kind.name(), units: kind.units_on(grid), long_name: kind.long_name_on(grid) }
     }
 
+    /// What a quantity of a result has one number of in each row: itself, its components, or nothing.
+    pub(super) fn of_numbers(kind: Kind, grid: &Grid) -> Vec<Series> {
+        let whole = Series::of_quantity(kind, grid);
+        match kind.components() {
+            Some(parts) => parts.map(|[name, long_name]| Series { name, long_name, ..whole }).to_vec(),
+            None if kind.is_histogram() => vec![],
+            None => vec![whole],
+        }
+    }
+
     fn of_field(kind: FieldKind, header: &Header) -> Series {
         let long_name = match kind {
             FieldKind::Displacement if header.is_up_to_a_constant() => {
@@ -99,8 +109,14 @@ pub(super) const BINS: [(Kind, [Series; 2]); 3] = [
     ),
 ];
 
-/// The coordinates of a histogram with their numbers: middles, then ends. Another quantity has none.
+/// The coordinate along the components of a vector.
+const AXIS: Series = Series::new("axis", "1", "0 along x, 1 along y");
+
+/// The coordinates of a histogram with their numbers, middles, then ends; of a vector its axes. Another quantity has none.
 pub fn coordinates(column: &Quantity, grid: &Grid) -> Vec<(Series, Vec<f64>)> {
+    if column.quantity.components().is_some() {
+        return vec![(AXIS, vec![0.0, 1.0])];
+    }
     let Some((_, series)) = BINS.iter().find(|(kind, _)| *kind == column.quantity) else { return vec![] };
     let middle = |pair: &[f64]| match column.quantity {
         Kind::SpotHistogram => (pair[0] * pair[1]).sqrt(),
@@ -240,8 +256,8 @@ impl ArraySpec {
         };
         let mut attributes = json!({"units": self.series.units, "long_name": self.series.long_name});
         if self.data_type == DataType::UInt8 {
-            attributes["flag_values"] = json!([0, 1, 2]);
-            attributes["flag_meanings"] = json!("out_of_contact in_contact at_hardness");
+            attributes["flag_values"] = json!([0, 1, 2, 3]);
+            attributes["flag_meanings"] = json!("out_of_contact in_contact at_hardness slipping");
         }
         json!({
             "zarr_format": 3,
@@ -279,10 +295,12 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
         let bins = coordinates.first().map(|(series, middles)| (series.name, middles.len()));
         let over: Vec<_> = [row].into_iter().chain(bins).collect();
         arrays.push(ArraySpec::new(Series::of_quantity(column.quantity, grid), Storage::Rows, &over));
-        let coordinate = |(series, numbers): (Series, Vec<f64>)| {
-            ArraySpec::new(series, Storage::Whole, &[(series.name, numbers.len())])
-        };
-        arrays.extend(coordinates.into_iter().map(coordinate));
+        for (series, numbers) in coordinates {
+            // Vectors share their axes.
+            if !arrays.iter().any(|array: &ArraySpec| array.name() == series.name) {
+                arrays.push(ArraySpec::new(series, Storage::Whole, &[(series.name, numbers.len())]));
+            }
+        }
     }
     arrays.push(ArraySpec::new(Series::of_fields(header), Storage::Rows, &[map]));
     let step = Series::new("field_step", "1", "row of the fields");

@@ -172,13 +172,12 @@ impl Reader {
         Ok(rows)
     }
 
-    /// What each row has one number of: the [`SCALARS`], and the quantities that were asked for; with the units that they have on
-    /// the grid of the result.
+    /// What each row has one number of: the [`SCALARS`], the quantities that were asked for, and the components of those that are
+    /// vectors; with the units that they have on the grid of the result.
     pub fn scalars(&self) -> Vec<Series> {
         let header = self.header();
         let asked = header.quantities.iter().map(|column| column.quantity);
-        let asked = asked.filter(|quantity| !quantity.is_histogram());
-        let asked = asked.map(|quantity| Series::of_quantity(quantity, &header.grid));
+        let asked = asked.flat_map(|quantity| Series::of_numbers(quantity, &header.grid));
         SCALARS.iter().map(|scalar| Series::of_scalar(scalar, header)).chain(asked).collect()
     }
 
@@ -215,6 +214,14 @@ impl Reader {
         if !known.iter().any(|series| series.name == name) {
             let names: Vec<_> = known.iter().map(|series| series.name).collect();
             return Err(self.missing(format!("series `{name}`"), format!("it holds {}", names.join(", "))));
+        }
+        for column in &self.header().quantities {
+            let quantity = column.quantity;
+            let components = quantity.components().unwrap_or_default();
+            if let Some(axis) = components.iter().position(|[component, _]| *component == name) {
+                let numbers = self.numbers(quantity.name())?;
+                return Ok(numbers.chunks_exact(components.len()).map(|vector| vector[axis]).collect());
+            }
         }
         self.numbers(name)
     }

@@ -169,7 +169,13 @@ fn is_of_its_row(reader: &Reader, index: usize, row: &Row) -> Result<()> {
             FieldKind::Displacement
             | FieldKind::Flattening
             | FieldKind::ContactPressure
-            | FieldKind::AdhesiveTraction => true,
+            | FieldKind::AdhesiveTraction
+            | FieldKind::TractionX
+            | FieldKind::TractionY
+            | FieldKind::SlipX
+            | FieldKind::SlipY
+            | FieldKind::SlipPath
+            | FieldKind::FrictionWork => true,
         };
         if !holds {
             let what =

@@ -12,7 +12,7 @@ use super::below::{Loads, missed, profiles, scalars};
 use super::{Below, Depths, Pressures, StressPlan};
 use crate::choice;
 use crate::instants;
-use crate::store::{At, FieldKind, Reader, StoreError, StressSet, StressWriter, Writer};
+use crate::store::{At, FieldKind, Header, Reader, StoreError, StressSet, StressWriter, Writer};
 
 /// Why the stress was not computed.
 #[derive(Debug, Failure)]
@@ -61,7 +61,7 @@ pub fn evaluate(
 ) -> Result<Below, StressError> {
     let reader = Reader::open(writer.path())?;
     let set = set(&reader, plan)?;
-    Pressures::new(&reader, &set.poisson)?;
+    Pressures::new(&reader, &set.body, &set.poisson)?;
     writer.remove_stress()?;
     let mut store = StressWriter::new(writer.path(), &set, reader.field_times().len())?;
     compute(&reader, plan, &set, interrupt, &mut observe, Some(&mut store))?;
@@ -126,6 +126,13 @@ fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StressError> {
     if !reader.header().fields.contains(&FieldKind::Pressure) {
         return Err(reader.no_field(FieldKind::Pressure).into());
     }
+    let slips = reader.header().setup.contains_key(Header::FRICTION);
+    let lacks = [FieldKind::TractionX, FieldKind::TractionY]
+        .into_iter()
+        .find(|kind| !reader.header().fields.contains(kind));
+    if let Some(kind) = lacks.filter(|_| slips) {
+        return Err(reader.no_field(kind).into());
+    }
     let instants = instants::stored(reader, plan.times.as_deref())?;
     let depths = depths(reader, plan, &instants)?;
     Ok(StressSet {
@@ -151,7 +158,7 @@ fn compute(
 ) -> Result<Vec<super::Instant>, StressError> {
     let grid = reader.header().grid;
     let mut stress = set.poisson.transforms(grid, boundary(reader))?;
-    let mut pressures = Pressures::new(reader, &set.poisson)?;
+    let mut pressures = Pressures::new(reader, &set.body, &set.poisson)?;
     let loads = Loads::of(reader)?;
     let mut field = vec![0.0; if set.quantities.is_empty() { 0 } else { grid.len() }];
     let mut found = Vec::with_capacity(set.instants.len());

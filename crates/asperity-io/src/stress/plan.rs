@@ -1,8 +1,8 @@
 //! Which stress is computed: the body, the depths, the times.
 
+use asperity::Simulation;
 use asperity::material::{Body, Creep};
 use asperity::stress::{Rolling, StressQuantity, SurveyOptions};
-use asperity::{Boundary, Grid};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -185,12 +185,13 @@ impl StressPlan {
     }
 
     /// Memory that it takes \[bytes\]: transforms, six components, the pressure, and a field that is stored.
-    pub fn bytes(&self, grid: &Grid, boundary: Boundary) -> usize {
-        self.poisson.bytes(grid, boundary) + 2 * 8 * grid.len()
+    pub fn bytes(&self, simulation: &Simulation) -> usize {
+        let Simulation { grid, boundary, tangential, .. } = simulation;
+        self.poisson.bytes(grid, *boundary, tangential.is_some()) + 2 * 8 * grid.len()
     }
 
     /// What will be done at `times` times.
-    pub fn describe(&self, grid: &Grid, boundary: Boundary, times: Option<usize>) -> StressDescription {
+    pub fn describe(&self, simulation: &Simulation, times: Option<usize>) -> StressDescription {
         let (depth_count, depth_range) = match &self.depths {
             Depths::Auto => (AUTOMATIC, None),
             Depths::List(list) => (list.len(), list.first().zip(list.last()).map(|(a, b)| [*a, *b])),
@@ -204,8 +205,8 @@ impl StressPlan {
             times,
             fields: self.quantities.iter().map(|quantity| quantity.name()).collect(),
             evaluations: times.map(|times| times * (depth_count + REFINED)),
-            memory_bytes: self.bytes(grid, boundary) as u64,
-            result_bytes: maps.map(|maps| 8 * (maps * grid.len()) as u64),
+            memory_bytes: self.bytes(simulation) as u64,
+            result_bytes: maps.map(|maps| 8 * (maps * simulation.grid.len()) as u64),
         }
     }
 }

@@ -4,9 +4,9 @@
 use asperity::load::Control;
 use asperity::stress::{PressureHistory, SubsurfaceStress};
 
-use super::Ratio;
 use super::evaluate::StressError;
-use crate::store::{At, FieldKind, Reader};
+use super::{Ratio, bodies_of};
+use crate::store::{At, FieldKind, Header, Reader};
 
 const GAPS: &str = "Poisson's ratio of the body changes with time (constant bulk modulus), so that the stress needs the pressures \
                     of all rows, but not all are stored; run the case again with output.every = 1, or give --poisson NU for an \
@@ -20,6 +20,8 @@ const MOVES: &str = "the stress of a contact that moves over a body whose Poisso
 pub(crate) struct Pressures<'a> {
     reader: &'a Reader,
     history: Option<History>,
+    /// 1 for the first body, -1 for the second.
+    sign: f64,
 }
 
 /// The pressures so far.
@@ -32,12 +34,14 @@ struct History {
 }
 
 impl<'a> Pressures<'a> {
-    /// For a body of this Poisson's ratio.
+    /// For this body, of this Poisson's ratio.
     ///
     /// # Errors
     /// [`StressError`] where the ratio changes, and not every row is stored or the contact moves.
-    pub(crate) fn new(reader: &'a Reader, ratio: &Ratio) -> Result<Self, StressError> {
-        let Ratio::Changing(changing) = ratio else { return Ok(Pressures { reader, history: None }) };
+    pub(crate) fn new(reader: &'a Reader, body: &str, ratio: &Ratio) -> Result<Self, StressError> {
+        let is_first = bodies_of(reader).first().is_none_or(|first| first.name == body);
+        let sign = if is_first { 1.0 } else { -1.0 };
+        let Ratio::Changing(changing) = ratio else { return Ok(Pressures { reader, history: None, sign }) };
         let refused = |why| Err(StressError::Refused { path: reader.path().to_owned(), why });
         if reader.header().setup.contains_key("motion") {
             return refused(MOVES);
@@ -48,7 +52,11 @@ impl<'a> Pressures<'a> {
             return refused(GAPS);
         }
         let pressures = changing.history(reader.header().grid)?;
-        Ok(Pressures { reader, history: Some(History { pressures, controls: controls(reader)?, next: 0 }) })
+        Ok(Pressures {
+            reader,
+            history: Some(History { pressures, controls: controls(reader)?, next: 0 }),
+            sign,
+        })
     }
 
     /// Gives the pressure of a stored instant to the transforms; where the ratio changes, no earlier instant than the last time.
@@ -59,7 +67,7 @@ impl<'a> Pressures<'a> {
         let read = |index| self.reader.field(FieldKind::Pressure, At::Index(index));
         let Some(History { pressures, controls, next }) = &mut self.history else {
             stress.set_pressure(read(index)?.as_slice().unwrap_or_default())?;
-            return Ok(());
+            return self.give_tractions(index, stress);
         };
         while *next <= index {
             let pressure = read(*next)?;
@@ -72,6 +80,18 @@ impl<'a> Pressures<'a> {
             *next += 1;
         }
         Ok(stress.set_history(pressures)?)
+    }
+
+    /// Adds the tangential tractions, where there are any. The first body is the one that they act on; on the other one their opposite does.
+    fn give_tractions(&self, index: usize, stress: &mut SubsurfaceStress) -> Result<(), StressError> {
+        if !self.reader.header().setup.contains_key(Header::FRICTION) {
+            return Ok(());
+        }
+        let read = |kind| self.reader.field(kind, At::Index(index));
+        let tractions = [read(FieldKind::TractionX)?, read(FieldKind::TractionY)?];
+        let on_body = tractions.map(|traction| traction.mapv(|q| self.sign * q));
+        Ok(stress
+            .add_tractions(on_body.each_ref().map(|traction| traction.as_slice().unwrap_or_default()))?)
     }
 }
 

@@ -66,8 +66,8 @@ impl Ratio {
     }
 
     /// Bytes that transforms, six components and what is kept of earlier pressures take.
-    pub fn bytes(&self, grid: &Grid, boundary: Boundary) -> usize {
-        let transforms = SubsurfaceStress::bytes(grid, boundary);
+    pub fn bytes(&self, grid: &Grid, boundary: Boundary, tractions: bool) -> usize {
+        let transforms = SubsurfaceStress::bytes(grid, boundary, tractions);
         match self {
             Ratio::Constant(_) => transforms,
             // A second pressure and its transform, and the fields that they are made from.

@@ -72,7 +72,7 @@ pub fn section(reader: &Reader, below: &Below, instant: &Instant) -> Result<Sect
         return Err(StressError::NoContact { path: reader.path().to_owned(), when });
     }
     let mut stress = below.set.poisson.transforms(grid, boundary(reader))?;
-    Pressures::new(reader, &below.set.poisson)?.give(instant.index, &mut stress)?;
+    Pressures::new(reader, &below.set.body, &below.set.poisson)?.give(instant.index, &mut stress)?;
     let cell = grid.cell_sides().fold(0.0, f64::max);
     let least = CELLS * cell;
     let deepest = below.set.depths.last().copied().unwrap_or(least);

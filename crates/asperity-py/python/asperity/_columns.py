@@ -16,7 +16,7 @@ class Entry(NamedTuple):
     unit: str
     line_unit: str
     words: str
-    kind: Literal["real", "count", "histogram"]
+    kind: Literal["real", "count", "vector", "histogram"]
 
     def attributes(self, line: bool = False) -> dict[str, str]:
         """The attributes of its array in a dataset."""
@@ -32,6 +32,8 @@ ROW, QUANTITIES = _REGISTRY["rows"], _REGISTRY["quantities"]
 COLUMNS = {**ROW, **QUANTITIES}
 #: Those of them with a number for each bin.
 HISTOGRAMS = [name for name, entry in QUANTITIES.items() if entry.kind == "histogram"]
+#: Those with two numbers, along x and y.
+VECTORS = [name for name, entry in QUANTITIES.items() if entry.kind == "vector"]
 FIELDS = _REGISTRY["fields"]
 #: Stress below the surface, over `field_times` and `depth`.
 STRESS = _REGISTRY["stress"]

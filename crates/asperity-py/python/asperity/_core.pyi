@@ -200,7 +200,13 @@ class Store:
 @final
 class Stress:
     def __new__(
-        cls, pressure: _Floats, size: list[float], boundary: str, poisson: float, transverse: tuple[_Floats, float] | None
+        cls,
+        pressure: _Floats,
+        size: list[float],
+        boundary: str,
+        poisson: float,
+        transverse: tuple[_Floats, float] | None,
+        tractions: list[_Floats] | None,
     ) -> Stress: ...
     def automatic_depths(self) -> list[float]: ...
     def check_depths(self, depths: list[float]) -> None: ...

@@ -45,7 +45,7 @@ def _sentences(result: Result) -> list[str]:
     domain = "periodic domain" if setup.get("boundary") == "periodic" else "free surface"
     strain = " in plane strain" if result.is_line else ""
     return [
-        f"The frictionless {'adhesive ' if setup.get('adhesion') else ''}normal contact of {material} {bodies}{strain} was computed with asperity {known.get('version', '')}"
+        f"The {'frictional' if setup.get('friction') else 'frictionless'} {'adhesive ' if setup.get('adhesion') else ''}normal contact of {material} {bodies}{strain} was computed with asperity {known.get('version', '')}"
         f"{', by the model of Spinu and Cerlinca (2017)' if relaxes and not layered else ''}, on {cells_of(result.initial_gap)} of a {domain} of {sides}.",
         _of_materials(setup),
         _of_hardness(setup),

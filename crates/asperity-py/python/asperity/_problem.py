@@ -20,6 +20,7 @@ from ._materials import Material
 from ._rows import Quantity
 from ._shifts import temperature_keys
 from ._surface import Surface, check_boundary, surface_of
+from ._tangential import Friction, Tangential
 from ._units import bare
 from ._words import Boundary, Field, Method, Plasticity, Scheme
 
@@ -152,8 +153,22 @@ class InStages(InTime):
     stages: Sequence[Stage] | None = None
     adhesion: Adhesion | None = None
     fluid: Fluid | None = None
+    friction: Friction | float | npt.ArrayLike | None = None
+    tangential: Tangential | None = None
 
     alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure", "approach", "stages"), ("surface", "gap")]
+
+    def parts(self) -> tuple[Surface, dict[str, Any], dict[str, Floats]]:
+        shape, keys, arrays = super().parts()
+        if self.tangential is not None:
+            if not isinstance(self.tangential, Tangential):
+                raise CaseError(f"tangential is {self.tangential!r}, but must be asperity.tangential(force=...) or (displacement=...)")
+            keys["tangential"] = self.tangential._keys(shape.is_line)
+        if self.friction is not None:
+            given = self.friction if isinstance(self.friction, Friction) else Friction(self.friction)
+            keys["friction"], coefficients = given._parts(shape)
+            arrays |= coefficients
+        return shape, keys, arrays
 
     def controls(self) -> dict[str, Any]:
         return {**super().controls(), "approach": self.approach, "stages": self.stages}
@@ -198,6 +213,8 @@ class Solve(Run, InStages):
         if self.fields == ("pressure",) and (self.adhesion is not None or self.fluid is not None):
             # Which cells touch does not follow from the pressure there.
             self.fields = ("pressure", "contact_pressure")
+        if self.fields == ("pressure",) and self.tangential is not None:
+            self.fields = ("pressure", "contact", "traction_x", "traction_y")
 
 
 def bodies_of(material: Any) -> list[Material | Body]:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from . import _core, _html
 from ._arrays import Floats, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
 from ._axis import TIME, VELOCITY
-from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, Column
+from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, Column
 from ._core import CaseError
 from ._findings import Finding, findings_of
 from ._grid import OnGrid
@@ -269,7 +269,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         """A field of shape (nx, ny), of a line contact (n,), at the stored time nearest to `time` [s], or with that index; default the
         last. Of a sweep at the stored velocity nearest to `velocity` [m/s]. Fields of a contact that moves are in its frame.
 
-        "pressure" [Pa], "gap", "displacement", "flattening" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness).
+        "pressure" [Pa], "gap", "displacement", "flattening" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness, 3 slipping).
         Read-only for a result in memory, a new array for one on disk.
         """
         if name not in self._fields:
@@ -290,7 +290,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
     ) -> Stress:
         """The stress below the surface at the stored time nearest to `time` [s], or with that index; default the last.
 
-        It follows from the stored pressure, with the Poisson's ratio of the body of that number, or `poisson`; see
+        It follows from the stored pressure, under a tangential load also from the stored tractions, with the Poisson's ratio of the body of that number, or `poisson`; see
         :func:`asperity.stress`. Where that ratio changes with time (constant bulk modulus), the pressures of all rows must be kept. What a run or ``asperity stress`` stored are attributes over `field_times`: `max_mises` [Pa],
         `max_mises_depth`, `max_mises_x`, `max_mises_y` [m], the same for `tresca` and `tension`, and over `field_times` and
         `depth`: `mises_by_depth`, ...; NaN where the stress was not computed.
@@ -331,7 +331,11 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             if poisson is None:
                 raise CaseError("the result does not say the Poisson's ratio of the body, or it changes with the temperature; give poisson=...")
         pressure = self.field("pressure", time=time, index=index)
-        return stress(pressure, size=self._size, poisson=poisson, depths=depths, boundary=boundary)
+        tractions = None
+        if "friction" in setup:
+            # What acts on the first body acts the other way on the second.
+            tractions = [(-1.0 if body else 1.0) * self.field(name, time=time, index=index) for name in ("traction_x", "traction_y")]
+        return stress(pressure, size=self._size, poisson=poisson, depths=depths, boundary=boundary, tractions=tractions)
 
     def to_xarray(self) -> Any:
         """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk, with the stress below the surface and the
@@ -340,7 +344,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
 
         along, at, line = self._axis.name, f"field_{self._axis.name}", self.is_line
         data: dict[str, Any] = {
-            name: (along, np.array(self._table[name]), entry.attributes(line))
+            name: ((along, "axis")[: self._table[name].ndim], np.array(self._table[name]), entry.attributes(line))
             for name, entry in COLUMNS.items()
             if name != "time" and name in self._table
         }
@@ -357,6 +361,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             at: (at, np.array(self.field_times), {"units": self.units("time"), "long_name": f"{along} of the fields"}),
             **self._coordinates,
         }
+        if any(name in self._table for name in VECTORS):
+            coordinates["axis"] = ("axis", [0.0, 1.0], {"units": "1", "long_name": "0 along x, 1 along y"})
         if "depth" in self._stress:
             coordinates["depth"] = ("depth", np.array(self._stress["depth"]), STRESS["depth"].attributes())
         for name, (edges, numbers) in self._histograms.items():
@@ -478,7 +484,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         if not force and os.path.exists(path):
             raise FileExistsError(errno.EEXIST, "exists already; choose another path or replace it with force=True", os.fspath(path))
         histograms = {name: (plain(edges), plain(numbers)) for name, (edges, numbers) in self._histograms.items()}
-        quantities = {name: (np.empty(0), np.reshape(self._table[name], (-1, 1))) for name in self._table if name in QUANTITIES}
+        quantities = {name: (np.empty(0), self._table[name].reshape(len(self), -1)) for name in self._table if name in QUANTITIES}
         columns = {**quantities, **histograms}
         ends = [(name, edges) for name, (edges, _) in columns.items()]
         # All of it is read first: it may be replaced.
@@ -604,12 +610,19 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         return np.array(maps) if maps else np.empty(shape)
 
 
+def _stored(store: _core.Store, name: str) -> Floats:
+    """A column of the rows; of a vector of shape (rows, 2)."""
+    if name not in VECTORS:
+        return store.series(name)
+    return np.column_stack([store.series(f"{name}_{axis}") for axis in "xy"])
+
+
 def open(path: str | os.PathLike[str]) -> Result:
     """Opens a result on disk, finished or not; its fields are read when they are used."""
     store = _core.Store(os.fspath(path))
     attributes: dict[str, Any] = json.loads(store.attributes)
     return Result(
-        table={name: store.series(name) for name in [*ROW, *store.quantities] if name not in HISTOGRAMS},
+        table={name: _stored(store, name) for name in [*ROW, *store.quantities] if name not in HISTOGRAMS},
         histograms={name: store.histogram(name) for name in store.quantities if name in HISTOGRAMS},
         fields={name: store for name in store.fields},
         field_steps=store.field_steps,

@@ -51,13 +51,14 @@ class Stress(Sealed):
         poisson: float | None,
         boundary: str,
         transverse: tuple[Floats, float] | None = None,
+        tractions: list[Floats] | None = None,
     ) -> None:
         # Fields are computed later: the array of the caller may have changed until then.
         self._pressure = np.array(pressure)
         self._poisson = poisson
         # Where the Poisson's ratio changes with time: see `changing`.
         confined = None if transverse is None else (as_plane(transverse[0]), transverse[1])
-        self._given = as_plane(self._pressure), list(size), boundary, poisson or 0.0, confined
+        self._given = as_plane(self._pressure), list(size), boundary, poisson or 0.0, confined, tractions
         self._core = _core.Stress(*self._given)
         below = self._core.automatic_depths() if isinstance(depths, str) and depths == "auto" else depths
         if isinstance(below, str):
@@ -123,6 +124,7 @@ def stress(
     poisson: float,
     depths: str | Sequence[float] = "auto",
     boundary: Boundary = "free",
+    tractions: Sequence[Any] | None = None,
 ) -> Stress:
     """The stress below a pressure on a half-space.
 
@@ -137,6 +139,7 @@ def stress(
     depths : depths below the surface [m], rising, each 0 or at least a quarter of a cell; "auto" takes 0 and 24 depths from
         half a cell to the width of the contact (periodic: to half of the shorter side)
     boundary : "free" or "periodic" (uniform pressure without lateral strain)
+    tractions : tangential tractions along x and y [Pa] with which the other body acts on this one, two arrays like the pressure
 
     Raises
     ------
@@ -159,7 +162,10 @@ def stress(
     """
     values, extent, _ = _parts(pressure, size, "pressure")
     p = field("pressure", values, line=True)
-    return Stress(p, size_of("pressure", p, extent), depths, number("poisson", poisson), boundary)
+    shear = None if tractions is None else [as_plane(field("traction", _parts(q, size, "traction")[0], line=True)) for q in tractions]
+    if shear is not None and (len(shear) != 2 or any(q.shape != as_plane(p).shape for q in shear)):
+        raise CaseError(f"tractions are two arrays of shape {p.shape}, along x and y")
+    return Stress(p, size_of("pressure", p, extent), depths, number("poisson", poisson), boundary, tractions=shear)
 
 
 def changing(setup: dict[str, Any], body: int, rows: tuple[list[int], list[float]], pressures: Floats, size: Sequence[float], depths: Any) -> Stress:

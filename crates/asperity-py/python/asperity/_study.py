@@ -25,7 +25,7 @@ from ._findings import Finding, ResultWarning, warn_caller
 from ._points import Point, Solved, base_of, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
 from ._progress import line_of
-from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW
+from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW, VECTORS
 from ._histories import one_of
 from ._motion import slide, steady
 from ._units import UNITS, bare, carries, has_unit, is_labelled, unit_among
@@ -447,7 +447,7 @@ def _dataset(
     columns: dict[str, Any] = {}
     asked = dict.fromkeys(name for result in results if result is not None for name in result._table if name not in ROW)
     for name, entry in {**ROW, **{name: QUANTITIES[name] for name in asked}}.items():
-        table = _padded([None if result is None else result._table.get(name) for result in results], most)
+        table = _padded([None if result is None else result._table.get(name) for result in results], most, (2,) if name in VECTORS else ())
         units = {result.units(name) for result in results if result is not None}
         attributes = {"units": " or ".join(sorted(units)) or entry.unit, "long_name": entry.words}
         if name == "time":
@@ -460,7 +460,7 @@ def _dataset(
             else:
                 coordinates[along] = ((*dims, "step"), table.reshape(*plan.shape, most), attributes)
             continue
-        columns[name] = ((*dims, "step"), table.reshape(*plan.shape, most), attributes)
+        columns[name] = ((*dims, "step", "axis")[: len(dims) + table.ndim - 1], table.reshape(*plan.shape, *table.shape[1:]), attributes)
     columns["steps"] = (dims, steps.reshape(plan.shape), {"units": "1", "long_name": "number of rows"})
     columns["status"] = (dims, np.array([answer[0] for answer in answers]).reshape(plan.shape), {"long_name": "status"})
     columns["error"] = (dims, np.array([answer[1] for answer in answers]).reshape(plan.shape), {"long_name": "why it failed"})

@@ -59,6 +59,7 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     line("Temperature", crate::result::temperatures(reader));
     line("Motion", motion(setup));
     line("Hardness", number("hardness", "Pa"));
+    line("Friction", friction(setup));
     match header.axis() {
         Axis::Velocity => {
             let rows = reader.series("time")?;
@@ -125,6 +126,20 @@ fn motion(setup: &Map<String, Value>) -> Option<String> {
     let steady = if is("steady") { ", steady states" } else { "" };
     let along = crate::result::along(motion.get("direction")?, 1.0)?;
     Some(format!("{kind}{steady}; a positive velocity is {along}"))
+}
+
+/// "coefficient 0.3, under a tangential force".
+fn friction(setup: &Map<String, Value>) -> Option<String> {
+    let friction = setup.get("friction")?.as_object()?;
+    let number = |key: &str| friction.get(key).and_then(Value::as_f64);
+    let coefficient = match number("coefficient") {
+        Some(coefficient) => format!("coefficient {coefficient}"),
+        None => "a coefficient for each cell".to_owned(),
+    };
+    let limit =
+        number("shear_limit").map_or(String::new(), |limit| format!(", at most {}", quantity(limit, "Pa")));
+    let control = friction.get("control").and_then(Value::as_str).unwrap_or_default();
+    Some(format!("{coefficient}{limit}, under a tangential {control}"))
 }
 
 /// The last full cycle of each stage with a sine.

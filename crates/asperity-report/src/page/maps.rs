@@ -85,11 +85,11 @@ pub(super) fn one(reader: &Reader, kind: FieldKind, at: At, block: usize) -> Res
     Ok(means(reader.field(kind, at)?.view(), block))
 }
 
-/// The fields to show: those kept, and the contact, which any but displacement, flattening and attraction tells.
+/// The fields to show: those kept, and the contact, which any but displacement, flattening, attraction, traction and slip tells.
 fn kinds(reader: &Reader) -> Vec<FieldKind> {
     let kept = &reader.header().fields;
     let silent = [FieldKind::Displacement, FieldKind::Flattening, FieldKind::AdhesiveTraction];
-    let tells = kept.iter().any(|kind| !silent.contains(kind));
+    let tells = kept.iter().any(|kind| !silent.contains(kind) && !kind.is_of_friction());
     let shown = |kind: &FieldKind| if *kind == FieldKind::Contact { tells } else { kept.contains(kind) };
     let order = [
         FieldKind::Pressure,
@@ -99,6 +99,12 @@ fn kinds(reader: &Reader) -> Vec<FieldKind> {
         FieldKind::Gap,
         FieldKind::Displacement,
         FieldKind::Flattening,
+        FieldKind::TractionX,
+        FieldKind::TractionY,
+        FieldKind::SlipX,
+        FieldKind::SlipY,
+        FieldKind::SlipPath,
+        FieldKind::FrictionWork,
     ];
     order.into_iter().filter(shown).collect()
 }

@@ -88,6 +88,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "rows": {"label": rows.of.name(), "unit": rows.of.unit(), "symbol": rows.of.symbol(), "log": rows.log},
         "last_cycle": last_cycle(reader)?,
         "force_curve": ForceCurve::of(reader, &reader.series("approach")?, &reader.series("load")?),
+        "slips": reader.header().setup.contains_key("friction"),
         "cycles": each_cycle(reader)?,
         "evolution": evolution(reader, theory.is_some())?,
         "solver": panels::of_work(reader)?.iter().map(panel).collect::<Vec<_>>(),

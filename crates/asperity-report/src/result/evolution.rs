@@ -32,6 +32,34 @@ pub(super) fn load_displacement(reader: &Reader, options: &Options) -> Result<Fi
     Ok(figure.with(nameless(Curves { title, ..panel }, &x?[cycle.clone()], y?[cycle].to_vec())))
 }
 
+/// A component of the displacement that is a smaller share of the other one is none.
+const STILL: f64 = 1e-6;
+
+/// Tangential force over tangential displacement, of each component that moves.
+pub(super) fn tangential_loop(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
+    let kept = shown(reader, options)?;
+    let pick = |name: &str| -> Result<Vec<f64>, StoreError> {
+        let values = reader.series(name)?;
+        Ok(kept.iter().filter_map(|row| values.get(*row).copied()).collect())
+    };
+    let axis = Axis::linear("tangential displacement", "m");
+    let panel = Curves::new("", axis, Axis::linear("tangential force", reader.header().grid.units("N")));
+    let mut curves = vec![];
+    for name in ["x", "y"] {
+        let [displacement, force] =
+            ["displacement", "force"].map(|of| pick(&format!("tangential_{of}_{name}")));
+        curves.push((name, displacement?, force?));
+    }
+    let most = |values: &[f64]| values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+    let far = curves.iter().map(|(_, displacement, _)| most(displacement)).fold(0.0, f64::max);
+    // What moves by rounding only is no curve.
+    let moves = |displacement: &[f64]| most(displacement) > STILL * far;
+    let shown = curves.into_iter().filter(|(_, displacement, _)| moves(displacement));
+    Ok(Figure::new("").with(shown.fold(panel, |panel, (name, displacement, force)| {
+        panel.with(Series::new(format!("along {name}"), Style::Line, displacement, force))
+    })))
+}
+
 /// Load over approach of surfaces that adhere: while they approach and while they part (NaN in between), and the row of the pull-off.
 #[derive(serde::Serialize)]
 pub(crate) struct ForceCurve {

@@ -7,8 +7,20 @@ use super::{Options, PlotError, caption, line, look, no_contact};
 use crate::figure::{Colours, Figure, Map, OPEN, State};
 
 /// Names and colours of the contact states.
-pub(super) const CONTACT_STATES: &[State] =
-    &[("open", OPEN), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
+const CONTACT_STATES: &[State] = &[("open", OPEN), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
+
+/// The same with friction.
+const SLIP_STATES: &[State] = &[
+    ("open", OPEN),
+    ("sticking", [0, 114, 178]),
+    ("sticking at hardness", [213, 94, 0]),
+    ("slipping", [230, 159, 0]),
+];
+
+/// The states that cells of a result may have: slipping only with friction.
+pub(super) fn contact_states(reader: &Reader) -> &'static [State] {
+    if reader.header().setup.contains_key("friction") { SLIP_STATES } else { CONTACT_STATES }
+}
 
 /// The state of a cell whose pressure is the hardness.
 const AT_HARDNESS: u8 = 2;
@@ -71,7 +83,8 @@ fn states(reader: &Reader, at: At) -> Result<Figure, PlotError> {
     let states = reader.contact_states(at)?;
     let index = reader.index(at)?;
     let title = no_contact(reader, index)?;
-    let map = Map::states(title, CONTACT_STATES, states.mapv(f64::from).view(), reader.header().grid.size());
+    let names = contact_states(reader);
+    let map = Map::states(title, names, states.mapv(f64::from).view(), reader.header().grid.size());
     Ok(single(map, caption(reader, index)?))
 }
 

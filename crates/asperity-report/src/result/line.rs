@@ -3,7 +3,7 @@
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use ndarray::Array2;
 
-use super::fields::CONTACT_STATES;
+use super::fields::contact_states;
 use super::{caption, look, nameless, no_contact};
 use crate::figure::{Axis, COLOURS, Curves, Figure, INK, Map, Series, Style, extent, means, states};
 
@@ -95,13 +95,13 @@ fn along(reader: &Reader) -> Axis {
 fn axis(reader: &Reader, kind: FieldKind) -> Axis {
     match kind {
         FieldKind::Contact => {
-            let names: Vec<&str> = CONTACT_STATES.iter().map(|(name, _)| *name).collect();
+            let names: Vec<&str> = contact_states(reader).iter().map(|(name, _)| *name).collect();
             let is_capped = reader
                 .header()
                 .setup
                 .iter()
                 .any(|(key, value)| key.starts_with("hardness") && !value.is_null());
-            Axis::states("", if is_capped { &names } else { &names[..2] })
+            Axis::states("", if is_capped || names.len() > 3 { &names } else { &names[..2] })
         }
         kind => Axis::linear(look(kind).0, kind.units()),
     }
@@ -139,7 +139,7 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
     }
     let size = [reader.header().grid.size()[0], last - first];
     let map = match look(kind) {
-        (_, None) => Map::states("", CONTACT_STATES, picture.view(), size),
+        (_, None) => Map::states("", contact_states(reader), picture.view(), size),
         (label, Some(colours)) => Map::new("", [label, kind.units()], colours, picture.view(), size),
     };
     Ok(Some(Map { whole, ..map.over_time(first) }))

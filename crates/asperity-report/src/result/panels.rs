@@ -90,7 +90,8 @@ pub(crate) fn of_evolution(reader: &Reader) -> Result<Vec<RowPanel>, StoreError>
             changing.push(panel.title);
         }
     }
-    if !changing.is_empty() {
+    let slips = reader.header().quantities.iter().any(|column| column.quantity.is_tangential());
+    if slips || !changing.is_empty() {
         panels.retain(|panel| changing.contains(&panel.title));
     }
     Ok(panels)
@@ -107,8 +108,13 @@ pub(crate) fn of_quantities(reader: &Reader) -> Result<Vec<RowPanel>, StoreError
     let mut panels: Vec<RowPanel> = vec![];
     let grid = &reader.header().grid;
     for column in &reader.header().quantities {
-        if let Some(panel) = column.quantity.panel_on(grid) {
-            add(&mut panels, panel, column.quantity.name(), column.quantity.states());
+        let Some(panel) = column.quantity.panel_on(grid) else { continue };
+        match column.quantity.components() {
+            Some([[x, _], [y, _]]) => {
+                add(&mut panels, Panel { legend: "along x", ..panel }, x, &[]);
+                add(&mut panels, Panel { legend: "along y", ..panel }, y, &[]);
+            }
+            None => add(&mut panels, panel, column.quantity.name(), column.quantity.states()),
         }
     }
     // Numbers that every row has, beside the quantities of their panel.

@@ -65,6 +65,8 @@ plots! {
     Evolution "evolution" Shows::Load, panels::evolution;
     /// Load over approach.
     LoadDisplacement "load-displacement" Shows::Load, evolution::load_displacement;
+    /// Tangential force over tangential displacement: the loop of a contact with friction.
+    TangentialLoop "tangential-loop" Shows::Load, evolution::tangential_loop;
     /// Map of the pressure at an instant; of a line contact a curve, and a picture over x and time. So are the other maps.
     Pressure "pressure" Shows::Field(FieldKind::Pressure), map!(Pressure);
     /// Map of the gap at an instant.
@@ -79,6 +81,18 @@ plots! {
     ContactPressure "contact-pressure" Shows::Field(FieldKind::ContactPressure), map!(ContactPressure);
     /// Map of the attraction between the surfaces at an instant.
     AdhesiveTraction "adhesive-traction" Shows::Field(FieldKind::AdhesiveTraction), map!(AdhesiveTraction);
+    /// Map of the tangential traction along x at an instant, of a contact with friction.
+    TractionX "traction-x" Shows::Field(FieldKind::TractionX), map!(TractionX);
+    /// Map of the tangential traction along y.
+    TractionY "traction-y" Shows::Field(FieldKind::TractionY), map!(TractionY);
+    /// Map of the slip along x since t = 0.
+    SlipX "slip-x" Shows::Field(FieldKind::SlipX), map!(SlipX);
+    /// Map of the slip along y since t = 0.
+    SlipY "slip-y" Shows::Field(FieldKind::SlipY), map!(SlipY);
+    /// Map of the path of the slip since t = 0.
+    SlipPath "slip-path" Shows::Field(FieldKind::SlipPath), map!(SlipPath);
+    /// Map of the energy per area that friction has turned into heat since t = 0.
+    FrictionWork "friction-work" Shows::Field(FieldKind::FrictionWork), map!(FrictionWork);
     /// Map of the undeformed gap.
     InitialGap "initial-gap" Shows::Undeformed, fields::initial_gap;
     /// Pressure and gap along a line at an instant.
@@ -182,6 +196,12 @@ pub(crate) fn look(kind: FieldKind) -> (&'static str, Option<Colours>) {
         FieldKind::Flattening => ("permanent flattening", Some(Colours::Sequential)),
         FieldKind::ContactPressure => ("contact pressure", Some(Colours::Pressure)),
         FieldKind::AdhesiveTraction => ("attraction", Some(Colours::Sequential)),
+        FieldKind::TractionX => ("traction along x", Some(Colours::Diverging)),
+        FieldKind::TractionY => ("traction along y", Some(Colours::Diverging)),
+        FieldKind::SlipX => ("slip along x", Some(Colours::Diverging)),
+        FieldKind::SlipY => ("slip along y", Some(Colours::Diverging)),
+        FieldKind::SlipPath => ("path of the slip", Some(Colours::Heat)),
+        FieldKind::FrictionWork => ("work of friction per area", Some(Colours::Heat)),
         FieldKind::Contact => ("contact", None),
     }
 }

@@ -44,8 +44,10 @@ pub(super) struct PartialSlip {
     slip: Slip,
     /// u of the row.
     displacement: Vec<Vector>,
-    /// Slip of each cell since t = 0, while in contact.
+    /// Slip of each cell since t = 0, while in contact; the length of its path, and the energy per area that friction has taken.
     slid: Vec<Vector>,
+    path: Vec<f64>,
+    heat: Vec<f64>,
     /// State of each cell.
     slips: Vec<bool>,
     radius: Vec<f64>,
@@ -75,6 +77,8 @@ impl PartialSlip {
             slip: Slip { traction: zeros(n), unit: zeros(n), displacement: [0.0; 2] },
             displacement: zeros(n),
             slid: zeros(n),
+            path: zeros(n),
+            heat: zeros(n),
             slips: vec![false; n],
             radius: zeros(n),
             offset: zeros(n),
@@ -133,18 +137,20 @@ impl PartialSlip {
         let (q, unit) = (&self.slip.traction[..], &self.slip.unit[..]);
         let moved = |u: Vector, b: Vector| plus(times(compliance, u), b);
         each(&mut self.displacement, (unit, &self.offset[..]), |to, (u, b)| *to = plus(*to, moved(u, b)));
-        each(&mut self.slid, (row.contact, unit, &self.offset[..]), |slid, (p, u, b)| {
-            *slid = if p > 0.0 { plus(*slid, minus(moved(u, b), d)) } else { *slid };
-        });
         each(&mut self.slips, (row.contact, q, &self.radius[..]), |slips, (p, q, radius)| {
             *slips = p > 0.0 && length(q) >= radius * (1.0 - EDGE);
         });
+        // Where a cell sticks, what is left of the slip is the error of the solver.
+        let slip = |u: Vector, b: Vector, slips: bool| if slips { minus(moved(u, b), d) } else { [0.0; 2] };
+        let cells = (unit, &self.offset[..], &self.slips[..]);
+        each(&mut self.slid, cells, |slid, (u, b, slips)| *slid = plus(*slid, slip(u, b, slips)));
+        each(&mut self.path, cells, |path, (u, b, slips)| *path += length(slip(u, b, slips)));
+        let cells = (q, unit, &self.offset[..], &self.slips[..]);
+        each(&mut self.heat, cells, |heat, (q, u, b, slips)| *heat -= inner(q, slip(u, b, slips)));
         let cells = (row.contact, q, unit, &self.offset[..], &self.slips[..]);
         let [x, y, work, stick, slip] = sums(cells, |(p, q, u, b, slips)| {
-            let touches = p > 0.0;
-            let work = if slips { -inner(q, minus(moved(u, b), d)) } else { 0.0 };
             let count = |is: bool| f64::from(u8::from(is));
-            [q[0], q[1], work, count(touches && !slips), count(slips)]
+            [q[0], q[1], -inner(q, slip(u, b, slips)), count(p > 0.0 && !slips), count(slips)]
         });
         let force = times(area, [x, y]);
         let (change, way) = (minus(force, self.numbers.force), length(d));
@@ -213,6 +219,8 @@ impl Process for PartialSlip {
         Some(SlipFields {
             traction: &self.slip.traction,
             slip: &self.slid,
+            path: &self.path,
+            heat: &self.heat,
             slips: &self.slips,
             numbers: self.numbers,
         })
@@ -225,6 +233,8 @@ impl Process for PartialSlip {
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
         let SlipRow { force, displacement, work, .. } = &self.numbers;
         to.values("numbers", &[&force[0], &force[1], &displacement[0], &displacement[1], work, &self.load]);
+        to.field("path", &self.path);
+        to.field("heat", &self.heat);
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let component = |field: &[Vector]| field.iter().map(|v| v[axis]).collect();
             to.within(name, |to| {
@@ -240,6 +250,8 @@ impl Process for PartialSlip {
     fn load(&mut self, from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
         let SlipRow { force: [fx, fy], displacement: [dx, dy], work, .. } = &mut self.numbers;
         from.values_into("numbers", &mut [fx, fy, dx, dy, work, &mut self.load])?;
+        from.field_into("path", &mut self.path)?;
+        from.field_into("heat", &mut self.heat)?;
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let set = |field: &mut [Vector], from: &[f64]| each(field, from, |v, part| v[axis] = part);
             from.within(name, |from| {
@@ -264,6 +276,9 @@ pub(crate) struct SlipFields<'a> {
     pub(crate) traction: &'a [Vector],
     /// Slip since t = 0 \[m\].
     pub(crate) slip: &'a [Vector],
+    /// Length of its path \[m\], and energy per area that friction has taken \[J/m^2\].
+    pub(crate) path: &'a [f64],
+    pub(crate) heat: &'a [f64],
     /// Whether a cell in contact slips.
     pub(crate) slips: &'a [bool],
     pub(crate) numbers: SlipRow,

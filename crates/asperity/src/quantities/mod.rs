@@ -21,6 +21,11 @@
 //! | `adhesive_load`, `repulsive_load` | N | attraction between the surfaces, and load on the cells in contact |
 //! | `adhesion_energy` | J | potential energy of the attraction |
 //! | `outer_iterations`, `adhesion_residual` | | passes of the loop around the contact solver, and the change in the last one |
+//! | `tangential_force`, `tangential_displacement` | N, m | along x and y, two numbers per row, of a contact with a load along its surfaces |
+//! | `tangential_stiffness` | N/m | change of the force over that of the displacement in the step |
+//! | `stick_area`, `slip_area` | m² | area of the cells that stick, and of those at the limit of friction |
+//! | `slip_work` | J | work of friction since t = 0 |
+//! | `friction_iterations`, `friction_certificate` | | iterations of the tangential solver, and its certified error |
 //! | `velocity`, `sliding_distance` | m/s, m | velocity of a contact in motion, and how far it has moved |
 //! | `friction_force`, `side_force` | N | force against motion and across it |
 //! | `friction_coefficient`, `friction_coefficient_total` | | friction force over load, without and with a shear stress on the contact |
@@ -68,6 +73,15 @@ macro_rules! quantities {
         }
 
         impl Quantity {
+            const fn along_axes(self) -> [[&'static str; 2]; 2] {
+                match self {
+                    $(Quantity::$variant => [
+                        [concat!($name, "_x"), concat!($long_name, " along x")],
+                        [concat!($name, "_y"), concat!($long_name, " along y")],
+                    ],)*
+                }
+            }
+
             /// Every quantity.
             pub const ALL: [Quantity; [$(Quantity::$variant),*].len()] = [$(Quantity::$variant),*];
 
@@ -182,6 +196,24 @@ quantities! {
     LeakSpread = "leak_spread" ["1"] "spread of the leak over the last passes", Fluid, ("Spread of the leak", "share", "");
     /// Change of the fluid's tractions in the last pass, relative to all forces between the surfaces.
     FluidResidual = "fluid_residual" ["1"] "change of the fluid's tractions in the last pass", Fluid, ("Change in the last pass", "share", "");
+    /// Force along the surfaces, along x and y, in N; of a contact with a tangential load, as the seven that follow.
+    TangentialForce = "tangential_force" ["N"] "tangential force", TangentialVector, ("Tangential force", "force", "");
+    /// Displacement of the bodies against each other along x and y since t = 0, in m.
+    TangentialDisplacement = "tangential_displacement" ["m"] "tangential displacement", TangentialVector, ("Tangential displacement", "displacement", "");
+    /// Change of the tangential force in the step over that of the displacement, along the displacement, in N/m; NaN where nothing moves.
+    TangentialStiffness = "tangential_stiffness" ["N/m"] "tangential stiffness", Tangential, ("Tangential stiffness", "stiffness", "");
+    /// Area of the cells in contact that stick, in m2.
+    StickArea = "stick_area" ["m2"] "area that sticks", Tangential, ("Stick and slip", "area", "stick"),
+        on a line ["m"] "length that sticks" ("Stick and slip", "length");
+    /// Area of the cells in contact whose traction is at the limit of friction, in m2.
+    SlipArea = "slip_area" ["m2"] "area that slips", Tangential, ("Stick and slip", "area", "slip"),
+        on a line ["m"] "length that slips" ("Stick and slip", "length");
+    /// Work of friction since t = 0, in J: heat in the surfaces. Of elastic bodies it grows over a closed loop by the area of the loop.
+    SlipWork = "slip_work" ["J"] "work of friction", Tangential, ("Work of friction", "work", "");
+    /// Iterations of the solver of the tangential tractions.
+    FrictionIterations = "friction_iterations" ["1"] "iterations of the tangential solver", Tangential, ("Iterations of the tangential solver", "number", "");
+    /// Certified error of the tangential tractions in the energy norm, relative.
+    FrictionCertificate = "friction_certificate" ["1"] "certified error of the tangential tractions, relative", Tangential, ("Certified error of the tangential tractions", "share", "");
     /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.
     Velocity = "velocity" ["m/s"] "velocity", Motion, ("Velocity", "velocity", "");
     /// Distance that the contact has moved, in m.
@@ -239,6 +271,9 @@ enum Kind {
     Traction,
     Adhesion,
     Fluid,
+    /// A contact with a tangential load: every row has it; or two of it, along x and y.
+    Tangential,
+    TangentialVector,
     /// A contact in motion: every row has it, or only on request.
     Motion,
     MotionOnRequest,
@@ -258,7 +293,15 @@ pub struct Panel {
 impl Quantity {
     /// The quantities of every contact, moving or not, with other tractions or without.
     pub fn at_rest() -> impl Iterator<Item = Quantity> {
-        Quantity::ALL.into_iter().filter(|quantity| !quantity.is_of_motion() && !quantity.is_of_traction())
+        let is_special = |quantity: &Quantity| {
+            quantity.is_of_motion() || quantity.is_of_traction() || quantity.is_tangential()
+        };
+        Quantity::ALL.into_iter().filter(move |quantity| !is_special(quantity))
+    }
+
+    /// The quantities that every row of a contact with a tangential load has.
+    pub fn of_tangential() -> impl Iterator<Item = Quantity> {
+        Quantity::ALL.into_iter().filter(|quantity| quantity.is_tangential())
     }
 
     /// The quantities that every row of an adhesive contact has.
@@ -313,6 +356,11 @@ impl Quantity {
         self.declaration().line.filter(|_| grid.is_line()).map_or(self.long_name(), |line| line.long_name)
     }
 
+    /// Names and descriptions of its components along x and y; none if its value is a number or a histogram.
+    pub fn components(self) -> Option<[[&'static str; 2]; 2]> {
+        (self.declaration().kind == Kind::TangentialVector).then(|| self.along_axes())
+    }
+
     /// The panel that shows it on this grid; `None` for a histogram.
     pub fn panel_on(self, grid: &Grid) -> Option<Panel> {
         let Declaration { panel, line, .. } = self.declaration();
@@ -349,6 +397,11 @@ impl Quantity {
     /// Whether it belongs to a contact in motion.
     pub fn is_of_motion(self) -> bool {
         matches!(self.declaration().kind, Kind::Motion | Kind::MotionOnRequest)
+    }
+
+    /// Whether it belongs to a contact with a tangential load.
+    pub fn is_tangential(self) -> bool {
+        matches!(self.declaration().kind, Kind::Tangential | Kind::TangentialVector)
     }
 
     /// Whether it belongs to a contact with tractions that depend on the gap.
@@ -412,7 +465,11 @@ pub struct Column {
 impl Column {
     /// Numbers per row.
     pub fn width(&self) -> usize {
-        if self.edges.is_empty() { 1 } else { self.edges.len() - 1 }
+        match (self.quantity.components(), self.edges.len()) {
+            (Some(components), _) => components.len(),
+            (None, 0) => 1,
+            (None, ends) => ends - 1,
+        }
     }
 }
 

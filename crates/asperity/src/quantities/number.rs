@@ -14,7 +14,7 @@ pub enum RowNumber {
 
 impl RowNumber {
     /// All that a stage can wait for: what an attempt at a step determines. Energies are sums over the rows that stand, the error of
-    /// friction is the largest of several rows, and the work of the solver says nothing of the contact.
+    /// friction is the largest of several rows, tangential tractions are solved once a row stands, and the work of the solver says nothing of the contact.
     pub fn all() -> impl Iterator<Item = RowNumber> {
         let of_contact = |column: &&RowColumn| {
             !matches!(column.panel_on(false), Some((RowFigure::Work, _)))
@@ -22,7 +22,7 @@ impl RowNumber {
         };
         let is_known = |quantity: &Quantity| {
             let of_rows = [Quantity::FrictionUncertainty, Quantity::DissipatedPower].contains(quantity);
-            !(quantity.is_histogram() || quantity.is_energy() || of_rows)
+            !(quantity.is_histogram() || quantity.is_energy() || quantity.is_tangential() || of_rows)
         };
         let columns = ROW_COLUMNS.iter().filter(of_contact).map(RowNumber::Column);
         columns.chain(Quantity::ALL.into_iter().filter(is_known).map(RowNumber::Quantity))

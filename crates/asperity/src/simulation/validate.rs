@@ -97,13 +97,15 @@ impl Simulation {
             "one that is no energy. Energies need the springs and dashpots of the material, which scheme = \"direct\" does not \
              use; set time.scheme to \"linear\" or \"constant\""
         } else if self.tangential.is_some() && is_energy {
-            "one that is no energy: the account of the bodies leaves out what tangential tractions do. Take the work of friction \
-             (SlipRow::work)"
+            "one that is no energy: the account of the bodies leaves out what tangential tractions do. Take slip_work, the \
+             work of friction"
         } else if self.layers.is_some() && (is_energy || quantity == Quantity::ContactStiffness) {
             "one that is solved for layers that creep differently. Leave it out, or give all layers and bodies the same relative \
              creep"
         } else if quantity == Quantity::ContactStiffness && self.traction.is_some() {
             "one that an adhesive contact, or one that a fluid acts on, has: its stiffness includes theirs and is infinite where cells snap"
+        } else if quantity.is_tangential() && self.tangential.is_none() {
+            "one that the rows have. Only a contact with a load along its surfaces has this one: add [friction] and [tangential]"
         } else if quantity.is_of_traction() && !self.has_traction_with(quantity) {
             match Quantity::of_adhesion().any(|own| own == quantity) {
                 true => "one that the rows have. Only an adhesive contact has this one: add [adhesion]",

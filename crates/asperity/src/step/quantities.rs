@@ -97,6 +97,12 @@ impl Step<'_> {
                     densities(open, &column.edges, own);
                     continue;
                 }
+                tangential if tangential.is_tangential() => {
+                    if let Some(row) = self.slip_row() {
+                        row.write(tangential, own);
+                    }
+                    continue;
+                }
                 of_process => self.of_process(of_process).unwrap_or(f64::NAN),
             };
             own.fill(one);

@@ -265,6 +265,16 @@ impl<'a> Step<'a> {
         component_into(self.slip_fields().map(|fields| fields.slip), axis, slip);
     }
 
+    /// Length of the path of the slip of each cell since t = 0 \[m\]; 0 everywhere without friction.
+    pub fn slip_path_into(&self, path: &mut Array2<f64>) {
+        copy_into(self.slip_fields().map(|fields| fields.path), path);
+    }
+
+    /// Energy per area that friction has turned into heat in each cell since t = 0 \[J/m^2\]; 0 everywhere without friction.
+    pub fn friction_work_into(&self, work: &mut Array2<f64>) {
+        copy_into(self.slip_fields().map(|fields| fields.heat), work);
+    }
+
     /// The numbers of the row.
     pub fn row(&self) -> Row {
         let Step { state, outcome, hardness, .. } = self;
@@ -404,6 +414,12 @@ kernel! {
 fn component_into(field: Option<&[[f64; 2]]>, axis: usize, to: &mut Array2<f64>) {
     to.fill(0.0);
     to.iter_mut().zip(field.unwrap_or_default()).for_each(|(to, v)| *to = v[axis]);
+}
+
+/// A field of numbers; 0 without one.
+fn copy_into(field: Option<&[f64]>, to: &mut Array2<f64>) {
+    to.fill(0.0);
+    to.iter_mut().zip(field.unwrap_or_default()).for_each(|(to, value)| *to = *value);
 }
 
 /// The cells as a field.

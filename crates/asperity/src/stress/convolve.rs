@@ -15,9 +15,9 @@ use realfft::RealToComplex;
 use rustfft::num_complex::Complex64;
 
 use super::Component;
-use super::coefficients::{corner, strip, wave};
 use super::depths::check_depth;
 use super::history::{PressureHistory, check_pressure, mean};
+use super::shear::Action;
 use crate::convolution::Convolution;
 use crate::error::{Result, require};
 use crate::grid::{Boundary, Grid};
@@ -53,10 +53,11 @@ pub struct SubsurfaceStress {
     work: Vec<Complex64>,
 }
 
-/// A pressure and the Poisson's ratio of the body that it acts on.
+/// A pressure or a traction, and the Poisson's ratio of the body that it acts on.
 struct Source {
+    action: Action,
     poisson: f64,
-    /// Transformed rows of the pressure.
+    /// Its transformed rows.
     rows: Vec<Complex64>,
 }
 
@@ -97,7 +98,7 @@ impl SubsurfaceStress {
         check_pressure(p, self.grid.len())?;
         self.sources.clear();
         self.lateral = 0.0;
-        self.add(p, self.poisson);
+        self.add(Action::Pressure, p, self.poisson);
         Ok(())
     }
 
@@ -127,26 +128,51 @@ impl SubsurfaceStress {
             Boundary::Free => 0.0,
             Boundary::Periodic => mean(&twice) - confined,
         };
-        self.add(&rest, 0.0);
-        self.add(&twice, 0.5);
+        self.add(Action::Pressure, &rest, 0.0);
+        self.add(Action::Pressure, &twice, 0.5);
         Ok(())
     }
 
-    /// Adds a pressure on a body of this Poisson's ratio.
-    fn add(&mut self, p: &[f64], poisson: f64) {
-        let mut rows = self.plane.columns();
-        self.plane.rows_forward(p, &mut rows);
-        self.sources.push(Source { poisson, rows });
+    /// Adds the tangential tractions along x and y \[Pa\] with which the other body acts on this one to the pressure that was set.
+    ///
+    /// ```
+    /// use asperity::{Boundary, Grid, stress::{Component, SubsurfaceStress}};
+    /// // An even traction on a periodic domain is the shear stress at any depth.
+    /// let mut stress = SubsurfaceStress::new(Grid::new([8, 6], [1.0, 1.0])?, Boundary::Periodic, 0.3)?;
+    /// stress.set_pressure(&[0.0; 48])?;
+    /// stress.add_tractions([&[2e6; 48], &[0.0; 48]])?;
+    /// let mut xz = vec![0.0; 48];
+    /// stress.component_into(Component::Xz, 0.1, &mut xz)?;
+    /// assert!(xz.iter().all(|s| (s + 2e6).abs() < 1e-6));
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`set_pressure`](Self::set_pressure).
+    pub fn add_tractions(&mut self, [qx, qy]: [&[f64]; 2]) -> Result<()> {
+        for (action, traction) in [(Action::ShearX, qx), (Action::ShearY, qy)] {
+            check_pressure(traction, self.grid.len())?;
+            self.add(action, traction, self.poisson);
+        }
+        Ok(())
     }
 
-    /// Bytes of the transforms, and of the six fields of [`at`](Self::at).
-    pub fn bytes(grid: &Grid, boundary: Boundary) -> usize {
+    /// Adds what acts on a body of this Poisson's ratio.
+    fn add(&mut self, action: Action, p: &[f64], poisson: f64) {
+        let mut rows = self.plane.columns();
+        self.plane.rows_forward(p, &mut rows);
+        self.sources.push(Source { action, poisson, rows });
+    }
+
+    /// Bytes of the transforms, of the six fields of [`at`](Self::at), and with tangential tractions of these and their transforms.
+    pub fn bytes(grid: &Grid, boundary: Boundary, tractions: bool) -> usize {
         let [nx, ny] = grid.cells();
         let (length, coefficients) = match boundary {
             Boundary::Free => (Convolution::good_length(2 * ny - 1), 1),
             Boundary::Periodic => (ny, 0),
         };
-        8 * nx * ((4 + coefficients) * (length / 2 + 1) + 6 * ny)
+        let more = if tractions { 4 * (length / 2 + 1) + 2 * ny } else { 0 };
+        8 * nx * ((4 + coefficients) * (length / 2 + 1) + 6 * ny + more)
     }
 
     /// One component \[Pa\] at `depth` >= 0 \[m\] below every cell centre.
@@ -157,9 +183,9 @@ impl SubsurfaceStress {
         check_depth(&self.grid, depth)?;
         self.work.fill(Complex64::ZERO);
         for source in 0..self.sources.len() {
-            let poisson = self.sources[source].poisson;
+            let Source { action, poisson, .. } = self.sources[source];
             let spectrum = match self.boundary {
-                Boundary::Free => Spectrum::Cell(self.transformed_rows(component, depth, poisson)),
+                Boundary::Free => Spectrum::Cell(self.transformed_rows(action, component, depth, poisson)),
                 Boundary::Periodic => Spectrum::Wave(depth, poisson),
             };
             self.add_product(component, &spectrum, source);
@@ -184,17 +210,23 @@ impl SubsurfaceStress {
     }
 
     /// The stress at the offsets (i dx, j dy), i < nx and j < ny, from a cell under unit pressure, transformed along y: (i, ky).
-    fn transformed_rows(&self, component: Component, depth: f64, poisson: f64) -> Array2<f64> {
+    fn transformed_rows(
+        &self,
+        action: Action,
+        component: Component,
+        depth: f64,
+        poisson: f64,
+    ) -> Array2<f64> {
         let ([nx, ny], [dx, dy]) = (self.grid.cells(), self.grid.spacing());
-        let (fft, odd) = (&self.coefficients[1], component.is_odd()[1]);
+        let (fft, odd) = (&self.coefficients[1], action.is_odd(component)[1]);
         let is_far = depth > (nx as f64 * dx).max(ny as f64 * dy);
         let at = |i: usize, j: usize| {
-            corner(component, (i as f64 - 0.5) * dx, (j as f64 - 0.5) * dy, depth, poisson, is_far)
+            action.corner(component, [(i as f64 - 0.5) * dx, (j as f64 - 0.5) * dy, depth], poisson, is_far)
         };
         let mut rows = Array2::zeros((nx, self.plane.waves_along_y()));
         if self.grid.is_line() {
             // The transform of one cell along y is constant.
-            let of = |i: usize| strip(component, i as f64 * dx, depth, 0.5 * dx, poisson);
+            let of = |i: usize| action.strip(component, i as f64 * dx, depth, 0.5 * dx, poisson);
             rows.outer_iter_mut().enumerate().for_each(|(i, mut row)| row.fill(of(i)));
             return rows;
         }
@@ -220,7 +252,8 @@ impl SubsurfaceStress {
         let (lengths, nx) = (self.plane.lengths(), self.grid.cells()[0]);
         let mx = lengths[0];
         let scale = 1.0 / (mx as f64 * lengths[1] as f64);
-        let odd = component.is_odd();
+        let action = self.sources[source].action;
+        let odd = action.is_odd(component);
         let unit = match odd {
             [false, false] => Complex64::new(scale, 0.0),
             [true, true] => Complex64::new(-scale, 0.0),
@@ -241,7 +274,8 @@ impl SubsurfaceStress {
                             // The shortest wave of an even number of cells has no sine.
                             let vanishes = odd[0] && 2 * kx == lengths[0] || odd[1] && 2 * ky == lengths[1];
                             let q = [TAU * kx as f64 / size[0], TAU * ky as f64 / size[1]];
-                            *factor = if vanishes { 0.0 } else { wave(component, q, *depth, *poisson) };
+                            *factor =
+                                if vanishes { 0.0 } else { action.wave(component, q, *depth, *poisson) };
                         })
                     }
                 }

@@ -1,4 +1,4 @@
-//! The stress below the surface of a half-space under a given pressure.
+//! The stress below the surface of a half-space under a given pressure, and under tangential tractions (`shear`).
 //!
 //! Coordinates: z points into the body, tension is positive. With Love's potentials V = iint p/rho and chi = iint p ln(rho + z)
 //! over the surface (Love 1929; Johnson, Contact Mechanics, 1985, section 3.1), rho the distance,
@@ -26,6 +26,7 @@ mod depths;
 mod history;
 mod invariants;
 mod quantity;
+mod shear;
 mod slab;
 mod survey;
 

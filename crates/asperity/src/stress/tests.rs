@@ -103,6 +103,120 @@ fn pressure(grid: &Grid) -> Vec<f64> {
     (0..grid.len()).map(|n| ((n * 37 % 11) as f64 - 3.0).max(0.0) / 7.0).collect()
 }
 
+fn under_tractions(grid: Grid, boundary: Boundary, tractions: [&[f64]; 2], depth: f64) -> [Vec<f64>; 6] {
+    let mut stress = SubsurfaceStress::new(grid, boundary, 0.3).unwrap();
+    stress.set_pressure(&vec![0.0; grid.len()]).unwrap();
+    stress.add_tractions(tractions).unwrap();
+    let mut fields = std::array::from_fn(|_| Vec::new());
+    stress.at(depth, &mut fields).unwrap();
+    fields
+}
+
+/// Stress at (0.7, 0.4, 0.9) under a unit force along x at the origin, nu = 0.3, times 2 pi: derivatives of the potentials by a
+/// computer algebra system, which also confirmed equilibrium and compatibility.
+const POINT: [f64; 6] = [
+    -0.359643806773782,
+    -0.0116063108287630,
+    -0.660422976408626,
+    -0.236626412688174,
+    -0.513662314984487,
+    -0.293521322848278,
+];
+
+#[test]
+fn a_tangential_force_is_that_of_the_closed_form() {
+    // A cell of unit traction at the middle, the point 7, 4 and 9 tenths away; of a cell of 1e-3 the force is 1e-6.
+    let spacing = 2e-3;
+    let grid = Grid::new([800, 500], [800.0 * spacing, 500.0 * spacing]).unwrap();
+    let cell = |i: usize, j: usize| i * 500 + j;
+    let mut q = vec![0.0; grid.len()];
+    q[cell(400, 250)] = 1.0 / spacing.powi(2);
+    let (none, at) = (vec![0.0; grid.len()], cell(750, 450));
+    let along_x = under_tractions(grid, Boundary::Free, [&q, &none], 0.9);
+    for (field, expected) in along_x.iter().zip(POINT) {
+        // The cell is 2e-3 of the distance wide: 1e-6 of it. The four corners cancel to 1e-16 * 1e6.
+        assert!((TAU * field[at] - expected).abs() < 2e-6, "{} {expected}", TAU * field[at]);
+    }
+}
+
+#[test]
+fn tractions_along_y_are_those_along_x_with_the_axes_exchanged() {
+    for boundary in [Boundary::Free, Boundary::Periodic] {
+        let (one, other) =
+            (Grid::new([10, 14], [3.0, 2.0]).unwrap(), Grid::new([14, 10], [2.0, 3.0]).unwrap());
+        let q = pressure(&one);
+        let exchanged: Vec<f64> = (0..140).map(|n| q[(n % 10) * 14 + n / 10]).collect();
+        let none = vec![0.0; 140];
+        for depth in [0.0, 0.4] {
+            let x = under_tractions(one, boundary, [&q, &none], depth);
+            let y = under_tractions(other, boundary, [&none, &exchanged], depth);
+            for (k, l) in [1, 0, 2, 3, 5, 4].into_iter().enumerate() {
+                for n in 0..140 {
+                    let (a, b) = (x[k][n], y[l][(n % 14) * 10 + n / 14]);
+                    assert!((a - b).abs() < 1e-13, "{boundary:?} {depth} {k} {n}: {a} {b}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_small_periodic_patch_is_that_of_a_free_domain_and_the_surface_bears_the_traction() {
+    let n = 128;
+    let grid = Grid::new([n, n], [64.0, 64.0]).unwrap();
+    // Without force in all: the rest of the periodic array is far away.
+    let hill = |n: usize| {
+        let (x, y) = ((grid.x(n / 128) - 32.0) / 2.0, (grid.y(n % 128) - 32.0) / 2.0);
+        x * (-0.5 * (x * x + y * y)).exp()
+    };
+    let q: Vec<f64> = (0..n * n).map(hill).collect();
+    let none = vec![0.0; n * n];
+    let [free, periodic] =
+        [Boundary::Free, Boundary::Periodic].map(|b| under_tractions(grid, b, [&q, &none], 1.0));
+    let most = free.iter().flatten().fold(0.0f64, |most, s| most.max(s.abs()));
+    for (a, b) in free.iter().flatten().zip(periodic.iter().flatten()) {
+        // Cells against waves, a quarter of a standard deviation wide (h^2/24 of the curvature), and images 32 of them away.
+        assert!((a - b).abs() < 5e-3 * most, "{a} {b}");
+    }
+    let surface = under_tractions(grid, Boundary::Free, [&q, &none], 0.0);
+    for (k, field) in surface.iter().enumerate().filter(|(k, _)| [2, 4, 5].contains(k)) {
+        for (found, q) in field.iter().zip(&q) {
+            // zz and yz vanish, xz is the traction.
+            let expected = if k == 4 { -q } else { 0.0 };
+            assert!((found - expected).abs() < 1e-13, "{k}: {found}");
+        }
+    }
+}
+
+#[test]
+fn a_line_of_tractions_is_that_of_a_wide_plane() {
+    let (cells, rows) = (24, 181);
+    let line = Grid::line(cells, 12.0).unwrap();
+    // The middle of a long strip sees plane strain.
+    let plane = Grid::new([cells, rows], [12.0, 2.0 * rows as f64]).unwrap();
+    let q: Vec<f64> = (0..cells).map(|n| ((n * 5 % 7) as f64 - 2.0) / 3.0).collect();
+    let mean = q.iter().sum::<f64>() / cells as f64;
+    let q: Vec<f64> = q.into_iter().map(|q| q - mean).collect();
+    let spread: Vec<f64> = q.iter().flat_map(|q| vec![*q; rows]).collect();
+    for axis in 0..2 {
+        let none = vec![0.0; rows * cells];
+        let along = |q: &[f64], none: &[f64], grid, depth| {
+            let tractions = if axis == 0 { [q, none] } else { [none, q] };
+            under_tractions(grid, Boundary::Free, tractions, depth)
+        };
+        for depth in [0.0, 0.6, 3.0] {
+            let (one, other) = (along(&q, &none[..cells], line, depth), along(&spread, &none, plane, depth));
+            for (k, (one, other)) in one.iter().zip(&other).enumerate() {
+                for n in 0..cells {
+                    // The ends of the strip are fifteen times its width away.
+                    let (a, b) = (one[n], other[rows * n + rows / 2]);
+                    assert!((a - b).abs() < 2e-3, "{axis} {depth} {k} {n}: {a} {b}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn the_convolution_is_the_sum_over_the_loaded_cells() {
     let grid = Grid::new([12, 20], [6.0, 5.0]).unwrap();

@@ -39,8 +39,8 @@ use crate::simulation::Simulation;
 
 /// Bytes that a step with friction takes, without what the bodies remember.
 pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
-    // Ten fields of vectors and the freedom of cells in the solver; eleven fields of vectors and four numbers in the process.
-    8 * grid.len() * (2 * 21 + 4 + 4)
+    // Ten fields of vectors and the freedom of cells in the solver; eleven fields of vectors and six numbers in the process.
+    8 * grid.len() * (2 * 21 + 4 + 6)
         + operator::VectorConvolution::bytes(operator::lengths(grid, boundary))
         + operator::VectorConvolution::bytes(grid.cells())
 }
@@ -150,8 +150,8 @@ impl Tangential {
         )?;
         excludes(
             simulation.traction.is_none(),
-            "adhesion under a tangential load",
-            "none: both are not solved together",
+            "traction of adhesion or of a fluid under a tangential load",
+            "none: they are not solved together",
         )?;
         let is_free_line = simulation.grid.is_line() && simulation.boundary == Boundary::Free;
         let expected = "periodic: on a free line the displacement is only known up to a constant";
@@ -163,22 +163,23 @@ impl Tangential {
     }
 
     fn validate_numbers(&self, simulation: &Simulation) -> Result<()> {
-        let coefficient = |what: String, value: f64| {
+        let coefficient = |key: &str, what: String, value: f64| {
             require(value >= 0.0 && value.is_finite(), what, value, "finite and not negative")
-                .map_err(|error| error.of("friction.coefficient"))
+                .map_err(|error| error.of(key))
         };
-        coefficient("friction coefficient".into(), self.coefficient)?;
+        coefficient("friction.coefficient", "friction coefficient".into(), self.coefficient)?;
         if let Some(map) = &self.coefficients {
             let expected = format!("{:?}, one for each cell", simulation.grid.shape());
+            let shape = format!("{:?}", map.dim());
             require(
                 map.dim() == simulation.grid.shape(),
                 "shape of the friction coefficients",
-                format!("{:?}", map.dim()),
+                shape,
                 expected,
             )
-            .map_err(|error| error.of("friction.coefficient"))?;
+            .map_err(|error| error.of("friction.field"))?;
             map.indexed_iter().try_for_each(|((i, j), value)| {
-                coefficient(format!("friction coefficient of cell ({i}, {j})"), *value)
+                coefficient("friction.field", format!("friction coefficient of cell ({i}, {j})"), *value)
             })?;
         }
         require(self.shear_limit > 0.0, "shear limit", format!("{} Pa", self.shear_limit), "greater than 0")

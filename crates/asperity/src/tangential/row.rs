@@ -1,5 +1,7 @@
 //! The numbers of a row with friction.
 
+use crate::quantities::Quantity;
+
 /// What friction does in a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SlipRow {
@@ -17,6 +19,24 @@ pub struct SlipRow {
     pub stiffness: f64,
     /// How the tractions were solved.
     pub outcome: SlipOutcome,
+}
+
+impl SlipRow {
+    /// Writes a quantity: one number, or two along x and y.
+    pub(crate) fn write(&self, quantity: Quantity, to: &mut [f64]) {
+        let one = match quantity {
+            Quantity::TangentialForce => return to.copy_from_slice(&self.force),
+            Quantity::TangentialDisplacement => return to.copy_from_slice(&self.displacement),
+            Quantity::TangentialStiffness => self.stiffness,
+            Quantity::StickArea => self.stick_area,
+            Quantity::SlipArea => self.slip_area,
+            Quantity::SlipWork => self.work,
+            Quantity::FrictionIterations => self.outcome.iterations as f64,
+            Quantity::FrictionCertificate => self.outcome.certificate,
+            _ => f64::NAN,
+        };
+        to.fill(one);
+    }
 }
 
 /// How well the tractions of a step are solved, and the work of it.

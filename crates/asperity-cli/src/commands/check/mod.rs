@@ -4,6 +4,7 @@ mod cost;
 
 use asperity::Axis;
 use asperity::load::{Course, Stage};
+use asperity::tangential::TangentialControl;
 use asperity::traction::FINE_TRAP;
 use asperity_io::case::{Case, Examination, Inputs, SurfaceInput, Travel, bare_numbers};
 use asperity_io::converge::expected_cost;
@@ -129,6 +130,22 @@ fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
         let share = range(case, shares, |share| format!("{:.2} %", 100.0 * share));
         let without = if inputs.adhesion.is_some() { ", without adhesion" } else { "" };
         line("expected", format!("share of the domain in contact{without} {share}{strain}"));
+    }
+    if let Some(law) = &case.describe().friction {
+        let unit = if law.control == TangentialControl::Force { grid.units("N") } else { "m" };
+        let [x, y] = law.largest.map(|largest| quantity(largest, unit));
+        let [low, high] = law.coefficient.map(|mu| quantity(mu, ""));
+        let mu = if low == high { low } else { format!("{low} to {high}") };
+        let held = inputs.largest_load.filter(|_| law.coefficient[0] == law.coefficient[1]);
+        let held = held.map(|load| law.coefficient[0] * load);
+        let held = held.map_or(String::new(), |force| {
+            format!("; friction holds {} under the largest load", quantity(force, grid.units("N")))
+        });
+        let control = match law.control {
+            TangentialControl::Force => "force",
+            TangentialControl::Displacement => "displacement",
+        };
+        line("friction", format!("coefficient {mu}; {control} of at most {x} along x, {y} along y{held}"));
     }
     if let Some(adhesion) = &inputs.adhesion {
         let (work, range) = (quantity(adhesion.work, "J/m2"), quantity(adhesion.range, "m"));

@@ -13,7 +13,7 @@ use ndarray::Array2;
 
 use super::{Case, bits, place, row_bits};
 
-const FIELDS: [FieldKind; 7] = FieldKind::ALL;
+const FIELDS: [FieldKind; FieldKind::ALL.len()] = FieldKind::ALL;
 
 /// A rough sphere on a Zener solid under a load that jumps, cut off by a hardness.
 fn simulation() -> Simulation {
@@ -43,25 +43,18 @@ fn simulation() -> Simulation {
 /// Advances and stores up to row `end`; the fields of every third row.
 fn go(march: &mut March, writer: &mut Writer, end: usize) {
     let shape = march.simulation().grid.shape();
-    let (mut gap, mut displacement) = (Array2::zeros(shape), Array2::zeros(shape));
-    let (mut contact, mut flattening) = (Array2::zeros(shape), Array2::zeros(shape));
-    let mut attraction = Array2::zeros(shape);
+    let mut contact = Array2::zeros(shape);
     while writer.len() < end {
         let Some(step) = march.advance().unwrap() else { break };
-        step.gap_into(&mut gap);
-        step.displacement_into(&mut displacement);
         step.contact_into(&mut contact);
-        step.flattening_into(&mut flattening);
-        step.adhesive_traction_into(&mut attraction);
-        let fields = [
-            Field::Real(FieldKind::Pressure, step.pressure()),
-            Field::Real(FieldKind::Gap, gap.view()),
-            Field::Real(FieldKind::Displacement, displacement.view()),
-            Field::Contact(contact.view()),
-            Field::Real(FieldKind::Flattening, flattening.view()),
-            Field::Real(FieldKind::ContactPressure, step.contact_pressure()),
-            Field::Real(FieldKind::AdhesiveTraction, attraction.view()),
-        ];
+        let real = FIELDS.into_iter().filter(|kind| *kind != FieldKind::Contact).map(|kind| {
+            let mut field = Array2::zeros(shape);
+            kind.of_step(&step, &mut field);
+            (kind, field)
+        });
+        let real: Vec<_> = real.collect();
+        let fields = real.iter().map(|(kind, field)| Field::Real(*kind, field.view()));
+        let fields: Vec<_> = fields.chain([Field::Contact(contact.view())]).collect();
         let kept = if step.index() % 3 == 0 { &fields[..] } else { &[] };
         writer.append_with(&step.row(), step.quantities(), kept).unwrap();
     }

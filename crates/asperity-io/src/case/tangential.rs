@@ -1,0 +1,126 @@
+//! `[friction]` and `[tangential]`: a load along the surfaces, which friction holds.
+
+use asperity::Grid;
+use asperity::material::Body;
+use asperity::tangential::{PairRatio, Tangential as Law, TangentialControl};
+
+use super::hardness::numbers_of_cells;
+use super::history::{History, Kind, Sign};
+use super::history_file::Origin;
+use super::keys::*;
+
+/// Friction between the surfaces, under the load of `[tangential]`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Friction {
+    /// Friction coefficient: the largest tangential traction over the pressure. This or `field`.
+    #[schemars(example = 0.3)]
+    coefficient: Option<Number<NonNegative>>,
+    /// The friction coefficient of each cell, from a file relative to the case file: an array of shape (nx, ny) as NPY or NPZ, or a text
+    /// matrix with a line for each y and values along x.
+    #[schemars(example = "friction.npy")]
+    field: Option<String>,
+    /// Name of an array that a program gives beside the case: the friction coefficient of each cell.
+    #[schemars(skip)]
+    array: Option<String>,
+    /// Largest tangential traction, whatever the pressure; unlimited if not given.
+    #[schemars(example = "50 MPa")]
+    shear_limit: Option<Pressure<Positive>>,
+    /// What the pressure and the tangential tractions of different bodies do to each other: "neglect" it. "neglect" if not given.
+    #[serde(default)]
+    #[expect(dead_code, reason = "there is one choice")]
+    coupling: Coupling,
+}
+
+/// What pressure and tangential tractions do to each other.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum Coupling {
+    /// Nothing: the pressure is that without tangential tractions.
+    #[default]
+    Neglect,
+}
+
+/// A load along the surfaces, with `[friction]`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tangential {
+    /// The prescribed quantity: the "force", or the "displacement" of the bodies against each other.
+    control: TangentialControl,
+    /// Its component along x over the time of the run, with the kinds of load.history; 0 if not given. This or `y`, or both.
+    #[schemars(example = serde_json::json!({ "kind": "triangle", "peak": "0.1 N", "rise": "1 s", "fall": "1 s" }))]
+    x: Option<History>,
+    /// Its component along y; 0 if not given.
+    #[schemars(example = serde_json::json!({ "kind": "sine", "mean": "0 N", "amplitude": "50 mN", "frequency": "10 Hz" }))]
+    y: Option<History>,
+}
+
+impl Tangential {
+    /// The load, with the files of its histories and coefficients.
+    pub fn law(
+        &self,
+        at: &Place<'_>,
+        friction: (&Place<'_>, &Friction),
+        grid: Option<&Grid>,
+        bodies: (&Place<'_>, &[Body]),
+    ) -> Option<(Law, Vec<Origin>)> {
+        let mut files = vec![];
+        let coefficients = friction.1.coefficients(friction.0, grid, &mut files);
+        if self.x.is_none() && self.y.is_none() {
+            return at.fault("nothing is prescribed", "`x`, `y` or both", "give x = { kind = ... }");
+        }
+        let kind = match self.control {
+            TangentialControl::Force if grid?.is_line() => Kind::LoadPerLength(Sign::PressOrPull),
+            TangentialControl::Force => Kind::Load(Sign::PressOrPull),
+            TangentialControl::Displacement => Kind::Approach,
+        };
+        let mut read = |key: &str, history: &Option<History>| match history {
+            None => Some(asperity::History::Step { value: 0.0 }),
+            Some(history) => {
+                let (history, file) = history.read(&at.key(key), kind, "give a step, a ramp or a table")?;
+                files.extend(file);
+                Some(history)
+            }
+        };
+        let (x, y) = (read("x", &self.x), read("y", &self.y));
+        let PairRatio { poisson, coupling } = bodies.0.core(PairRatio::of(bodies.1))?;
+        let (coefficient, coefficients) = coefficients?;
+        let law = Law {
+            coefficient,
+            coefficients,
+            shear_limit: friction.1.shear_limit.map_or(f64::INFINITY, Pressure::get),
+            poisson,
+            coupling,
+            control: self.control,
+            histories: [x?, y?],
+        };
+        Some((law, files))
+    }
+}
+
+impl Friction {
+    /// The friction coefficient, and that of each cell where they differ.
+    fn coefficients(
+        &self,
+        at: &Place<'_>,
+        grid: Option<&Grid>,
+        files: &mut Vec<Origin>,
+    ) -> Option<(f64, Option<ndarray::Array2<f64>>)> {
+        at.exactly_one(if self.array.is_some() {
+            &["coefficient", "array"]
+        } else {
+            &["coefficient", "field"]
+        })?;
+        if let Some(name) = &self.array {
+            return Some((0.0, Some(at.key("array").array(name, grid?)?)));
+        }
+        match &self.field {
+            None => Some((self.coefficient?.get(), None)),
+            Some(path) => {
+                let (map, file) = numbers_of_cells(&at.key("field"), path, grid)?;
+                files.push(file);
+                Some((0.0, Some(map)))
+            }
+        }
+    }
+}

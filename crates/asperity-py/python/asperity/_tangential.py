@@ -1,0 +1,90 @@
+"""Friction, and loads along the surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._arrays import as_plane, field as field_of, number
+from ._core import CaseError
+from ._histories import History, as_history, one_of
+
+if TYPE_CHECKING:
+    from ._arrays import Floats
+    from ._surface import Surface
+
+
+@dataclass(frozen=True, repr=False)
+class Friction:
+    """Friction between the surfaces, an argument of :func:`asperity.solve` and :func:`asperity.march` (docs/tangential.md).
+
+    `coefficient`, a number or an array (nx, ny) with one for each cell; `shear_limit` [Pa]: the largest tangential traction, whatever the
+    pressure. A number in place of this is a coefficient without limit.
+
+    >>> import asperity as asp
+    >>> asp.Friction(0.3, shear_limit=50e6)
+    Friction(0.3, shear_limit=50000000.0)
+    """
+
+    coefficient: float | npt.ArrayLike
+    _: KW_ONLY
+    shear_limit: float | None = None
+
+    def __repr__(self) -> str:
+        given = f"{self.coefficient!r}" if np.ndim(self.coefficient) == 0 else f"<array of {np.shape(self.coefficient)}>"
+        return f"Friction({given}{f', shear_limit={self.shear_limit!r}' if self.shear_limit is not None else ''})"
+
+    def _parts(self, shape: Surface) -> tuple[dict[str, Any], dict[str, Floats]]:
+        """The keys of `[friction]`, and the arrays that they name."""
+        limit = {} if self.shear_limit is None else {"shear_limit": number("shear_limit", self.shear_limit)}
+        if np.ndim(self.coefficient) == 0:
+            return {"coefficient": number("friction", self.coefficient), **limit}, {}
+        cells = field_of("friction", self.coefficient, line=True, size=shape.size)
+        if cells.shape != shape.cells:
+            raise CaseError(f"friction has shape {cells.shape}, but must have {shape.cells}: one coefficient for each cell")
+        return {"array": "friction", **limit}, {"friction": as_plane(cells)}
+
+
+@dataclass(frozen=True, repr=False)
+class Tangential:
+    """A load along the surfaces: see :func:`asperity.tangential`."""
+
+    control: str
+    #: Its components along x and y over time; numbers are held from t = 0 on.
+    course: tuple[History | float, History | float]
+
+    def __repr__(self) -> str:
+        return f"tangential({self.control}={self.course!r})"
+
+    def _keys(self, line: bool) -> dict[str, Any]:
+        """The keys of `[tangential]`."""
+        unit = ("N/m" if line else "N") if self.control == "force" else "m"
+        course = [as_history(f"{self.control} along {axis}", value, unit) for axis, value in zip("xy", self.course)]
+        return {"control": self.control, "x": course[0]._keys, "y": course[1]._keys}
+
+
+def tangential(*, force: Any = None, displacement: Any = None) -> Tangential:
+    """A load along the surfaces, for the argument `tangential` of :func:`asperity.solve` and :func:`asperity.march`, with `friction`.
+
+    Parameters
+    ----------
+    force, displacement : one of the two [N, of a line contact N/m; m]: a number or a history (step, ramp, triangle, sine, table ...) along
+        x, or a pair of them, along x and y. A force or displacement other than 0 at the start acts suddenly at t = 0.
+
+    >>> import asperity as asp
+    >>> sphere = asp.Surface.sphere(cells=(48, 48), size=(0.6e-3, 0.6e-3), radius=10e-3)
+    >>> glass = asp.Elastic(young=70e9, poisson=0.22)
+    >>> pull = asp.tangential(force=asp.ramp(1.5, duration=1.0))
+    >>> result = asp.solve(sphere, glass, load=10.0, times=asp.uniform(1.0, 4), friction=0.3, tangential=pull)
+    >>> share = result.stick_area[-1] / (result.stick_area[-1] + result.slip_area[-1])    # Mindlin: (1 - 1.5/3)^(2/3) = 0.63
+    >>> bool(abs(share - 0.63) < 0.03)
+    True
+    """
+    control, value = one_of({"force": force, "displacement": displacement}, "give")
+    course = tuple(value) if isinstance(value, (tuple, list)) and len(value) == 2 and not np.ndim(value) == 2 else (value, 0.0)
+    if any(one is None for one in course):
+        raise CaseError(f"{control} is {value!r}, but must be a number or a history along x, or a pair of them, along x and y")
+    return Tangential(control, (course[0], course[1]))

@@ -12,7 +12,7 @@ use super::chunks::Chunks;
 use super::document::{self, Document};
 use super::error::{Result, StoreError, input, io};
 use super::field_kind::FieldKind;
-use super::layout::{BINS, SCALARS, coordinates};
+use super::layout::{AXIS, BINS, SCALARS, coordinates};
 use super::leak;
 use super::leftovers;
 use super::replace;
@@ -129,7 +129,7 @@ pub(super) fn is_part(name: &str) -> bool {
         || leak::owns(name)
         || name == checkpoint::DIRECTORY
         || stress::names().any(|known| known == name)
-        || ["field_time", "field_step", "velocity", "field_velocity", "x", "y", "initial_gap"].contains(&name)
+        || ["field_time", "field_step", "velocity", "field_velocity", "x", "y", "initial_gap", AXIS.name].contains(&name)
         || SCALARS.iter().any(|scalar| scalar.name == name)
         || FieldKind::from_name(name).is_some()
         || Quantity::from_name(name).is_some()

@@ -110,7 +110,7 @@ pub(super) const BINS: [(Kind, [Series; 2]); 3] = [
 ];
 
 /// The coordinate along the components of a vector.
-const AXIS: Series = Series::new("axis", "1", "0 along x, 1 along y");
+pub(super) const AXIS: Series = Series::new("axis", "1", "0 along x, 1 along y");
 
 /// The coordinates of a histogram with their numbers, middles, then ends; of a vector its axes. Another quantity has none.
 pub fn coordinates(column: &Quantity, grid: &Grid) -> Vec<(Series, Vec<f64>)> {

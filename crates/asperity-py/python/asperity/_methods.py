@@ -45,11 +45,12 @@ def _sentences(result: Result) -> list[str]:
     domain = "periodic domain" if setup.get("boundary") == "periodic" else "free surface"
     strain = " in plane strain" if result.is_line else ""
     return [
-        f"The {'frictional' if setup.get('friction') else 'frictionless'} {'adhesive ' if setup.get('adhesion') else ''}normal contact of {material} {bodies}{strain} was computed with asperity {known.get('version', '')}"
+        f"The {'' if setup.get('friction') else 'frictionless '}{'adhesive ' if setup.get('adhesion') else ''}normal contact{' with friction' if setup.get('friction') else ''} of {material} {bodies}{strain} was computed with asperity {known.get('version', '')}"
         f"{', by the model of Spinu and Cerlinca (2017)' if relaxes and not layered else ''}, on {cells_of(result.initial_gap)} of a {domain} of {sides}.",
         _of_materials(setup),
         _of_hardness(setup),
         _of_adhesion(setup.get("adhesion")),
+        _of_friction(setup.get("friction")),
         _of_load(result, setup),
         _of_motion(result, setup),
         _of_rows(result, setup, relaxes),
@@ -105,6 +106,18 @@ def _of_adhesion(told: dict[str, Any] | None) -> str:
     law = f" after the law {told['law']}" if "law" in told else ""
     sphere = f", Tabor's number {told['tabor']:.2g}" if told.get("tabor") is not None else ""
     return f"The surfaces attract each other{law}, with the work of adhesion {1e3 * told['work']:.4g} mJ/m² and {reach}{sphere}; the trap number of the grid is {told['trap']:.2g}."
+
+
+def _of_friction(friction: dict[str, Any] | None) -> str:
+    if friction is None:
+        return ""
+    coefficient = friction.get("coefficient")
+    words = "a coefficient for each cell" if coefficient is None else f"the coefficient {coefficient:g}"
+    limit = f", up to a traction of {quantity(friction['shear_limit'], 'Pa')}" if friction.get("shear_limit") else ""
+    return (
+        f"Friction with {words}{limit} acted against a prescribed tangential {friction['control']}; stick and slip followed from both components of "
+        "the tangential traction (Kalker, 1990), whose effect on the pressure was neglected."
+    )
 
 
 def _of_load(result: Result, setup: dict[str, Any]) -> str:

@@ -96,17 +96,16 @@ impl Case {
     pub(crate) fn append(&self, writer: &mut Writer, step: usize, keep: bool) -> Result<()> {
         let (p, h, contact) = (self.pressure(step), self.gap(step), self.contact(step));
         let (u, f) = (&h * 0.5, p.mapv(|p| 1e-12 * p));
-        let all = [
-            Field::Real(FieldKind::Flattening, f.view()),
-            Field::Contact(contact.view()),
-            Field::Real(FieldKind::Displacement, u.view()),
-            Field::Real(FieldKind::Gap, h.view()),
-            Field::Real(FieldKind::Pressure, p.view()),
-            Field::Real(FieldKind::ContactPressure, p.view()),
-            Field::Real(FieldKind::AdhesiveTraction, f.view()),
-        ];
+        // In another order than that of the kinds.
+        let all = FieldKind::ALL.into_iter().rev().map(|kind| match kind {
+            FieldKind::Contact => Field::Contact(contact.view()),
+            FieldKind::Pressure | FieldKind::ContactPressure => Field::Real(kind, p.view()),
+            FieldKind::Gap => Field::Real(kind, h.view()),
+            FieldKind::Displacement => Field::Real(kind, u.view()),
+            _ => Field::Real(kind, f.view()),
+        });
         let kept: Vec<_> =
-            all.into_iter().filter(|f| keep && self.header.fields.contains(&f.kind())).collect();
+            all.filter(|f| keep && self.header.fields.contains(&f.kind())).collect();
         writer.append(&self.row(step), &kept)
     }
 

@@ -1,0 +1,98 @@
+"""Friction and tangential loads from Python."""
+
+import numpy as np
+import pytest
+
+import asperity as asp
+
+SIZE = (0.4e-3, 0.4e-3)
+
+
+def ball() -> asp.Surface:
+    return asp.Surface.sphere(cells=(32, 32), size=SIZE, radius=10e-3)
+
+
+STEEL = asp.Elastic(young=210e9, poisson=0.3)
+
+
+def pushed(**given):
+    shake = asp.tangential(force=(asp.triangle(peak=10.0, rise=1.0, fall=1.0), 2.0))
+    arguments = {"load": 50.0, "times": asp.uniform(2.0, 4), "friction": 0.5, "tangential": shake, **given}
+    return asp.solve(ball(), [STEEL, STEEL], **arguments)
+
+
+def test_rows_hold_two_components(tmp_path):
+    result = pushed()
+    assert result.tangential_force.shape == (5, 2)
+    np.testing.assert_allclose(result.tangential_force[:, 0], [0, 5, 10, 5, 0], atol=1e-9)
+    np.testing.assert_allclose(result.tangential_force[:, 1], 2.0)
+    assert "contact" in result.fields and "traction_y" in result.fields
+    # The traction is the force, and friction holds it.
+    cell = SIZE[0] * SIZE[1] / 32**2
+    q = np.hypot(result.field("traction_x"), result.field("traction_y"))
+    np.testing.assert_allclose(result.field("traction_y").sum() * cell, 2.0)
+    assert (q <= 0.5 * result.field("pressure") * (1 + 1e-9)).all()
+    data = result.to_xarray()
+    assert data.tangential_force.dims == ("time", "axis") and data.axis.values.tolist() == [0.0, 1.0]
+    result.save(tmp_path / "r.zarr")
+    again = asp.open(tmp_path / "r.zarr")
+    np.testing.assert_array_equal(again.tangential_displacement, result.tangential_displacement)
+    assert again.to_xarray().equals(data)
+    xarray = pytest.importorskip("xarray")
+    assert xarray.open_zarr(tmp_path / "r.zarr").tangential_force.dims == ("time", "axis")
+
+
+def test_a_map_of_coefficients_is_that_of_one_coefficient():
+    mu = np.full((32, 32), 0.5)
+    one, many = pushed(), pushed(friction=asp.Friction(mu, shear_limit=1e12))
+    np.testing.assert_array_equal(one.slip_area, many.slip_area)
+    np.testing.assert_array_equal(one.field("traction_x"), many.field("traction_x"))
+
+
+def test_the_stress_is_that_below_both_tractions():
+    result = pushed()
+    tractions = [result.field("traction_x"), result.field("traction_y")]
+    both = asp.stress(result.field("pressure"), size=SIZE, poisson=0.3, depths=[0.0, 20e-6], tractions=tractions)
+    np.testing.assert_allclose(both.xz[0], -tractions[0], atol=1e-6 * np.abs(tractions[0]).max())
+    np.testing.assert_array_equal(result.stress(depths=[0.0, 20e-6]).mises, both.mises)
+    # The other body feels the opposite.
+    other = result.stress(depths=[0.0, 20e-6], body=1)
+    np.testing.assert_allclose(other.xz[0], tractions[0], atol=1e-6 * np.abs(tractions[0]).max())
+
+
+def test_steps_of_a_march_have_vectors():
+    march = asp.march(
+        ball(), STEEL, load=50.0, times=asp.uniform(1.0, 2), friction=0.5, tangential=asp.tangential(displacement=asp.ramp(1e-7, duration=1.0))
+    )
+    last = list(march)[-1]
+    np.testing.assert_allclose(last.tangential_displacement, [1e-7, 0.0], atol=1e-20)
+    assert last.field("slip_path").shape == (32, 32) and last.field("friction_work").min() >= 0.0
+
+
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        ({"friction": None}, "friction"),
+        ({"friction": -0.1}, "friction"),
+        ({"friction": np.ones((3, 3))}, "shape"),
+        ({"tangential": 3.0}, "tangential is 3.0"),
+        ({"tangential": None}, "tangential"),
+        ({"times": asp.adaptive(1.0)}, "steps"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(given, words):
+    with pytest.raises(asp.CaseError, match=words):
+        pushed(**given)
+
+
+def test_a_force_beyond_friction_is_an_error():
+    with pytest.raises(asp.CaseError, match="25 N"):
+        pushed(tangential=asp.tangential(force=asp.ramp(30.0, duration=1.0)))
+
+
+def test_studies_keep_both_components():
+    pytest.importorskip("xarray")
+    made = asp.study(
+        lambda peak: pushed(tangential=asp.tangential(force=asp.ramp(peak, duration=2.0))), {"peak": [1.0, 2.0]}
+    )
+    assert made.tangential_force.dims[-1] == "axis" and made.sizes["axis"] == 2

@@ -81,11 +81,9 @@ impl Leak {
             rarefaction: given.rarefaction.or(keys.rarefaction),
             sides: given.sides.or(keys.sides),
             smallest_gap: given.smallest_gap.or(keys.smallest_gap),
-            coupling: None,
-            reference: None,
-            pockets: None,
-            times: None,
             field: given.field.or(keys.field),
+            // What acts on the surfaces, and what needs the bodies, belongs to the run.
+            ..LeakageKeys::default()
         };
         let leak = checked(&merged, boundary)?;
         let (times, temperatures) = (self.times.clone(), self.temperatures.clone());
@@ -107,6 +105,8 @@ mod tests {
             smallest_gap: 3e-10,
             fluid,
             field: true,
+            opening: false,
+            one_way: false,
             coupling: None,
             temperatures: vec![(0.0, 300.0)],
             times: Some(vec![1.0]),

@@ -66,3 +66,74 @@ fn a_run_that_stops_before_its_leakage_says_so_and_is_resumed_to_the_same_number
         (Status::Complete, whole.rows, whole.convolutions)
     );
 }
+
+/// Water between rough surfaces.
+const WET: &str = r#"
+[domain]
+cells = [32, 32]
+size = ["0.2 mm", "0.2 mm"]
+boundary = "periodic"
+[[surface]]
+kind = "self-affine"
+rms_height = "0.5 um"
+hurst = 0.8
+longest = "100 um"
+shortest = "30 um"
+seed = 1
+[[body]]
+poisson = 0.5
+material = MATERIAL
+[load]
+control = "pressure"
+history = { kind = "table", points = [["0 s", "0.8 MPa"], ["1 s", "0.8 MPa"], ["1 s", "0.6 MPa"]] }
+[time]
+end = "2 s"
+steps = 4
+[leakage]
+viscosity = "1 mPa s"
+inlet = "3 bar"
+outlet = "1 bar"
+coupling = "two-way"
+KEYS
+[output]
+every = 1
+fields = ["gap", "pressure", "contact_pressure"]
+"#;
+
+#[test]
+fn beside_the_leak_stand_that_of_a_fluid_that_does_not_act_and_the_pressure_that_opens() {
+    let directory = tempfile::tempdir().unwrap();
+    let leaks = |name: &str, text: &str| {
+        let case = Case::parse(text, Path::new("."), &[]).unwrap();
+        let output = Some(directory.path().join(name));
+        run(&case, &RunOptions { output, ..RunOptions::default() }, |_| ()).unwrap();
+        let reader = Reader::open(&directory.path().join(name)).unwrap();
+        LeakHistory::of(&reader).unwrap().unwrap().table
+    };
+    let of = |material: &str, keys: &str| WET.replace("MATERIAL", material).replace("KEYS", keys);
+    let zener =
+        "{ model = \"zener\", shear = \"3 MPa\", shear_kelvin = \"3 MPa\", retardation_time = \"1 s\" }";
+    let two_way = leaks("two.zarr", &of(zener, "one_way = true"));
+    let one_way = leaks("one.zarr", &of(zener, "").replace("two-way", "one-way"));
+    // The same run, with both rows of the jump.
+    let [beside, alone] = [&two_way, &one_way].map(|table| table.get("leak_time").unwrap().to_vec());
+    assert_eq!(beside, alone);
+    assert_eq!(beside.iter().filter(|time| **time == 1.0).count(), 2, "{beside:?}");
+    let [beside, alone] = [(&two_way, "leak_rate_one_way"), (&one_way, "leak_rate")]
+        .map(|(table, name)| table.get(name).unwrap().to_vec());
+    assert_eq!(beside, alone);
+    assert!(beside.iter().any(|rate| *rate > 0.0), "{beside:?}");
+    let own = two_way.get("leak_rate").unwrap();
+    assert!(own.iter().zip(&alone).all(|(own, alone)| own >= alone), "{own:?} {alone:?}");
+
+    // What opens an elastic contact does not depend on the fluid that acts on it; without one it counts from the outlet.
+    let elastic = "{ model = \"elastic\", shear = \"3 MPa\" }";
+    let acting = leaks("acting.zarr", &of(elastic, "opening = true"));
+    let resting = leaks("resting.zarr", &of(elastic, "opening = true").replace("two-way", "one-way"));
+    let [acting, resting] = [acting, resting].map(|table| table.get("opening_pressure").unwrap().to_vec());
+    for (acting, resting) in acting.iter().zip(&resting) {
+        // Each is known to 1e-3, and the gap from which the first one begins to the tolerance of the loop.
+        assert!(((acting - 1e5) / resting - 1.0).abs() < 5e-3, "{acting} {resting}");
+    }
+    assert!(resting[0] > resting[4] && resting[4] > 0.0, "{resting:?}");
+}

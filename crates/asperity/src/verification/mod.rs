@@ -8,6 +8,7 @@
 mod adhesion;
 mod elastic;
 mod energy;
+mod fluid;
 mod invariants;
 mod line;
 mod loads;
@@ -50,7 +51,7 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 35] = [
+pub const CASES: [Case; 38] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
@@ -86,6 +87,9 @@ pub const CASES: [Case; 35] = [
     ("maugis-sphere", adhesion::maugis),
     ("adhesive-sphere", adhesion::adhesive_sphere),
     ("adhesive-retraction", adhesion::retraction),
+    ("fluid-wave", fluid::wave),
+    ("fluid-channel", fluid::channel),
+    ("fluid-strip", fluid::strip),
 ];
 
 /// The checks of one case.

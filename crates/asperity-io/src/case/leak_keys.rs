@@ -82,12 +82,15 @@ impl Leak {
             sides: given.sides.or(keys.sides),
             smallest_gap: given.smallest_gap.or(keys.smallest_gap),
             field: given.field.or(keys.field),
-            // What acts on the surfaces, and what needs the bodies, belongs to the run.
+            // What acts on the surfaces, and what needs the bodies, belongs to the run: of the same flow it is kept.
             ..LeakageKeys::default()
         };
         let leak = checked(&merged, boundary)?;
         let (times, temperatures) = (self.times.clone(), self.temperatures.clone());
-        Ok(Leak { times, temperatures, coupling: self.coupling.clone(), ..leak })
+        let goes_on = |leak: &Leak| (leak.direction, leak.sides, leak.smallest_gap, leak.fluid);
+        let same = goes_on(&leak) == goes_on(self);
+        let (opening, one_way) = (same && self.opening, same && self.one_way);
+        Ok(Leak { times, temperatures, opening, one_way, coupling: self.coupling.clone(), ..leak })
     }
 }
 

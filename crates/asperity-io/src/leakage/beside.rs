@@ -1,5 +1,5 @@
 //! What a run computes beside the leaks of its stored gaps, because it has the bodies: the pressure that opens the contact, and the leak
-//! that it would have if the fluid did not act on the surfaces.
+//! that it would have if the fluid did not act on the surfaces. A later leakage of the same flow takes them over.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -47,6 +47,11 @@ impl Beside {
             false => None,
         };
         Ok(Beside { opening, one_way, earlier: None })
+    }
+
+    /// Whether there is nothing.
+    pub(super) fn is_none(&self) -> bool {
+        self.opening.is_none() && self.one_way.is_none() && self.earlier.is_none()
     }
 
     /// Of a result whose leakage has been computed with its run.

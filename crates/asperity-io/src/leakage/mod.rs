@@ -229,11 +229,6 @@ impl Leak {
                 let outlet = self.coupling.as_ref().map_or(0.0, |coupling| coupling.outlet);
                 (flow.pressure * pressure_drop + outlet, [rate?, None, junction?, medium?, None])
             }
-            // At rest.
-            Some(Fluid::Gas { inlet, outlet, .. }) if inlet == outlet => {
-                let at_rest = flow.pressure.mapv_into(|x| if x.is_nan() { x } else { outlet });
-                (at_rest, [Some(0.0), Some(0.0), Some(0.0), Some(0.0), Some(f64::NAN)])
-            }
             Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
                 drop(flow);
                 let gas = self.gas(kind, temperature, time)?;

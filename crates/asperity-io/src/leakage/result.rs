@@ -162,7 +162,7 @@ pub fn compute(
 fn evaluate(
     reader: &Reader,
     leak: &Leak,
-    mut beside: Beside,
+    beside: Beside,
     interrupt: &AtomicBool,
     observe: &mut dyn FnMut(usize, usize),
     writer: Option<&LeakWriter>,
@@ -178,6 +178,8 @@ fn evaluate(
     let (rows, times) = (reader.rows()?, reader.series("time")?);
     let tolerance = reader.header().setup.get("solver_tolerance").and_then(Value::as_f64).unwrap_or(1e-6);
     let initial = reader.initial_gap()?;
+    // Without the bodies those of the earlier leakage are kept.
+    let mut beside = if beside.is_none() { Beside::of_result(reader)? } else { beside };
     let mut diagnostics = LeakDiagnostics::default();
     let mut table = LeakTable::default();
     for (done, index) in instants.iter().copied().enumerate() {
@@ -191,9 +193,13 @@ fn evaluate(
         let mut state = solved.map_err(|source| LeakError::Solve { source, time })?;
         let step = reader.field_steps()[index];
         let row = rows[step];
-        state.leak_rate_one_way = beside.leak_rate_one_way(&times, step);
-        state.opening_pressure =
-            beside.opening_pressure(reader, index, [row.approach, row.load], interrupt)?;
+        if leak.one_way {
+            state.leak_rate_one_way = beside.leak_rate_one_way(&times, step);
+        }
+        if leak.opening {
+            state.opening_pressure =
+                beside.opening_pressure(reader, index, [row.approach, row.load], interrupt)?;
+        }
         // The mean displacement in the contact, to which the tolerance is relative: what the gap has gained, and the approach.
         let touching = gap.iter().zip(&initial).zip(&contact).filter(|(_, contact)| **contact > 0);
         let (sum, count) =

@@ -38,15 +38,16 @@ pub(super) fn map(reader: &Reader, options: &Options) -> Result<Figure, PlotErro
     // Finer than cells, so that the edge of a pocket leaves its pressure to be seen.
     let [nx, ny] = grid.cells();
     let fine = (FINE / nx.max(ny)).clamp(1, FINEST);
-    let shape = (fine * nx, fine * ny);
+    let (edge, shape) = (fine.div_ceil(3), (fine * nx, fine * ny));
     let shown = Array2::from_shape_fn(shape, |(i, j)| {
         let cell = [i / fine, j / fine];
         if closed(cell) { f64::NAN } else { pressure[cell] }
     });
     let cover = Array2::from_shape_fn(shape, |(i, j)| {
         let cell = [i / fine, j / fine];
-        let ends =
-            |k: usize, n: usize, at: usize| [k % fine == 0 && at > 0, k % fine == fine - 1 && at + 1 < n];
+        let ends = |k: usize, n: usize, at: usize| {
+            [k % fine < edge && at > 0, k % fine + edge >= fine && at + 1 < n]
+        };
         let ([left, right], [below, above]) = (ends(i, nx, cell[0]), ends(j, ny, cell[1]));
         let beside = [
             left.then(|| [cell[0] - 1, cell[1]]),

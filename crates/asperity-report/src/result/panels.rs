@@ -27,16 +27,7 @@ pub(crate) fn values(reader: &Reader, name: &str) -> Result<Vec<f64>, StoreError
         let rows = reader.series(name)?.into_iter().zip(reader.series(Quantity::PocketArea.name())?);
         return Ok(rows.map(|(p, area)| if area > 0.0 { p } else { f64::NAN }).collect());
     }
-    if name != CONTACT_PRESSURE {
-        return reader.series(name);
-    }
-    // Of an adhesive contact: what presses on the cells that touch, less the attraction there, which is the largest.
-    let adhesion = reader.header().adhesion();
-    let strength = adhesion.and_then(|adhesion| adhesion.get("strength")?.as_f64()).unwrap_or(0.0);
-    let has = |name: &str| reader.scalars().iter().any(|series| series.name == name);
-    let pressed = ["repulsive_load", "contact_load"].into_iter().find(|name| has(name)).unwrap_or("load");
-    let rows = reader.series(pressed)?.into_iter().zip(reader.series("contact_area")?);
-    Ok(rows.map(|(load, area)| load / area - strength).collect())
+    if name == CONTACT_PRESSURE { reader.contact_pressures() } else { reader.series(name) }
 }
 
 /// Adds a line to the panel of its title, or to a new one.

@@ -19,8 +19,8 @@ const TERM: f64 = 0.1;
 const PAST: f64 = 0.2;
 /// Time of a flow that begins with the factorisation of the one before, over that of one alone.
 const REUSED: f64 = 0.5;
-/// Convolutions for an opening pressure, about.
-const OPENING: f64 = 500.0;
+/// Iterations of the solver for an opening pressure, about.
+const OPENING: f64 = 300.0;
 /// Bytes of fields that are compressed and stored in a second.
 const STORED: f64 = 150e6;
 /// Time until the first row \[s\].

@@ -87,6 +87,10 @@ fn what_does_not_go_with_it_is_refused_where_it_stands() {
             CASE.replace(
                 "\"elastic\", shear = \"1 MPa\"",
                 "\"kelvin-voigt\", shear = \"1 MPa\", retardation_time = \"1 s\"",
+            )
+            .replace(
+                "{ kind = \"step\", value = \"8 kPa\" }",
+                "{ kind = \"ramp\", value = \"8 kPa\", duration = \"1 s\" }",
             ) + "opening = true\n",
             "leakage.opening",
         ),

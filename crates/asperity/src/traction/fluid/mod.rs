@@ -224,11 +224,6 @@ impl InGap {
         let (options, previous) = (FlowOptions::default(), &mut self.previous);
         let [inlet, outlet] = [self.inlet, self.law.outlet];
         match &self.law.gas {
-            // At rest.
-            Some(_) if inlet == outlet => {
-                let flow = liquid_after(opening, passages, &options, previous)?;
-                Ok((flow.pressure.mapv_into(|x| if x.is_nan() { x } else { outlet }), flow.transmissivity))
-            }
             Some((gas, rarefaction)) => {
                 let ends = [inlet, outlet];
                 let flow = gas_flow_after(opening, passages, gas, *rarefaction, ends, &options, previous)?;

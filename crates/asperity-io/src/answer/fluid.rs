@@ -13,7 +13,10 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize, units: &Units) -> Resu
     let mut answers = vec![];
     if let Some(leaks) = LeakHistory::of(reader)? {
         if let Some(pressure) = leaks.column("opening_pressure").last() {
-            let note = "up to this inlet pressure the contact holds, if it rises suddenly";
+            let note = match leaks.last("percolates") == 1.0 {
+                true => "inlet and outlet are connected already",
+                false => "up to this inlet pressure the contact holds, if it rises suddenly",
+            };
             answers.push(Answer::new("opening_pressure", *pressure, "Pa").with_note(note));
         }
         if let Some((rate, unit)) = one_way(&leaks) {

@@ -43,7 +43,7 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize, units: &Units) -> Resu
         answers.push(Answer { resolution: time - before, ..answer });
     }
     // Where the pressure falls.
-    if let Some(k) = turns(0.0).filter(|k| inlet[*k] < inlet[*k - 1]).last() {
+    if let Some(k) = turns(0.0).rfind(|k| inlet[*k] < inlet[*k - 1]) {
         let note = format!("of the inlet, at t = {}", units.time(rows[k].coordinate.value()));
         let answer = Answer::new("closing_pressure", inlet[k], "Pa").with_note(note);
         answers.push(Answer { resolution: inlet[k - 1] - inlet[k], ..answer });

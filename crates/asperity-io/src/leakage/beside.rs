@@ -19,10 +19,17 @@ const SAME: f64 = 1e-9;
 #[derive(Default)]
 pub struct Beside {
     opening: Option<OpeningPressure>,
-    /// The leak rate of each row that has stored fields, by its time and by its number among the rows of that time.
-    one_way: Option<Vec<((f64, usize), f64)>>,
+    /// The leaks of the rows that have stored fields, where the fluid does not act.
+    one_way: Option<Vec<Rate>>,
     /// An earlier leakage of the same rows, which has these numbers.
     earlier: Option<LeakTable>,
+}
+
+/// The leak rate of a row, which its time and its number among the rows of that time tell: two rows have the time of a jump.
+struct Rate {
+    time: f64,
+    number: usize,
+    rate: f64,
 }
 
 impl Beside {
@@ -40,12 +47,13 @@ impl Beside {
             return Ok(Beside::default());
         }
         let simulation = simulation().map_err(failed)?;
-        let opening = leak.opening.then(|| OpeningPressure::new(leak.opening_traction()?, &simulation));
-        let opening = opening.transpose().map_err(failed)?;
+        // The run first: it gives its memory back.
         let one_way = match leak.one_way {
-            true => Some(one_way(leak, simulation, reader, interrupt)?),
+            true => Some(one_way(leak, simulation.clone(), reader, interrupt)?),
             false => None,
         };
+        let opening = leak.opening.then(|| OpeningPressure::new(leak.opening_traction()?, &simulation));
+        let opening = opening.transpose().map_err(failed)?;
         Ok(Beside { opening, one_way, earlier: None })
     }
 
@@ -94,10 +102,10 @@ impl Beside {
     /// The leak without the pressure of the fluid at a row; NaN where that run has no such row.
     pub(super) fn leak_rate_one_way(&self, times: &[f64], row: usize) -> Option<f64> {
         let (time, number) = (times[row], number_among(times, row));
-        let is_same = |((at, k), _): &&((f64, usize), f64)| same(*at, time) && *k == number;
+        let is_same = |of: &&Rate| same(of.time, time) && of.number == number;
         let earlier = self.of_earlier("leak_rate_one_way", time, row);
         let own = self.one_way.as_ref();
-        own.map(|rates| rates.iter().find(is_same).map_or(f64::NAN, |(_, rate)| *rate)).or(earlier)
+        own.map(|rates| rates.iter().find(is_same).map_or(f64::NAN, |of| of.rate)).or(earlier)
     }
 }
 
@@ -112,7 +120,7 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
-/// How many rows of its time are before a row: two rows have the time of a jump.
+/// How many rows of its time are before a row.
 fn number_among(times: &[f64], row: usize) -> usize {
     times[..row].iter().rev().take_while(|time| same(**time, times[row])).count()
 }
@@ -123,7 +131,7 @@ fn one_way(
     simulation: Simulation,
     reader: &Reader,
     interrupt: &Arc<AtomicBool>,
-) -> Result<Vec<((f64, usize), f64)>, LeakError> {
+) -> Result<Vec<Rate>, LeakError> {
     let stored = reader.field_times().to_vec();
     let mut dry = Simulation { traction: None, include: stored.clone(), ..simulation };
     dry.quantities.list.clear();
@@ -145,7 +153,8 @@ fn one_way(
         step.contact_into(&mut contact);
         let solved = leak.of_gap(&grid, gap.view(), Some(contact.view()), time);
         let state = solved.map_err(|source| LeakError::Solve { source, time })?;
-        rates.push(((time, number_among(&times, times.len() - 1)), state.leak_rate.unwrap_or(f64::NAN)));
+        let number = number_among(&times, times.len() - 1);
+        rates.push(Rate { time, number, rate: state.leak_rate.unwrap_or(f64::NAN) });
     }
     Ok(rates)
 }

@@ -9,11 +9,9 @@ pub fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
-/// The pressures of a row: nominal mean, mean in the contact, 0 if nothing touches, and largest; `share` of the load is on the cells
-/// in contact.
-pub fn pressures(row: &Row, share: f64) -> String {
-    let touching =
-        if row.contact_fraction > 0.0 { share * row.mean_pressure / row.contact_fraction } else { 0.0 };
+/// The pressures of a row: nominal mean, mean in the contact, 0 if nothing touches, and largest.
+pub fn pressures(row: &Row, in_contact: f64) -> String {
+    let touching = if in_contact.is_nan() { 0.0 } else { in_contact };
     let [nominal, touching, largest] =
         [row.mean_pressure, touching, row.max_pressure].map(|pressure| quantity(pressure, "Pa"));
     format!("nominal mean {nominal}, in the contact {touching}, largest {largest}")

@@ -205,7 +205,8 @@ pub fn derive_again(py: Python<'_>, source: PathBuf, copy: PathBuf) -> PyResult<
             stress::evaluate(&mut writer, &plan, &never, |_, _| {}).map_err(|error| told(&error))?;
         }
         if let Some(leak) = reader.leaks().and_then(|_| leakage::settings(&reader)) {
-            leakage::store(&copy, &leak, &never, |_, _| {}).map_err(|error| told(&error))?;
+            let beside = leakage::Beside::of_result(&reader).map_err(|error| told(&error))?;
+            leakage::store(&copy, &leak, beside, &never, |_, _| {}).map_err(|error| told(&error))?;
         }
         Ok(())
     };

@@ -150,11 +150,18 @@ function stressPart() {
 
 /** Where the seal closes and opens: events, and a sentence of the first time that it closes. */
 function sealing(time, open) {
-  const events = open.flatMap((now, n) => (n > 0 && !now !== !open[n - 1] ? [{ after: time[n - 1], at: time[n], text: now ? "leaks again" : "tight" }] : []));
+  const events = open.flatMap((now, n) => (n > 0 && !now !== !open[n - 1] ? [{ after: time[n - 1], at: time[n], text: now ? (open.slice(0, n).some(Boolean) ? "leaks again" : "leaks") : "tight" }] : []));
   const closed = events.find((event) => event.text === "tight");
   const unit = state.rows.unit;
   const note = closed ? `Closes between ${state.rows.symbol} = ${words(closed.after, unit)} and ${words(closed.at, unit)}: then no open path leads from inlet to outlet. A logarithmic axis cannot show zero.` : "";
   return [events, note];
+}
+
+/** A figure that stands in the page, or that a server draws. */
+function picture(name, svg, alt) {
+  const place = $(`${name}-map`);
+  if (svg) place.innerHTML = svg;
+  else if (state.live && !place.children.length) place.append(make("img", { src: `${name}.svg`, alt }));
 }
 
 function leakPart() {
@@ -174,17 +181,25 @@ function leakPart() {
     // kg/s of a gas to its rate at 0 °C: a factor that the gas alone decides.
     const ratios = gas ? gas.values.map((standard, n) => standard / leak.leak_rate.values[n]).filter(isFinite) : [];
     const factor = leak.shown.factor * (ratios.length ? ratios[0] : 1);
+    const oneWay = leak.leak_rate_one_way, isTight = oneWay && !oneWay.values.some((rate) => rate > 0);
+    const without = oneWay ? [line(`if the fluid did not act on the surfaces${isTight ? ": tight" : ""}`, "leak_rate_one_way", false, factor)] : [];
     specs.unshift({ title: "Leak rate", none, zero: none, events, x: rowsAxis(), y: { label: gas ? "leak rate, at 0 °C" : "leak rate", unit: leak.shown.text, log: true },
-      series: [line("solved on the grid", "leak_rate", false, factor), line("estimate from the critical constriction", "leak_estimate_junction", true, factor),
+      series: [line("solved on the grid", "leak_rate", false, factor), ...without, line("estimate from the critical constriction", "leak_estimate_junction", true, factor),
         line("estimate from all gaps (effective medium)", "leak_estimate_medium", true, factor)] });
+  }
+  if (leak.opening_pressure) {
+    const inlet = state.series.inlet_pressure;
+    specs.push({ title: "Pressure of the inlet", events, x: rowsAxis(), y: { label: "pressure", unit: "Pa" },
+      series: [line("that opens the contact suddenly", "opening_pressure"), ...(inlet ? [{ name: "of the run", x: state.series.time, y: numbers("inlet_pressure"), dashed: true }] : [])] });
   }
   // Once is enough.
   specs[0].note = note;
   leaks.set(specs);
   $("leak-asked").textContent = leak.asked;
   $("leak-words").textContent = leak.found;
-  if (state.leak_map) $("leak-map").innerHTML = state.leak_map;
-  else if (state.live && !$("leak-map").children.length) $("leak-map").append(make("img", { src: "leak.svg", alt: "Passages and flow" }));
+  picture("leak", state.leak_map, "Passages and flow");
+  if (leak.acts) picture("fluid", state.fluid_map, "Contact, pockets and pressure of the fluid");
+  $("h-fluid").hidden = !$("fluid-map").children.length;
 }
 
 async function surfacePart() {

@@ -22,8 +22,8 @@ const TIGHT: &[State] = &[
     ("open to the outlet", [0, 158, 115]),
     ("closed pocket", POCKET),
 ];
-const CLOSED: [u8; 3] = [110, 110, 108];
-const POCKET: [u8; 3] = [213, 94, 0];
+pub(crate) const CLOSED: [u8; 3] = [110, 110, 108];
+pub(crate) const POCKET: [u8; 3] = [213, 94, 0];
 /// Decades of the flux that a map shows.
 const DECADES: f64 = 4.0;
 

@@ -174,9 +174,8 @@ fn course(reader: &Reader, rows: &[Row], units: &Units) -> Result<String, StoreE
     text += &curve("approach", |row| row.approach, &|v| quantity(v, "m"));
     text += &curve("contact", |row| row.contact_fraction, &percent);
     text += &curve("mean gap", mean_gap, &|v| quantity(v, "m"));
-    let on_contact = reader.series(Quantity::ContactLoad.name()).ok().and_then(|loads| loads.last().copied());
-    let share = on_contact.filter(|_| last.load != 0.0).map_or(1.0, |load| load / last.load);
-    text += &line("pressure", pressures(last, share));
+    let in_contact = reader.contact_pressures()?.last().copied().unwrap_or(f64::NAN);
+    text += &line("pressure", pressures(last, in_contact));
     let asked = reader.scalars().into_iter().filter(|s| {
         let coordinate = axis == Axis::Velocity && s.name == Quantity::Velocity.name();
         Quantity::from_name(s.name).is_some() && !coordinate

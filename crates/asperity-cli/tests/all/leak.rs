@@ -311,3 +311,44 @@ fn a_leak_is_said_to_be_of_a_patch_and_given_per_metre_of_seal() {
     // 0.433e-18 m³ · 2e5 Pa / (12 · 1e-3 Pa s) · 40/160 in ml/h.
     assert!(text(&output.stdout).contains("leak rate             0.00649"), "{}", text(&output.stdout));
 }
+
+#[test]
+fn a_fluid_that_acts_is_drawn_with_the_contact_and_what_says_nothing_is_not() {
+    let place = tempfile::tempdir().unwrap();
+    let directory = place.path();
+    let acts =
+        "inlet = \"1.005 bar\"\noutlet = \"1 bar\"\ncoupling = \"two-way\"\nopening = true\none_way = true\n";
+    let acting = CASE.replace("pressure_drop = \"30 Pa\"\n", acts);
+    std::fs::write(directory.join("dry.toml"), CASE).unwrap();
+    std::fs::write(directory.join("wet.toml"), acting).unwrap();
+    data(&["run", "dry.toml", "--json", "--quiet"], directory);
+    let told = data(&["run", "wet.toml", "--json", "--quiet"], directory);
+    let answers: Vec<&str> =
+        told["answers"].as_array().unwrap().iter().map(|answer| answer["name"].as_str().unwrap()).collect();
+    assert!(
+        ["leak_rate_one_way", "fluid_load", "opening_pressure"].iter().all(|name| answers.contains(name)),
+        "{answers:?}"
+    );
+
+    let drawn = asperity(&["plot", "wet.zarr", "fluid", "-o", "fluid.svg"], directory);
+    assert!(drawn.status.success(), "{}", text(&drawn.stderr));
+    let svg = std::fs::read_to_string(directory.join("fluid.svg")).unwrap();
+    for words in ["contact</text>", "pressure of the fluid", "at the left", "of the load"] {
+        assert!(svg.contains(words), "{words}");
+    }
+    refused(&["plot", "dry.zarr", "fluid", "-o", "no.svg"], directory, &["coupling", "two-way"]);
+    // The rows with a fluid have 11 numbers that nobody asked for: those that stay what they are have no panel, and how the solver fared is
+    // told with its work.
+    let drawn = asperity(&["plot", "wet.zarr", "quantities", "-o", "numbers.svg"], directory);
+    let numbers = std::fs::read_to_string(directory.join("numbers.svg")).unwrap();
+    assert!(drawn.status.success() && numbers.contains("Parts of the load"), "{}", text(&drawn.stderr));
+    for words in ["Film", "Held cells", "passes", "Pressure of the fluid", "last pass"] {
+        assert!(!numbers.contains(words), "{words}");
+    }
+    asperity(&["plot", "wet.zarr", "work", "-o", "work.svg"], directory);
+    let work = std::fs::read_to_string(directory.join("work.svg")).unwrap();
+    assert!(work.contains("passes over the tractions") && work.contains("fluid (last pass)"));
+    assert!(asperity(&["report", "wet.zarr"], directory).status.success());
+    let page = std::fs::read_to_string(directory.join("wet.html")).unwrap();
+    assert!(page.contains("\"fluid_map\":\"") && page.contains("\"leak_rate_one_way\":{"));
+}

@@ -3,6 +3,7 @@
 //! | result | answers |
 //! |---|---|
 //! | with leakage | `leak_rate` (of a gas also `leak_rate_standard`), `hydraulic_gap`, `tight_from` |
+//! | with a fluid that acts on the surfaces | `fluid_load`, `time_opened` where it opens the contact, `closing_pressure` where that closes as the inlet falls; on request `opening_pressure`, `leak_rate_one_way` |
 //! | with adhesion | `pull_off_force`, `pull_off_approach` |
 //! | with a load along the surfaces | `loop_energy` of the last loop, `largest_tangential_force`, `largest_tangential_displacement`, `slip_share`, `slip_work` |
 //! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force` |
@@ -15,6 +16,7 @@
 
 mod adhesion;
 mod contact;
+mod fluid;
 mod leak;
 mod motion;
 mod stress;
@@ -97,6 +99,7 @@ pub fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     let rows = reader.rows()?;
     let Some(decisive) = decisive(reader, &rows)? else { return Ok(vec![]) };
     let mut answers = leak::of(reader, units)?;
+    answers.extend(fluid::of(reader, &rows, decisive, units)?);
     answers.extend(adhesion::of(reader, &rows));
     answers.extend(tangential::of(reader, &rows)?);
     answers.extend(motion::of(reader, &rows, decisive)?);

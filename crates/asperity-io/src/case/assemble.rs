@@ -6,7 +6,7 @@ use std::sync::Arc;
 use asperity::load::Course;
 use asperity::tangential::Tangential;
 use asperity::time::Plan;
-use asperity::traction::TractionLaw;
+use asperity::traction::{OpeningPressure, TractionLaw};
 use asperity::{Grid, Programme, Scheme, Simulation, TimeGrid};
 use ndarray::Array2;
 
@@ -231,6 +231,11 @@ impl Document {
             if leakage.is_some() || !acts {
                 self.output.possible(&at("output"), conditions, motion.is_some());
             }
+        }
+        if let Some(conditions) =
+            conditions.as_ref().filter(|_| leakage.as_ref().is_some_and(|leak| leak.opening))
+        {
+            checks.root().core::<()>(OpeningPressure::check(conditions));
         }
         if let (Some(pair), Some(grid)) = (&pair, &grid) {
             pair.resolved(&at("body"), &self.body, grid, boundary);

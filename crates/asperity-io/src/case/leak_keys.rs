@@ -81,15 +81,16 @@ impl Leak {
             rarefaction: given.rarefaction.or(keys.rarefaction),
             sides: given.sides.or(keys.sides),
             smallest_gap: given.smallest_gap.or(keys.smallest_gap),
-            coupling: None,
-            reference: None,
-            pockets: None,
-            times: None,
             field: given.field.or(keys.field),
+            // What acts on the surfaces, and what needs the bodies, belongs to the run: of the same flow it is kept.
+            ..LeakageKeys::default()
         };
         let leak = checked(&merged, boundary)?;
         let (times, temperatures) = (self.times.clone(), self.temperatures.clone());
-        Ok(Leak { times, temperatures, coupling: self.coupling.clone(), ..leak })
+        let goes_on = |leak: &Leak| (leak.direction, leak.sides, leak.smallest_gap, leak.fluid);
+        let same = goes_on(&leak) == goes_on(self);
+        let (opening, one_way) = (same && self.opening, same && self.one_way);
+        Ok(Leak { times, temperatures, opening, one_way, coupling: self.coupling.clone(), ..leak })
     }
 }
 
@@ -107,6 +108,8 @@ mod tests {
             smallest_gap: 3e-10,
             fluid,
             field: true,
+            opening: false,
+            one_way: false,
             coupling: None,
             temperatures: vec![(0.0, 300.0)],
             times: Some(vec![1.0]),

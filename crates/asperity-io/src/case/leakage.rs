@@ -31,7 +31,8 @@ pub struct LeakageKeys {
     pub molar_mass: Option<MolarMass<Positive>>,
     /// Temperature of the gas; that of the run if not given, or 20 °C if the run has none.
     pub temperature: Option<Temperature>,
-    /// Absolute pressure at the inlet; of a fluid that acts on the surfaces (`coupling`) also a history, with the kinds of load.history.
+    /// Absolute pressure at the inlet; of a fluid that acts on the surfaces (`coupling`) also a history, with the kinds of load.history;
+    /// a ramp, a triangle and a trapezoid then begin at the pressure of the outlet.
     #[schemars(example = "3 bar")]
     #[schemars(example = serde_json::json!({ "kind": "table", "points": [["0 s", "1 bar"], ["5 s", "3 bar"]] }))]
     pub inlet: Option<Form<Pressure<Positive>, Never, Box<History>>>,
@@ -61,6 +62,13 @@ pub struct LeakageKeys {
     /// Whether the pressure of the fluid is stored as a field; false if not given.
     #[schemars(example = true)]
     pub field: Option<bool>,
+    /// Whether the pressure of the inlet that opens the contact is computed at these times (`opening_pressure`); false if not given.
+    #[schemars(example = true)]
+    pub opening: Option<bool>,
+    /// Whether the leak of a fluid that does not act on the surfaces is computed too (`leak_rate_one_way`), by a second run; with
+    /// `coupling`; false if not given.
+    #[schemars(example = true)]
+    pub one_way: Option<bool>,
 }
 
 impl Word for Pressure<Positive> {
@@ -133,6 +141,14 @@ impl LeakageKeys {
                 "add \"gap\" and \"pressure\" to output.fields",
             );
         }
+        let opens = self.opening == Some(true);
+        if opens && !output.fields.contains(&FieldKind::Pressure) {
+            return at.key("opening").fault(
+                "the opening pressure is computed from the stored pressure, but output.fields does not name it",
+                "\"pressure\" among output.fields",
+                "add \"pressure\" to output.fields",
+            );
+        }
         let times = stored_times(&at.key("times"), self.times.as_ref(), output, end);
         let inlet = match &self.inlet {
             None => None,
@@ -196,6 +212,21 @@ fn checked(keys: &LeakageKeys, boundary: Boundary, inlet: Option<asperity::Histo
         ));
     }
     let fluid = fluid(keys, inlet.as_ref())?;
+    let is_asked = |key: Option<bool>| key == Some(true);
+    if is_asked(keys.one_way) && !keys.acts() {
+        return Err(Fault::new(
+            "leakage has `one_way`, but the fluid does not act on the surfaces: its leak is the one-way one",
+            "coupling = \"two-way\"",
+            "set coupling, or leave one_way out",
+        ));
+    }
+    if is_asked(keys.opening) && keys.coupling == Some(CouplingKind::Uniform) {
+        return Err(Fault::new(
+            "leakage has `opening`, but a fluid that acts everywhere opens nothing until it lifts the surfaces",
+            "coupling = \"two-way\" or \"one-way\"",
+            "set coupling, or leave opening out",
+        ));
+    }
     Ok(Leak {
         direction,
         sides,
@@ -203,6 +234,8 @@ fn checked(keys: &LeakageKeys, boundary: Boundary, inlet: Option<asperity::Histo
         coupling: coupling(keys, inlet, fluid.as_ref())?,
         fluid,
         field: keys.field.unwrap_or(false),
+        opening: is_asked(keys.opening),
+        one_way: is_asked(keys.one_way),
         temperatures: vec![],
         times: None,
     })
@@ -313,7 +346,7 @@ fn coupling(
         return Ok(None);
     };
     let (inlet, outlet) = match (inlet, keys.outlet, fluid) {
-        (Some(inlet), Some(outlet), _) => (inlet, outlet.get()),
+        (Some(inlet), Some(outlet), _) => (from_outlet(inlet, outlet.get()), outlet.get()),
         (_, _, Some(Fluid::Liquid { pressure_drop, .. })) => (held(*pressure_drop), 0.0),
         _ => {
             return missing(
@@ -328,6 +361,22 @@ fn coupling(
         Reference::Vacuum => 0.0,
     };
     Ok(Some(Coupling { action, inlet, outlet, reference }))
+}
+
+/// The pressure of the inlet over time: what would begin at 0 begins where nothing flows, at the pressure of the outlet.
+fn from_outlet(inlet: asperity::History, outlet: f64) -> asperity::History {
+    use asperity::History::{Ramp, Table, Trapezoid, Triangle};
+    let rest = (0.0, outlet);
+    let points = match inlet {
+        _ if outlet == 0.0 => return inlet,
+        Ramp { value, duration } => vec![rest, (duration, value)],
+        Triangle { peak, rise, fall } => vec![rest, (rise, peak), (rise + fall, outlet)],
+        Trapezoid { peak, rise, hold, fall } => {
+            vec![rest, (rise, peak), (rise + hold, peak), (rise + hold + fall, outlet)]
+        }
+        other => return other,
+    };
+    Table { points }
 }
 
 fn kind_of_gas(keys: &LeakageKeys) -> Result<GasKind, Fault> {

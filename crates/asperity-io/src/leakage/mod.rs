@@ -3,6 +3,7 @@
 //! What is asked for ([`Leak`]) comes from `[leakage]` of a case or from the command line; one state is answered by
 //! [`Leak::of_gap`], a result by [`store`], which stores its answer in the result ([`crate::store`]), or [`compute`].
 
+mod beside;
 mod result;
 pub mod words;
 
@@ -11,12 +12,13 @@ use asperity::leakage::{
     CellKind, Direction, FlowOptions, Gas, Opening, Passages, Rarefaction, Sides, Species, conductance,
     effective_medium, factor_bytes, gas_flow, leak_rate, liquid, plate, standard,
 };
-use asperity::traction::{Action, FluidPressure};
+use asperity::traction::{Action, FluidPressure, OpeningPressure, Pockets};
 use asperity::{Grid, History, Result};
 use ndarray::{Array2, ArrayView2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use beside::Beside;
 pub use result::{LeakError, LeakHistory, compute, settings, store};
 
 /// Fields of the gap, the network and the iteration that a flow holds besides the factor, about.
@@ -53,6 +55,12 @@ pub struct Leak {
     pub coupling: Option<Coupling>,
     /// Whether the pressure of the fluid is stored.
     pub field: bool,
+    /// Whether the pressure that opens the contact is computed, which needs the bodies: with a run.
+    #[serde(default)]
+    pub opening: bool,
+    /// Whether the leak without the pressure of the fluid on the surfaces is computed too, likewise.
+    #[serde(default)]
+    pub one_way: bool,
     /// Temperature of the run over time (\[s\], \[K\]), straight in between; may be empty.
     #[serde(default)]
     pub temperatures: Vec<(f64, f64)>,
@@ -158,6 +166,10 @@ pub struct Leakage {
     pub leak_estimate_medium: Option<f64>,
     /// Mean free path over critical gap, of a gas.
     pub knudsen: Option<f64>,
+    /// Leak of the run whose fluid does not act on the surfaces, unit as `leak_rate`; NaN if it has no such row. `None` if not asked for.
+    pub leak_rate_one_way: Option<f64>,
+    /// Pressure of the inlet that opens the contact \[Pa, as the inlet\]; `None` if not asked for.
+    pub opening_pressure: Option<f64>,
     /// Pressure of the fluid \[Pa\]; without a fluid, from 1 at the inlet to 0 at the outlet. NaN in closed cells and pockets.
     pub pressure: Array2<f64>,
     /// What each cell is connected to.
@@ -180,7 +192,8 @@ impl Leakage {
 impl Leak {
     /// Memory that it takes at most, of so many cells \[bytes\].
     pub fn bytes(&self, cells: usize) -> f64 {
-        factor_bytes(cells).min(FlowOptions::default().memory) + FIELDS * 8.0 * cells as f64
+        let opening = if self.opening { OpeningPressure::bytes(cells) } else { 0.0 };
+        factor_bytes(cells).min(FlowOptions::default().memory) + FIELDS * 8.0 * cells as f64 + opening
     }
 
     /// The leak through a gap \[m\] with a contact (nonzero where the bodies touch; without it, where the gap is not positive),
@@ -216,11 +229,6 @@ impl Leak {
                 let outlet = self.coupling.as_ref().map_or(0.0, |coupling| coupling.outlet);
                 (flow.pressure * pressure_drop + outlet, [rate?, None, junction?, medium?, None])
             }
-            // At rest.
-            Some(Fluid::Gas { inlet, outlet, .. }) if inlet == outlet => {
-                let at_rest = flow.pressure.mapv_into(|x| if x.is_nan() { x } else { outlet });
-                (at_rest, [Some(0.0), Some(0.0), Some(0.0), Some(0.0), Some(f64::NAN)])
-            }
             Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
                 drop(flow);
                 let gas = self.gas(kind, temperature, time)?;
@@ -251,9 +259,25 @@ impl Leak {
             leak_estimate_junction,
             leak_estimate_medium,
             knudsen,
+            leak_rate_one_way: None,
+            opening_pressure: None,
             cells: passages.map(&opening),
             pressure,
         })
+    }
+
+    /// What the cells of a gap \[m\] with a contact are connected to.
+    ///
+    /// # Errors
+    /// As of [`Opening::new`].
+    pub fn kinds(
+        &self,
+        grid: &Grid,
+        gap: ArrayView2<'_, f64>,
+        contact: ArrayView2<'_, u8>,
+    ) -> Result<Array2<CellKind>> {
+        let opening = Opening::new(grid, gap, Some(contact), self.axis(), self.sides, self.smallest_gap)?;
+        Ok(Passages::of(&opening).map(&opening))
     }
 
     /// Whether each pass of a contact solves the flow too.
@@ -262,7 +286,7 @@ impl Leak {
     }
 
     /// Direction of the flow that is computed first.
-    fn axis(&self) -> Direction {
+    pub fn axis(&self) -> Direction {
         match self.direction {
             LeakDirection::Y => Direction::Y,
             LeakDirection::X | LeakDirection::Both => Direction::X,
@@ -285,9 +309,25 @@ impl Leak {
 
     /// What acts on the surfaces, where the fluid does.
     pub(crate) fn traction(&self) -> Result<Option<FluidPressure>> {
-        let Some(Coupling { action, inlet, outlet, reference }) = self.coupling.clone() else {
-            return Ok(None);
+        self.coupling.clone().map(|coupling| self.acting(coupling)).transpose()
+    }
+
+    /// What would act on the surfaces, where the fluid does not: its pressure above that of the outlet.
+    pub(crate) fn opening_traction(&self) -> Result<FluidPressure> {
+        let outlet = match self.fluid {
+            Some(Fluid::Gas { outlet, .. }) => outlet,
+            Some(Fluid::Liquid { .. }) | None => 0.0,
         };
+        let at_rest = Coupling {
+            action: Action::Gaps(Pockets::Drained),
+            inlet: History::Step { value: outlet },
+            outlet,
+            reference: outlet,
+        };
+        self.acting(self.coupling.clone().unwrap_or(at_rest))
+    }
+
+    fn acting(&self, Coupling { action, inlet, outlet, reference }: Coupling) -> Result<FluidPressure> {
         let (gas, viscosity) = match self.fluid {
             Some(Fluid::Gas { kind, temperature, rarefaction, .. }) => {
                 let gas = self.gas(kind, temperature, 0.0)?;
@@ -297,17 +337,7 @@ impl Leak {
             None => (None, 0.0),
         };
         let (direction, sides, smallest_gap) = (self.axis(), self.sides, self.smallest_gap);
-        Ok(Some(FluidPressure {
-            inlet,
-            outlet,
-            reference,
-            gas,
-            viscosity,
-            direction,
-            sides,
-            smallest_gap,
-            action,
-        }))
+        Ok(FluidPressure { inlet, outlet, reference, gas, viscosity, direction, sides, smallest_gap, action })
     }
 
     pub(crate) fn gas(&self, kind: GasKind, temperature: Option<f64>, time: f64) -> Result<Gas> {

@@ -8,7 +8,7 @@ use asperity::leakage::Sides;
 use serde_json::Value;
 use thiserror::Error;
 
-use super::{Fluid, Leak, LeakDirection, words};
+use super::{Beside, Fluid, Leak, LeakDirection, words};
 use crate::answer::Units;
 use crate::instants;
 use crate::readable::quantity;
@@ -27,6 +27,12 @@ pub enum LeakError {
         source: asperity::Error,
         /// Time of the fields \[s\].
         time: f64,
+    },
+    /// What is computed beside the leaks failed.
+    #[error("the run without the pressure of the fluid, or the opening pressure: {source}")]
+    Beside {
+        /// What failed.
+        source: asperity::Error,
     },
     /// The user asked to stop.
     #[error("interrupted")]
@@ -128,12 +134,13 @@ pub fn settings(reader: &Reader) -> Option<Leak> {
 pub fn store(
     path: &Path,
     leak: &Leak,
+    beside: Beside,
     interrupt: &AtomicBool,
     mut observe: impl FnMut(usize, usize),
 ) -> Result<LeakHistory, LeakError> {
     let reader = Reader::open(path)?;
     let writer = LeakWriter::new(path, &reader.header().grid, leak.field)?;
-    let history = evaluate(&reader, leak, interrupt, &mut observe, Some(&writer))?;
+    let history = evaluate(&reader, leak, beside, interrupt, &mut observe, Some(&writer))?;
     let settings = serde_json::to_value(leak).unwrap_or_default();
     writer.finish(&history.table, settings, &history.findings)?;
     Ok(history)
@@ -149,12 +156,13 @@ pub fn compute(
     interrupt: &AtomicBool,
     mut observe: impl FnMut(usize, usize),
 ) -> Result<LeakHistory, LeakError> {
-    evaluate(reader, leak, interrupt, &mut observe, None)
+    evaluate(reader, leak, Beside::default(), interrupt, &mut observe, None)
 }
 
 fn evaluate(
     reader: &Reader,
     leak: &Leak,
+    beside: Beside,
     interrupt: &AtomicBool,
     observe: &mut dyn FnMut(usize, usize),
     writer: Option<&LeakWriter>,
@@ -167,9 +175,11 @@ fn evaluate(
     }
     let instants = instants::stored(reader, leak.times.as_deref())?;
     let grid = reader.header().grid;
-    let rows = reader.rows()?;
+    let (rows, times) = (reader.rows()?, reader.series("time")?);
     let tolerance = reader.header().setup.get("solver_tolerance").and_then(Value::as_f64).unwrap_or(1e-6);
     let initial = reader.initial_gap()?;
+    // Without the bodies those of the earlier leakage are kept.
+    let mut beside = if beside.is_none() { Beside::of_result(reader)? } else { beside };
     let mut diagnostics = LeakDiagnostics::default();
     let mut table = LeakTable::default();
     for (done, index) in instants.iter().copied().enumerate() {
@@ -180,9 +190,16 @@ fn evaluate(
         let gap = reader.field(FieldKind::Gap, at)?;
         let contact = reader.contact_states(at)?;
         let solved = leak.of_gap(&grid, gap.view(), Some(contact.view()), time);
-        let state = solved.map_err(|source| LeakError::Solve { source, time })?;
+        let mut state = solved.map_err(|source| LeakError::Solve { source, time })?;
         let step = reader.field_steps()[index];
         let row = rows[step];
+        if leak.one_way {
+            state.leak_rate_one_way = beside.leak_rate_one_way(&times, step);
+        }
+        if leak.opening {
+            state.opening_pressure =
+                beside.opening_pressure(reader, index, [row.approach, row.load], interrupt)?;
+        }
         // The mean displacement in the contact, to which the tolerance is relative: what the gap has gained, and the approach.
         let touching = gap.iter().zip(&initial).zip(&contact).filter(|(_, contact)| **contact > 0);
         let (sum, count) =

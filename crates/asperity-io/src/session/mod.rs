@@ -266,7 +266,14 @@ fn rows(
 /// The leakage that a case asks for, computed and stored once all rows are.
 fn leakage(case: &Case, mut summary: Summary, options: &RunOptions) -> Result<Summary, RunError> {
     let Some(leak) = &case.leakage else { return Ok(summary) };
-    match leakage::store(&summary.result, leak, &options.interrupt, |_, _| {}) {
+    let stored = || {
+        let simulation =
+            || case.simulation().map_err(|errors| Error::invalid("case", errors, "one that was run"));
+        let reader = Reader::open(&summary.result)?;
+        let beside = leakage::Beside::of(leak, simulation, &reader, &options.interrupt)?;
+        leakage::store(&summary.result, leak, beside, &options.interrupt, |_, _| {})
+    };
+    match stored() {
         Ok(leaks) => {
             summary.findings.extend(leaks.findings.iter().cloned());
             summary.answers = answers(&summary.result, &case.output.units);

@@ -5,7 +5,8 @@
 //! | `leak_time`, `leak_step` | `leak_time` | time and row of the fields that the leak was computed from |
 //! | `leak_rate` | `leak_time` | m3/s, of a gas kg/s |
 //! | `leak_rate_standard` | `leak_time` | Pa m3/s at 0 degC, of a gas |
-//! | `leak_estimate_junction`, `leak_estimate_medium` | `leak_time` | as `leak_rate` |
+//! | `leak_rate_one_way`, `leak_estimate_junction`, `leak_estimate_medium` | `leak_time` | as `leak_rate` |
+//! | `opening_pressure` | `leak_time` | Pa |
 //! | `hydraulic_gap`, `critical_gap`, `critical_x`, `critical_y` | `leak_time` | m |
 //! | `percolates`, `leak_resolved` | `leak_time` | 0 or 1 |
 //! | `open_fraction`, `trapped_area`, `trapped_volume` | `leak_time` | 1, m2, m3 |
@@ -70,15 +71,21 @@ const fn count(name: &'static str, long_name: &'static str, of: fn(&State) -> Op
     Number { data_type: DataType::Int64, ..number(name, "1", long_name, of) }
 }
 
-const NUMBERS: [Number; 16] = [
+const NUMBERS: [Number; 18] = [
     number("leak_time", "s", "time of the leak", |at| Some(at.time)),
     count("leak_step", "row of the leak", |at| Some(at.step as f64)),
     rate("leak_rate", "leak rate", |at| at.leak.leak_rate),
+    rate("leak_rate_one_way", "leak rate of a fluid that does not act on the surfaces", |at| {
+        at.leak.leak_rate_one_way
+    }),
     number("leak_rate_standard", "Pa m3/s", "leak rate at 0 degC", |at| at.leak.leak_rate_standard),
     rate("leak_estimate_junction", "leak rate of plates at the critical gap", |at| {
         at.leak.leak_estimate_junction
     }),
     rate("leak_estimate_medium", "leak rate of the effective medium", |at| at.leak.leak_estimate_medium),
+    number("opening_pressure", "Pa", "pressure of the inlet that opens the contact", |at| {
+        at.leak.opening_pressure
+    }),
     number("hydraulic_gap", "m", "gap of plates that leak as much", |at| Some(at.leak.hydraulic_gap)),
     number("critical_gap", "m", "gap at the critical constriction", |at| Some(at.leak.critical_gap)),
     number("critical_x", "m", "x of the critical constriction", |at| Some(at.leak.critical[0])),

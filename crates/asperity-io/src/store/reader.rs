@@ -226,6 +226,23 @@ impl Reader {
         self.numbers(name)
     }
 
+    /// The mean pressure over the contact of every row \[Pa\], NaN where nothing touches: of the load on the cells in contact where a fluid
+    /// carries the rest, and of surfaces that adhere less their attraction there, which is the largest.
+    ///
+    /// # Errors
+    /// As of [`series`](Self::series).
+    pub fn contact_pressures(&self) -> Result<Vec<f64>> {
+        let strength = self.header().adhesion().and_then(|adhesion| adhesion.get("strength")?.as_f64());
+        let has = |name: &&str| self.scalars().iter().any(|series| series.name == *name);
+        let loads = [Quantity::RepulsiveLoad, Quantity::ContactLoad].map(Quantity::name);
+        let rows = self.series(loads.into_iter().find(has).unwrap_or("load"))?.into_iter();
+        let rows = rows.zip(self.series("contact_area")?);
+        let pressure = |(load, area): (f64, f64)| {
+            if area > 0.0 { load / area - strength.unwrap_or(0.0) } else { f64::NAN }
+        };
+        Ok(rows.map(pressure).collect())
+    }
+
     /// Times of the stored fields \[s\].
     pub fn field_times(&self) -> &[f64] {
         &self.field_times

@@ -4,8 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use asperity::Boundary;
 use asperity_io::case::Case;
-use asperity_io::leakage::{LeakError, LeakHistory};
+use asperity_io::leakage::{Beside, LeakError, LeakHistory};
 use asperity_io::session::{RunError, RunOptions, run};
 use asperity_io::store::{Reader, Status};
 
@@ -65,4 +66,89 @@ fn a_run_that_stops_before_its_leakage_says_so_and_is_resumed_to_the_same_number
         (again.status, again.rows, again.convolutions),
         (Status::Complete, whole.rows, whole.convolutions)
     );
+}
+
+/// Water between rough surfaces.
+const WET: &str = r#"
+[domain]
+cells = [32, 32]
+size = ["0.2 mm", "0.2 mm"]
+boundary = "periodic"
+[[surface]]
+kind = "self-affine"
+rms_height = "0.5 um"
+hurst = 0.8
+longest = "100 um"
+shortest = "30 um"
+seed = 1
+[[body]]
+poisson = 0.5
+material = MATERIAL
+[load]
+control = "pressure"
+history = { kind = "table", points = [["0 s", "HIGH"], ["1 s", "HIGH"], ["1 s", "LOW"]] }
+[time]
+end = "2 s"
+steps = 4
+[leakage]
+viscosity = "1 mPa s"
+inlet = "1.1 bar"
+outlet = "1 bar"
+coupling = "two-way"
+KEYS
+[output]
+every = 1
+fields = ["gap", "pressure", "contact"]
+"#;
+
+#[test]
+fn beside_the_leak_stand_that_of_a_fluid_that_does_not_act_and_the_pressure_that_opens() {
+    let directory = tempfile::tempdir().unwrap();
+    let leaks = |name: &str, text: &str| {
+        let case = Case::parse(text, Path::new("."), &[]).unwrap();
+        let output = Some(directory.path().join(name));
+        run(&case, &RunOptions { output, ..RunOptions::default() }, |_| ()).unwrap();
+        let reader = Reader::open(&directory.path().join(name)).unwrap();
+        LeakHistory::of(&reader).unwrap().unwrap().table
+    };
+    let of = |material: &str, keys: &str, [high, low]: [&str; 2]| {
+        let text = WET.replace("MATERIAL", material).replace("KEYS", keys);
+        text.replace("HIGH", high).replace("LOW", low)
+    };
+    let zener =
+        "{ model = \"zener\", shear = \"3 MPa\", shear_kelvin = \"3 MPa\", retardation_time = \"1 s\" }";
+    let two_way = leaks("two.zarr", &of(zener, "one_way = true", ["0.08 MPa", "0.05 MPa"]));
+    let one_way = leaks("one.zarr", &of(zener, "", ["0.08 MPa", "0.05 MPa"]).replace("two-way", "one-way"));
+    // The same run, with both rows of the jump.
+    let [beside, alone] = [&two_way, &one_way].map(|table| table.get("leak_time").unwrap().to_vec());
+    assert_eq!(beside, alone);
+    assert_eq!(beside.iter().filter(|time| **time == 1.0).count(), 2, "{beside:?}");
+    let [beside, alone] = [(&two_way, "leak_rate_one_way"), (&one_way, "leak_rate")]
+        .map(|(table, name)| table.get(name).unwrap().to_vec());
+    assert_eq!(beside, alone);
+    assert!(beside.iter().any(|rate| *rate > 0.0), "{beside:?}");
+    let own = two_way.get("leak_rate").unwrap();
+    assert!(own.iter().zip(&alone).all(|(own, alone)| own >= alone), "{own:?} {alone:?}");
+
+    // What opens an elastic contact does not depend on the fluid that acts on it; without one it counts from the outlet.
+    let elastic = "{ model = \"elastic\", shear = \"3 MPa\" }";
+    let acting = leaks("acting.zarr", &of(elastic, "opening = true", ["0.9 MPa", "0.6 MPa"]));
+    let text = of(elastic, "opening = true", ["0.9 MPa", "0.6 MPa"]).replace("two-way", "one-way");
+    let resting = leaks("resting.zarr", &text);
+    let [acting, resting] = [acting, resting].map(|table| table.get("opening_pressure").unwrap().to_vec());
+    for (acting, resting) in acting.iter().zip(&resting) {
+        // Each is known to 1e-3, and the gap from which the first one begins to the tolerance of the loop.
+        assert!(((acting - 1e5) / resting - 1.0).abs() < 5e-3, "{acting} {resting}");
+    }
+    assert!(resting[0] > resting[4] && resting[4] > 0.0, "{resting:?}");
+    // A later leakage of the same flow keeps it, one of another fluid does not.
+    let path = directory.path().join("resting.zarr");
+    let settings = asperity_io::leakage::settings(&Reader::open(&path).unwrap()).unwrap();
+    let again = |keys: &str| {
+        let leak = settings.changed(serde_json::from_str(keys).unwrap(), Boundary::Periodic).unwrap();
+        let stop = AtomicBool::new(false);
+        asperity_io::leakage::store(&path, &leak, Beside::default(), &stop, |_, _| ()).unwrap().table
+    };
+    assert_eq!(again("{\"field\": true}").get("opening_pressure").unwrap(), resting);
+    assert_eq!(again("{\"viscosity\": 2.0}").get("opening_pressure"), None);
 }

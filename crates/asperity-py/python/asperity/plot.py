@@ -129,6 +129,7 @@ class Plots:
         is tight are left out."""
         found = self._result.leakage() if leaks is None else leaks
         names = {"solved": "leak_rate", "critical constriction": "leak_estimate_junction", "effective medium": "leak_estimate_medium"}
+        names["if the fluid did not act"] = "leak_rate_one_way"
         panels = []
         if "leak_rate" in found:
             rates = [(words, found[name].values) for words, name in names.items() if name in found]
@@ -198,9 +199,10 @@ class Plots:
             contact = _Panel("contact area", "m", 2, [("counted", area), ("corrected", result.contact_area_corrected)])
         if np.any(result.capped_area > 0):
             contact.curves.append(("at the hardness", result.capped_area))
-        # Of an adhesive contact: what presses on the cells that touch, less the attraction there, which is the largest.
+        # What presses on the cells that touch: where a fluid acts, its load is not among it; of surfaces that adhere less the attraction there,
+        # which is the largest.
         adhesion = result._setup.get("adhesion")
-        pressed = result.repulsive_load - adhesion["strength"] * area if adhesion else load
+        pressed = result.repulsive_load - adhesion["strength"] * area if adhesion else result._table.get("contact_load", load)
         over_contact = np.divide(pressed, area, out=np.full(area.shape, np.nan), where=area > 0)
         pressures = [("nominal mean", result.mean_pressure), ("largest", result.max_pressure), ("mean over the contact", over_contact)]
         third = _Panel("load", result.units("load"), 1, [("", load)])

@@ -84,7 +84,7 @@ impl Map {
     pub(crate) fn needs(&self, size: [f64; 2]) -> Margins {
         let [_, (up, unit)] = axes(self);
         let labels = Ruler::exactly(&up, [0.0, 1.0], 0.0, size[1] / 32.0, unit).widest();
-        let legend = if matches!(self.meaning, Values::States(_)) { NAMES } else { 0.0 };
+        let legend = if self.states_of_cells().is_some() { NAMES } else { 0.0 };
         let (bar, beyond) = colours(self, &Place { corner: [0.0; 2], size, margins: Margins::default() });
         // An area is as wide as its height lets it.
         let beside = if let Axes::Times { .. } = self.axes { beside(bar.as_ref(), &beyond) } else { 0.0 };

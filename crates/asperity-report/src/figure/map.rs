@@ -42,6 +42,8 @@ pub struct Map {
     pub whole: [f64; 2],
     /// What they are.
     pub meaning: Values,
+    /// States that hide the values of their cells; state 0, without a name, shows them.
+    pub cover: Option<(&'static [State], Array2<f64>)>,
     /// Values at the ends of the colour bar of a quantity; `None` for the least and the greatest.
     pub range: Option<[f64; 2]>,
     /// Lengths of the area along x and y \[m\].
@@ -100,6 +102,7 @@ impl Map {
             values,
             whole,
             meaning,
+            cover: None,
             range: None,
             size,
             axes,
@@ -134,6 +137,20 @@ impl Map {
     ) -> Map {
         let values = raster::states(values, raster::block(values));
         Map::of(title.into(), values, Values::States(states), size)
+    }
+
+    /// The same map with states that hide the values of their cells, where they are not 0.
+    pub fn covered(self, states: &'static [State], cells: ArrayView2<f64>) -> Map {
+        Map { cover: Some((states, raster::states(cells, raster::block(cells)))), ..self }
+    }
+
+    /// The states that have names, and the cells that they are of.
+    pub(super) fn states_of_cells(&self) -> Option<(&'static [State], &Array2<f64>)> {
+        match (&self.meaning, &self.cover) {
+            (Values::States(states), _) => Some((states, &self.values)),
+            (_, Some((states, cells))) => Some((states, cells)),
+            _ => None,
+        }
     }
 
     /// The same map with a circle around a place x, y \[m\].
@@ -175,10 +192,7 @@ impl Map {
         let layout = Layout::of(self, place);
         let [left, top, right, bottom] = layout.area;
         let [w, h] = [right - left, bottom - top];
-        let states = match self.meaning {
-            Values::States(states) => Some(states),
-            Values::Quantity { .. } => None,
-        };
+        let states = self.states_of_cells();
         if !self.title.is_empty() {
             let over = if states.is_some() { NAMES } else { 0.0 };
             drawing.text([left, top - 6.0 - over], TEXT, Anchor::Start, &self.title);
@@ -213,8 +227,8 @@ impl Map {
         if let Some(bar) = layout.bar {
             bar.draw(drawing, [right + 8.0, first, last]);
         }
-        if let Some(states) = states {
-            self.names(drawing, states, [left, top]);
+        if let Some((states, cells)) = states {
+            names(drawing, states, cells, [left, top]);
         }
     }
 
@@ -235,7 +249,8 @@ impl Map {
             small.range = self.range;
         }
         let Map { axes, line, palette, log, .. } = *self;
-        Map { axes, line, palette, log, marks: self.marks.clone(), ..small }
+        let cover = self.cover.as_ref().map(|(states, _)| (*states, Array2::zeros(small.values.dim())));
+        Map { axes, line, palette, log, cover, marks: self.marks.clone(), ..small }
     }
 
     /// Left, top, right and bottom of the frame \[points\].
@@ -250,10 +265,8 @@ impl Map {
         let ([x0, y0], [width, height]) = (place.corner, place.size);
         let fits = |text: &str, room: f64| font::width(text, TEXT) <= room;
         let room = x0 + width - left;
-        let names: f64 = match &self.meaning {
-            Values::States(states) => states.iter().map(|(name, _)| 19.0 + font::width(name, SMALL)).sum(),
-            Values::Quantity { .. } => 0.0,
-        };
+        let states = self.states_of_cells().map_or(&[][..], |(states, _)| states);
+        let names: f64 = named(states).map(|(_, (name, _))| 19.0 + font::width(name, SMALL)).sum();
         // The title of the map stands above the frame, and that of the bar must not touch it.
         let first = if self.title.is_empty() { y0 } else { top - 4.0 };
         let along = around(layout.bar_ends(), [first, y0 + height]);
@@ -268,25 +281,35 @@ impl Map {
     fn picture(&self) -> Pixels {
         match (&self.meaning, self.scale()) {
             (Values::States(states), _) => raster::state_picture(&self.values, states),
-            (_, Some(scale)) if self.goes_down() => {
+            (_, Some(scale)) if self.cover.is_none() && self.goes_down() => {
                 let flipped = self.values.slice(ndarray::s![.., ..;-1]).to_owned();
                 raster::coloured(&flipped, |value| scale.at(value))
             }
-            (_, Some(scale)) => raster::coloured(&self.values, |value| scale.at(value)),
+            (_, Some(scale)) => match &self.cover {
+                None => raster::coloured(&self.values, |value| scale.at(value)),
+                Some((states, cells)) => {
+                    raster::covered(&self.values, |value| scale.at(value), cells, states)
+                }
+            },
             (_, None) => Pixels { size: [0, 0], rgb: vec![] },
         }
     }
+}
 
-    /// Names of the states that occur, with their colours, above the map.
-    fn names(&self, drawing: &mut Drawing, states: &[State], [left, top]: [f64; 2]) {
-        let mut x = left;
-        let occurs = |state: usize| self.values.iter().any(|value| *value == state as f64);
-        for (_, (name, colour)) in states.iter().enumerate().filter(|(state, _)| occurs(*state)) {
-            let paint = Paint { fill: Some((*colour, 1.0)), pen: Some(Pen::new(INK, 0.4)) };
-            drawing.rect([x, top - 12.0], [7.5, 7.5], paint);
-            drawing.text([x + 11.0, top - 5.5], SMALL, Anchor::Start, name);
-            x += 19.0 + font::width(name, SMALL);
-        }
+/// The states that have a name, with their numbers.
+fn named(states: &[State]) -> impl Iterator<Item = (usize, &State)> {
+    states.iter().enumerate().filter(|(_, (name, _))| !name.is_empty())
+}
+
+/// Names of the states that occur, with their colours, above the map.
+fn names(drawing: &mut Drawing, states: &[State], cells: &Array2<f64>, [left, top]: [f64; 2]) {
+    let mut x = left;
+    let occurs = |state: usize| cells.iter().any(|cell| *cell == state as f64);
+    for (_, (name, colour)) in named(states).filter(|(state, _)| occurs(*state)) {
+        let paint = Paint { fill: Some((*colour, 1.0)), pen: Some(Pen::new(INK, 0.4)) };
+        drawing.rect([x, top - 12.0], [7.5, 7.5], paint);
+        drawing.text([x + 11.0, top - 5.5], SMALL, Anchor::Start, name);
+        x += 19.0 + font::width(name, SMALL);
     }
 }
 

@@ -60,6 +60,22 @@ pub(super) fn coloured(values: &Array2<f64>, colour: impl Fn(f64) -> [u8; 3]) ->
     Pixels { size: [nx, ny], rgb: cells.flat_map(|cell| colour(values[cell])).collect() }
 }
 
+/// Values in their colours, and in those of their states the cells whose state is not 0.
+pub(super) fn covered(
+    values: &Array2<f64>,
+    colour: impl Fn(f64) -> [u8; 3],
+    cells: &Array2<f64>,
+    states: &[State],
+) -> Pixels {
+    let (nx, ny) = values.dim();
+    let own = |cell: [usize; 2]| match states.get(cells[cell] as usize) {
+        Some((_, own)) if cells[cell] > 0.0 => *own,
+        _ => colour(values[cell]),
+    };
+    let rgb = (0..ny).rev().flat_map(|j| (0..nx).map(move |i| [i, j])).flat_map(own).collect();
+    Pixels { size: [nx, ny], rgb }
+}
+
 /// The pixels as a PNG. Fails only where a side is 0 or beyond 2^31: no figure has these.
 pub(super) fn png(pixels: &Pixels) -> Result<Vec<u8>, png::EncodingError> {
     let mut out = Vec::new();
@@ -93,6 +109,15 @@ mod tests {
         let pixels = state_picture(&values, &names);
         assert_eq!(pixels.size, [3, 2]);
         assert_eq!(pixels.rgb, [[2, 2, 2], BLANK, [1, 1, 1], [1, 1, 1], [3, 3, 3], BLANK].concat());
+    }
+
+    #[test]
+    fn states_other_than_0_hide_the_values() {
+        let names = [("", [0; 3]), ("contact", [1, 1, 1]), ("pocket", [2, 2, 2])];
+        let values = ndarray::array![[5.0, f64::NAN], [6.0, 7.0]];
+        let cells = ndarray::array![[0.0, 1.0], [2.0, 0.0]];
+        let pixels = covered(&values, |value| [value as u8; 3], &cells, &names);
+        assert_eq!(pixels.rgb, [[1; 3], [7; 3], [5; 3], [2; 3]].concat());
     }
 
     #[test]

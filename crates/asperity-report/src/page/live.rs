@@ -30,7 +30,7 @@ impl Live {
         Live { path: path.to_owned() }
     }
 
-    /// What is at a path of the page: `/`, `/state`, `/stress.svg`, `/leak.svg`, `/map/NAME`; `None` where nothing is.
+    /// What is at a path of the page: `/`, `/state`, `/stress.svg`, `/leak.svg`, `/fluid.svg`, `/map/NAME`; `None` where nothing is.
     ///
     /// # Errors
     /// [`StoreError`] where the result is damaged, has no row yet or not this map.
@@ -45,6 +45,7 @@ impl Live {
             "/state" => ("application/json", Some(state_of(&reader, false)?.to_string().into_bytes())),
             "/stress.svg" => svg(stress::picture(&reader)?),
             "/leak.svg" => svg(super::leak_map(&reader)),
+            "/fluid.svg" => svg(super::fluid_map(&reader)),
             path => {
                 let map = path.strip_prefix("/map/").map(|name| map(&reader, name)).transpose()?;
                 ("application/octet-stream", map.flatten())

@@ -95,6 +95,9 @@ pub fn page(reader: &Reader, options: &Options) -> Result<String, StoreError> {
     if let Some(picture) = leak_map(reader) {
         state["leak_map"] = picture.into();
     }
+    if let Some(picture) = fluid_map(reader) {
+        state["fluid_map"] = picture.into();
+    }
     let blobs: String = maps.blobs.iter().map(|(name, data)| element(name, data)).collect();
     Ok(filled_page(reader, &state, &blobs))
 }
@@ -103,6 +106,11 @@ pub fn page(reader: &Reader, options: &Options) -> Result<String, StoreError> {
 fn leak_map(reader: &Reader) -> Option<String> {
     reader.leaks()?;
     crate::result::last_leak_map(reader).ok().map(|figure| figure.to_svg())
+}
+
+/// Contact and fluid, where the fluid acts on the surfaces. A page without this picture is still a page.
+fn fluid_map(reader: &Reader) -> Option<String> {
+    crate::result::largest_fluid_map(reader).ok().map(|figure| figure.to_svg())
 }
 
 /// The page with its state and its maps.

@@ -38,7 +38,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     let mut series = Map::new();
     let mut units_of = Map::new();
     for scalar in reader.scalars() {
-        series.insert(scalar.name.into(), json!(reader.series(scalar.name)?));
+        series.insert(scalar.name.into(), json!(panels::values(reader, scalar.name)?));
         units_of.insert(scalar.name.into(), json!(scalar.units));
     }
     // What the rows follow, of a sweep the velocities.
@@ -138,6 +138,7 @@ fn leak(reader: &Reader, units: &Units) -> Result<Value, StoreError> {
     let gas = history.table.get("leak_rate_standard").is_some();
     let shown = units.shown_leak(gas);
     columns.insert("shown".into(), json!({"factor": shown.factor, "text": shown.text}));
+    columns.insert("acts".into(), json!(history.leak.coupling.is_some()));
     columns.insert("asked".into(), json!(history.leak.words()));
     columns.insert("found".into(), json!(history.sentence(units)));
     Ok(Value::Object(columns))

@@ -32,8 +32,10 @@ fn curves(reader: &Reader, options: &Options) -> Result<Vec<Curves>, PlotError> 
     };
     let mut all = vec![];
     let gas = reader.leak("leak_rate_standard").is_ok();
+    let opening = opening(reader, axis(), &time)?;
     if !percolates.contains(&1.0) {
         // Logarithmic axes have no place for any of it.
+        all.extend(opening);
         return Ok(all);
     }
     if reader.leak("leak_rate").is_ok() {
@@ -53,7 +55,7 @@ fn curves(reader: &Reader, options: &Options) -> Result<Vec<Curves>, PlotError> 
             series.y.iter_mut().for_each(|rate| *rate *= factor);
             Ok(series)
         };
-        let panel = Curves::new("Leak rate", axis(), label)
+        let mut panel = Curves::new("Leak rate", axis(), label)
             .with(scaled("solved on the grid", Style::Line, "leak_rate")?)
             .with(scaled("estimate from the critical constriction", Style::Dashed, "leak_estimate_junction")?)
             .with(scaled(
@@ -61,13 +63,34 @@ fn curves(reader: &Reader, options: &Options) -> Result<Vec<Curves>, PlotError> 
                 Style::DashDotted,
                 "leak_estimate_medium",
             )?);
+        if let Ok(rates) = reader.leak(ONE_WAY) {
+            let leaks = rates.iter().any(|rate| *rate > 0.0);
+            let name = if leaks { WITHOUT } else { "if the fluid did not act on the surfaces: tight" };
+            panel = panel.with(scaled(name, Style::Line, ONE_WAY)?);
+        }
         all.push(sealing(panel, &time, &percolates));
     }
     let gaps = Curves::new("Gaps", axis(), Axis::log("gap", "m"))
         .with(line("hydraulic: even gap, same leak", Style::Line, "hydraulic_gap")?)
         .with(line("critical: narrowest on best path", Style::Dashed, "critical_gap")?);
     all.push(sealing(gaps, &time, &percolates));
+    all.extend(opening);
     Ok(all)
+}
+
+/// The leak of a fluid that does not act on the surfaces.
+const ONE_WAY: &str = "leak_rate_one_way";
+const WITHOUT: &str = "if the fluid did not act on the surfaces";
+
+/// The pressure of the inlet, and the one that opens the contact, over time.
+fn opening(reader: &Reader, axis: Axis, time: &[f64]) -> Result<Option<Curves>, PlotError> {
+    let Ok(opening) = reader.leak("opening_pressure") else { return Ok(None) };
+    let mut panel = Curves::new("Pressure of the inlet", axis, Axis::linear("pressure", "Pa"))
+        .with(Series::new("that opens the contact suddenly", Style::Line, time, opening));
+    if let Ok(inlet) = reader.series("inlet_pressure") {
+        panel = panel.with(Series::new("of the run", Style::Dashed, &reader.series("time")?, inlet));
+    }
+    Ok(Some(panel))
 }
 
 /// The panel over whole decades, with a vertical line at each time from which on the seal is tight after it has leaked.

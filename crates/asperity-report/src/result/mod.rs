@@ -14,6 +14,7 @@ mod common;
 mod distribution;
 mod evolution;
 mod fields;
+mod fluid;
 mod friction;
 mod leak;
 pub(crate) mod line;
@@ -37,6 +38,7 @@ use serde_json::Value;
 pub(crate) use common::Common;
 pub use common::common_limits;
 pub(crate) use evolution::{ForceCurve, last_cycle};
+pub(crate) use fluid::largest_map as largest_fluid_map;
 pub(crate) use friction::{name_of_theory, persson};
 pub(crate) use leak::last_map as last_leak_map;
 pub use plot::Plot;
@@ -118,6 +120,12 @@ pub enum PlotError {
     /// The bodies do not move along each other.
     #[error("{} has no friction: its case has no motion; give it a table [motion]", path.display())]
     AtRest {
+        /// The result.
+        path: std::path::PathBuf,
+    },
+    /// No fluid acts on the surfaces.
+    #[error("no fluid acts on the surfaces of {}; set coupling = \"two-way\" in [leakage] of its case", path.display())]
+    Dry {
         /// The result.
         path: std::path::PathBuf,
     },

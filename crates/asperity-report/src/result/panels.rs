@@ -1,6 +1,6 @@
 //! Panels of curves over the rows: which numbers share one, and what it is called. Figures and pages draw the same.
 
-use asperity::quantities::{Panel, ROW_COLUMNS, RowFigure};
+use asperity::quantities::{Column, Panel, Quantity, ROW_COLUMNS, RowFigure};
 use asperity_io::store::{Reader, StoreError};
 
 use super::rows::Rows;
@@ -22,16 +22,12 @@ pub(crate) const CONTACT_PRESSURE: &str = "contact_pressure";
 
 /// The numbers of a series at the rows.
 pub(crate) fn values(reader: &Reader, name: &str) -> Result<Vec<f64>, StoreError> {
-    if name != CONTACT_PRESSURE {
-        return reader.series(name);
+    if name == Quantity::PocketPressureMax.name() {
+        // Without pockets there is none.
+        let rows = reader.series(name)?.into_iter().zip(reader.series(Quantity::PocketArea.name())?);
+        return Ok(rows.map(|(p, area)| if area > 0.0 { p } else { f64::NAN }).collect());
     }
-    // Of an adhesive contact: what presses on the cells that touch, less the attraction there, which is the largest.
-    let adhesion = reader.header().adhesion();
-    let strength = adhesion.and_then(|adhesion| adhesion.get("strength")?.as_f64()).unwrap_or(0.0);
-    let has = |name: &str| reader.scalars().iter().any(|series| series.name == name);
-    let pressed = ["repulsive_load", "contact_load"].into_iter().find(|name| has(name)).unwrap_or("load");
-    let rows = reader.series(pressed)?.into_iter().zip(reader.series("contact_area")?);
-    Ok(rows.map(|(load, area)| load / area - strength).collect())
+    if name == CONTACT_PRESSURE { reader.contact_pressures() } else { reader.series(name) }
 }
 
 /// Adds a line to the panel of its title, or to a new one.
@@ -97,26 +93,53 @@ pub(crate) fn of_evolution(reader: &Reader) -> Result<Vec<RowPanel>, StoreError>
     Ok(panels)
 }
 
-/// The work of the solver.
+/// The work of the solver; where it had to loop over tractions, also how that went.
 pub(crate) fn of_work(reader: &Reader) -> Result<Vec<RowPanel>, StoreError> {
-    of_columns(reader, |figure| (figure == RowFigure::Work).then_some(0))
+    let mut panels = of_columns(reader, |figure| (figure == RowFigure::Work).then_some(0))?;
+    let columns = reader.header().quantities.iter().filter(|column| column.quantity.is_of_solver());
+    for Column { quantity, .. } in columns {
+        let is_zero = reader.series(quantity.name())?.iter().all(|value| *value == 0.0);
+        if let Some(panel) = quantity.panel_on(&reader.header().grid).filter(|_| !is_zero) {
+            add(&mut panels, panel, quantity.name(), &[]);
+        }
+    }
+    Ok(panels)
 }
 
-/// The quantities with one number per row that were asked for: one panel for all energies, one for the areas of spots,
-/// one for each other.
+/// Whether a panel says nothing: a film or a pocket that never is, a pressure that is held.
+fn says_nothing(reader: &Reader, panel: &RowPanel) -> Result<bool, StoreError> {
+    for (_, name) in &panel.lines {
+        if reader.series(name)?.iter().any(|value| *value != 0.0) {
+            return is_constant(reader, panel);
+        }
+    }
+    Ok(true)
+}
+
+/// The quantities with one number per row: one panel for all energies, one for the areas of spots, one for each other. Of those that
+/// nobody has asked for, because every row with a fluid or an attraction has them, the panels that say something.
 pub(crate) fn of_quantities(reader: &Reader) -> Result<Vec<RowPanel>, StoreError> {
     let mut panels: Vec<RowPanel> = vec![];
     let grid = &reader.header().grid;
-    for column in &reader.header().quantities {
-        let Some(panel) = column.quantity.panel_on(grid) else { continue };
-        match column.quantity.components() {
-            Some([[x, _], [y, _]]) => {
+    for Column { quantity, .. } in &reader.header().quantities {
+        let panel = quantity.panel_on(grid).filter(|_| !quantity.is_of_solver());
+        match (panel, quantity.components()) {
+            (None, _) => {}
+            (Some(panel), Some([[x, _], [y, _]])) => {
                 add(&mut panels, Panel { legend: "along x", ..panel }, x, &[]);
                 add(&mut panels, Panel { legend: "along y", ..panel }, y, &[]);
             }
-            None => add(&mut panels, panel, column.quantity.name(), column.quantity.states()),
+            (Some(panel), None) => add(&mut panels, panel, quantity.name(), quantity.states()),
         }
     }
+    let is_given = |name: &str| Quantity::from_name(name).is_some_and(Quantity::is_of_traction);
+    let mut silent = vec![];
+    for panel in &panels {
+        if panel.lines.iter().all(|(_, name)| is_given(name)) && says_nothing(reader, panel)? {
+            silent.push(panel.title);
+        }
+    }
+    panels.retain(|panel| !silent.contains(&panel.title));
     // Numbers that every row has, beside the quantities of their panel.
     for beside in of_columns(reader, |figure| (figure == RowFigure::Quantities).then_some(0))? {
         if let Some(panel) = panels.iter_mut().find(|panel| panel.title == beside.title) {

@@ -2,7 +2,9 @@
 
 use asperity_io::store::{FieldKind, Reader};
 
-use super::{Options, PlotError, distribution, evolution, fields, friction, leak, panels, profile, stress};
+use super::{
+    Options, PlotError, distribution, evolution, fields, fluid, friction, leak, panels, profile, stress,
+};
 use crate::figure::{Colours, Figure};
 
 /// What a figure shows of a result, and so which options it takes.
@@ -109,6 +111,8 @@ plots! {
     Stress "stress" Shows::Maps("Pa"), stress::stress;
     /// Leak rate and gaps over time, and the flow at an instant.
     Leak "leak" Shows::Both, leak::over_time;
+    /// Contact, pockets and the pressure of a fluid that acts on the surfaces, at an instant.
+    Fluid "fluid" Shows::Maps("Pa"), fluid::map;
     /// Friction of a contact in motion, over the velocity of steady states or over time.
     Friction "friction" Shows::Load, friction::friction;
 }

@@ -2,21 +2,23 @@
 
 use super::words::{digits, rows, si};
 use super::worst::{Worst, extend};
-use super::{FLUID_ACTS_ON_DOMAIN, FLUID_APPROACH_HELD, FLUID_CHATTER, FLUID_LIFTS, Finding, SQUEEZE_SLOW};
+use super::{
+    FLUID_ACTS_ON_DOMAIN, FLUID_APPROACH_HELD, FLUID_CHATTER, FLUID_LIFTS, FLUID_MAY_RUN_AWAY, Finding,
+    SQUEEZE_SLOW,
+};
 use crate::grid::Boundary;
-use crate::load::Control;
+use crate::load::{Control, Course};
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::step::{Row, Step};
+use crate::traction::{Action, FluidPressure};
 
 /// Share of the drop of the fluid's pressure that its squeezing out may take.
 const SQUEEZE_SHARE: f64 = 0.1;
 
 /// What is known before the run.
 pub(super) fn before(simulation: &Simulation) -> Vec<Finding> {
-    if simulation.traction.as_ref().is_none_or(|law| law.as_fluid().is_none()) {
-        return vec![];
-    }
+    let Some(fluid) = simulation.traction.as_ref().and_then(|law| law.as_fluid()) else { return vec![] };
     let Simulation { grid, boundary, loading, .. } = simulation;
     let is_held = loading.stages.iter().any(|stage| stage.control == Control::Approach);
     let mut found = vec![];
@@ -33,7 +35,38 @@ pub(super) fn before(simulation: &Simulation) -> Vec<Finding> {
             .to_owned();
         found.push(Finding::warning(FLUID_APPROACH_HELD, f64::NAN, f64::NAN, text));
     }
+    found.extend(runaway(simulation, fluid));
     found
+}
+
+/// Whether a film on a periodic domain could no longer hold the load: it carries the mean of inlet and outlet at least.
+fn runaway(simulation: &Simulation, fluid: &FluidPressure) -> Option<Finding> {
+    let [stage] = &simulation.loading.stages[..] else { return None };
+    let Course::Given(history) = &stage.course else { return None };
+    let area = match stage.control {
+        Control::Load => simulation.grid.area(),
+        Control::Pressure => 1.0,
+        Control::Approach => return None,
+    };
+    let ends = |time: f64| match fluid.action {
+        Action::Everywhere => 2.0 * (fluid.inlet.after(time) - fluid.reference),
+        Action::Gaps(_) => fluid.inlet.after(time) + fluid.outlet - 2.0 * fluid.reference,
+    };
+    let excess = |time: &f64| ends(*time) - 2.0 * history.after(*time) / area;
+    let times = simulation.plan().instants.into_iter().map(|instant| instant.time);
+    let worst = times.filter(|time| ends(*time) > 0.0).max_by(|a, b| excess(a).total_cmp(&excess(b)))?;
+    let (both, mean) = (ends(worst), history.after(worst) / area);
+    let text = || {
+        format!(
+            "At t = {} inlet and outlet have {} together above the reference, twice the mean pressure or more ({}): a fluid that gets in lifts the \
+             surfaces without limit, and the run ends there. Raise the load, or lower the pressure.",
+            si(worst, "s"),
+            si(both, "Pa"),
+            si(mean, "Pa"),
+        )
+    };
+    let periodic = simulation.boundary == Boundary::Periodic && both >= 2.0 * mean;
+    periodic.then(|| Finding::warning(FLUID_MAY_RUN_AWAY, both, 2.0 * mean, text()))
 }
 
 /// What the rows say.
@@ -117,5 +150,57 @@ impl Wet {
             SQUEEZE_SLOW => self.squeezed = worst,
             _ => {}
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use ndarray::Array2;
+
+    use super::*;
+    use crate::grid::Grid;
+    use crate::leakage::{Direction, Sides};
+    use crate::load::{History, Loading};
+    use crate::traction::Pockets;
+
+    #[test]
+    fn a_fluid_may_run_away_from_twice_the_mean_pressure_on() {
+        let codes = |action: Action, control: Control, inlet: f64, outlet: f64, boundary: Boundary| {
+            let points = vec![(0.0, outlet), (0.5, inlet), (1.0, outlet)];
+            let fluid = FluidPressure {
+                inlet: History::Table { points },
+                outlet,
+                reference: 1.0,
+                gas: None,
+                viscosity: 1.0,
+                direction: Direction::X,
+                sides: Sides::Periodic,
+                smallest_gap: 0.0,
+                action,
+            };
+            let grid = Grid::new([8, 8], [2.0, 2.0]).unwrap();
+            // A mean pressure of 3.
+            let value = if control == Control::Load { 12.0 } else { 3.0 };
+            let found = before(&Simulation {
+                boundary,
+                loading: Loading { control, history: History::Step { value } }.into(),
+                times: crate::TimeGrid::Uniform { end: 1.0, steps: 4 },
+                traction: Some(Arc::new(fluid)),
+                ..Simulation::new(grid, Array2::zeros(grid.shape()))
+            });
+            found.iter().any(|finding| finding.code == FLUID_MAY_RUN_AWAY)
+        };
+        let (gaps, periodic) = (Action::Gaps(Pockets::Kept), Boundary::Periodic);
+        for control in [Control::Load, Control::Pressure] {
+            // Above the reference: 5.9 and 0 are held, 6 and 0, or 4 and 2, are not.
+            assert!(!codes(gaps, control, 6.9, 1.0, periodic));
+            assert!(codes(gaps, control, 7.0, 1.0, periodic) && codes(gaps, control, 5.0, 3.0, periodic));
+            assert!(codes(Action::Everywhere, control, 4.0, 1.0, periodic));
+            assert!(!codes(Action::Everywhere, control, 3.9, 1.0, periodic));
+        }
+        assert!(!codes(gaps, Control::Approach, 9.0, 1.0, periodic));
+        assert!(!codes(gaps, Control::Load, 9.0, 1.0, Boundary::Free));
     }
 }

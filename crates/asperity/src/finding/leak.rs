@@ -81,16 +81,20 @@ impl LeakDiagnostics {
         });
         let pressure = self.pressure.warning(FLUID_UNCOUPLED, |worst| {
             let mean = worst.limit / PRESSURE_SHARE;
-            let [low, high] = opened(worst.value / mean);
+            let [low, high] = opened(worst.value / mean).map(digits);
+            let then = if worst.value < mean {
+                format!(
+                    "the true leak is about {low} times as large far from sealing (a fifth of the area in contact), and {high} times close to it"
+                )
+            } else {
+                "so large a drop may lift them off each other altogether".to_owned()
+            };
             format!(
                 "The fluid pressure drops by {}{}, more than 0.02 of the mean pressure, {}. It would push the bodies apart, which is not \
-                 computed here: the true leak is about {} times as large far from sealing (a fifth of the area in contact), and {} times close \
-                 to it. leakage.coupling = \"two-way\" and `asperity seal` compute it.",
+                 computed here: {then}. leakage.coupling = \"two-way\" and `asperity seal` compute it.",
                 si(worst.value, "Pa"),
                 worst.place(),
                 si(mean, "Pa"),
-                digits(low),
-                digits(high)
             )
         });
         [below, narrow, pressure].into_iter().flatten().collect()

@@ -257,6 +257,8 @@ codes! {
     ADHESION_AT_BORDER = "adhesion-at-border";
     /// The fluid carries all of the load in a film.
     FLUID_LIFTS = "fluid-lifts";
+    /// Inlet and outlet have more than twice the mean pressure together.
+    FLUID_MAY_RUN_AWAY = "fluid-may-run-away";
     /// Cells whose access to the fluid has no steady state.
     FLUID_CHATTER = "fluid-chatter";
     /// A prescribed approach fixes the mean gap of a periodic contact, whatever the fluid does.

@@ -51,9 +51,10 @@ pub fn standard(leak_rate: f64, gas: &Gas) -> f64 {
 fn pressures(inlet: f64, outlet: f64) -> Result<()> {
     positive("pressure of the inlet", inlet, "Pa")?;
     non_negative("pressure of the outlet", outlet, "Pa")?;
-    if inlet <= outlet {
-        let expected =
-            format!("above that of the outlet, {outlet} Pa; exchange them for a flow in the other direction");
+    if inlet < outlet {
+        let expected = format!(
+            "not below that of the outlet, {outlet} Pa; exchange them for a flow in the other direction"
+        );
         return Err(Error::invalid("pressure of the inlet", format!("{inlet} Pa"), expected));
     }
     Ok(())
@@ -62,7 +63,7 @@ fn pressures(inlet: f64, outlet: f64) -> Result<()> {
 /// Leak \[kg/s\] between parallel plates at a distance `gap` \[m\], of length and width `size` \[m\].
 ///
 /// # Errors
-/// [`Error::Invalid`] if the pressures \[Pa\] are not positive and falling (the outlet may be 0).
+/// [`Error::Invalid`] if the pressures \[Pa\] are not positive (the outlet may be 0), or rise.
 pub fn plate(
     gas: &Gas,
     rarefaction: Rarefaction,
@@ -83,7 +84,7 @@ pub fn plate(
 /// Solves the flow of a gas between the pressures `inlet` and `outlet` \[Pa, absolute\].
 ///
 /// # Errors
-/// [`Error::Invalid`] if the pressures are not positive and falling (the outlet may be 0); [`Error::NotConverged`] as for a
+/// [`Error::Invalid`] if the pressures are not positive (the outlet may be 0), or rise; [`Error::NotConverged`] as for a
 /// [`liquid`](super::liquid).
 pub fn gas_flow(
     opening: &Opening,

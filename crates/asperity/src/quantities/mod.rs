@@ -172,9 +172,9 @@ quantities! {
     /// Σ γ(g): potential energy of the attraction, 0 where the surfaces are far apart, in J.
     AdhesionEnergy = "adhesion_energy" ["J"] "adhesion energy", Adhesion, ("Energy", "energy", "adhesion");
     /// Passes of the loop around the contact solver.
-    OuterIterations = "outer_iterations" ["1"] "passes of the loop over the tractions", Traction, ("Passes of the loop over the tractions", "number", "");
+    OuterIterations = "outer_iterations" ["1"] "passes of the loop over the tractions", Traction, ("Work of each row", "number", "passes over the tractions");
     /// Change of the attraction in the last of them, relative to all forces between the surfaces.
-    AdhesionResidual = "adhesion_residual" ["1"] "change of the adhesion in the last pass", Adhesion, ("Change of the adhesion in the last pass", "share", "");
+    AdhesionResidual = "adhesion_residual" ["1"] "change of the adhesion in the last pass", Adhesion, ("Error of each row", "relative error", "adhesion (last pass)");
     /// Load that the fluid carries on the open cells, in N; of a contact with a fluid that acts on it, as the nine that follow.
     FluidLoad = "fluid_load" ["N"] "load on the fluid", Fluid, ("Parts of the load", "load", "fluid");
     /// Load on the cells in contact, in N. The load is the sum.
@@ -184,18 +184,18 @@ quantities! {
     /// Whether the gap connects inlet and outlet: 1 or 0.
     Connected = "connected" ["1"] "whether the gap connects inlet and outlet", Fluid, ("Inlet and outlet", "connected", "");
     /// Whether the fluid carries all of the load in a film without contact: 1 or 0.
-    Film = "film" ["1"] "film without contact", Fluid, ("Film", "without contact", "");
+    Film = "film" ["1"] "film without contact", Fluid, ("Film without contact", "film", "");
     /// Area of the pockets, which neither inlet nor outlet reaches, in m2.
     PocketArea = "pocket_area" ["m2"] "area of the pockets", Fluid, ("Area of the pockets", "area", ""),
         on a line ["m"] "length of the pockets" ("Length of the pockets", "length");
     /// Largest pressure in a pocket, in Pa; 0 where there is none.
     PocketPressureMax = "pocket_pressure_max" ["Pa"] "largest pressure in a pocket", Fluid, ("Pressure of the fluid", "pressure", "in a pocket");
     /// Cells whose access to the fluid changed again and again in the loop and was then held.
-    LatchedCells = "latched_cells" ["1"] "cells whose access to the fluid was held", Fluid, ("Held cells", "number", "");
+    LatchedCells = "latched_cells" ["1"] "cells whose access to the fluid was held", Fluid, ("Held cells", "number", "access to the fluid held");
     /// Spread of the conductance of the gap over the last 20 passes, relative.
-    LeakSpread = "leak_spread" ["1"] "spread of the leak over the last passes", Fluid, ("Spread of the leak", "share", "");
+    LeakSpread = "leak_spread" ["1"] "spread of the leak over the last passes", Fluid, ("Error of each row", "relative error", "leak (spread over the last passes)");
     /// Change of the fluid's tractions in the last pass, relative to all forces between the surfaces.
-    FluidResidual = "fluid_residual" ["1"] "change of the fluid's tractions in the last pass", Fluid, ("Change in the last pass", "share", "");
+    FluidResidual = "fluid_residual" ["1"] "change of the fluid's tractions in the last pass", Fluid, ("Error of each row", "relative error", "fluid (last pass)");
     /// Force along the surfaces, along x and y, in N; of a contact with a tangential load, as the seven that follow.
     TangentialForce = "tangential_force" ["N"] "tangential force", TangentialVector, ("Tangential force", "force", "");
     /// Displacement of the bodies against each other along x and y since t = 0, in m.
@@ -211,9 +211,9 @@ quantities! {
     /// Work of friction since t = 0, in J: heat in the surfaces. Of elastic bodies it grows over a closed loop by the area of the loop.
     SlipWork = "slip_work" ["J"] "work of friction", Tangential, ("Work of friction", "work", "");
     /// Iterations of the solver of the tangential tractions.
-    FrictionIterations = "friction_iterations" ["1"] "iterations of the tangential solver", Tangential, ("Iterations of the tangential solver", "number", "");
+    FrictionIterations = "friction_iterations" ["1"] "iterations of the tangential solver", Tangential, ("Work of each row", "number", "iterations of the tangential solver");
     /// Certified error of the tangential tractions in the energy norm, relative.
-    FrictionCertificate = "friction_certificate" ["1"] "certified error of the tangential tractions, relative", Tangential, ("Certified error of the tangential tractions", "share", "");
+    FrictionCertificate = "friction_certificate" ["1"] "certified error of the tangential tractions, relative", Tangential, ("Error of each row", "relative error", "tangential tractions (certificate)");
     /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.
     Velocity = "velocity" ["m/s"] "velocity", Motion, ("Velocity", "velocity", "");
     /// Distance that the contact has moved, in m.
@@ -375,8 +375,23 @@ impl Quantity {
     pub fn states(self) -> &'static [&'static str] {
         match self.declaration().kind {
             Kind::Percolation => &["none", "x", "y", "x and y"],
+            _ if matches!(self, Quantity::Connected | Quantity::Film) => &["no", "yes"],
             _ => &[],
         }
+    }
+
+    /// Whether it tells how the solver fared, not what it found.
+    pub fn is_of_solver(self) -> bool {
+        matches!(
+            self,
+            Quantity::OuterIterations
+                | Quantity::AdhesionResidual
+                | Quantity::FluidResidual
+                | Quantity::LatchedCells
+                | Quantity::LeakSpread
+                | Quantity::FrictionIterations
+                | Quantity::FrictionCertificate
+        )
     }
 
     /// Whether it has one number per bin; otherwise it has one per row.

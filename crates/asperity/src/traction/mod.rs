@@ -38,7 +38,7 @@ mod solver;
 mod tests;
 
 pub use adhesion::{Adhesion, AdhesionLaw, FINE_TRAP, LARGEST_TRAP, own_response};
-pub use fluid::{Action, FluidPressure, Pockets};
+pub use fluid::{Action, FluidPressure, OpeningPressure, Pockets};
 pub use scale::AdhesionScale;
 pub(crate) use solver::TractionSolver;
 

@@ -8,6 +8,7 @@
 mod adhesion;
 mod elastic;
 mod energy;
+mod fluid;
 mod invariants;
 mod line;
 mod loads;
@@ -51,7 +52,7 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 38] = [
+pub const CASES: [Case; 41] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
@@ -87,6 +88,9 @@ pub const CASES: [Case; 38] = [
     ("maugis-sphere", adhesion::maugis),
     ("adhesive-sphere", adhesion::adhesive_sphere),
     ("adhesive-retraction", adhesion::retraction),
+    ("fluid-wave", fluid::wave),
+    ("fluid-channel", fluid::channel),
+    ("fluid-strip", fluid::strip),
     ("cattaneo-mindlin", tangential::sphere),
     ("tangential-rough", tangential::rough),
     ("glued-punch", tangential::punch),

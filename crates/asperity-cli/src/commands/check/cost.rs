@@ -19,6 +19,8 @@ const TERM: f64 = 0.1;
 const PAST: f64 = 0.2;
 /// Time of a flow that begins with the factorisation of the one before, over that of one alone.
 const REUSED: f64 = 0.5;
+/// Iterations of the solver for an opening pressure, about.
+const OPENING: f64 = 300.0;
 /// Bytes of fields that are compressed and stored in a second.
 const STORED: f64 = 150e6;
 /// Time until the first row \[s\].
@@ -80,7 +82,8 @@ const TIMED_FLOW: usize = 128;
 pub(super) fn leak_seconds(case: &Case, description: &Description) -> Option<f64> {
     let leak = case.leakage.as_ref()?;
     let times = leak.times.as_ref().map(Vec::len).or(description.stored_rows)? as f64;
-    Some(times * flow_seconds(case)?)
+    let opening = if leak.opening { OPENING * PROJECTED_CG * convolution(case)? } else { 0.0 };
+    Some(times * (flow_seconds(case)? + opening))
 }
 
 /// What one flow takes \[s\]: timed with all cells open on a small grid, and scaled as a sparse factorisation, N^1.3; about half of the

@@ -122,14 +122,19 @@ fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
         line("approach", format!("{} at most", quantity(approach, "m")));
     }
     let strain = inputs.expected_pressure_over_modulus.map_or(String::new(), |p| format!(", p/E* {p:.2e}"));
+    let acts = case.leakage.as_ref().is_some_and(|leak| leak.coupling.is_some());
+    let without = match (inputs.adhesion.is_some(), acts) {
+        (true, _) => " without adhesion",
+        (_, true) => " without the pressure of the fluid",
+        _ => "",
+    };
     if let (Some(radii), Some(cells)) = (inputs.expected_contact_radius, inputs.expected_cells_across) {
         let radius = range(case, radii, |radius| quantity(radius, "m"));
         let of = if grid.is_line() { "half-width of the contact" } else { "contact radius" };
-        line("expected", format!("{of} {radius}, {cells:.0} cells across{strain}"));
+        line("expected", format!("{of}{without} {radius}, {cells:.0} cells across{strain}"));
     } else if let Some(shares) = inputs.expected_contact_share {
         let share = range(case, shares, |share| format!("{:.2} %", 100.0 * share));
-        let without = if inputs.adhesion.is_some() { ", without adhesion" } else { "" };
-        line("expected", format!("share of the domain in contact{without} {share}{strain}"));
+        line("expected", format!("share of the domain in contact{without}: {share}{strain}"));
     }
     if let Some(law) = &case.describe().friction {
         let unit = if law.control == TangentialControl::Force { grid.units("N") } else { "m" };

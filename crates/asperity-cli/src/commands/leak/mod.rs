@@ -10,7 +10,7 @@ use asperity_io::answer::Units;
 use asperity_io::case::leak as checked;
 use asperity_io::choice;
 use asperity_io::finding;
-use asperity_io::leakage::{Leak, LeakError, LeakHistory, compute, settings, store, words};
+use asperity_io::leakage::{Beside, Leak, LeakError, LeakHistory, compute, settings, store, words};
 use asperity_io::store::{LeakTable, Reader};
 use serde_json::{Map, Value, json};
 
@@ -65,7 +65,7 @@ fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
                 compute(&reader, &leak, &interrupt, observe)
             } else {
                 drop(reader);
-                store(path, &leak, &interrupt, observe)
+                store(path, &leak, Beside::default(), &interrupt, observe)
             };
             found.map_err(failure)?
         }
@@ -115,7 +115,7 @@ fn failure(error: LeakError) -> Failure {
         LeakError::Solve { source: asperity::Error::Invalid { .. }, .. } | LeakError::Store(_) => {
             Failure::input(error.to_string())
         }
-        LeakError::Solve { .. } => Failure::Solve(error.to_string()),
+        LeakError::Solve { .. } | LeakError::Beside { .. } => Failure::Solve(error.to_string()),
     }
 }
 

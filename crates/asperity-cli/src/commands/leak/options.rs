@@ -15,13 +15,10 @@ pub fn keys(options: &FluidOptions) -> LeakageKeys {
         temperature: options.temperature,
         inlet: options.inlet.map(Form::Word),
         outlet: options.outlet,
-        coupling: None,
-        reference: None,
-        pockets: None,
         rarefaction: options.rarefaction,
         sides: options.sides,
         smallest_gap: options.smallest_gap,
-        times: None,
         field: (options.field || options.no_field).then_some(options.field),
+        ..LeakageKeys::default()
     }
 }

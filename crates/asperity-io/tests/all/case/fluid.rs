@@ -49,6 +49,10 @@ fn its_keys_are_the_law_of_the_simulation() {
         law(&CASE.replace("inlet = \"1.02 bar\"", table).replace("outlet = \"1 bar\"", "outlet = \"0 bar\""));
     assert_eq!(other.inlet, History::Ramp { value: 1.02e5, duration: 1.0 });
     assert_eq!((other.reference, other.action), (0.0, Action::Gaps(Pockets::Drained)));
+    // From the outlet on, where nothing flows, and back to it.
+    let triangle = "inlet = { kind = \"triangle\", peak = \"1.02 bar\", rise = \"1 s\", fall = \"0.5 s\" }";
+    let triangle = law(&CASE.replace("inlet = \"1.02 bar\"", triangle));
+    assert_eq!(triangle.inlet, History::Table { points: vec![(0.0, 1e5), (1.0, 1.02e5), (1.5, 1e5)] });
     let uniform = law(&CASE.replace("two-way", "uniform").replace("1.02 bar", "1 bar"));
     assert_eq!((uniform.action, uniform.outlet), (Action::Everywhere, 1e5));
     let drop = law(&CASE
@@ -76,6 +80,20 @@ fn what_does_not_go_with_it_is_refused_where_it_stands() {
         (CASE.replace("\"two-way\"", "\"twoway\""), "leakage.coupling"),
         (CASE.replace("\"two-way\"", "\"two-way\"\npockets = \"connected\""), "leakage"),
         (one_way.clone() + "pockets = \"kept\"\n", "leakage"),
+        (one_way.clone() + "one_way = true\n", "leakage"),
+        (CASE.replace("two-way", "uniform") + "opening = true\n", "leakage"),
+        (CASE.to_owned() + "opening = true\n[output]\nfields = [\"gap\"]\n", "leakage.opening"),
+        (
+            CASE.replace(
+                "\"elastic\", shear = \"1 MPa\"",
+                "\"kelvin-voigt\", shear = \"1 MPa\", retardation_time = \"1 s\"",
+            )
+            .replace(
+                "{ kind = \"step\", value = \"8 kPa\" }",
+                "{ kind = \"ramp\", value = \"8 kPa\", duration = \"1 s\" }",
+            ) + "opening = true\n",
+            "leakage.opening",
+        ),
         (one_way.clone() + "reference = \"vacuum\"\n", "leakage"),
         (one_way.replace("\"1.02 bar\"", "{ kind = \"step\", value = \"1.02 bar\" }"), "leakage"),
         (CASE.replace("[leakage]", adheres), "leakage.coupling"),

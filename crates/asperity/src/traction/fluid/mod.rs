@@ -23,6 +23,7 @@
 
 mod beside;
 mod latch;
+mod opening;
 mod pockets;
 #[cfg(test)]
 mod tests;
@@ -31,6 +32,7 @@ use std::collections::VecDeque;
 
 use ndarray::{Array2, ArrayView2};
 
+pub use opening::OpeningPressure;
 pub use pockets::Pockets;
 
 use super::{SurfaceTraction, TractionLaw};
@@ -222,11 +224,6 @@ impl InGap {
         let (options, previous) = (FlowOptions::default(), &mut self.previous);
         let [inlet, outlet] = [self.inlet, self.law.outlet];
         match &self.law.gas {
-            // At rest.
-            Some(_) if inlet == outlet => {
-                let flow = liquid_after(opening, passages, &options, previous)?;
-                Ok((flow.pressure.mapv_into(|x| if x.is_nan() { x } else { outlet }), flow.transmissivity))
-            }
             Some((gas, rarefaction)) => {
                 let ends = [inlet, outlet];
                 let flow = gas_flow_after(opening, passages, gas, *rarefaction, ends, &options, previous)?;
@@ -239,28 +236,37 @@ impl InGap {
         }
     }
 
-    /// Sets `pressure` and `reached` from the gap and the contact pressure.
-    fn find_pressures(&mut self, gap: &[f64], contact: &[f64]) -> Result<()> {
+    /// The open cells and what they are connected to.
+    fn passages(&self, gap: &[f64], contact: &[f64]) -> Result<(Opening, Passages)> {
         let shape = self.grid.shape();
         let touches = Array2::from_shape_fn(shape, |(i, j)| u8::from(contact[i * shape.1 + j] > 0.0));
-        let gap_view = ArrayView2::from_shape(shape, gap)
+        let gap = ArrayView2::from_shape(shape, gap)
             .map_err(|error| Error::invalid("gap", error, "one per cell"))?;
-        let FluidPressure { direction, sides, smallest_gap, outlet, .. } = self.law;
-        let open = |contact| Opening::new(&self.grid, gap_view, contact, direction, sides, smallest_gap);
-        let opening = open(Some(touches.view()))?;
+        let FluidPressure { direction, sides, smallest_gap, .. } = self.law;
+        let opening = Opening::new(&self.grid, gap, Some(touches.view()), direction, sides, smallest_gap)?;
         let passages = Passages::of(&opening);
+        Ok((opening, passages))
+    }
+
+    /// The same where all cells, those in contact too, have the gap `floor` at least.
+    fn passages_above(&self, floor: f64, gap: &[f64], contact: &[f64]) -> Result<(Opening, Passages)> {
+        let (shape, FluidPressure { direction, sides, .. }) = (self.grid.shape(), &self.law);
+        let floored = Array2::from_shape_fn(shape, |(i, j)| {
+            let cell = i * shape.1 + j;
+            if contact[cell] > 0.0 { floor } else { gap[cell].max(floor) }
+        });
+        let opening = Opening::new(&self.grid, floored.view(), None, *direction, *sides, 0.0)?;
+        let passages = Passages::of(&opening);
+        Ok((opening, passages))
+    }
+
+    /// Sets `pressure` and `reached` from the gap and the contact pressure.
+    fn find_pressures(&mut self, gap: &[f64], contact: &[f64]) -> Result<()> {
+        let (opening, passages) = self.passages(gap, contact)?;
         self.percolates = passages.percolates();
         let (opening, passages) = match self.contents.floor() {
             None => (opening, passages),
-            // All cells let some fluid pass.
-            Some(floor) => {
-                let floored = Array2::from_shape_fn(shape, |at| {
-                    if touches[at] > 0 { floor } else { gap_view[at].max(floor) }
-                });
-                let opening = Opening::new(&self.grid, floored.view(), None, direction, sides, 0.0)?;
-                let passages = Passages::of(&opening);
-                (opening, passages)
-            }
+            Some(floor) => self.passages_above(floor, gap, contact)?,
         };
         let (flowing, conductance) = self.flow(&opening, &passages)?;
         if self.conductances.len() == RECENT {
@@ -277,7 +283,7 @@ impl InGap {
                 _ if is_closed => f64::NAN,
                 CellKind::Through => *own,
                 CellKind::AtInlet => self.inlet,
-                CellKind::AtOutlet => outlet,
+                CellKind::AtOutlet => self.law.outlet,
                 CellKind::Closed | CellKind::Pocket => f64::NAN,
             };
             self.reached[cell] = !self.pressure[cell].is_nan();

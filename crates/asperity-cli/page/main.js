@@ -37,7 +37,10 @@ async function show() {
 }
 
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
-const theme = (name) => { document.documentElement.dataset.theme = name; };
+function theme(name) {
+  document.documentElement.dataset.theme = name;
+  for (const frame of document.querySelectorAll("iframe.own")) frame.contentWindow.theme?.(name);
+}
 theme(dark.matches ? "dark" : "light");
 dark.addEventListener("change", (event) => theme(event.matches ? "dark" : "light"));
 $("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));

@@ -57,7 +57,7 @@ async function runsPage() {
 async function resultPage(name) {
   const place = make("div", { id: "run" }), page = make("div", { id: "page" }), done = make("div", { id: "done", role: "status" });
   const actions = make("div", {});
-  let before = "", framed = false;
+  let before = "", framed = "";
   const act = (what) => trying(async () => {
     tell("working ...");
     const found = await send("do", what);
@@ -79,9 +79,11 @@ async function resultPage(name) {
     const run = runs.find((one) => one.result === name), now = JSON.stringify(run ?? null);
     if (now !== before) place.replaceChildren(run ? runPart(run, true) : commands({ shell: `asperity view ${name}`, python: `import asperity as asp\n\nresult = asp.open(${JSON.stringify(name)})\nprint(result)\n` }));
     before = now;
-    if (!framed && (run ? run.has_rows : entry?.rows > 0)) {
-      framed = true;
-      page.replaceChildren(make("iframe", { src: `live/${encoded(name)}/`, title: `report of ${name}` }));
+    // Once more at its end, when all of it is there.
+    const state = run && isOpen(run) ? "open" : "ended";
+    if (framed !== state && (run ? run.has_rows : entry?.rows > 0)) {
+      framed = state;
+      page.replaceChildren(make("iframe", { class: "own", src: `live/${encoded(name)}/`, title: `report of ${name}`, load: () => theme(document.documentElement.dataset.theme) }));
     }
   });
   const cases = list.filter((one) => one.kind === "case").map((one) => one.name);

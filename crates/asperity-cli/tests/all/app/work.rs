@@ -158,6 +158,8 @@ fn from_a_dropped_file_to_the_comparison() {
     // Run, stop, resume.
     browser.eval("(document.getElementById('run').click(), true)");
     browser.wait("!!document.querySelector('iframe') && !!document.querySelector('.run progress')");
+    browser.wait("document.querySelector('iframe').contentDocument?.documentElement.dataset.ready === 'yes'");
+    browser.eval("(document.querySelector('iframe').contentDocument.getElementById('maps').scrollIntoView(), true)");
     browser.picture("app-run.png");
     browser.eval("(document.querySelector('.stop').click(), true)");
     wait_for_run(browser, "stopped");
@@ -173,7 +175,7 @@ fn from_a_dropped_file_to_the_comparison() {
 
     // The report, in the page and as a file.
     let name = browser.text("document.querySelector('h1').textContent");
-    browser.wait("document.querySelector('iframe').contentDocument?.documentElement.dataset.ready === 'yes'");
+    browser.wait("document.querySelector('iframe').contentDocument?.getElementById('status')?.textContent.startsWith('complete')");
     let headline = browser
         .text("document.querySelector('iframe').contentDocument.getElementById('headline').textContent");
     assert!(headline.contains("leak rate"), "the answer comes first: {headline}");

@@ -84,7 +84,9 @@ async function casePage(name) {
     let from = 0, to = now.length, end = next.length;
     while (from < to && from < end && now[from] === next[from]) from++;
     while (to > from && end > from && now[to - 1] === next[end - 1]) { to--; end--; }
-    view.dispatch({ changes: { from, to, insert: next.slice(from, end) }, effects: CodeMirror.EditorView.scrollIntoView(from, { y: "center" }) });
+    view.dispatch({ changes: { from, to, insert: next.slice(from, end) } });
+    // Into view, without moving the page.
+    view.requestMeasure({ read: () => view.lineBlockAt(from).top, write: (top) => { view.scrollDOM.scrollTop = top - view.scrollDOM.clientHeight / 2; } });
   }
 
   const store = async () => {
@@ -134,7 +136,7 @@ function editor(text, values, changed) {
     CodeMirror.lineNumbers(), CodeMirror.lintGutter(), CodeMirror.history(), CodeMirror.highlightActiveLine(), CodeMirror.drawSelection(), CodeMirror.bracketMatching(),
     CodeMirror.closeBrackets(), EditorView.lineWrapping, StreamLanguage.define(CodeMirror.toml), CodeMirror.syntaxHighlighting(colours),
     CodeMirror.autocompletion({ override: [completions(values)] }), CodeMirror.keymap.of(keys),
-    EditorView.contentAttributes.of({ "aria-label": "Text of the case; Escape, then Tab leaves it" }),
+    EditorView.contentAttributes.of({ "aria-label": "Text of the case" }),
     EditorView.updateListener.of((update) => update.docChanged && changed()),
   ] }) });
 }

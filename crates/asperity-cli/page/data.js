@@ -97,14 +97,12 @@ async function materialPage(name, way) {
 
 /** A new case with own files, as a few questions. */
 async function newPage(surface = "") {
-  const files = (await ask("list")).filter((entry) => entry.kind === "file" || entry.kind === "case").map((entry) => entry.name);
+  const list = await ask("list"), of = (...kinds) => list.filter((entry) => kinds.includes(entry.kind)).map((entry) => entry.name);
+  const files = of("file"), blocks = of("block");
   const purposes = [["seal", "How much leaks through the gap?"], ["friction", "Which friction over the velocity?"], ["contact", "Which area and pressure?"], ["indentation", "A ball pressed in"], ["adhesion", "A contact that sticks"]];
   const purpose = make("select", { id: "purpose" }, purposes.map(([name, title]) => make("option", { value: name }, title)));
-  const from = choice(files, { id: "from" }), material = choice(files, { id: "material" });
+  const from = choice(files, { id: "from" }), material = choice([...blocks, ...files], { id: "material" });
   if (files.includes(surface)) from.value = surface;
-  const kinds = await Promise.all(files.map(async (name) => [name, await ask(`kind/${encoded(name)}`).catch(() => "")]));
-  const first = kinds.find(([, kind]) => kind === "block" || kind === "material");
-  if (first) material.value = first[0];
   const options = optionFields(known.options.surface, () => {}), output = make("input", { id: "output" });
   const name = async () => { output.value = await ask(`free/${purpose.value}.toml`); };
   purpose.addEventListener("change", trying(name));

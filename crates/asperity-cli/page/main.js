@@ -44,7 +44,8 @@ function theme(name) {
 theme(dark.matches ? "dark" : "light");
 dark.addEventListener("change", (event) => theme(event.matches ? "dark" : "light"));
 $("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
-$("folder").textContent = known.folder;
+$("folder").textContent = known.folder.split(/[\\/]/).pop() || known.folder;
+$("folder").title = known.folder;
 window.addEventListener("hashchange", () => { tell(message); message = ""; show().then(() => $("main").focus({ preventScroll: true })); });
 // A file dropped beside the zone would replace the page.
 for (const type of ["dragover", "drop"]) window.addEventListener(type, (event) => event.preventDefault());

@@ -3,7 +3,7 @@
 async function startPage() {
   const list = await ask("list");
   const of = (kind) => list.filter((entry) => entry.kind === kind);
-  const results = of("result"), cases = of("case"), files = list.filter((entry) => entry.kind === "file" || entry.kind === "study");
+  const results = of("result"), cases = of("case"), files = list.filter((entry) => ["file", "study", "block"].includes(entry.kind));
   const chosen = new Set();
   const compare = button("compare the chosen", () => go(`#/compare/${[...chosen].map(encodeURIComponent).join("/")}`), { disabled: true });
   const choose = (name) => make("input", { type: "checkbox", "aria-label": `choose ${name}`, change: (event) => {

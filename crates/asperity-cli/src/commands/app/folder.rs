@@ -119,7 +119,8 @@ impl Folder {
                 _ => json!({}),
             };
             entry["name"] = json!(name);
-            entry["kind"] = json!(kind.name());
+            entry["kind"] =
+                json!(if kind == Kind::Case && !has_tables(&place) { "block" } else { kind.name() });
             entry
         });
         shown.collect()
@@ -155,7 +156,7 @@ impl Folder {
             Kind::Folder => return Err(format!("{name} is a folder")),
             Kind::Result => "result",
             Kind::Study => "study",
-            Kind::Case if title(&path).is_none() && !has_domain(&path) => "block",
+            Kind::Case if !has_tables(&path) => "block",
             Kind::Case => "case",
             Kind::File if is_picture(&path) => "picture",
             Kind::File if Curves::kind_of(&path, None).is_ok() => "material",
@@ -216,7 +217,8 @@ fn title(path: &Path) -> Option<String> {
     Some(line.split('"').nth(1).unwrap_or(line).to_owned())
 }
 
-fn has_domain(path: &Path) -> bool {
+/// Whether a file of TOML has tables in brackets, as cases have, and not the block of a material.
+fn has_tables(path: &Path) -> bool {
     std::fs::read_to_string(path)
         .is_ok_and(|text| text.lines().any(|line| line.trim_start().starts_with('[')))
 }

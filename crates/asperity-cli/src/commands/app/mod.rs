@@ -44,7 +44,7 @@ const SCRIPT: [&str; 7] = [
     include_str!("../../../page/data.js"),
     include_str!("../../../page/main.js"),
 ];
-/// The editor: see codemirror/README.md.
+/// The editor: see `crates/asperity-cli/page/codemirror/README.md`.
 const EDITOR: &str = include_str!("../../../page/codemirror/codemirror.iife.min.js");
 const EDITOR_LICENSE: &str = include_str!("../../../page/codemirror/LICENSE-CodeMirror");
 
@@ -189,8 +189,12 @@ impl Application {
             }
             // The page of a result ends with a slash, and asks for its parts below.
             "live" => {
-                let (result, part) = name.split_once(".zarr/").ok_or("a result ends with .zarr")?;
-                page_of(&Live::new(&self.folder.find(&format!("{result}.zarr"))?), &format!("/{part}"))
+                let is_result = |at: &usize| {
+                    self.folder.find(&name[..*at]).is_ok_and(|path| path.join("zarr.json").is_file())
+                };
+                let ends = name.match_indices('/').map(|(at, _)| at);
+                let end = { ends }.find(is_result).ok_or("there is no such result")?;
+                page_of(&Live::new(&self.folder.find(&name[..end])?), &name[end..])
             }
             "file" => foreign(&self.folder.find(name)?)?,
             "look" => match name.split_once('/') {

@@ -187,6 +187,35 @@ fn a_case_is_checked_while_it_is_typed() {
 }
 
 #[test]
+fn a_study_runs_and_results_are_exported() {
+    let (_keep, folder) = folder();
+    let app = App::start(&folder);
+    let study = json!({ "do": "study", "case": "small.toml", "vary": "load.history.value=0.4 N,0.5 N", "output": "loads" });
+    assert_eq!(app.post("do", &study).0, 200);
+    let runs = wait(&app, &["done", "failed"]);
+    assert_eq!(runs[0]["state"], "done", "{runs}");
+    let (_, table) = app.get("text/loads/study.csv");
+    let table: String = serde_json::from_str(&table).unwrap();
+    assert_eq!(table.lines().count(), 3, "{table}");
+    let list: Value = serde_json::from_str(&app.get("list").1).unwrap();
+    let of = |kind: &str| {
+        list.as_array().unwrap().iter().filter(|entry| entry["kind"] == kind).collect::<Vec<_>>()
+    };
+    assert_eq!((of("study").len(), of("result").len()), (1, 2), "{list}");
+    // The page of one of its results, its picture, and its export.
+    let name = of("result")[0]["name"].as_str().unwrap();
+    let encoded = name.replace(' ', "%20");
+    assert!(app.get(&format!("live/{encoded}/")).1.contains("\"live\":true"));
+    assert_eq!(app.get(&format!("live/{encoded}/state")).0, 200);
+    assert_eq!(app.get(&format!("live/{encoded}/map/pressure-0")).0, 200);
+    assert!(app.ask("GET", &format!("thumbnail/{encoded}"), "", b"").1.starts_with(b"\x89PNG"));
+    let export = json!({ "do": "export", "result": name, "to": "csv", "output": "rows.csv" });
+    let (_, done) = app.post("do", &export);
+    assert!(done["ok"] == true && folder.join("rows.csv").is_file(), "{done}");
+    assert_eq!(app.post("do", &export).0, 422, "it exists");
+}
+
+#[test]
 fn a_second_application_is_told_of_the_first() {
     let (_keep, folder) = folder();
     let app = App::start(&folder);

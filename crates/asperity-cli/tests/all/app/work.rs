@@ -136,7 +136,7 @@ fn from_a_dropped_file_to_the_comparison() {
     let line = 1 + before.lines().take_while(|line| !line.starts_with("end = ")).count();
     assert!(mark.starts_with(&format!("line {line}")) && mark.contains("10 N"), "{mark}");
     browser.wait("document.querySelector('.cm-lintRange-error')?.textContent.includes('10 N')");
-    browser.picture("app-case-error.png");
+    browser.picture("app-case.png");
     set(browser, "time.end", "10 s");
     browser.wait(&format!("{STATUS} === 'can be run'"));
     let comments = |text: &str| text.matches('#').count();
@@ -150,17 +150,24 @@ fn from_a_dropped_file_to_the_comparison() {
     // Long enough to be stopped.
     set(browser, "time.steps", "6000");
     browser.wait(&format!("({TEXT}).includes('steps = 6000')"));
-    set(browser, "output.every", "600");
-    browser.wait(&format!("({TEXT}).includes('every = 600') && /600[01] rows/.test(document.getElementById('summary').textContent)"));
+    set(browser, "output.every", "200");
+    browser.wait(&format!("({TEXT}).includes('every = 200') && /600[01] rows/.test(document.getElementById('summary').textContent)"));
     browser.wait("document.getElementById('summary').textContent.includes('run time')");
-    browser.picture("app-case.png");
 
     // Run, stop, resume.
     browser.eval("(document.getElementById('run').click(), true)");
     browser.wait("!!document.querySelector('iframe') && !!document.querySelector('.run progress')");
     browser.wait("document.querySelector('iframe').contentDocument?.documentElement.dataset.ready === 'yes'");
-    browser.eval("(document.querySelector('iframe').contentDocument.getElementById('maps').scrollIntoView(), true)");
+    let page = "document.querySelector('iframe').contentDocument";
+    browser.wait(&format!(
+        "{page}.getElementById('instant').max >= 3 && {page}.getElementById('instant').value >= 3"
+    ));
+    browser.resize([1280, 1250]);
+    browser.eval(&format!(
+        "(document.querySelector('iframe').contentWindow.scrollTo(0, {page}.getElementById('maps').offsetTop), true)"
+    ));
     browser.picture("app-run.png");
+    browser.resize([1280, 900]);
     browser.eval("(document.querySelector('.stop').click(), true)");
     wait_for_run(browser, "stopped");
     browser.go("#/");
@@ -218,9 +225,10 @@ fn from_a_dropped_file_to_the_comparison() {
     }
     browser.go("#/");
     browser.picture("app-phone.png");
-    browser.resize([1280, 900]);
+    browser.resize([1280, 1350]);
     browser.go("#/");
     browser.picture("app-start.png");
+    browser.resize([1280, 900]);
     browser.eval("(document.getElementById('theme').click(), true)");
     let theme = browser.text("document.documentElement.dataset.theme");
     assert!(theme == "dark" || theme == "light");

@@ -142,7 +142,7 @@ impl Folder {
             {
                 self.walk(&path, depth + 1, found);
             }
-            if kind != Kind::Folder {
+            if !matches!(kind, Kind::Folder | Kind::Dataset) {
                 let modified = place.metadata().and_then(|data| data.modified()).ok();
                 found.push(Entry { modified, name, place, kind });
             }
@@ -153,7 +153,7 @@ impl Folder {
     pub fn kind_of(&self, name: &str) -> Result<&'static str, String> {
         let path = self.find(name)?;
         Ok(match kind(&path) {
-            Kind::Folder => return Err(format!("{name} is a folder")),
+            Kind::Folder | Kind::Dataset => return Err(format!("{name} is a folder")),
             Kind::Result => "result",
             Kind::Study => "study",
             Kind::Case if !has_tables(&path) => "block",
@@ -178,6 +178,8 @@ enum Kind {
     Case,
     Result,
     Study,
+    /// The table of a study for xarray.
+    Dataset,
     Folder,
     File,
 }
@@ -188,6 +190,7 @@ impl Kind {
             Kind::Case => "case",
             Kind::Result => "result",
             Kind::Study => "study",
+            Kind::Dataset => "dataset",
             Kind::Folder => "folder",
             Kind::File => "file",
         }
@@ -197,7 +200,8 @@ impl Kind {
 fn kind(path: &Path) -> Kind {
     let ends_with = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     match path.is_dir() {
-        true if path.join("zarr.json").is_file() && !asperity_io::study::is_dataset(path) => Kind::Result,
+        true if asperity_io::study::is_dataset(path) => Kind::Dataset,
+        true if path.join("zarr.json").is_file() => Kind::Result,
         true if path.join("study.json").is_file() => Kind::Study,
         true => Kind::Folder,
         false if ends_with("toml") => Kind::Case,

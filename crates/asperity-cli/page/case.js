@@ -97,6 +97,17 @@ async function casePage(name) {
     }
     unsaved();
   };
+  /** Saves what is left; where the file has changed meanwhile, beside it. */
+  const keep = trying(async () => {
+    const text = current();
+    try {
+      await store();
+    } catch (error) {
+      const copy = await ask(`free/${encoded(name)}`);
+      await send("save", { name: copy, text });
+      throw new Error(`${error.message}\nYour text is kept in ${copy}.`);
+    }
+  });
   const save = button("save", trying(async () => { await store(); tell(`saved ${name}`); }), { id: "save", disabled: true });
   const run = button("run", trying(async () => {
     await store();
@@ -113,7 +124,7 @@ async function casePage(name) {
   }));
   const warn = (event) => { if (current() !== saved.replace(/\r\n/g, "\n")) event.preventDefault(); };
   window.addEventListener("beforeunload", warn);
-  leave = () => { clearTimeout(timer); window.removeEventListener("beforeunload", warn); if (current() !== saved.replace(/\r\n/g, "\n")) trying(store)(); };
+  leave = () => { clearTimeout(timer); window.removeEventListener("beforeunload", warn); if (current() !== saved.replace(/\r\n/g, "\n")) keep(); };
   setTimeout(check);
   return [
     make("h1", {}, name),

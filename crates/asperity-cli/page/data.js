@@ -71,8 +71,9 @@ async function materialPage(name, way) {
     shown.replaceChildren(...[words(done), picture(done, `data and fit of ${name}`), make("ul", { class: "marks" }, marks),
       found.misfit && make("p", {}, `misfit ${number(100 * found.misfit.rms)} % rms, ${number(100 * found.misfit.max)} % at most; ${found.terms} terms`),
       terms && make("details", {}, make("summary", {}, "terms"), make("table", {}, make("tr", {}, make("th", {}, found.function.instantaneous == null ? "modulus [Pa]" : "compliance [1/Pa]"), make("th", {}, "time [s]")), terms)),
-      found.instantaneous && make("table", { id: "intervals" }, make("tr", {}, ["", "value [Pa]", "95 % from", "to"].map((head) => make("th", {}, head))), interval("at once", found.instantaneous), interval("relaxed", found.equilibrium),
-        found.terms.map((term, n) => interval(`term ${n + 1}`, term.modulus))),
+      way === "indentation" && done.ok && make("table", { id: "intervals" }, make("tr", {}, ["", "value", "95 % from", "to"].map((head) => make("th", {}, head))),
+        interval("at once [Pa]", found.instantaneous), interval("relaxed [Pa]", found.equilibrium), interval("Young's modulus [Pa]", found.young), interval("work of adhesion [J/m²]", found.work),
+        (found.terms ?? []).map((term, n) => [interval(`term ${n + 1} [Pa]`, term.modulus), interval(`its time [s]`, term.time)])),
       found.material && make("details", { open: true }, make("summary", {}, "the block for a case"), make("pre", { class: "words", id: "block" }, found.material)), commands(done)].flat().filter(Boolean));
   };
   const fit = trying(async (write = false) => {

@@ -23,6 +23,15 @@ async function follow(draw) {
   await look();
 }
 
+/** Replaces what a place shows; what is unfolded or has the focus stays so. */
+function renew(place, ...parts) {
+  const all = () => [...place.querySelectorAll("summary, button, a")], isOpen = all().map((one) => one.parentElement.open);
+  const focus = all().indexOf(document.activeElement);
+  place.replaceChildren(...parts);
+  all().forEach((one, n) => { if (one.localName === "summary" && isOpen[n]) one.parentElement.open = true; });
+  all()[focus]?.focus();
+}
+
 /** One run: how far it is, what it says, stop and resume. */
 function runPart(run, onResult = false) {
   const share = run.share ?? (run.state === "done" ? 1 : null), log = run.log.trim();
@@ -48,7 +57,7 @@ async function runsPage() {
   let before = "";
   await follow((runs) => {
     const now = JSON.stringify(runs);
-    if (now !== before) list.replaceChildren(...(runs.length ? runs.map((run) => runPart(run)) : [make("p", { class: "note" }, "No run yet: open a case and run it.")]));
+    if (now !== before) renew(list, ...(runs.length ? runs.map((run) => runPart(run)) : [make("p", { class: "note" }, "No run yet: open a case and run it.")]));
     before = now;
   });
   return [make("h1", {}, "Runs"), make("p", { class: "note" }, "One run at a time; the others wait. They go on when this page or asperity app is closed."), list];
@@ -77,7 +86,7 @@ async function resultPage(name) {
     done);
   await follow(async (runs) => {
     const run = runs.find((one) => one.result === name), now = JSON.stringify(run ?? null);
-    if (now !== before) place.replaceChildren(run ? runPart(run, true) : commands({ shell: `asperity view ${name}`, python: `import asperity as asp\n\nresult = asp.open(${JSON.stringify(name)})\nprint(result)\n` }));
+    if (now !== before) renew(place, run ? runPart(run, true) : commands({ shell: `asperity view ${name}`, python: `import asperity as asp\n\nresult = asp.open(${JSON.stringify(name)})\nprint(result)\n` }));
     before = now;
     // Once more at its end, when all of it is there.
     const state = run && isOpen(run) ? "open" : "ended";

@@ -208,7 +208,9 @@ fn a_study_runs_and_results_are_exported() {
     assert!(app.get(&format!("live/{encoded}/")).1.contains("\"live\":true"));
     assert_eq!(app.get(&format!("live/{encoded}/state")).0, 200);
     assert_eq!(app.get(&format!("live/{encoded}/map/pressure-0")).0, 200);
-    assert!(app.ask("GET", &format!("thumbnail/{encoded}"), "", b"").1.starts_with(b"\x89PNG"));
+    let picture = app.ask("GET", &format!("thumbnail/{encoded}"), "", b"").1;
+    assert!(picture.starts_with(b"\x89PNG"));
+    assert_eq!(picture[16..24], [0, 0, 0, 32, 0, 0, 0, 32], "a point for each of the 32 x 32 cells");
     let export = json!({ "do": "export", "result": name, "to": "csv", "output": "rows.csv" });
     let (_, done) = app.post("do", &export);
     assert!(done["ok"] == true && folder.join("rows.csv").is_file(), "{done}");

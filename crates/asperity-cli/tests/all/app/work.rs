@@ -121,6 +121,23 @@ fn from_a_dropped_file_to_the_comparison() {
     browser.eval("(document.getElementById('write').click(), true)");
     browser.wait("document.getElementById('told').textContent.startsWith('wrote rubber-dma-material.toml')");
 
+    // A record of an indentation: its fit needs the radius. The record was made with 2.5 MPa at once, 1.2 MPa at last.
+    browser.go("#/");
+    drop_file(browser, "silicone-indentation.csv");
+    browser.wait("!!document.querySelector('input[name=radius]')");
+    browser.eval("(() => { const input = document.querySelector('input[name=radius]'); input.value = '5 mm'; input.dispatchEvent(new Event('change')); return true; })()");
+    browser.wait("document.querySelectorAll('#intervals tr').length > 2");
+    for (row, modulus) in [(2, 2.5e6), (3, 1.2e6)] {
+        let [low, high] = [3, 4].map(|column| {
+            let cell = format!(
+                "document.querySelector('#intervals tr:nth-child({row}) :nth-child({column})').textContent"
+            );
+            browser.text(&cell).parse::<f64>().unwrap()
+        });
+        assert!(low < modulus && modulus < high, "{modulus}: {low} to {high}");
+    }
+    browser.picture("app-indentation.png");
+
     // A seal from both.
     browser.go("#/new/ground-steel-processed.x3p");
     assert_eq!(browser.text("document.getElementById('material').value"), "rubber-dma-material.toml");

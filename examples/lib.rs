@@ -11,13 +11,19 @@ pub struct Template {
     pub name: &'static str,
     /// The case file.
     pub text: &'static str,
+    /// A small picture of its result, as PNG.
+    pub picture: &'static [u8],
 }
 
 macro_rules! templates {
     ($($name:literal),*) => {
         /// All starter cases, the simplest first.
         pub const TEMPLATES: &[Template] =
-            &[$(Template { name: $name, text: include_str!(concat!($name, ".toml")) }),*];
+            &[$(Template {
+                name: $name,
+                text: include_str!(concat!($name, ".toml")),
+                picture: include_bytes!(concat!("pictures/", $name, ".png")),
+            }),*];
     };
 }
 

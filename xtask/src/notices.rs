@@ -26,8 +26,8 @@ Written by `cargo xtask notices`. The command `asperity` and the Python package 
 listed here: name and version, licence as an SPDX expression, authors as the package names them, and the numbers of the texts below.
 Where a package may be taken under one of several licences, it is taken under Apache-2.0, or else under MIT. The source of each is at
 https://crates.io/crates/NAME/VERSION. Also linked is the standard library of Rust, Copyright (c) The Rust Project Contributors,
-MIT OR Apache-2.0 [1]. The font DejaVu Sans and the plotting library uPlot are contained under LICENSE-DejaVu and
-LICENSE-uPlot.
+MIT OR Apache-2.0 [1]. The font DejaVu Sans, the plotting library uPlot and the editor CodeMirror are contained under
+LICENSE-DejaVu, LICENSE-uPlot and LICENSE-CodeMirror.
 
 ";
 

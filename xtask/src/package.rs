@@ -210,6 +210,7 @@ fn program() -> Done {
         "crates/asperity-cli/README.md",
         "crates/asperity-report/fonts/LICENSE-DejaVu",
         "crates/asperity-report/page/uplot/LICENSE-uPlot",
+        "crates/asperity-cli/page/codemirror/LICENSE-CodeMirror",
     ] {
         copy(root().join(file))?;
     }

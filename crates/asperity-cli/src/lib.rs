@@ -13,6 +13,7 @@ mod input;
 mod interrupt;
 mod messages;
 mod progress;
+mod serve;
 mod terminal;
 mod threads;
 mod trace;

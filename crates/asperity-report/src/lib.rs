@@ -9,7 +9,7 @@
 //! - [`paper`] makes the figures of the paper that the method comes from.
 //! - [`seal`] draws the answers about a whole seal.
 //! - [`sheet`] writes tables and figures as one page, [`study`] draws the answers of a study.
-//! - [`surface`] draws a surface with its statistics.
+//! - [`surface`] draws a surface with its statistics, [`thumbnail`] a small picture of a result.
 
 pub mod animation;
 pub mod figure;
@@ -24,3 +24,6 @@ pub mod seal;
 pub mod sheet;
 pub mod study;
 pub mod surface;
+mod thumbnail;
+
+pub use thumbnail::thumbnail;

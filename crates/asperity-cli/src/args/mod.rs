@@ -1,5 +1,6 @@
 //! The command line: a file of arguments for each group of commands.
 
+mod app;
 mod leak;
 mod material;
 mod result;
@@ -14,6 +15,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
+pub use app::App;
 pub use leak::{FluidOptions, Leak};
 pub use material::{Data, Fit, FitIndentation, Material, MaterialExport, Show};
 pub use result::{Compare, Export, Labels, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
@@ -68,6 +70,8 @@ pub enum Command {
     Report(Report),
     /// View a result in the browser with maps at full resolution, also while it is being written
     View(View),
+    /// Open a page in the browser on a folder of cases, data and results: from files to the decision without a terminal
+    App(App),
     /// Draw a figure of a result, or of several results together, as PNG, SVG or PDF, or an animation
     Plot(Plot),
     /// List what differs between results: in their cases and answers, and of two at their ends and at the times that both have
@@ -121,6 +125,7 @@ impl Command {
             Command::VerifyResult(verb) => verb,
             Command::Report(verb) => verb,
             Command::View(verb) => verb,
+            Command::App(verb) => verb,
             Command::Plot(verb) => verb,
             Command::Compare(verb) => verb,
             Command::Stress(verb) => verb,

@@ -1,6 +1,7 @@
 //! One file per command.
 
 pub mod answers;
+pub mod app;
 pub mod check;
 pub mod compare;
 pub mod completions;

@@ -1,6 +1,7 @@
 //! The command as a user meets it, in one program.
 
 mod answers;
+mod app;
 mod cli;
 mod findings;
 mod indentation;

@@ -277,8 +277,19 @@ impl Map {
             && layout.bar.is_none_or(|bar| fits(bar.title(), along))
     }
 
+    /// The map with blocks of cells as one, so that no side has more than `side`.
+    pub(super) fn reduced(&self, side: usize) -> Map {
+        let (nx, ny) = self.values.dim();
+        let by = nx.max(ny).div_ceil(side.max(1)).max(1);
+        let values = match self.meaning {
+            Values::States(_) => raster::states(self.values.view(), by),
+            Values::Quantity { .. } => raster::means(self.values.view(), by),
+        };
+        Map { values, ..self.clone() }
+    }
+
     /// The values in their colours.
-    fn picture(&self) -> Pixels {
+    pub(super) fn picture(&self) -> Pixels {
         match (&self.meaning, self.scale()) {
             (Values::States(states), _) => raster::state_picture(&self.values, states),
             (_, Some(scale)) if self.cover.is_none() && self.goes_down() => {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use asperity_io::output::{self, WriteError};
 
-use super::{Figure, Pixels, dots, font, pdf, raster};
+use super::{Figure, Map, Pixels, dots, font, pdf, raster};
 
 /// Points of paper per inch.
 const POINTS: f64 = 72.0;
@@ -63,6 +63,13 @@ pub enum FigureError {
     /// The drawing could not be made into dots.
     #[error("cannot draw the figure: {0}")]
     Drawing(String),
+}
+
+impl Map {
+    /// The values in their colours alone, with `side` cells along a side at most, as PNG.
+    pub(crate) fn icon(&self, side: usize) -> Result<Vec<u8>, FigureError> {
+        raster::png(&self.reduced(side).picture()).map_err(undrawn)
+    }
 }
 
 impl Form {

@@ -22,7 +22,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 const PAGE: &str = include_str!("../../page/page.html");
-pub(crate) const STYLE: &str = include_str!("../../page/style.css");
+/// The look of the page, which other pages of asperity share.
+pub const STYLE: &str = include_str!("../../page/style.css");
 /// In the order in which they use one another; all are one script.
 const SCRIPT: [&str; 10] = [
     include_str!("../../page/units.js"),

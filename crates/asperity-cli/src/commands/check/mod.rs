@@ -40,10 +40,16 @@ impl Verb for Check {
         } else {
             let read = |more: &[String]| Case::read(&self.case, &[&self.common.set, more].concat());
             let error_bars = expected_cost(&case, &read);
-            crate::print(&summary(&case, &examined, cost.as_ref(), error_bars))?;
+            crate::print(&summary(&case, &examined, cost.as_ref(), Some(error_bars)))?;
         }
         super::findings::strict(self.strict, &examined.findings)
     }
+}
+
+/// What is printed of a case; with `cost` also what a run takes, which takes a while to find.
+pub fn text(case: &Case, examined: &Examination, cost: bool) -> String {
+    let cost = if cost { cost::cost(case, &examined.description) } else { None };
+    summary(case, examined, cost.as_ref(), None)
 }
 
 /// Lists the keys whose numbers have no unit.
@@ -271,7 +277,7 @@ fn lengths(sides: &[f64]) -> String {
     sides.join(" x ")
 }
 
-fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>, error_bars: f64) -> String {
+fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>, error_bars: Option<f64>) -> String {
     let (d, inputs) = (&examined.description, &examined.inputs);
     let title = d.title.as_deref().unwrap_or(&case.name);
     let mut text = format!("{title}\n");
@@ -441,7 +447,9 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>, error_bars:
             ),
         );
     }
-    line("error bars", format!("--error-bars takes about {error_bars:.1} times the run more"));
+    if let Some(times) = error_bars {
+        line("error bars", format!("--error-bars takes about {times:.1} times the run more"));
+    }
     for finding in &examined.findings {
         line(finding.severity.as_str(), format!("{} [{}]", finding.text, finding.code));
     }

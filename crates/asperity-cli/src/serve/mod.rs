@@ -1,49 +1,64 @@
-//! `asperity view`: the page of a result, served to a browser.
+//! Pages for browsers: what `asperity view` and `asperity app` serve.
 //!
-//! Whoever knows the address may read the result. Its first part is a random token, as other users of the machine can find
-//! the port. The header `Host` must name this machine, so that no page of another name that leads here reads results.
+//! Whoever knows the address may use them. Its first part is a random token, as other users of the machine can find the port. The
+//! header `Host` must name this machine, and `Origin` the same server, so that no page of another name reads or changes anything.
 
 mod connection;
 mod places;
 
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use asperity_io::store::Reader;
-use asperity_report::page::Live;
-
-use self::connection::{Request, Response};
+pub use self::connection::{Body, FOREIGN, Request, Response};
 use self::places::{Open, Places};
-use crate::args::View;
 use crate::failure::Failure;
-use crate::verb::Verb;
 
 /// Connections at a time: more than browsers open.
 const CONNECTIONS: usize = 128;
 /// Answers at a time that may be as large as a map; they are held in memory until they are sent.
-const LARGE_ANSWERS: usize = 4;
+const LARGE_ANSWERS: usize = 8;
 /// Time that a large answer waits for a place.
 const LONGEST_WAIT: Duration = Duration::from_secs(10);
 /// Pause before the next connection is taken where none can be.
 const PAUSE: Duration = Duration::from_millis(20);
 
-impl Verb for View {
-    /// Serves until it is interrupted.
-    fn run(&self) -> Result<(), Failure> {
-        // What cannot be shown is told before anything listens.
-        Reader::open(&self.result)?;
-        let failed =
-            |error: std::io::Error| Failure::input(format!("cannot listen at {}: {error}", self.host));
-        let token = token()?;
-        let listener = TcpListener::bind(SocketAddr::new(self.host, self.port)).map_err(failed)?;
-        let address = listener.local_addr().map_err(failed)?;
-        crate::print(&format!("http://{address}/{token}/\n"))?;
-        crate::messages::message!(
-            "open this address in a browser; who knows it can read the result; press Ctrl-C to stop"
-        );
-        serve(&listener, &Arc::new(Server::new(&self.result, self.host, token)))
+/// What answers.
+pub trait Site: Send + Sync + 'static {
+    /// The answer to a request; `path` is what follows the token.
+    fn answer(&self, request: &Request, path: &str, body: Body<'_>) -> Response;
+
+    /// The methods that are answered.
+    fn methods(&self) -> &'static [&'static str] {
+        &["GET"]
+    }
+}
+
+/// An address of its own, at which nobody is answered yet.
+pub struct Opened {
+    listener: TcpListener,
+    host: IpAddr,
+    token: String,
+    /// "http://127.0.0.1:40123/TOKEN/".
+    pub address: String,
+}
+
+/// Listens at a port of an address; 0 chooses a free one.
+pub fn open(host: IpAddr, port: u16) -> Result<Opened, Failure> {
+    let failed = |error: std::io::Error| Failure::input(format!("cannot listen at {host}: {error}"));
+    let token = token()?;
+    let listener = TcpListener::bind(SocketAddr::new(host, port)).map_err(failed)?;
+    let address = format!("http://{}/{token}/", listener.local_addr().map_err(failed)?);
+    Ok(Opened { listener, host, token, address })
+}
+
+impl Opened {
+    /// Answers until the process ends.
+    pub fn serve(self, site: impl Site) -> ! {
+        let Opened { listener, host, token, .. } = self;
+        let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
+        let name = name.map(|name| name.trim().to_lowercase());
+        serve(&listener, &Arc::new(Server { site, host, token, name, large: Places::new(LARGE_ANSWERS) }))
     }
 }
 
@@ -56,8 +71,8 @@ fn token() -> Result<String, Failure> {
 }
 
 /// What is served, and to whom.
-struct Server {
-    live: Live,
+struct Server<S> {
+    site: S,
     host: IpAddr,
     token: String,
     /// Name of this machine, where the system tells.
@@ -65,18 +80,7 @@ struct Server {
     large: Places,
 }
 
-impl Server {
-    fn new(result: &Path, host: IpAddr, token: String) -> Server {
-        let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
-        Server {
-            live: Live::new(result),
-            host,
-            token,
-            name: name.map(|name| name.trim().to_lowercase()),
-            large: Places::new(LARGE_ANSWERS),
-        }
-    }
-
+impl<S: Site> Server<S> {
     /// Reads the request of a connection and answers it.
     fn answer(&self, stream: &TcpStream, has_asked: impl FnOnce()) -> std::io::Result<()> {
         let Some(request) = connection::read(stream)? else {
@@ -95,13 +99,7 @@ impl Server {
             let busy = Response::text("503 Service Unavailable", "too many requests at a time; try again");
             return connection::write(stream, &busy);
         };
-        let response = match self.live.answer(path) {
-            Ok(Some(answer)) => {
-                Response { status: "200 OK", content_type: answer.content_type, content: answer.content }
-            }
-            Ok(None) => Response::text("404 Not Found", "there is nothing here"),
-            Err(error) => Response::text("404 Not Found", &error.to_string()),
-        };
+        let response = self.site.answer(&request, path, Body::of(&request, stream));
         connection::write(stream, &response)
     }
 
@@ -111,23 +109,26 @@ impl Server {
         if !is_this_machine(request.host.as_deref(), self.host, self.name.as_deref()) {
             return refuse("only requests to this machine by its name are answered");
         }
-        if request.fetch_site.as_deref() == Some("cross-site") {
+        let own = request.host.as_ref().map(|host| format!("http://{host}"));
+        let is_foreign = request.origin.is_some() && request.origin != own;
+        if is_foreign || request.fetch_site.as_deref() == Some("cross-site") {
             return refuse("requests of other sites are not answered");
         }
-        if request.method != "GET" {
-            return Err(Response::text("405 Method Not Allowed", "only GET"));
+        let methods = self.site.methods();
+        if !methods.contains(&request.method.as_str()) {
+            return Err(Response::text("405 Method Not Allowed", &format!("only {}", methods.join(", "))));
         }
         let path = request.path.strip_prefix('/').unwrap_or_default();
         let (token, path) = path.split_at_checked(self.token.len()).unwrap_or_default();
         if !same(token, &self.token) || !path.starts_with('/') {
-            return refuse("open the address that `asperity view` printed, all of it");
+            return refuse("open the address that asperity printed, all of it");
         }
         Ok(path)
     }
 }
 
 /// Takes connections, each on a thread of its own.
-fn serve(listener: &TcpListener, server: &Arc<Server>) -> ! {
+fn serve<S: Site>(listener: &TcpListener, server: &Arc<Server<S>>) -> ! {
     let mut open = Open::default();
     loop {
         // Fails where there are no file handles left, for instance.
@@ -142,7 +143,7 @@ fn serve(listener: &TcpListener, server: &Arc<Server>) -> ! {
         let connection = open.add(stream);
         let server = server.clone();
         // A connection without a thread is closed. A browser that hangs up early is no failure.
-        let _ = std::thread::Builder::new().spawn(move || {
+        let _ = std::thread::Builder::new().stack_size(crate::STACK).spawn(move || {
             let answered = server.answer(connection.stream(), || connection.has_asked());
             answered.and_then(|()| connection::end(connection.stream()))
         });

@@ -10,6 +10,8 @@ const REQUEST: Duration = Duration::from_secs(10);
 /// Time for a client to take more of an answer, and all of it.
 const PAUSE: Duration = Duration::from_secs(10);
 const ANSWER: Duration = Duration::from_secs(600);
+/// Time for all of what is sent with a request.
+const BODY: Duration = Duration::from_secs(600);
 /// Time for the rest of a request after its answer.
 const REST: Duration = Duration::from_secs(1);
 /// Longest head of a request \[bytes\], and most headers in it.
@@ -22,9 +24,49 @@ pub struct Request {
     pub method: String,
     /// The path of the address, without what follows a question mark.
     pub path: String,
-    /// The headers `Host` and `Sec-Fetch-Site`.
+    /// What follows the question mark.
+    pub query: String,
+    /// The headers `Host`, `Origin` and `Sec-Fetch-Site`.
     pub host: Option<String>,
+    pub origin: Option<String>,
     pub fetch_site: Option<String>,
+    /// The header `Content-Length` \[bytes\]; 0 where there is none.
+    pub length: u64,
+    /// The part of what is sent with it that came with its head.
+    begun: Vec<u8>,
+}
+
+/// What is sent with a request.
+pub struct Body<'a> {
+    stream: &'a TcpStream,
+    begun: &'a [u8],
+    left: u64,
+    last: Instant,
+}
+
+impl<'a> Body<'a> {
+    pub fn of(request: &'a Request, stream: &'a TcpStream) -> Body<'a> {
+        Body { stream, begun: &request.begun, left: request.length, last: Instant::now() + BODY }
+    }
+}
+
+impl Read for Body<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let wanted = usize::try_from(self.left).unwrap_or(usize::MAX).min(into.len());
+        let length = match self.begun.is_empty() || wanted == 0 {
+            false => (&mut self.begun).read(&mut into[..wanted])?,
+            true if wanted == 0 => return Ok(0),
+            true => {
+                self.stream.set_read_timeout(Some(left(self.last)?.min(PAUSE)))?;
+                (&mut &*self.stream).read(&mut into[..wanted])?
+            }
+        };
+        if length == 0 {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        self.left -= length as u64;
+        Ok(length)
+    }
 }
 
 /// What is answered.
@@ -33,12 +75,25 @@ pub struct Response {
     pub status: &'static str,
     pub content_type: &'static str,
     pub content: Vec<u8>,
+    /// What the content may do in a browser.
+    pub policy: &'static str,
 }
+
+/// Of the program's own pages: they use what this server sends, and no other page shows them in a frame.
+pub const OWN: &str = "default-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'self'";
+/// Of files that others may have written: they may draw, but reach nothing of this server.
+pub const FOREIGN: &str =
+    "sandbox allow-scripts allow-downloads; default-src 'unsafe-inline' data: blob:; frame-ancestors 'self'";
 
 impl Response {
     /// A few words.
     pub fn text(status: &'static str, words: &str) -> Response {
-        Response { status, content_type: "text/plain; charset=utf-8", content: words.into() }
+        Response { status, ..Response::of("text/plain; charset=utf-8", words) }
+    }
+
+    /// What was asked for.
+    pub fn of(content_type: &'static str, content: impl Into<Vec<u8>>) -> Response {
+        Response { status: "200 OK", content_type, content: content.into(), policy: OWN }
     }
 
     fn head(&self) -> String {
@@ -51,10 +106,11 @@ impl Response {
              cache-control: no-store\r\n\
              x-content-type-options: nosniff\r\n\
              referrer-policy: no-referrer\r\n\
-             content-security-policy: default-src 'self' 'unsafe-inline'; frame-ancestors 'none'\r\n\r\n",
+             content-security-policy: {}\r\n\r\n",
             self.status,
             self.content_type,
             self.content.len(),
+            self.policy,
         )
     }
 }
@@ -79,24 +135,30 @@ pub fn read(mut stream: &TcpStream) -> io::Result<Option<Request>> {
 fn parse(head: &[u8]) -> Result<Option<Request>, httparse::Error> {
     let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
     let mut parsed = httparse::Request::new(&mut headers);
-    if parsed.parse(head)?.is_partial() {
-        return Ok(None);
-    }
+    let httparse::Status::Complete(end) = parsed.parse(head)? else { return Ok(None) };
     let path = parsed.path.unwrap_or_default();
+    let (path, query) = path.split_once('?').unwrap_or((path, ""));
     let mut request = Request {
         method: parsed.method.unwrap_or_default().to_owned(),
-        path: path.split('?').next().unwrap_or_default().to_owned(),
+        path: path.to_owned(),
+        query: query.to_owned(),
+        begun: head[end..].to_vec(),
         ..Request::default()
     };
+    let mut length = None;
     for header in parsed.headers {
         let place = match header.name.to_ascii_lowercase().as_str() {
             "host" => &mut request.host,
+            "origin" => &mut request.origin,
+            "content-length" => &mut length,
             "sec-fetch-site" => &mut request.fetch_site,
             _ => continue,
         };
         // If a header is repeated, the first one counts.
         place.get_or_insert_with(|| String::from_utf8_lossy(header.value).into_owned());
     }
+    request.length =
+        length.map_or(Ok(0), |text| text.trim().parse()).map_err(|_| httparse::Error::HeaderValue)?;
     Ok(Some(request))
 }
 
@@ -161,8 +223,31 @@ mod tests {
     }
 
     #[test]
+    fn a_body_is_as_long_as_it_was_said_to_be() {
+        let (mut client, server) = ends();
+        client.write_all(b"POST /save HTTP/1.1\r\nContent-Length: 7\r\n\r\nabc").unwrap();
+        let request = read(&server).unwrap().unwrap();
+        client.write_all(b"defg and more").unwrap();
+        let mut text = String::new();
+        Body::of(&request, &server).read_to_string(&mut text).unwrap();
+        assert_eq!((request.length, text.as_str()), (7, "abcdefg"));
+        let (mut client, server) = ends();
+        client.write_all(b"POST / HTTP/1.1\r\nContent-Length: 7\r\n\r\nabc").unwrap();
+        let request = read(&server).unwrap().unwrap();
+        client.shutdown(Shutdown::Write).unwrap();
+        let error = Body::of(&request, &server).read_to_end(&mut vec![]).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::UnexpectedEof, "one that ends early is no whole one");
+    }
+
+    #[test]
     fn what_is_no_request_is_none() {
-        for text in ["\0\0\r\n\r\n", "GET /\r\n\r\n", "GET / HTTP/1.1\r\nHost", &"a".repeat(LONGEST_HEAD)] {
+        for text in [
+            "GET / HTTP/1.1\r\nContent-Length: -1\r\n\r\n",
+            "\0\0\r\n\r\n",
+            "GET /\r\n\r\n",
+            "GET / HTTP/1.1\r\nHost",
+            &"a".repeat(LONGEST_HEAD),
+        ] {
             let (mut client, server) = ends();
             client.write_all(text.as_bytes()).unwrap();
             client.shutdown(Shutdown::Write).unwrap();

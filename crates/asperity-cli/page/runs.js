@@ -1,0 +1,127 @@
+// Runs, results, comparisons, studies.
+
+const isOpen = (run) => run.state === "waiting" || run.state === "running";
+
+async function countRuns() {
+  const open = (await ask("runs").catch(() => [])).filter(isOpen).length;
+  $("runs-link").textContent = open ? `Runs (${open})` : "Runs";
+  setTimeout(countRuns, 3000);
+}
+
+/** Calls `draw` with the runs now and then, until the page is left. */
+async function follow(draw) {
+  let timer;
+  const look = async () => {
+    try {
+      await draw(await ask("runs"));
+    } catch (error) {
+      tell(error.message, true);
+    }
+    timer = setTimeout(look, 1000);
+  };
+  leave = () => clearTimeout(timer);
+  await look();
+}
+
+/** Replaces what a place shows; what is unfolded or has the focus stays so. */
+function renew(place, ...parts) {
+  const all = () => [...place.querySelectorAll("summary, button, a")], isOpen = all().map((one) => one.parentElement.open);
+  const focus = all().indexOf(document.activeElement);
+  place.replaceChildren(...parts);
+  all().forEach((one, n) => { if (one.localName === "summary" && isOpen[n]) one.parentElement.open = true; });
+  all()[focus]?.focus();
+}
+
+/** One run: how far it is, what it says, stop and resume. */
+function runPart(run, onResult = false) {
+  const share = run.share ?? (run.state === "done" ? 1 : null), log = run.log.trim();
+  return make("div", { class: "run", "data-state": run.state },
+    make("p", {}, make("b", {}, run.state), ` ${run.case} → `, onResult ? run.result : make("a", { href: link(run.shell.startsWith("asperity study") ? "study" : "result", run.result) }, run.result)),
+    run.state === "running" && make("progress", { max: 1, "aria-label": `progress of ${run.case}`, ...(share == null ? {} : { value: share }) }),
+    isOpen(run) && make("p", { class: "note" }, run.progress || (run.state === "waiting" ? "waits for the runs before it" : "begins")),
+    controls(
+      isOpen(run) && button("stop", trying(async () => { await send("stop", run.id); tell("it stops after the row that it is at; what is computed stays"); }), { class: "stop" }),
+      run.state === "stopped" && run.has_rows && button("resume", trying(() => resume(run.case, run.result)), { class: "resume" })),
+    run.state === "failed" && make("pre", { class: "words notice", role: "alert" }, log.split("\n").filter((line) => !line.startsWith("row ")).join("\n")),
+    run.state === "done" && run.out.trim() && make("details", {}, make("summary", {}, "what it printed"), make("pre", { class: "words scroll" }, run.out)),
+    commands(run));
+}
+
+async function resume(of, output) {
+  await send("do", { do: "run", case: of, output, resume: true });
+  go(link("result", output));
+}
+
+async function runsPage() {
+  const list = make("div", { id: "runs" });
+  let before = "";
+  await follow((runs) => {
+    const now = JSON.stringify(runs);
+    if (now !== before) renew(list, ...(runs.length ? runs.map((run) => runPart(run)) : [make("p", { class: "note" }, "No run yet: open a case and run it.")]));
+    before = now;
+  });
+  return [make("h1", {}, "Runs"), make("p", { class: "note" }, "One run at a time; the others wait. They go on when this page or asperity app is closed."), list];
+}
+
+async function resultPage(name) {
+  const place = make("div", { id: "run" }), page = make("div", { id: "page" }), done = make("div", { id: "done", role: "status" });
+  const actions = make("div", {});
+  let before = "", framed = "";
+  const act = (what) => trying(async () => {
+    tell("working ...");
+    const found = await send("do", what);
+    tell("");
+    done.replaceChildren(...[words(found), commands(found)].flat().filter(Boolean));
+    return found;
+  });
+  const exported = (to, ending) => button(to, async () => act({ do: "export", result: name, to, output: await ask(`free/${encoded(`${stem(name)}${ending}`)}`) })());
+  const list = await ask("list"), entry = list.find((one) => one.name === name);
+  const others = list.filter((one) => one.kind === "result" && one.name !== name).map((one) => one.name);
+  const other = choice(others, { "aria-label": "other result" });
+  actions.append(
+    controls(
+      button("write the report", async () => act({ do: "report", results: [name], output: await ask(`free/${encoded(`${stem(name)}.html`)}`), write: true })(), { id: "report" }),
+      "export:", exported("netcdf", ".nc"), exported("hdf5", ".h5"), exported("npz", ".npz"), exported("vtk", ""), exported("csv", ".csv"), exported("png", "-pictures"),
+      others.length > 0 && [other, button("compare", () => go(`#/compare/${[name, other.value].map(encodeURIComponent).join("/")}`), { id: "compare" })]),
+    done);
+  await follow(async (runs) => {
+    const run = runs.find((one) => one.result === name), now = JSON.stringify(run ?? null);
+    if (now !== before) renew(place, run ? runPart(run, true) : commands({ shell: `asperity view ${name}`, python: `import asperity as asp\n\nresult = asp.open(${JSON.stringify(name)})\nprint(result)\n` }));
+    before = now;
+    // Once more at its end, when all of it is there.
+    const state = run && isOpen(run) ? "open" : "ended";
+    if (framed !== state && (run ? run.has_rows : entry?.rows > 0)) {
+      framed = state;
+      page.replaceChildren(make("iframe", { class: "own", src: `live/${encoded(name)}/`, title: `report of ${name}`, load: () => theme(document.documentElement.dataset.theme) }));
+    }
+  });
+  const cases = list.filter((one) => one.kind === "case").map((one) => one.name);
+  const left = !before.includes('"state"') && entry && entry.state !== "complete" && entry.state !== "running" && entry.is_case && cases.length;
+  const of = choice(cases, { "aria-label": "case of this result" });
+  return [make("h1", {}, name), place, left && controls(entry.state, of, button("resume", trying(() => resume(of.value, name)))), actions, page];
+}
+
+async function comparePage(names) {
+  const output = await ask("free/comparison.html");
+  const sheet = await send("do", { do: "report", results: names, output, write: false });
+  const found = await send("do", { do: "compare", results: names });
+  const file = button("write this page as a file", trying(async () => {
+    const output = await ask("free/comparison.html");
+    const done = await send("do", { do: "report", results: names, output, write: true });
+    tell(done.ok ? `wrote ${output}` : done.told, !done.ok);
+  }));
+  return [make("h1", {}, `Comparison of ${names.length} results`), make("ul", {}, names.map((name) => make("li", {}, make("a", { href: link("result", name) }, name)))),
+    words(found), commands(found), sheet.picture ? make("iframe", { src: `look/${sheet.picture}`, title: "comparison" }) : words(sheet), controls(file), commands(sheet)];
+}
+
+/** Table and figures of a study. */
+async function studyPage(name) {
+  const list = await ask("list"), table = (await ask(`text/${encoded(`${name}/study.csv`)}`).catch(() => "")).trim();
+  const rows = table.split("\n").map((line) => line.split(","));
+  const files = list.filter((entry) => entry.name.startsWith(`${name}/`));
+  return [make("h1", {}, name),
+    table ? make("div", { class: "scroll" }, make("table", {}, rows.map((row, n) => make("tr", {}, row.map((cell) => make(n ? "td" : "th", {}, cell)))))) : make("p", { class: "note" }, "No table yet: the study is not done."),
+    files.filter((entry) => /\.(png|svg)$/.test(entry.name)).map((entry) => make("img", { class: "picture", src: `file/${encoded(entry.name)}`, alt: `figure of ${name}` })),
+    make("ul", {}, files.map((entry) => make("li", {}, make("a", { href: link(entry.kind === "result" ? "result" : "file", entry.name) }, entry.name)))),
+    commands({ shell: `asperity study status ${name}`, python: `import pandas as pd\n\nprint(pd.read_csv(${JSON.stringify(`${name}/study.csv`)}))\n` })];
+}

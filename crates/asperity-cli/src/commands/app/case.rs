@@ -1,0 +1,129 @@
+//! A case while it is written: what is wrong or found, at its line; its keys; what will be solved.
+
+use std::path::Path;
+
+use asperity_io::case::{Case, CaseError, CaseErrors, Entry, entries};
+use asperity_io::output::write_all;
+use serde_json::{Value, json};
+
+use super::folder::Folder;
+use crate::commands::check;
+
+/// Faults, findings, keys and, with `cost`, what a run takes; `name` is the file of the case, which need not be saved.
+pub fn checked(folder: &Folder, name: &str, text: &str, cost: bool) -> Result<Value, String> {
+    let at = folder.path().join(name);
+    let at = at.parent().unwrap_or(folder.path());
+    let keys = entries(text).unwrap_or_default();
+    let listed: Vec<_> = keys.iter().map(|entry| json!([entry.key, entry.value, entry.line])).collect();
+    let mut told =
+        json!({ "keys": listed, "faults": [], "findings": [], "outside": outside(folder, at, &keys) });
+    match Case::parse(text, at, &[]).and_then(|case| Ok((case.examine()?, case))) {
+        Err(errors) => told["faults"] = faults(&errors),
+        Ok((examined, mut case)) => {
+            name.clone_into(&mut case.name);
+            if !keys.iter().any(|entry| entry.key == "output.path") {
+                case.output.path =
+                    Path::new(name).with_extension("zarr").file_name().unwrap_or_default().into();
+            }
+            let findings = examined.findings.iter().map(|finding| {
+                // The first key that it names, else the table.
+                let named =
+                    keys.iter().find(|entry| finding.text.contains(&format!("`{}`", last(&entry.key))));
+                json!({
+                    "severity": finding.severity.as_str(), "text": finding.text, "code": finding.code,
+                    "line": named.map(|entry| entry.line),
+                })
+            });
+            told["findings"] = findings.collect();
+            told["summary"] = json!(check::text(&case, &examined, cost));
+        }
+    }
+    // Names of files as they are from the folder.
+    let root = format!("{}{}", folder.path().display(), std::path::MAIN_SEPARATOR);
+    shorten(&mut told, &root);
+    Ok(told)
+}
+
+/// Leaves the path of the folder out of all texts.
+fn shorten(value: &mut Value, root: &str) {
+    match value {
+        Value::String(text) if text.contains(root) => *text = text.replace(root, ""),
+        Value::Array(list) => list.iter_mut().for_each(|value| shorten(value, root)),
+        Value::Object(object) => object.values_mut().for_each(|value| shorten(value, root)),
+        _ => {}
+    }
+}
+
+fn last(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}
+
+/// Faults with their places in the units of scripts in browsers: 16 bits of a character.
+fn faults(errors: &CaseErrors) -> Value {
+    let place = |byte: usize| errors.source.get(..byte).map_or(0, |text| text.encode_utf16().count());
+    let fault = |error: &CaseError| {
+        json!({
+            "from": error.span.as_ref().map(|span| place(span.start)),
+            "to": error.span.as_ref().map(|span| place(span.end)),
+            "line": error.line, "key": error.key, "message": error.message, "expected": error.expected,
+            "help": error.help,
+        })
+    };
+    errors.errors.iter().map(fault).collect()
+}
+
+/// The files outside of the folder that a case names: it may, as with `asperity run`, and the page says so.
+fn outside(folder: &Folder, at: &Path, keys: &[Entry]) -> Vec<String> {
+    let names_file = |entry: &&Entry| ["path", "file", "distribution"].contains(&last(&entry.key));
+    let leads_out = |entry: &&Entry| {
+        let path = at.join(&entry.value);
+        let place = path.canonicalize().unwrap_or_else(|_| lexical(&path));
+        entry.key != "output.path" && !place.starts_with(folder.path())
+    };
+    keys.iter().filter(names_file).filter(leads_out).map(|entry| entry.value.clone()).collect()
+}
+
+/// The path with each ".." taken with the folder before it.
+fn lexical(path: &Path) -> std::path::PathBuf {
+    path.components().fold(std::path::PathBuf::new(), |mut path, part| {
+        match part {
+            std::path::Component::ParentDir => {
+                path.pop();
+            }
+            part => path.push(part),
+        }
+        path
+    })
+}
+
+/// Where a run of a case stores its result: as the case says if that is inside of the folder and free, else a free name like it.
+pub fn result_name(folder: &Folder, name: &str) -> Result<String, String> {
+    let case = Case::read(&folder.find(name)?, &[]).map_err(|errors| errors.to_string())?;
+    let given = folder.path().join(&case.output.path);
+    let relative = given.strip_prefix(folder.path()).ok().and_then(Path::to_str);
+    let Some(relative) = relative.filter(|name| folder.free(name).is_ok()) else {
+        return Err(format!(
+            "`output.path` of {name} is {}, which is not in the folder; write a name without a folder there",
+            case.output.path.display()
+        ));
+    };
+    folder.free(relative)
+}
+
+/// Stores the text of a case that was `before` when the page read it; what has changed since is not replaced.
+pub fn save(folder: &Folder, name: &str, text: &str, before: Option<&str>) -> Result<(), String> {
+    if !name.to_lowercase().ends_with(".toml") {
+        return Err(format!("{name} is no case: its name must end in .toml"));
+    }
+    let written =
+        |path: &Path, force| write_all(path, force, text.as_bytes()).map_err(|error| error.to_string());
+    let Some(before) = before else { return written(&folder.place(name)?, false) };
+    let path = folder.find(name)?;
+    let now = std::fs::read_to_string(&path).map_err(|error| format!("cannot read {name}: {error}"))?;
+    match now == before {
+        true => written(&path, true),
+        false => Err(format!(
+            "{name} has changed since this page read it, here in another tab or in an editor; copy your text, then load the file again"
+        )),
+    }
+}

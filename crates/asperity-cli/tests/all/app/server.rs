@@ -1,0 +1,268 @@
+//! The application without a browser: who is answered, which names, which files; the queue of runs.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use asperity_io::store::Reader;
+use serde_json::{Value, json};
+
+use super::{App, raw};
+use crate::asperity;
+
+const CASE: &str = r#"title = "small"
+[domain]
+cells = [32, 32]
+size = ["1 mm", "1 mm"]
+[[surface]]
+kind = "sphere"
+radius = "5 mm"
+[[body]]
+poisson = 0.5
+material = { model = "zener", shear = "1 MPa", shear_kelvin = "2 MPa", retardation_time = "3 s" }
+[load]
+control = "load"
+history = { kind = "step", value = "0.5 N" }
+[time]
+end = "8 s"
+steps = 8
+[output]
+fields = ["pressure"]
+every = 4
+"#;
+
+fn folder() -> (tempfile::TempDir, std::path::PathBuf) {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path().join("work");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::write(directory.path().join("secret.toml"), "secret").unwrap();
+    std::fs::write(folder.join("small.toml"), CASE).unwrap();
+    (directory, folder)
+}
+
+/// A long case: some minutes, if it is not stopped.
+fn long() -> String {
+    CASE.replace("[32, 32]", "[256, 256]").replace("steps = 8", "steps = 5000")
+}
+
+/// Waits until the first run of the list is in one of these states.
+fn wait(app: &App, states: &[&str]) -> Value {
+    let start = Instant::now();
+    loop {
+        let runs: Value = serde_json::from_str(&app.get("runs").1).unwrap();
+        if states.contains(&runs[0]["state"].as_str().unwrap_or_default()) {
+            return runs;
+        }
+        assert!(start.elapsed() < Duration::from_secs(120), "{runs}");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+fn rows(result: &Path) -> usize {
+    Reader::open(result).map_or(0, |reader| reader.len())
+}
+
+#[test]
+fn only_its_own_page_is_answered() {
+    let (_keep, folder) = folder();
+    let app = App::start(&folder);
+    let host = &app.host;
+    let page = |head: &str| raw(host, &format!("GET /{}/ HTTP/1.1\r\n{head}\r\n", app.token), b"").0;
+    assert_eq!(page(&format!("Host: {host}\r\n")), 200);
+    assert_eq!(page(&format!("Host: {host}\r\nOrigin: http://{host}\r\n")), 200);
+    // A page of another name that leads here, another site, another server of this machine, no name at all.
+    for head in [
+        "Host: example.org\r\n".to_owned(),
+        format!("Host: {host}\r\nOrigin: http://example.org\r\n"),
+        format!("Host: {host}\r\nOrigin: http://127.0.0.1:1\r\n"),
+        format!("Host: {host}\r\nOrigin: null\r\n"),
+        format!("Host: {host}\r\nSec-Fetch-Site: cross-site\r\n"),
+        String::new(),
+    ] {
+        assert_eq!(page(&head), 403, "{head}");
+    }
+    for path in ["/", "/list", &format!("/{}/list", "0".repeat(32)), &format!("/{}", app.token)] {
+        assert_eq!(raw(host, &format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n"), b"").0, 403, "{path}");
+    }
+    assert_eq!(app.ask("DELETE", "file/small.toml", "", b"").0, 405);
+}
+
+#[test]
+fn no_name_leads_out_of_the_folder() {
+    let (_keep, folder) = folder();
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(folder.parent().unwrap(), folder.join("up")).unwrap();
+    let app = App::start(&folder);
+    assert!(app.get("file/small.toml").1.contains("small"));
+    let outside = folder.parent().unwrap().join("secret.toml").display().to_string();
+    for name in [
+        "../secret.toml",
+        "%2e%2e/secret.toml",
+        "..%2fsecret.toml",
+        &outside,
+        "up/secret.toml",
+        ".asperity-app/address",
+    ] {
+        for place in ["file", "text", "kind", "thumbnail", "result-of"] {
+            let (status, content) = app.get(&format!("{place}/{name}"));
+            assert!(status == 422 && !content.contains("\"secret\""), "{place}/{name}: {status} {content}");
+        }
+        let name = name.replace("%2e", ".").replace("%2f", "/");
+        for action in [
+            json!({ "do": "run", "case": name, "output": "r.zarr" }),
+            json!({ "do": "run", "case": "small.toml", "output": name }),
+            json!({ "do": "surface", "file": name }),
+            json!({ "do": "export", "result": "small.toml", "to": "csv", "output": name }),
+        ] {
+            assert_eq!(app.post("do", &action).0, 422, "{action}");
+        }
+        let save = json!({ "name": name, "text": "", "before": "secret" });
+        assert_eq!(app.post("save", &save).0, 422, "{name}");
+    }
+    assert_eq!(std::fs::read_to_string(outside).unwrap(), "secret");
+    assert_eq!(app.get("look/look-..%2f..%2fsmall.toml").0, 404);
+}
+
+#[test]
+fn what_is_dropped_replaces_nothing_and_has_a_limit() {
+    let (_keep, folder) = folder();
+    let app = App::start(&folder);
+    let (status, name) = app.ask("POST", "upload?small.toml", "", b"other");
+    assert_eq!((status, name.as_slice()), (200, &b"\"small-2.toml\""[..]));
+    assert_eq!(std::fs::read_to_string(folder.join("small.toml")).unwrap(), CASE);
+    assert_eq!(std::fs::read_to_string(folder.join("small-2.toml")).unwrap(), "other");
+    for name in ["..%2fa.toml", ".hidden", "a%2fb.toml", ""] {
+        assert_eq!(app.ask("POST", &format!("upload?{name}"), "", b"x").0, 422, "{name}");
+    }
+    // 10 GB are refused before any of it is taken.
+    let head = format!(
+        "POST /{}/upload?big.x3p HTTP/1.1\r\nHost: {}\r\nContent-Length: 10000000000\r\n\r\n",
+        app.token, app.host
+    );
+    let (status, why) = raw(&app.host, &head, b"begin");
+    assert!(status == 422 && String::from_utf8_lossy(&why).contains("copy it into the folder"), "{status}");
+    // One that ends early leaves nothing.
+    let head = head.replace("10000000000", "1000");
+    let mut stream = std::net::TcpStream::connect(&app.host).unwrap();
+    std::io::Write::write_all(&mut stream, format!("{head}begin").as_bytes()).unwrap();
+    stream.shutdown(std::net::Shutdown::Write).unwrap();
+    std::io::Read::read_to_end(&mut stream, &mut vec![]).unwrap();
+    let names: Vec<_> = folder.read_dir().unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(names.len(), 3, "two cases and the application's own folder: {names:?}");
+}
+
+#[test]
+fn a_case_is_saved_unless_it_has_changed_since() {
+    let (_keep, folder) = folder();
+    let app = App::start(&folder);
+    let save = |text: &str, before: Option<&str>| {
+        app.post("save", &json!({ "name": "small.toml", "text": text, "before": before })).0
+    };
+    assert_eq!(save("first tab", Some(CASE)), 200);
+    assert_eq!(save("second tab", Some(CASE)), 422, "the other tab has saved");
+    assert_eq!(save("no text of before", None), 422);
+    assert_eq!(std::fs::read_to_string(folder.join("small.toml")).unwrap(), "first tab");
+    assert_eq!(app.post("save", &json!({ "name": "data.csv", "text": "" })).0, 422, "only cases are written");
+}
+
+#[test]
+fn a_case_is_checked_while_it_is_typed() {
+    let (_keep, folder) = folder();
+    let app = App::start(&folder);
+    let check = |text: &str| app.post("check", &json!({ "name": "small.toml", "text": text })).1;
+    let told = check(CASE);
+    assert_eq!(told["faults"], json!([]), "{told}");
+    assert!(told["summary"].as_str().unwrap().contains("32 x 32 cells"), "{told}");
+    assert!(told["keys"].as_array().unwrap().contains(&json!(["load.history.value", "0.5 N", 13])), "{told}");
+    // Places count in 16 bits: "µ" is one of them, and two bytes.
+    let wrong = CASE.replace("\"small\"", "\"µ\"").replace("\"5 mm\"", "\"5 N\"");
+    let fault = &check(&wrong)["faults"][0];
+    assert_eq!((&fault["line"], &fault["key"]), (&json!(7), &json!("surface[0].radius")), "{fault}");
+    let units: Vec<u16> = wrong.encode_utf16().collect();
+    let [from, to] = ["from", "to"].map(|end| usize::try_from(fault[end].as_u64().unwrap()).unwrap());
+    assert_eq!(String::from_utf16(&units[from..to]).unwrap(), "\"5 N\"");
+    // What lies outside may be read, as a run could, and is told.
+    let outside =
+        CASE.replace("kind = \"sphere\"\nradius = \"5 mm\"", "kind = \"file\"\npath = \"../heights.x3p\"");
+    assert_eq!(check(&outside)["outside"], json!(["../heights.x3p"]));
+}
+
+#[test]
+fn a_study_runs_and_results_are_exported() {
+    let (_keep, folder) = folder();
+    let app = App::start(&folder);
+    let study = json!({ "do": "study", "case": "small.toml", "vary": "load.history.value=0.4 N,0.5 N", "output": "loads" });
+    assert_eq!(app.post("do", &study).0, 200);
+    let runs = wait(&app, &["done", "failed"]);
+    assert_eq!(runs[0]["state"], "done", "{runs}");
+    let (_, table) = app.get("text/loads/study.csv");
+    let table: String = serde_json::from_str(&table).unwrap();
+    assert_eq!(table.lines().count(), 3, "{table}");
+    let list: Value = serde_json::from_str(&app.get("list").1).unwrap();
+    let of = |kind: &str| {
+        list.as_array().unwrap().iter().filter(|entry| entry["kind"] == kind).collect::<Vec<_>>()
+    };
+    assert_eq!((of("study").len(), of("result").len()), (1, 2), "{list}");
+    // The page of one of its results, its picture, and its export.
+    let name = of("result")[0]["name"].as_str().unwrap();
+    let encoded = name.replace(' ', "%20");
+    assert!(app.get(&format!("live/{encoded}/")).1.contains("\"live\":true"));
+    assert_eq!(app.get(&format!("live/{encoded}/state")).0, 200);
+    assert_eq!(app.get(&format!("live/{encoded}/map/pressure-0")).0, 200);
+    let picture = app.ask("GET", &format!("thumbnail/{encoded}"), "", b"").1;
+    assert!(picture.starts_with(b"\x89PNG"));
+    assert_eq!(picture[16..24], [0, 0, 0, 32, 0, 0, 0, 32], "a point for each of the 32 x 32 cells");
+    let export = json!({ "do": "export", "result": name, "to": "csv", "output": "rows.csv" });
+    let (_, done) = app.post("do", &export);
+    assert!(done["ok"] == true && folder.join("rows.csv").is_file(), "{done}");
+    assert_eq!(app.post("do", &export).0, 422, "it exists");
+}
+
+#[test]
+fn a_second_application_is_told_of_the_first() {
+    let (_keep, folder) = folder();
+    let app = App::start(&folder);
+    let second = asperity(&folder, &["app", "--no-open"]);
+    let told = String::from_utf8_lossy(&second.stderr).into_owned();
+    assert_eq!(second.status.code(), Some(2), "{told}");
+    assert!(told.contains("another asperity app") && told.contains(&app.token), "{told}");
+    app.kill();
+    let again = App::start(&folder);
+    assert_eq!(again.get("").0, 200, "the lock ends with the process");
+}
+
+#[test]
+fn a_run_outlives_the_application_and_is_found_again() {
+    let (_keep, folder) = folder();
+    std::fs::write(folder.join("long.toml"), long()).unwrap();
+    let app = App::start(&folder);
+    let run =
+        |case: &str, output: &str| app.post("do", &json!({ "do": "run", "case": case, "output": output }));
+    assert_eq!(run("long.toml", "long.zarr").0, 200);
+    // A second run of the same result is refused, one of another waits.
+    let (status, why) = run("small.toml", "long.zarr");
+    assert!(status == 422 && why.as_str().unwrap().contains("already"), "{why}");
+    assert_eq!(run("small.toml", "small.zarr").0, 200);
+    let result = folder.join("long.zarr");
+    let start = Instant::now();
+    while rows(&result) < 3 {
+        assert!(start.elapsed() < Duration::from_secs(120), "no rows");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    app.kill();
+    let before = rows(&result);
+    let app = App::start(&folder);
+    let runs: Value = serde_json::from_str(&app.get("runs").1).unwrap();
+    assert_eq!([&runs[0]["state"], &runs[1]["state"]], ["waiting", "running"], "{runs}");
+    let start = Instant::now();
+    while rows(&result) <= before {
+        assert!(start.elapsed() < Duration::from_secs(120), "the run ended with the application");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    // Stopped, it leaves what it has, and the one that waits begins.
+    assert_eq!(app.post("stop", &runs[1]["id"]).0, 200);
+    let runs = wait(&app, &["done"]);
+    assert_eq!(runs[1]["state"], "stopped", "{runs}");
+    assert_eq!(rows(&folder.join("small.zarr")), 9);
+    assert!(Reader::open(&result).unwrap().state().contains("--resume"));
+    assert!(app.post("stop", &runs[1]["id"]).0 == 422, "it has ended");
+}

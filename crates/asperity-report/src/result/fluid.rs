@@ -97,11 +97,11 @@ pub(super) fn map(reader: &Reader, options: &Options) -> Result<Figure, PlotErro
 
 /// The map for pages: at the stored instant at which the fluid carries the most.
 pub(crate) fn largest_map(reader: &Reader) -> Result<Figure, PlotError> {
-    let carried = |index: usize| at_instant(reader, index, "fluid_load").unwrap_or(f64::NAN);
-    let count = reader.field_times().len();
-    let most = (0..count).map(carried).fold(f64::NEG_INFINITY, f64::max);
-    let index = (0..count).rfind(|index| carried(*index) == most);
-    let at = index.map_or(At::Last, At::Index);
+    let loads = reader.series("fluid_load")?;
+    let of = |row: &usize| loads.get(*row).copied().unwrap_or(f64::NAN);
+    let carried: Vec<f64> = reader.field_steps().iter().map(of).collect();
+    let [_, most] = extent(carried.iter().copied());
+    let at = carried.iter().rposition(|load| *load == most).map_or(At::Last, At::Index);
     let mut figure = map(reader, &Options { at, ..Options::default() })?;
     figure.caption += " This is the stored time at which the fluid carries the most.";
     Ok(figure)

@@ -194,6 +194,9 @@ fn a_study_runs_and_results_are_exported() {
     assert_eq!(app.post("do", &study).0, 200);
     let runs = wait(&app, &["done", "failed"]);
     assert_eq!(runs[0]["state"], "done", "{runs}");
+    // The same command goes on with its folder, in which all is done by now.
+    assert_eq!(app.post("again", &runs[0]["id"]).0, 200);
+    assert_eq!(wait(&app, &["done", "failed"])[0]["state"], "done");
     let (_, table) = app.get("text/loads/study.csv");
     let table: String = serde_json::from_str(&table).unwrap();
     assert_eq!(table.lines().count(), 3, "{table}");

@@ -117,14 +117,15 @@ async function comparePage(names) {
     words(found), commands(found), sheet.picture ? make("iframe", { src: `look/${sheet.picture}`, title: "comparison" }) : words(sheet), controls(file), commands(sheet)];
 }
 
-/** Table and figures of a study. */
+/** A study or a whole seal: its page, or what there is of its table so far. */
 async function studyPage(name) {
   const list = await ask("list"), table = (await ask(`text/${encoded(`${name}/study.csv`)}`).catch(() => "")).trim();
   const rows = table.split("\n").map((line) => line.split(","));
   const files = list.filter((entry) => entry.name.startsWith(`${name}/`));
+  const page = ["seal", "study"].map((of) => `${name}/${of}.html`).find((path) => files.some((entry) => entry.name === path));
+  const run = (await ask("runs")).find((one) => one.result === name);
   return [make("h1", {}, name),
-    table ? make("div", { class: "scroll" }, make("table", {}, rows.map((row, n) => make("tr", {}, row.map((cell) => make(n ? "td" : "th", {}, cell)))))) : make("p", { class: "note" }, "No table yet: the study is not done."),
-    files.filter((entry) => /\.(png|svg)$/.test(entry.name)).map((entry) => make("img", { class: "picture", src: `file/${encoded(entry.name)}`, alt: `figure of ${name}` })),
+    page ? make("iframe", { src: `file/${encoded(page)}`, title: `page of ${name}` }) : table ? make("div", { class: "scroll" }, make("table", {}, rows.map((row, n) => make("tr", {}, row.map((cell) => make(n ? "td" : "th", {}, cell)))))) : make("p", { class: "note" }, "No table yet: the study is not done."),
     make("ul", {}, files.map((entry) => make("li", {}, make("a", { href: link(entry.kind === "result" ? "result" : "file", entry.name) }, entry.name)))),
-    commands({ shell: `asperity study status ${name}`, python: `import pandas as pd\n\nprint(pd.read_csv(${JSON.stringify(`${name}/study.csv`)}))\n` })];
+    commands(run ?? { shell: `asperity study status ${name}`, python: `import pandas as pd\n\nprint(pd.read_csv(${JSON.stringify(`${name}/study.csv`)}))\n` })];
 }

@@ -184,6 +184,17 @@ fn a_case_is_checked_while_it_is_typed() {
     let outside =
         CASE.replace("kind = \"sphere\"\nradius = \"5 mm\"", "kind = \"file\"\npath = \"../heights.x3p\"");
     assert_eq!(check(&outside)["outside"], json!(["../heights.x3p"]));
+    // Its result stays inside.
+    for path in ["../out.zarr", "/tmp/out.zarr"] {
+        std::fs::write(
+            folder.join("out.toml"),
+            CASE.replace("[output]", &format!("[output]\npath = \"{path}\"")),
+        )
+        .unwrap();
+        let (status, why) = app.get("result-of/out.toml");
+        assert!(status == 422 && why.contains("not in the folder"), "{path}: {why}");
+    }
+    assert_eq!(app.get("result-of/small.toml").1, "\"small.zarr\"");
 }
 
 #[test]

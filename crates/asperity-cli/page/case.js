@@ -29,6 +29,7 @@ async function casePage(name) {
       told = await send("check", { name, text, cost });
       if (text === current()) {
         showMarks();
+        seal.hidden = !told.keys.some(([key]) => key.startsWith("seal."));
         if (!told.faults.length) summary.textContent = told.summary;
         status.textContent = told.faults.length ? `${told.faults.length} to correct` : "can be run";
         status.dataset.milliseconds = String(Math.round(performance.now() - start));
@@ -122,13 +123,19 @@ async function casePage(name) {
     await send("do", { do: "study", case: name, vary: vary.value, output });
     go("#/runs", `the results are in ${output}`);
   }));
+  const seal = button("compute the whole seal", trying(async () => {
+    await store();
+    const output = await ask(`free/${encoded(name.replace(/\.toml$/i, "-seal"))}`);
+    await send("do", { do: "seal", case: name, output });
+    go("#/runs", `page and figure will be in ${output}`);
+  }), { hidden: true });
   const warn = (event) => { if (current() !== saved.replace(/\r\n/g, "\n")) event.preventDefault(); };
   window.addEventListener("beforeunload", warn);
   leave = () => { clearTimeout(timer); window.removeEventListener("beforeunload", warn); if (current() !== saved.replace(/\r\n/g, "\n")) keep(); };
   setTimeout(check);
   return [
     make("h1", {}, name),
-    controls(run, save, status, make("span", { class: "note" }, "Ctrl-Space offers what may stand here; what you typed is saved when you run or leave.")),
+    controls(run, seal, save, status, make("span", { class: "note" }, "Ctrl-Space offers what may stand here; what you typed is saved when you run or leave.")),
     make("div", { class: "two" },
       make("div", {}, make("div", { class: "editor" }, view.dom), marks),
       make("div", {}, make("h2", {}, "Keys"), form)),

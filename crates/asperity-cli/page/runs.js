@@ -1,5 +1,7 @@
 // Runs, results, comparisons, studies.
 
+/** Whether it writes a folder of results. */
+const isFolder = (run) => /^asperity (study|seal)/.test(run.shell);
 const isOpen = (run) => run.state === "waiting" || run.state === "running";
 
 async function countRuns() {
@@ -36,12 +38,13 @@ function renew(place, ...parts) {
 function runPart(run, onResult = false) {
   const share = run.share ?? (run.state === "done" ? 1 : null), log = run.log.trim();
   return make("div", { class: "run", "data-state": run.state },
-    make("p", {}, make("b", {}, run.state), ` ${run.case} → `, onResult ? run.result : make("a", { href: link(run.shell.startsWith("asperity study") ? "study" : "result", run.result) }, run.result)),
+    make("p", {}, make("b", {}, run.state), ` ${run.case} → `, onResult ? run.result : make("a", { href: link(isFolder(run) ? "study" : "result", run.result) }, run.result)),
     run.state === "running" && make("progress", { max: 1, "aria-label": `progress of ${run.case}`, ...(share == null ? {} : { value: share }) }),
     isOpen(run) && make("p", { class: "note" }, run.progress || (run.state === "waiting" ? "waits for the runs before it" : "begins")),
     controls(
       isOpen(run) && button("stop", trying(async () => { await send("stop", run.id); tell("it stops after the row that it is at; what is computed stays"); }), { class: "stop" }),
-      run.state === "stopped" && run.has_rows && button("resume", trying(() => resume(run.case, run.result)), { class: "resume" })),
+      run.state === "stopped" && run.has_rows && !isFolder(run) && button("resume", trying(() => resume(run.case, run.result)), { class: "resume" }),
+      (run.state === "stopped" || run.state === "failed") && isFolder(run) && button("go on", trying(async () => { await send("again", run.id); await show(); }))),
     run.state === "failed" && make("pre", { class: "words notice", role: "alert" }, log.split("\n").filter((line) => !line.startsWith("row ")).join("\n")),
     run.state === "done" && run.out.trim() && make("details", {}, make("summary", {}, "what it printed"), make("pre", { class: "words scroll" }, run.out)),
     commands(run));
@@ -114,14 +117,15 @@ async function comparePage(names) {
     words(found), commands(found), sheet.picture ? make("iframe", { src: `look/${sheet.picture}`, title: "comparison" }) : words(sheet), controls(file), commands(sheet)];
 }
 
-/** Table and figures of a study. */
+/** A study or a whole seal: its page, or what there is of its table so far. */
 async function studyPage(name) {
   const list = await ask("list"), table = (await ask(`text/${encoded(`${name}/study.csv`)}`).catch(() => "")).trim();
   const rows = table.split("\n").map((line) => line.split(","));
   const files = list.filter((entry) => entry.name.startsWith(`${name}/`));
+  const page = ["seal", "study"].map((of) => `${name}/${of}.html`).find((path) => files.some((entry) => entry.name === path));
+  const run = (await ask("runs")).find((one) => one.result === name);
   return [make("h1", {}, name),
-    table ? make("div", { class: "scroll" }, make("table", {}, rows.map((row, n) => make("tr", {}, row.map((cell) => make(n ? "td" : "th", {}, cell)))))) : make("p", { class: "note" }, "No table yet: the study is not done."),
-    files.filter((entry) => /\.(png|svg)$/.test(entry.name)).map((entry) => make("img", { class: "picture", src: `file/${encoded(entry.name)}`, alt: `figure of ${name}` })),
+    page ? make("iframe", { src: `file/${encoded(page)}`, title: `page of ${name}` }) : table ? make("div", { class: "scroll" }, make("table", {}, rows.map((row, n) => make("tr", {}, row.map((cell) => make(n ? "td" : "th", {}, cell)))))) : make("p", { class: "note" }, "No table yet: the study is not done."),
     make("ul", {}, files.map((entry) => make("li", {}, make("a", { href: link(entry.kind === "result" ? "result" : "file", entry.name) }, entry.name)))),
-    commands({ shell: `asperity study status ${name}`, python: `import pandas as pd\n\nprint(pd.read_csv(${JSON.stringify(`${name}/study.csv`)}))\n` })];
+    commands(run ?? { shell: `asperity study status ${name}`, python: `import pandas as pd\n\nprint(pd.read_csv(${JSON.stringify(`${name}/study.csv`)}))\n` })];
 }

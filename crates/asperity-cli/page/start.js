@@ -11,7 +11,7 @@ async function startPage() {
     compare.disabled = chosen.size < 2;
   } });
   return [
-    make("h1", {}, "From files to the decision"),
+    make("h1", {}, $("folder").textContent),
     dropZone(),
     section("Results", results.length
       ? [controls(compare), make("ul", { class: "tiles" }, results.map((entry) => make("li", {}, choose(entry.name),

@@ -112,6 +112,10 @@ pub enum Action {
         vary: String,
         output: String,
     },
+    Seal {
+        case: String,
+        output: String,
+    },
 }
 
 /// A command line, and what of it the page needs besides.
@@ -222,6 +226,9 @@ impl Action {
                 let line =
                     Line::of(&["study", &case]).with([format!("--vary={vary}"), "-o".to_owned(), output]);
                 line.python(&Given::new(), python)
+            }
+            Action::Seal { case, output } => {
+                Line::of(&["seal", &reads(case)?]).with(["-o".to_owned(), writes(output)?])
             }
         })
     }
@@ -352,6 +359,7 @@ mod tests {
             json!({ "do": "export", "result": "r.zarr", "to": "netcdf", "output": "r.nc" }),
             json!({ "do": "run", "case": "c.toml", "output": "n.zarr" }),
             json!({ "do": "run", "case": "c.toml", "output": "r.zarr", "resume": true }),
+            json!({ "do": "seal", "case": "c.toml", "output": "se" }),
             json!({ "do": "study", "case": "c.toml", "vary": "load.history.value=1 N,2 N", "output": "st" }),
         ] {
             let line = line(action.clone()).unwrap();

@@ -120,6 +120,19 @@ impl Jobs {
         Ok(())
     }
 
+    /// Puts a study or a seal that was stopped into the queue again: it goes on with the same command.
+    pub fn again(&self, id: u64) -> Result<(), String> {
+        let mut list = self.list();
+        let job = list.iter_mut().find(|job| job.id == id).ok_or("there is no such run")?;
+        let goes_on = job.words.first().is_some_and(|word| word == "study" || word == "seal");
+        if !goes_on || matches!(job.state, State::Waiting | State::Running) {
+            return Err("this run cannot go on with the same command".to_owned());
+        }
+        job.state = State::Waiting;
+        self.save(&list);
+        Ok(())
+    }
+
     /// All runs with how far they are, the latest first.
     pub fn told(&self) -> Value {
         let list = self.list().clone();

@@ -220,6 +220,7 @@ impl Application {
         match path {
             "/do" => self.carry_out(&serde_json::from_slice(&text).map_err(unread)?),
             "/stop" => self.jobs.stop(serde_json::from_slice(&text).map_err(unread)?).map(|()| json!(true)),
+            "/again" => self.jobs.again(serde_json::from_slice(&text).map_err(unread)?).map(|()| json!(true)),
             "/check" | "/save" | "/set" => {
                 let Edit { name, text, cost, before, key, value } =
                     serde_json::from_slice(&text).map_err(unread)?;
@@ -243,7 +244,10 @@ impl Application {
         let look = look_of(number);
         let line = action.line(&self.folder, &format!("{PLACE}/{look}"))?;
         let (shell, python) = (line.in_shell(), line.in_python());
-        if let Action::Run { case, output, .. } | Action::Study { case, output, .. } = action {
+        if let Action::Run { case, output, .. }
+        | Action::Study { case, output, .. }
+        | Action::Seal { case, output } = action
+        {
             let asked =
                 Asked { words: line.words(), shell, python, case: case.clone(), result: output.clone() };
             return self.jobs.add(asked).map(|id| json!({ "run": id }));

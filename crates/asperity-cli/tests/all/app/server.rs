@@ -184,6 +184,17 @@ fn a_case_is_checked_while_it_is_typed() {
     let outside =
         CASE.replace("kind = \"sphere\"\nradius = \"5 mm\"", "kind = \"file\"\npath = \"../heights.x3p\"");
     assert_eq!(check(&outside)["outside"], json!(["../heights.x3p"]));
+    // Its result stays inside.
+    for path in ["../out.zarr", "/tmp/out.zarr"] {
+        std::fs::write(
+            folder.join("out.toml"),
+            CASE.replace("[output]", &format!("[output]\npath = \"{path}\"")),
+        )
+        .unwrap();
+        let (status, why) = app.get("result-of/out.toml");
+        assert!(status == 422 && why.contains("not in the folder"), "{path}: {why}");
+    }
+    assert_eq!(app.get("result-of/small.toml").1, "\"small.zarr\"");
 }
 
 #[test]
@@ -194,6 +205,9 @@ fn a_study_runs_and_results_are_exported() {
     assert_eq!(app.post("do", &study).0, 200);
     let runs = wait(&app, &["done", "failed"]);
     assert_eq!(runs[0]["state"], "done", "{runs}");
+    // The same command goes on with its folder, in which all is done by now.
+    assert_eq!(app.post("again", &runs[0]["id"]).0, 200);
+    assert_eq!(wait(&app, &["done", "failed"])[0]["state"], "done");
     let (_, table) = app.get("text/loads/study.csv");
     let table: String = serde_json::from_str(&table).unwrap();
     assert_eq!(table.lines().count(), 3, "{table}");

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use asperity::quantities::Quantity;
 use serde::Serialize;
 
 use crate::answer::{self, Answer, Units};
@@ -206,7 +207,8 @@ pub fn compare(first: &Reader, second: &Reader) -> Result<Comparison, StoreError
     let theirs: Vec<&'static str> = second.scalars().iter().map(|series| series.name).collect();
     let mut numbers = vec![];
     for series in first.scalars() {
-        if WORK.contains(&series.name) || !theirs.contains(&series.name) {
+        let is_of_solver = Quantity::from_name(series.name).is_some_and(Quantity::is_of_solver);
+        if is_of_solver || WORK.contains(&series.name) || !theirs.contains(&series.name) {
             continue;
         }
         let [a, b] = [first.series(series.name)?, second.series(series.name)?];

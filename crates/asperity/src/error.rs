@@ -105,9 +105,9 @@ pub enum Error {
     },
     /// Friction does not hold the prescribed tangential force; the rows so far are complete.
     #[error(
-        "gross sliding at t = {time} s: the tangential force {} exceeds {}, the largest that friction holds; lower the force, or \
-         prescribe the displacement (tangential.control = \"displacement\")",
-        si(*force, unit), si(*max, unit)
+        "gross sliding at t = {time} s: the tangential force {} is {} more than friction holds; lower it, raise the load or the friction \
+         coefficient, or prescribe the displacement (tangential.control = \"displacement\")",
+        si(*force, unit), si(*force - *max, unit)
     )]
     Sliding {
         /// Prescribed tangential force \[N\], per length \[N/m\] on a line of cells.

@@ -5,7 +5,7 @@
 //! | with leakage | `leak_rate` (of a gas also `leak_rate_standard`), `hydraulic_gap`, `tight_from` |
 //! | with a fluid that acts on the surfaces | `fluid_load`, `time_opened` where it opens the contact, `closing_pressure` where that closes as the inlet falls; on request `opening_pressure`, `leak_rate_one_way` |
 //! | with adhesion | `pull_off_force`, `pull_off_approach` |
-//! | with a load along the surfaces | `loop_energy` of the last loop, `largest_tangential_force`, `largest_tangential_displacement`, `slip_share`, `slip_work` |
+//! | with a load along the surfaces | `loop_energy` of the last loop, `tangential_stiffness`, `largest_tangential_force`, `largest_tangential_displacement`, `slip_share`, `slip_work` |
 //! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force` |
 //! | with a sine | `loss_angle`, `dissipated_energy`, `dynamic_stiffness` of the last cycle |
 //! | every contact | `contact_area`, `contact_area_corrected`, `contact_fraction`, `max_pressure`, `approach` and `creep` where the load is given, `load` and `relaxation` where the approach is |

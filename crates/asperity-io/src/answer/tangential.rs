@@ -4,10 +4,11 @@ use std::ops::RangeInclusive;
 
 use asperity::quantities::Quantity;
 use asperity::step::Row;
+use serde_json::Value;
 
 use super::Answer;
 use crate::readable::quantity;
-use crate::store::{Reader, Result};
+use crate::store::{Header, Reader, Result};
 
 /// Displacements that differ by less than this share of their range are the same end of a loop.
 const CLOSED: f64 = 1e-2;
@@ -34,32 +35,63 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         values.iter().position(|value| *value >= most * (1.0 - super::SAME)).unwrap_or(0)
     };
     let (pulled, moved) = (largest(&forces), largest(&ways));
+    let friction = reader.header().setup.get(Header::FRICTION);
+    let period = friction.and_then(|friction| friction.get("period")?.as_f64());
+    let stage_loads = reader.series("load")?;
+    let cycle = match period {
+        Some(period) => last_period(rows, period),
+        None => last_loop(&displacement, &force, &stage_loads),
+    };
     let mut answers = vec![];
-    if let Some(cycle) = last_loop(&displacement) {
+    let stiffness = reader.series(Quantity::TangentialStiffness.name())?;
+    if let Some(cycle) = cycle {
         let (from, to) = (*cycle.start(), *cycle.end());
-        let taken = work[to] - work[from];
         let times = [from, to].map(|row| quantity(rows[row].coordinate.value(), "s"));
-        let note = format!(
-            "the loop from {} to {}; the work of friction in it is {}",
-            times[0],
-            times[1],
-            quantity(taken, grid.units("J"))
-        );
-        answers.push(
-            Answer::new("loop_energy", area(&force, &displacement, cycle), grid.units("J")).with_note(note),
-        );
+        let taken = work[to] - work[from];
+        // The energy of elastic bodies is that of friction, which each step knows; between the rows the loop is known to straight lines.
+        let (energy, of) = match is_elastic(reader) {
+            true => (taken, String::new()),
+            false => {
+                let friction = quantity(taken, grid.units("J"));
+                (area(&force, &displacement, cycle), format!("; {friction} of it by friction"))
+            }
+        };
+        let note = format!("in the loop from {} to {}, {} rows{of}", times[0], times[1], to - from);
+        answers.push(Answer::new("loop_energy", energy, grid.units("J")).with_note(note));
     }
+    let stiffest = (0..stiffness.len())
+        .filter(|row| stiffness[*row].is_finite())
+        .max_by(|a, b| stiffness[*a].total_cmp(&stiffness[*b]));
+    answers.extend(stiffest.map(|row| {
+        let note = format!("the largest of a step, to {}", quantity(rows[row].coordinate.value(), "s"));
+        Answer::new(Quantity::TangentialStiffness.name(), stiffness[row], grid.units("N/m")).with_note(note)
+    }));
     let share = slip[pulled] / (stick[pulled] + slip[pulled]);
     answers.extend([
         Answer::new("largest_tangential_force", forces[pulled], grid.units("N")).at(&rows[pulled]),
         Answer::new("largest_tangential_displacement", ways[moved], "m").at(&rows[moved]),
-        Answer::new("slip_share", share, "1")
-            .at(&rows[pulled])
-            .with_note("of the contact, under the largest tangential force"),
+        Answer::new("slip_share", share, "1").with_note("of the contact, under the largest tangential force"),
         Answer::new(Quantity::SlipWork.name(), work[rows.len() - 1], grid.units("J"))
-            .at(&rows[rows.len() - 1]),
+            .with_note("since t = 0"),
     ]);
     Ok(answers)
+}
+
+/// Whether the bodies have no retardation times.
+fn is_elastic(reader: &Reader) -> bool {
+    let setup = &reader.header().setup;
+    let creeps =
+        setup.get("retardation_times").and_then(Value::as_array).is_some_and(|times| !times.is_empty());
+    let flows = setup.get("relaxed_modulus").and_then(Value::as_f64) == Some(0.0);
+    !creeps && !flows
+}
+
+/// The rows of the last period; `None` where the run is shorter, or no row stands at its beginning.
+fn last_period(rows: &[Row], period: f64) -> Option<RangeInclusive<usize>> {
+    let time = |row: usize| rows[row].coordinate.value();
+    let last = rows.len().checked_sub(1)?;
+    let begins = |row: &usize| (time(last) - period - time(*row)).abs() <= 1e-9 * time(last);
+    (0..last).rev().find(begins).map(|first| first..=last)
 }
 
 /// A quantity along x and y.
@@ -68,19 +100,20 @@ fn vectors(reader: &Reader, quantity: Quantity) -> Result<Vec<[f64; 2]>> {
     Ok(reader.series(x)?.into_iter().zip(reader.series(y)?).map(|(x, y)| [x, y]).collect())
 }
 
-/// The rows of the last loop, from one turn of the displacement to the next on the same side; `None` where it does not come back.
-pub(crate) fn last_loop(displacement: &[[f64; 2]]) -> Option<RangeInclusive<usize>> {
-    let range = |axis: usize| {
-        let values = displacement.iter().map(|d| d[axis]);
+/// The rows of the last loop, from one turn of the displacement to the next on the same side; `None` where displacement, force and
+/// load do not come back.
+fn last_loop(displacement: &[[f64; 2]], force: &[[f64; 2]], load: &[f64]) -> Option<RangeInclusive<usize>> {
+    let range = |of: &dyn Fn(usize) -> f64| {
+        let values = (0..load.len()).map(of);
         values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
     };
-    let axis = if range(1) > range(0) { 1 } else { 0 };
-    let (along, range) = (|row: usize| displacement[row][axis], range(axis));
-    let last = displacement.len().checked_sub(1)?;
+    let axis = if range(&|row| displacement[row][1]) > range(&|row| displacement[row][0]) { 1 } else { 0 };
+    let along = |row: usize| displacement[row][axis];
+    let (widest, last) = (range(&along), load.len().checked_sub(1)?);
     let (mut turns, mut direction) = (vec![], 0.0);
     for row in 1..=last {
         let step = along(row) - along(row - 1);
-        if step.abs() > ROUNDING * range {
+        if step.abs() > ROUNDING * widest {
             if step * direction < 0.0 {
                 turns.push(row - 1);
             }
@@ -88,11 +121,18 @@ pub(crate) fn last_loop(displacement: &[[f64; 2]]) -> Option<RangeInclusive<usiz
         }
     }
     turns.push(last);
+    let strongest = range(&|row| force[row][0]).max(range(&|row| force[row][1]));
+    let heaviest = load.iter().copied().fold(0.0, f64::max);
+    let closes = |(from, to): &(usize, usize)| {
+        let back = |a: f64, b: f64, whole: f64| (a - b).abs() <= CLOSED * whole;
+        (0..2).all(|axis| {
+            back(displacement[*from][axis], displacement[*to][axis], widest)
+                && back(force[*from][axis], force[*to][axis], strongest)
+        }) && back(load[*from], load[*to], heaviest)
+    };
     // The last row ends a loop only where it comes back to the turn before the last.
-    let ends = turns.len().checked_sub(3).map(|n| (turns[n], turns[n + 2]));
-    let inner = turns.len().checked_sub(4).map(|n| (turns[n], turns[n + 2]));
-    let closes = |(from, to): &(usize, usize)| (along(*to) - along(*from)).abs() <= CLOSED * range;
-    ends.filter(closes).or(inner.filter(closes)).map(|(from, to)| from..=to)
+    let pair = |back: usize| turns.len().checked_sub(back).map(|n| (turns[n], turns[n + 2]));
+    pair(3).filter(closes).or(pair(4).filter(closes)).map(|(from, to)| from..=to)
 }
 
 /// The integral of force over displacement, by trapezoids.
@@ -115,12 +155,19 @@ mod tests {
 
     #[test]
     fn the_last_loop_goes_from_turn_to_turn() {
+        let of = |course: &[[f64; 2]]| last_loop(course, course, &vec![1.0; course.len()]);
         // 2.25 cycles end at a turn, 2 cycles between two.
-        assert_eq!(last_loop(&course(2.25)), Some(50..=90));
-        assert_eq!(last_loop(&course(2.0)), Some(30..=70));
-        assert_eq!(last_loop(&course(1.0)), None);
-        assert_eq!(last_loop(&[]), None);
-        assert_eq!(last_loop(&[[1.0, 0.0]]), None);
+        assert_eq!(of(&course(2.25)), Some(50..=90));
+        assert_eq!(of(&course(2.0)), Some(30..=70));
+        assert_eq!(of(&course(1.0)), None);
+        assert_eq!(of(&[]), None);
+        assert_eq!(of(&[[1.0, 0.0]]), None);
+        // Where the force or the load has another value at its end, it is none.
+        let (way, mut force) = (course(2.25), course(2.25));
+        force[90][1] = 0.5;
+        assert_eq!(last_loop(&way, &force, &[1.0; 91]), None);
+        let falling: Vec<f64> = (0..=90).map(|n| 1.0 - 0.01 * f64::from(n)).collect();
+        assert_eq!(last_loop(&way, &way, &falling), None);
     }
 
     #[test]

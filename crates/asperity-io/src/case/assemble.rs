@@ -227,8 +227,9 @@ impl Document {
             for error in conditions.faults() {
                 checks.root().core::<()>(Err(error));
             }
-            // A faulty fluid is reported already.
-            if leakage.is_some() || !acts {
+            // A faulty fluid, or a faulty load along the surfaces, is reported already.
+            let slips = self.tangential.is_some() || self.friction.is_some();
+            if (leakage.is_some() || !acts) && (conditions.tangential.is_some() || !slips) {
                 self.output.possible(&at("output"), conditions, motion.is_some());
             }
         }

@@ -145,6 +145,8 @@ pub struct FrictionReport {
     pub control: TangentialControl,
     /// Largest magnitude of its components along x and y \[N; of a line contact N/m; m\].
     pub largest: [f64; 2],
+    /// The first time at which the force is more than friction holds \[s\], as far as it is known before the run.
+    pub slides_at: Option<f64>,
     /// Dundurs' β, how much pressure and tangential tractions act on each other, which is neglected.
     pub coupling: f64,
 }
@@ -269,6 +271,7 @@ impl Case {
                         .into_iter()
                         .fold(0.0, |most: f64, end| most.max(end.abs()))
                 }),
+                slides_at: law.slides_at(&self.conditions),
                 coupling: law.coupling,
             }),
             sines: self.sines(),

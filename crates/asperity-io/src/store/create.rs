@@ -129,7 +129,8 @@ pub(super) fn is_part(name: &str) -> bool {
         || leak::owns(name)
         || name == checkpoint::DIRECTORY
         || stress::names().any(|known| known == name)
-        || ["field_time", "field_step", "velocity", "field_velocity", "x", "y", "initial_gap", AXIS.name].contains(&name)
+        || ["field_time", "field_step", "velocity", "field_velocity", "x", "y", "initial_gap", AXIS.name]
+            .contains(&name)
         || SCALARS.iter().any(|scalar| scalar.name == name)
         || FieldKind::from_name(name).is_some()
         || Quantity::from_name(name).is_some()

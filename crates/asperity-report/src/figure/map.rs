@@ -175,9 +175,11 @@ impl Map {
         Some(ColourScale::of(&self.values, self.whole, colours, self.palette, self.range, self.log))
     }
 
-    /// The values at the ends of its colours; `None` for states, for the pressure where nothing touches and the gap where everything does.
+    /// The values at the ends of its colours; `None` for states, where all values are 0 and no ends are given, for the pressure where
+    /// nothing touches and the gap where everything does.
     pub(crate) fn ends(&self) -> Option<[f64; 2]> {
-        self.scale().filter(|_| !self.shows_nothing()).map(|scale| scale.ends)
+        let is_zero = self.range.is_none() && self.values.iter().all(|value| *value == 0.0);
+        self.scale().filter(|_| !is_zero && !self.shows_nothing()).map(|scale| scale.ends)
     }
 
     /// Whether it is a map of the pressure where nothing touches, or of the gap where everything does, with no ends of its colours

@@ -88,7 +88,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "rows": {"label": rows.of.name(), "unit": rows.of.unit(), "symbol": rows.of.symbol(), "log": rows.log},
         "last_cycle": last_cycle(reader)?,
         "force_curve": ForceCurve::of(reader, &reader.series("approach")?, &reader.series("load")?),
-        "slips": reader.header().setup.contains_key("friction"),
+        "slips": slips(reader),
         "cycles": each_cycle(reader)?,
         "evolution": evolution(reader, theory.is_some())?,
         "solver": panels::of_work(reader)?.iter().map(panel).collect::<Vec<_>>(),
@@ -155,7 +155,15 @@ fn evolution(reader: &Reader, theory: bool) -> Result<Vec<Value>, StoreError> {
         let lines = vec![("", "temperature")];
         panels.push(RowPanel { title: "Temperature", label: "temperature", lines, states: &[] });
     }
-    panels.extend(panels::of_quantities(reader)?);
+    let of_quantities = panels::of_quantities(reader)?;
+    if slips(reader) {
+        // Beside the loop, what stays the same says nothing.
+        let constant =
+            panels.iter().map(|panel| panels::is_constant(reader, panel)).collect::<Result<Vec<_>, _>>()?;
+        let mut changes = constant.into_iter().map(|is_constant| !is_constant);
+        panels.retain(|_| changes.next().unwrap_or(true));
+    }
+    panels.extend(of_quantities);
     // The answer of a contact in motion comes first.
     panels.sort_by_key(|panel| match panel.title {
         "Friction coefficient" => 0,
@@ -171,6 +179,11 @@ fn evolution(reader: &Reader, theory: bool) -> Result<Vec<Value>, StoreError> {
     Ok(panels.iter().map(panel).collect())
 }
 
+/// Whether friction holds a load along the surfaces.
+fn slips(reader: &Reader) -> bool {
+    reader.header().setup.contains_key("friction")
+}
+
 /// Title, label, name and series of each line, and the names of states.
 fn panel(panel: &RowPanel) -> Value {
     let lines: Vec<_> = panel.lines.iter().map(|(name, series)| json!([name, series])).collect();
@@ -183,6 +196,7 @@ fn field(kind: FieldKind, reader: &Reader) -> Value {
     let colours = match colours {
         _ if is_tension => "diverging",
         Some(Colours::Pressure) => "pressure",
+        Some(Colours::Diverging) => "diverging",
         // The page itself leaves the gap of cells in contact light.
         Some(_) => "sequential",
         None => "states",

@@ -328,8 +328,20 @@ fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
     let grid = &reader.header().grid;
     let [area, domain] = if grid.is_line() { ["length", "domain"] } else { ["area", "nominal area"] };
     let motion = motion(reader, index)?;
+    let along = match reader.header().setup.contains_key("friction") {
+        false => String::new(),
+        true => {
+            let size =
+                |name: &str| Ok::<_, StoreError>(at(&format!("{name}_x"))?.hypot(at(&format!("{name}_y"))?));
+            let force = quantity(size("tangential_force")?, grid.units("N"));
+            format!(
+                ", tangential force {force}, displacement {}",
+                quantity(size("tangential_displacement")?, "m")
+            )
+        }
+    };
     Ok(format!(
-        "{}: load {}, approach {}, contact {area} {} ({:.2} % of the {domain}).{motion}",
+        "{}: load {}, approach {}{along}, contact {area} {} ({:.2} % of the {domain}).{motion}",
         moment(reader, reader.field_times()[index]),
         quantity(at("load")?, grid.units("N")),
         quantity(at("approach")?, "m"),

@@ -60,7 +60,7 @@ fn of_columns(reader: &Reader, is_of: impl Fn(RowFigure) -> Option<u8>) -> Resul
 const CONSTANT: f64 = 1e-9;
 
 /// Whether a panel shows nothing but what stays the same: a load that is held.
-fn is_constant(reader: &Reader, panel: &RowPanel) -> Result<bool, StoreError> {
+pub(crate) fn is_constant(reader: &Reader, panel: &RowPanel) -> Result<bool, StoreError> {
     for (_, name) in &panel.lines {
         let values = values(reader, name)?;
         let [low, high] = extent(values.iter().copied());
@@ -86,8 +86,7 @@ pub(crate) fn of_evolution(reader: &Reader) -> Result<Vec<RowPanel>, StoreError>
             changing.push(panel.title);
         }
     }
-    let slips = reader.header().quantities.iter().any(|column| column.quantity.is_tangential());
-    if slips || !changing.is_empty() {
+    if !changing.is_empty() {
         panels.retain(|panel| changing.contains(&panel.title));
     }
     Ok(panels)

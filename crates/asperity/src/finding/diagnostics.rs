@@ -12,8 +12,8 @@ use super::thin::Widest;
 use super::worst::extend;
 use super::{
     ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, FLUID_CHATTER, FLUID_LIFTS,
-    Finding, LARGE_SLOPE, LARGE_STRAIN, SPOTS_UNRESOLVED, SQUEEZE_SLOW, STEPS_TOO_LONG, adhesion, coupling,
-    domain, fluid, material, plausible, strain, surface, thin, time,
+    Finding, LARGE_SLOPE, LARGE_STRAIN, SPOTS_UNRESOLVED, SQUEEZE_SLOW, STEPS_TOO_LONG, adhesion, domain,
+    fluid, material, plausible, strain, surface, tangential, thin, time,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -321,6 +321,6 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     found.extend(time::of(simulation));
     found.extend(adhesion::before(simulation));
     found.extend(fluid::before(simulation));
-    found.extend(coupling::before(simulation));
+    found.extend(tangential::before(simulation));
     found
 }

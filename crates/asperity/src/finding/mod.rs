@@ -17,7 +17,7 @@
 //! | `time` | steps that are too long for the history and the material |
 //! | `energy` | the energy balance |
 //! | `leak` | leaks that are unreliable because of gap, grid or fluid pressure |
-//! | `coupling` | tangential tractions that act on the pressure |
+//! | `tangential` | forces that friction does not hold, tangential tractions that act on the pressure |
 //! | `adhesion` | cells that snap one by one, attraction beyond the border |
 //! | `motion` | friction that the grid does not resolve, bodies on their own track |
 //! | `thin` | half-spaces of finite thickness |
@@ -28,7 +28,6 @@
 
 mod adhesion;
 mod contact;
-mod coupling;
 mod diagnostics;
 mod domain;
 mod energy;
@@ -43,6 +42,7 @@ mod profile;
 mod strain;
 mod stress;
 mod surface;
+mod tangential;
 mod thin;
 mod time;
 mod words;
@@ -267,6 +267,8 @@ codes! {
     FLUID_ACTS_ON_DOMAIN = "fluid-acts-on-domain";
     /// The fluid flows out of the gap more slowly than the gap closes.
     SQUEEZE_SLOW = "squeeze-slow";
+    /// A tangential force that friction will not hold.
+    FORCE_BEYOND_FRICTION = "force-beyond-friction";
     /// Tangential tractions act on the pressure, which is neglected.
     NORMAL_COUPLING = "normal-coupling";
 }

@@ -32,10 +32,16 @@ pub(crate) use vector::{Vector, inner, length, minus, plus, times};
 
 use ndarray::Array2;
 
+use crate::contact::SAME_LOAD;
 use crate::error::{Error, Result, require};
 use crate::grid::{Boundary, Grid};
-use crate::load::History;
+use crate::load::{Control, Course, History, Stage};
 use crate::simulation::Simulation;
+
+/// Sines along x and y have a common period of at most so many of the longer one.
+const MOST_PERIODS: u32 = 12;
+/// Times at which force and load are compared before a run, besides those at which they turn.
+const SAMPLES: u32 = 200;
 
 /// Bytes that a step with friction takes, without what the bodies remember.
 pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
@@ -121,6 +127,52 @@ impl Tangential {
             .flatten()
     }
 
+    /// The first time at which the force is more than friction holds, μ W or less, as far as it is known before the run: a force and a load
+    /// that are prescribed for all of it.
+    pub fn slides_at(&self, simulation: &Simulation) -> Option<f64> {
+        let [Stage { control, course: Course::Given(history), until: None, .. }] =
+            &simulation.loading.stages[..]
+        else {
+            return None;
+        };
+        let area = match control {
+            Control::Load => 1.0,
+            Control::Pressure => simulation.grid.area(),
+            Control::Approach => return None,
+        };
+        let of_cells = self.coefficients.iter().flatten().copied();
+        let coefficient = of_cells.fold(self.coefficient, f64::max);
+        let end = simulation.times.end();
+        let mut times = [history.breaks(end), self.breaks(end), vec![0.0, end]].concat();
+        times.extend((1..SAMPLES).map(|n| end * f64::from(n) / f64::from(SAMPLES)));
+        times.sort_by(f64::total_cmp);
+        let slides = |time: &f64| {
+            length(self.at(*time)) > coefficient * area * history.after(*time) * (1.0 + SAME_LOAD)
+        };
+        times.into_iter().filter(|_| self.control == TangentialControl::Force).find(slides)
+    }
+
+    /// The period of what is prescribed, where all of it that changes is a sine with a common period.
+    pub fn period(&self) -> Option<f64> {
+        let mut periods = vec![];
+        for history in &self.histories {
+            match history {
+                History::Sine { frequency, .. } => periods.push(1.0 / frequency),
+                History::Step { .. } => {}
+                _ => return None,
+            }
+        }
+        let longest = periods.iter().copied().reduce(f64::max)?;
+        // The least number of the longest period that all others fit into.
+        let fits = |times: &f64| {
+            periods.iter().all(|period| {
+                let share = times * longest / period;
+                (share - share.round()).abs() < 1e-9 * share
+            })
+        };
+        (1..=MOST_PERIODS).map(f64::from).find(fits).map(|times| times * longest)
+    }
+
     /// The times at which what is prescribed bends or turns.
     pub(crate) fn breaks(&self, end: f64) -> Vec<f64> {
         let of_one = |history: &History| [history.breaks(end), history.extremes(end)].concat();
@@ -157,7 +209,7 @@ impl Tangential {
         let expected = "periodic: on a free line the displacement is only known up to a constant";
         require(!is_free_line, "boundary of a line contact under a tangential load", "free", expected)
             .map_err(|error| error.of("domain.boundary"))?;
-        let expected = "steps of a given length: the error of slip is not estimated, so steps cannot be chosen by it. Take uniform steps";
+        let expected = "uniform, logarithmic or listed: the error of slip, by which they would be chosen, is not estimated";
         require(!simulation.is_adaptive(), "time steps under a tangential load", "adaptive", expected)
             .map_err(|error| error.of("time"))
     }

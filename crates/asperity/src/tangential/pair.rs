@@ -59,7 +59,7 @@ impl PairRatio {
         if !are_alike && !are_elastic {
             let values = ratios.iter().map(|(nu, _)| nu.to_string()).collect::<Vec<_>>().join(" and ");
             let expected = "the same of both bodies under a tangential load, where one of them is viscoelastic: that of the pair would \
-                            change in time";
+                            change in time. Leave out a body that is much stiffer: it is rigid then";
             return Err(Error::invalid("Poisson's ratio of the bodies", values, expected));
         }
         let poisson = match ratios.first() {

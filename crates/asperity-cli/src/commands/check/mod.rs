@@ -147,10 +147,11 @@ fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
         let [x, y] = law.largest.map(|largest| quantity(largest, unit));
         let [low, high] = law.coefficient.map(|mu| quantity(mu, ""));
         let mu = if low == high { low } else { format!("{low} to {high}") };
-        let held = inputs.largest_load.filter(|_| law.coefficient[0] == law.coefficient[1]);
-        let held = held.map(|load| law.coefficient[0] * load);
-        let held = held.map_or(String::new(), |force| {
-            format!("; friction holds {} under the largest load", quantity(force, grid.units("N")))
+        let held = law.slides_at.map_or(String::new(), |time| {
+            format!(
+                "; at t = {} this is more than friction holds, and the run ends there",
+                quantity(time, "s")
+            )
         });
         let control = match law.control {
             TangentialControl::Force => "force",

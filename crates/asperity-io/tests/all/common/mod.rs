@@ -104,8 +104,7 @@ impl Case {
             FieldKind::Displacement => Field::Real(kind, u.view()),
             _ => Field::Real(kind, f.view()),
         });
-        let kept: Vec<_> =
-            all.filter(|f| keep && self.header.fields.contains(&f.kind())).collect();
+        let kept: Vec<_> = all.filter(|f| keep && self.header.fields.contains(&f.kind())).collect();
         writer.append(&self.row(step), &kept)
     }
 

@@ -196,7 +196,7 @@ impl March {
 
     /// A field of the last row, by its name in results.
     fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let kind = choose("field", name)?;
+        let kind: FieldKind = choose("field", name)?;
         let found = detached(py, || {
             let march = self.locked();
             let step = march.last()?;

@@ -10,8 +10,12 @@ use super::Answer;
 use crate::readable::quantity;
 use crate::store::{Header, Reader, Result};
 
-/// Displacements that differ by less than this share of their range are the same end of a loop.
+/// States that differ by less than this share of the ranges of displacement, force and load are the ends of a loop; a loop leads away
+/// from them by more than this share.
 const CLOSED: f64 = 1e-2;
+const AWAY: f64 = 0.1;
+/// Fewer rows than this are few for a loop.
+const FEW: usize = 20;
 /// Smaller steps than this share of the range are none.
 const ROUNDING: f64 = 1e-9;
 
@@ -29,10 +33,10 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
     let (work, stick, slip) = (work?, stick?, slip?);
     let sizes = |vectors: &[[f64; 2]]| vectors.iter().map(|[x, y]| x.hypot(*y)).collect::<Vec<_>>();
     let (forces, ways) = (sizes(&force), sizes(&displacement));
-    // Of equal ones the first: later ones of a cycle differ by rounding.
+    // Of equal ones the last: the peaks of cycles differ by rounding.
     let largest = |values: &[f64]| {
         let most = values.iter().copied().fold(0.0, f64::max);
-        values.iter().position(|value| *value >= most * (1.0 - super::SAME)).unwrap_or(0)
+        values.iter().rposition(|value| *value >= most * (1.0 - super::SAME)).unwrap_or(0)
     };
     let (pulled, moved) = (largest(&forces), largest(&ways));
     let friction = reader.header().setup.get(Header::FRICTION);
@@ -56,7 +60,8 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
                 (area(&force, &displacement, cycle), format!("; {friction} of it by friction"))
             }
         };
-        let note = format!("in the loop from {} to {}, {} rows{of}", times[0], times[1], to - from);
+        let few = if to - from < FEW { ", which are few" } else { "" };
+        let note = format!("in the loop from {} to {}, {} rows{few}{of}", times[0], times[1], to - from);
         answers.push(Answer::new("loop_energy", energy, grid.units("J")).with_note(note));
     }
     let stiffest = (0..stiffness.len())
@@ -100,39 +105,41 @@ fn vectors(reader: &Reader, quantity: Quantity) -> Result<Vec<[f64; 2]>> {
     Ok(reader.series(x)?.into_iter().zip(reader.series(y)?).map(|(x, y)| [x, y]).collect())
 }
 
-/// The rows of the last loop, from one turn of the displacement to the next on the same side; `None` where displacement, force and
-/// load do not come back.
+/// The rows of the last loop: up to the last row at which the displacement changes, from the row before at which displacement, force and
+/// load were the same and moved the same way; `None` where there is none.
 fn last_loop(displacement: &[[f64; 2]], force: &[[f64; 2]], load: &[f64]) -> Option<RangeInclusive<usize>> {
     let range = |of: &dyn Fn(usize) -> f64| {
         let values = (0..load.len()).map(of);
         values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
     };
-    let axis = if range(&|row| displacement[row][1]) > range(&|row| displacement[row][0]) { 1 } else { 0 };
-    let along = |row: usize| displacement[row][axis];
-    let (widest, last) = (range(&along), load.len().checked_sub(1)?);
-    let (mut turns, mut direction) = (vec![], 0.0);
-    for row in 1..=last {
-        let step = along(row) - along(row - 1);
-        if step.abs() > ROUNDING * widest {
-            if step * direction < 0.0 {
-                turns.push(row - 1);
+    let widest = |field: &[[f64; 2]]| (0..2).map(|axis| range(&|row| field[row][axis])).fold(0.0, f64::max);
+    let (far, strong) = (widest(displacement), widest(force));
+    let heavy = load.iter().copied().fold(0.0, f64::max);
+    let step = |row: usize| [0, 1].map(|axis| displacement[row][axis] - displacement[row - 1][axis]);
+    let end = (1..load.len()).rev().find(|row| step(*row).iter().any(|way| way.abs() > ROUNDING * far))?;
+    let distance = |row: usize| {
+        let of = |field: &[[f64; 2]], whole: f64| {
+            (0..2).map(|axis| (field[row][axis] - field[end][axis]).abs() / whole).fold(0.0, f64::max)
+        };
+        of(displacement, far).max(of(force, strong)).max((load[row] - load[end]).abs() / heavy)
+    };
+    let goes_along = |row: usize| {
+        let ([x, y], [own_x, own_y]) = (step(row), step(end));
+        x * own_x + y * own_y > 0.0
+    };
+    let (mut is_away, mut found) = (false, None);
+    for row in (1..end).rev() {
+        let own = distance(row);
+        if own > AWAY {
+            if found.is_some() {
+                break;
             }
-            direction = step;
+            is_away = true;
+        } else if is_away && own <= CLOSED && goes_along(row) && found.is_none_or(|(_, least)| own < least) {
+            found = Some((row, own));
         }
     }
-    turns.push(last);
-    let strongest = range(&|row| force[row][0]).max(range(&|row| force[row][1]));
-    let heaviest = load.iter().copied().fold(0.0, f64::max);
-    let closes = |(from, to): &(usize, usize)| {
-        let back = |a: f64, b: f64, whole: f64| (a - b).abs() <= CLOSED * whole;
-        (0..2).all(|axis| {
-            back(displacement[*from][axis], displacement[*to][axis], widest)
-                && back(force[*from][axis], force[*to][axis], strongest)
-        }) && back(load[*from], load[*to], heaviest)
-    };
-    // The last row ends a loop only where it comes back to the turn before the last.
-    let pair = |back: usize| turns.len().checked_sub(back).map(|n| (turns[n], turns[n + 2]));
-    pair(3).filter(closes).or(pair(4).filter(closes)).map(|(from, to)| from..=to)
+    found.map(|(row, _)| row..=end)
 }
 
 /// The integral of force over displacement, by trapezoids.
@@ -156,9 +163,19 @@ mod tests {
     #[test]
     fn the_last_loop_goes_from_turn_to_turn() {
         let of = |course: &[[f64; 2]]| last_loop(course, course, &vec![1.0; course.len()]);
-        // 2.25 cycles end at a turn, 2 cycles between two.
+        // 2.25 cycles end at a turn, 2 cycles between two; what is held at the end is no part.
         assert_eq!(of(&course(2.25)), Some(50..=90));
-        assert_eq!(of(&course(2.0)), Some(30..=70));
+        assert_eq!(of(&course(2.0)), Some(40..=80));
+        let held = [course(2.25), vec![course(2.25)[90]; 7]].concat();
+        assert_eq!(of(&held), Some(50..=90));
+        // A circle turns along x and y at other times.
+        let round: Vec<[f64; 2]> = (0..=90)
+            .map(|n| {
+                let at = std::f64::consts::TAU * f64::from(n) / 40.0;
+                [at.cos(), at.sin()]
+            })
+            .collect();
+        assert_eq!(of(&round), Some(50..=90));
         assert_eq!(of(&course(1.0)), None);
         assert_eq!(of(&[]), None);
         assert_eq!(of(&[[1.0, 0.0]]), None);

@@ -55,6 +55,8 @@ pub(super) struct PartialSlip {
     rest: Vec<f64>,
     recalled: Vec<f64>,
     numbers: SlipRow,
+    /// The largest energy norm of the tractions so far, squared.
+    energy: f64,
 }
 
 impl PartialSlip {
@@ -85,6 +87,7 @@ impl PartialSlip {
             rest: zeros(n),
             recalled: zeros(n),
             numbers: SlipRow::default(),
+            energy: 0.0,
         }))
     }
 
@@ -180,7 +183,7 @@ impl Process for PartialSlip {
             each(&mut self.offset, cells, |b, (g, u)| b[axis] = g - u[axis]);
         }
         let (offset, radius, scale) = (&self.offset[..], &self.radius[..], SMALLEST_SCALE * scale);
-        let problem = SlipProblem { compliance, offset, radius, given, scale };
+        let problem = SlipProblem { compliance, offset, radius, given, scale, energy: self.energy };
         let options = &row.simulation.solver;
         let limits = (options.tolerance, options.max_iterations);
         let outcome =
@@ -193,6 +196,7 @@ impl Process for PartialSlip {
             })?;
         self.load = loads[1];
         row.convolutions += outcome.convolutions;
+        self.energy = self.energy.max(outcome.energy);
         self.numbers.outcome = outcome;
         self.take_in(row, compliance);
         std::mem::swap(&mut self.before, &mut self.now);
@@ -232,7 +236,10 @@ impl Process for PartialSlip {
 
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
         let SlipRow { force, displacement, work, .. } = &self.numbers;
-        to.values("numbers", &[&force[0], &force[1], &displacement[0], &displacement[1], work, &self.load]);
+        to.values(
+            "numbers",
+            &[&force[0], &force[1], &displacement[0], &displacement[1], work, &self.load, &self.energy],
+        );
         to.field("path", &self.path);
         to.field("heat", &self.heat);
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
@@ -249,7 +256,7 @@ impl Process for PartialSlip {
 
     fn load(&mut self, from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
         let SlipRow { force: [fx, fy], displacement: [dx, dy], work, .. } = &mut self.numbers;
-        from.values_into("numbers", &mut [fx, fy, dx, dy, work, &mut self.load])?;
+        from.values_into("numbers", &mut [fx, fy, dx, dy, work, &mut self.load, &mut self.energy])?;
         from.field_into("path", &mut self.path)?;
         from.field_into("heat", &mut self.heat)?;
         for (axis, name) in ["x", "y"].into_iter().enumerate() {

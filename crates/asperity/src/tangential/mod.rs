@@ -38,6 +38,8 @@ use crate::grid::{Boundary, Grid};
 use crate::load::{Control, Course, History, Stage};
 use crate::simulation::Simulation;
 
+/// Larger friction coefficients hold no more, and cost digits of the sum of the tractions.
+const STICKS: f64 = 1e6;
 /// Sines along x and y have a common period of at most so many of the longer one.
 const MOST_PERIODS: u32 = 12;
 /// Times at which force and load are compared before a run, besides those at which they turn.
@@ -216,8 +218,8 @@ impl Tangential {
 
     fn validate_numbers(&self, simulation: &Simulation) -> Result<()> {
         let coefficient = |key: &str, what: String, value: f64| {
-            require(value >= 0.0 && value.is_finite(), what, value, "finite and not negative")
-                .map_err(|error| error.of(key))
+            let expected = format!("from 0 to {STICKS:e}, with which nothing slips");
+            require((0.0..=STICKS).contains(&value), what, value, expected).map_err(|error| error.of(key))
         };
         coefficient("friction.coefficient", "friction coefficient".into(), self.coefficient)?;
         if let Some(map) = &self.coefficients {

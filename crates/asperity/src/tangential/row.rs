@@ -48,6 +48,8 @@ pub struct SlipOutcome {
     pub convolutions: usize,
     /// Largest violation of the conditions over the displacement under the tractions, weighted by them.
     pub residual: f64,
-    /// Certified relative error of the traction in the energy norm.
+    /// Certified error of the traction of the step in the energy norm, relative to the largest traction so far.
     pub certificate: f64,
+    /// q c K q \[Pa m\], the sum over the cells: the square of that norm.
+    pub(crate) energy: f64,
 }

@@ -25,6 +25,8 @@ use crate::error::{NotConverged, Result};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Cerruti;
 
+/// Residuals are measured by so many times the displacement of the step, at most.
+const STEPS: f64 = 10.0;
 /// Iterations without a halving of the residual before a gradient step.
 const PATIENCE: usize = 10;
 /// The first trial step, over the length that the preconditioner would take on all cells.
@@ -43,6 +45,8 @@ pub(crate) struct SlipProblem<'a> {
     pub(crate) given: Given,
     /// A displacement that residuals are measured by, where that of the tractions is less \[m\].
     pub(crate) scale: f64,
+    /// The largest q c K q of the steps before, to which the certificate refers where that of this step is less.
+    pub(crate) energy: f64,
 }
 
 /// What is given of one step.
@@ -163,7 +167,8 @@ impl SlipSolver {
             tensor: [0.0; 3],
         };
         loop {
-            (outcome.residual, outcome.certificate) = self.report(problem, state, &mut search);
+            (outcome.residual, outcome.certificate, outcome.energy) =
+                self.report(problem, state, &mut search);
             tracing::debug!(iterations = outcome.iterations, residual = outcome.residual, "slip");
             let converged = outcome.residual <= tolerance;
             if converged && search.is_precise(tolerance) {
@@ -236,8 +241,13 @@ impl SlipSolver {
         outcome.convolutions += 1;
     }
 
-    /// Finds d, the freedom of the cells, and r on it. Returns residual and certificate.
-    fn report(&mut self, problem: &SlipProblem<'_>, state: &mut Slip, search: &mut Search) -> (f64, f64) {
+    /// Finds d, the freedom of the cells, and r on it. Returns residual, certificate and q c K q.
+    fn report(
+        &mut self,
+        problem: &SlipProblem<'_>,
+        state: &mut Slip,
+        search: &mut Search,
+    ) -> (f64, f64, f64) {
         let SlipProblem { compliance: c, offset, radius, .. } = *problem;
         let keeps_sum = matches!(problem.given, Given::Sum(_));
         let Slip { traction, unit, displacement } = state;
@@ -273,7 +283,7 @@ impl SlipSolver {
         }
         // What a projected gradient step of the length of one cell would change.
         let cells = (q, radius, u, offset);
-        let ([energy, force, defect], Max(largest)) =
+        let ([energy, force, defect, moved, all], Max(largest)) =
             sweep(cells, &|(q, radius, u, b): (&[Vector], &[f64], &[Vector], &[Vector])| {
                 let largest = (0..q.len()).fold(0.0f64, |largest, n| {
                     let r = gradient(u[n], b[n]);
@@ -282,14 +292,24 @@ impl SlipSolver {
                 });
                 let terms = strands(q.len(), |n| {
                     let r = gradient(u[n], b[n]);
-                    [c * inner(q[n], u[n]), length(q[n]), radius[n] * length(r) + inner(r, q[n])]
+                    let moved = radius[n] * length(plus(times(c, u[n]), b[n]));
+                    [
+                        c * inner(q[n], u[n]),
+                        length(q[n]),
+                        radius[n] * length(r) + inner(r, q[n]),
+                        moved,
+                        radius[n],
+                    ]
                 });
                 (terms, Max(largest))
             });
-        let scale = if force > 0.0 { (energy / force).max(problem.scale) } else { problem.scale };
+        // A small step on top of a large traction is solved as well as a large one.
+        let level = if force > 0.0 { energy / force } else { 0.0 };
+        let scale = level.min(STEPS * moved / all).max(problem.scale);
         let residual = if scale > 0.0 { largest / scale } else { 0.0 };
-        let certificate = if energy > 0.0 { (defect.max(0.0) / energy).sqrt() } else { 0.0 };
-        (residual, certificate)
+        let most = energy.max(problem.energy);
+        let certificate = if most > 0.0 { (defect.max(0.0) / most).sqrt() } else { 0.0 };
+        (residual, certificate, energy)
     }
 
     /// Along the preconditioned conjugate direction; false where f does not fall.

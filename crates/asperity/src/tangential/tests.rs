@@ -68,8 +68,14 @@ impl Loaded {
 
     fn step(&mut self, given: Given, tolerance: f64) -> SlipOutcome {
         let offset: Vec<Vector> = self.displacement.iter().map(|u| times(-1.0, *u)).collect();
-        let problem =
-            SlipProblem { compliance: 1.0, offset: &offset, radius: &self.radius, given, scale: 1e-12 };
+        let problem = SlipProblem {
+            compliance: 1.0,
+            offset: &offset,
+            radius: &self.radius,
+            given,
+            scale: 1e-12,
+            energy: 0.0,
+        };
         let outcome = self.solver.solve(&problem, &mut self.slip, (tolerance, 500), None).unwrap();
         self.displacement.copy_from_slice(&self.slip.unit);
         outcome

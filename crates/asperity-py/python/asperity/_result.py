@@ -612,9 +612,9 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
 
 def _stored(store: _core.Store, name: str) -> Floats:
     """A column of the rows; of a vector of shape (rows, 2)."""
-    if name not in VECTORS:
-        return store.series(name)
-    return np.column_stack([store.series(f"{name}_{axis}") for axis in "xy"])
+    names = [f"{name}_{axis}" for axis in "xy"] if name in VECTORS else [name]
+    columns: list[Floats] = [store.series(one) for one in names]
+    return columns[0] if name not in VECTORS else np.column_stack(columns)
 
 
 def open(path: str | os.PathLike[str]) -> Result:

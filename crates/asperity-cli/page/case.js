@@ -98,17 +98,22 @@ async function casePage(name) {
     }
     unsaved();
   };
-  /** Saves what is left; where the file has changed meanwhile, beside it. */
-  const keep = trying(async () => {
-    const text = current();
+  /** Saves what is left; where the file has changed meanwhile, beside it. False where neither is possible: then the text stays here. */
+  async function keep() {
     try {
       await store();
     } catch (error) {
-      const copy = await ask(`free/${encoded(name)}`);
-      await send("save", { name: copy, text });
-      throw new Error(`${error.message}\nYour text is kept in ${copy}.`);
+      try {
+        const copy = await ask(`free/${encoded(name)}`);
+        await send("save", { name: copy, text: current() });
+        tell(`${error.message}\nYour text is kept in ${copy}.`, true);
+      } catch (second) {
+        tell(`${second.message}\nYour text is not saved, so it stays here: copy it, or make room and save.`, true);
+        return false;
+      }
     }
-  });
+    return true;
+  }
   const save = button("save", trying(async () => { await store(); tell(`saved ${name}`); }), { id: "save", disabled: true });
   const run = button("run", trying(async () => {
     await store();
@@ -131,7 +136,12 @@ async function casePage(name) {
   }), { hidden: true });
   const warn = (event) => { if (current() !== saved.replace(/\r\n/g, "\n")) event.preventDefault(); };
   window.addEventListener("beforeunload", warn);
-  leave = () => { clearTimeout(timer); window.removeEventListener("beforeunload", warn); if (current() !== saved.replace(/\r\n/g, "\n")) keep(); };
+  leave = async () => {
+    if (!(await keep())) return false;
+    clearTimeout(timer);
+    window.removeEventListener("beforeunload", warn);
+    return true;
+  };
   setTimeout(check);
   return [
     make("h1", {}, name),

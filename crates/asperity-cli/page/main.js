@@ -7,9 +7,9 @@ const PAGES = {
   // What a file is decides its page.
   file: async (name) => { history.replaceState(null, "", link(await ask(`kind/${encoded(name)}`), name)); await show(); },
 };
-/** Called when the page is left. */
+/** Called when the page is left; the page stays where it says false. */
 let leave = () => {};
-let turn = 0, message = "";
+let turn = 0, message = "", shown = location.hash;
 
 /** Goes to a page, which then has this message above it. */
 function go(page, text = "") {
@@ -21,8 +21,13 @@ function go(page, text = "") {
 async function show() {
   const [page, ...names] = location.hash.replace(/^#\/?/, "").split("/").map(decodeURIComponent);
   const own = ++turn;
-  leave();
+  if ((await leave()) === false) {
+    history.replaceState(null, "", shown || location.pathname);
+    return;
+  }
+  if (own !== turn) return;
   leave = () => {};
+  shown = location.hash;
   document.documentElement.dataset.ready = "no";
   try {
     const content = await (PAGES[page] ?? startPage)(page === "compare" ? names : names.join("/"));
@@ -47,6 +52,8 @@ $("theme").addEventListener("click", () => theme(document.documentElement.datase
 $("folder").textContent = known.folder.split(/[\\/]/).pop() || known.folder;
 $("folder").title = known.folder;
 window.addEventListener("hashchange", () => { tell(message); message = ""; show().then(() => $("main").focus({ preventScroll: true })); });
+// Its address is that of no page.
+document.querySelector(".skip").addEventListener("click", (event) => { event.preventDefault(); $("main").focus(); });
 // A file dropped beside the zone would replace the page.
 for (const type of ["dragover", "drop"]) window.addEventListener(type, (event) => event.preventDefault());
 countRuns();

@@ -44,7 +44,7 @@ function runPart(run, onResult = false) {
     controls(
       isOpen(run) && button("stop", trying(async () => { await send("stop", run.id); tell("it stops after the row that it is at; what is computed stays"); }), { class: "stop" }),
       run.state === "stopped" && run.has_rows && !isFolder(run) && button("resume", trying(() => resume(run.case, run.result)), { class: "resume" }),
-      (run.state === "stopped" || run.state === "failed") && isFolder(run) && button("go on", trying(async () => { await send("again", run.id); await show(); }))),
+      (run.state === "stopped" || run.state === "failed") && (isFolder(run) || !run.has_rows) && button(run.state === "failed" ? "try again" : "go on", trying(async () => { await send("again", run.id); await show(); }))),
     run.state === "failed" && make("pre", { class: "words notice", role: "alert" }, log.split("\n").filter((line) => !line.startsWith("row ")).join("\n")),
     run.state === "done" && run.out.trim() && make("details", {}, make("summary", {}, "what it printed"), make("pre", { class: "words scroll" }, run.out)),
     commands(run));
@@ -63,7 +63,7 @@ async function runsPage() {
     if (now !== before) renew(list, ...(runs.length ? runs.map((run) => runPart(run)) : [make("p", { class: "note" }, "No run yet: open a case and run it.")]));
     before = now;
   });
-  return [make("h1", {}, "Runs"), make("p", { class: "note" }, "One run at a time; the others wait. They go on when this page or asperity app is closed."), list];
+  return [make("h1", {}, "Runs"), make("p", { class: "note" }, "One run at a time; the others wait. A run goes on when this page or asperity app is closed; what waits then waits for you."), list];
 }
 
 async function resultPage(name) {
@@ -84,7 +84,7 @@ async function resultPage(name) {
   actions.append(
     controls(
       button("write the report", async () => act({ do: "report", results: [name], output: await ask(`free/${encoded(`${stem(name)}.html`)}`), write: true })(), { id: "report" }),
-      "export:", exported("netcdf", ".nc"), exported("hdf5", ".h5"), exported("npz", ".npz"), exported("vtk", ""), exported("csv", ".csv"), exported("png", "-pictures"),
+      "export:", exported("netcdf", ".nc"), exported("hdf5", ".h5"), exported("npz", ".npz"), exported("vtk", ".pvd"), exported("csv", ".csv"), exported("png", "-pictures"),
       others.length > 0 && [other, button("compare", () => go(`#/compare/${[name, other.value].map(encodeURIComponent).join("/")}`), { id: "compare" })]),
     done);
   await follow(async (runs) => {

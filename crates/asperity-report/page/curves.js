@@ -158,7 +158,7 @@ function sealing(time, open) {
 }
 
 /** A figure that stands in the page, or that a server draws. */
-function picture(name, svg, alt) {
+function drawing(name, svg, alt) {
   const place = $(`${name}-map`);
   if (svg) place.innerHTML = svg;
   else if (state.live && !place.children.length) place.append(make("img", { src: `${name}.svg`, alt }));
@@ -197,8 +197,8 @@ function leakPart() {
   leaks.set(specs);
   $("leak-asked").textContent = leak.asked;
   $("leak-words").textContent = leak.found;
-  picture("leak", state.leak_map, "Passages and flow");
-  if (leak.acts) picture("fluid", state.fluid_map, "Contact, pockets and pressure of the fluid");
+  drawing("leak", state.leak_map, "Passages and flow");
+  if (leak.acts) drawing("fluid", state.fluid_map, "Contact, pockets and pressure of the fluid");
   $("h-fluid").hidden = !$("fluid-map").children.length;
 }
 

@@ -152,6 +152,8 @@ fn parse(head: &[u8]) -> Result<Option<Request>, httparse::Error> {
             "origin" => &mut request.origin,
             "content-length" => &mut length,
             "sec-fetch-site" => &mut request.fetch_site,
+            // A body whose length is not told.
+            "transfer-encoding" => return Err(httparse::Error::HeaderValue),
             _ => continue,
         };
         // If a header is repeated, the first one counts.

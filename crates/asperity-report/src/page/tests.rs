@@ -45,3 +45,21 @@ fn the_page_holds_the_licence_of_the_library_that_draws_its_curves() {
     let page = filled(&[("library-license", &escaped(LIBRARY_LICENSE))]);
     assert!(page.contains("Copyright (c) 2022 Leon Sorokin") && page.contains("shall be included in"));
 }
+
+/// All parts are one script: of two functions of one name the later one would replace the other.
+#[test]
+fn no_name_is_declared_twice_in_the_script() {
+    let names: Vec<&str> = super::SCRIPT
+        .iter()
+        .flat_map(|part| part.lines())
+        .filter_map(|line| {
+            let line = line.strip_prefix("async ").unwrap_or(line);
+            let rest =
+                ["function ", "const ", "let ", "class "].iter().find_map(|word| line.strip_prefix(word))?;
+            rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().filter(|name| !name.is_empty())
+        })
+        .collect();
+    assert!(names.len() > 50, "{names:?}");
+    let twice: Vec<_> = names.iter().enumerate().filter(|(n, name)| names[..*n].contains(name)).collect();
+    assert!(twice.is_empty(), "{twice:?}");
+}

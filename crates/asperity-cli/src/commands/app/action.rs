@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::folder::Folder;
 
@@ -43,7 +43,7 @@ pub type Choice = (&'static str, &'static str, &'static str);
 type Given = BTreeMap<String, String>;
 
 /// What can be asked for. Names are those of files below the folder.
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Action {
     Template {
@@ -111,10 +111,14 @@ pub enum Action {
         case: String,
         vary: String,
         output: String,
+        #[serde(default)]
+        resume: bool,
     },
     Seal {
         case: String,
         output: String,
+        #[serde(default)]
+        resume: bool,
     },
 }
 
@@ -137,6 +141,10 @@ impl Action {
     pub fn line(&self, folder: &Folder, scratch: &str) -> Result<Line, String> {
         let reads = |name: &String| folder.find(name).map(|_| named(name));
         let writes = |name: &String| folder.place(name).map(|_| named(name));
+        // What was stopped may have written nothing yet.
+        let goes_on = |name: &String, resume: bool| {
+            if resume { reads(name).or_else(|_| writes(name)) } else { writes(name) }
+        };
         let all = |names: &[String]| names.iter().map(reads).collect::<Result<Vec<_>, _>>();
         let drawn = || vec!["--json".to_owned(), format!("--plot={scratch}/shown.svg")];
         let looked_at = |name: &str| vec!["-o".to_owned(), format!("{scratch}/{name}")];
@@ -203,7 +211,7 @@ impl Action {
                 Line::of(&["export", &result]).with([format!("--to={to}"), "-o".to_owned(), output])
             }
             Action::Run { case, output, resume } => {
-                let (case, output) = (reads(case)?, if *resume { reads(output)? } else { writes(output)? });
+                let (case, output) = (reads(case)?, goes_on(output, *resume)?);
                 let more = if *resume { ", resume=True" } else { "" };
                 let python = format!(
                     "result = asp.run({}, output={}{more})\nprint(result)",
@@ -214,8 +222,11 @@ impl Action {
                     Line::of(&["run", &case, "-o", &output]).with(resume.then(|| "--resume".to_owned()));
                 line.more(vec!["-v".to_owned()]).python(&Given::new(), python)
             }
-            Action::Study { case, vary, output } => {
-                let (case, output) = (reads(case)?, writes(output)?);
+            Action::Study { case, vary, output, resume } if vary.trim().is_empty() => {
+                Line::of(&["study", &reads(case)?]).with(["-o".to_owned(), goes_on(output, *resume)?])
+            }
+            Action::Study { case, vary, output, resume } => {
+                let (case, output) = (reads(case)?, goes_on(output, *resume)?);
                 let (key, values) = vary
                     .split_once('=')
                     .ok_or("write what varies as KEY=VALUES, for instance domain.cells=64,128")?;
@@ -227,10 +238,32 @@ impl Action {
                     Line::of(&["study", &case]).with([format!("--vary={vary}"), "-o".to_owned(), output]);
                 line.python(&Given::new(), python)
             }
-            Action::Seal { case, output } => {
-                Line::of(&["seal", &reads(case)?]).with(["-o".to_owned(), writes(output)?])
+            Action::Seal { case, output, resume } => {
+                Line::of(&["seal", &reads(case)?]).with(["-o".to_owned(), goes_on(output, *resume)?])
             }
         })
+    }
+}
+
+impl Action {
+    /// The case and the result of a run; `None` where it is no run.
+    pub fn run(&self) -> Option<[&str; 2]> {
+        match self {
+            Action::Run { case, output, .. }
+            | Action::Study { case, output, .. }
+            | Action::Seal { case, output, .. } => Some([case, output]),
+            _ => None,
+        }
+    }
+
+    /// The same run, which goes on with what it has written.
+    pub fn resumed(mut self) -> Action {
+        if let Action::Run { resume, .. } | Action::Study { resume, .. } | Action::Seal { resume, .. } =
+            &mut self
+        {
+            *resume = true;
+        }
+        self
     }
 }
 

@@ -121,7 +121,12 @@ pub fn save(folder: &Folder, name: &str, text: &str, before: Option<&str>) -> Re
     let path = folder.find(name)?;
     let now = std::fs::read_to_string(&path).map_err(|error| format!("cannot read {name}: {error}"))?;
     match now == before {
-        true => written(&path, true),
+        true => {
+            let rights = path.metadata().map(|data| data.permissions());
+            written(&path, true)?;
+            let kept = rights.and_then(|rights| std::fs::set_permissions(&path, rights));
+            kept.map_err(|error| format!("{name} is saved, but not with its rights: {error}"))
+        }
         false => Err(format!(
             "{name} has changed since this page read it, here in another tab or in an editor; copy your text, then load the file again"
         )),

@@ -1,6 +1,7 @@
 //! The folder that the application works on. Names of files come from the browser: none leads out of it.
 
-use std::io::ErrorKind;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
 
@@ -21,6 +22,8 @@ const DEEPEST: usize = 3;
 /// Results of a list that are opened, and answers of each.
 const RESULTS: usize = 60;
 const ANSWERS: usize = 3;
+/// Of a case in a list this much is read [bytes].
+const BEGINNING: u64 = 64 << 10;
 /// Longest name of a file \[bytes\].
 const LONGEST: usize = 200;
 
@@ -52,7 +55,11 @@ impl Folder {
             ErrorKind::NotFound => format!("there is no {name}"),
             _ => format!("cannot read {name}: {error}"),
         })?;
-        self.inside(name, found)
+        // A pipe or a device would be waited for.
+        match found.metadata() {
+            Ok(data) if data.is_file() || data.is_dir() => self.inside(name, found),
+            _ => Err(format!("{name} is neither a file nor a folder")),
+        }
     }
 
     /// The path of a new file of this name, whose folder is there.
@@ -108,8 +115,10 @@ impl Folder {
     pub fn list(&self) -> Value {
         let mut found = vec![];
         self.walk(&self.0, 0, &mut found);
-        found.sort_by_key(|entry| std::cmp::Reverse(entry.modified));
+        // Where there are too many, data are left out first.
+        found.sort_by_key(|entry| (entry.kind == Kind::File, std::cmp::Reverse(entry.modified)));
         found.truncate(MOST);
+        found.sort_by_key(|entry| std::cmp::Reverse(entry.modified));
         let mut results = 0;
         let shown = found.into_iter().map(|Entry { name, place, kind, .. }| {
             results += usize::from(kind == Kind::Result);
@@ -216,15 +225,21 @@ fn is_picture(path: &Path) -> bool {
 
 /// The title of a case, from its line.
 fn title(path: &Path) -> Option<String> {
-    let text = std::fs::read_to_string(path).ok()?;
+    let text = beginning(path);
     let line = text.lines().find_map(|line| line.strip_prefix("title = "))?;
     Some(line.split('"').nth(1).unwrap_or(line).to_owned())
 }
 
 /// Whether a file of TOML has tables in brackets, as cases have, and not the block of a material.
 fn has_tables(path: &Path) -> bool {
-    std::fs::read_to_string(path)
-        .is_ok_and(|text| text.lines().any(|line| line.trim_start().starts_with('[')))
+    beginning(path).lines().any(|line| line.trim_start().starts_with('['))
+}
+
+/// The first part of a text.
+fn beginning(path: &Path) -> String {
+    let mut text = vec![];
+    let read = File::open(path).and_then(|file| file.take(BEGINNING).read_to_end(&mut text));
+    read.map_or(String::new(), |_| String::from_utf8_lossy(&text).into_owned())
 }
 
 /// State and first answers of a result.

@@ -2,6 +2,7 @@
 //! became of it stands in a file, so that coming back finds it.
 
 use std::fs::{self, File};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -12,6 +13,7 @@ use asperity_io::store::Reader;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::action::Action;
 use super::folder::Folder;
 use crate::failure::Failure;
 
@@ -28,7 +30,8 @@ const TAIL: usize = 4000;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Job {
     id: u64,
-    words: Vec<String>,
+    /// What is run: its command line is made and checked anew when it begins.
+    action: Action,
     /// The command line and its Python, for copying.
     shell: String,
     python: String,
@@ -48,15 +51,6 @@ enum State {
     Failed,
 }
 
-/// A run that is asked for.
-pub struct Asked {
-    pub words: Vec<String>,
-    pub shell: String,
-    pub python: String,
-    pub case: String,
-    pub result: String,
-}
-
 /// The queue.
 #[derive(Clone)]
 pub struct Jobs {
@@ -67,10 +61,12 @@ pub struct Jobs {
 }
 
 impl Jobs {
-    /// The queue as it was left, which goes on from now.
+    /// The queue as it was left. What waits in it waits for a click: who writes into the folder starts nothing.
     pub fn start(folder: &Folder, place: PathBuf) -> Result<Jobs, Failure> {
-        let known = fs::read(place.join("runs.json")).ok();
-        let list = known.and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default();
+        let known = own_text(&place.join("runs.json"));
+        let mut list: Vec<Job> =
+            known.and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default();
+        list.iter_mut().filter(|job| job.state == State::Waiting).for_each(|job| job.state = State::Stopped);
         let jobs = Jobs { folder: folder.clone(), place, list: Arc::new(Mutex::new(list)) };
         let worker = jobs.clone();
         let started = std::thread::Builder::new().spawn(move || worker.work());
@@ -83,18 +79,20 @@ impl Jobs {
     }
 
     /// Puts a run at the end of the queue, unless one writes the same result.
-    pub fn add(&self, asked: Asked) -> Result<u64, String> {
+    pub fn add(&self, action: Action, shell: String, python: String) -> Result<u64, String> {
+        let Some([case, result]) = action.run().map(|names| names.map(str::to_owned)) else {
+            return Err("this is no run".to_owned());
+        };
         let mut list = self.list();
         let is_open = |job: &&Job| matches!(job.state, State::Waiting | State::Running);
-        if let Some(job) = list.iter().filter(is_open).find(|job| job.result == asked.result) {
+        if let Some(job) = list.iter().filter(is_open).find(|job| job.result == result) {
             return Err(format!(
-                "{} is written by the run of {} already; choose another name",
-                asked.result, job.case
+                "{result} is written by the run of {} already; choose another name",
+                job.case
             ));
         }
-        let id = 1 + list.iter().map(|job| job.id).max().unwrap_or(0);
-        let Asked { words, shell, python, case, result } = asked;
-        list.push(Job { id, words, shell, python, case, result, state: State::Waiting, pid: None });
+        let id = list.iter().map(|job| job.id).max().unwrap_or(0).saturating_add(1);
+        list.push(Job { id, action, shell, python, case, result, state: State::Waiting, pid: None });
         let over = list.iter().filter(|job| !is_open(job)).count().saturating_sub(KEPT);
         let mut left = over;
         list.retain(|job| {
@@ -120,14 +118,15 @@ impl Jobs {
         Ok(())
     }
 
-    /// Puts a study or a seal that was stopped into the queue again: it goes on with the same command.
+    /// Puts a run that has ended into the queue again: it goes on with what it has written.
     pub fn again(&self, id: u64) -> Result<(), String> {
         let mut list = self.list();
         let job = list.iter_mut().find(|job| job.id == id).ok_or("there is no such run")?;
-        let goes_on = job.words.first().is_some_and(|word| word == "study" || word == "seal");
-        if !goes_on || matches!(job.state, State::Waiting | State::Running) {
-            return Err("this run cannot go on with the same command".to_owned());
+        if matches!(job.state, State::Waiting | State::Running) {
+            return Err("this run has not ended".to_owned());
         }
+        let has_begun = self.folder.find(&job.result).is_ok();
+        job.action = if has_begun { job.action.clone().resumed() } else { job.action.clone() };
         job.state = State::Waiting;
         self.save(&list);
         Ok(())
@@ -149,7 +148,7 @@ impl Jobs {
             json!({
                 "id": job.id, "case": job.case, "result": job.result, "state": job.state, "shell": job.shell,
                 "python": job.python, "progress": rows, "share": share, "has_rows": has_rows,
-                "log": log, "out": fs::read_to_string(self.file(job.id, "out")).unwrap_or_default(),
+                "log": log, "out": own_text(&self.file(job.id, "out")).map(|out| String::from_utf8_lossy(&out).into_owned()),
             })
         };
         list.iter().rev().map(told).collect()
@@ -160,7 +159,7 @@ impl Jobs {
     }
 
     fn end_of_log(&self, id: u64) -> String {
-        let text = fs::read(self.file(id, "log")).unwrap_or_default();
+        let text = own_text(&self.file(id, "log")).unwrap_or_default();
         String::from_utf8_lossy(&text[text.len().saturating_sub(TAIL)..]).into_owned()
     }
 
@@ -201,10 +200,11 @@ impl Jobs {
                     }
                     Err(error) => {
                         job.state = State::Failed;
-                        let _ = fs::write(
-                            self.file(job.id, "log"),
-                            format!("error: cannot start the run: {error}\n"),
-                        );
+                        let told = own_file(&self.file(job.id, "log"))
+                            .and_then(|mut log| writeln!(log, "error: cannot start the run: {error}"));
+                        if let Err(error) = told {
+                            crate::messages::message!("warning: a run cannot be started: {error}");
+                        }
                     }
                 }
                 self.save(&list);
@@ -226,11 +226,10 @@ impl Jobs {
     }
 
     fn spawn(&self, job: &Job) -> std::io::Result<Child> {
+        let line = job.action.line(&self.folder, "").map_err(std::io::Error::other)?;
         let mut command = program()?;
-        command.args(&job.words).current_dir(self.folder.path()).stdin(Stdio::null());
-        command
-            .stdout(File::create(self.file(job.id, "out"))?)
-            .stderr(File::create(self.file(job.id, "log"))?);
+        command.args(line.words()).current_dir(self.folder.path()).stdin(Stdio::null());
+        command.stdout(own_file(&self.file(job.id, "out"))?).stderr(own_file(&self.file(job.id, "log"))?);
         detach(&mut command);
         command.spawn()
     }
@@ -248,6 +247,20 @@ impl Jobs {
         };
         job.pid.is_some_and(exists) && (is_written() || is_young())
     }
+}
+
+/// A file of the application's own folder, empty; what stands in its place is removed, and no link is followed.
+pub fn own_file(path: &Path) -> std::io::Result<File> {
+    if path.symlink_metadata().is_ok_and(|data| !data.is_file()) {
+        fs::remove_file(path)?;
+    }
+    File::options().read(true).write(true).create(true).truncate(true).open(path)
+}
+
+/// What such a file holds; `None` of a link, a pipe and the like.
+fn own_text(path: &Path) -> Option<Vec<u8>> {
+    path.symlink_metadata().ok().filter(fs::Metadata::is_file)?;
+    fs::read(path).ok()
 }
 
 /// This program.
@@ -276,11 +289,11 @@ fn detach(command: &mut Command) {
 #[cfg(not(any(unix, windows)))]
 fn detach(_: &mut Command) {}
 
-/// Asks a run to stop, as Ctrl-C does.
+/// Asks a run to stop, as Ctrl-C does; that itself is ignored where the application was started in the background.
 #[cfg(unix)]
 fn interrupt(pid: u32) -> Result<(), String> {
     let pid = process(pid).ok_or("there is no such process")?;
-    rustix::process::kill_process(pid, rustix::process::Signal::INT).map_err(|error| error.to_string())
+    rustix::process::kill_process(pid, rustix::process::Signal::TERM).map_err(|error| error.to_string())
 }
 
 /// Ends a run: there is no Ctrl-C between processes here. Its rows are stored, and it can be resumed.

@@ -25,7 +25,7 @@ use serde_json::{Value, json};
 
 use self::action::{Action, Choice, FIT, INDENTATION, SURFACE};
 use self::folder::{Folder, LARGEST};
-use self::jobs::{Asked, Jobs};
+use self::jobs::Jobs;
 use super::view::page_of;
 use crate::args::App;
 use crate::failure::Failure;
@@ -90,7 +90,7 @@ fn own_place(folder: &Folder) -> Result<PathBuf, Failure> {
 
 /// The lock of the only application on a folder.
 fn alone(folder: &Folder, place: &Path) -> Result<File, Failure> {
-    let lock = File::create(place.join("lock"))?;
+    let lock = jobs::own_file(&place.join("lock"))?;
     match lock.try_lock() {
         Ok(()) => Ok(lock),
         Err(_) => {
@@ -244,13 +244,8 @@ impl Application {
         let look = look_of(number);
         let line = action.line(&self.folder, &format!("{PLACE}/{look}"))?;
         let (shell, python) = (line.in_shell(), line.in_python());
-        if let Action::Run { case, output, .. }
-        | Action::Study { case, output, .. }
-        | Action::Seal { case, output } = action
-        {
-            let asked =
-                Asked { words: line.words(), shell, python, case: case.clone(), result: output.clone() };
-            return self.jobs.add(asked).map(|id| json!({ "run": id }));
+        if action.run().is_some() {
+            return self.jobs.add(action.clone(), shell, python).map(|id| json!({ "run": id }));
         }
         let failed = |error: std::io::Error| format!("cannot run the command: {error}");
         let own = self.place.join(&look);
@@ -318,6 +313,9 @@ fn page(folder: &Folder) -> String {
 
 fn text(path: &Path) -> Result<String, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
+    if file.metadata().is_ok_and(|data| data.len() > LARGEST_TEXT) {
+        return Err("this text is too large to be shown; open it in an editor".to_owned());
+    }
     let mut text = String::new();
     file.take(LARGEST_TEXT).read_to_string(&mut text).map_err(|_| "this is no text in UTF-8".to_owned())?;
     Ok(text)

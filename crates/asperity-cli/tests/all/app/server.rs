@@ -266,7 +266,8 @@ fn a_run_outlives_the_application_and_is_found_again() {
     let before = rows(&result);
     let app = App::start(&folder);
     let runs: Value = serde_json::from_str(&app.get("runs").1).unwrap();
-    assert_eq!([&runs[0]["state"], &runs[1]["state"]], ["waiting", "running"], "{runs}");
+    assert_eq!([&runs[0]["state"], &runs[1]["state"]], ["stopped", "running"], "{runs}");
+    assert_eq!(app.post("again", &runs[0]["id"]).0, 200);
     let start = Instant::now();
     while rows(&result) <= before {
         assert!(start.elapsed() < Duration::from_secs(120), "the run ended with the application");
@@ -279,4 +280,57 @@ fn a_run_outlives_the_application_and_is_found_again() {
     assert_eq!(rows(&folder.join("small.zarr")), 9);
     assert!(Reader::open(&result).unwrap().state().contains("--resume"));
     assert!(app.post("stop", &runs[1]["id"]).0 == 422, "it has ended");
+}
+
+#[test]
+fn a_prepared_folder_starts_nothing_and_leads_nowhere() {
+    let (keep, folder) = folder();
+    let place = folder.join(".asperity-app");
+    std::fs::create_dir(&place).unwrap();
+    let waiting = |action: Value| {
+        json!([{ "id": 1, "action": action, "shell": "asperity run small.toml -o b.zarr", "python": "", "case": "small.toml",
+            "result": "b.zarr", "state": "waiting", "pid": null }])
+    };
+    let outside = json!({ "do": "run", "case": "small.toml", "output": "../b.zarr" });
+    std::fs::write(place.join("runs.json"), waiting(outside).to_string()).unwrap();
+    #[cfg(unix)]
+    {
+        std::fs::write(keep.path().join("lock"), "kept").unwrap();
+        std::fs::write(keep.path().join("log"), "kept").unwrap();
+        std::os::unix::fs::symlink(keep.path().join("lock"), place.join("lock")).unwrap();
+        std::os::unix::fs::symlink(keep.path().join("log"), place.join("run-1.log")).unwrap();
+        let pipe = std::process::Command::new("mkfifo").arg(folder.join("pipe.toml")).status().unwrap();
+        assert!(pipe.success());
+    }
+    let app = App::start(&folder);
+    // What waited is not begun; when it is asked for, its command line is made anew, and leads out of the folder no more.
+    assert_eq!(wait(&app, &["waiting", "running", "done", "stopped"])[0]["state"], "stopped");
+    assert_eq!(app.post("again", &json!(1)).0, 200);
+    let runs = wait(&app, &["done", "failed"]);
+    assert!(
+        runs[0]["state"] == "failed" && runs[0]["log"].as_str().unwrap().contains("below the folder"),
+        "{runs}"
+    );
+    assert!(!keep.path().join("b.zarr").exists());
+    // A pipe is not waited for.
+    assert_eq!(app.get("list").0, 200);
+    assert_eq!(app.get("text/pipe.toml").0, 422);
+    #[cfg(unix)]
+    for name in ["lock", "log"] {
+        assert_eq!(std::fs::read_to_string(keep.path().join(name)).unwrap(), "kept");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_saved_case_keeps_its_rights() {
+    use std::os::unix::fs::PermissionsExt;
+    let (_keep, folder) = folder();
+    let path = folder.join("small.toml");
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600)).unwrap();
+    let app = App::start(&folder);
+    let text = format!("{CASE}# more\n");
+    assert_eq!(app.post("save", &json!({ "name": "small.toml", "text": text, "before": CASE })).0, 200);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+    assert_eq!(path.metadata().unwrap().permissions().mode() & 0o777, 0o600);
 }

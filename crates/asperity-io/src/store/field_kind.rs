@@ -28,7 +28,7 @@ pub enum FieldKind {
     /// Attraction between the surfaces, in Pa; with adhesion.
     #[serde(rename = "adhesive_traction")]
     AdhesiveTraction,
-    /// Tangential traction along x, in Pa; with [tangential], as those that follow.
+    /// Tangential traction along x, in Pa; of a contact with a tangential load, as those that follow.
     #[serde(rename = "traction_x")]
     TractionX,
     /// Tangential traction along y, in Pa.

@@ -10,8 +10,12 @@ async function load(name) {
   let packed;
   const part = document.getElementById("blob-" + name);
   if (part) packed = bytes(part.textContent);
-  else if (state.live) packed = new Uint8Array(await (await fetch("map/" + name)).arrayBuffer());
-  else return null;
+  else if (state.live) {
+    // Nothing comes where the page is left meanwhile, or is no longer served.
+    const answer = await fetch("map/" + name).catch(() => null);
+    if (!answer) return null;
+    packed = new Uint8Array(await answer.arrayBuffer());
+  } else return null;
   const head = new DataView(packed.buffer, packed.byteOffset, 24);
   const [min, max, nx, ny] = [head.getFloat64(0, true), head.getFloat64(8, true), head.getUint32(16, true), head.getUint32(20, true)];
   const stream = new Blob([packed.subarray(24)]).stream().pipeThrough(new DecompressionStream("deflate"));

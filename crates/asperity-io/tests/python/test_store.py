@@ -36,7 +36,8 @@ for options in ({}, {"chunks": None}, {"consolidated": True}):
     assert set(ds.coords) == {"time", "field_time", "x", "y"}
     per_step = """load approach contact_area contact_area_corrected contact_fraction capped_area mean_pressure
         max_pressure mean_gap iterations convolutions residual certificate time_error stage""".split()
-    fields = ["pressure", "gap", "displacement", "contact", "flattening", "contact_pressure", "adhesive_traction"]
+    fields = ["pressure", "gap", "displacement", "contact", "flattening", "contact_pressure", "adhesive_traction",
+              "traction_x", "traction_y", "slip_x", "slip_y", "slip_path", "friction_work"]
     assert set(ds.data_vars) == {*per_step, *fields, "initial_gap", "field_step"}
     for name in per_step:
         assert ds[name].dims == ("time",), name

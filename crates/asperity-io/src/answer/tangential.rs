@@ -21,8 +21,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// The answers of a run with a load along the surfaces; none of another.
 pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
-    let has = |quantity| reader.header().quantities.iter().any(|column| column.quantity == quantity);
-    if !has(Quantity::TangentialForce) {
+    if !reader.header().slips() {
         return Ok(vec![]);
     }
     let grid = &reader.header().grid;
@@ -41,10 +40,9 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
     let (pulled, moved) = (largest(&forces), largest(&ways));
     let friction = reader.header().setup.get(Header::FRICTION);
     let period = friction.and_then(|friction| friction.get("period")?.as_f64());
-    let stage_loads = reader.series("load")?;
     let cycle = match period {
         Some(period) => last_period(rows, period),
-        None => last_loop(&displacement, &force, &stage_loads),
+        None => last_loop(&displacement, &force, &reader.series("load")?),
     };
     let mut answers = vec![];
     let stiffness = reader.series(Quantity::TangentialStiffness.name())?;

@@ -91,6 +91,11 @@ impl Header {
     /// The key of the numbers of its friction in the setup.
     pub(crate) const FRICTION: &'static str = "friction";
 
+    /// Whether friction holds a load along the surfaces.
+    pub fn slips(&self) -> bool {
+        self.setup.contains_key(Header::FRICTION)
+    }
+
     /// What its rows follow one another in.
     pub fn axis(&self) -> Axis {
         match self.setup.get("motion").and_then(|motion| motion.get("steady")).and_then(Value::as_bool) {

@@ -12,7 +12,7 @@ use super::below::{Loads, missed, profiles, scalars};
 use super::{Below, Depths, Pressures, StressPlan};
 use crate::choice;
 use crate::instants;
-use crate::store::{At, FieldKind, Header, Reader, StoreError, StressSet, StressWriter, Writer};
+use crate::store::{At, FieldKind, Reader, StoreError, StressSet, StressWriter, Writer};
 
 /// Why the stress was not computed.
 #[derive(Debug, Failure)]
@@ -126,7 +126,7 @@ fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StressError> {
     if !reader.header().fields.contains(&FieldKind::Pressure) {
         return Err(reader.no_field(FieldKind::Pressure).into());
     }
-    let slips = reader.header().setup.contains_key(Header::FRICTION);
+    let slips = reader.header().slips();
     let lacks = [FieldKind::TractionX, FieldKind::TractionY]
         .into_iter()
         .find(|kind| !reader.header().fields.contains(kind));

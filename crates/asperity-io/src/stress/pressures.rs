@@ -6,7 +6,7 @@ use asperity::stress::{PressureHistory, SubsurfaceStress};
 
 use super::evaluate::StressError;
 use super::{Ratio, bodies_of};
-use crate::store::{At, FieldKind, Header, Reader};
+use crate::store::{At, FieldKind, Reader};
 
 const GAPS: &str = "Poisson's ratio of the body changes with time (constant bulk modulus), so that the stress needs the pressures \
                     of all rows, but not all are stored; run the case again with output.every = 1, or give --poisson NU for an \
@@ -84,7 +84,7 @@ impl<'a> Pressures<'a> {
 
     /// Adds the tangential tractions, where there are any. The first body is the one that they act on; on the other one their opposite does.
     fn give_tractions(&self, index: usize, stress: &mut SubsurfaceStress) -> Result<(), StressError> {
-        if !self.reader.header().setup.contains_key(Header::FRICTION) {
+        if !self.reader.header().slips() {
             return Ok(());
         }
         let read = |kind| self.reader.field(kind, At::Index(index));

@@ -88,7 +88,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "rows": {"label": rows.of.name(), "unit": rows.of.unit(), "symbol": rows.of.symbol(), "log": rows.log},
         "last_cycle": last_cycle(reader)?,
         "force_curve": ForceCurve::of(reader, &reader.series("approach")?, &reader.series("load")?),
-        "slips": slips(reader),
+        "slips": reader.header().slips(),
         "cycles": each_cycle(reader)?,
         "evolution": evolution(reader, theory.is_some())?,
         "solver": panels::of_work(reader)?.iter().map(panel).collect::<Vec<_>>(),
@@ -156,7 +156,7 @@ fn evolution(reader: &Reader, theory: bool) -> Result<Vec<Value>, StoreError> {
         panels.push(RowPanel { title: "Temperature", label: "temperature", lines, states: &[] });
     }
     let of_quantities = panels::of_quantities(reader)?;
-    if slips(reader) {
+    if reader.header().slips() {
         // Beside the loop, what stays the same says nothing.
         let constant =
             panels.iter().map(|panel| panels::is_constant(reader, panel)).collect::<Result<Vec<_>, _>>()?;
@@ -177,11 +177,6 @@ fn evolution(reader: &Reader, theory: bool) -> Result<Vec<Value>, StoreError> {
         }
     }
     Ok(panels.iter().map(panel).collect())
-}
-
-/// Whether friction holds a load along the surfaces.
-fn slips(reader: &Reader) -> bool {
-    reader.header().setup.contains_key("friction")
 }
 
 /// Title, label, name and series of each line, and the names of states.

@@ -19,7 +19,7 @@ const SLIP_STATES: &[State] = &[
 
 /// The states that cells of a result may have: slipping only with friction.
 pub(super) fn contact_states(reader: &Reader) -> &'static [State] {
-    if reader.header().setup.contains_key("friction") { SLIP_STATES } else { CONTACT_STATES }
+    if reader.header().slips() { SLIP_STATES } else { CONTACT_STATES }
 }
 
 /// The state of a cell whose pressure is the hardness.

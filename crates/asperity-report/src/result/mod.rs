@@ -328,7 +328,7 @@ fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
     let grid = &reader.header().grid;
     let [area, domain] = if grid.is_line() { ["length", "domain"] } else { ["area", "nominal area"] };
     let motion = motion(reader, index)?;
-    let along = match reader.header().setup.contains_key("friction") {
+    let along = match reader.header().slips() {
         false => String::new(),
         true => {
             let size =

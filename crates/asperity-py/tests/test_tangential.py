@@ -18,7 +18,7 @@ STEEL = asp.Elastic(young=210e9, poisson=0.3)
 def pushed(**given):
     shake = asp.tangential(force=(asp.triangle(peak=10.0, rise=1.0, fall=1.0), 2.0))
     arguments = {"load": 50.0, "times": asp.uniform(2.0, 4), "friction": 0.5, "tangential": shake, **given}
-    return asp.solve(ball(), [STEEL, STEEL], **arguments)
+    return asp.solve(ball(), arguments.pop("bodies", [STEEL, STEEL]), **arguments)
 
 
 def test_rows_hold_two_components(tmp_path):
@@ -88,6 +88,40 @@ def test_what_makes_no_sense_is_refused(given, words):
 def test_a_force_beyond_friction_is_an_error():
     with pytest.raises(asp.CaseError, match="5 N more"):
         pushed(tangential=asp.tangential(force=asp.ramp(30.0, duration=1.0)))
+
+
+def coupled(force, mean="full", bodies=asp.Elastic(young=210e9, poisson=0.1), **given):
+    given = {"boundary": "periodic", **given}
+    friction = asp.Friction(0.5, coupling=mean)
+    return pushed(tangential=asp.tangential(force=force), bodies=bodies, friction=friction, **given)
+
+
+def test_pressure_and_tractions_act_on_each_other():
+    ahead, back = coupled(asp.ramp(15.0, duration=1.0)), coupled(asp.ramp(-15.0, duration=1.0))
+    p, q = ahead.field("pressure"), ahead.field("traction_x")
+    # The solver's tolerance, in pressures and in tractions of the largest one.
+    np.testing.assert_allclose(p, back.field("pressure")[::-1], atol=1e-4 * p.max())
+    np.testing.assert_allclose(q, -back.field("traction_x")[::-1], atol=1e-4 * q.max())
+    # A traction lowers the surface ahead of it and lifts it behind: there it presses more.
+    x = np.arange(32)[:, None] - 15.5
+    assert (p * x).sum() / p.sum() < -0.1
+    # Pushed along y it is the same, turned.
+    aside = coupled((0.0, asp.ramp(15.0, duration=1.0)))
+    np.testing.assert_allclose(p, aside.field("pressure").T, atol=1e-4 * p.max())
+    # Bodies of like materials do not act on each other.
+    alike = [STEEL, STEEL]
+    ramp = asp.ramp(15.0, duration=1.0)
+    np.testing.assert_array_equal(
+        coupled(ramp, bodies=alike).field("traction_x"), coupled(ramp, "neglect", bodies=alike).field("traction_x")
+    )
+    assert [f.code for f in coupled(ramp, "neglect").findings if "coupling" in f.code] == ["normal-coupling"]
+    assert all("coupling" not in finding.code for finding in ahead.findings)
+
+
+def test_bodies_that_creep_differently_are_not_coupled():
+    rubber = asp.StandardLinearSolid(young_instantaneous=9e9, young_equilibrium=1e9, relaxation_time=1.0, poisson=0.3)
+    with pytest.raises(asp.CaseError, match="creep differently"):
+        coupled(1.0, bodies=[rubber, STEEL])
 
 
 def held(peak):

@@ -3,6 +3,9 @@
 use crate::finding::si;
 use thiserror::Error;
 
+/// The method that finds pressure and friction in turn.
+pub(crate) const COUPLING: &str = "coupling of pressure and friction";
+
 /// The error of every fallible call of this crate.
 #[derive(Debug, Clone, Error)]
 #[non_exhaustive]
@@ -128,11 +131,15 @@ pub enum Error {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error(
     "{method} stopped after {iterations} iterations at residual {residual:.2e} (tolerance {tolerance:.1e}, \
-     certified energy-norm error {certificate:.1e}){}; loosen the tolerance or allow more iterations",
+     certified energy-norm error {certificate:.1e}){}; {advice}",
     match (.time, .velocity) {
         (Some(t), _) => format!(" at t = {t} s"),
         (None, Some(v)) => format!(" at {v} m/s"),
         (None, None) => String::new(),
+    },
+    advice = match *.method {
+        COUPLING => "lower the friction coefficient, or take friction.coupling = \"neglect\"",
+        _ => "loosen the tolerance or allow more iterations",
     }
 )]
 pub struct NotConverged {

@@ -40,9 +40,10 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
     let (pulled, moved) = (largest(&forces), largest(&ways));
     let friction = reader.header().setup.get(Header::FRICTION);
     let period = friction.and_then(|friction| friction.get("period")?.as_f64());
+    let load = reader.series("load")?;
     let cycle = match period {
-        Some(period) => last_period(rows, period),
-        None => last_loop(&displacement, &force, &reader.series("load")?),
+        Some(period) => last_period(rows, period).filter(|cycle| comes_back(&load, cycle)),
+        None => last_loop(&displacement, &force, &load),
     };
     let mut answers = vec![];
     let stiffness = reader.series(Quantity::TangentialStiffness.name())?;
@@ -95,6 +96,12 @@ fn last_period(rows: &[Row], period: f64) -> Option<RangeInclusive<usize>> {
     let last = rows.len().checked_sub(1)?;
     let begins = |row: &usize| (time(last) - period - time(*row)).abs() <= 1e-9 * time(last);
     (0..last).rev().find(begins).map(|first| first..=last)
+}
+
+/// Whether the load at the end of a cycle is that at its beginning.
+fn comes_back(load: &[f64], cycle: &RangeInclusive<usize>) -> bool {
+    let heavy = load.iter().copied().fold(0.0, f64::max);
+    (load[*cycle.end()] - load[*cycle.start()]).abs() <= CLOSED * heavy
 }
 
 /// A quantity along x and y.

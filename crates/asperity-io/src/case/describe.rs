@@ -5,7 +5,7 @@ use asperity::layer::{Base, Interface, Layered, Stack};
 use asperity::material::{Body, Creep, Shift, VerticalShift};
 use asperity::quantities::Quantity;
 use asperity::sliding::Steady;
-use asperity::tangential::TangentialControl;
+use asperity::tangential::{Coupling, TangentialControl};
 use asperity::{Axis, Course, History, Simulation};
 use ndarray::Array2;
 use serde::Serialize;
@@ -147,8 +147,10 @@ pub struct FrictionReport {
     pub largest: [f64; 2],
     /// The first time at which the force is more than friction holds \[s\], as far as it is known before the run.
     pub slides_at: Option<f64>,
-    /// Dundurs' β, how much pressure and tangential tractions act on each other, which is neglected.
-    pub coupling: f64,
+    /// Dundurs' β: how much pressure and tangential tractions act on each other.
+    pub beta: f64,
+    /// Whether they do in the run.
+    pub coupling: Coupling,
 }
 
 /// A stage whose history is a sine.
@@ -272,6 +274,7 @@ impl Case {
                         .fold(0.0, |most: f64, end| most.max(end.abs()))
                 }),
                 slides_at: law.slides_at(&self.conditions),
+                beta: law.beta,
                 coupling: law.coupling,
             }),
             sines: self.sines(),

@@ -2,7 +2,7 @@
 
 use asperity::Grid;
 use asperity::material::Body;
-use asperity::tangential::{PairRatio, Tangential as Law, TangentialControl};
+use asperity::tangential::{Coupling, PairRatio, Tangential as Law, TangentialControl};
 
 use super::hardness::numbers_of_cells;
 use super::history::{History, Kind, Sign};
@@ -26,19 +26,10 @@ pub struct Friction {
     /// Largest tangential traction, whatever the pressure; unlimited if not given.
     #[schemars(example = "50 MPa")]
     shear_limit: Option<Pressure<Positive>>,
-    /// What the pressure and the tangential tractions of different bodies do to each other: "neglect" it. "neglect" if not given.
+    /// What the pressure and the tangential tractions of bodies with different elastic constants do to each other: "neglect" it, or find both
+    /// in turn until they agree ("full"). "neglect" if not given.
     #[serde(default)]
-    #[expect(dead_code, reason = "there is one choice")]
     coupling: Coupling,
-}
-
-/// What pressure and tangential tractions do to each other.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-enum Coupling {
-    /// Nothing: the pressure is that without tangential tractions.
-    #[default]
-    Neglect,
 }
 
 /// A load along the surfaces, with `[friction]`.
@@ -83,13 +74,22 @@ impl Tangential {
             }
         };
         let (x, y) = (read("x", &self.x), read("y", &self.y));
-        let PairRatio { poisson, coupling } = bodies.0.core(PairRatio::of(bodies.1))?;
+        let PairRatio { poisson, beta, changes } = bodies.0.core(PairRatio::of(bodies.1))?;
+        let coupling = friction.1.coupling;
+        if coupling == Coupling::Full && changes {
+            return friction.0.key("coupling").fault(
+                "\"full\" is given for bodies that creep differently",
+                "bodies of which one is rigid, or that are elastic or of like materials: otherwise Dundurs' β changes in time",
+                "take \"neglect\", or leave out a body that is much stiffer",
+            );
+        }
         let (coefficient, coefficients) = coefficients?;
         let law = Law {
             coefficient,
             coefficients,
             shear_limit: friction.1.shear_limit.map_or(f64::INFINITY, Pressure::get),
             poisson,
+            beta,
             coupling,
             control: self.control,
             histories: [x?, y?],

@@ -107,7 +107,7 @@ pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
             Header::FRICTION.into(),
             json!({
                 "coefficient": law.coefficients.is_none().then_some(law.coefficient), "shear_limit": limit, "control": law.control,
-                "poisson": law.poisson, "coupling": law.coupling, "period": law.period(),
+                "poisson": law.poisson, "beta": law.beta, "coupling": law.coupling, "period": law.period(),
             }),
         );
     }

@@ -114,9 +114,11 @@ def _of_friction(friction: dict[str, Any] | None) -> str:
     coefficient = friction.get("coefficient")
     words = "a coefficient for each cell" if coefficient is None else f"the coefficient {coefficient:g}"
     limit = f", up to a traction of {quantity(friction['shear_limit'], 'Pa')}" if friction.get("shear_limit") else ""
+    neglected = friction.get("coupling") != "full"
+    effect = "whose effect on the pressure was neglected" if neglected else "and it and the pressure were found in turn until both agreed (Panagiotopoulos, 1975)"
     return (
         f"Friction with {words}{limit} acted against a prescribed tangential {friction['control']}; stick and slip followed from both components of "
-        "the tangential traction (Kalker, 1990), whose effect on the pressure was neglected."
+        f"the tangential traction (Kalker, 1990), {effect}."
     )
 
 

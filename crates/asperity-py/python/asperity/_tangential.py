@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,8 @@ class Friction:
     """Friction between the surfaces, an argument of :func:`asperity.solve` and :func:`asperity.march` (docs/tangential.md).
 
     `coefficient`, a number or an array (nx, ny) with one for each cell; `shear_limit` [Pa]: the largest tangential traction, whatever the
-    pressure. A number in place of this is a coefficient without limit.
+    pressure; `coupling`: what pressure and tangential traction of bodies with different elastic constants do to each other, "neglect" or
+    "full". A number in place of this is a coefficient alone.
 
     >>> import asperity as asp
     >>> asp.Friction(0.3, shear_limit=50e6)
@@ -32,20 +33,23 @@ class Friction:
     coefficient: float | npt.ArrayLike
     _: KW_ONLY
     shear_limit: float | None = None
+    coupling: Literal["neglect", "full"] = "neglect"
 
     def __repr__(self) -> str:
         given = f"{self.coefficient!r}" if np.ndim(self.coefficient) == 0 else f"<array of {np.shape(self.coefficient)}>"
-        return f"Friction({given}{f', shear_limit={self.shear_limit!r}' if self.shear_limit is not None else ''})"
+        limit = "" if self.shear_limit is None else f", shear_limit={self.shear_limit!r}"
+        return f"Friction({given}{limit}{'' if self.coupling == 'neglect' else f', coupling={self.coupling!r}'})"
 
     def _parts(self, shape: Surface) -> tuple[dict[str, Any], dict[str, Floats]]:
         """The keys of `[friction]`, and the arrays that they name."""
-        limit = {} if self.shear_limit is None else {"shear_limit": number("shear_limit", self.shear_limit)}
+        others: dict[str, Any] = {} if self.shear_limit is None else {"shear_limit": number("shear_limit", self.shear_limit)}
+        others |= {} if self.coupling == "neglect" else {"coupling": self.coupling}
         if np.ndim(self.coefficient) == 0:
-            return {"coefficient": number("friction", self.coefficient), **limit}, {}
+            return {"coefficient": number("friction", self.coefficient), **others}, {}
         cells = field_of("friction", self.coefficient, line=True, size=shape.size)
         if cells.shape != shape.cells:
             raise CaseError(f"friction has shape {cells.shape}, but must have {shape.cells}: one coefficient for each cell")
-        return {"array": "friction", **limit}, {"friction": as_plane(cells)}
+        return {"array": "friction", **others}, {"friction": as_plane(cells)}
 
 
 @dataclass(frozen=True, repr=False)

@@ -12,8 +12,8 @@ use super::thin::Widest;
 use super::worst::extend;
 use super::{
     ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, FLUID_CHATTER, FLUID_LIFTS,
-    Finding, LARGE_SLOPE, LARGE_STRAIN, SPOTS_UNRESOLVED, SQUEEZE_SLOW, STEPS_TOO_LONG, adhesion, domain,
-    fluid, material, plausible, strain, surface, tangential, thin, time,
+    Finding, LARGE_SLOPE, LARGE_STRAIN, SLIP_UNRESOLVED, SPOTS_UNRESOLVED, SQUEEZE_SLOW, STEPS_TOO_LONG,
+    adhesion, domain, fluid, material, plausible, strain, surface, tangential, thin, time,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -77,6 +77,7 @@ pub struct Diagnostics {
     slides: Slides,
     adhesion: adhesion::Border,
     fluid: fluid::Wet,
+    ring: tangential::Ring,
     balance: Balance,
     beyond: Beyond,
     /// Where an approach is held while cells are at the hardness, and the control of each stage.
@@ -113,6 +114,7 @@ impl Diagnostics {
             slides: Slides::default(),
             adhesion: adhesion::Border::default(),
             fluid: fluid::Wet::default(),
+            ring: tangential::Ring::default(),
             balance: Balance::default(),
             beyond: Beyond::default(),
             held: time::Held::default(),
@@ -160,6 +162,7 @@ impl Diagnostics {
                 BEYOND_HISTOGRAM => self.beyond.resume(finding),
                 ADHESION_AT_BORDER => self.adhesion.resume(finding),
                 FLUID_LIFTS | FLUID_CHATTER | SQUEEZE_SLOW => self.fluid.resume(finding),
+                SLIP_UNRESOLVED => self.ring.resume(finding),
                 ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
                 _ => {}
             }
@@ -177,6 +180,7 @@ impl Diagnostics {
         }
         self.adhesion.see(step);
         self.fluid.see(step, row);
+        self.ring.see(step, row);
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);
         }
@@ -269,6 +273,7 @@ impl Diagnostics {
         found.extend(self.slides.finding());
         found.extend(self.adhesion.finding());
         found.extend(self.fluid.findings());
+        found.extend(self.ring.finding());
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
         found

@@ -271,6 +271,8 @@ codes! {
     FORCE_BEYOND_FRICTION = "force-beyond-friction";
     /// Tangential tractions act on the pressure, which is neglected.
     NORMAL_COUPLING = "normal-coupling";
+    /// Slip in a ring that is about one cell wide, or in none.
+    SLIP_UNRESOLVED = "slip-unresolved";
 }
 
 #[cfg(test)]

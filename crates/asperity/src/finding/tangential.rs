@@ -1,15 +1,23 @@
 //! Tangential loads: forces that friction will not hold, displacements that are hardly meant, what pressure and tangential tractions of
-//! different bodies do to each other.
+//! different bodies do to each other, slip that the grid does not resolve.
 
-use super::words::{digits, si};
-use super::{FORCE_BEYOND_FRICTION, Finding, NORMAL_COUPLING, UNLIKELY_UNIT};
+use super::words::{digits, rows, si};
+use super::worst::extend;
+use super::{FORCE_BEYOND_FRICTION, Finding, NORMAL_COUPLING, SLIP_UNRESOLVED, UNLIKELY_UNIT};
 use crate::simulation::Simulation;
-use crate::tangential::{Tangential, TangentialControl};
+use crate::step::{PERIMETER_SHARE, Row, Step};
+use crate::tangential::{Coupling, Tangential, TangentialControl};
 
 /// Smaller values of Dundurs' β are rounding errors.
 const ROUNDING: f64 = 1e-6;
 /// Share of the pressure that the neglected tractions may change, roughly μβ.
 const LARGEST: f64 = 0.02;
+
+/// Cells across a ring that slips, at least, unless a larger share of the contact slips.
+const RING: f64 = 1.5;
+const LARGE_PART: f64 = 0.1;
+/// Share of the largest force that friction holds below which the ring does not matter.
+const SMALL_FORCE: f64 = 1e-3;
 
 /// What is known before the run.
 pub(super) fn before(simulation: &Simulation) -> Vec<Finding> {
@@ -42,19 +50,62 @@ fn displacement(law: &Tangential, simulation: &Simulation) -> Option<Finding> {
 }
 
 fn coupling(law: &Tangential) -> Option<Finding> {
-    let beta = law.coupling.abs();
-    if beta <= ROUNDING {
+    let beta = law.beta.abs();
+    if beta <= ROUNDING || law.coupling == Coupling::Full {
         return None;
     }
-    let of_cells = law.coefficients.iter().flatten().copied();
-    let effect = beta * of_cells.fold(law.coefficient, f64::max);
+    let effect = beta * law.largest();
     let text = format!(
         "The bodies have different elastic constants (Dundurs' β = {}): tangential tractions then also move the surfaces normally, and pressures \
-         along each other, which is neglected. Pressure, stick and slip are off by about {} % (μβ). Nothing is neglected for bodies of \
-         like materials, or for incompressible ones.",
+         along each other, which is neglected. Pressure, stick and slip are off by about {} % (μβ). friction.coupling = \"full\" computes it; \
+         nothing is neglected for bodies of like materials, or for incompressible ones.",
         digits(beta),
         digits(100.0 * effect),
     );
     let finding = Finding::warning(NORMAL_COUPLING, effect, LARGEST, text);
     Some(if effect > LARGEST { finding } else { finding.as_note() })
+}
+
+/// The ring that slips at the edge of the contact.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ring {
+    /// Its largest width \[cells\], and the largest share of the contact that slips.
+    width: f64,
+    share: f64,
+    /// The rows with a force that matters.
+    rows: Option<[usize; 2]>,
+}
+
+impl Ring {
+    pub(super) fn see(&mut self, step: &Step<'_>, row: &Row) {
+        let simulation = step.simulation();
+        let (Some(law), Some(slip)) = (&simulation.tangential, step.slip_row()) else { return };
+        // Area of the cells at the edge.
+        let edge = (row.contact_area - row.contact_area_corrected) / PERIMETER_SHARE;
+        let [fx, fy] = slip.force;
+        if edge <= 0.0 || f64::hypot(fx, fy) < SMALL_FORCE * law.largest() * row.load {
+            return;
+        }
+        extend(&mut self.rows, step.index());
+        self.width = self.width.max(slip.slip_area / edge);
+        self.share = self.share.max(slip.slip_area / row.contact_area);
+    }
+
+    pub(super) fn finding(&self) -> Option<Finding> {
+        let at = self.rows.filter(|_| self.width < RING && self.share < LARGE_PART)?;
+        let width = match self.width {
+            0.0 => "No cell slips, although a ring at the edge of each contact does".to_string(),
+            width => format!("The ring that slips is at most {} cells wide", digits(width)),
+        };
+        let text = format!(
+            "{width} ({}): slip areas, work of friction and loops are too small or missing. Take smaller cells; the stiffness hardly changes.",
+            rows(at)
+        );
+        Some(Finding::warning(SLIP_UNRESOLVED, self.width, RING, text).at(at))
+    }
+
+    /// Takes over the finding of an earlier session.
+    pub(super) fn resume(&mut self, finding: &Finding) {
+        (self.width, self.rows) = (finding.value.unwrap_or(0.0), finding.rows);
+    }
 }

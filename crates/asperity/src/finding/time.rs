@@ -107,17 +107,22 @@ fn shorter(simulation: &Simulation, error: f64) -> String {
 /// "Take 70 steps in place of 40, ...", for `factor` times as many steps.
 fn more_steps(simulation: &Simulation, factor: f64) -> String {
     let times = significant((10.0 * factor).ceil() / 10.0, 2);
+    // Under a tangential load there are no adaptive steps.
+    let or = |what: &str| match simulation.tangential {
+        None => format!(", or set {what}"),
+        Some(_) => String::new(),
+    };
     let adaptive = "spacing = \"adaptive\" and leave out";
     match &simulation.times {
         _ if simulation.loading.stages.iter().any(|stage| stage.times.is_some()) => {
-            format!("Take {times} times as many steps there, or set {adaptive} `steps`.")
+            format!("Take {times} times as many steps there{}.", or(&format!("{adaptive} `steps`")))
         }
         TimeGrid::Uniform { steps, .. } | TimeGrid::Logarithmic { steps, .. } => {
             let needed = (*steps as f64 * factor).ceil();
-            format!("Take {needed} steps in place of {steps}, or set {adaptive} `steps`.")
+            format!("Take {needed} steps in place of {steps}{}.", or(&format!("{adaptive} `steps`")))
         }
         TimeGrid::List(_) | TimeGrid::Adaptive { .. } => {
-            format!("Give {times} times as many times there, or set `end`, {adaptive} `times`.")
+            format!("Give {times} times as many times there{}.", or(&format!("`end`, {adaptive} `times`")))
         }
     }
 }

@@ -5,11 +5,13 @@
 mod boussinesq;
 mod cerruti;
 pub(crate) mod gauss;
+mod lateral;
 mod line;
 mod periodic;
 
 pub use boussinesq::love;
 pub(crate) use cerruti::{Cerruti, Tangential};
+pub(crate) use lateral::{lateral, lateral_symbol};
 pub use line::strip;
 pub(crate) use line::strip_at;
 pub use periodic::wave_kernel;

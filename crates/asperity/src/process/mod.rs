@@ -38,6 +38,19 @@ pub(crate) trait Process: Send {
         None
     }
 
+    /// Whether this process displaces the surfaces normally, besides the pressure.
+    fn acts_back(&self) -> bool {
+        false
+    }
+
+    /// Writes the normal displacement under the pressure of an attempt, for unit compliance \[Pa m\], to this tolerance.
+    ///
+    /// # Errors
+    /// Those of the process.
+    fn act_back(&mut self, _row: &mut Solved<'_>, _tolerance: f64, _to: &mut [f64]) -> Result<()> {
+        Ok(())
+    }
+
     /// Takes in the row that was just solved.
     fn accept(&mut self, row: &mut Solved<'_>) -> Result<()>;
 

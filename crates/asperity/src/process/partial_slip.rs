@@ -10,6 +10,9 @@
 //! [`History`] for each component: Poisson's ratio is constant, so C(t) is the same. Friction takes the end of a step for all of it:
 //! exact as long as the slip of a cell keeps its direction and its limit, of first order in the step otherwise. A cell out of contact has
 //! no traction, and comes back free of stress.
+//!
+//! Where pressure and tractions act on each other, g contains the displacement c N p under the pressure, and the contact of the row is solved
+//! again with the normal displacement c N'q until it stays ([`Process::act_back`]).
 
 use std::sync::Arc;
 
@@ -23,18 +26,23 @@ use crate::kernel::Cerruti;
 use crate::simulation::Simulation;
 use crate::step::{Interval, Load, Loader, Saver, UndeformedGap};
 use crate::tangential::{
-    EDGE, Given, Slip, SlipProblem, SlipRow, SlipSolver, Tangential, TangentialControl, Vector, inner,
-    length, minus, plus, times,
+    EDGE, Given, Lateral, Slip, SlipOutcome, SlipProblem, SlipRow, SlipSolver, Tangential, TangentialControl,
+    Vector, inner, length, minus, plus, times,
 };
 
 /// Residuals are measured by this share of the displacement under full sliding, at least.
 const SMALLEST_SCALE: f64 = 1e-6;
+
+/// The change of the last step is taken this often, at most.
+const FARTHEST: f64 = 2.0;
 
 pub(super) struct PartialSlip {
     law: Arc<Tangential>,
     /// The component of the force that acts alone, and it in the last row \[N\].
     alone: Option<usize>,
     load: f64,
+    /// What was prescribed in the last two rows.
+    course: [Vector; 2],
     solver: SlipSolver,
     /// Of both components.
     memories: [Box<dyn History>; 2],
@@ -57,6 +65,26 @@ pub(super) struct PartialSlip {
     numbers: SlipRow,
     /// The largest energy norm of the tractions so far, squared.
     energy: f64,
+    coupled: Option<Coupled>,
+    found: Found,
+}
+
+/// What pressure and tractions do to each other.
+struct Coupled {
+    lateral: Lateral,
+    /// N p of the last attempt.
+    under_pressure: Vec<Vector>,
+}
+
+/// What is known of the step of the last attempt besides its fields.
+#[derive(Default)]
+struct Found {
+    compliance: f64,
+    /// Of the component of the force that acts alone, at both ends.
+    loads: [f64; 2],
+    outcome: SlipOutcome,
+    /// Whether the histories have the step open.
+    is_open: bool,
 }
 
 impl PartialSlip {
@@ -68,10 +96,16 @@ impl PartialSlip {
         let Some(law) = &simulation.tangential else { return Ok(None) };
         let (grid, n) = (&simulation.grid, simulation.grid.len());
         let states = || [0; 2].map(|_| ContactState::new(n));
+        let coupled = law.is_coupled().then(|| Coupled {
+            lateral: Lateral::new(grid, simulation.boundary, law.beta),
+            under_pressure: zeros(n),
+        });
         Ok(Some(PartialSlip {
             law: law.clone(),
-            alone: law.alone(simulation.times.end()),
+            // A pressure that moves the surfaces along each other is no course of the force.
+            alone: law.alone(simulation.times.end()).filter(|_| coupled.is_none()),
             load: 0.0,
+            course: [[0.0; 2]; 2],
             solver: SlipSolver::new(grid, simulation.boundary, Cerruti { poisson: law.poisson }),
             memories: [history::of(simulation)?, history::of(simulation)?],
             before: states(),
@@ -88,6 +122,8 @@ impl PartialSlip {
             recalled: zeros(n),
             numbers: SlipRow::default(),
             energy: 0.0,
+            coupled,
+            found: Found::default(),
         }))
     }
 
@@ -111,6 +147,19 @@ impl PartialSlip {
             alone.map_or(Load::Approach, Load::Total)
         };
         (step.under(load), alone.map_or([0.0; 2], |force| [self.load, force]))
+    }
+
+    /// Starts from the change of the last step, as long as the load goes on in its direction: what slips goes on slipping.
+    fn extrapolate(&mut self, time: f64) {
+        let [earlier, last] = self.course;
+        let (change, next) = (minus(last, earlier), minus(self.law.at(time), last));
+        let share = (inner(next, change) / inner(change, change)).clamp(0.0, FARTHEST);
+        if share > 0.0 {
+            for axis in 0..2 {
+                let cells = (&self.now[axis].pressure[..], &self.before[axis].pressure[..]);
+                each(&mut self.slip.traction, cells, |to, (q, before)| to[axis] = q + share * (q - before));
+            }
+        }
     }
 
     /// What is given of the step.
@@ -167,25 +216,40 @@ impl PartialSlip {
             outcome: self.numbers.outcome,
         };
     }
-}
 
-impl Process for PartialSlip {
-    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+    /// Finds the tractions of an attempt.
+    ///
+    /// # Errors
+    /// [`Error::Sliding`], and those of solver and history.
+    fn solve(&mut self, row: &mut Solved<'_>, tolerance: f64) -> Result<()> {
         let [most, scale] = self.limit(row);
+        if !self.found.is_open {
+            self.extrapolate(row.step.instant.time);
+        }
         let (step, loads) = self.step(row.step, most);
         let given = self.given(row, most)?;
+        if let Some(Coupled { lateral, under_pressure, .. }) = &mut self.coupled {
+            lateral.under_pressure(&row.now.pressure, under_pressure);
+            row.convolutions += 1;
+        }
         let mut compliance = 0.0;
         for axis in 0..2 {
-            let last = &self.now[axis];
-            let law = self.memories[axis].open(&step, last, &self.rest, &mut self.recalled)?;
+            let (memory, last) = (&mut self.memories[axis], &self.now[axis]);
+            let law = match self.found.is_open {
+                true => memory.reopen(&step, &self.rest, &mut self.recalled)?,
+                false => memory.open(&step, last, &self.rest, &mut self.recalled)?,
+            };
             compliance = law.compliance;
             let cells = (&self.recalled[..], &self.displacement[..]);
             each(&mut self.offset, cells, |b, (g, u)| b[axis] = g - u[axis]);
         }
+        self.found = Found { compliance, loads, is_open: true, ..self.found };
+        if let Some(Coupled { under_pressure, .. }) = &self.coupled {
+            each(&mut self.offset, &under_pressure[..], |b, u| *b = plus(*b, times(compliance, u)));
+        }
         let (offset, radius, scale) = (&self.offset[..], &self.radius[..], SMALLEST_SCALE * scale);
         let problem = SlipProblem { compliance, offset, radius, given, scale, energy: self.energy };
-        let options = &row.simulation.solver;
-        let limits = (options.tolerance, options.max_iterations);
+        let limits = (tolerance, row.simulation.solver.max_iterations);
         let outcome =
             self.solver.solve(&problem, &mut self.slip, limits, row.interrupt).map_err(|error| {
                 let time = row.step.instant.time;
@@ -194,8 +258,33 @@ impl Process for PartialSlip {
                     other => other,
                 }
             })?;
-        self.load = loads[1];
         row.convolutions += outcome.convolutions;
+        self.found.outcome = self.found.outcome.then(outcome);
+        Ok(())
+    }
+}
+
+impl Process for PartialSlip {
+    fn acts_back(&self) -> bool {
+        self.coupled.is_some()
+    }
+
+    fn act_back(&mut self, row: &mut Solved<'_>, tolerance: f64, to: &mut [f64]) -> Result<()> {
+        self.solve(row, tolerance)?;
+        if let Some(Coupled { lateral, .. }) = &mut self.coupled {
+            lateral.under_traction(&self.slip.traction, to);
+            row.convolutions += 1;
+        }
+        Ok(())
+    }
+
+    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        if self.coupled.is_none() {
+            self.solve(row, row.simulation.solver.tolerance)?;
+        }
+        let Found { compliance, loads, outcome, .. } = std::mem::take(&mut self.found);
+        self.load = loads[1];
+        self.course = [self.course[1], self.law.at(row.step.instant.time)];
         self.energy = self.energy.max(outcome.energy);
         self.numbers.outcome = outcome;
         self.take_in(row, compliance);
@@ -204,6 +293,9 @@ impl Process for PartialSlip {
             let now = &mut self.now[axis];
             each(&mut now.pressure, &self.slip.traction[..], |to, q| *to = q[axis]);
             each(&mut now.unit_displacement, &self.slip.unit[..], |to, u| *to = u[axis]);
+            if let Some(Coupled { under_pressure, .. }) = &self.coupled {
+                each(&mut now.unit_displacement, &under_pressure[..], |to, u| *to += u[axis]);
+            }
             let ends = [&self.before[axis], &self.now[axis]];
             self.memories[axis].close(&Ends {
                 before: ends[0],
@@ -236,6 +328,8 @@ impl Process for PartialSlip {
 
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
         let SlipRow { force, displacement, work, .. } = &self.numbers;
+        let [[ax, ay], [bx, by]] = &self.course;
+        to.values("course", &[ax, ay, bx, by]);
         to.values(
             "numbers",
             &[&force[0], &force[1], &displacement[0], &displacement[1], work, &self.load, &self.energy],
@@ -246,6 +340,7 @@ impl Process for PartialSlip {
             let component = |field: &[Vector]| field.iter().map(|v| v[axis]).collect();
             to.within(name, |to| {
                 to.field("traction", &self.now[axis].pressure);
+                to.field("previous_traction", &self.before[axis].pressure);
                 to.field("unit_displacement", &self.now[axis].unit_displacement);
                 to.owned_field("displacement", component(&self.displacement));
                 to.owned_field("slip", component(&self.slid));
@@ -257,11 +352,14 @@ impl Process for PartialSlip {
     fn load(&mut self, from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
         let SlipRow { force: [fx, fy], displacement: [dx, dy], work, .. } = &mut self.numbers;
         from.values_into("numbers", &mut [fx, fy, dx, dy, work, &mut self.load, &mut self.energy])?;
+        let [[ax, ay], [bx, by]] = &mut self.course;
+        from.values_into("course", &mut [ax, ay, bx, by])?;
         from.field_into("path", &mut self.path)?;
         from.field_into("heat", &mut self.heat)?;
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let set = |field: &mut [Vector], from: &[f64]| each(field, from, |v, part| v[axis] = part);
             from.within(name, |from| {
+                from.field_into("previous_traction", &mut self.before[axis].pressure)?;
                 let now = &mut self.now[axis];
                 from.field_into("traction", &mut now.pressure)?;
                 from.field_into("unit_displacement", &mut now.unit_displacement)?;

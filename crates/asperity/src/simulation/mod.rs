@@ -188,7 +188,9 @@ impl Simulation {
             + self.traction.as_ref().map_or(0, |law| TractionSolver::bytes(&**law, grid))
             + has(self.quantities.has(Quantity::ContactStiffness), ContactStiffness::bytes(grid, self.boundary))
             + has(self.quantities.list.iter().any(|q| q.connects()), Spots::bytes(grid))
-            + has(self.tangential.is_some(), tangential::bytes(grid, self.boundary) + 2 * history::bytes(self))
+            + self.tangential.as_ref().map_or(0, |law| {
+                tangential::bytes(grid, self.boundary, law) + 2 * history::bytes(self)
+            })
     }
 
     /// Whether more than one row may be in contact.

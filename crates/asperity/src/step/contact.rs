@@ -65,6 +65,11 @@ impl StepContact {
         self.options.tolerance
     }
 
+    /// The contact is solved to this tolerance from now on.
+    pub(super) fn set_tolerance(&mut self, tolerance: f64) {
+        self.options.tolerance = tolerance;
+    }
+
     /// The traction besides the contact that acts on the surfaces.
     pub(super) fn traction(&self) -> Option<&TractionSolver> {
         self.traction.as_ref()

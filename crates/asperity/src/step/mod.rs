@@ -13,6 +13,7 @@
 //! a `History`, what else goes on a `Process`, when the steps are the `Schedule`'s matter.
 
 mod contact;
+mod coupled;
 mod event;
 mod imposed;
 mod interval;
@@ -31,6 +32,7 @@ pub use snapshot::Checkpoint;
 
 use contact::Parts;
 pub(crate) use contact::StepContact;
+use coupled::Coupled;
 pub(crate) use interval::{Course, Interval, Load, Piece, prescribed};
 pub(crate) use quantities::Recorder;
 pub(crate) use row::PERIMETER_SHARE;
@@ -58,6 +60,8 @@ pub(crate) struct Stepper {
     contact: StepContact,
     processes: Vec<Box<dyn Process>>,
     state: StepState,
+    /// What a process adds to the displacement under the pressure; `None` where none does.
+    coupled: Option<Coupled>,
     /// The step of the attempt; whether the history has it open, and the length of the attempt solved last.
     step: Option<Interval>,
     is_open: bool,
@@ -74,8 +78,10 @@ impl Stepper {
     pub(crate) fn new(simulation: Arc<Simulation>) -> Result<Self> {
         let operator = plan(simulation.grid, simulation.boundary, simulation.kernel.clone())?;
         let mut history = history::of(&simulation)?;
+        let processes = process::of(&simulation, &*operator, &mut *history)?;
         Ok(Stepper {
-            processes: process::of(&simulation, &*operator, &mut *history)?,
+            coupled: Coupled::of(&processes, simulation.grid.len()),
+            processes,
             state: StepState::new(&simulation, history.remembers()),
             history,
             contact: StepContact::new(&simulation, operator),
@@ -134,8 +140,7 @@ impl Stepper {
         let start = self.guess(&step, prescribed);
         self.step = Some(step.clone());
         self.contact.begin(&step.instant);
-        let StepState { now, own_gap, undeformed, compliance, .. } = &mut self.state;
-        match self.contact.solve(start, undeformed.or(own_gap), *compliance, prescribed, now) {
+        match self.solve_contact(start, prescribed) {
             Ok(outcome) => self.outcome = self.outcome.then(outcome),
             Err(Error::NotConverged(mut report)) => {
                 report.time = Some(step.instant.time);

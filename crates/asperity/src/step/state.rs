@@ -104,6 +104,9 @@ impl Stepper {
         if let Some(traction) = self.contact.traction() {
             to.within("traction", |to| traction.save(to));
         }
+        if let Some(coupled) = &self.coupled {
+            to.within("coupled", |to| coupled.save_own(to));
+        }
         to.value("processes", &self.processes.len());
         for process in &self.processes {
             to.within(process.name(), |to| {
@@ -121,6 +124,9 @@ impl Stepper {
         self.state.load_own(from)?;
         if let Some(traction) = self.contact.traction_mut() {
             from.within("traction", |from| traction.load(from))?;
+        }
+        if let Some(coupled) = &mut self.coupled {
+            from.within("coupled", |from| coupled.load_own(from))?;
         }
         self.state.touched = self.touches();
         if from.get::<usize>("processes")? != self.processes.len() {

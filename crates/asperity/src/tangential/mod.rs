@@ -9,12 +9,13 @@
 //! |q| <= min(μ p, τ) in each cell; the slip of a step is opposite to q where equality holds
 //! ```
 //!
-//! The pressure is that of the normal problem, on which tangential tractions act back where the bodies differ: the pressure is exact for
-//! bodies of like materials, for two incompressible ones, and for an incompressible one on a rigid one; otherwise it is off by the
-//! order of Dundurs' β ([`Tangential::coupling`]), which is neglected. Poisson's ratio does not change in time.
+//! Where the bodies differ (Dundurs' β is not 0), tangential tractions also displace the surfaces normally, and pressures tangentially. With
+//! [`Coupling::Full`] pressure and tractions are found in turn until both agree (Panagiotopoulos 1975); otherwise this is neglected,
+//! and both are off by the order of β. Poisson's ratio does not change in time.
 
 mod discs;
 mod freedom;
+mod lateral;
 mod operator;
 mod pair;
 mod row;
@@ -27,6 +28,7 @@ pub use pair::PairRatio;
 pub use row::{SlipOutcome, SlipRow};
 
 pub(crate) use freedom::EDGE;
+pub(crate) use lateral::Lateral;
 pub(crate) use solver::{Given, Slip, SlipProblem, SlipSolver};
 pub(crate) use vector::{Vector, inner, length, minus, plus, times};
 
@@ -46,9 +48,12 @@ const MOST_PERIODS: u32 = 12;
 const SAMPLES: u32 = 200;
 
 /// Bytes that a step with friction takes, without what the bodies remember.
-pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
+pub(crate) fn bytes(grid: &Grid, boundary: Boundary, law: &Tangential) -> usize {
+    // The displacements beside those of the own tractions, one of them twice, and the shifted gap.
+    let coupled = 8 * grid.len() * (2 + 3) + Lateral::bytes(operator::lengths(grid, boundary));
     // Ten fields of vectors and the freedom of cells in the solver; eleven fields of vectors and six numbers in the process.
     8 * grid.len() * (2 * 21 + 4 + 6)
+        + if law.is_coupled() { coupled } else { 0 }
         + operator::VectorConvolution::bytes(operator::lengths(grid, boundary))
         + operator::VectorConvolution::bytes(grid.cells())
 }
@@ -64,12 +69,24 @@ pub enum TangentialControl {
     Displacement,
 }
 
+/// What pressure and tangential tractions of bodies with different elastic constants do to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub enum Coupling {
+    /// Nothing: the pressure is that without tangential tractions.
+    #[default]
+    Neglect,
+    /// Each displaces the surfaces also in the direction of the other; both are found in turn until they agree.
+    Full,
+}
+
 /// Friction, and a tangential load over time.
 ///
 /// ```
 /// use std::sync::Arc;
 /// use asperity::{drive::March, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
-/// use asperity::tangential::{Tangential, TangentialControl};
+/// use asperity::tangential::{Coupling, Tangential, TangentialControl};
 /// // A sphere under 1 N, pulled along x with 0.6 of the force that makes it slide.
 /// let grid = Grid::new([64, 64], [0.6e-3, 0.6e-3])?;
 /// let sphere = Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] };
@@ -78,7 +95,8 @@ pub enum TangentialControl {
 ///     creep: Creep::elastic(1e-9),
 ///     loading: Loading { control: Control::Load, history: History::Step { value: 1.0 } }.into(),
 ///     tangential: Some(Arc::new(Tangential {
-///         coefficient: 0.3, coefficients: None, shear_limit: f64::INFINITY, poisson: 0.3, coupling: 0.0,
+///         coefficient: 0.3, coefficients: None, shear_limit: f64::INFINITY, poisson: 0.3, beta: 0.0,
+///         coupling: Coupling::Neglect,
 ///         control: TangentialControl::Force, histories: [pull, none],
 ///     })),
 ///     ..Simulation::new(grid, undeformed_gap(&grid, &[sphere])?)
@@ -100,8 +118,10 @@ pub struct Tangential {
     pub shear_limit: f64,
     /// Poisson's ratio of the pair: the mean of both bodies, weighted by their shear compliances.
     pub poisson: f64,
-    /// Dundurs' β: how much pressure and tangential traction act on each other, which is neglected.
-    pub coupling: f64,
+    /// Dundurs' β: how much pressure and tangential traction act on each other.
+    pub beta: f64,
+    /// Whether they do in the run.
+    pub coupling: Coupling,
     /// What is prescribed.
     pub control: TangentialControl,
     /// Its components along x and y over the time of the run.
@@ -109,11 +129,21 @@ pub struct Tangential {
 }
 
 impl Tangential {
+    /// Whether pressure and tangential tractions act on each other.
+    pub(crate) fn is_coupled(&self) -> bool {
+        self.coupling == Coupling::Full && self.beta != 0.0
+    }
+
     /// The limit of the traction in a cell under a pressure.
     pub(crate) fn limit(&self, cell: usize, pressure: f64) -> f64 {
         let of_cells = self.coefficients.as_ref().and_then(|map| map.as_slice());
         let coefficient = of_cells.map_or(self.coefficient, |map| map[cell]);
         (coefficient * pressure.max(0.0)).min(self.shear_limit)
+    }
+
+    /// The largest friction coefficient of all cells.
+    pub(crate) fn largest(&self) -> f64 {
+        self.coefficients.iter().flatten().copied().fold(self.coefficient, f64::max)
     }
 
     /// What is prescribed at a time.
@@ -142,8 +172,7 @@ impl Tangential {
             Control::Pressure => simulation.grid.area(),
             Control::Approach => return None,
         };
-        let of_cells = self.coefficients.iter().flatten().copied();
-        let coefficient = of_cells.fold(self.coefficient, f64::max);
+        let coefficient = self.largest();
         let end = simulation.times.end();
         let mut times = [history.breaks(end), self.breaks(end), vec![0.0, end]].concat();
         times.extend((1..SAMPLES).map(|n| end * f64::from(n) / f64::from(SAMPLES)));
@@ -239,7 +268,8 @@ impl Tangential {
         require(self.shear_limit > 0.0, "shear limit", format!("{} Pa", self.shear_limit), "greater than 0")
             .map_err(|error| error.of("friction.shear_limit"))?;
         let sound = self.poisson > -1.0 && self.poisson <= 0.5;
-        require(sound, "Poisson's ratio of the pair", self.poisson, "greater than -1 and at most 0.5")
+        require(sound, "Poisson's ratio of the pair", self.poisson, "greater than -1 and at most 0.5")?;
+        require((-1.0..=1.0).contains(&self.beta), "Dundurs' beta", self.beta, "between -1 and 1")
     }
 
     fn validate_histories(&self, simulation: &Simulation) -> Result<()> {

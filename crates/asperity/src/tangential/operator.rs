@@ -2,6 +2,8 @@
 //!
 //! Both components are convolved at once: two transforms, a symmetric 2 x 2 matrix for each wave, two transforms back.
 
+use std::cmp::Ordering;
+
 use asperity_sweep::each;
 
 use super::vector::Vector;
@@ -85,30 +87,11 @@ impl VectorConvolution {
         [mx, my]: [usize; 2],
         coefficient: impl Fn(usize, usize) -> Tangential + Sync,
     ) -> Self {
-        // Those of one quadrant; the others are their mirror images.
-        let half = my / 2 + 1;
-        let mut quadrant = vec![[0.0; 3]; (mx / 2 + 1) * half];
-        each(&mut quadrant, 0..(mx / 2 + 1) * half, |k, n| *k = coefficient(n / half, n % half));
-        let mirrored = |component: usize| {
-            let number = |n: usize| {
-                let (i, j) = (n / my, n % my);
-                let k = quadrant[i.min(mx - i) * half + j.min(my - j)][component];
-                // x y is odd in both: of two signs, or of none, halfway around the torus.
-                let sign = |i: usize, m: usize| {
-                    if 2 * i == m {
-                        0.0
-                    } else if 2 * i > m {
-                        -1.0
-                    } else {
-                        1.0
-                    }
-                };
-                if component == 1 { k * sign(i, mx) * sign(j, my) } else { k }
-            };
-            (0..mx * my).map(number).collect::<Vec<f64>>()
-        };
+        let quadrant = Quadrant::of([mx, my], coefficient);
         let mut whole = Torus::new([mx, my], [mx, my]);
-        let spectra = [0, 1, 2].map(|component| whole.transform(&mirrored(component)));
+        // x y is odd in both.
+        let spectra = [(0, [false; 2]), (1, [true; 2]), (2, [false; 2])]
+            .map(|(component, odd)| whole.transform(&quadrant.mirrored(|k| k[component], odd)));
         let spectrum = (0..whole.spectrum_len()).map(|n| [0, 1, 2].map(|k| spectra[k].0[n].re)).collect();
         Self::new(Torus::new(grid.cells(), [mx, my]), grid.len(), spectrum)
     }
@@ -125,5 +108,36 @@ impl VectorConvolution {
             torus.back(|n| x.0[n] * spectrum[n][axis] + y.0[n] * spectrum[n][axis + 1], part);
             each(u, &part[..], |u, part| u[axis] = part);
         }
+    }
+}
+
+/// Coefficients at distances of so many cells on a torus: those of one quadrant; the others are their mirror images.
+pub(super) struct Quadrant<K> {
+    lengths: [usize; 2],
+    coefficients: Vec<K>,
+}
+
+impl<K: Default + Clone + Send + Sync> Quadrant<K> {
+    pub(super) fn of(lengths: [usize; 2], coefficient: impl Fn(usize, usize) -> K + Sync) -> Self {
+        let [columns, rows] = lengths.map(|m| m / 2 + 1);
+        let mut coefficients = vec![K::default(); columns * rows];
+        each(&mut coefficients, 0..columns * rows, |k, n| *k = coefficient(n / rows, n % rows));
+        Quadrant { lengths, coefficients }
+    }
+
+    /// One component on the whole torus; `odd` along x and y: of two signs, or of none, halfway around it.
+    pub(super) fn mirrored(&self, component: impl Fn(&K) -> f64, odd: [bool; 2]) -> Vec<f64> {
+        let [mx, my] = self.lengths;
+        let sign = |i: usize, m: usize, odd: bool| match (2 * i).cmp(&m) {
+            Ordering::Equal if odd => 0.0,
+            Ordering::Greater if odd => -1.0,
+            _ => 1.0,
+        };
+        let number = |n: usize| {
+            let (i, j) = (n / my, n % my);
+            let k = component(&self.coefficients[i.min(mx - i) * (my / 2 + 1) + j.min(my - j)]);
+            k * sign(i, mx, odd[0]) * sign(j, my, odd[1])
+        };
+        (0..mx * my).map(number).collect()
     }
 }

@@ -8,8 +8,11 @@ use crate::material::Body;
 pub struct PairRatio {
     /// The mean of both bodies, weighted by their shear compliances 1/G.
     pub poisson: f64,
-    /// Dundurs' β = \[(1 - 2 ν1)/G1 - (1 - 2 ν2)/G2\] / \[2 (1 - ν1)/G1 + 2 (1 - ν2)/G2\], at t = 0+.
-    pub coupling: f64,
+    /// Dundurs' β = \[(1 - 2 ν1)/G1 - (1 - 2 ν2)/G2\] / \[2 (1 - ν1)/G1 + 2 (1 - ν2)/G2\]; where it changes in time, the larger one of that
+    /// at t = 0+ and that of the retarded strains.
+    pub beta: f64,
+    /// Whether β changes in time: the bodies creep, and not alike.
+    pub changes: bool,
 }
 
 impl PairRatio {
@@ -24,17 +27,19 @@ impl PairRatio {
     /// };
     /// // Equal bodies do not act on each other; a rubber and a rigid body hardly do.
     /// let alike = PairRatio::of(&[body(1e9, 0.3), body(1e9, 0.3)])?;
-    /// assert!((alike.poisson - 0.3).abs() < 1e-15 && alike.coupling == 0.0);
+    /// assert!((alike.poisson - 0.3).abs() < 1e-15 && alike.beta == 0.0);
     /// let stiff = PairRatio::of(&[body(1e9, 0.25)])?;
-    /// assert!((stiff.coupling - 1.0 / 3.0).abs() < 1e-15);
+    /// assert!((stiff.beta - 1.0 / 3.0).abs() < 1e-15);
     /// # Ok::<(), asperity::Error>(())
     /// ```
     ///
     /// # Errors
     /// [`Error::Invalid`] where Poisson's ratio of a body or of the pair changes in time.
     pub fn of(bodies: &[Body]) -> Result<PairRatio> {
-        let [mut shear, mut weighted, mut coupling, mut contact] = [0.0; 4];
-        let mut ratios = vec![];
+        let [mut shear, mut weighted] = [0.0; 2];
+        // [(1 - 2 ν1)/G1 - (1 - 2 ν2)/G2, 2 (1 - ν1)/G1 + 2 (1 - ν2)/G2] at t = 0+ and of the retarded strains.
+        let mut dundurs = [[0.0; 2]; 2];
+        let (mut ratios, mut creeps) = (vec![], vec![]);
         for (body, sign) in bodies.iter().zip([1.0, -1.0]) {
             let Some(nu) = body.poisson() else {
                 let expected = "constant in time under a tangential load: the response along the surface would change its form. Give \
@@ -50,9 +55,13 @@ impl PairRatio {
             let compliance = 2.0 * own.instantaneous / (1.0 - nu);
             shear += compliance;
             weighted += nu * compliance;
-            coupling += sign * (1.0 - 2.0 * nu) * compliance;
-            contact += 2.0 * (1.0 - nu) * compliance;
+            let late = own.instantaneous + own.terms.iter().map(|term| term.compliance).sum::<f64>();
+            for ([difference, sum], c) in dundurs.iter_mut().zip([own.instantaneous, late]) {
+                *difference += sign * (1.0 - 2.0 * nu) * 2.0 * c / (1.0 - nu);
+                *sum += 4.0 * c;
+            }
             ratios.push((nu, own.terms.is_empty() && own.fluidity == 0.0));
+            creeps.push(own);
         }
         let are_alike = ratios.windows(2).all(|pair| (pair[0].0 - pair[1].0).abs() <= 1e-12);
         let are_elastic = ratios.iter().all(|(_, elastic)| *elastic);
@@ -66,7 +75,10 @@ impl PairRatio {
             Some((nu, _)) if are_alike => *nu,
             _ => weighted / shear,
         };
-        let coupling = if contact > 0.0 { coupling / contact } else { 0.0 };
-        Ok(PairRatio { poisson, coupling })
+        let [early, late] = dundurs.map(|[difference, sum]| if sum > 0.0 { difference / sum } else { 0.0 });
+        let beta = if late.abs() > early.abs() { late } else { early };
+        // Bodies of like materials, and incompressible ones, do not act on each other at any time.
+        let changes = !are_elastic && creeps.windows(2).any(|pair| pair[0] != pair[1]) && poisson < 0.5;
+        Ok(PairRatio { poisson, beta, changes })
     }
 }

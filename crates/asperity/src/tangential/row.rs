@@ -53,3 +53,14 @@ pub struct SlipOutcome {
     /// q c K q \[Pa m\], the sum over the cells: the square of that norm.
     pub(crate) energy: f64,
 }
+
+impl SlipOutcome {
+    /// That of a further solve of the same row: its work adds up.
+    pub(crate) fn then(self, next: SlipOutcome) -> SlipOutcome {
+        SlipOutcome {
+            iterations: self.iterations + next.iterations,
+            convolutions: self.convolutions + next.convolutions,
+            ..next
+        }
+    }
+}

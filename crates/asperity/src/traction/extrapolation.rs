@@ -7,7 +7,7 @@ const DEPTH: usize = 2;
 
 /// The last passes, latest last: b and f = B - b; and fields of passes that are forgotten.
 #[derive(Default)]
-pub(super) struct Extrapolation {
+pub(crate) struct Extrapolation {
     passes: Vec<[Vec<f64>; 2]>,
     free: Vec<[Vec<f64>; 2]>,
     /// The pass of the least residual, and the share of its f that is tried next where a pass fails.
@@ -16,13 +16,13 @@ pub(super) struct Extrapolation {
 }
 
 impl Extrapolation {
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.free.append(&mut self.passes);
         self.free.extend(self.best.take());
     }
 
     /// Sets `bound` to B of the last pass, where `bound` was extrapolated beyond it, and forgets the others; `false` where it was not.
-    pub(super) fn take_back(&mut self, bound: &mut [f64]) -> bool {
+    pub(crate) fn take_back(&mut self, bound: &mut [f64]) -> bool {
         if self.passes.len() < 2 {
             return false;
         }
@@ -34,7 +34,7 @@ impl Extrapolation {
 
     /// Sets `bound` to the next b after a pass that gave `next` = B(b). Where the pass `failed`, half a plain step from the best pass so
     /// far, then a quarter, and so on.
-    pub(super) fn step(&mut self, bound: &mut [f64], next: &[f64], failed: bool, is_best: bool) {
+    pub(crate) fn step(&mut self, bound: &mut [f64], next: &[f64], failed: bool, is_best: bool) {
         if failed && let Some([b, f]) = &self.best {
             self.share *= 0.5;
             let share = self.share;

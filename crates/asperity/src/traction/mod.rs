@@ -29,7 +29,7 @@
 //! | `fluid` | the pressure of a fluid in the gap |
 
 mod adhesion;
-mod extrapolation;
+pub(crate) mod extrapolation;
 mod fluid;
 mod scale;
 mod search;

@@ -52,7 +52,7 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 41] = [
+pub const CASES: [Case; 42] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
@@ -94,6 +94,7 @@ pub const CASES: [Case; 41] = [
     ("cattaneo-mindlin", tangential::sphere),
     ("tangential-rough", tangential::rough),
     ("glued-punch", tangential::punch),
+    ("bonded-contact", tangential::bonded),
 ];
 
 /// The checks of one case.

@@ -9,12 +9,12 @@ use super::{Check, Checks, shape_on, step_load};
 use crate::contact::SolverOptions;
 use crate::drive::{Drive, March};
 use crate::error::Result;
-use crate::grid::Grid;
+use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};
 use crate::material::{Creep, CreepTerm};
 use crate::simulation::Simulation;
 use crate::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
-use crate::tangential::{SlipRow, Tangential, TangentialControl};
+use crate::tangential::{Coupling, SlipRow, Tangential, TangentialControl};
 use crate::time::TimeGrid;
 
 const MU: f64 = 0.3;
@@ -26,7 +26,8 @@ fn pulled(nu: f64, points: Vec<(f64, f64)>) -> Tangential {
         coefficients: None,
         shear_limit: f64::INFINITY,
         poisson: nu,
-        coupling: 0.0,
+        beta: 0.0,
+        coupling: Coupling::Neglect,
         control: TangentialControl::Force,
         histories: [History::Table { points }, History::Step { value: 0.0 }],
     }
@@ -139,6 +140,81 @@ pub(super) fn punch() -> Result<Vec<Check>> {
         let exact = q * (2.0 - nu) * (0.25 + 0.75 * (1.0 - libm::exp(-time))) / (8.0 * radius);
         // Half of the cells at the edge: 0.25 of a cell of 1/40 of the radius.
         checks.relative(format!("displacement at t = {time}"), rows[row].displacement[0], exact, 1e-2);
+    }
+    Ok(checks.list)
+}
+
+/// All cells stick, and pressure and tractions act on each other.
+pub(super) fn bonded() -> Result<Vec<Check>> {
+    let mut checks =
+        Checks::new("bonded-contact", "Spence, Proc. R. Soc. A 305 (1968) 55; Johnson (1985), section 5.3");
+    let glue = |nu: f64| Tangential {
+        coefficient: 1e6,
+        beta: (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)),
+        coupling: Coupling::Full,
+        ..pulled(nu, vec![(0.0, 0.0)])
+    };
+    let tolerance = SolverOptions { tolerance: 1e-9, ..SolverOptions::default() };
+    // A wave in full contact that relaxes from compliance 1 to 4: in waves K is 2/q, N 2 i β/q, and the traction 1/q of that under p.
+    let (nu, amplitude, size) = (0.1, 1e-3, [2.0, 1.0]);
+    let grid = Grid::new([32, 16], size)?;
+    let [qx, qy] = size.map(|side| 2.0 * PI / side);
+    let gap = Array2::from_shape_fn(grid.shape(), |(i, j)| {
+        amplitude * (1.0 - f64::cos(qx * grid.x(i)) * f64::cos(qy * grid.y(j)))
+    });
+    let law = glue(nu);
+    let expected = 0.5 * f64::hypot(qx, qy) * amplitude / (1.0 - law.beta * law.beta);
+    let simulation = |end: f64| Simulation {
+        boundary: Boundary::Periodic,
+        creep: Creep {
+            instantaneous: 1.0,
+            terms: vec![CreepTerm { compliance: 3.0, retardation_time: 1.0 }],
+            fluidity: 0.0,
+        },
+        loading: step_load(0.02),
+        times: TimeGrid::Uniform { end, steps: 100 },
+        tangential: Some(Arc::new(law.clone())),
+        solver: tolerance,
+        ..Simulation::new(grid, gap.clone())
+    };
+    // At once nothing has crept; after 400 retardation times the transient is a rounding error.
+    for (end, compliance) in [(1e-12, 1.0), (400.0, 4.0)] {
+        let (_, [pressure, _]) = states(simulation(end))?;
+        let found = pressure.iter().copied().fold(0.0, f64::max) - 0.5 * 0.02;
+        let largest = expected / compliance * f64::cos(qx * grid.x(0)) * f64::cos(qy * grid.y(0));
+        checks.relative(
+            format!("wave, relaxed to 1/{compliance}: amplitude of the pressure"),
+            found,
+            largest,
+            1e-6,
+        );
+    }
+    // A flat punch of radius 1 on a half-space of shear modulus 1: 4 ln(3 - 4 ν)/(1 - 2 ν) times its depth, and 4/(1 - ν) without friction.
+    let grid = Grid::new([96, 96], [2.4, 2.4])?;
+    let punch = Array2::from_shape_fn(grid.shape(), |(i, j)| {
+        if f64::hypot(grid.x(i) - 1.2, grid.y(j) - 1.2) < 1.0 { 0.0 } else { f64::INFINITY }
+    });
+    for nu in [0.0, 0.3] {
+        let load = |law: Option<Arc<Tangential>>| -> Result<f64> {
+            let mut march = March::new(Simulation {
+                creep: Creep::elastic(0.5 * (1.0 - nu)),
+                loading: Loading { control: Control::Approach, history: History::Step { value: 0.01 } }
+                    .into(),
+                tangential: law,
+                solver: tolerance,
+                ..Simulation::new(grid, punch.clone())
+            })?;
+            Ok(march.advance()?.map_or(f64::NAN, |step| step.row().load))
+        };
+        let found = load(Some(Arc::new(glue(nu))))? / load(None)?;
+        let exact = (1.0 - nu) * libm::log(3.0 - 4.0 * nu) / (1.0 - 2.0 * nu);
+        // Both lack a part of a cell of 1/40 of the radius at the edge, and not quite the same one.
+        checks.relative(
+            format!("load on a glued punch over that without friction, ν = {nu}"),
+            found,
+            exact,
+            3e-3,
+        );
     }
     Ok(checks.list)
 }

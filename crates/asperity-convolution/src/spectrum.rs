@@ -9,11 +9,14 @@ use ndarray::{Array2, Axis, Zip};
 /// `kernel` holds K on the quadrant 0 <= i <= mx/2, 0 <= j <= my/2; the other three are its mirror
 /// images, as on a torus of `lengths` = \[mx, my\] cells. The result has the same shape.
 pub fn even_spectrum(kernel: &Array2<f64>, lengths: [usize; 2]) -> Array2<f64> {
-    let along_y = transform_rows(kernel, lengths[1]);
-    transposed(&transform_rows(&transposed(&along_y), lengths[0]))
+    // Each array is given back before the next but one is made.
+    let along_y = transposed(transform_rows(kernel, lengths[1]));
+    let along_both = transform_rows(&along_y, lengths[0]);
+    drop(along_y);
+    transposed(along_both)
 }
 
-fn transposed(rows: &Array2<f64>) -> Array2<f64> {
+fn transposed(rows: Array2<f64>) -> Array2<f64> {
     let mut columns = Array2::zeros((rows.ncols(), rows.nrows()));
     Zip::from(&mut columns).and(rows.t()).par_for_each(|to, from| *to = *from);
     columns

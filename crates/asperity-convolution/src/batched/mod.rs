@@ -129,7 +129,7 @@ impl<T: Real> BatchedFft<T> {
         if let Some([x, y]) = factors_of(lengths) {
             return BatchedFft { engine: T::plan(instructions, cells, lengths, [&x, &y], spectra) };
         }
-        let longer = cells.map(|n| Self::good_length(2 * n - 1));
+        let longer = Self::converted(cells, lengths).unwrap_or(lengths);
         let wrap = |spectrum: Spectrum| wrapped_spectrum(cells, lengths, longer, spectrum.view()).into();
         Self::on(instructions, cells, longer, spectra.into_iter().map(wrap).collect())
     }
@@ -154,14 +154,27 @@ impl<T: Real> BatchedFft<T> {
         self.engine.back(field);
     }
 
-    /// Bytes of a plan with this number of spectra, without the buffers of its threads (a few rows and columns).
+    /// Bytes of a plan with this number of spectra.
     pub fn bytes(cells: [usize; 2], lengths: [usize; 2], spectra: usize) -> usize {
-        let [mx, my] = match factors_of(lengths) {
-            Some(_) => lengths,
-            None => cells.map(|n| Self::good_length(2 * n - 1)),
-        };
-        let columns = my / 2 + 1;
-        size_of::<T>() * (2 * cells[0] * columns + spectra * (5 * mx).div_ceil(8) * columns)
+        let [mx, my] = Self::converted(cells, lengths).unwrap_or(lengths);
+        let size = size_of::<T>();
+        let lanes = WIDEST / size;
+        let columns = (my / 2 + 1).next_multiple_of(lanes);
+        let plan = size * (2 * cells[0] * columns + spectra * (5 * mx).div_ceil(8) * columns);
+        // A signal and its transform, two numbers in each lane, and some rows.
+        let thread = WIDEST * (2 * (cells[0].max(cells[1] / 2) + mx.max(my / 2)) + cells[1]);
+        plan + rayon::current_num_threads() * thread
+    }
+
+    /// Bytes that planning takes besides, where the lengths are converted.
+    pub fn converting_bytes(cells: [usize; 2], lengths: [usize; 2]) -> usize {
+        let quadrant = |lengths: [usize; 2]| lengths.map(|m| m / 2 + 1).iter().product::<usize>();
+        Self::converted(cells, lengths).map_or(0, |longer| 3 * size_of::<f64>() * quadrant(longer))
+    }
+
+    /// The lengths in place of those that the engine has no transform of.
+    fn converted(cells: [usize; 2], lengths: [usize; 2]) -> Option<[usize; 2]> {
+        factors_of(lengths).is_none().then(|| cells.map(|n| Self::good_length(2 * n - 1)))
     }
 
     /// Starts several consecutive convolutions with an operation on the field in between.
@@ -173,6 +186,9 @@ impl<T: Real> BatchedFft<T> {
         Chain { engine: &mut *self.engine }
     }
 }
+
+/// Bytes of the widest vectors.
+const WIDEST: usize = 64;
 
 /// The factors of mx and my/2; `None` if the engine has no transform of these lengths.
 fn factors_of([mx, my]: [usize; 2]) -> Option<[Factors; 2]> {

@@ -218,7 +218,9 @@ impl Case {
             Some(motion) if self.axis() == Axis::Velocity => Steady::bytes(&simulation, motion.direction),
             _ => simulation.bytes(),
         };
-        let run = own + self.copies() * cells + stress;
+        // As it was given, as the solver takes it, and as it was read.
+        let map = if conditions.hardness_map.is_some() { 3 * 8 * cells } else { 0 };
+        let run = own + self.copies() * cells + stress + map;
         // The run has given its memory back when the leakage is computed.
         let leak = self.leakage.as_ref().map_or(0, |leak| leak.bytes(cells) as usize);
         let rows = self.usual_rows.saturating_mul(ROW);

@@ -39,7 +39,9 @@ impl Backend for Cpu {
     }
 
     fn inverse_bytes(&self, cells: [usize; 2], lengths: [usize; 2]) -> usize {
-        BatchedFft::<f32>::bytes(cells, lengths, 2) + (cells[0] * cells[1]).div_ceil(8)
+        // It is planned when all else is, and the operator before anything else.
+        let planning = BatchedFft::<f32>::converting_bytes(cells, lengths);
+        BatchedFft::<f32>::bytes(cells, lengths, 2) + planning + (cells[0] * cells[1]).div_ceil(8)
     }
 }
 

@@ -456,6 +456,27 @@ fn the_number_of_steps_that_is_advised_is_enough() {
 }
 
 #[test]
+fn the_advice_for_steps_after_a_jump_is_the_last_one() {
+    // A load applied suddenly to a body that creeps over six decades of time, the shortest far below every step of given length.
+    let parts = [sphere(5e-3)];
+    let terms = (-6..1).map(|n| CreepTerm { compliance: 1e-6, retardation_time: 10f64.powi(n) }).collect();
+    let body = Creep { instantaneous: 1e-6, terms, fluidity: 0.0 };
+    let advice = |times: TimeGrid| {
+        let run = Simulation { creep: body.clone(), times, ..simulation(&parts) };
+        after(run, &parts).into_iter().find(|finding| finding.code == STEPS_TOO_LONG).map(|found| found.text)
+    };
+    let given = [
+        TimeGrid::Logarithmic { end: 1.0, steps: 20, first: 0.01 },
+        TimeGrid::Uniform { end: 1.0, steps: 20 },
+    ];
+    for times in given {
+        let text = advice(times).unwrap();
+        assert!(text.contains("Set spacing = \"adaptive\"") && !text.contains("Take "), "{text}");
+    }
+    assert_eq!(advice(TimeGrid::Adaptive { end: 1.0, tolerance: 1e-2, first: 0.01 }), None);
+}
+
+#[test]
 fn a_sine_with_few_steps_is_found() {
     let parts = [sphere(5e-3)];
     let of = |steps| {

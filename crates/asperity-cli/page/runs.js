@@ -39,7 +39,7 @@ function runPart(run, onResult = false) {
   const share = run.share ?? (run.state === "done" ? 1 : null), log = run.log.trim();
   const hasEnded = run.state === "stopped" || run.state === "failed";
   return make("div", { class: "run", "data-state": run.state },
-    make("p", {}, make("b", {}, run.state), ` ${run.case} → `, onResult ? run.result : make("a", { href: link(isFolder(run) ? "study" : "result", run.result) }, run.result)),
+    make("p", {}, make("b", {}, run.state), " ", make("a", { href: link("case", run.case) }, run.case), " → ", onResult ? run.result : make("a", { href: link(isFolder(run) ? "study" : "result", run.result) }, run.result)),
     run.state === "running" && make("progress", { max: 1, "aria-label": `progress of ${run.case}`, ...(share == null ? {} : { value: share }) }),
     isOpen(run) && make("p", { class: "note" }, run.progress || (run.state === "waiting" ? "waits for the runs before it" : "begins")),
     controls(

@@ -86,7 +86,8 @@ pub fn ready(folder: &Folder, action: &Action) -> Result<(), String> {
     let Some([name, output]) = action.run() else { return Ok(()) };
     let path = folder.find(name)?;
     let at = path.parent().unwrap_or(folder.path());
-    let wrong = |why: String| format!("{name} cannot be run: {why}");
+    let root = format!("{}{}", folder.path().display(), std::path::MAIN_SEPARATOR);
+    let wrong = |why: String| format!("{name} cannot be run: {}", why.replace(&root, ""));
     match action {
         Action::Study { vary, .. } => {
             let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;

@@ -304,6 +304,8 @@ impl Application {
         others.filter(|entry| line.draws.is_none_or(|name| entry.file_name() != name)).for_each(|entry| {
             let _ = fs::remove_file(entry.path());
         });
+        // Where nothing was drawn.
+        let _ = fs::remove_dir(&own);
         let _ = fs::remove_dir_all(self.place.join(look_of(number.wrapping_sub(LOOKS))));
         let picture = line.draws.filter(|name| own.join(name).is_file());
         Ok(json!({

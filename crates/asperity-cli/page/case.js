@@ -12,35 +12,56 @@ const script = (() => {
 
 async function casePage(name) {
   const [text] = await Promise.all([ask(`text/${encoded(name)}`), script(), (async () => { schema ??= await ask("schema"); })()]);
-  let saved = text, told = { keys: [] }, timer, busy = false, again = false;
+  let saved = text, told = { keys: [], faults: [] }, timer, busy = false, again = false, estimating = false, edits = Promise.resolve();
   const values = () => Object.fromEntries(told.keys.map(([key, value]) => [key, value]));
   const marks = make("ul", { class: "marks", id: "marks", "aria-live": "polite", "aria-label": "Errors and findings" });
   const summary = make("pre", { class: "words scroll", id: "summary" }), status = make("span", { id: "case-status", class: "note", role: "status" });
   const form = make("div", { class: "form", id: "form" });
-  const view = editor(text, values, () => { unsaved(); clearTimeout(timer); timer = setTimeout(check, 40); });
+  const solved = make("h2", {}, "What will be solved");
+  const soon = () => { clearTimeout(timer); timer = setTimeout(check, 40); };
+  const view = editor(text, values, () => { unsaved(); soon(); });
   const current = () => view.state.doc.toString();
   const unsaved = () => { save.disabled = current() === saved.replace(/\r\n/g, "\n"); };
 
-  async function check(cost = false) {
+  async function check() {
     if (busy) { again = true; return; }
     busy = true;
-    const text = current(), start = performance.now();
+    const start = performance.now();
+    await inspect(false);
+    status.dataset.milliseconds = String(Math.round(performance.now() - start));
+    busy = false;
+    if (again) { again = false; check(); } else if (!told.faults.length) timer = setTimeout(estimate, 700);
+  }
+  /** What a run takes is asked for apart, so that errors do not wait for it. */
+  async function estimate() {
+    if (estimating) return;
+    estimating = true;
+    const isShown = await inspect(true);
+    estimating = false;
+    if (!isShown && !told.faults.length) timer = setTimeout(estimate, 700);
+  }
+  /** Shows what is found about the text; false where it is another one by now. */
+  async function inspect(cost) {
+    const text = current(), value = varied();
     try {
-      told = await send("check", { name, text, cost });
-      if (text === current()) {
-        showMarks();
-        seal.hidden = !told.keys.some(([key]) => key.startsWith("seal."));
-        if (!told.faults.length) summary.textContent = told.summary;
-        status.textContent = told.faults.length ? `${told.faults.length} to correct` : "can be run";
-        status.dataset.milliseconds = String(Math.round(performance.now() - start));
-        if (document.activeElement?.closest("#form") == null) fillForm();
-        if (!cost && !told.faults.length) timer = setTimeout(() => check(true), 700);
-      }
+      const found = await send("check", { name, text, value, cost });
+      if (text !== current() || value !== varied()) return false;
+      told = found;
+      showMarks();
+      const has = (table) => told.keys.some(([key]) => key.startsWith(`${table}.`));
+      seal.hidden = !has("seal");
+      if (told.summary) summary.textContent = told.summary;
+      summary.className = `words scroll${told.summary ? "" : " stale"}`;
+      solved.textContent = told.summary ? "What will be solved" : "What would be solved, of the last text without errors";
+      status.textContent = told.faults.length ? `${told.faults.length} to correct` : "can be run";
+      studied.textContent = told.study?.error ?? (told.study ? `${told.study.runs} runs` : has("study") ? "as [study] says" : "");
+      studied.className = told.study?.error ? "notice" : "note";
+      study.disabled = told.faults.length > 0 || !!told.study?.error || !(told.study || has("study"));
+      if (document.activeElement?.closest("#form") == null) fillForm();
     } catch (error) {
       tell(error.message, true);
     }
-    busy = false;
-    if (again) { again = false; check(); }
+    return true;
   }
 
   function showMarks() {
@@ -60,7 +81,9 @@ async function casePage(name) {
   /** The keys of the case, the common ones first, with what the schema says of them. */
   function fillForm() {
     const given = values(), missing = COMMON.filter((key) => !(key in given) && !told.keys.some(([known]) => known.startsWith(`${key}[`) || known.startsWith(`${key}.`)) && wanted(key, given));
-    const shown = [...COMMON.filter((key) => key in given || missing.includes(key)), ...Object.keys(given).filter((key) => !COMMON.includes(key) && !/\.(terms|points)\[/.test(key))].slice(0, 80);
+    const shown = [...COMMON.filter((key) => key in given || missing.includes(key)), ...Object.keys(given).filter((key) => !COMMON.includes(key) && !/\.(terms|points)\[|^study\./.test(key))].slice(0, 80);
+    const before = key.value || "load.history.value", all = Object.keys(given).filter((one) => !one.startsWith("study."));
+    key.replaceChildren(...all.map((one) => make("option", { value: one, selected: one === before }, one)));
     form.replaceChildren(...shown.map((key) => {
       const value = given[key] ?? "", words = wordsOf(key, given);
       const text = descriptionOf(key, given);
@@ -74,11 +97,18 @@ async function casePage(name) {
   }
   const wanted = (key, given) => formsOf(key, given).length > 0 && !(key.startsWith("time.") && "motion.steady.velocities" in given);
 
-  const set = trying(async (key, value) => {
-    if (!value.trim()) throw new Error(`to leave ${key} out, remove its line in the text`);
-    const next = await send("set", { name, text: current(), key, value });
+  /** One edit after the other, each of the text that the one before has left. */
+  const set = (key, value) => (edits = edits.then(trying(async () => {
+    let text, next;
+    try {
+      if (!value.trim()) throw new Error(`to leave ${key} out, remove its line in the text`);
+      do { text = current(); next = await send("set", { name, text, key, value }); } while (text !== current());
+    } catch (error) {
+      fillForm();
+      throw error;
+    }
     change(next);
-  });
+  })));
   /** Replaces only what differs, so that cursor and undo stay. */
   function change(next) {
     const now = current();
@@ -91,6 +121,7 @@ async function casePage(name) {
   }
 
   const store = async () => {
+    await edits;
     const text = current();
     if (text !== saved.replace(/\r\n/g, "\n")) {
       await send("save", { name, text, before: saved });
@@ -121,13 +152,16 @@ async function casePage(name) {
     await send("do", { do: "run", case: name, output });
     go(link("result", output));
   }), { id: "run", class: "primary" });
-  const vary = make("input", { id: "vary", placeholder: "load.history.value=0.1 N:10 N:5:log", "aria-label": "What varies: KEY=VALUES" });
+  const key = make("select", { id: "vary-key", "aria-label": "key that varies", change: soon });
+  const vary = make("input", { id: "vary", placeholder: "0.1 N, 1 N", "aria-label": "its values", input: soon });
+  const studied = make("span", { id: "studied", class: "note", role: "status" });
+  const varied = () => (vary.value.trim() ? `${key.value}=${vary.value.trim()}` : "");
   const study = button("run a study", trying(async () => {
     await store();
     const output = await ask(`free/${encoded(name.replace(/\.toml$/i, "-study"))}`);
-    await send("do", { do: "study", case: name, vary: vary.value, output });
+    await send("do", { do: "study", case: name, vary: varied(), output });
     go("#/runs", `the results are in ${output}`);
-  }));
+  }), { id: "study", disabled: true });
   const seal = button("compute the whole seal", trying(async () => {
     await store();
     const output = await ask(`free/${encoded(name.replace(/\.toml$/i, "-seal"))}`);
@@ -149,7 +183,9 @@ async function casePage(name) {
     make("div", { class: "two" },
       make("div", {}, make("div", { class: "editor" }, view.dom), marks),
       make("div", {}, make("h2", {}, "Keys"), form)),
-    section("What will be solved", summary, controls(vary, study)),
+    make("section", {}, solved, summary),
+    section("A study", make("p", { class: "note" }, "It runs the case for several values of a key: a list such as 0.1 N, 1 N; from, to, how many as 0.1 N:10 N:5:log; whole numbers as 1..10. ",
+      "The table [study] of the text varies several keys."), controls(key, vary, study, studied)),
   ];
 }
 

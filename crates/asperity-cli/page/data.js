@@ -14,47 +14,50 @@ const OPERATIONS = [["level=plane", "level"], ["crop size=", "crop, e.g. crop si
 
 async function surfacePage(name) {
   const steps = make("textarea", { rows: 4, id: "steps", "aria-label": "Steps, one a line", spellcheck: "false", placeholder: "one step a line, done in their order" });
-  const options = optionFields(known.options.surface, () => look());
+  let timer, stored, written = "";
+  const options = optionFields(known.options.surface, () => { stored = null; draw(); }), spectrum = optionFields(known.options.spectrum, () => { stored = null; draw(); });
   const shown = make("div", { id: "shown", "aria-live": "polite" });
   const output = make("input", { id: "output", value: await ask(`free/${encoded(`${stem(name)}-processed.x3p`)}`), "aria-label": "name of the new file" });
-  let timer, turn = 0;
   const ops = () => steps.value.split("\n").map((line) => line.trim()).filter(Boolean);
-  const look = trying(async (write = false) => {
-    const own = ++turn;
+  const processed = (write) => ({ do: "process", file: name, options: options.values(), ops: ops(), output: output.value, write });
+  const draw = trying(async () => {
     shown.dataset.busy = "yes";
-    const given = { file: name, options: options.values() };
-    const done = await send("do", ops().length ? { do: "process", ...given, ops: ops(), output: output.value, write } : { do: "surface", ...given });
-    if (own !== turn) return done;
-    shown.replaceChildren(...[words(done), picture(done, `heights, spectrum and distribution of ${name}`), statistics(done.json), commands(done)].flat().filter(Boolean));
+    next.textContent = ops().length ? "write the new file, and a new case with it" : "a new case with this surface";
+    const asStored = stored ?? (await look({ do: "surface", file: name, options: { ...options.values(), ...spectrum.values() } }));
+    const done = asStored && ops().length ? await look(processed(false)) : asStored;
+    if (!done) return;
+    stored = asStored.ok ? asStored : null;
+    shown.replaceChildren(...[words(done), picture(done, `heights, spectrum and distribution of ${ops().length ? `${name} after the steps` : name}`), statistics(done.json, ops().length > 0 && stored?.json), commands(done)].flat().filter(Boolean));
     shown.dataset.busy = "no";
-    return done;
   });
-  const soon = () => { clearTimeout(timer); timer = setTimeout(look, 400); };
+  const soon = () => { clearTimeout(timer); timer = setTimeout(draw, 400); };
   steps.addEventListener("input", soon);
-  const write = button("write the new file", trying(async () => {
-    const file = output.value, done = await look(true);
-    if (!done?.ok) return;
-    tell(`wrote ${file}; ${name} is as it was`);
+  const store = async () => {
+    const file = output.value, done = await send("do", processed(true));
+    if (!done.ok) throw new Error(done.told);
     output.value = await ask(`free/${encoded(file)}`);
-  }), { id: "write" });
-  const add = ([step, title]) => button(title, () => { steps.value = `${steps.value.trimEnd()}${steps.value.trim() ? "\n" : ""}${step}`; steps.focus(); step.endsWith("=") || look(); });
-  leave = () => clearTimeout(timer);
-  setTimeout(look);
+    return file;
+  };
+  const write = button("write the new file", trying(async () => { const file = await store(); tell(`wrote ${file}; ${name} is as it was.`, false, file); }), { id: "write" });
+  const next = button("", trying(async () => go(link("new", ops().length ? await store() : name))), { id: "next" });
+  const add = ([step, title]) => button(title, () => { steps.value = `${steps.value.trimEnd()}${steps.value.trim() ? "\n" : ""}${step}`; steps.focus(); step.endsWith("=") || draw(); });
+  leave = () => { clearTimeout(timer); endLooks(); };
+  setTimeout(draw);
   return [make("h1", {}, name), make("div", { class: "two" }, shown, make("div", {},
     make("h2", {}, "Steps"), controls(OPERATIONS.map(add)), steps, controls(output, write),
-    make("h2", {}, "About the file"), options.form,
-    make("p", {}, make("a", { href: link("new", name) }, "A new case with this surface")),
+    make("h2", {}, "About the file"), options.form, spectrum.form, controls(next),
     /\.(csv|txt|dat)$/i.test(name) && make("p", {}, make("a", { href: link("indentation", name) }, "It is a record of an indentation or a force curve"))))];
 }
 
-/** Statistics as stored and levelled. */
-function statistics(found) {
+/** Statistics as stored and levelled; with `before`, after steps beside those as stored. */
+function statistics(found, before) {
   if (!found?.shape) return null;
   const rows = [["Sa", "sa", metres], ["Sq", "sq", metres], ["Sz", "sz", metres], ["Ssk", "ssk", number], ["Sku", "sku", number], ["Sdq", "sdq", number], ["Sdr", "sdr", number]];
-  const row = ([title, key, words]) => make("tr", {}, make("th", { scope: "row" }, title), make("td", {}, words(found[key])), make("td", {}, found.levelled ? words(found.levelled[key]) : ""));
+  const columns = [...(before ? [["as stored", before], ["after the steps", found]] : [["as stored", found]]), ["levelled", found.levelled]];
+  const row = ([title, key, words]) => make("tr", {}, make("th", { scope: "row" }, title), columns.map(([, of]) => make("td", {}, of ? words(of[key]) : "")));
   return [make("p", { id: "shape" }, `${found.shape.join(" × ")} points, ${found.size.map(metres).join(" × ")}, ${found.undefined} undefined`,
       found.fit && `; Hurst exponent ${number(found.fit.hurst)} ± ${number(found.fit.error)}`),
-    make("table", { id: "statistics" }, make("tr", {}, make("th", {}, ""), make("th", {}, "as stored"), make("th", {}, "levelled")), rows.map(row)),
+    make("table", { id: "statistics" }, make("tr", {}, make("th", {}, ""), columns.map(([head]) => make("th", {}, head))), rows.map(row)),
     make("ul", { class: "marks" }, found.findings.map((finding) => make("li", { class: finding.severity }, make("b", {}, finding.severity), ` ${finding.text} `, make("code", {}, finding.code))))];
 }
 
@@ -78,7 +81,8 @@ async function materialPage(name, way) {
   };
   const fit = trying(async (write = false) => {
     shown.dataset.busy = "yes";
-    const done = await send("do", { do: way, file: name, options: options.values(), output: output.value, write });
+    const done = await (write ? (action) => send("do", action) : look)({ do: way, file: name, options: options.values(), output: output.value, write });
+    if (!done) return null;
     draw(done);
     shown.dataset.busy = "no";
     return done;
@@ -86,10 +90,11 @@ async function materialPage(name, way) {
   const write = button("write the block as a file", trying(async () => {
     const file = output.value, done = await fit(true);
     if (!done?.ok) return;
-    tell(`wrote ${file}`);
+    tell(`wrote ${file}.`, false, file);
     output.value = await ask(`free/${encoded(file)}`);
   }), { id: "write" });
-  const data = button("only the data", trying(async () => draw(await send("do", { do: "data", file: name }))));
+  const data = button("only the data", trying(async () => { const done = await look({ do: "data", file: name }); if (done) draw(done); }));
+  leave = endLooks;
   if (way === "fit") setTimeout(fit);
   else shown.append(make("p", { class: "note" }, "The radius of the sphere, or the slope of the cone, is needed for a fit."));
   return [make("h1", {}, name), make("div", { class: "two" }, shown, make("div", {}, make("h2", {}, "Fit"), options.form,
@@ -104,7 +109,7 @@ async function newPage(surface = "") {
   const purpose = make("select", { id: "purpose" }, purposes.map(([name, title]) => make("option", { value: name }, title)));
   const from = choice(files, { id: "from" }), material = choice([...blocks, ...files], { id: "material" });
   if (files.includes(surface)) from.value = surface;
-  const options = optionFields(known.options.surface, () => {}), output = make("input", { id: "output" });
+  const options = optionFields(known.options.surface.slice(0, 2), () => {}), output = make("input", { id: "output" });
   const name = async () => { output.value = await ask(`free/${purpose.value}.toml`); };
   purpose.addEventListener("change", trying(name));
   await name();

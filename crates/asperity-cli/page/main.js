@@ -56,5 +56,6 @@ window.addEventListener("hashchange", () => { tell(message); message = ""; show(
 document.querySelector(".skip").addEventListener("click", (event) => { event.preventDefault(); $("main").focus(); });
 // A file dropped beside the zone would replace the page.
 for (const type of ["dragover", "drop"]) window.addEventListener(type, (event) => event.preventDefault());
+window.addEventListener("pagehide", endLooks);
 countRuns();
 show();

@@ -2,8 +2,13 @@
 
 async function startPage() {
   const list = await ask("list");
-  const of = (kind) => list.filter((entry) => entry.kind === kind);
-  const results = of("result"), cases = of("case"), files = list.filter((entry) => ["file", "study", "block"].includes(entry.kind));
+  const studies = list.filter((entry) => entry.kind === "study");
+  // What a study or a seal holds is shown on its page.
+  const inside = (study) => list.filter((entry) => entry.name.startsWith(`${study.name}/`)), alone = list.filter((entry) => !studies.some((study) => inside(study).includes(entry)));
+  const of = (...kinds) => alone.filter((entry) => kinds.includes(entry.kind));
+  const results = of("result"), cases = of("case"), files = of("file", "block");
+  const count = (study) => inside(study).filter((entry) => entry.kind === "result").length;
+  const pictureOf = (study) => inside(study).find((entry) => /\/(seal|study)\.png$/.test(entry.name));
   const chosen = new Set();
   const compare = button("compare the chosen", () => go(`#/compare/${[...chosen].map(encodeURIComponent).join("/")}`), { disabled: true });
   const choose = (name) => make("input", { type: "checkbox", "aria-label": `choose ${name}`, change: (event) => {
@@ -13,8 +18,11 @@ async function startPage() {
   return [
     make("h1", {}, $("folder").textContent),
     dropZone(),
-    section("Results", results.length
-      ? [controls(compare), make("ul", { class: "tiles" }, results.map((entry) => make("li", {}, choose(entry.name),
+    section("Results", results.length + studies.length
+      ? [results.length > 1 && controls(compare), make("ul", { class: "tiles" }, studies.map((study) => make("li", {},
+          make("a", { class: "tile study", href: link("study", study.name) },
+            pictureOf(study) && make("img", { src: `file/${encoded(pictureOf(study).name)}`, alt: "", loading: "lazy" }),
+            make("b", {}, study.name), make("span", {}, `${pictureOf(study)?.name.endsWith("seal.png") ? "a whole seal" : "a study"}: ${count(study)} results`)))), results.map((entry) => make("li", {}, choose(entry.name),
           make("a", { class: "tile", href: link("result", entry.name) },
             entry.rows > 0 && make("img", { src: `thumbnail/${encoded(entry.name)}`, alt: "", loading: "lazy" }),
             make("b", {}, entry.title || entry.name), make("span", {}, `${entry.name}, ${entry.state}`),
@@ -29,7 +37,7 @@ async function startPage() {
         button([make("img", { src: `starter/${name}.png`, alt: "", loading: "lazy" }), make("b", {}, title), make("span", {}, name)],
           trying(() => begin(name)), { class: "tile", "aria-label": `new case ${name}: ${title}` }))))),
     files.length > 0 && section("Other files", make("ul", { class: "files" }, files.map((entry) =>
-      make("li", {}, make("a", { href: link(entry.kind === "study" ? "study" : "file", entry.name) }, entry.name))))),
+      make("li", {}, make("a", { href: link("file", entry.name) }, entry.name))))),
   ];
 }
 

@@ -121,7 +121,7 @@ fn case(found: &Comparison) -> String {
 /// The last rows of two, and what differs at the times that both have.
 fn text(found: &Comparison, first: &Reader) -> String {
     let mut text =
-        format!("\n{:<28}{:<16}{:<16}{:<14}largest difference\n", "at the end", "first", "second", "change");
+        format!("\n{:<28}{:<16}{:<16}{:<16}largest difference\n", "at the end", "first", "second", "change");
     let axis = first.header().axis();
     for number in &found.numbers {
         let units = if number.units == "1" { "" } else { number.units.as_str() };
@@ -136,7 +136,7 @@ fn text(found: &Comparison, first: &Reader) -> String {
         let word = |value: f64| if units.is_empty() { format!("{value:.6}") } else { quantity(value, units) };
         let largest = number.largest_difference.map_or(String::new(), apart);
         let name = if number.name == "time" { axis.name() } else { &number.name };
-        text += &format!("{name:<28}{:<16}{:<16}{change:<14}{largest}\n", word(a), word(b));
+        text += &format!("{name:<28}{:<16}{:<16}{change:<16}{largest}\n", word(a), word(b));
     }
     text += &match found.common_rows {
         0 => "\nThe results have no row at the same time: only their ends are compared.\n".to_owned(),

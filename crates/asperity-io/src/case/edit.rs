@@ -21,11 +21,16 @@ pub fn entries(text: &str) -> Option<Vec<Entry>> {
     let mut found = vec![];
     of_table(document.as_table(), "", &mut |key, value| {
         let span = value.span().unwrap_or_default();
-        let line = 1 + text[..span.start].matches('\n').count();
-        found.push(Entry { key: key.to_owned(), value: words(value, &text[span]), line });
+        found.push((span.start, key.to_owned(), words(value, &text[span])));
     });
-    found.sort_by_key(|entry| entry.line);
-    Some(found)
+    found.sort_by_key(|(start, ..)| *start);
+    let (mut line, mut at) = (1, 0);
+    let entry = |(start, key, value): (usize, String, String)| {
+        line += text[at..start].matches('\n').count();
+        at = start;
+        Entry { key, value, line }
+    };
+    Some(found.into_iter().map(entry).collect())
 }
 
 /// The text with a key set to a value, which is TOML or else text; missing tables are made.

@@ -135,6 +135,19 @@ impl Base {
         let source = file_text(path).map_err(|(reason, help)| {
             CaseErrors::without_place(Code::File, &name, reason, "a case file", help)
         })?;
+        Base::of(name, source, path.parent().unwrap_or(Path::new("")), overrides)
+    }
+
+    /// The same from the text of a case.
+    ///
+    /// # Errors
+    /// As [`Base::read`].
+    pub(crate) fn of(
+        name: String,
+        source: String,
+        directory: &Path,
+        overrides: &[String],
+    ) -> Result<Base, CaseErrors> {
         let text = overridden(&name, source.clone(), overrides)?.text;
         let read = Text::parse(&text).and_then(|parsed| {
             let study = document::study(&parsed)?;
@@ -144,8 +157,7 @@ impl Base {
             Ok(read) => read,
             Err(errors) => return Err(CaseErrors { name, source: text, errors }),
         };
-        let directory = path.parent().unwrap_or(Path::new("")).to_owned();
-        Ok(Base { name, directory, source, overrides: overrides.to_vec(), vary, zip })
+        Ok(Base { name, directory: directory.to_owned(), source, overrides: overrides.to_vec(), vary, zip })
     }
 
     /// The text of the case with its overrides and without `[study]`.

@@ -102,6 +102,8 @@ pub struct Fitted {
     pub unnamed: bool,
     /// The largest change of the data in a direction that no passive material has.
     pub reversal: Option<Reversal>,
+    /// Most terms that it was allowed.
+    pub max_terms: usize,
     /// Points of the file that lack a number and were left out.
     pub left_out: usize,
     /// What was assumed.
@@ -153,11 +155,11 @@ impl Fitted {
         }
     }
 
-    /// Whether the fit is far from its data; of a fit of both moduli, how far from each.
+    /// Whether the fit is far from its data; of a fit of both moduli, how far from each, unless more terms may come closer.
     fn misfit_found(&self, name: &str) -> Option<Finding> {
         let Misfit { rms, max, .. } = self.misfit;
         match (self.moduli, self.columns.as_slice()) {
-            (Moduli::Both, [(_, storage), (_, loss)]) => {
+            (Moduli::Both, [(_, storage), (_, loss)]) if self.terms() < self.max_terms => {
                 let found = finding::misfit_of_both(name, rms, [*storage, *loss], self.noise)?;
                 Some(Finding { text: unsure(found.text, &self.factors), ..found })
             }
@@ -275,6 +277,7 @@ impl Request {
         notes.extend(left_out(self.options.moduli, &columns).map(|note| unsure(note, &factors)));
         Ok(Fitted {
             material,
+            max_terms: self.options.max_terms,
             series,
             misfit,
             moduli: self.options.moduli,

@@ -90,6 +90,24 @@ impl Study {
         Ok(study)
     }
 
+    /// The number of runs of the study of a case that is this text, of which the first ones, so many as `checked` says, are
+    /// checked; its files are relative to `directory`.
+    ///
+    /// # Errors
+    /// Where case, keys or values are wrong, as [`Study::new`].
+    pub fn runs_of(
+        text: &str,
+        directory: &Path,
+        vary: &[String],
+        checked: usize,
+    ) -> Result<usize, StudyError> {
+        let base = Base::of("case".to_owned(), text.to_owned(), directory, &[])?;
+        let plan = Plan::of(&base, vary, None)?;
+        let runs = plan.runs();
+        runs.iter().take(checked).try_for_each(|run| base.case(&plan.overrides(run)).map(drop))?;
+        Ok(runs.len())
+    }
+
     /// The study in a folder.
     ///
     /// # Errors

@@ -83,9 +83,11 @@ pub struct Diagnostics {
     /// Where an approach is held while cells are at the hardness, and the control of each stage.
     held: time::Held,
     controls: Vec<Control>,
-    /// Errors of the time steps that are too large by themselves: number of the row, error, load; and the largest load of the run.
-    coarse: Vec<(usize, f64, f64)>,
+    /// Errors of the time steps that are too large by themselves, and the largest load of the run.
+    coarse: Vec<time::Coarse>,
     heaviest: f64,
+    /// Time of the last row, and whether it is the state right after a jump.
+    last: Option<(f64, bool)>,
     touches: bool,
     /// Thickness of a body on a free domain, and its contacts.
     thickness: Option<f64>,
@@ -121,6 +123,7 @@ impl Diagnostics {
             controls: simulation.loading.stages.iter().map(|stage| stage.control).collect(),
             coarse: vec![],
             heaviest: 0.0,
+            last: None,
             touches: false,
             thickness: known.thickness.filter(|_| free),
             widest: Widest::default(),
@@ -220,8 +223,12 @@ impl Diagnostics {
         self.deepest = self.deepest.max(row.approach);
         self.heaviest = self.heaviest.max(row.load.abs());
         self.touches |= row.contact_area > 0.0;
+        let (time, load) = (row.coordinate.value(), row.load.abs());
+        let is_at_once = self.last.is_none_or(|(before, _)| before == time);
+        let after_jump =
+            self.last.replace((time, is_at_once && load > 0.0)).is_some_and(|(_, jumped)| jumped);
         if let Some(error) = row.time_error.filter(|error| *error > time::COARSE) {
-            self.coarse.push((index, error, row.load.abs()));
+            self.coarse.push(time::Coarse { index, error, load, after_jump });
         }
         self.resolution.see(index, contact);
         self.strain.see(index, row, contact);

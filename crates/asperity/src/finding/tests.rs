@@ -456,6 +456,28 @@ fn the_number_of_steps_that_is_advised_is_enough() {
 }
 
 #[test]
+fn the_advice_for_steps_after_a_jump_is_the_last_one() {
+    // A load applied suddenly to a rubber that relaxes from 1 GPa to 1 MPa over six decades of time, most of it far within a step.
+    let parts = [sphere(5e-3)];
+    let terms: Vec<(f64, f64)> =
+        (0..7).map(|n| (10f64.powf(9.0 - 0.5 * f64::from(n)), 10f64.powi(n - 6))).collect();
+    let body = crate::material::Relaxation::absolute(1e6, &terms).unwrap().to_creep().unwrap();
+    let advice = |times: TimeGrid| {
+        let run = Simulation { creep: body.clone(), times, ..simulation(&parts) };
+        after(run, &parts).into_iter().find(|finding| finding.code == STEPS_TOO_LONG).map(|found| found.text)
+    };
+    let given = [
+        TimeGrid::Logarithmic { end: 1.0, steps: 20, first: 0.01 },
+        TimeGrid::Uniform { end: 1.0, steps: 20 },
+    ];
+    for times in given {
+        let text = advice(times).unwrap();
+        assert!(text.contains("Set spacing = \"adaptive\"") && !text.contains("Take "), "{text}");
+    }
+    assert_eq!(advice(TimeGrid::Adaptive { end: 1.0, tolerance: 1e-2, first: 0.01 }), None);
+}
+
+#[test]
 fn a_sine_with_few_steps_is_found() {
     let parts = [sphere(5e-3)];
     let of = |steps| {

@@ -65,12 +65,25 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     found
 }
 
+/// A row whose estimated error is large by itself.
+pub(super) struct Coarse {
+    pub index: usize,
+    pub error: f64,
+    pub load: f64,
+    /// Whether its step begins at a jump.
+    pub after_jump: bool,
+}
+
 /// The finding for steps whose estimated error is too large for the largest load of the run. (In the first step of a load that grows from 0
-/// the error is large for the load of that moment, whatever the length of the step.) `rows` are their numbers, errors and loads.
-pub(super) fn coarse(simulation: &Simulation, rows: &[(usize, f64, f64)], heaviest: f64) -> Option<Finding> {
+/// the error is large for the load of that moment, whatever the length of the step.)
+pub(super) fn coarse(simulation: &Simulation, rows: &[Coarse], heaviest: f64) -> Option<Finding> {
     let mut worst = Worst::default();
-    for (row, error, _) in rows.iter().filter(|(_, error, load)| error * load > COARSE * heaviest) {
-        worst.above(*row, *error, COARSE);
+    let mut after_jump = false;
+    for row in rows.iter().filter(|row| row.error * row.load > COARSE * heaviest) {
+        if row.error > worst.value {
+            after_jump = row.after_jump;
+        }
+        worst.above(row.index, row.error, COARSE);
     }
     worst.warning(STEPS_TOO_LONG, |error| {
         format!(
@@ -78,14 +91,16 @@ pub(super) fn coarse(simulation: &Simulation, rows: &[(usize, f64, f64)], heavie
              approach are often more accurate, single cells less). {}",
             error.place(),
             digits(100.0 * error.value),
-            shorter(simulation, error.value)
+            shorter(simulation, error.value, after_jump)
         )
     })
 }
 
-/// What brings an estimated error down to the limit: it falls with the square of the step, and with the tolerance of adaptive steps.
-fn shorter(simulation: &Simulation, error: f64) -> String {
+/// What brings an estimated error down to the limit: it falls with the square of the step, and with the tolerance of adaptive steps; the
+/// creep right after a jump may be far faster than any step of given length.
+fn shorter(simulation: &Simulation, error: f64, after_jump: bool) -> String {
     let factor = (error / COARSE).sqrt();
+    let after_jump = after_jump && simulation.tangential.is_none();
     let advice = match &simulation.times {
         TimeGrid::Adaptive { tolerance, .. } => {
             format!(
@@ -93,6 +108,8 @@ fn shorter(simulation: &Simulation, error: f64) -> String {
                 rounded_down(tolerance / factor.powi(2))
             )
         }
+        TimeGrid::List(_) if after_jump => format!("Set `end`, {ADAPTIVE} `times`: {AFTER_JUMP}."),
+        _ if after_jump => format!("Set {ADAPTIVE} `steps`: {AFTER_JUMP}."),
         _ => more_steps(simulation, factor),
     };
     match &simulation.motion {
@@ -104,6 +121,9 @@ fn shorter(simulation: &Simulation, error: f64) -> String {
     }
 }
 
+const ADAPTIVE: &str = "spacing = \"adaptive\" and leave out";
+const AFTER_JUMP: &str = "right after a jump the material creeps far faster than later, and more steps of given length do not follow it";
+
 /// "Take 70 steps in place of 40, ...", for `factor` times as many steps.
 fn more_steps(simulation: &Simulation, factor: f64) -> String {
     let times = significant((10.0 * factor).ceil() / 10.0, 2);
@@ -112,17 +132,16 @@ fn more_steps(simulation: &Simulation, factor: f64) -> String {
         None => format!(", or set {what}"),
         Some(_) => String::new(),
     };
-    let adaptive = "spacing = \"adaptive\" and leave out";
     match &simulation.times {
         _ if simulation.loading.stages.iter().any(|stage| stage.times.is_some()) => {
-            format!("Take {times} times as many steps there{}.", or(&format!("{adaptive} `steps`")))
+            format!("Take {times} times as many steps there{}.", or(&format!("{ADAPTIVE} `steps`")))
         }
         TimeGrid::Uniform { steps, .. } | TimeGrid::Logarithmic { steps, .. } => {
             let needed = (*steps as f64 * factor).ceil();
-            format!("Take {needed} steps in place of {steps}{}.", or(&format!("{adaptive} `steps`")))
+            format!("Take {needed} steps in place of {steps}{}.", or(&format!("{ADAPTIVE} `steps`")))
         }
         TimeGrid::List(_) | TimeGrid::Adaptive { .. } => {
-            format!("Give {times} times as many times there{}.", or(&format!("`end`, {adaptive} `times`")))
+            format!("Give {times} times as many times there{}.", or(&format!("`end`, {ADAPTIVE} `times`")))
         }
     }
 }

@@ -284,10 +284,22 @@ impl FitOptions {
                 ),
             ));
         }
-        let reversals = curves.iter().map(|curve| curve.reversal(&spectrum, self.limit));
+        let reversal = self.judge(curves, &spectrum, misfit);
+        let reversal = reversal.map_err(|fault| self.too_few(problem, curves, &spectrum).unwrap_or(fault))?;
+        let noise = curves.iter().map(|curve| data::noise(curve.xs, curve.values)).fold(0.0, f64::max);
+        let uncertainty = refine::uncertainty(problem, &spectrum);
+        Ok(Fit { function: spectrum, misfit, columns, window, noise, uncertainty, reversal })
+    }
+
+    /// The first reversal of the curves.
+    ///
+    /// # Errors
+    /// Where the spectrum, with this misfit, is too far from the data.
+    fn judge(&self, curves: &[Curve], spectrum: &Spectrum, misfit: Misfit) -> Result<Option<Reversal>> {
+        let reversals = curves.iter().map(|curve| curve.reversal(spectrum, self.limit));
         let reversals: Vec<Option<Reversal>> = reversals.collect::<Result<_>>()?;
         for curve in curves {
-            data::check_misfit(curve.words, curve.xs, curve.values, &curve.residuals(&spectrum), self.limit)?;
+            data::check_misfit(curve.words, curve.xs, curve.values, &curve.residuals(spectrum), self.limit)?;
         }
         require(
             misfit.rms <= self.limit,
@@ -299,10 +311,26 @@ impl FitOptions {
                 100.0 * self.limit
             ),
         )?;
-        let noise = curves.iter().map(|curve| data::noise(curve.xs, curve.values)).fold(0.0, f64::max);
-        let uncertainty = refine::uncertainty(problem, &spectrum);
-        let reversal = reversals.into_iter().flatten().next();
-        Ok(Fit { function: spectrum, misfit, columns, window, noise, uncertainty, reversal })
+        Ok(reversals.into_iter().flatten().next())
+    }
+
+    /// The error of a spectrum that is too far from the data only because it may have so few terms.
+    fn too_few(&self, problem: &Problem, curves: &[Curve], spectrum: &Spectrum) -> Option<Error> {
+        if self.misfit.is_some() || spectrum.terms.len() < self.max_terms {
+            return None;
+        }
+        let misfit = |spectrum: &Spectrum| {
+            together(curves, &curves.iter().map(|curve| curve.misfit(spectrum)).collect::<Vec<_>>())
+        };
+        let free = problem.fit(self.per_decade, usize::MAX);
+        self.judge(curves, &free, misfit(&free)).ok()?;
+        let [few, many] = [spectrum, &free].map(|spectrum| 100.0 * misfit(spectrum).rms);
+        let terms = free.terms.len();
+        Some(Error::invalid(
+            "most terms of the fit",
+            self.max_terms,
+            format!("more: so few deviate from the data by {few:.1} % rms, and {terms} by {many:.1} %"),
+        ))
     }
 }
 

@@ -12,6 +12,11 @@ pub const SURFACE: &[Choice] = &[
     ("height-unit", "unit of the heights, where the file does not state it", "um"),
     ("channel", "channel, where there are several", "0"),
 ];
+/// Of `asperity surface info` besides.
+pub const SPECTRUM: &[Choice] = &[
+    ("longest", "longest wavelength of the fitted Hurst exponent", "50 um"),
+    ("shortest", "shortest wavelength of it", "1 um"),
+];
 /// Of `asperity material fit`.
 pub const FIT: &[Choice] = &[
     ("modulus", "moduli: young or shear", "young"),
@@ -23,6 +28,13 @@ pub const FIT: &[Choice] = &[
     ("window", "part of the curve", "0.1 Hz, 100 Hz"),
     ("long-time", "after the data: free, solid or fluid", "solid"),
     ("sheet", "sheet of a spreadsheet", "Sheet1"),
+    ("kind", "what was measured: relaxation, creep or dma", "dma"),
+    ("column", "columns of quantities, by number or header", "frequency=1; storage=2"),
+    ("unit", "units that the header does not name", "storage=MPa"),
+    ("arrhenius", "Arrhenius shift: energy, reference", "120 kJ/mol, 20 °C"),
+    ("shift-table", "file of shift factors, in this folder", "shifts.csv"),
+    ("misfit", "misfit to hold with few terms", "2 %"),
+    ("max-misfit", "misfit above which data are refused", "10 %"),
 ];
 /// Of `asperity fit-indentation`.
 pub const INDENTATION: &[Choice] = &[
@@ -34,6 +46,14 @@ pub const INDENTATION: &[Choice] = &[
     ("spring-constant", "of a force curve: spring constant", "0.2 N/m"),
     ("long-time", "after the record: free, solid or fluid", "solid"),
     ("terms", "number of terms", "2"),
+    ("modulus", "moduli: young or shear", "young"),
+    ("given", "what the test controlled: depth or load", "depth"),
+    ("interface", "of a thin sample: bonded or slip", "bonded"),
+    ("branch", "of a force curve: retraction or approach", "retraction"),
+    ("sensitivity", "deflection per volt", "50 nm"),
+    ("range", "range of the attraction", "0.3 nm"),
+    ("column", "columns of quantities, by number or header", "time=1; load=2"),
+    ("unit", "units that the header does not name", "load=mN"),
 ];
 
 /// Name of an option, what it is, an example.
@@ -154,13 +174,14 @@ impl Action {
                 let [from, material, output] = [reads(from)?, reads(material)?, writes(output)?];
                 let files =
                     [format!("--for={purpose}"), format!("--from={from}"), format!("--material={material}")];
-                Line::of(&["new", &output]).with(files).with(given(options, SURFACE)?)
+                Line::of(&["new", &output]).with(files).with(given(options, &SURFACE[..2])?)
             }
             Action::Surface { file, options } => {
                 let file = reads(file)?;
                 let python =
                     format!("surface = asp.Surface.read({})\nprint(surface.statistics())", quoted(&file));
-                let line = Line::of(&["surface", "info", &file]).with(given(options, SURFACE)?);
+                let known = [SURFACE, SPECTRUM].concat();
+                let line = Line::of(&["surface", "info", &file]).with(given(options, &known)?);
                 line.more(drawn()).draws("shown.svg").python(options, python)
             }
             Action::Process { file, ops, options, output, write } => {
@@ -176,14 +197,17 @@ impl Action {
                     .python(options, python)
                     .draws("shown.svg")
                     .more(drawn());
-                let line = Line { shown: [line.shown, vec!["-o".to_owned(), to]].concat(), ..line };
-                if *write { line } else { line.instead(looked_at(&format!("{}.npz", stem(&file)))) }
+                let shown = [line.shown, vec!["-o".to_owned(), to.clone()]].concat();
+                let line = Line { shown, ..line };
+                let last = to.rsplit(['/', '\\']).next().unwrap_or_default();
+                if *write { line } else { line.instead(looked_at(last)) }
             }
             Action::Data { file } => {
                 Line::of(&["material", "show", &reads(file)?]).more(drawn()).draws("shown.svg")
             }
             Action::Fit { file, options, output, write } => {
                 let (file, output) = (reads(file)?, writes(output)?);
+                options.get("shift-table").map(reads).transpose()?;
                 let python = format!("fit = asp.fit_file({}, poisson=0.5)\nprint(fit)", quoted(&file));
                 let line = Line::of(&["material", "fit", &file]).with(given(options, FIT)?).more(drawn());
                 let line = line.draws("shown.svg").python(options, python);
@@ -246,6 +270,18 @@ impl Action {
 }
 
 impl Action {
+    /// Whether nothing in the folder changes: a later look of the same page makes it useless.
+    pub fn looks(&self) -> bool {
+        match self {
+            Action::Surface { .. } | Action::Data { .. } | Action::Compare { .. } => true,
+            Action::Process { write, .. }
+            | Action::Fit { write, .. }
+            | Action::Indentation { write, .. }
+            | Action::Report { write, .. } => !write,
+            _ => false,
+        }
+    }
+
     /// The case and the result of a run; `None` where it is no run.
     pub fn run(&self) -> Option<[&str; 2]> {
         match self {
@@ -256,12 +292,14 @@ impl Action {
         }
     }
 
-    /// The same run, which goes on with what it has written.
-    pub fn resumed(mut self) -> Action {
-        if let Action::Run { resume, .. } | Action::Study { resume, .. } | Action::Seal { resume, .. } =
-            &mut self
+    /// The same run, which goes on with what it has written; or, with a name, to a new result.
+    pub fn again(mut self, anew: Option<String>) -> Action {
+        if let Action::Run { resume, output, .. }
+        | Action::Study { resume, output, .. }
+        | Action::Seal { resume, output, .. } = &mut self
         {
-            *resume = true;
+            *resume = anew.is_none();
+            *output = anew.unwrap_or_else(|| std::mem::take(output));
         }
         self
     }
@@ -326,23 +364,22 @@ impl Line {
     }
 }
 
-/// A name without its folder and ending.
-fn stem(name: &str) -> String {
-    std::path::Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned()
-}
-
 /// A name as a word of a command line, never an option.
 fn named(name: &str) -> String {
     if name.starts_with('-') { format!("./{name}") } else { name.to_owned() }
 }
 
-/// Options that are known, each as one word.
+/// Options that are known, each as one word; columns and units may be several.
 fn given(options: &Given, known: &[Choice]) -> Result<Vec<String>, String> {
-    let word = |(name, value): (&String, &String)| match known.iter().any(|(known, ..)| known == name) {
-        true => Ok(format!("--{name}={value}")),
-        false => Err(format!("there is no option --{name} here")),
-    };
-    options.iter().filter(|(_, value)| !value.trim().is_empty()).map(word).collect()
+    let mut words = vec![];
+    for (name, value) in options.iter().filter(|(_, value)| !value.trim().is_empty()) {
+        if !known.iter().any(|(known, ..)| known == name) {
+            return Err(format!("there is no option --{name} here"));
+        }
+        let parts = value.split(|c| c == ';' && ["column", "unit"].contains(&name.as_str()));
+        words.extend(parts.map(|part| format!("--{name}={}", part.trim())));
+    }
+    Ok(words)
 }
 
 /// A text in quotes, for Python.
@@ -371,7 +408,16 @@ mod tests {
     #[test]
     fn every_action_is_a_command_line() {
         let options = |known: &[Choice]| -> Given {
-            let skip = ["cone", "wlf", "window", "spring-constant", "thickness"];
+            let skip = [
+                "cone",
+                "wlf",
+                "window",
+                "spring-constant",
+                "thickness",
+                "arrhenius",
+                "shift-table",
+                "misfit",
+            ];
             known
                 .iter()
                 .filter(|c| !skip.contains(&c.0))
@@ -418,7 +464,7 @@ mod tests {
         );
         assert_eq!(
             line.words()[4..6],
-            ["-o", ".asperity-app/1/a.npz"],
+            ["-o", ".asperity-app/1/it's.x3p"],
             "what is looked at goes to a place of its own"
         );
     }

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
 
 use asperity_io::answer::{self, Units};
@@ -29,7 +30,11 @@ const LONGEST: usize = 200;
 
 /// A folder, as its path without links.
 #[derive(Clone)]
-pub struct Folder(PathBuf);
+pub struct Folder {
+    root: PathBuf,
+    /// Names of files that are being taken.
+    taken: Arc<Mutex<Vec<String>>>,
+}
 
 impl Folder {
     pub fn open(path: &Path) -> Result<Folder, Failure> {
@@ -38,19 +43,19 @@ impl Folder {
         };
         let root = path.canonicalize().map_err(|error| failed(&error))?;
         if root.is_dir() {
-            Ok(Folder(root))
+            Ok(Folder { root, taken: Arc::default() })
         } else {
             Err(failed(&"it is a file; name the folder that it is in"))
         }
     }
 
     pub fn path(&self) -> &Path {
-        &self.0
+        &self.root
     }
 
     /// The path of what has this name below the folder, without links.
     pub fn find(&self, name: &str) -> Result<PathBuf, String> {
-        let path = self.0.join(plain(name)?);
+        let path = self.root.join(plain(name)?);
         let found = path.canonicalize().map_err(|error| match error.kind() {
             ErrorKind::NotFound => format!("there is no {name}"),
             _ => format!("cannot read {name}: {error}"),
@@ -64,7 +69,7 @@ impl Folder {
 
     /// The path of a new file of this name, whose folder is there.
     pub fn place(&self, name: &str) -> Result<PathBuf, String> {
-        let path = self.0.join(plain(name)?);
+        let path = self.root.join(plain(name)?);
         let (Some(parent), Some(last)) = (path.parent(), path.file_name()) else {
             return Err(format!("{name} is no name of a file"));
         };
@@ -78,19 +83,25 @@ impl Folder {
 
     /// A name that is free: "steel.x3p", else "steel-2.x3p", and so on.
     pub fn free(&self, name: &str) -> Result<String, String> {
+        self.free_but(name, &[])
+    }
+
+    /// The same, but none of `others`.
+    fn free_but(&self, name: &str, others: &[String]) -> Result<String, String> {
         let path = Path::new(plain(name)?);
         let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
         let (stem, ending) = (part(path.file_stem()), part(path.extension()));
         let ending = if ending.is_empty() { ending } else { format!(".{ending}") };
         let numbered = (2..1000).map(|n| path.with_file_name(format!("{stem}-{n}{ending}")));
         let mut names = std::iter::once(path.to_owned()).chain(numbered);
-        let free = names.find(|name| self.0.join(name).symlink_metadata().is_err());
+        let is_other = |name: &PathBuf| others.iter().any(|other| Path::new(other) == name);
+        let free = names.find(|name| self.root.join(name).symlink_metadata().is_err() && !is_other(name));
         free.map(|name| name.to_string_lossy().into_owned())
             .ok_or_else(|| format!("{name} exists a thousand times"))
     }
 
     fn inside(&self, name: &str, path: PathBuf) -> Result<PathBuf, String> {
-        match path.starts_with(&self.0) {
+        match path.starts_with(&self.root) {
             true => Ok(path),
             false => Err(format!("{name} leads out of the folder, and only what is in it is shown")),
         }
@@ -105,16 +116,26 @@ impl Folder {
         if plain(name)?.contains(['/', '\\']) {
             return Err(format!("{name} is no name of a file"));
         }
-        let name = self.free(name)?;
-        let copied =
-            output::write(&self.place(&name)?, false, |file| std::io::copy(&mut body, file).map(drop));
-        copied.map_err(|error| format!("{name} was not stored: {error}")).map(|()| name)
+        let taken = || self.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        let name = {
+            let mut taken = taken();
+            let name = self.free_but(name, &taken)?;
+            taken.push(name.clone());
+            name
+        };
+        let place = self.place(&name);
+        let copied = place.and_then(|place| {
+            let copied = output::write(&place, false, |file| std::io::copy(&mut body, file).map(drop));
+            copied.map_err(|error| format!("{name} was not stored: {error}"))
+        });
+        taken().retain(|other| *other != name);
+        copied.map(|()| name)
     }
 
     /// Cases, results, studies and other files, the latest first, results with their answers.
     pub fn list(&self) -> Value {
         let mut found = vec![];
-        self.walk(&self.0, 0, &mut found);
+        self.walk(&self.root, 0, &mut found);
         // Where there are too many, data are left out first.
         found.sort_by_key(|entry| (entry.kind == Kind::File, std::cmp::Reverse(entry.modified)));
         found.truncate(MOST);
@@ -135,11 +156,18 @@ impl Folder {
         shown.collect()
     }
 
+    /// The names of the cases.
+    pub fn cases(&self) -> Vec<String> {
+        let mut found = vec![];
+        self.walk(&self.root, 0, &mut found);
+        found.into_iter().filter(|entry| entry.kind == Kind::Case).map(|entry| entry.name).collect()
+    }
+
     fn walk(&self, folder: &Path, depth: usize, found: &mut Vec<Entry>) {
         for entry in folder.read_dir().into_iter().flatten().flatten() {
             let path = entry.path();
             let name =
-                path.strip_prefix(&self.0).ok().and_then(Path::to_str).map(|name| name.replace('\\', "/"));
+                path.strip_prefix(&self.root).ok().and_then(Path::to_str).map(|name| name.replace('\\', "/"));
             let Some(name) = name else { continue };
             // What leads out of the folder is not shown.
             let Ok(place) = self.find(&name) else { continue };
@@ -249,7 +277,12 @@ fn of_result(path: &Path) -> Value {
     };
     let units = Units::of(&reader, &Units::default());
     let answers = answer::of(&reader, &units).unwrap_or_default();
-    let words = answers.iter().take(ANSWERS).map(|answer| json!([answer.label(), answer.words(&units)]));
+    let words = |answer: &answer::Answer| match answer.name.as_str() {
+        // Between which rows.
+        "tight_from" => format!("{} ({})", answer.words(&units), answer.note),
+        _ => answer.words(&units),
+    };
+    let words = answers.iter().take(ANSWERS).map(|answer| json!([answer.label(), words(answer)]));
     json!({
         "title": reader.header().title,
         "state": reader.state(),

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::action::Action;
+use super::case::{changed, ready};
 use super::folder::Folder;
 use crate::failure::Failure;
 
@@ -126,10 +127,26 @@ impl Jobs {
             return Err("this run has not ended".to_owned());
         }
         let has_begun = self.folder.find(&job.result).is_ok();
-        job.action = if has_begun { job.action.clone().resumed() } else { job.action.clone() };
+        let action = if has_begun { job.action.clone().again(None) } else { job.action.clone() };
+        ready(&self.folder, &action)?;
+        job.action = action;
         job.state = State::Waiting;
         self.save(&list);
         Ok(())
+    }
+
+    /// What a run was asked for.
+    pub fn action(&self, id: u64) -> Result<Action, String> {
+        let list = self.list();
+        list.iter()
+            .find(|job| job.id == id)
+            .map(|job| job.action.clone())
+            .ok_or("there is no such run".to_owned())
+    }
+
+    /// The case of the last run that wrote a result.
+    pub fn case_of(&self, result: &str) -> Option<String> {
+        self.list().iter().rev().find(|job| job.result == result).map(|job| job.case.clone())
     }
 
     /// All runs with how far they are, the latest first.
@@ -145,7 +162,10 @@ impl Jobs {
                 .folder
                 .find(&job.result)
                 .is_ok_and(|path| Reader::open(&path).is_ok_and(|r| !r.is_empty()));
+            let has_stopped = matches!(job.state, State::Stopped | State::Failed) && has_rows;
+            let changed = if has_stopped { changed(&self.folder, &job.case, &job.result) } else { None };
             json!({
+                "changed": changed,
                 "id": job.id, "case": job.case, "result": job.result, "state": job.state, "shell": job.shell,
                 "python": job.python, "progress": rows, "share": share, "has_rows": has_rows,
                 "log": log, "out": own_text(&self.file(job.id, "out")).map(|out| String::from_utf8_lossy(&out).into_owned()),
@@ -166,6 +186,7 @@ impl Jobs {
     /// Writes the list; where the disk is full, it is still in memory.
     fn save(&self, list: &[Job]) {
         let text = serde_json::to_vec_pretty(list).unwrap_or_default();
+        let _ = fs::create_dir(&self.place);
         if let Err(error) = write_all(&self.place.join("runs.json"), true, &text) {
             crate::messages::message!("warning: the list of runs cannot be stored: {error}");
         }
@@ -251,6 +272,8 @@ impl Jobs {
 
 /// A file of the application's own folder, empty; what stands in its place is removed, and no link is followed.
 pub fn own_file(path: &Path) -> std::io::Result<File> {
+    // The folder may have been removed meanwhile.
+    path.parent().map(fs::create_dir).transpose().ok();
     if path.symlink_metadata().is_ok_and(|data| !data.is_file()) {
         fs::remove_file(path)?;
     }

@@ -12,8 +12,9 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
+use std::process::{Child, Stdio};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity_examples::{TEMPLATES, Template};
 use asperity_io::case::{schema, with_key};
@@ -23,7 +24,7 @@ use asperity_report::thumbnail;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use self::action::{Action, Choice, FIT, INDENTATION, SURFACE};
+use self::action::{Action, Choice, FIT, INDENTATION, SPECTRUM, SURFACE};
 use self::folder::{Folder, LARGEST};
 use self::jobs::Jobs;
 use super::view::page_of;
@@ -50,8 +51,9 @@ const EDITOR_LICENSE: &str = include_str!("../../../page/codemirror/LICENSE-Code
 
 /// The application's own folder, below the one that it works on.
 const PLACE: &str = ".asperity-app";
-/// Pictures that are kept for looking at.
+/// Pictures that are kept for looking at, and processes that draw them at a time.
 const LOOKS: u64 = 64;
+const DRAWN: usize = 4;
 /// Largest text that a page sends \[bytes\].
 const LARGEST_TEXT: u64 = 16 << 20;
 
@@ -73,7 +75,8 @@ impl Verb for App {
         if !self.no_open {
             open_browser(&opened.address);
         }
-        opened.serve(Application { folder, place, jobs, number: AtomicU64::new(0) })
+        let (number, looks) = (AtomicU64::new(0), Mutex::default());
+        opened.serve(Application { folder, place, jobs, number, looks })
     }
 }
 
@@ -135,6 +138,8 @@ struct Application {
     jobs: Jobs,
     /// Of the last picture that was drawn for looking at.
     number: AtomicU64,
+    /// The processes that draw, each with its page.
+    looks: Mutex<Vec<(String, Arc<Mutex<Child>>)>>,
 }
 
 /// What a page sends.
@@ -146,8 +151,11 @@ struct Edit {
     #[serde(default)]
     cost: bool,
     before: Option<String>,
-    key: Option<String>,
-    value: Option<String>,
+    #[serde(default)]
+    key: String,
+    /// Of the key; or what a study varies.
+    #[serde(default)]
+    value: String,
 }
 
 impl Site for Application {
@@ -182,6 +190,7 @@ impl Application {
             "kind" => json_of(&json!(self.folder.kind_of(name)?)),
             "free" => json_of(&json!(self.folder.free(name)?)),
             "result-of" => json_of(&json!(case::result_name(&self.folder, name)?)),
+            "origin" => json_of(&case::origin(&self.folder, name, self.jobs.case_of(name))?),
             "text" => json_of(&json!(text(&self.folder.find(name)?)?)),
             "thumbnail" => {
                 let reader = Reader::open(&self.folder.find(name)?).map_err(|error| error.to_string())?;
@@ -218,61 +227,104 @@ impl Application {
         body.take(LARGEST_TEXT).read_to_end(&mut text).map_err(|error| error.to_string())?;
         let unread = |error: serde_json::Error| format!("the request is not understood: {error}");
         match path {
-            "/do" => self.carry_out(&serde_json::from_slice(&text).map_err(unread)?),
+            "/do" => self.carry_out(&serde_json::from_slice(&text).map_err(unread)?, &request.query),
+            "/leave" => Ok(json!(self.end_looks(&request.query, DRAWN))),
+            "/anew" => {
+                let action = self.jobs.action(serde_json::from_slice(&text).map_err(unread)?)?;
+                let output = action.run().map(|[_, output]| self.folder.free(output)).transpose()?;
+                self.carry_out(&action.again(output), "")
+            }
             "/stop" => self.jobs.stop(serde_json::from_slice(&text).map_err(unread)?).map(|()| json!(true)),
             "/again" => self.jobs.again(serde_json::from_slice(&text).map_err(unread)?).map(|()| json!(true)),
             "/check" | "/save" | "/set" => {
                 let Edit { name, text, cost, before, key, value } =
                     serde_json::from_slice(&text).map_err(unread)?;
                 match path {
-                    "/check" => case::checked(&self.folder, &name, &text, cost),
+                    "/check" => case::checked(&self.folder, &name, &text, &value, cost),
                     "/save" => {
                         case::save(&self.folder, &name, &text, before.as_deref()).map(|()| json!(true))
                     }
-                    _ => {
-                        with_key(&text, &key.unwrap_or_default(), &value.unwrap_or_default()).map(Value::from)
-                    }
+                    _ => with_key(&text, &key, &value).map(Value::from),
                 }
             }
             _ => Err("there is nothing here".to_owned()),
         }
     }
 
-    /// Runs a command line, or puts it into the queue.
-    fn carry_out(&self, action: &Action) -> Result<Value, String> {
+    /// Ends what a page looks at, and the oldest looks beyond so many.
+    fn end_looks(&self, page: &str, most: usize) {
+        let mut looks = self.looks.lock().unwrap_or_else(PoisonError::into_inner);
+        let over = looks.len().saturating_sub(most);
+        let mut n = 0;
+        looks.retain(|(of, child)| {
+            n += 1;
+            let is_kept = of != page && n > over;
+            if !is_kept {
+                let _ = child.lock().unwrap_or_else(PoisonError::into_inner).kill();
+            }
+            is_kept
+        });
+    }
+
+    /// Runs a command line, or puts it into the queue. What a page looks at ends with its next look.
+    fn carry_out(&self, action: &Action, page: &str) -> Result<Value, String> {
         let number = self.number.fetch_add(1, Ordering::Relaxed);
         let look = look_of(number);
         let line = action.line(&self.folder, &format!("{PLACE}/{look}"))?;
         let (shell, python) = (line.in_shell(), line.in_python());
         if action.run().is_some() {
+            case::ready(&self.folder, action)?;
             return self.jobs.add(action.clone(), shell, python).map(|id| json!({ "run": id }));
         }
         let failed = |error: std::io::Error| format!("cannot run the command: {error}");
         let own = self.place.join(&look);
         if line.draws.is_some() {
-            fs::create_dir(&own).map_err(failed)?;
+            // Both, as the place may have been removed meanwhile.
+            fs::create_dir_all(&own).map_err(failed)?;
         }
         let mut command = jobs::program().map_err(failed)?;
-        let done = command.args(line.words()).current_dir(self.folder.path()).stdin(Stdio::null()).output();
-        let done = done.map_err(failed)?;
-        let out = String::from_utf8_lossy(&done.stdout).into_owned();
+        command.args(line.words()).current_dir(self.folder.path()).stdin(Stdio::null());
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().map_err(failed)?;
+        let (out, told) = (child.stdout.take(), child.stderr.take());
+        let child = Arc::new(Mutex::new(child));
+        if action.looks() {
+            self.end_looks(page, DRAWN - 1);
+            let mut looks = self.looks.lock().unwrap_or_else(PoisonError::into_inner);
+            looks.push((page.to_owned(), child.clone()));
+        }
+        let told = std::thread::spawn(move || all_of(told));
+        let out = all_of(out);
+        let told = told.join().unwrap_or_default();
+        let done = child.lock().unwrap_or_else(PoisonError::into_inner).wait().map_err(failed)?;
+        let mut looks = self.looks.lock().unwrap_or_else(PoisonError::into_inner);
+        looks.retain(|(_, other)| !Arc::ptr_eq(other, &child));
+        drop(looks);
         // Heights that were only looked at may be large; pictures are asked for soon or never.
         let others = own.read_dir().into_iter().flatten().flatten();
         others.filter(|entry| line.draws.is_none_or(|name| entry.file_name() != name)).for_each(|entry| {
             let _ = fs::remove_file(entry.path());
         });
+        // Where nothing was drawn.
+        let _ = fs::remove_dir(&own);
         let _ = fs::remove_dir_all(self.place.join(look_of(number.wrapping_sub(LOOKS))));
         let picture = line.draws.filter(|name| own.join(name).is_file());
         Ok(json!({
             "shell": shell,
             "python": python,
-            "ok": done.status.success(),
+            "ok": done.success(),
             "json": serde_json::from_str::<Value>(&out).ok(),
             "out": out,
-            "told": String::from_utf8_lossy(&done.stderr).replace(&format!("{PLACE}/{look}/"), ""),
+            "told": told.replace(&format!("{PLACE}/{look}/"), ""),
             "picture": picture.map(|name| format!("{look}/{name}")),
         }))
     }
+}
+
+/// All that a process writes there.
+fn all_of(pipe: Option<impl Read>) -> String {
+    let mut bytes = vec![];
+    let _ = pipe.map(|mut pipe| pipe.read_to_end(&mut bytes));
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 /// The folder of what is only looked at, by its number.
@@ -296,7 +348,7 @@ fn page(folder: &Folder) -> String {
     let known = json!({
         "folder": folder.path().display().to_string(),
         "starters": starters,
-        "options": { "surface": choices(SURFACE), "fit": choices(FIT), "indentation": choices(INDENTATION) },
+        "options": { "surface": choices(SURFACE), "spectrum": choices(SPECTRUM), "fit": choices(FIT), "indentation": choices(INDENTATION) },
     });
     let parts = [
         ("style", format!("{STYLE}{OWN_STYLE}")),

@@ -198,6 +198,149 @@ fn a_case_is_checked_while_it_is_typed() {
 }
 
 #[test]
+fn what_a_study_varies_is_checked() {
+    let (_keep, folder) = folder();
+    let app = App::start(&folder);
+    let check = |more: &str, vary: &str| {
+        let text = format!("{CASE}{more}");
+        app.post("check", &json!({ "name": "small.toml", "text": text, "value": vary, "cost": true })).1
+    };
+    assert_eq!(check("", "load.history.value=1 N:2 N:3")["study"], json!({ "runs": 3 }));
+    for (vary, why) in
+        [("load.history.value=1 m,2 m", "unit of a length"), ("load.history.value=1 N:2 N", "how many")]
+    {
+        let told = check("", vary);
+        assert!(told["study"]["error"].as_str().unwrap().contains(why), "{told}");
+        assert_eq!(told["faults"], json!([]), "the case itself is right: {told}");
+        let study = json!({ "do": "study", "case": "small.toml", "vary": vary, "output": "st" });
+        let (status, told) = app.post("do", &study);
+        assert!(status == 422 && told.as_str().unwrap().contains(why), "{told}");
+    }
+    let told = check("[study]\nvary = { \"load.history.value\" = [\"0.1 N\", \"1 m\"] }\n", "");
+    let line = CASE.lines().count() + 2;
+    assert_eq!(told["faults"][0]["line"], line, "{told}");
+    assert!(told["faults"][0]["message"].as_str().unwrap().contains("1 m"), "{told}");
+}
+
+#[test]
+fn a_run_with_faults_is_refused_with_the_first() {
+    let (_keep, folder) = folder();
+    std::fs::write(folder.join("wrong.toml"), CASE.replace("8 s", "8 N").replace("\"5 mm\"", "\"5 Pa\""))
+        .unwrap();
+    let app = App::start(&folder);
+    let (status, told) = app.post("do", &json!({ "do": "run", "case": "wrong.toml", "output": "w.zarr" }));
+    let told = told.as_str().unwrap();
+    assert!(status == 422 && told.contains("line 7") && !told.contains("line 15"), "{told}");
+    assert_eq!(app.get("runs").1, "[]");
+}
+
+#[test]
+fn a_run_whose_case_has_changed_begins_anew() {
+    let (_keep, folder) = folder();
+    std::fs::write(folder.join("long.toml"), long()).unwrap();
+    let app = App::start(&folder);
+    assert_eq!(app.post("do", &json!({ "do": "run", "case": "long.toml", "output": "long.zarr" })).0, 200);
+    let start = Instant::now();
+    while rows(&folder.join("long.zarr")) < 3 {
+        assert!(start.elapsed() < Duration::from_secs(120), "no rows");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert_eq!(app.post("stop", &json!(1)).0, 200);
+    assert_eq!(wait(&app, &["stopped"])[0]["changed"], json!([]));
+    std::fs::write(folder.join("long.toml"), CASE).unwrap();
+    let change = "domain.cells: [256, 256] → [32, 32]";
+    let runs: Value = serde_json::from_str(&app.get("runs").1).unwrap();
+    assert_eq!(runs[0]["changed"], json!([change, "time.steps: 5000 → 8"]));
+    let resume = json!({ "do": "run", "case": "long.toml", "output": "long.zarr", "resume": true });
+    for (status, told) in [app.post("do", &resume), app.post("again", &json!(1))] {
+        assert!(status == 422 && told.as_str().unwrap().contains(change), "{told}");
+    }
+    // Its case is with the result, also where the file is another one by now.
+    let origin: Value = serde_json::from_str(&app.get("origin/long.zarr").1).unwrap();
+    assert_eq!((&origin["case"], &origin["text"]), (&json!("long.toml"), &json!(long())));
+    assert_eq!(app.post("anew", &json!(1)).0, 200);
+    let runs = wait(&app, &["done", "failed"]);
+    assert_eq!((&runs[0]["state"], &runs[0]["result"]), (&json!("done"), &json!("long-2.zarr")), "{runs}");
+    let origin: Value = serde_json::from_str(&app.get("origin/long-2.zarr").1).unwrap();
+    assert_eq!((&origin["case"], &origin["changed"]), (&json!("long.toml"), &json!([])));
+}
+
+#[test]
+fn two_files_of_one_name_at_a_time_are_both_kept() {
+    let (_keep, folder) = folder();
+    let app = App::start(&folder);
+    let begin = |content: &str| {
+        let mut stream = std::net::TcpStream::connect(&app.host).unwrap();
+        let head = format!(
+            "POST /{}/upload?data.csv HTTP/1.1\r\nHost: {}\r\nContent-Length: {}\r\n\r\n",
+            app.token,
+            app.host,
+            content.len() + 1
+        );
+        std::io::Write::write_all(&mut stream, format!("{head}{content}").as_bytes()).unwrap();
+        std::thread::sleep(Duration::from_millis(300));
+        stream
+    };
+    let names = [begin("first"), begin("second")].map(|mut stream| {
+        std::io::Write::write_all(&mut stream, b"!").unwrap();
+        let mut answer = String::new();
+        std::io::Read::read_to_string(&mut stream, &mut answer).unwrap();
+        answer.rsplit_once("\r\n\r\n").unwrap().1.to_owned()
+    });
+    assert_eq!(names, ["\"data.csv\"", "\"data-2.csv\""]);
+    let content = ["data.csv", "data-2.csv"].map(|name| std::fs::read_to_string(folder.join(name)).unwrap());
+    assert_eq!(content, ["first!", "second!"]);
+}
+
+#[test]
+fn its_own_folder_may_vanish() {
+    let (_keep, folder) = folder();
+    let app = App::start(&folder);
+    let run = |output: &str| {
+        std::fs::remove_dir_all(folder.join(".asperity-app")).unwrap();
+        app.post("do", &json!({ "do": "run", "case": "small.toml", "output": output })).0
+    };
+    assert_eq!(run("a.zarr"), 200);
+    assert_eq!(wait(&app, &["done", "failed"])[0]["state"], "done");
+    let (_, done) =
+        app.post("do", &json!({ "do": "report", "results": ["a.zarr"], "output": "a.html", "write": false }));
+    assert_eq!(
+        (&done["ok"], app.get(&format!("look/{}", done["picture"].as_str().unwrap())).0),
+        (&json!(true), 200)
+    );
+}
+
+/// The steps of a surface are drawn while they are typed: what is drawn in vain ends, and leaves nothing.
+#[test]
+fn a_later_look_of_a_page_ends_the_earlier_one() {
+    let (_keep, folder) = folder();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/data/ground-steel.x3p");
+    std::fs::copy(data, folder.join("s.x3p")).unwrap();
+    let app = App::start(&folder);
+    let look = |page: &str, cells: usize| {
+        let op = format!("resample=bilinear cells={cells},{cells}");
+        let action =
+            json!({ "do": "process", "file": "s.x3p", "ops": [op], "output": "p.x3p", "write": false });
+        let (_, done) = app.post(&format!("do?{page}"), &action);
+        done["ok"] == true
+    };
+    // Far more points than are drawn in the time of a small one.
+    let (large, of_another, small) = std::thread::scope(|scope| {
+        let large = scope.spawn(|| look("one", 6000));
+        let of_another = scope.spawn(|| look("two", 64));
+        std::thread::sleep(Duration::from_millis(200));
+        let small = look("one", 32);
+        (large.join().unwrap(), of_another.join().unwrap(), small)
+    });
+    assert_eq!((large, of_another, small), (false, true, true));
+    let files = |name: &std::path::PathBuf| name.read_dir().unwrap().map(|entry| entry.unwrap().file_name());
+    let own = folder.join(".asperity-app").read_dir().unwrap().map(|entry| entry.unwrap().path());
+    let kept: Vec<_> =
+        own.filter(|path| path.is_dir()).flat_map(|path| files(&path).collect::<Vec<_>>()).collect();
+    assert_eq!(kept, ["shown.svg", "shown.svg"], "only pictures");
+}
+
+#[test]
 fn a_study_runs_and_results_are_exported() {
     let (_keep, folder) = folder();
     let app = App::start(&folder);

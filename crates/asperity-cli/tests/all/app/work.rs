@@ -95,9 +95,10 @@ fn from_a_dropped_file_to_the_comparison() {
     };
     typed(browser, "level=plane");
     let levelled = sq(browser);
-    // The levelled column of the stored surface is the stored column of the levelled one.
+    // As stored, after the steps, levelled: the steps do what the levelled column of the stored surface shows.
     let cells = |text: &str| text.split('\t').map(str::to_owned).collect::<Vec<_>>();
-    assert_eq!(cells(&stored)[2], cells(&levelled)[1], "{stored} {levelled}");
+    let (stored, levelled) = (cells(&stored), cells(&levelled));
+    assert_eq!([&levelled[1], &levelled[2]], [&stored[1], &stored[2]], "{stored:?} {levelled:?}");
     browser.picture("app-surface.png");
     typed(browser, "\ncrop cells=48,48");
     assert!(browser.text("document.getElementById('shape').textContent").starts_with("48 × 48 points"));
@@ -107,6 +108,8 @@ fn from_a_dropped_file_to_the_comparison() {
         "asperity surface process ground-steel.x3p --op=level=plane '--op=crop cells=48,48' -o ground-steel-processed.x3p"
     );
     assert!(!folder.join("ground-steel-processed.x3p").exists(), "only looked at so far");
+    // A new case takes what is shown.
+    assert!(browser.text("document.getElementById('next').textContent").starts_with("write the new file"));
     browser.eval("(document.getElementById('write').click(), true)");
     browser
         .wait("document.getElementById('told').textContent.startsWith('wrote ground-steel-processed.x3p')");
@@ -153,6 +156,9 @@ fn from_a_dropped_file_to_the_comparison() {
     let line = 1 + before.lines().take_while(|line| !line.starts_with("end = ")).count();
     assert!(mark.starts_with(&format!("line {line}")) && mark.contains("10 N"), "{mark}");
     browser.wait("document.querySelector('.cm-lintRange-error')?.textContent.includes('10 N')");
+    assert!(browser.text("document.getElementById('summary').className").contains("stale"));
+    browser.eval("(document.getElementById('run').click(), true)");
+    browser.wait("document.getElementById('told').textContent.includes('cannot be run')");
     browser.picture("app-case.png");
     set(browser, "time.end", "10 s");
     browser.wait(&format!("{STATUS} === 'can be run'"));
@@ -164,10 +170,10 @@ fn from_a_dropped_file_to_the_comparison() {
     assert!(took.parse::<f64>().unwrap() < 3000.0, "{took} ms");
     eprintln!("a check of {} lines takes {took} ms in the page", after.lines().count());
     completion(browser);
-    // Long enough to be stopped.
+    // Long enough to be stopped; of two edits at a time none is lost.
     set(browser, "time.steps", "6000");
-    browser.wait(&format!("({TEXT}).includes('steps = 6000')"));
     set(browser, "output.every", "200");
+    browser.wait(&format!("({TEXT}).includes('steps = 6000')"));
     browser.wait(&format!("({TEXT}).includes('every = 200') && /600[01] rows/.test(document.getElementById('summary').textContent)"));
     browser.wait("document.getElementById('summary').textContent.includes('run time')");
 
@@ -206,6 +212,10 @@ fn from_a_dropped_file_to_the_comparison() {
     browser.eval("(document.getElementById('report').click(), true)");
     browser.wait("document.getElementById('done').textContent.includes('seal.html')");
     assert!(folder.join("seal.html").exists());
+    assert_eq!(
+        browser.text("document.querySelector('.files-made a').getAttribute('href')"),
+        "#/file/seal.html"
+    );
     browser.picture("app-result.png");
     let nameless = browser.eval(NAMELESS);
     assert_eq!(nameless, json!([]), "{name}");
@@ -220,8 +230,13 @@ fn from_a_dropped_file_to_the_comparison() {
     browser.wait("!!document.getElementById('compare')");
     browser.eval("(document.getElementById('compare').click(), true)");
     browser.wait("document.querySelector('h1').textContent === 'Comparison of 2 results' && document.documentElement.dataset.ready === 'yes'");
-    assert!(browser.text("document.querySelector('main pre').textContent").contains("time.steps"));
+    assert!(browser.text("document.querySelector('main table').textContent").contains("time.steps"));
     browser.picture("app-compare.png");
+
+    // The first result leads to its case, and says what has changed there.
+    browser.go(&format!("#/result/{name}"));
+    let origin = browser.text("document.getElementById('origin').textContent");
+    assert!(origin.contains("seal.toml") && origin.contains("time.steps: 6000 → 20"), "{origin}");
 
     // Every page: names for screen readers, no page wider than a phone, light and dark.
     for page in [

@@ -228,6 +228,24 @@ fn fewer_terms_than_the_data_call_for_cost_misfit() {
 }
 
 #[test]
+fn too_few_terms_are_blamed_and_not_the_data() {
+    let truth = thirteen();
+    let times = logspace(1e-7, 1e6, 200);
+    let moduli: Vec<f64> = times.iter().map(|t| truth.value(*t)).collect();
+    let error = |max_terms: usize, moduli: &[f64]| {
+        let options = FitOptions { max_terms, ..FitOptions::default() };
+        fit_relaxation(&times, moduli, &options).err().map(|error| error.to_string())
+    };
+    let few = error(3, &moduli).unwrap();
+    assert!(few.contains("most terms of the fit") && !few.contains("point"), "{few}");
+    assert_eq!(error(20, &moduli), None);
+    // A modulus that doubles is wrong with any number of terms.
+    let wrong: Vec<f64> =
+        moduli.iter().enumerate().map(|(n, m)| if n < 100 { *m } else { 2.0 * m }).collect();
+    assert!(error(3, &wrong).unwrap().contains("point"));
+}
+
+#[test]
 fn bad_options_are_named() {
     let bad = |options: FitOptions, words: &str| {
         let error = fit_relaxation(&[1.0, 2.0], &[2.0, 1.0], &options).unwrap_err().to_string();

@@ -180,7 +180,8 @@ fn from_a_dropped_file_to_the_comparison() {
     // Run, stop, resume.
     browser.eval("(document.getElementById('run').click(), true)");
     browser.wait("!!document.querySelector('iframe') && !!document.querySelector('.run progress')");
-    browser.wait("document.querySelector('iframe').contentDocument?.documentElement.dataset.ready === 'yes'");
+    browser
+        .wait("document.querySelector('iframe').contentDocument?.documentElement?.dataset.ready === 'yes'");
     let page = "document.querySelector('iframe').contentDocument";
     browser.wait(&format!(
         "{page}.getElementById('instant').max >= 3 && {page}.getElementById('instant').value >= 3"

@@ -34,6 +34,7 @@ fn wetted(
         sides: Sides::Periodic,
         smallest_gap: 0.0,
         action: Action::Gaps(Pockets::default()),
+        bulk_modulus: None,
     };
     Simulation {
         boundary: Boundary::Periodic,

@@ -8,6 +8,8 @@
 /// Pass from which on cells are held that gain and lose access, and changes after which they are.
 const FIRST: usize = 40;
 const CHANGES: u8 = 4;
+/// Changes of its access after which a pocket has lost what it had before this row.
+const VENTED: u8 = 6;
 /// Pass from which on cells are held whose traction goes up and down.
 const LATER: usize = 60;
 /// Change of such a traction, over the largest one; a tenth of it every [`DECADE`] passes.
@@ -80,6 +82,12 @@ impl Latch {
         let held = cell.held_at.or(gains_and_loses.then_some(cell.with_access)).unwrap_or(b);
         self.counting += usize::from((held - b).abs() > small);
         held
+    }
+
+    /// b that a cell had when it last had access \[Pa\], if it has lost that again and again.
+    pub(super) fn vented(&self, number: usize) -> Option<f64> {
+        let cell = &self.cells[number];
+        (cell.accesses >= VENTED).then_some(cell.with_access)
     }
 
     /// A pass is done.

@@ -52,7 +52,7 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 41] = [
+pub const CASES: [Case; 42] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
@@ -91,6 +91,7 @@ pub const CASES: [Case; 41] = [
     ("fluid-wave", fluid::wave),
     ("fluid-channel", fluid::channel),
     ("fluid-strip", fluid::strip),
+    ("fluid-sealed", fluid::sealed),
     ("cattaneo-mindlin", tangential::sphere),
     ("tangential-rough", tangential::rough),
     ("glued-punch", tangential::punch),

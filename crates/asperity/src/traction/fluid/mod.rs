@@ -182,9 +182,10 @@ impl TractionLaw for FluidPressure {
     }
 
     fn bytes(&self, grid: &Grid) -> usize {
-        // The factorisation, and about 30 fields: gap, network, iteration, pressures, pockets, the access of the cells.
+        // The factorisation, and about 30 fields: gap, network, iteration, pressures, pockets, the access of the cells; 12 of sealed pockets.
+        let fields = if self.in_pockets().is_some() { 42 } else { 30 };
         let factor = factor_bytes(grid.len()).min(FlowOptions::default().memory);
-        if self.action == Action::Everywhere { 0 } else { factor as usize + 30 * 8 * grid.len() }
+        if self.action == Action::Everywhere { 0 } else { factor as usize + fields * 8 * grid.len() }
     }
 
     fn check(&self, simulation: &Simulation) -> Result<()> {

@@ -123,6 +123,9 @@ mod tests {
             last[1] = latch.hold(1, true, 0.3 * up, limits);
             last[2] = latch.hold(2, true, 0.9 + libm::pow(-0.5, f64::from(pass)), limits);
             latch.pass();
+            // Its access changes in each pass after the first.
+            assert_eq!(latch.vented(0), (pass >= 6).then_some(0.5), "{pass}");
+            assert_eq!(latch.vented(1), None);
             if pass == 50 {
                 assert_eq!((last[0], last[1], latch.held()), (0.5, 0.0, 1));
             }

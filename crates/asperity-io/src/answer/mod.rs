@@ -76,7 +76,9 @@ impl Answer {
     pub fn label(&self) -> String {
         match (self.name.as_str(), self.unit) {
             ("contact_area", "m") => "contact length".into(),
-            (name, _) => name.replace('_', " ").replace("pull off", "pull-off"),
+            (name, _) => {
+                name.replace('_', " ").replace("pull off", "pull-off").replace("lift off", "lift-off")
+            }
         }
     }
 

@@ -40,11 +40,21 @@ def test_the_mean_pressure_over_the_contact_is_that_of_the_cells_in_contact():
 
 @pytest.mark.parametrize(
     ("fluid", "words"),
-    [({"inlet": -1.0}, "inlet"), ({"inlet": 1e3, "pockets": "sealed"}, "pockets"), ({"inlet": 1e3, "coupling": "one-way"}, "coupling")],
+    [({"inlet": -1.0}, "inlet"), ({"inlet": 1e3, "pockets": "sealed"}, "bulk_modulus"), ({"inlet": 1e3, "bulk_modulus": 2e9}, "bulk_modulus"), ({"inlet": 1e3, "coupling": "one-way"}, "coupling")],
 )
 def test_what_a_fluid_cannot_be_is_named(fluid, words):
     with pytest.raises(asp.CaseError, match=words):
         pressed(5e3, **fluid)
+
+
+def test_water_in_a_sealed_valley_carries_what_is_added():
+    # Crests at both ends close the valleys of a flow along y. On rubber this soft water is all but incompressible.
+    waves = asp.Surface.wave(cells=(16, 64), size=(1e-3, 1e-3), amplitude=1e-6, wavelength=(float("inf"), 5e-4))
+    water = asp.Fluid(inlet=0.0, outlet=0.0, viscosity=1e-3, direction="y", pockets="sealed", bulk_modulus=2.2e9)
+    load = asp.table([(0.0, 1e3), (1.0, 5e3)])
+    result = asp.solve(waves, RUBBER, pressure=load, times=[1.0], boundary="periodic", tolerance=1e-8, fluid=water)
+    np.testing.assert_allclose(result.pocket_pressure_max, [0.0, 4e3], atol=4.0)
+    np.testing.assert_allclose(result.contact_area[1], result.contact_area[0], rtol=1e-9)
 
 
 def test_a_run_stores_what_it_computes_beside_the_leak(tmp_path):

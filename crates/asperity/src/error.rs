@@ -91,8 +91,8 @@ pub enum Error {
     /// No equilibrium under the prescribed load: the fluid in the gap lifts the surfaces off; the rows so far are complete.
     #[error(
         "no equilibrium at t = {time} s: the fluid carries {} more than the load of {} however wide the gap becomes, and lifts the \
-         surfaces off; lower the pressure of the fluid (a film holds the load while inlet and outlet together have less than twice the mean \
-         pressure, or with coupling = \"uniform\" the inlet less than the mean pressure), raise the load, let the load come before the pressure (`inlet` over time), or prescribe the approach",
+         surfaces off; lower the pressure of the fluid (a film holds the load as long as the mean of the pressure from inlet to outlet is below the mean \
+         pressure, of a liquid half of their sum), raise the load, let the load come before the pressure (`inlet` over time), or prescribe the approach",
         si(*excess, unit),
         si(*load, unit)
     )]

@@ -1,6 +1,7 @@
 //! A fluid that acts on the surfaces: what it carries, when it opens the contact, and at which pressure that closes again.
 
 use asperity::Axis;
+use asperity::load::Control;
 use asperity::quantities::Quantity;
 use asperity::step::Row;
 
@@ -8,10 +9,14 @@ use super::{Answer, Units};
 use crate::leakage::LeakHistory;
 use crate::store::{Reader, Result};
 
+/// What a reader must know of the pressure that lifts the surfaces off.
+const NOTE: &str = "from this inlet pressure on no film holds the load";
+
 /// The answers of the row `n`, and of all rows; none without a fluid that acts.
 pub(super) fn of(reader: &Reader, rows: &[Row], n: usize, units: &Units) -> Result<Vec<Answer>> {
     let mut answers = vec![];
     if let Some(leaks) = LeakHistory::of(reader)? {
+        answers.extend(lift_off(reader, &leaks, &rows[n]));
         if let Some(pressure) = leaks.column("opening_pressure").last() {
             let note = match leaks.last("percolates") == 1.0 {
                 true => "inlet and outlet are connected already",
@@ -49,6 +54,16 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize, units: &Units) -> Resu
         answers.push(Answer { resolution: inlet[k - 1] - inlet[k], ..answer });
     }
     Ok(answers)
+}
+
+/// The pressure of the inlet from which on no film holds the load of a row: known on a periodic domain whose load is prescribed.
+fn lift_off(reader: &Reader, leaks: &LeakHistory, row: &Row) -> Option<Answer> {
+    let header = reader.header();
+    let is_loaded = header.controls().get(row.stage).is_some_and(|control| *control != Control::Approach);
+    let fluid = leaks.leak.traction().ok()??;
+    let pressure = fluid.lift_off(row.load / header.grid.area());
+    let answer = || Answer::new("lift_off_pressure", pressure, "Pa").with_note(NOTE).at(row);
+    (is_loaded && header.is_periodic()).then(answer)
 }
 
 /// The last leak of a fluid that does not act, with its unit: of a gas the rate at 0 °C, as that of the leak.

@@ -3,7 +3,7 @@
 //! | result | answers |
 //! |---|---|
 //! | with leakage | `leak_rate` (of a gas also `leak_rate_standard`), `hydraulic_gap`, `tight_from` |
-//! | with a fluid that acts on the surfaces | `fluid_load`, `time_opened` where it opens the contact, `closing_pressure` where that closes as the inlet falls; on request `opening_pressure`, `leak_rate_one_way` |
+//! | with a fluid that acts on the surfaces | `fluid_load`, `time_opened` where it opens the contact, `closing_pressure` where that closes as the inlet falls, `lift_off_pressure` on a periodic domain under a load; on request `opening_pressure`, `leak_rate_one_way` |
 //! | with adhesion | `pull_off_force`, `pull_off_approach` |
 //! | with a load along the surfaces | `loop_energy` of the last loop, `tangential_stiffness`, `largest_tangential_force`, `largest_tangential_displacement`, `slip_share`, `slip_work` |
 //! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force` |
@@ -76,7 +76,9 @@ impl Answer {
     pub fn label(&self) -> String {
         match (self.name.as_str(), self.unit) {
             ("contact_area", "m") => "contact length".into(),
-            (name, _) => name.replace('_', " ").replace("pull off", "pull-off"),
+            (name, _) => {
+                name.replace('_', " ").replace("pull off", "pull-off").replace("lift off", "lift-off")
+            }
         }
     }
 

@@ -45,9 +45,13 @@ pub struct LeakageKeys {
     pub coupling: Option<CouplingKind>,
     /// The pressure that the load does not contain: that of the "outlet", or "vacuum"; with `coupling`; "outlet" if not given.
     pub reference: Option<Reference>,
-    /// The pressure of pockets that neither inlet nor outlet reaches: "kept" from the time when they were cut off, "drained", or
-    /// "connected": fluid creeps into them through contacts with the gap `smallest_gap`. With coupling = "two-way"; "kept" if not given.
+    /// The pressure of pockets that neither inlet nor outlet reaches: "kept" from the time when they were cut off, "drained", "sealed":
+    /// what is in them stays in them, and the pressure rises as they are pressed together, or "connected": fluid creeps into them
+    /// through contacts with the gap `smallest_gap`. With coupling = "two-way"; "kept" if not given.
     pub pockets: Option<Pockets>,
+    /// Bulk modulus of the liquid in pockets = "sealed"; a gas needs none.
+    #[schemars(example = "2 GPa")]
+    pub bulk_modulus: Option<Pressure<Positive>>,
     /// How the rarefaction of the gas in narrow gaps is taken into account; "boltzmann" if not given.
     pub rarefaction: Option<Rarefaction>,
     /// What bounds the flow at the sides; "periodic" on a periodic domain and "closed" on a free one if not given.
@@ -335,6 +339,25 @@ fn coupling(
     if keys.pockets.is_some() && !matches!(action, Some(Action::Gaps(_))) {
         return needs("pockets", "coupling = \"two-way\"", "set coupling, or leave pockets out");
     }
+    let holds_liquid =
+        action == Some(Action::Gaps(Pockets::Sealed)) && matches!(fluid, Some(Fluid::Liquid { .. }));
+    if keys.bulk_modulus.is_some() && !holds_liquid {
+        let message = "leakage has `bulk_modulus`, that of a liquid in sealed pockets";
+        let help =
+            "leave bulk_modulus out, or set pockets = \"sealed\"; a gas is compressed as its pressure says";
+        return Err(Fault::new(
+            message,
+            "a liquid, with coupling = \"two-way\" and pockets = \"sealed\"",
+            help,
+        ));
+    }
+    if keys.bulk_modulus.is_none() && holds_liquid {
+        return missing(
+            "bulk_modulus",
+            "pockets = \"sealed\"",
+            "water has bulk_modulus = \"2.2 GPa\", oil about \"1.6 GPa\"",
+        );
+    }
     let Some(action) = action else {
         if keys.reference.is_some() {
             return needs("reference", "coupling = \"two-way\"", "set coupling, or leave reference out");
@@ -360,7 +383,8 @@ fn coupling(
         Reference::Outlet => outlet,
         Reference::Vacuum => 0.0,
     };
-    Ok(Some(Coupling { action, inlet, outlet, reference }))
+    let bulk_modulus = keys.bulk_modulus.as_ref().map(|modulus| modulus.get());
+    Ok(Some(Coupling { action, inlet, outlet, reference, bulk_modulus }))
 }
 
 /// The pressure of the inlet over time: what would begin at 0 begins where nothing flows, at the pressure of the outlet.

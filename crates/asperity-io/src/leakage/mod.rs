@@ -80,6 +80,9 @@ pub struct Coupling {
     pub outlet: f64,
     /// Pressure that the load does not contain \[Pa, absolute\].
     pub reference: f64,
+    /// Bulk modulus of a liquid in sealed pockets \[Pa\].
+    #[serde(default)]
+    pub bulk_modulus: Option<f64>,
 }
 
 /// A fluid and what drives it.
@@ -323,11 +326,13 @@ impl Leak {
             inlet: History::Step { value: outlet },
             outlet,
             reference: outlet,
+            bulk_modulus: None,
         };
         self.acting(self.coupling.clone().unwrap_or(at_rest))
     }
 
-    fn acting(&self, Coupling { action, inlet, outlet, reference }: Coupling) -> Result<FluidPressure> {
+    fn acting(&self, coupling: Coupling) -> Result<FluidPressure> {
+        let Coupling { action, inlet, outlet, reference, bulk_modulus } = coupling;
         let (gas, viscosity) = match self.fluid {
             Some(Fluid::Gas { kind, temperature, rarefaction, .. }) => {
                 let gas = self.gas(kind, temperature, 0.0)?;
@@ -337,7 +342,18 @@ impl Leak {
             None => (None, 0.0),
         };
         let (direction, sides, smallest_gap) = (self.axis(), self.sides, self.smallest_gap);
-        Ok(FluidPressure { inlet, outlet, reference, gas, viscosity, direction, sides, smallest_gap, action })
+        Ok(FluidPressure {
+            inlet,
+            outlet,
+            reference,
+            gas,
+            viscosity,
+            direction,
+            sides,
+            smallest_gap,
+            action,
+            bulk_modulus,
+        })
     }
 
     pub(crate) fn gas(&self, kind: GasKind, temperature: Option<f64>, time: f64) -> Result<Gas> {

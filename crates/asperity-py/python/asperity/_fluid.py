@@ -18,7 +18,7 @@ class Fluid:
     `inlet`, a number or a history, and `outlet`: absolute pressures [Pa]; the `viscosity` [Pa s] of a liquid, or a `gas` ("air", "helium",
     ...), or the viscosity and `molar_mass` [kg/mol] of one, at a `temperature` [K]. The load does not contain the pressure of the
     `reference`, "outlet" or "vacuum". `coupling` is "two-way", or "uniform": the pressure of the inlet acts everywhere. `pockets` are "kept",
-    "drained" or "connected" through contacts with the gap `smallest_gap` [m].
+    "drained", "sealed" with a liquid of this `bulk_modulus` [Pa] or a gas, or "connected" through contacts with the gap `smallest_gap` [m].
 
     >>> import asperity as asp
     >>> wave = asp.Surface.wave(cells=(16, 64), size=(1e-3, 1e-3), amplitude=1e-6, wavelength=(float("inf"), 1e-3))
@@ -37,6 +37,7 @@ class Fluid:
     temperature: float | None = None
     coupling: Coupling = "two-way"
     pockets: Pockets = "kept"
+    bulk_modulus: float | None = None
     reference: Reference = "outlet"
     direction: Flow = "x"
     sides: Sides | None = None
@@ -48,7 +49,7 @@ class Fluid:
             choice(name, getattr(self, name), get_args(allowed))
         if self.sides is not None:
             choice("sides", self.sides, get_args(Sides))
-        for name in ("outlet", "viscosity", "molar_mass", "temperature", "smallest_gap"):
+        for name in ("outlet", "viscosity", "molar_mass", "temperature", "bulk_modulus", "smallest_gap"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, number(name, getattr(self, name)))
         object.__setattr__(self, "inlet", as_history("inlet", self.inlet, "Pa"))

@@ -237,7 +237,7 @@ def solve(given: Solve) -> Result:
     adhesion : an attraction between the surfaces, asperity.Adhesion; then loads may be negative, and each row also has "adhesive_load",
         "repulsive_load", "adhesion_energy", "outer_iterations", "adhesion_residual"
     fluid : a fluid whose pressure opens the contact, asperity.Fluid; each row then also has "fluid_load", "contact_load", "inlet_pressure",
-        "connected", "film", "pocket_area", "pocket_pressure_max", "latched_cells", "leak_spread", "fluid_residual"
+        "connected", "film", "pocket_area", "pocket_pressure_max", "pocket_vapour", "latched_cells", "leak_spread", "fluid_residual"
     friction, tangential : a load along the surfaces, asperity.tangential(force=...) or (displacement=...), and the friction that holds it, a
         coefficient, one for each cell, or asperity.Friction; each row then also has "tangential_force" and "tangential_displacement" of
         shape (rows, 2), "tangential_stiffness", "stick_area", "slip_area", "slip_work", "friction_iterations", "friction_certificate"

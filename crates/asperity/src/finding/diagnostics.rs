@@ -12,8 +12,8 @@ use super::thin::Widest;
 use super::worst::extend;
 use super::{
     ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, FLUID_CHATTER, FLUID_LIFTS,
-    Finding, LARGE_SLOPE, LARGE_STRAIN, SLIP_UNRESOLVED, SPOTS_UNRESOLVED, SQUEEZE_SLOW, STEPS_TOO_LONG,
-    adhesion, domain, fluid, material, plausible, strain, surface, tangential, thin, time,
+    Finding, LARGE_SLOPE, LARGE_STRAIN, POCKET_TENSION, SLIP_UNRESOLVED, SPOTS_UNRESOLVED, SQUEEZE_SLOW,
+    STEPS_TOO_LONG, adhesion, domain, fluid, material, plausible, strain, surface, tangential, thin, time,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -164,7 +164,7 @@ impl Diagnostics {
                 }
                 BEYOND_HISTOGRAM => self.beyond.resume(finding),
                 ADHESION_AT_BORDER => self.adhesion.resume(finding),
-                FLUID_LIFTS | FLUID_CHATTER | SQUEEZE_SLOW => self.fluid.resume(finding),
+                FLUID_LIFTS | FLUID_CHATTER | POCKET_TENSION | SQUEEZE_SLOW => self.fluid.resume(finding),
                 SLIP_UNRESOLVED => self.ring.resume(finding),
                 ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
                 _ => {}

@@ -4,17 +4,19 @@ use super::words::{digits, rows, si};
 use super::worst::{Worst, extend};
 use super::{
     FLUID_ACTS_ON_DOMAIN, FLUID_APPROACH_HELD, FLUID_CHATTER, FLUID_LIFTS, FLUID_MAY_RUN_AWAY, Finding,
-    SQUEEZE_SLOW,
+    POCKET_TENSION, SQUEEZE_SLOW,
 };
 use crate::grid::Boundary;
 use crate::load::{Control, Course};
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::step::{Row, Step};
-use crate::traction::{Action, FluidPressure};
+use crate::traction::FluidPressure;
 
 /// Share of the drop of the fluid's pressure that its squeezing out may take.
 const SQUEEZE_SHARE: f64 = 0.1;
+/// Share of the volume of the gap that may be vapour.
+const VAPOUR_SHARE: f64 = 1e-6;
 
 /// What is known before the run.
 pub(super) fn before(simulation: &Simulation) -> Vec<Finding> {
@@ -39,7 +41,7 @@ pub(super) fn before(simulation: &Simulation) -> Vec<Finding> {
     found
 }
 
-/// Whether a film on a periodic domain could no longer hold the load: it carries the mean of inlet and outlet at least.
+/// Whether a film on a periodic domain could no longer hold the load.
 fn runaway(simulation: &Simulation, fluid: &FluidPressure) -> Option<Finding> {
     let [stage] = &simulation.loading.stages[..] else { return None };
     let Course::Given(history) = &stage.course else { return None };
@@ -48,25 +50,24 @@ fn runaway(simulation: &Simulation, fluid: &FluidPressure) -> Option<Finding> {
         Control::Pressure => 1.0,
         Control::Approach => return None,
     };
-    let ends = |time: f64| match fluid.action {
-        Action::Everywhere => 2.0 * (fluid.inlet.after(time) - fluid.reference),
-        Action::Gaps(_) => fluid.inlet.after(time) + fluid.outlet - 2.0 * fluid.reference,
-    };
-    let excess = |time: &f64| ends(*time) - 2.0 * history.after(*time) / area;
+    let mean = |time: f64| history.after(time) / area;
+    let excess = |time: &f64| fluid.inlet.after(*time) - fluid.lift_off(mean(*time));
     let times = simulation.plan().instants.into_iter().map(|instant| instant.time);
-    let worst = times.filter(|time| ends(*time) > 0.0).max_by(|a, b| excess(a).total_cmp(&excess(b)))?;
-    let (both, mean) = (ends(worst), history.after(worst) / area);
+    let presses = |time: &f64| fluid.inlet.after(*time) > fluid.reference;
+    let worst = times.filter(presses).max_by(|a, b| excess(a).total_cmp(&excess(b)))?;
+    let [inlet, lifts] = [fluid.inlet.after(worst), fluid.lift_off(mean(worst))];
     let text = || {
         format!(
-            "At t = {} inlet and outlet have {} together above the reference, twice the mean pressure or more ({}): a fluid that gets in lifts the \
-             surfaces without limit, and the run ends there. Raise the load, or lower the pressure.",
+            "At t = {} the inlet has {}, and under the mean pressure of {} no film holds {} or more: a fluid that gets in lifts the surfaces \
+             without limit, and the run ends there. Raise the load, or lower the pressure.",
             si(worst, "s"),
-            si(both, "Pa"),
-            si(mean, "Pa"),
+            si(inlet, "Pa"),
+            si(mean(worst), "Pa"),
+            si(lifts, "Pa"),
         )
     };
-    let periodic = simulation.boundary == Boundary::Periodic && both >= 2.0 * mean;
-    periodic.then(|| Finding::warning(FLUID_MAY_RUN_AWAY, both, 2.0 * mean, text()))
+    let periodic = simulation.boundary == Boundary::Periodic && inlet >= lifts;
+    periodic.then(|| Finding::warning(FLUID_MAY_RUN_AWAY, inlet, lifts, text()))
 }
 
 /// What the rows say.
@@ -77,6 +78,8 @@ pub(super) struct Wet {
     /// Spread of the leak in the worst of these rows.
     spread: f64,
     squeezed: Worst,
+    /// Vapour in sealed pockets, over the volume of the gap.
+    vapour: Worst,
     /// Of the row before \[m\].
     mean_gap: Option<f64>,
 }
@@ -94,6 +97,8 @@ impl Wet {
         if self.held.above(index, held, 0.5) && self.held.value == held {
             self.spread = self.spread.max(of(Quantity::LeakSpread));
         }
+        let share = of(Quantity::PocketVapour) / (row.mean_gap * simulation.grid.area());
+        self.vapour.above(index, share, VAPOUR_SHARE);
         // Pressure that drives the fluid out of the closing gap of parallel plates, against that of the fluid.
         let before = self.mean_gap.replace(row.mean_gap);
         let length = simulation.grid.size().into_iter().fold(0.0, f64::max);
@@ -137,7 +142,16 @@ impl Wet {
                 worst.place(),
             )
         });
-        [films, chatter, squeezed].into_iter().flatten().collect()
+        let tension = self.vapour.warning(POCKET_TENSION, |worst| {
+            format!(
+                "Sealed pockets have more room than their liquid fills, by {} of the volume of the gap{}: it would be in tension. Its pressure is taken as 0, that of \
+                 a vacuum, the rest as vapour; a liquid may hold tension for a while, or give off gas before. Where it should not be so, raise the \
+                 pressure in which the surfaces are brought together, or unload them less.",
+                digits(worst.value),
+                worst.place(),
+            )
+        });
+        [films, chatter, tension, squeezed].into_iter().flatten().collect()
     }
 
     /// Takes over a finding of an earlier session.
@@ -148,6 +162,7 @@ impl Wet {
             FLUID_LIFTS => self.films = finding.rows,
             FLUID_CHATTER => self.held = worst,
             SQUEEZE_SLOW => self.squeezed = worst,
+            POCKET_TENSION => self.vapour = worst,
             _ => {}
         }
     }
@@ -163,7 +178,7 @@ mod tests {
     use crate::grid::Grid;
     use crate::leakage::{Direction, Sides};
     use crate::load::{History, Loading};
-    use crate::traction::Pockets;
+    use crate::traction::{Action, Pockets};
 
     #[test]
     fn a_fluid_may_run_away_from_twice_the_mean_pressure_on() {
@@ -179,6 +194,7 @@ mod tests {
                 sides: Sides::Periodic,
                 smallest_gap: 0.0,
                 action,
+                bulk_modulus: None,
             };
             let grid = Grid::new([8, 8], [2.0, 2.0]).unwrap();
             // A mean pressure of 3.

@@ -257,10 +257,12 @@ codes! {
     ADHESION_AT_BORDER = "adhesion-at-border";
     /// The fluid carries all of the load in a film.
     FLUID_LIFTS = "fluid-lifts";
-    /// Inlet and outlet have more than twice the mean pressure together.
+    /// The inlet has a pressure at which no film holds the load.
     FLUID_MAY_RUN_AWAY = "fluid-may-run-away";
     /// Cells whose access to the fluid has no steady state.
     FLUID_CHATTER = "fluid-chatter";
+    /// A sealed pocket has more room than its liquid fills.
+    POCKET_TENSION = "pocket-tension";
     /// A prescribed approach fixes the mean gap of a periodic contact, whatever the fluid does.
     FLUID_APPROACH_HELD = "fluid-approach-held";
     /// The fluid acts on the cells of a free domain only.

@@ -175,7 +175,7 @@ quantities! {
     OuterIterations = "outer_iterations" ["1"] "passes of the loop over the tractions", Traction, ("Work of each row", "number", "passes over the tractions");
     /// Change of the attraction in the last of them, relative to all forces between the surfaces.
     AdhesionResidual = "adhesion_residual" ["1"] "change of the adhesion in the last pass", Adhesion, ("Error of each row", "relative error", "adhesion (last pass)");
-    /// Load that the fluid carries on the open cells, in N; of a contact with a fluid that acts on it, as the nine that follow.
+    /// Load that the fluid carries on the open cells, in N; of a contact with a fluid that acts on it, as the ten that follow.
     FluidLoad = "fluid_load" ["N"] "load on the fluid", Fluid, ("Parts of the load", "load", "fluid");
     /// Load on the cells in contact, in N. The load is the sum.
     ContactLoad = "contact_load" ["N"] "load on the contact", Fluid, ("Parts of the load", "load", "contact");
@@ -190,6 +190,9 @@ quantities! {
         on a line ["m"] "length of the pockets" ("Length of the pockets", "length");
     /// Largest pressure in a pocket, in Pa; 0 where there is none.
     PocketPressureMax = "pocket_pressure_max" ["Pa"] "largest pressure in a pocket", Fluid, ("Pressure of the fluid", "pressure", "in a pocket");
+    /// Volume of sealed pockets that their liquid does not fill, in m3: at a pressure of 0 the rest is vapour.
+    PocketVapour = "pocket_vapour" ["m3"] "vapour in sealed pockets", Fluid, ("Vapour in sealed pockets", "volume", ""),
+        on a line ["m2"] "vapour in sealed pockets" ("Vapour in sealed pockets", "area");
     /// Cells whose access to the fluid changed again and again in the loop and was then held.
     LatchedCells = "latched_cells" ["1"] "cells whose access to the fluid was held", Fluid, ("Held cells", "number", "access to the fluid held");
     /// Spread of the conductance of the gap over the last 20 passes, relative.

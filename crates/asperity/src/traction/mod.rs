@@ -97,11 +97,15 @@ pub trait SurfaceTraction: Send {
     /// The instant that is solved for.
     fn begin(&mut self, _at: &Instant) {}
 
+    /// A solve begins, of bodies with this compliance \[1/Pa\], whose mean pressure rises by `rise` \[Pa\]: changes the traction of the
+    /// last row by what follows at once.
+    fn begin_solve(&mut self, _compliance: f64, _rise: f64, _traction: &mut [f64]) {}
+
     /// A loop begins: what was counted in the loop before is forgotten.
     fn begin_loop(&mut self) {}
 
-    /// Writes the traction \[Pa\] that acts on each cell, or would act if it opened; tension is negative. `gap` is g >= 0 \[m\], infinite
-    /// where nothing can touch, `contact` the contact pressure q \[Pa\].
+    /// Writes the traction \[Pa\] that acts on each cell, or would act if it opened, over that of the pass; tension is negative. `gap` is
+    /// g >= 0 \[m\], infinite where nothing can touch, `contact` the contact pressure q \[Pa\].
     ///
     /// # Errors
     /// Those of the law.
@@ -116,6 +120,11 @@ pub trait SurfaceTraction: Send {
     /// The least and the largest traction \[Pa\].
     fn limits(&self) -> [f64; 2] {
         [f64::NEG_INFINITY, f64::INFINITY]
+    }
+
+    /// Whether the last pass satisfies what its traction alone does not tell.
+    fn is_settled(&self) -> bool {
+        true
     }
 
     /// Whether γ is concave: then no plain pass raises the energy, and no surfaces that are apart hold a load in tension stably.

@@ -164,6 +164,12 @@ impl TractionSolver {
         if self.law.is_displaced() { &self.pressing } else { &self.now.contact.pressure }
     }
 
+    /// The mean of b + q in the last row \[Pa\].
+    fn mean_of_last(&self) -> f64 {
+        let Tractions { bound, contact } = &self.last;
+        (sum(bound) + sum(&contact.pressure)) / bound.len() as f64
+    }
+
     /// Finds the pressure of the cells in contact: b + q, and q where the law pulls.
     fn press(&mut self) {
         let Tractions { bound, contact } = &self.now;
@@ -208,6 +214,11 @@ impl TractionSolver {
         let Task { operator, problem, options, state, interrupt } = task;
         self.now.copy_from(&self.last);
         self.passes = 0;
+        let rise = match problem.prescribed {
+            Prescribed::Load(load) => load / operator.grid().area() - self.mean_of_last(),
+            Prescribed::Approach(_) => 0.0,
+        };
+        self.law.begin_solve(problem.compliance, rise, &mut self.now.bound);
         let [tolerance, inner] = self.tolerances;
         let total = Outcome::default();
         let mut run = Run { own: self, solver, operator, options, tolerance, inner, interrupt, total };
@@ -284,7 +295,7 @@ impl Run<'_> {
             self.total = self.total.then(pass.outcome);
             self.total.convolutions += 1;
             self.total.residual = pass.residual.max(pass.outcome.residual);
-            if pass.residual <= self.tolerance {
+            if pass.residual <= self.tolerance && self.own.law.is_settled() {
                 return Ok(());
             }
             let rises = pass.energy.is_some_and(|now| now > energy + 1e-6 * now.abs());
@@ -343,7 +354,8 @@ impl Run<'_> {
         let w = contact.approach;
         let fields = (&own.shifted[..], &contact.unit_displacement[..]);
         each(&mut own.gap, fields, |to, (h, u)| *to = (h + c * u - w).max(0.0));
-        own.law.bound(&own.gap, &contact.pressure, &mut own.next)?;
+        own.next.copy_from_slice(&own.now.bound);
+        own.law.bound(&own.gap, &own.now.contact.pressure, &mut own.next)?;
         let Tractions { bound, contact } = &own.now;
         let fields = (
             (&bound[..], &own.next[..], &contact.pressure[..]),

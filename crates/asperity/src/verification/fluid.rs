@@ -1,4 +1,4 @@
-//! A fluid that opens the contact: a wave under a uniform pressure, along a channel, and a strip without contact.
+//! A fluid that opens the contact: a wave under a uniform pressure, along a channel, a strip without contact, and a sealed valley.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -14,7 +14,8 @@ use crate::load::{Control, History, Loading};
 use crate::quantities::{Quantities, Quantity};
 use crate::simulation::Simulation;
 use crate::step::Row;
-use crate::traction::{Action, FluidPressure, Pockets};
+use crate::time::TimeGrid;
+use crate::traction::{Action, FluidPressure, Pockets, TractionLaw};
 
 /// A contact of unit compliance with this undeformed gap, and a fluid that flows along x.
 fn wetted(
@@ -34,6 +35,7 @@ fn wetted(
         sides: Sides::Periodic,
         smallest_gap: 0.0,
         action: Action::Gaps(Pockets::default()),
+        bulk_modulus: None,
     };
     Simulation {
         boundary: Boundary::Periodic,
@@ -112,5 +114,43 @@ pub(super) fn strip() -> Result<Vec<Check>> {
     checks.relative("T", t / gap.powi(3), 1.0 - PI.powi(4) / 30.0 * eps * eps, 2e-5);
     const ZETA: f64 = 1.2020569031595942;
     checks.relative("load on the fluid", load, 0.5 + 3.0 * ZETA / (2.0 * PI) * eps, 3e-5);
+    Ok(checks.list)
+}
+
+pub(super) fn sealed() -> Result<Vec<Check>> {
+    let mut checks = Checks::new(
+        "fluid-sealed",
+        "wave with V = 1 - m + m ln m, m = p0 - p; liquid p = B ln(V0/V), sealed at m = 0.2",
+    );
+    // The flow across the crests, which close the valley; B = 50, m = 0.6.
+    let (n, modulus, mean) = (512, 50.0, 82.19174898459568);
+    let base = wave_on([4, n], 1.0, [0.0; 2], mean)?;
+    let law = base.traction.as_ref().and_then(|law| law.as_fluid()).cloned();
+    let fluid = law.map(|law| FluidPressure {
+        direction: Direction::Y,
+        action: Action::Gaps(Pockets::Sealed),
+        bulk_modulus: Some(modulus),
+        ..law
+    });
+    let history = History::Table { points: vec![(0.0, 0.2), (1.0, mean)] };
+    let mut march = March::new(Simulation {
+        loading: Loading { control: Control::Pressure, history }.into(),
+        times: TimeGrid::Uniform { end: 1.0, steps: 1 },
+        traction: fluid.map(|fluid| Arc::new(fluid) as Arc<dyn TractionLaw>),
+        ..base
+    })?;
+    let (mut row, mut pressure) = (Row::default(), f64::NAN);
+    while let Some(step) = march.advance()? {
+        row = step.row();
+        pressure = step.quantity(Quantity::PocketPressureMax).map_or(f64::NAN, |p| p[0]);
+    }
+    // The loop ends at 1e-5 of the forces; each edge is known to a cell.
+    checks.relative("pressure of the liquid", pressure, 81.59174898459568, 2e-5);
+    checks.relative("mean gap", row.mean_gap * PI, 0.09350462574040559, 1e-4);
+    checks.absolute(
+        "contact fraction, difference",
+        (row.contact_fraction - 0.564094216848975).abs(),
+        2.0 / n as f64,
+    );
     Ok(checks.list)
 }

@@ -91,6 +91,7 @@ pub const CASES: [Case; 42] = [
     ("fluid-wave", fluid::wave),
     ("fluid-channel", fluid::channel),
     ("fluid-strip", fluid::strip),
+    ("fluid-sealed", fluid::sealed),
     ("cattaneo-mindlin", tangential::sphere),
     ("tangential-rough", tangential::rough),
     ("glued-punch", tangential::punch),

@@ -53,6 +53,9 @@ fn its_keys_are_the_law_of_the_simulation() {
     let triangle = "inlet = { kind = \"triangle\", peak = \"1.02 bar\", rise = \"1 s\", fall = \"0.5 s\" }";
     let triangle = law(&CASE.replace("inlet = \"1.02 bar\"", triangle));
     assert_eq!(triangle.inlet, History::Table { points: vec![(0.0, 1e5), (1.0, 1.02e5), (1.5, 1e5)] });
+    let sealed = "two-way\"\npockets = \"sealed\"\nbulk_modulus = \"2 GPa";
+    let sealed = law(&CASE.replace("two-way", sealed));
+    assert_eq!((sealed.action, sealed.bulk_modulus), (Action::Gaps(Pockets::Sealed), Some(2e9)));
     let uniform = law(&CASE.replace("two-way", "uniform").replace("1.02 bar", "1 bar"));
     assert_eq!((uniform.action, uniform.outlet), (Action::Everywhere, 1e5));
     let drop = law(&CASE
@@ -80,6 +83,21 @@ fn what_does_not_go_with_it_is_refused_where_it_stands() {
         (CASE.replace("\"two-way\"", "\"twoway\""), "leakage.coupling"),
         (CASE.replace("\"two-way\"", "\"two-way\"\npockets = \"connected\""), "leakage"),
         (one_way.clone() + "pockets = \"kept\"\n", "leakage"),
+        (CASE.to_owned() + "pockets = \"sealed\"\n", "leakage"),
+        (CASE.to_owned() + "bulk_modulus = \"2 GPa\"\n", "leakage"),
+        (one_way.clone() + "bulk_modulus = \"2 GPa\"\n", "leakage"),
+        (
+            CASE.replace("viscosity = \"1 mPa s\"", "gas = \"air\"")
+                + "pockets = \"sealed\"\nbulk_modulus = \"2 GPa\"\n",
+            "leakage",
+        ),
+        (CASE.to_owned() + "pockets = \"sealed\"\nbulk_modulus = \"0 GPa\"\n", "leakage.bulk_modulus"),
+        (CASE.to_owned() + "pockets = \"sealed\"\nbulk_modulus = \"2 mm\"\n", "leakage.bulk_modulus"),
+        (
+            CASE.replace("poisson = 0.5", "poisson = 0.5\nhardness = \"5 MPa\"")
+                + "pockets = \"sealed\"\nbulk_modulus = \"2 GPa\"\n",
+            "leakage.pockets",
+        ),
         (one_way.clone() + "one_way = true\n", "leakage"),
         (CASE.replace("two-way", "uniform") + "opening = true\n", "leakage"),
         (CASE.to_owned() + "opening = true\n[output]\nfields = [\"gap\"]\n", "leakage.opening"),

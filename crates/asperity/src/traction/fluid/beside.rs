@@ -2,6 +2,7 @@
 
 use crate::grid::Grid;
 use crate::leakage::Direction;
+use crate::spots::Forest;
 
 /// What a face of a cell leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +54,27 @@ impl Beside {
             };
             Some((own.weights[axis], other))
         })
+    }
+
+    /// The cells of `marked`, joined with their neighbours.
+    pub(super) fn joined(&self, marked: &[bool]) -> Forest {
+        let mut forest = Forest::new(marked.len());
+        for cell in (0..marked.len()).filter(|cell| marked[*cell]) {
+            for (_, other) in self.of(cell) {
+                if let Other::Cell(other) = other
+                    && marked[other]
+                {
+                    forest.join(cell, other);
+                }
+            }
+        }
+        forest
+    }
+
+    /// Length of the edges of a cell beyond which nothing is `marked`, on cells of this area.
+    pub(super) fn edges(&self, cell: usize, marked: &[bool], cell_area: f64) -> f64 {
+        let faces = self.of(cell).filter(|(_, other)| !matches!(other, Other::Cell(other) if marked[*other]));
+        faces.map(|(weight, _)| (weight * cell_area).sqrt()).sum()
     }
 }
 

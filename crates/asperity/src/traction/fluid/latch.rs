@@ -8,6 +8,8 @@
 /// Pass from which on cells are held that gain and lose access, and changes after which they are.
 const FIRST: usize = 40;
 const CHANGES: u8 = 4;
+/// Changes of its access after which a pocket has lost what it had before this row.
+const VENTED: u8 = 6;
 /// Pass from which on cells are held whose traction goes up and down.
 const LATER: usize = 60;
 /// Change of such a traction, over the largest one; a tenth of it every [`DECADE`] passes.
@@ -82,6 +84,12 @@ impl Latch {
         held
     }
 
+    /// b that a cell had when it last had access \[Pa\], if it has lost that again and again.
+    pub(super) fn vented(&self, number: usize) -> Option<f64> {
+        let cell = &self.cells[number];
+        (cell.accesses >= VENTED).then_some(cell.with_access)
+    }
+
     /// A pass is done.
     pub(super) fn pass(&mut self) {
         self.passes += 1;
@@ -115,6 +123,9 @@ mod tests {
             last[1] = latch.hold(1, true, 0.3 * up, limits);
             last[2] = latch.hold(2, true, 0.9 + libm::pow(-0.5, f64::from(pass)), limits);
             latch.pass();
+            // Its access changes in each pass after the first.
+            assert_eq!(latch.vented(0), (pass >= 6).then_some(0.5), "{pass}");
+            assert_eq!(latch.vented(1), None);
             if pass == 50 {
                 assert_eq!((last[0], last[1], latch.held()), (0.5, 0.0, 1));
             }

@@ -3,7 +3,7 @@
 //! ```text
 //! open cells that reach both reservoirs     Reynolds: div(g³ grad P) = 0, of a gas div(g³ Q grad P²/2) = 0
 //! that reach one of them                    the pressure of that reservoir
-//! that reach neither, a pocket              what it had when it was cut off (see `pockets`)
+//! that reach neither, a pocket              by its rule, say what it had when it was cut off (see `pockets`)
 //! contact cells beside open ones            b = mean of the pressures beside them (see `beside`)
 //! contact cells inside                      b = 0: fluid gets in only from an edge, one cell per pass
 //! ```
@@ -25,6 +25,9 @@ mod beside;
 mod latch;
 mod opening;
 mod pockets;
+mod sealed;
+#[cfg(test)]
+mod sealed_tests;
 #[cfg(test)]
 mod tests;
 
@@ -50,6 +53,7 @@ use asperity_sweep::minimum;
 use beside::Beside;
 use latch::Latch;
 use pockets::Contents;
+use sealed::{Fluid, Found, Sealed};
 
 /// Tolerances of the loop and of the contact of a pass over that of a contact alone: gaps at the narrowest places are small.
 const TOLERANCES: [f64; 2] = [10.0, 0.1];
@@ -90,6 +94,8 @@ pub struct FluidPressure {
     pub smallest_gap: f64,
     /// Where it acts.
     pub action: Action,
+    /// Bulk modulus of a liquid \[Pa\], where pockets are sealed.
+    pub bulk_modulus: Option<f64>,
 }
 
 impl FluidPressure {
@@ -117,7 +123,40 @@ impl FluidPressure {
         if let Action::Gaps(pockets) = self.action {
             pockets.validate(self.smallest_gap)?;
         }
-        Ok(())
+        let modulus = self.bulk_modulus;
+        let is_sealed = self.action == Action::Gaps(Pockets::Sealed);
+        let sound = match modulus {
+            Some(modulus) => is_sealed && self.gas.is_none() && modulus > 0.0 && modulus.is_finite(),
+            None => !is_sealed || self.gas.is_some(),
+        };
+        let given = modulus.map_or("none".to_owned(), |modulus| format!("{modulus} Pa"));
+        let expected = "positive and finite for a liquid in sealed pockets, and none else";
+        require(sound, "bulk modulus", given, expected).map_err(of("bulk_modulus"))
+    }
+
+    /// The pressure of the inlet \[Pa, absolute\] from which on a film without contact on a periodic domain does not hold a mean pressure
+    /// \[Pa\], however wide it is: then the pressure falls evenly, in a liquid by P, in a gas by P², and its mean is `mean`. A film that
+    /// becomes wider along the flow may hold a little more.
+    pub fn lift_off(&self, mean: f64) -> f64 {
+        let (mean, outlet) = (mean + self.reference, self.outlet);
+        match (self.action, &self.gas) {
+            (Action::Everywhere, _) => mean,
+            // The outlet alone has more.
+            _ if mean <= outlet => mean,
+            (Action::Gaps(_), None) => 2.0 * mean - outlet,
+            // 2/3 (P_in² + P_in P_out + P_out²)/(P_in + P_out) = mean.
+            (Action::Gaps(_), Some(_)) => {
+                let half = 0.5 * (1.5 * mean - outlet);
+                half + (half * half + (1.5 * mean - outlet) * outlet).sqrt()
+            }
+        }
+    }
+
+    /// What sealed pockets hold.
+    fn in_pockets(&self) -> Option<Fluid> {
+        let sealed = Action::Gaps(Pockets::Sealed);
+        let liquid = || self.bulk_modulus.map(|bulk_modulus| Fluid::Liquid { bulk_modulus });
+        (self.action == sealed).then(|| if self.gas.is_some() { Some(Fluid::Gas) } else { liquid() })?
     }
 }
 
@@ -143,9 +182,10 @@ impl TractionLaw for FluidPressure {
     }
 
     fn bytes(&self, grid: &Grid) -> usize {
-        // The factorisation, and about 30 fields: gap, network, iteration, pressures, pockets, the access of the cells.
+        // The factorisation, and about 30 fields: gap, network, iteration, pressures, pockets, the access of the cells; 12 of sealed pockets.
+        let fields = if self.in_pockets().is_some() { 42 } else { 30 };
         let factor = factor_bytes(grid.len()).min(FlowOptions::default().memory);
-        if self.action == Action::Everywhere { 0 } else { factor as usize + 30 * 8 * grid.len() }
+        if self.action == Action::Everywhere { 0 } else { factor as usize + fields * 8 * grid.len() }
     }
 
     fn check(&self, simulation: &Simulation) -> Result<()> {
@@ -161,6 +201,12 @@ impl TractionLaw for FluidPressure {
         let expected = "finite: fluid acts on all of the domain. Cut the surface, or fill its holes";
         require(!untouchable, "gap of cells that a fluid acts on", "infinite in places", expected)
             .map_err(|error| error.of("leakage.coupling"))?;
+        let is_limited = simulation.hardness.is_finite() || simulation.hardness_of_cells().is_some();
+        let expected =
+            "\"kept\" or \"drained\" where the hardness limits the pressure: a sealed pocket may exceed it";
+        let sealed = self.action == Action::Gaps(Pockets::Sealed);
+        require(!(sealed && is_limited), "pockets", "\"sealed\"", expected)
+            .map_err(|error| error.of("leakage.pockets"))?;
         let most = self.inlet.range(end)[1] - self.reference;
         let hardness = simulation.hardness_of_cells().map_or(simulation.hardness, |cells| minimum(&cells));
         let expected = format!("more than the pressure of the fluid, {most} Pa: no contact could hold it");
@@ -204,7 +250,10 @@ impl InGap {
         InGap {
             beside: Beside::new(grid, law.direction, wraps),
             previous: Previous::default(),
-            contents: Contents::new(rule, law.reference, law.smallest_gap, cells),
+            contents: match law.in_pockets() {
+                Some(fluid) => Contents::sealed(fluid, law.reference, grid.cell_area(), cells),
+                None => Contents::new(rule, law.reference, law.smallest_gap, cells),
+            },
             latch: Latch::new(cells),
             inlet: law.inlet.after(0.0),
             pressure: vec![f64::NAN; cells],
@@ -260,8 +309,8 @@ impl InGap {
         Ok((opening, passages))
     }
 
-    /// Sets `pressure` and `reached` from the gap and the contact pressure.
-    fn find_pressures(&mut self, gap: &[f64], contact: &[f64]) -> Result<()> {
+    /// Sets `pressure` and `reached` from the gap, the contact pressure and the traction of the pass.
+    fn find_pressures(&mut self, gap: &[f64], contact: &[f64], traction: &[f64]) -> Result<()> {
         let (opening, passages) = self.passages(gap, contact)?;
         self.percolates = passages.percolates();
         let (opening, passages) = match self.contents.floor() {
@@ -289,7 +338,10 @@ impl InGap {
             self.reached[cell] = !self.pressure[cell].is_nan();
         }
         let is_pocket: Vec<bool> = kinds.iter().map(|kind| *kind == CellKind::Pocket).collect();
-        self.contents.fill(&self.beside, &is_pocket, &mut self.pressure);
+        let vented = |cell: usize| self.latch.vented(cell).map(|b| b + self.law.reference);
+        let found =
+            Found { is_pocket: &is_pocket, reached: &self.reached, vented: &vented, gap, contact, traction };
+        self.contents.fill(&self.beside, &found, &mut self.pressure);
         self.inside = self.contents.floor().map(|_| flowing.into_iter().collect());
         Ok(())
     }
@@ -323,7 +375,12 @@ impl SurfaceTraction for InGap {
         self.inlet = self.law.inlet.after(at.time);
     }
 
+    fn begin_solve(&mut self, compliance: f64, rise: f64, traction: &mut [f64]) {
+        self.contents.begin(&self.beside, compliance, rise, traction);
+    }
+
     fn begin_loop(&mut self) {
+        self.contents.begin_loop();
         self.latch.clear();
         self.conductances.clear();
     }
@@ -336,7 +393,7 @@ impl SurfaceTraction for InGap {
             self.percolates = contact.contains(&0.0);
             return Ok(());
         }
-        self.find_pressures(gap, contact)?;
+        self.find_pressures(gap, contact, out)?;
         let largest = (self.inlet - reference).abs().max(self.law.outlet - reference);
         let limits = [SMALL * largest, largest];
         for (cell, b) in out.iter_mut().enumerate() {
@@ -357,6 +414,10 @@ impl SurfaceTraction for InGap {
         self.limits
     }
 
+    fn is_settled(&self) -> bool {
+        self.latch.held() > 0 || self.contents.of_sealed().is_none_or(|sealed| sealed.is_settled())
+    }
+
     fn is_displaced(&self) -> bool {
         true
     }
@@ -367,6 +428,7 @@ impl SurfaceTraction for InGap {
             Quantity::Connected => f64::from(u8::from(self.percolates)),
             Quantity::PocketArea => self.contents.cells() as f64 * self.grid.cell_area(),
             Quantity::PocketPressureMax => self.contents.largest(),
+            Quantity::PocketVapour => self.contents.of_sealed().map_or(0.0, Sealed::vapour),
             Quantity::LatchedCells => self.latch.held() as f64,
             Quantity::LeakSpread => {
                 let [least, most] = self

@@ -6,7 +6,9 @@ use ndarray::Array2;
 
 use super::{Action, FluidPressure, Pockets};
 use crate::drive::{Drive, March};
-use crate::leakage::{Direction, FlowOptions, Opening, Passages, Sides, liquid as liquid_flow};
+use crate::leakage::{
+    Direction, FlowOptions, Gas, Opening, Passages, Rarefaction, Sides, liquid as liquid_flow,
+};
 use crate::load::{Control, History, Loading};
 use crate::material::Creep;
 use crate::quantities::{Quantities, Quantity};
@@ -27,6 +29,7 @@ pub(super) fn liquid(inlet: f64, outlet: f64) -> FluidPressure {
         sides: Sides::Periodic,
         smallest_gap: 0.0,
         action: Action::Gaps(Pockets::Kept),
+        bulk_modulus: None,
     }
 }
 
@@ -270,6 +273,15 @@ fn a_film_holds_the_load_up_to_twice_the_mean_pressure_and_no_further() {
     assert!(film.mean_gap > 10.0, "{}", film.mean_gap);
     let mut march = March::new(on_rough(32, 1.0, Some(liquid(2.01, 0.0)))).unwrap();
     assert!(matches!(march.advance(), Err(Error::LiftedOff { .. })));
+    // A gas falls by the square of its pressure, to that of the outlet.
+    let gas = Gas { viscosity: 1.0, molar_mass: 0.03, temperature: 300.0 };
+    let gas = |inlet: f64| FluidPressure { gas: Some((gas, Rarefaction::Continuum)), ..liquid(inlet, 0.2) };
+    let lifts = gas(0.0).lift_off(1.0);
+    let mean = 2.0 / 3.0 * (lifts * lifts + 0.2 * lifts + 0.04) / (lifts + 0.2);
+    assert!((mean - 1.0).abs() < 1e-12 && liquid(0.0, 0.2).lift_off(1.0) == 1.8, "{lifts}");
+    assert_eq!((answer(on_rough(32, 1.0, Some(gas(0.99 * lifts)))).of)(Quantity::Film), 1.0);
+    let mut march = March::new(on_rough(32, 1.0, Some(gas(1.01 * lifts)))).unwrap();
+    assert!(matches!(march.advance(), Err(Error::LiftedOff { .. })));
 }
 
 #[test]
@@ -350,6 +362,16 @@ fn what_the_fluid_cannot_be_is_named() {
     assert_eq!(fault(FluidPressure { inlet: jump, ..liquid(0.6, 0.2) }), "leakage.inlet");
     let connected = Action::Gaps(Pockets::Connected);
     assert_eq!(fault(FluidPressure { action: connected, ..liquid(0.6, 0.2) }), "leakage.smallest_gap");
+    let stiffness = |modulus, action| FluidPressure { bulk_modulus: modulus, action, ..liquid(0.6, 0.2) };
+    let sealed = Action::Gaps(Pockets::Sealed);
+    for (modulus, action) in
+        [(None, sealed), (Some(0.0), sealed), (Some(f64::INFINITY), sealed), (Some(1.0), connected)]
+    {
+        let fluid = FluidPressure { smallest_gap: 1e-3, ..stiffness(modulus, action) };
+        assert_eq!(fault(fluid), "leakage.bulk_modulus", "{modulus:?} {action:?}");
+    }
+    let capped = Simulation { hardness: 3.0, ..on_rough(8, 0.1, Some(stiffness(Some(1.0), sealed))) };
+    assert!(matches!(March::new(capped), Err(error) if error.parameter() == "leakage.pockets"));
     let capped = Simulation { hardness: 0.5, ..on_rough(8, 0.1, Some(liquid(0.6, 0.2))) };
     assert!(matches!(March::new(capped), Err(error) if error.parameter() == "leakage.inlet"));
 }

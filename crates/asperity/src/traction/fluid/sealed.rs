@@ -292,11 +292,11 @@ impl Sealed {
         self.next.fill(DRY);
         self.pressure.fill(f64::NAN);
         self.gap.copy_from_slice(found.gap);
-        for cell in 0..found.is_pocket.len() {
+        for (cell, number) in numbers.iter().enumerate() {
             if found.reached[cell] {
                 self.next[cell] = REACHED;
-            } else if let Some(number) = numbers[cell] {
-                let [p, share] = filled[number];
+            } else if let Some(number) = number {
+                let [p, share] = filled[*number];
                 (self.next[cell], self.pressure[cell]) = (share * found.gap[cell], p);
             }
         }

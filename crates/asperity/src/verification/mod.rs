@@ -187,7 +187,7 @@ mod tests {
     fn every_case_holds() {
         for (name, run) in CASES {
             for check in run().unwrap() {
-                assert_eq!(check.case, name);
+                assert_eq!(check.case, *name);
                 assert!(check.ok(), "{name}, {}: {:e} > {:e}", check.quantity, check.error, check.tolerance);
             }
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use asperity::drive::March;
 use asperity::material::{Creep, CreepTerm};
 use asperity::surface::{Part, Shape, undeformed_gap};
-use asperity::tangential::{SlipRow, Tangential, TangentialControl};
+use asperity::tangential::{Coupling, SlipRow, Tangential, TangentialControl};
 use asperity::{
     Boundary, Control, Drive, Error, Grid, History, Loading, Simulation, SolverOptions, TimeGrid,
 };
@@ -35,7 +35,8 @@ fn along(axis: usize, nu: f64, control: TangentialControl, points: &[(f64, f64)]
         coefficients: None,
         shear_limit: f64::INFINITY,
         poisson: nu,
-        coupling: 0.0,
+        beta: 0.0,
+        coupling: Coupling::Neglect,
         control,
         histories,
     }

@@ -138,7 +138,7 @@ pub enum Error {
         (None, None) => String::new(),
     },
     advice = match *.method {
-        COUPLING => "lower the friction coefficient, or take friction.coupling = \"neglect\"",
+        COUPLING => "loosen the tolerance, lower the friction coefficient, or take friction.coupling = \"neglect\"",
         _ => "loosen the tolerance or allow more iterations",
     }
 )]

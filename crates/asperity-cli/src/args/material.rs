@@ -134,9 +134,9 @@ pub struct Fit {
     /// Decades of times beyond the data [default: 1]
     #[arg(long, value_name = "DECADES")]
     pub margin: Option<f64>,
-    /// Largest relative misfit (rms) before the data are refused [default: 0.1]
-    #[arg(long, value_name = "SHARE")]
-    pub max_misfit: Option<f64>,
+    /// Largest relative misfit (rms) before the data are refused, e.g. 0.2 or '20 %' [default: 0.1]
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = quantity::<Number<range::Positive>>())]
+    pub max_misfit: Option<Number<range::Positive>>,
     /// What comes after the data: whatever fits best (free), no flow (solid), or no modulus left (fluid)
     #[arg(long, value_parser = choice::<LongTime>(), default_value = "free")]
     pub long_time: LongTime,

@@ -66,9 +66,11 @@ fn coupling(law: &Tangential) -> Option<Finding> {
     Some(if effect > LARGEST { finding } else { finding.as_note() })
 }
 
-/// The ring that slips at the edge of the contact.
+/// The ring that slips at the edge of the contact, in the rows with large contacts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ring {
+    /// Area of the contact from which on rows of up to twice of it count \[m²\].
+    area: f64,
     /// Its largest width \[cells\], and the largest share of the contact that slips.
     width: f64,
     share: f64,
@@ -83,8 +85,14 @@ impl Ring {
         // Area of the cells at the edge.
         let edge = (row.contact_area - row.contact_area_corrected) / PERIMETER_SHARE;
         let [fx, fy] = slip.force;
-        if edge <= 0.0 || f64::hypot(fx, fy) < SMALL_FORCE * law.largest() * row.load {
+        let pulls = f64::hypot(fx, fy) >= SMALL_FORCE * law.largest() * row.load;
+        // Pressing alone may make surfaces slip.
+        let spreads = law.is_coupled() && slip.slip_area > 0.0;
+        if edge <= 0.0 || !(pulls || spreads) || row.contact_area < 0.5 * self.area {
             return;
+        }
+        if row.contact_area > 2.0 * self.area {
+            *self = Ring { area: row.contact_area, ..Ring::default() };
         }
         extend(&mut self.rows, step.index());
         self.width = self.width.max(slip.slip_area / edge);

@@ -23,6 +23,8 @@ const MOST_ROUNDS: usize = 100;
 const PRECISION: f64 = 0.05;
 const COARSEST: f64 = 1e-3;
 const LAST: f64 = 0.5;
+/// No round is solved more precisely than this, close to the rounding error.
+const FINEST: f64 = 1e-12;
 /// Rounds after which the best one no longer counts.
 const RECENT: usize = 5;
 
@@ -75,7 +77,8 @@ impl Stepper {
         let Coupled { process, added, answer, gap, extrapolation } = coupled;
         extrapolation.clear();
         let mut total = Outcome::default();
-        let (mut precision, mut best, mut age) = (COARSEST.max(LAST * tolerance), f64::INFINITY, 0);
+        let (finest, coarsest) = (FINEST.max(LAST * tolerance), COARSEST.max(LAST * tolerance));
+        let (mut precision, mut best, mut age) = (coarsest, f64::INFINITY, 0);
         for _ in 0..MOST_ROUNDS {
             let (state, step) = (&mut self.state, self.step.as_ref());
             let c = state.compliance;
@@ -91,10 +94,10 @@ impl Stepper {
             total.convolutions += row.convolutions;
             let change = self.largest_change(added, answer);
             total.residual = total.residual.max(change);
-            if change <= tolerance && precision <= LAST * tolerance {
+            if change <= tolerance && precision <= finest {
                 return Ok(total);
             }
-            precision = (PRECISION * change).clamp(LAST * tolerance, COARSEST.max(LAST * tolerance));
+            precision = (PRECISION * change).clamp(finest, coarsest);
             age += 1;
             let is_best = change < best || age > RECENT;
             extrapolation.step(added, answer, change > 2.0 * best && !is_best, is_best);
@@ -102,6 +105,7 @@ impl Stepper {
                 (best, age) = (change, 0);
             }
         }
+        total.iterations = MOST_ROUNDS;
         Err(not_converged(COUPLING, &self.simulation.solver, &total))
     }
 

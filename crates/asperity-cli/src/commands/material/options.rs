@@ -36,7 +36,7 @@ pub fn options(args: &Fit) -> FitOptions {
     FitOptions {
         per_decade: args.per_decade.unwrap_or(default.per_decade),
         margin: args.margin.unwrap_or(default.margin),
-        limit: args.max_misfit.unwrap_or(default.limit),
+        limit: args.max_misfit.map_or(default.limit, Number::get),
         max_terms: args.max_terms.unwrap_or(default.max_terms),
         long_time: args.long_time,
         misfit: args.misfit.map(Number::get),

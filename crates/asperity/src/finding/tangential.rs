@@ -15,7 +15,7 @@ const LARGEST: f64 = 0.02;
 
 /// Cells across a ring that slips, at least, unless a larger share of the contact slips.
 const RING: f64 = 1.5;
-const LARGE_PART: f64 = 0.1;
+const LARGE_PART: f64 = 0.25;
 /// Share of the largest force that friction holds below which the ring does not matter.
 const SMALL_FORCE: f64 = 1e-3;
 

@@ -1,5 +1,6 @@
 //! A fluid that acts on the surfaces: films, held access, slow squeezing, what it acts on.
 
+use super::plausible::unlikely_liquid;
 use super::words::{digits, rows, si};
 use super::worst::{Worst, extend};
 use super::{
@@ -38,6 +39,7 @@ pub(super) fn before(simulation: &Simulation) -> Vec<Finding> {
         found.push(Finding::warning(FLUID_APPROACH_HELD, f64::NAN, f64::NAN, text));
     }
     found.extend(runaway(simulation, fluid));
+    found.extend(fluid.bulk_modulus.and_then(unlikely_liquid));
     found
 }
 

@@ -11,6 +11,7 @@
 //! | temperature of a material with a shift | 150 K to 800 K |
 //! | mean pressure of a load | from 1 Pa; and an expected contact of a tenth of a cell or more |
 //! | end of the run | 1 ns to 100 years |
+//! | bulk modulus of a liquid | 10 MPa, with much air in it, to 100 GPa |
 //!
 //! Numbers outside of these give the finding `unlikely-unit`.
 
@@ -43,6 +44,22 @@ const LIGHTEST: f64 = 1.0;
 const LEAST_CONTACT: f64 = 0.1;
 /// The end of a run: from that of an impact of atoms to a century \[s\].
 const ENDS: [f64; 2] = [1e-9, 3.2e9];
+
+/// Bulk moduli of liquids: from those with much air in them to metals \[Pa\].
+const BULK_MODULI: [f64; 2] = [1e7, 1e11];
+
+/// A liquid in sealed pockets that is more like a gas or a solid.
+pub(super) fn unlikely_liquid(bulk_modulus: f64) -> Option<Finding> {
+    let [least, most] = BULK_MODULI;
+    (!(least..=most).contains(&bulk_modulus)).then(|| {
+        let text = format!(
+            "The bulk modulus of the liquid is {}; oils and water have about 2 GPa. Check its unit; air is described by leakage.gas.",
+            si(bulk_modulus, "Pa")
+        );
+        let limit = if bulk_modulus < least { least } else { most };
+        Finding::warning(UNLIKELY_UNIT, bulk_modulus, limit, text)
+    })
+}
 
 /// A load that is too small for a contact: its mean pressure over the periodic domain, or the number of cells of the expected contact.
 pub(super) fn unlikely_load(
@@ -82,4 +99,17 @@ pub(super) fn unlikely_end(simulation: &Simulation) -> Option<Finding> {
         );
         Finding::warning(UNLIKELY_UNIT, end, limit, text)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_liquid_is_no_gas_and_no_solid() {
+        assert!([1e7, 2.2e9, 2.9e10].iter().all(|liquid| unlikely_liquid(*liquid).is_none()));
+        let found = unlikely_liquid(2e3).unwrap();
+        assert!(found.code == UNLIKELY_UNIT && found.limit == Some(1e7));
+        assert_eq!(unlikely_liquid(2e12).unwrap().limit, Some(1e11));
+    }
 }

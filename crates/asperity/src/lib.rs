@@ -31,6 +31,7 @@ pub mod contact;
 pub mod cycles;
 pub mod drive;
 pub mod error;
+mod extrapolation;
 pub mod finding;
 pub mod force_curve;
 pub mod grid;

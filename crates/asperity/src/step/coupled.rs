@@ -13,8 +13,8 @@
 use super::{Stepper, saved, solved};
 use crate::contact::{Outcome, Prescribed, Start, not_converged};
 use crate::error::{COUPLING, Result};
+use crate::extrapolation::Extrapolation;
 use crate::process::Process;
-use crate::traction::extrapolation::Extrapolation;
 use asperity_sweep::{Max, each, larger, sums, sweep, zeros};
 
 /// Rounds after which pressure and process are given up.

@@ -24,12 +24,10 @@
 //! |---|---|
 //! | `solver` | the loop |
 //! | `search` | the approach at which the tractions carry a load |
-//! | `extrapolation` | the next b |
 //! | `adhesion`, `scale` | adhesion, and what is known of it before a run |
 //! | `fluid` | the pressure of a fluid in the gap |
 
 mod adhesion;
-pub(crate) mod extrapolation;
 mod fluid;
 mod scale;
 mod search;

@@ -2,12 +2,12 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::extrapolation::Extrapolation;
 use super::{SurfaceTraction, TractionLaw};
 use crate::contact::{
     ContactState, Hardness, Outcome, Prescribed, Problem, Solver, SolverOptions, Task, not_converged,
 };
 use crate::error::{Error, Result};
+use crate::extrapolation::Extrapolation;
 use crate::grid::Grid;
 use crate::operator::Operator;
 use crate::quantities::Quantity;

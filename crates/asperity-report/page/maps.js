@@ -12,14 +12,18 @@ async function load(name) {
   if (part) packed = bytes(part.textContent);
   else if (state.live) {
     // Nothing comes where the page is left meanwhile, or is no longer served.
-    const answer = await fetch("map/" + name).catch(() => null);
-    if (!answer) return null;
-    packed = new Uint8Array(await answer.arrayBuffer());
+    const content = await fetch("map/" + name).then((answer) => answer.arrayBuffer()).catch(() => null);
+    if (!content) return null;
+    packed = new Uint8Array(content);
   } else return null;
   const head = new DataView(packed.buffer, packed.byteOffset, 24);
   const [min, max, nx, ny] = [head.getFloat64(0, true), head.getFloat64(8, true), head.getUint32(16, true), head.getUint32(20, true)];
   const stream = new Blob([packed.subarray(24)]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const planes = new Uint8Array(await new Response(stream).arrayBuffer());
+  // A browser also gives up unpacking where the page is left.
+  const opened = new Response(stream).arrayBuffer();
+  const unpacked = await (state.live ? opened.catch(() => null) : opened);
+  if (!unpacked) return null;
+  const planes = new Uint8Array(unpacked);
   const count = nx * ny, values = new Float32Array(count), step = (max - min) / 65534;
   let holes = false;
   for (let i = 0, n = 0; i < nx; i++) {

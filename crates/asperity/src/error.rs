@@ -5,6 +5,8 @@ use thiserror::Error;
 
 /// The method that finds pressure and friction in turn.
 pub(crate) const COUPLING: &str = "coupling of pressure and friction";
+/// That of the cells above a threshold of wear.
+pub(crate) const WEAR_THRESHOLD: &str = "cells above the threshold of wear";
 
 /// The error of every fallible call of this crate.
 #[derive(Debug, Clone, Error)]

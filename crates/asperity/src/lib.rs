@@ -59,6 +59,7 @@ pub mod tangential;
 pub mod time;
 pub mod traction;
 pub mod verification;
+pub mod wear;
 
 pub use asperity_convolution as convolution;
 

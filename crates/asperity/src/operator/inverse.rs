@@ -56,6 +56,12 @@ impl ApproximateInverse {
         ApproximateInverse { grid, backend, kernel, close: torus(0), wide: torus(SEPARATION) }
     }
 
+    /// The same for another kernel.
+    pub(crate) fn of(self, kernel: impl FnOnce(Arc<dyn Kernel>) -> Arc<dyn Kernel>) -> Self {
+        let [close, wide] = [self.close, self.wide].map(|torus| Torus { plan: None, ..torus });
+        ApproximateInverse { kernel: kernel(self.kernel), close, wide, ..self }
+    }
+
     /// Bytes that the plans take at most.
     pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
         let [close, wide] = [0, SEPARATION].map(|separation| lengths(grid, boundary, separation));

@@ -6,6 +6,7 @@
 //! convolutions of an operator and of its approximate inverse are planned on one [`Backend`].
 
 mod backend;
+mod bed;
 mod convolved;
 mod cpu;
 mod free;
@@ -13,6 +14,7 @@ mod inverse;
 pub(crate) mod wide;
 
 pub use backend::{Backend, ConvolutionPlan, InversePlan};
+pub(crate) use bed::{Bed, Bedded};
 pub(crate) use convolved::{Body, Convolved};
 pub use cpu::Cpu;
 pub use inverse::ApproximateInverse;

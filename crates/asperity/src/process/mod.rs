@@ -3,7 +3,7 @@
 //! A process sees a step twice: before it is solved it may move the undeformed gap to where it is at the end of the step
 //! (`Process::open`, repeatable at any length), and once the row stands it takes it in (`Process::accept`). The quantities and
 //! fields that it adds to a row it declares by answering for them. Members: motion, stiffness, energies, power of
-//! the load, friction, flattening.
+//! the load, friction, wear, flattening.
 
 mod energy;
 mod flattening;
@@ -11,16 +11,19 @@ mod load_power;
 mod motion;
 mod partial_slip;
 mod stiffness;
+mod wear;
 
 pub use motion::{Motion, in_contact_frame};
 pub(crate) use motion::{cells, roll};
 pub(crate) use partial_slip::SlipFields;
+pub(crate) use wear::WornFields;
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::contact::{ContactState, Hardness};
 use crate::error::Result;
-use crate::history::{Exchange, History};
+use crate::history::{Ends, Exchange, History};
 use crate::operator::Operator;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
@@ -36,6 +39,11 @@ pub(crate) trait Process: Send {
     /// Cells along x and y that the gap has moved since the last row; `None` where this process does not move it in this step.
     fn shift(&self, _step: &Interval) -> Option<[isize; 2]> {
         None
+    }
+
+    /// Whether it moves the gap in this step at all.
+    fn moves(&self, step: &Interval) -> bool {
+        self.shift(step).is_some()
     }
 
     /// Whether this process displaces the surfaces normally, besides the pressure.
@@ -54,6 +62,11 @@ pub(crate) trait Process: Send {
     /// Takes in the row that was just solved.
     fn accept(&mut self, row: &mut Solved<'_>) -> Result<()>;
 
+    /// Estimated error of the stress that the step just solved adds because of this process, relative.
+    fn error(&self, _ends: &Ends<'_>, _gap: &UndeformedGap, _compliance: f64) -> Option<f64> {
+        None
+    }
+
     /// A quantity of this process at the end of an attempt, before it is known whether the attempt stands.
     fn preview(&mut self, _quantity: Quantity, _row: &mut Solved<'_>) -> Result<Option<f64>> {
         Ok(None)
@@ -66,6 +79,11 @@ pub(crate) trait Process: Send {
 
     /// The fields of the last row that friction has.
     fn slip(&self) -> Option<SlipFields<'_>> {
+        None
+    }
+
+    /// The worn depths of the last row.
+    fn worn(&self) -> Option<WornFields<'_>> {
         None
     }
 
@@ -105,6 +123,8 @@ pub(crate) struct Solved<'a> {
     pub(crate) exchange: Option<Exchange>,
     /// Work that was done on the bodies in the step besides that of the load \[J\].
     pub(crate) other_work: f64,
+    /// How far each cell has slipped in the step \[m\], where wear asks for it.
+    pub(crate) slipped: Vec<f64>,
     /// Convolutions that the processes took.
     pub(crate) convolutions: usize,
 }
@@ -121,7 +141,7 @@ impl Solved<'_> {
 /// # Errors
 /// [`Error::Invalid`](crate::Error::Invalid) where one of them cannot be planned.
 pub(crate) fn of(
-    simulation: &Simulation,
+    simulation: &Arc<Simulation>,
     operator: &dyn Operator,
     history: &mut dyn History,
 ) -> Result<Vec<Box<dyn Process>>> {
@@ -131,9 +151,10 @@ pub(crate) fn of(
     let all = [
         boxed(simulation.motion.as_ref().map(|motion| motion::Moving::new(simulation, motion))),
         boxed(stiffness::Stiffness::of(simulation, operator)),
+        boxed(partial_slip::PartialSlip::of(simulation)?),
+        boxed(wear::Wearing::of(simulation, operator)),
         boxed(energy::Energy::of(simulation, history)),
         boxed(load_power::LoadPower::of(simulation)),
-        boxed(partial_slip::PartialSlip::of(simulation)?),
         boxed(flattening::Flattening::of(simulation)),
     ];
     Ok(all.into_iter().flatten().collect())

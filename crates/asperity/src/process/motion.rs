@@ -92,6 +92,8 @@ pub(super) struct Moving {
     motion: Motion,
     spacing: [f64; 2],
     slopes: Slopes,
+    /// Whether wear changes the gap besides.
+    wears: bool,
     /// How far it has moved \[m\].
     distance: f64,
     /// How far it had at the end of the last row.
@@ -137,6 +139,7 @@ impl Moving {
             motion,
             spacing,
             slopes,
+            wears: simulation.wear.is_some(),
             distance: 0.0,
             before: 0.0,
             friction: Friction::default(),
@@ -148,10 +151,11 @@ impl Moving {
     /// The forces at the end of a step; `held` is the error that they state for one that is known of them.
     fn forces(&self, row: &Solved<'_>, time_error: f64, held: impl FnOnce(f64) -> f64) -> Friction {
         let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
+        let worn = row.undeformed.worn_slopes.as_ref().map(|worn| self.slopes.and(worn));
         let contact = ContactForces {
             simulation: row.simulation,
             direction: self.motion.direction,
-            slopes: &self.slopes,
+            slopes: worn.as_ref().unwrap_or(&self.slopes),
             state: row.now,
             gap: row.gap(),
             compliance: row.compliance,
@@ -164,7 +168,7 @@ impl Moving {
     }
 
     fn move_to(&mut self, distance: f64, gap: &mut UndeformedGap) {
-        if distance == self.distance {
+        if distance == self.distance && !self.wears {
             return;
         }
         let (moved, slopes) = self.motion.gap.at(distance, self.motion.direction);

@@ -184,7 +184,7 @@ impl PartialSlip {
     }
 
     /// Where the cells are after the step: displacement, slip, work.
-    fn take_in(&mut self, row: &Solved<'_>, compliance: f64) {
+    fn take_in(&mut self, row: &mut Solved<'_>, compliance: f64) {
         let (d, area) = (self.slip.displacement, row.simulation.grid.cell_area());
         let (q, unit) = (&self.slip.traction[..], &self.slip.unit[..]);
         let moved = |u: Vector, b: Vector| plus(times(compliance, u), b);
@@ -197,6 +197,10 @@ impl PartialSlip {
         let cells = (unit, &self.offset[..], &self.slips[..]);
         each(&mut self.slid, cells, |slid, (u, b, slips)| *slid = plus(*slid, slip(u, b, slips)));
         each(&mut self.path, cells, |path, (u, b, slips)| *path += length(slip(u, b, slips)));
+        if row.simulation.wear.is_some() {
+            row.slipped = zeros(unit.len());
+            each(&mut row.slipped, cells, |slipped, (u, b, slips)| *slipped = length(slip(u, b, slips)));
+        }
         let cells = (q, unit, &self.offset[..], &self.slips[..]);
         each(&mut self.heat, cells, |heat, (q, u, b, slips)| *heat -= inner(q, slip(u, b, slips)));
         let cells = (row.contact, q, unit, &self.offset[..], &self.slips[..]);

@@ -26,6 +26,10 @@
 //! | `stick_area`, `slip_area` | m² | area of the cells that stick, and of those at the limit of friction |
 //! | `slip_work` | J | work of friction since t = 0 |
 //! | `friction_iterations`, `friction_certificate` | | iterations of the tangential solver, and its certified error |
+//! | `wear_volume`, `counterbody_wear_volume` | m³ | volume that wear has taken off both bodies, and off the counterbody |
+//! | `wear_rate`, `wear_distance` | m³/s, m | worn volume per time, and sliding distance |
+//! | `wear_depth_max`, `worn_roughness` | m | largest worn depth, and roughness of the worn gap |
+//! | `wear_error` | | share of the worn volume whose place is uncertain |
 //! | `velocity`, `sliding_distance` | m/s, m | velocity of a contact in motion, and how far it has moved |
 //! | `friction_force`, `side_force` | N | force against motion and across it |
 //! | `friction_coefficient`, `friction_coefficient_total` | | friction force over load, without and with a shear stress on the contact |
@@ -217,6 +221,23 @@ quantities! {
     FrictionIterations = "friction_iterations" ["1"] "iterations of the tangential solver", Tangential, ("Work of each row", "number", "iterations of the tangential solver");
     /// Certified error of the tangential tractions in the energy norm, relative.
     FrictionCertificate = "friction_certificate" ["1"] "certified error of the tangential tractions, relative", Tangential, ("Error of each row", "relative error", "tangential tractions (certificate)");
+    /// Volume that wear has taken off both bodies since t = 0, in m3; of surfaces that wear, as the six that follow.
+    WearVolume = "wear_volume" ["m3"] "worn volume of both bodies", Wear, ("Worn volume", "volume", "both bodies"),
+        on a line ["m2"] "worn area of both bodies' sections" ("Worn area of the section", "area");
+    /// What of it is of the counterbody, over which the contact moves, in m3.
+    CounterbodyWearVolume = "counterbody_wear_volume" ["m3"] "worn volume of the counterbody", Wear, ("Worn volume", "volume", "counterbody"),
+        on a line ["m2"] "worn area of the counterbody's section" ("Worn area of the section", "area");
+    /// Worn volume of the step over its length, in m3/s; 0 in a jump.
+    WearRate = "wear_rate" ["m3/s"] "wear rate", Wear, ("Wear rate", "volume per time", ""),
+        on a line ["m2/s"] "wear rate" ("Wear rate", "area per time");
+    /// Sliding distance since t = 0, in m; 0 where slip decides.
+    WearDistance = "wear_distance" ["m"] "sliding distance", Wear, ("Sliding distance", "distance", "");
+    /// Largest depth that wear has taken off a body, in m.
+    WearDepthMax = "wear_depth_max" ["m"] "largest worn depth", Wear, ("Depth and roughness", "length", "largest worn depth");
+    /// Root of the mean square of the undeformed gap about its mean, with what is worn, in m.
+    WornRoughness = "worn_roughness" ["m"] "roughness of the worn gap (Sq)", Wear, ("Depth and roughness", "length", "roughness of the gap (Sq)");
+    /// Share of the worn volume whose place is uncertain because the pressure changes over the steps.
+    WearError = "wear_error" ["1"] "estimated error of the worn depths, relative", Wear, ("Error of the wear", "share of the volume", "");
     /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.
     Velocity = "velocity" ["m/s"] "velocity", Motion, ("Velocity", "velocity", "");
     /// Distance that the contact has moved, in m.
@@ -277,6 +298,8 @@ enum Kind {
     /// A contact with a tangential load: every row has it; or two of it, along x and y.
     Tangential,
     TangentialVector,
+    /// Surfaces that wear: every row has it.
+    Wear,
     /// A contact in motion: every row has it, or only on request.
     Motion,
     MotionOnRequest,
@@ -297,7 +320,10 @@ impl Quantity {
     /// The quantities of every contact, moving or not, with other tractions or without.
     pub fn at_rest() -> impl Iterator<Item = Quantity> {
         let is_special = |quantity: &Quantity| {
-            quantity.is_of_motion() || quantity.is_of_traction() || quantity.is_tangential()
+            quantity.is_of_motion()
+                || quantity.is_of_traction()
+                || quantity.is_tangential()
+                || quantity.is_of_wear()
         };
         Quantity::ALL.into_iter().filter(move |quantity| !is_special(quantity))
     }
@@ -305,6 +331,11 @@ impl Quantity {
     /// The quantities that every row of a contact with a tangential load has.
     pub fn of_tangential() -> impl Iterator<Item = Quantity> {
         Quantity::ALL.into_iter().filter(|quantity| quantity.is_tangential())
+    }
+
+    /// The quantities that every row of surfaces that wear has.
+    pub fn of_wear() -> impl Iterator<Item = Quantity> {
+        Quantity::ALL.into_iter().filter(|quantity| quantity.is_of_wear())
     }
 
     /// The quantities that every row of an adhesive contact has.
@@ -415,6 +446,11 @@ impl Quantity {
     /// Whether it belongs to a contact in motion.
     pub fn is_of_motion(self) -> bool {
         matches!(self.declaration().kind, Kind::Motion | Kind::MotionOnRequest)
+    }
+
+    /// Whether it belongs to surfaces that wear.
+    pub fn is_of_wear(self) -> bool {
+        self.declaration().kind == Kind::Wear
     }
 
     /// Whether it belongs to a contact with a tangential load.

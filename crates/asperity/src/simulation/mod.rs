@@ -21,6 +21,7 @@ use crate::spots::Spots;
 use crate::tangential::{self, Tangential};
 use crate::time::{Plan, TimeGrid};
 use crate::traction::{TractionLaw, TractionSolver};
+use crate::wear::Wear;
 
 /// How the pressure varies over a time step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -94,6 +95,8 @@ pub struct Simulation {
     pub traction: Option<Arc<dyn TractionLaw>>,
     /// Friction and a load along the surfaces; `None` for none.
     pub tangential: Option<Arc<Tangential>>,
+    /// Wear of the surfaces; `None` for none.
+    pub wear: Option<Arc<Wear>>,
 }
 
 impl Simulation {
@@ -119,6 +122,7 @@ impl Simulation {
             motion: None,
             traction: None,
             tangential: None,
+            wear: None,
         }
     }
 
@@ -138,6 +142,7 @@ impl Simulation {
         // A travel that is too long is refused by `validate`.
         stops.extend(self.motion.iter().flat_map(|motion| motion.stops(self).unwrap_or_default()));
         stops.extend(self.tangential.iter().flat_map(|tangential| tangential.breaks(self.times.end())));
+        stops.extend(self.wear.iter().flat_map(|wear| wear.breaks(self.times.end())));
         stops
     }
 
@@ -191,6 +196,7 @@ impl Simulation {
             + self.tangential.as_ref().map_or(0, |law| {
                 tangential::bytes(grid, self.boundary, law) + 2 * history::bytes(self)
             })
+            + self.wear.as_ref().map_or(0, |wear| wear.bytes(grid, self))
     }
 
     /// Whether more than one row may be in contact.

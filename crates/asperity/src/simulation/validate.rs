@@ -48,6 +48,7 @@ impl Simulation {
             self.validate_layers(),
             self.validate_traction(),
             self.tangential.as_ref().map_or(Ok(()), |tangential| tangential.validate(self)),
+            self.wear.as_ref().map_or(Ok(()), |wear| wear.validate(self)),
             self.validate_jumps(&instants),
         ];
         let stages = 0..self.loading.stages.len();
@@ -104,6 +105,8 @@ impl Simulation {
              creep"
         } else if quantity == Quantity::ContactStiffness && self.traction.is_some() {
             "one that an adhesive contact, or one that a fluid acts on, has: its stiffness includes theirs and is infinite where cells snap"
+        } else if quantity.is_of_wear() && self.wear.is_none() {
+            "one that the rows have. Only surfaces that wear have this one: add [wear]"
         } else if quantity.is_tangential() && self.tangential.is_none() {
             "one that the rows have. Only a contact with a load along its surfaces has this one: add [friction] and [tangential]"
         } else if quantity.is_of_traction() && !self.has_traction_with(quantity) {

@@ -72,6 +72,18 @@ impl Path {
         sum
     }
 
+    /// Length of the way between two times \[m\], to and fro.
+    pub(crate) fn travel(&self, from: f64, to: f64) -> f64 {
+        let bends = self.breaks(to).into_iter().filter(|t| *t > from);
+        let ends: Vec<f64> = std::iter::once(from).chain(bends).chain([to]).collect();
+        let mut turns = vec![from];
+        for pair in ends.windows(2) {
+            turns.extend(self.turns(pair[0], pair[1]));
+            turns.push(pair[1]);
+        }
+        turns.windows(2).map(|t| (self.position(t[1]) - self.position(t[0])).abs()).sum()
+    }
+
     /// Velocity at time t \[m/s\], from before it.
     pub fn velocity(&self, t: f64) -> f64 {
         let inside = t - self.start;

@@ -30,13 +30,24 @@ impl Slopes {
         let moving: Vec<(Part, bool)> = parts.iter().map(|part| (part.clone(), true)).collect();
         Ok(MovingGap::new(grid, boundary, &moving)?.at(0.0, Direction::X).1)
     }
+
+    /// Of what a field adds to a gap, by central differences: it may have kinks.
+    pub(crate) fn of_heights(grid: &Grid, boundary: Boundary, added: &Array2<f64>) -> Slopes {
+        let [x, y] = [0, 1].map(|axis| central(grid, boundary, added, axis));
+        Slopes { x, y, centre: [f64::NAN; 2] }
+    }
+
+    /// With those of what is added to the gap.
+    pub(crate) fn and(&self, added: &Slopes) -> Slopes {
+        Slopes { x: &self.x + &added.x, y: &self.y + &added.y, centre: self.centre }
+    }
 }
 
 /// dz/dx and dz/dy of a field.
 pub(super) fn derivatives(grid: &Grid, boundary: Boundary, z: &Array2<f64>) -> [Array2<f64>; 2] {
     match boundary {
         Boundary::Periodic => spectral(grid, z),
-        Boundary::Free => [0, 1].map(|axis| central(grid, z, axis)),
+        Boundary::Free => [0, 1].map(|axis| central(grid, boundary, z, axis)),
     }
 }
 
@@ -60,16 +71,19 @@ fn spectral(grid: &Grid, z: &Array2<f64>) -> [Array2<f64>; 2] {
     })
 }
 
-fn central(grid: &Grid, z: &Array2<f64>, axis: usize) -> Array2<f64> {
+fn central(grid: &Grid, boundary: Boundary, z: &Array2<f64>, axis: usize) -> Array2<f64> {
     let (cells, step) = (grid.cells()[axis], grid.spacing()[axis]);
     Array2::from_shape_fn(grid.shape(), |(i, j)| {
         let n = [i, j][axis];
-        let (before, after) = (n.saturating_sub(1), (n + 1).min(cells - 1));
-        if after == before {
-            return 0.0;
-        }
         let at = |n: usize| if axis == 0 { z[(n, j)] } else { z[(i, n)] };
-        (at(after) - at(before)) / (step * (after - before) as f64)
+        let (before, after, between) = match boundary {
+            Boundary::Periodic => ((n + cells - 1) % cells, (n + 1) % cells, 2),
+            Boundary::Free => {
+                let (before, after) = (n.saturating_sub(1), (n + 1).min(cells - 1));
+                (before, after, after - before)
+            }
+        };
+        if after == before { 0.0 } else { (at(after) - at(before)) / (step * between as f64) }
     })
 }
 

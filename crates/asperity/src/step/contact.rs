@@ -3,20 +3,19 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{
-    ContactState, Hardness, Outcome, Prescribed, Problem, Solver, SolverOptions, Start, Task,
-};
+use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, SolverOptions, Start, Task};
 use crate::error::Result;
 use crate::operator::Operator;
 use crate::simulation::Simulation;
 use crate::time::Instant;
 use crate::traction::TractionSolver;
+use crate::wear::{RecedingSolver, Recession};
 
 pub(crate) struct StepContact {
     pub(crate) operator: Box<dyn Operator>,
     /// Whether the operator is that of one step alone.
     changes: bool,
-    solver: Solver,
+    solver: RecedingSolver,
     options: SolverOptions,
     hardness: CutOff,
     traction: Option<TractionSolver>,
@@ -47,7 +46,7 @@ impl StepContact {
     pub(crate) fn new(simulation: &Simulation, operator: Box<dyn Operator>) -> Self {
         let law = simulation.traction.as_deref();
         StepContact {
-            solver: Solver::new(simulation.solver.method, &*operator),
+            solver: RecedingSolver::new(simulation.solver.method, &*operator),
             operator,
             changes: false,
             options: simulation.solver,
@@ -119,12 +118,25 @@ impl StepContact {
         prescribed: Prescribed,
         state: &mut ContactState,
     ) -> Result<Outcome> {
+        self.solve_receding(start, gap, compliance, prescribed, &Recession::default(), state)
+    }
+
+    /// The same of surfaces that recede under the pressure.
+    pub(super) fn solve_receding(
+        &mut self,
+        start: Start,
+        gap: &[f64],
+        compliance: f64,
+        prescribed: Prescribed,
+        recession: &Recession,
+        state: &mut ContactState,
+    ) -> Result<Outcome> {
         let problem = Problem { gap, compliance, hardness: self.hardness.lent(), prescribed };
         let (operator, options, interrupt) = (&mut *self.operator, &self.options, self.interrupt.as_deref());
         let task = Task { operator, problem: &problem, options, state, interrupt };
         match &mut self.traction {
-            None => self.solver.solve_from(start, task),
-            Some(traction) => traction.solve(&mut self.solver, task),
+            None => self.solver.solve(start, recession, task),
+            Some(traction) => traction.solve(self.solver.still(task.operator), task),
         }
     }
 

@@ -10,6 +10,7 @@
 //! The state holds U = K p + a then, so that c U + g is the whole displacement of the bodies. A round is solved as precisely as the
 //! last one was far from agreement.
 
+use super::state::StepState;
 use super::{Stepper, saved, solved};
 use crate::contact::{Outcome, Prescribed, Start, not_converged};
 use crate::error::{COUPLING, Result};
@@ -62,9 +63,16 @@ impl Stepper {
     /// Those of the contact and of the process; [`Error::NotConverged`](crate::Error::NotConverged) where they do not agree.
     pub(super) fn solve_contact(&mut self, start: Start, prescribed: Prescribed) -> Result<Outcome> {
         let Some(mut coupled) = self.coupled.take() else {
-            let state = &mut self.state;
-            let gap = state.undeformed.or(&state.own_gap);
-            return self.contact.solve(start, gap, state.compliance, prescribed, &mut state.now);
+            let StepState { undeformed, own_gap, compliance, now, .. } = &mut self.state;
+            let gap = undeformed.or(own_gap);
+            return self.contact.solve_receding(
+                start,
+                gap,
+                *compliance,
+                prescribed,
+                &undeformed.recession,
+                now,
+            );
         };
         let options = self.simulation.solver;
         let outcome = self.agree(&mut coupled, prescribed, options.tolerance);

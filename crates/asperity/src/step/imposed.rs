@@ -26,4 +26,9 @@ impl Stepper {
     pub(super) fn shift(&self, step: &Interval) -> Option<[isize; 2]> {
         self.processes.iter().find_map(|process| process.shift(step))
     }
+
+    /// Whether a process moves the gap in a step.
+    pub(super) fn moves(&self, step: &Interval) -> bool {
+        self.processes.iter().any(|process| process.moves(step))
+    }
 }

@@ -159,11 +159,13 @@ impl Stepper {
             }
             Err(error) => return Err(error),
         }
+        let StepState { undeformed, now, own_gap, .. } = &mut self.state;
+        undeformed.recede(&now.pressure, own_gap);
         let carried = self.state.meet(prescribed);
         self.tried = Some(step.length());
         Ok(Summary {
             instant: step.instant,
-            error: self.history.error(&step, &self.state.ends(&self.contact)),
+            error: self.error(&step),
             is_turn,
             touches: self.touches(),
             pulls: self.contact.pulls(),
@@ -173,6 +175,15 @@ impl Stepper {
         })
     }
 
+    /// Estimated error of the stress that the step adds, relative: the largest that history and processes know.
+    fn error(&mut self, step: &Interval) -> Option<f64> {
+        let ends = self.state.ends(&self.contact);
+        let of_history = self.history.error(step, &ends);
+        let of_process =
+            |process: &Box<dyn Process>| process.error(&ends, &self.state.undeformed, self.state.compliance);
+        self.processes.iter().filter_map(of_process).chain(of_history).reduce(f64::max)
+    }
+
     /// Opens the step, or opens it again: moves the gap, and sets compliance, gap and operator.
     fn open(&mut self, step: &Interval) -> Result<Interval> {
         let step = step.under(self.load_over(step));
@@ -180,7 +191,7 @@ impl Stepper {
             self.reopen(&step)?;
             return Ok(step);
         }
-        self.state.undeformed.begin(self.shift(&step).is_some());
+        self.state.undeformed.begin(self.moves(&step));
         self.move_gap(&step)?;
         let StepState { now, before, own_gap, undeformed, .. } = &mut self.state;
         let law = self.history.open(&step, now, undeformed.now(), own_gap)?;
@@ -281,6 +292,7 @@ fn solved<'a>(
         time_error: None,
         exchange: None,
         other_work: 0.0,
+        slipped: vec![],
         convolutions: 0,
     }
 }

@@ -275,6 +275,18 @@ impl<'a> Step<'a> {
         copy_into(self.slip_fields().map(|fields| fields.heat), work);
     }
 
+    /// Depth that wear has taken off the body (0), which moves with the contact, or the counterbody (1) \[m\]; 0 everywhere without wear.
+    pub fn wear_depth_into(&self, body: usize, depth: &mut Array2<f64>) {
+        let worn = self.processes.iter().find_map(|process| process.worn());
+        copy_into(worn.map(|worn| worn.of(body)).as_deref(), depth);
+    }
+
+    /// The undeformed gap h0 of the row \[m\]: moved, flattened and worn; least value of the start 0.
+    pub fn undeformed_gap_into(&self, gap: &mut Array2<f64>) {
+        let now = self.undeformed.map_or(self.gap, UndeformedGap::now);
+        copy_into(Some(now), gap);
+    }
+
     /// The numbers of the row.
     pub fn row(&self) -> Row {
         let Step { state, outcome, hardness, .. } = self;
@@ -343,6 +355,11 @@ impl<'a> Step<'a> {
         if let Some(gap) = self.undeformed.filter(|_| self.simulation.motion.is_none()) {
             let cells = flattening.iter_mut().zip(gap.now().iter().zip(gap.at_start()));
             cells.for_each(|(f, (now, then))| *f = if now > then { now - then } else { 0.0 });
+            if let Some(worn) = self.processes.iter().find_map(|process| process.worn()) {
+                for depth in [0, 1].map(|body| worn.of(body)) {
+                    flattening.iter_mut().zip(depth).for_each(|(f, z)| *f = (*f - z).max(0.0));
+                }
+            }
         }
     }
 

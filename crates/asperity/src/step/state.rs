@@ -30,8 +30,9 @@ impl StepState {
     /// `remembers` tells whether the history may leave a displacement g.
     pub(super) fn new(simulation: &Arc<Simulation>, remembers: bool) -> Self {
         let n = simulation.grid.len();
-        // Flattening changes both gaps.
-        let own = remembers || simulation.plasticity == Plasticity::Accumulate;
+        // Flattening changes both gaps, wear by slip the next one.
+        let slips = simulation.wear.is_some() && simulation.tangential.is_some();
+        let own = remembers || simulation.plasticity == Plasticity::Accumulate || slips;
         StepState {
             now: ContactState::new(n),
             before: ContactState::new(n),

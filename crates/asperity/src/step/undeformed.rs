@@ -3,17 +3,29 @@
 use std::sync::Arc;
 
 use crate::simulation::Simulation;
+use crate::sliding::Slopes;
+use crate::wear::Recession;
 
 pub(crate) struct UndeformedGap {
     simulation: Arc<Simulation>,
     own: Option<Vec<f64>>,
     /// At the start of the step under way, if a process moves the gap in it.
     before: Option<Vec<f64>>,
+    /// By what it recedes in the step under way because of the pressure at its end.
+    pub(crate) recession: Recession,
+    /// Slopes of what wear has added to the parts that move.
+    pub(crate) worn_slopes: Option<Slopes>,
 }
 
 impl UndeformedGap {
     pub(crate) fn of(simulation: &Arc<Simulation>) -> Self {
-        UndeformedGap { simulation: simulation.clone(), own: None, before: None }
+        UndeformedGap {
+            simulation: simulation.clone(),
+            own: None,
+            before: None,
+            recession: Recession::default(),
+            worn_slopes: None,
+        }
     }
 
     /// h0 \[m\] now.
@@ -46,6 +58,26 @@ impl UndeformedGap {
         } else {
             self.before = None;
         }
+    }
+
+    /// As it was at the start of the step under way.
+    pub(crate) fn go_back(&mut self) {
+        if let Some(before) = self.before.take() {
+            self.own_mut().copy_from_slice(&before);
+            self.before = Some(before);
+        }
+    }
+
+    /// Adds what it recedes by in the step under this pressure, to `own` as well.
+    pub(crate) fn recede(&mut self, pressure: &[f64], own: &mut [f64]) {
+        let recession = std::mem::take(&mut self.recession);
+        if !recession.is_none() {
+            recession.add(pressure, self.own_mut());
+            if !own.is_empty() {
+                recession.add(pressure, own);
+            }
+        }
+        self.recession = recession;
     }
 
     /// To be changed.

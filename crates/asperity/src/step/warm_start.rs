@@ -12,8 +12,9 @@ use asperity_sweep::simd::Mask;
 use super::{Interval, StepState, Stepper};
 use crate::contact::{ContactState, Hardness, Prescribed, SAME_LOAD, Start};
 use crate::grid::Boundary;
+use crate::operator::Bed;
 use crate::process::roll;
-use asperity_sweep::{kernel, run, sum};
+use asperity_sweep::{each, kernel, run, sum};
 
 /// Least and largest f.
 const REACH: std::ops::Range<f64> = -4.0..4.0;
@@ -165,6 +166,10 @@ impl Stepper {
         let (from, to) = (&self.state.before, &mut self.state.now);
         roll(grid.shape(), boundary, shift, &from.pressure, &mut to.pressure);
         roll(grid.shape(), boundary, shift, &from.unit_displacement, &mut to.unit_displacement);
+        let bed = self.state.undeformed.recession.bed(self.state.compliance);
+        if !bed.is_none() {
+            each(&mut to.unit_displacement, (&to.pressure[..], bed), |u, (p, bed)| *u += bed * p);
+        }
         to.rounding = from.rounding + 1.0;
         to.approach = from.approach;
         let has_load = match prescribed {
@@ -186,8 +191,9 @@ impl Stepper {
         let ContactState { pressure: p, unit_displacement: u, .. } = now;
         let ContactState { pressure: p_last, unit_displacement: u_last, .. } = &*before;
         let gap = undeformed.or(own_gap);
+        let bed = undeformed.recession.bed(*compliance);
         let (p, u, p_last, u_last) = (&mut p[..], &mut u[..], &p_last[..], &u_last[..]);
-        let products = run(Products { p: &*p, u: &*u, p_last, u_last, gap, hardness });
+        let products = run(Products { p: &*p, u: &*u, p_last, u_last, gap, hardness, bed });
         let [xx, xd, dd, hx, hd, sx, sd, size, capped] = products;
         if sx == 0.0 && size == 0.0 {
             // Neither presses.
@@ -202,7 +208,8 @@ impl Stepper {
             tolerance,
             rounding: 16.0 * f64::EPSILON * before.approach.abs(),
         });
-        let [total, feasible, outside, kept] = run(Combine { p, u, p_last, u_last, hardness, combination });
+        let [total, feasible, outside, kept] =
+            run(Combine { p, u, p_last, u_last, hardness, bed, combination });
         // After a row whose U was computed afresh the next one is, too: the error of the row before it is still in f.
         let refreshed = self.state.now.rounding > REFRESHED * self.state.before.rounding;
         let Combination { a, f } = combination;
@@ -227,7 +234,7 @@ kernel! {
     struct Products<'a> {
         cells {
             p: &'a [f64], u: &'a [f64], p_last: &'a [f64], u_last: &'a [f64],
-            gap: &'a [f64], hardness: Hardness<'a>,
+            gap: &'a [f64], hardness: Hardness<'a>, bed: Bed<'a>,
         }
     }
     fn run<V>(self) -> [f64; 9] {
@@ -240,7 +247,8 @@ kernel! {
             if touches.bits() == 0 {
                 continue;
             }
-            let (u, ux) = (V::load(self.u, n, 0.0), V::load(self.u_last, n, 0.0));
+            let bed = self.bed.load::<V>(n);
+            let (u, ux) = (V::load(self.u, n, 0.0) + bed * p, V::load(self.u_last, n, 0.0) + bed * x);
             // Infinite where a cell cannot touch.
             let h = V::load(self.gap, n, 0.0).only(touches);
             let capped = V::count(touches & !x.less(self.hardness.load(n)));
@@ -257,6 +265,7 @@ kernel! {
     struct Combine<'a> {
         cells {
             p: &'a mut [f64], u: &'a mut [f64], p_last: &'a [f64], u_last: &'a [f64], hardness: Hardness<'a>,
+            bed: Bed<'a>,
         }
         numbers { combination: Combination }
     }
@@ -266,7 +275,8 @@ kernel! {
         let mut sums = [zero; 4];
         for n in (0..self.p.len()).step_by(8) {
             let (p, x) = (V::load(self.p, n, 0.0), V::load(self.p_last, n, 0.0));
-            let (u, ux) = (V::load(self.u, n, 0.0), V::load(self.u_last, n, 0.0));
+            let bed = self.bed.load::<V>(n);
+            let (u, ux) = (V::load(self.u, n, 0.0) + bed * p, V::load(self.u_last, n, 0.0) + bed * x);
             (a * ux + f * (ux - u)).store(self.u, n);
             let touches = zero.less(x.abs()) | zero.less(p.abs());
             if touches.bits() == 0 {

@@ -1,0 +1,289 @@
+//! Wear: the surfaces recede where they slide under pressure ([`crate::wear`]).
+//!
+//! ```text
+//! along a path, in motion     the step is solved with the surfaces at its end: κ = k ds is known before
+//! by slip                     κ = k |slip of the step| is known after it: the surfaces of the row are those before its wear, and what it
+//!                             takes off follows from the contact that the worn surfaces make
+//! ```
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use asperity_sweep::{each, sums};
+
+use super::{Process, Solved, roll};
+use crate::contact::{ContactState, Problem, Start, Task};
+use crate::error::Result;
+use crate::quantities::Quantity;
+use crate::simulation::Simulation;
+use crate::step::{Interval, Loader, Saver, UndeformedGap, saved};
+use crate::wear::{Depth, RecedingSolver, Recession, Sliding, Wear};
+
+pub(super) struct Wearing {
+    simulation: Arc<Simulation>,
+    law: Arc<Wear>,
+    sliding: Sliding,
+    depth: Depth,
+    /// Cells along x and y from where the body started.
+    offset: [f64; 2],
+    /// The same of the last row.
+    offset_before: [f64; 2],
+    numbers: Numbers,
+    /// The contact after the wear of a row, where slip decides.
+    after: Option<After>,
+}
+
+/// Volumes \[m³\] of both together and of the counterbody, and of the last row's step over its length \[m³/s\]; sliding distance \[m\];
+/// volume whose place is uncertain \[m³\]; largest depth, and roughness of the gap \[m\].
+#[derive(Default)]
+struct Numbers {
+    volume: f64,
+    counterbody: f64,
+    rate: f64,
+    distance: f64,
+    uncertain: f64,
+    deepest: f64,
+    roughness: f64,
+}
+
+struct After {
+    solver: RecedingSolver,
+    state: ContactState,
+}
+
+/// The worn depth of a row, for its fields.
+pub(crate) struct WornFields<'a> {
+    depth: &'a Depth,
+    offset: [f64; 2],
+}
+
+impl WornFields<'_> {
+    /// Of the body (0) or the counterbody (1), in the frame of the grid \[m\].
+    pub(crate) fn of(&self, body: usize) -> Vec<f64> {
+        self.depth.on_grid(body, self.offset)
+    }
+}
+
+saved! {
+    Numbers {
+        "volumes": volume, counterbody, uncertain;
+        "distance": distance;
+    }
+}
+
+saved! {
+    Wearing {
+        "offset_x": offset_before[0];
+        "offset_y": offset_before[1];
+    }
+}
+
+impl Wearing {
+    /// `None` where nothing wears.
+    pub(super) fn of(simulation: &Arc<Simulation>, operator: &dyn crate::operator::Operator) -> Option<Self> {
+        let law = simulation.wear.clone()?;
+        let sliding = law.sliding(simulation);
+        let after = (sliding == Sliding::Slip).then(|| After {
+            solver: RecedingSolver::new(simulation.solver.method, operator),
+            state: ContactState::new(simulation.grid.len()),
+        });
+        Some(Wearing {
+            depth: Depth::new(&law, simulation.grid, simulation.boundary),
+            simulation: simulation.clone(),
+            law,
+            sliding,
+            offset: [0.0; 2],
+            offset_before: [0.0; 2],
+            numbers: Numbers::default(),
+            after,
+        })
+    }
+
+    /// Cells along x and y that the body has gone at a time.
+    fn offset_at(&self, time: f64) -> [f64; 2] {
+        let Some(motion) = &self.simulation.motion else { return [0.0; 2] };
+        let (gone, spacing) = (motion.path.position(time), self.simulation.grid.spacing());
+        let unit = motion.direction.unit();
+        [0, 1].map(|axis| near_whole(unit[axis] * gone / spacing[axis]))
+    }
+
+    /// What the surfaces of a row recede by after it because of its slip, and the pressure that takes it off.
+    fn wear_by_slip(&mut self, row: &mut Solved<'_>) -> Result<Recession> {
+        let Some(After { solver, state }) = &mut self.after else { return Ok(Recession::default()) };
+        let factor = self.law.total() * self.law.cycles;
+        let mut cells = std::mem::take(&mut row.slipped);
+        each(&mut cells, factors(&self.law), |slip, map| *slip *= factor * map);
+        let is_none = asperity_sweep::is_zero(&cells);
+        let scale = if is_none { 0.0 } else { 1.0 };
+        let recession = Recession { scale, cells: Some(cells), threshold: self.law.threshold };
+        state.clone_from(row.now);
+        if !is_none {
+            let problem = Problem {
+                gap: row.undeformed.or(row.own_gap),
+                compliance: row.compliance,
+                hardness: row.hardness,
+                prescribed: row.step.prescribed(self.simulation.grid.area()),
+            };
+            let options = &self.simulation.solver;
+            let (operator, interrupt) = (&mut *row.operator, row.interrupt);
+            let task = Task { operator, problem: &problem, options, state, interrupt };
+            row.convolutions += solver.solve(Start::Pressure, &recession, task)?.convolutions;
+            recession.add(&state.pressure, row.undeformed.own_mut());
+        }
+        Ok(recession)
+    }
+
+    /// The pressure of the last row where the contact is now.
+    fn before<'a>(&self, row: &Solved<'a>) -> Cow<'a, [f64]> {
+        let pressure = &row.before.pressure;
+        let shift =
+            [0, 1].map(|axis| (self.offset[axis].round() - self.offset_before[axis].round()) as isize);
+        if shift == [0; 2] {
+            return Cow::Borrowed(pressure);
+        }
+        let mut moved = vec![0.0; pressure.len()];
+        roll(self.simulation.grid.shape(), self.simulation.boundary, shift, pressure, &mut moved);
+        Cow::Owned(moved)
+    }
+
+    /// Root of the mean square of the gap's deviation from its mean, over the cells that can touch \[m\].
+    fn roughness(gap: &[f64]) -> f64 {
+        let [cells, sum] = sums(gap, |h| if h < f64::INFINITY { [1.0, h] } else { [0.0; 2] });
+        let mean = sum / cells;
+        let [square] = sums(gap, |h| if h < f64::INFINITY { [(h - mean) * (h - mean)] } else { [0.0] });
+        (square / cells).sqrt()
+    }
+}
+
+/// What is left of a wrong depth after a step: where it is too large less is worn. A wave that yields by y per pressure keeps
+/// y/(y + κ) of it; y of the contact is the mean.
+fn damping(recession: &Recession, state: &ContactState, compliance: f64) -> f64 {
+    let cells = (&state.pressure[..], &state.unit_displacement[..], recession.per_pressure());
+    let [yields, wears] = sums(cells, |(p, u, k)| [p * compliance * u, p * p * k]);
+    if wears > 0.0 { yields / (yields + wears) } else { 1.0 }
+}
+
+/// The number itself, or the whole number that it is up to rounding.
+fn near_whole(cells: f64) -> f64 {
+    if (cells - cells.round()).abs() < 1e-6 { cells.round() } else { cells }
+}
+
+/// The factor of each cell.
+fn factors(law: &Wear) -> crate::operator::Bed<'_> {
+    crate::operator::Bed { scale: 1.0, cells: law.map.as_ref().and_then(|map| map.as_slice()) }
+}
+
+impl Process for Wearing {
+    fn moves(&self, _step: &Interval) -> bool {
+        self.sliding != Sliding::Slip
+    }
+
+    /// The gap without the wear of the step, and by what it recedes in the step.
+    fn open(&mut self, step: &Interval, gap: &mut UndeformedGap) -> Result<()> {
+        match self.sliding {
+            Sliding::Slip => return Ok(()),
+            Sliding::Path => gap.go_back(),
+            Sliding::Motion => {
+                self.offset = self.offset_at(step.instant.time);
+                let slopes = self.depth.add_to(gap.own_mut(), self.offset);
+                gap.worn_slopes = Some(slopes);
+            }
+        }
+        let scale = self.law.total() * self.law.distance(&self.simulation, step.start, step.instant.time);
+        let cells = self.law.map.as_ref().map(|map| map.iter().copied().collect());
+        gap.recession = Recession { scale, cells, threshold: self.law.threshold };
+        Ok(())
+    }
+
+    /// Takes in what the row has worn.
+    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        let ([volume, uncertain], damping) = if self.sliding == Sliding::Slip {
+            let recession = self.wear_by_slip(row)?;
+            let Some(After { state, .. }) = &self.after else { return Ok(()) };
+            let damping = damping(&recession, state, row.compliance);
+            (self.depth.add(&recession, &state.pressure, row.contact, self.offset), damping)
+        } else {
+            let recession = &row.undeformed.recession;
+            let before = self.before(row);
+            let threshold = recession.threshold;
+            // What wears takes of the work of the load: the mean pressure of the step times the depth.
+            let cells = (row.contact, &before[..], recession.per_pressure());
+            let [work] = sums(cells, |(p, q, k)| [0.5 * (p + q) * crate::wear::depth(p, k, threshold)]);
+            row.other_work -= work * self.simulation.grid.cell_area();
+            let damping = damping(recession, row.now, row.compliance);
+            (self.depth.add(recession, row.contact, &before, self.offset), damping)
+        };
+        self.offset_before = self.offset;
+        let length = row.step.length();
+        let numbers = &mut self.numbers;
+        numbers.volume += volume;
+        numbers.counterbody += volume * self.law.shares()[1];
+        numbers.uncertain = damping * (numbers.uncertain + uncertain);
+        numbers.rate = if length > 0.0 { volume / length } else { 0.0 };
+        numbers.distance += self.law.distance(&self.simulation, row.step.start, row.step.instant.time);
+        numbers.deepest = self.depth.largest();
+        numbers.roughness = Self::roughness(row.undeformed.now());
+        Ok(())
+    }
+
+    fn error(&self, ends: &crate::history::Ends<'_>, gap: &UndeformedGap, compliance: f64) -> Option<f64> {
+        if self.sliding == Sliding::Motion {
+            return None;
+        }
+        let recession = &gap.recession;
+        let threshold = recession.threshold;
+        let of = |p: f64, k: f64| crate::wear::depth(p, k, threshold);
+        let (now, before) = (&ends.now.pressure[..], &ends.before.pressure[..]);
+        let cells = (now, before, &ends.now.unit_displacement[..], recession.per_pressure());
+        let [misplaced, moved] =
+            sums(cells, |(p, before, u, k)| [p * 0.5 * (of(p, k) - of(before, k)).abs(), p * compliance * u]);
+        (!recession.is_none() && moved > 0.0).then(|| misplaced / moved)
+    }
+
+    fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        let numbers = &self.numbers;
+        Some(match quantity {
+            Quantity::WearVolume => numbers.volume,
+            Quantity::CounterbodyWearVolume => numbers.counterbody,
+            Quantity::WearRate => numbers.rate,
+            Quantity::WearDistance => numbers.distance,
+            Quantity::WearDepthMax => numbers.deepest,
+            Quantity::WearError if numbers.volume > 0.0 => numbers.uncertain / numbers.volume,
+            Quantity::WearError => 0.0,
+            Quantity::WornRoughness => numbers.roughness,
+            _ => return None,
+        })
+    }
+
+    fn worn(&self) -> Option<WornFields<'_>> {
+        Some(WornFields { depth: &self.depth, offset: self.offset })
+    }
+
+    fn name(&self) -> &'static str {
+        "wear"
+    }
+
+    fn save<'a>(&'a self, to: &mut Saver<'a>, gap: &'a UndeformedGap) {
+        self.save_own(to);
+        self.numbers.save_own(to);
+        to.field("gap", gap.now());
+        for (name, field) in ["body", "counterbody"].into_iter().zip(&self.depth.of_bodies) {
+            if !field.is_empty() {
+                to.field(name, field);
+            }
+        }
+    }
+
+    fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
+        self.load_own(from)?;
+        self.offset = self.offset_before;
+        self.numbers.load_own(from)?;
+        from.field_into("gap", gap.own_mut())?;
+        for (name, field) in ["body", "counterbody"].into_iter().zip(&mut self.depth.of_bodies) {
+            if !field.is_empty() {
+                from.field_into(name, field)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,188 @@
+//! What wears, and by how much.
+
+use ndarray::Array2;
+
+use crate::error::{Error, Result, require};
+use crate::grid::Grid;
+use crate::simulation::Simulation;
+use crate::sliding::Path;
+
+/// Cycles that a computed one may stand for.
+const MOST_CYCLES: f64 = 1e9;
+
+/// Archard's law for both bodies.
+///
+/// ```
+/// use std::sync::Arc;
+/// use asperity::{drive::March, material::Creep, sliding::Path, surface::{Part, Shape, undeformed_gap}, wear::Wear, *};
+/// // A sphere under 1 N slides at 1 m/s for 10 s: k W s = 1e-13 m²/N x 1 N x 10 m.
+/// let grid = Grid::new([32, 32], [0.6e-3, 0.6e-3])?;
+/// let sphere = Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] };
+/// let path = Path::of_velocity(History::Step { value: 1.0 }, 0.0)?;
+/// let mut march = March::new(Simulation {
+///     creep: Creep::elastic(1e-9),
+///     loading: Loading { control: Control::Load, history: History::Step { value: 1.0 } }.into(),
+///     times: TimeGrid::Uniform { end: 10.0, steps: 5 },
+///     wear: Some(Arc::new(Wear { path: Some(path), ..Wear::new([1e-13, 0.0]) })),
+///     quantities: quantities::Quantities::of([quantities::Quantity::WearVolume]),
+///     ..Simulation::new(grid, undeformed_gap(&grid, &[sphere])?)
+/// })?;
+/// let mut volume = 0.0;
+/// while let Some(step) = march.advance()? {
+///     volume = step.quantity(quantities::Quantity::WearVolume).unwrap()[0];
+/// }
+/// assert!((volume / 1e-12 - 1.0).abs() < 1e-12);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wear {
+    /// k of the body, which moves with the contact, and of the counterbody \[m²/N\].
+    pub coefficients: [f64; 2],
+    /// Factor of both in each cell, shape (nx, ny); 1 if not given.
+    pub map: Option<Array2<f64>>,
+    /// Pressure below which nothing wears \[Pa\].
+    pub threshold: f64,
+    /// The sliding distance over time; `None` where the motion of the contact or its slip gives it.
+    pub path: Option<Path>,
+    /// Cycles of slip that a computed one stands for.
+    pub cycles: f64,
+}
+
+/// What slides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sliding {
+    /// The bodies, along a path, while the contact stays in its place on the grid.
+    Path,
+    /// The contact, over the grid.
+    Motion,
+    /// Each cell, by its slip under a tangential load.
+    Slip,
+}
+
+impl Wear {
+    /// Of these coefficients, without threshold; the sliding distance is that of motion or slip.
+    pub fn new(coefficients: [f64; 2]) -> Self {
+        Wear { coefficients, map: None, threshold: 0.0, path: None, cycles: 1.0 }
+    }
+
+    pub(crate) fn sliding(&self, simulation: &Simulation) -> Sliding {
+        match (&simulation.motion, &simulation.tangential) {
+            (Some(_), _) => Sliding::Motion,
+            (None, Some(_)) => Sliding::Slip,
+            (None, None) => Sliding::Path,
+        }
+    }
+
+    /// Sliding distance between two times \[m\]; 0 where slip decides.
+    pub(crate) fn distance(&self, simulation: &Simulation, from: f64, to: f64) -> f64 {
+        let path = simulation.motion.as_ref().map(|motion| &motion.path).or(self.path.as_ref());
+        path.map_or(0.0, |path| path.travel(from, to))
+    }
+
+    /// The share of the worn depth that either body takes where both wear in the same place.
+    pub(crate) fn shares(&self) -> [f64; 2] {
+        self.coefficients.map(|k| k / self.total())
+    }
+
+    /// k of both together.
+    pub(crate) fn total(&self) -> f64 {
+        self.coefficients.iter().sum()
+    }
+
+    /// The times at which the sliding velocity bends or jumps.
+    pub(crate) fn breaks(&self, end: f64) -> Vec<f64> {
+        self.path.iter().flat_map(|path| path.breaks(end)).collect()
+    }
+
+    /// Bytes that a run with wear takes besides.
+    pub(crate) fn bytes(&self, grid: &Grid, simulation: &Simulation) -> usize {
+        let bodies = self.coefficients.iter().filter(|k| **k > 0.0).count();
+        // the gap and that before the step, a copy for the bed, cells above the threshold
+        let fields = 3 + bodies + if self.threshold > 0.0 { 2 } else { 0 };
+        // the contact of the worn surfaces, and the slip
+        let slip = if self.sliding(simulation) == Sliding::Slip { 5 } else { 0 };
+        8 * grid.len() * (fields + slip)
+    }
+
+    /// Checks what can be known before the run.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with the key of the case.
+    pub(crate) fn validate(&self, simulation: &Simulation) -> Result<()> {
+        self.validate_numbers(simulation)?;
+        let sliding = self.sliding(simulation);
+        let needs = |holds: bool, key: &str, what: &str, value: &str, expected: &str| {
+            require(holds, what, value, expected).map_err(|error| error.of(key))
+        };
+        needs(
+            self.path.is_some() || sliding != Sliding::Path,
+            "wear",
+            "sliding distance of [wear]",
+            "not given",
+            "`velocity` in [wear], or [motion], or a load along the surfaces, [tangential]",
+        )?;
+        let expected = "left out: the sliding distance is that of [motion], or the slip under [tangential]";
+        needs(
+            self.path.is_none() || sliding == Sliding::Path,
+            "wear.velocity",
+            "velocity of [wear]",
+            "given",
+            expected,
+        )?;
+        let expected = "none: wear is not solved together with them";
+        needs(
+            simulation.traction.is_none(),
+            "wear",
+            "traction of adhesion or of a fluid beside wear",
+            "given",
+            expected,
+        )?;
+        let is_coupled = simulation.tangential.as_ref().is_some_and(|law| law.is_coupled());
+        let expected = "\"neglect\" where the surfaces wear";
+        needs(!is_coupled, "friction.coupling", "coupling of pressure and traction", "\"full\"", expected)?;
+        let expected = "left out: it belongs to places of bodies that do not move";
+        needs(
+            self.map.is_none() || sliding != Sliding::Motion,
+            "wear.map",
+            "map of wear beside [motion]",
+            "given",
+            expected,
+        )?;
+        let expected = "1 where no slip repeats; without [tangential] a longer time step or a larger velocity does the same";
+        require(self.cycles == 1.0 || sliding == Sliding::Slip, "cycles per step", self.cycles, expected)
+            .map_err(|error| error.of("wear.cycles_per_step"))
+    }
+
+    fn validate_numbers(&self, simulation: &Simulation) -> Result<()> {
+        let of = |key: &'static str| move |error: Error| error.of(key);
+        for k in self.coefficients {
+            let sound = k.is_finite() && k >= 0.0;
+            require(sound, "wear coefficient", format!("{k} m2/N"), "finite and not negative")
+                .map_err(of("wear.coefficient"))?;
+        }
+        require(self.total() > 0.0, "wear coefficient", "0 of both bodies", "greater than 0 of one of them")
+            .map_err(of("wear.coefficient"))?;
+        let sound = self.threshold.is_finite() && self.threshold >= 0.0;
+        require(sound, "threshold of wear", format!("{} Pa", self.threshold), "finite and not negative")
+            .map_err(of("wear.threshold"))?;
+        let sound = (1.0..=MOST_CYCLES).contains(&self.cycles);
+        require(sound, "cycles per step", self.cycles, format!("between 1 and {MOST_CYCLES:e}"))
+            .map_err(of("wear.cycles_per_step"))?;
+        let Some(map) = &self.map else { return Ok(()) };
+        let shape = simulation.grid.shape();
+        require(
+            map.dim() == shape,
+            "shape of the map of wear",
+            format!("{:?}", map.dim()),
+            format!("{shape:?}, one for each cell"),
+        )
+        .map_err(of("wear.map"))?;
+        match map.indexed_iter().find(|(_, factor)| !(factor.is_finite() && **factor >= 0.0)) {
+            Some(((i, j), factor)) => {
+                let what = format!("factor of wear of cell ({i}, {j})");
+                Err(Error::invalid(what, factor, "finite and not negative").of("wear.map"))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -5,6 +5,7 @@
 //! | with leakage | `leak_rate` (of a gas also `leak_rate_standard`), `hydraulic_gap`, `tight_from` |
 //! | with a fluid that acts on the surfaces | `fluid_load`, `time_opened` where it opens the contact, `closing_pressure` where that closes as the inlet falls, `lift_off_pressure` on a periodic domain under a load; on request `opening_pressure`, `leak_rate_one_way` |
 //! | with adhesion | `pull_off_force`, `pull_off_approach` |
+//! | with wear | `wear_life` where a depth is given, `wear_volume`, `counterbody_wear_volume`, `wear_depth_max` |
 //! | with a load along the surfaces | `loop_energy` of the last loop, `tangential_stiffness`, `largest_tangential_force`, `largest_tangential_displacement`, `slip_share`, `slip_work` |
 //! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force` |
 //! | with a sine | `loss_angle`, `dissipated_energy`, `dynamic_stiffness` of the last cycle |
@@ -22,6 +23,7 @@ mod motion;
 mod stress;
 mod tangential;
 mod units;
+mod wear;
 
 use asperity::step::Row;
 use asperity::{Axis, Coordinate};
@@ -103,6 +105,7 @@ pub fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     let mut answers = leak::of(reader, units)?;
     answers.extend(fluid::of(reader, &rows, decisive, units)?);
     answers.extend(adhesion::of(reader, &rows));
+    answers.extend(wear::of(reader, &rows)?);
     answers.extend(tangential::of(reader, &rows)?);
     answers.extend(motion::of(reader, &rows, decisive)?);
     answers.extend(last_cycle(reader)?);

@@ -218,9 +218,12 @@ impl Document {
         };
         let tangential = self.tangential(checks, grid.as_ref(), pair.as_ref());
         let (tangential, slipped) = tangential.unzip();
+        let wear = self.wear(checks, grid.as_ref(), swept.is_some());
+        let (wear, worn) = wear.unzip();
         let conditions = law.zip(conditions).map(|(traction, conditions)| Simulation {
             traction,
             tangential,
+            wear: wear.map(Arc::new),
             ..conditions
         });
         if let Some(conditions) = &conditions {
@@ -229,7 +232,8 @@ impl Document {
             }
             // A faulty fluid, or a faulty load along the surfaces, is reported already.
             let slips = self.tangential.is_some() || self.friction.is_some();
-            if (leakage.is_some() || !acts) && (conditions.tangential.is_some() || !slips) {
+            let wears = conditions.wear.is_some() || self.wear.is_none();
+            if (leakage.is_some() || !acts) && (conditions.tangential.is_some() || !slips) && wears {
                 self.output.possible(&at("output"), conditions, motion.is_some());
             }
         }
@@ -261,6 +265,7 @@ impl Document {
         files.extend(hardness.files);
         files.extend(histories);
         files.extend(slipped.into_iter().flatten());
+        files.extend(worn.into_iter().flatten());
         files.extend(profile);
         let usual = pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 };
         let case = Case {
@@ -330,6 +335,32 @@ impl Document {
         let bodies = (&at("body"), &pair?.bodies[..]);
         let (law, files) = tangential.law(&at("tangential"), (&at("friction"), friction), grid, bodies)?;
         Some((Arc::new(law), files))
+    }
+
+    /// The wear of the surfaces, with the files that it is from; `steady` where the case asks for steady states of motion.
+    fn wear(
+        &self,
+        checks: &Checks<'_>,
+        grid: Option<&Grid>,
+        steady: bool,
+    ) -> Option<(asperity::wear::Wear, Vec<Origin>)> {
+        let (wear, at) = (self.wear.as_ref()?, checks.at("wear"));
+        let refuse = |message: &str, expected: &str, help: &str| at.fault::<()>(message, expected, help);
+        if steady {
+            let help = "give [motion] a velocity and the case a [time], or wear the contact in its own frame by [wear] velocity";
+            refuse("a steady state does not wear: its surfaces stay as they are", "a motion in time", help);
+        } else if self.motion.as_ref().is_some_and(|motion| motion.rolls()) {
+            refuse("surfaces that roll do not slide, so they do not wear here", "kind = \"slide\"", "");
+        } else if self.seal.is_some() {
+            refuse(
+                "a [seal] is computed from patches that do not wear",
+                "one of the two sections",
+                "delete one of them",
+            );
+        }
+        let slides = [("motion", self.motion.is_some()), ("tangential", self.tangential.is_some())];
+        let slides = slides.into_iter().find(|(_, given)| *given).map(|(section, _)| section);
+        wear.law(&at, grid, slides)
     }
 
     /// The simulation as far as the sections give it: without gap and motion.

@@ -24,6 +24,7 @@ use super::tangential::{Friction, Tangential};
 use super::temperature::Temperature;
 use super::text::Text;
 use super::time::Times;
+use super::wear::Wear;
 use crate::quantity::range::{Poisson, Positive};
 use crate::quantity::{Length, Number, Pressure};
 
@@ -40,6 +41,7 @@ const SECTIONS: &[&str] = &[
     "adhesion",
     "friction",
     "tangential",
+    "wear",
     "leakage",
     "seal",
     "solver",
@@ -86,6 +88,9 @@ pub struct Document {
     /// A load along the surfaces, with `friction`; none if not given.
     #[schemars(example = serde_json::json!({ "control": "force", "x": { "kind": "ramp", "value": "0.1 N", "duration": "1 s" } }))]
     pub tangential: Option<Tangential>,
+    /// Wear of the surfaces where they slide; none if not given.
+    #[schemars(example = serde_json::json!({ "coefficient": "1e-15 m2/N", "velocity": "0.1 m/s" }))]
+    pub wear: Option<Wear>,
     /// The flow of a fluid through the gap.
     #[schemars(example = serde_json::json!({ "pressure_drop": "2 bar", "viscosity": "1 mPa s" }))]
     pub leakage: Option<LeakageKeys>,
@@ -131,6 +136,7 @@ impl Document {
             adhesion: reader.table("adhesion"),
             friction: reader.table("friction"),
             tangential: reader.table("tangential"),
+            wear: reader.table("wear"),
             leakage: reader.table("leakage"),
             seal: reader.table("seal"),
             solver: reader.table("solver").unwrap_or_default(),

@@ -86,6 +86,7 @@ mod text;
 mod time;
 mod until;
 mod warmth;
+mod wear;
 mod words;
 
 use std::path::{Path, PathBuf};
@@ -337,6 +338,10 @@ impl Case {
                 |quantity: &Quantity| !wanted.list.contains(quantity) && simulation.allows(*quantity).is_ok();
             let of_rows: Vec<Quantity> = of_rows.filter(new).collect();
             wanted.list.extend(of_rows);
+        }
+        if simulation.wear.is_some() {
+            let new: Vec<Quantity> = Quantity::of_wear().filter(|own| !wanted.list.contains(own)).collect();
+            wanted.list.extend(new);
         }
         if simulation.tangential.is_some() {
             let new: Vec<Quantity> =

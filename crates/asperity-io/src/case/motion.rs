@@ -166,6 +166,11 @@ pub fn nothing_moves(list: &Place<'_>, surfaces: &[Surface]) {
 }
 
 impl Motion {
+    /// Whether it rolls.
+    pub fn rolls(&self) -> bool {
+        self.kind == MotionKind::Roll
+    }
+
     /// What moves, and how; and whether each of the surfaces does.
     pub fn moving(&self, at: &Place<'_>, surfaces: &[Surface]) -> Option<Moving> {
         at.exactly_one(&["velocity", "path", "steady"])?;

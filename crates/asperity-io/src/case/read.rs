@@ -35,6 +35,7 @@ const UNIONS: &[Union] = &[
     Union("temperature.history", "kind", &[]),
     Union("motion.path", "kind", &[]),
     Union("motion.velocity", "kind", &[]),
+    Union("wear.velocity", "kind", &[]),
     Union("leakage.inlet", "kind", &[]),
     // A material of its own file.
     Union("material.shift", "model", SHIFT),

@@ -111,6 +111,14 @@ pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
             }),
         );
     }
+    if let Some(law) = &simulation.wear {
+        setup.insert(
+            Header::WEAR.into(),
+            json!({
+                "coefficients": law.coefficients, "threshold": law.threshold, "cycles": law.cycles, "depth_limit": law.depth_limit,
+            }),
+        );
+    }
     if let Some(leak) = &case.leakage {
         setup.insert("leakage".into(), serde_json::to_value(leak).unwrap_or_default());
     }

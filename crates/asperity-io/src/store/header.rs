@@ -91,6 +91,9 @@ impl Header {
     /// The key of the numbers of its friction in the setup.
     pub(crate) const FRICTION: &'static str = "friction";
 
+    /// The key of the numbers of its wear in the setup.
+    pub(crate) const WEAR: &'static str = "wear";
+
     /// Whether friction holds a load along the surfaces.
     pub fn slips(&self) -> bool {
         self.setup.contains_key(Header::FRICTION)

@@ -13,7 +13,8 @@ use super::worst::extend;
 use super::{
     ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, FLUID_CHATTER, FLUID_LIFTS,
     Finding, LARGE_SLOPE, LARGE_STRAIN, POCKET_TENSION, SLIP_UNRESOLVED, SPOTS_UNRESOLVED, SQUEEZE_SLOW,
-    STEPS_TOO_LONG, adhesion, domain, fluid, material, plausible, strain, surface, tangential, thin, time,
+    STEPS_TOO_LONG, WEAR_STEPS, adhesion, domain, fluid, material, plausible, strain, surface, tangential,
+    thin, time, wear,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -78,6 +79,7 @@ pub struct Diagnostics {
     adhesion: adhesion::Border,
     fluid: fluid::Wet,
     ring: tangential::Ring,
+    wear: wear::Steps,
     balance: Balance,
     beyond: Beyond,
     /// Where an approach is held while cells are at the hardness, and the control of each stage.
@@ -117,6 +119,7 @@ impl Diagnostics {
             adhesion: adhesion::Border::default(),
             fluid: fluid::Wet::default(),
             ring: tangential::Ring::default(),
+            wear: wear::Steps::default(),
             balance: Balance::default(),
             beyond: Beyond::default(),
             held: time::Held::default(),
@@ -166,6 +169,7 @@ impl Diagnostics {
                 ADHESION_AT_BORDER => self.adhesion.resume(finding),
                 FLUID_LIFTS | FLUID_CHATTER | POCKET_TENSION | SQUEEZE_SLOW => self.fluid.resume(finding),
                 SLIP_UNRESOLVED => self.ring.resume(finding),
+                WEAR_STEPS => self.wear.resume(finding),
                 ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
                 _ => {}
             }
@@ -184,6 +188,7 @@ impl Diagnostics {
         self.adhesion.see(step);
         self.fluid.see(step, row);
         self.ring.see(step, row);
+        self.wear.see(step);
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);
         }
@@ -281,6 +286,7 @@ impl Diagnostics {
         found.extend(self.adhesion.finding());
         found.extend(self.fluid.findings());
         found.extend(self.ring.finding());
+        found.extend(self.wear.finding(simulation));
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
         found
@@ -334,5 +340,6 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     found.extend(adhesion::before(simulation));
     found.extend(fluid::before(simulation));
     found.extend(tangential::before(simulation));
+    found.extend(wear::before(simulation));
     found
 }

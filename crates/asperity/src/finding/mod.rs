@@ -18,6 +18,7 @@
 //! | `energy` | the energy balance |
 //! | `leak` | leaks that are unreliable because of gap, grid or fluid pressure |
 //! | `tangential` | forces that friction does not hold, tangential tractions that act on the pressure |
+//! | `wear` | steps in which much wears, tracks that stay under the contact |
 //! | `adhesion` | cells that snap one by one, attraction beyond the border |
 //! | `motion` | friction that the grid does not resolve, bodies on their own track |
 //! | `thin` | half-spaces of finite thickness |
@@ -45,6 +46,7 @@ mod surface;
 mod tangential;
 mod thin;
 mod time;
+mod wear;
 mod words;
 mod worst;
 
@@ -275,6 +277,10 @@ codes! {
     NORMAL_COUPLING = "normal-coupling";
     /// Slip in a ring that is about one cell wide, or in none.
     SLIP_UNRESOLVED = "slip-unresolved";
+    /// So much wears in a step that the place of the worn volume is uncertain.
+    WEAR_STEPS = "wear-steps";
+    /// A counterbody whose wear stays under a contact that slides far.
+    WEAR_TRACK = "wear-track";
 }
 
 #[cfg(test)]

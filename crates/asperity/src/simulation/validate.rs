@@ -28,6 +28,7 @@ impl Simulation {
         self.motion
             .iter()
             .try_for_each(|motion| motion.validate(self).map_err(|error| error.of("motion")))?;
+        self.wear.iter().try_for_each(|wear| wear.validate_sliding(self))?;
         self.quantities.list.iter().try_for_each(|quantity| self.allows(*quantity))?;
         self.faults().into_iter().next().map_or(Ok(()), Err)
     }

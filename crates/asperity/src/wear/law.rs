@@ -46,6 +46,8 @@ pub struct Wear {
     pub path: Option<Path>,
     /// Cycles of slip that a computed one stands for.
     pub cycles: f64,
+    /// The depth at which a body is worn out \[m\]; it only says when that is.
+    pub depth_limit: Option<f64>,
 }
 
 /// What slides.
@@ -62,7 +64,7 @@ pub(crate) enum Sliding {
 impl Wear {
     /// Of these coefficients, without threshold; the sliding distance is that of motion or slip.
     pub fn new(coefficients: [f64; 2]) -> Self {
-        Wear { coefficients, map: None, threshold: 0.0, path: None, cycles: 1.0 }
+        Wear { coefficients, map: None, threshold: 0.0, path: None, cycles: 1.0, depth_limit: None }
     }
 
     pub(crate) fn sliding(&self, simulation: &Simulation) -> Sliding {
@@ -104,50 +106,39 @@ impl Wear {
         8 * grid.len() * (fields + slip)
     }
 
-    /// Checks what can be known before the run.
+    /// Checks what can be known before the run; of the sliding distance once the motion is known.
     ///
     /// # Errors
     /// [`Error::Invalid`] with the key of the case.
     pub(crate) fn validate(&self, simulation: &Simulation) -> Result<()> {
         self.validate_numbers(simulation)?;
-        let sliding = self.sliding(simulation);
-        let needs = |holds: bool, key: &str, what: &str, value: &str, expected: &str| {
-            require(holds, what, value, expected).map_err(|error| error.of(key))
-        };
-        needs(
-            self.path.is_some() || sliding != Sliding::Path,
-            "wear",
-            "sliding distance of [wear]",
-            "not given",
-            "`velocity` in [wear], or [motion], or a load along the surfaces, [tangential]",
-        )?;
-        let expected = "left out: the sliding distance is that of [motion], or the slip under [tangential]";
-        needs(
-            self.path.is_none() || sliding == Sliding::Path,
-            "wear.velocity",
-            "velocity of [wear]",
-            "given",
-            expected,
-        )?;
         let expected = "none: wear is not solved together with them";
-        needs(
-            simulation.traction.is_none(),
-            "wear",
-            "traction of adhesion or of a fluid beside wear",
-            "given",
-            expected,
-        )?;
+        let holds = simulation.traction.is_none();
+        require(holds, "traction of adhesion or of a fluid beside wear", "given", expected)
+            .map_err(|error| error.of("wear"))?;
         let is_coupled = simulation.tangential.as_ref().is_some_and(|law| law.is_coupled());
         let expected = "\"neglect\" where the surfaces wear";
-        needs(!is_coupled, "friction.coupling", "coupling of pressure and traction", "\"full\"", expected)?;
+        require(!is_coupled, "coupling of pressure and traction", "\"full\"", expected)
+            .map_err(|error| error.of("friction.coupling"))
+    }
+
+    /// Checks what slides.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub(crate) fn validate_sliding(&self, simulation: &Simulation) -> Result<()> {
+        let sliding = self.sliding(simulation);
+        let expected = "a velocity, or a motion of the contact, or a load along the surfaces";
+        let known = self.path.is_some() || sliding != Sliding::Path;
+        require(known, "sliding distance of wear", "not given", expected)
+            .map_err(|error| error.of("wear"))?;
+        let expected = "left out: the sliding distance is that of [motion], or the slip under [tangential]";
+        let alone = self.path.is_none() || sliding == Sliding::Path;
+        require(alone, "velocity of wear", "given", expected).map_err(|error| error.of("wear.velocity"))?;
         let expected = "left out: it belongs to places of bodies that do not move";
-        needs(
-            self.map.is_none() || sliding != Sliding::Motion,
-            "wear.map",
-            "map of wear beside [motion]",
-            "given",
-            expected,
-        )?;
+        let in_place = self.map.is_none() || sliding != Sliding::Motion;
+        require(in_place, "map of wear beside [motion]", "given", expected)
+            .map_err(|error| error.of("wear.map"))?;
         let expected = "1 where no slip repeats; without [tangential] a longer time step or a larger velocity does the same";
         require(self.cycles == 1.0 || sliding == Sliding::Slip, "cycles per step", self.cycles, expected)
             .map_err(|error| error.of("wear.cycles_per_step"))
@@ -168,6 +159,14 @@ impl Wear {
         let sound = (1.0..=MOST_CYCLES).contains(&self.cycles);
         require(sound, "cycles per step", self.cycles, format!("between 1 and {MOST_CYCLES:e}"))
             .map_err(of("wear.cycles_per_step"))?;
+        let sound = self.depth_limit.is_none_or(|depth| depth.is_finite() && depth > 0.0);
+        require(
+            sound,
+            "depth limit of wear",
+            format!("{:?} m", self.depth_limit),
+            "finite and greater than 0",
+        )
+        .map_err(of("wear.depth_limit"))?;
         let Some(map) = &self.map else { return Ok(()) };
         let shape = simulation.grid.shape();
         require(

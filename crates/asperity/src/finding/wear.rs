@@ -1,0 +1,66 @@
+//! Wear: steps in which too much wears, tracks that do not go with the contact.
+
+use super::words::{digits, si};
+use super::{Finding, WEAR_STEPS, WEAR_TRACK};
+use crate::quantities::Quantity;
+use crate::simulation::Simulation;
+use crate::step::Step;
+use crate::wear::Sliding;
+
+/// Share of the worn volume whose place may be uncertain.
+const UNCERTAIN: f64 = 0.05;
+
+/// What is known before the run: a counterbody that wears in place, although the surfaces slide further than the domain is long.
+pub(super) fn before(simulation: &Simulation) -> Option<Finding> {
+    let law = simulation.wear.as_ref()?;
+    let side = simulation.grid.longest_side();
+    let distance = law.distance(simulation, 0.0, simulation.times.end());
+    let stays = law.sliding(simulation) == Sliding::Path && law.coefficients[1] > 0.0 && distance > side;
+    stays.then(|| {
+        let text = format!(
+            "The counterbody wears in place, although the surfaces slide {} and the domain is {} long: its wear stays under the contact, as if \
+             both moved to and fro. Leave its coefficient out where its track is long, or use [motion], which keeps the track.",
+            si(distance, "m"),
+            si(side, "m")
+        );
+        Finding::warning(WEAR_TRACK, distance, side, text)
+    })
+}
+
+/// The estimated error of the worn depths.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Steps {
+    worst: f64,
+    rows: Option<[usize; 2]>,
+}
+
+impl Steps {
+    pub(super) fn see(&mut self, step: &Step<'_>) {
+        let error = step.quantity(Quantity::WearError).map_or(0.0, |values| values[0]);
+        if error > UNCERTAIN {
+            super::worst::extend(&mut self.rows, step.index());
+            self.worst = self.worst.max(error);
+        }
+    }
+
+    pub(super) fn finding(&self, simulation: &Simulation) -> Option<Finding> {
+        let at = self.rows?;
+        let cure = match simulation.wear.as_ref().map(|law| law.sliding(simulation)) {
+            Some(Sliding::Slip) => "Take fewer cycles_per_step, or more steps in a cycle",
+            Some(Sliding::Motion) => "Take fewer cells_per_step",
+            _ => "Take more time steps, or spacing = \"adaptive\"",
+        };
+        let text = format!(
+            "Much wears in a step ({}): the pressure changes over the steps, so {} % of the worn volume may be in the wrong place. The volume \
+             itself is right. {cure}.",
+            super::words::rows(at),
+            digits(100.0 * self.worst)
+        );
+        Some(Finding::warning(WEAR_STEPS, self.worst, UNCERTAIN, text).at(at))
+    }
+
+    /// Takes over the finding of an earlier session.
+    pub(super) fn resume(&mut self, finding: &Finding) {
+        (self.worst, self.rows) = (finding.value.unwrap_or(0.0), finding.rows);
+    }
+}

@@ -82,7 +82,10 @@ function ticks(low, high, wanted, log) {
   for (let n = Math.ceil(low / step - 1e-9); n <= high / step + 1e-9 && list.length < 50; n++) {
     const value = n * step;
     if (log && value <= 0) continue;
-    const text = Math.abs(value) >= 1e6 ? value.toExponential(1) : value.toFixed(decimals);
+    const size = Math.abs(value), is_plain = size < 1e6 && decimals <= 6;
+    // All ticks have the digits that tell them apart.
+    const own = value === 0 ? 0 : Math.max(1, Math.round(Math.floor(Math.log10(size) + 1e-9) + decimals));
+    const text = is_plain ? value.toFixed(decimals) : size >= 1e6 ? value.toExponential(1) : value === 0 ? "0" : value.toExponential(own);
     list.push({ value, text: text.replace(/^-(?=0(\.0*)?$)/, "").replace("-", "−") });
   }
   return list;

@@ -44,7 +44,9 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
             _ => 0.0,
         };
     }
-    answers.extend(while_held(&rows[..=n], held_approach).map(|answer| answer.at(row)));
+    // What wears approaches and relaxes without creep.
+    let held = while_held(&rows[..=n], held_approach).filter(|_| !reader.header().wears());
+    answers.extend(held.map(|answer| answer.at(row)));
     Ok(answers)
 }
 

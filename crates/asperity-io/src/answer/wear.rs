@@ -21,19 +21,18 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         Quantity::WearDistance,
     ]
     .map(of_rows);
-    let (volume, track, depth, distance) = (volume?, track?, depth?, distance?);
+    let (volume, depth, distance) = (volume?, depth?, distance?);
+    let track = track.ok().and_then(|track| track.last().copied());
     let error = of_rows(Quantity::WearError)?[last];
     let number = |key: &str| wear.get(key).and_then(Value::as_f64);
-    let cycles = number("cycles").unwrap_or(1.0);
+    let cycles = reader.header().wear_cycles();
     let way = match distance[last] {
         0.0 => format!("after {}", after(rows[last].coordinate.value(), cycles)),
         way => format!("after sliding {}", quantity(way, "m")),
     };
     let mut answers = vec![Answer::new("wear_volume", volume[last], grid.units("m3")).with_note(way)];
-    if track[last] > 0.0 {
-        answers
-            .push(Answer::new("counterbody_wear_volume", track[last], grid.units("m3")).with_note("of it"));
-    }
+    let of_track = |track| Answer::new("counterbody_wear_volume", track, grid.units("m3")).with_note("of it");
+    answers.extend(track.map(of_track));
     let note = format!("known to {} %", quantity(100.0 * error, ""));
     answers.push(Answer::new("wear_depth_max", depth[last], "m").with_note(note));
     if let Some(limit) = number("depth_limit") {
@@ -41,10 +40,10 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         let (time, note) = match reached(limit, &depth, &times) {
             Some((time, is_extrapolated)) => {
                 let way = reached(limit, &depth, &distance).map_or(0.0, |(way, _)| way);
-                let slid = if way > 0.0 { format!(" and {}", quantity(way, "m")) } else { String::new() };
-                let how = if is_extrapolated { ", at the rate of the last row" } else { "" };
-                let of = quantity(limit, "m");
-                (time, format!("to a depth of {of}: {}{slid}{how}", after(time, cycles)))
+                let slid =
+                    if way > 0.0 { format!(", after sliding {}", quantity(way, "m")) } else { String::new() };
+                let how = if is_extrapolated { "; at the rate of the last row" } else { "" };
+                (time, format!("to a depth of {}{slid}{how}", quantity(limit, "m")))
             }
             None => (f64::NAN, "nothing wears at the end".to_owned()),
         };

@@ -339,8 +339,9 @@ impl Case {
             let of_rows: Vec<Quantity> = of_rows.filter(new).collect();
             wanted.list.extend(of_rows);
         }
-        if simulation.wear.is_some() {
-            let new: Vec<Quantity> = Quantity::of_wear().filter(|own| !wanted.list.contains(own)).collect();
+        if let Some(law) = &simulation.wear {
+            let is_new = |own: &Quantity| law.has(*own) && !wanted.list.contains(own);
+            let new: Vec<Quantity> = Quantity::of_wear().filter(is_new).collect();
             wanted.list.extend(new);
         }
         if simulation.tangential.is_some() {

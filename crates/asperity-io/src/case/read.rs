@@ -204,7 +204,9 @@ impl<'r, 't> Reader<'r, 't> {
         let table = match value.get_mut() {
             DeValue::Table(table) => table,
             // These may be constant.
-            _ if ["motion.velocity", "leakage.inlet"].contains(&&self.text.at(&span).key[..]) => {
+            _ if ["motion.velocity", "wear.velocity", "leakage.inlet"]
+                .contains(&&self.text.at(&span).key[..]) =>
+            {
                 return Ok(());
             }
             _ => {

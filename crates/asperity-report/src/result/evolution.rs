@@ -177,7 +177,7 @@ pub(super) fn work(reader: &Reader, options: &Options) -> Result<Figure, PlotErr
 }
 
 /// Numbers of the rows in the window.
-fn shown(reader: &Reader, options: &Options) -> Result<Vec<usize>, PlotError> {
+pub(super) fn shown(reader: &Reader, options: &Options) -> Result<Vec<usize>, PlotError> {
     let times = times(reader)?;
     Rows::within(reader, options)?;
     Ok((0..times.len()).filter(|row| options.shows(times[*row])).collect())

@@ -25,6 +25,7 @@ mod rows;
 mod stress;
 mod temperature;
 mod together;
+mod wear;
 
 use asperity::Boundary;
 use asperity::material::{Creep, CreepTerm};
@@ -120,6 +121,12 @@ pub enum PlotError {
     /// The bodies do not move along each other.
     #[error("{} has no friction: its case has no motion; give it a table [motion]", path.display())]
     AtRest {
+        /// The result.
+        path: std::path::PathBuf,
+    },
+    /// The surfaces do not wear.
+    #[error("the surfaces of {} do not wear; give its case a table [wear]", path.display())]
+    Unworn {
         /// The result.
         path: std::path::PathBuf,
     },

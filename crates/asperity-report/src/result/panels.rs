@@ -116,7 +116,7 @@ fn says_nothing(reader: &Reader, panel: &RowPanel) -> Result<bool, StoreError> {
 }
 
 /// The quantities with one number per row: one panel for all energies, one for the areas of spots, one for each other. Of those that
-/// nobody has asked for, because every row with a fluid or an attraction has them, the panels that say something.
+/// nobody has asked for, because every row with a fluid, an attraction or wear has them, the panels that say something.
 pub(crate) fn of_quantities(reader: &Reader) -> Result<Vec<RowPanel>, StoreError> {
     let mut panels: Vec<RowPanel> = vec![];
     let grid = &reader.header().grid;
@@ -131,7 +131,8 @@ pub(crate) fn of_quantities(reader: &Reader) -> Result<Vec<RowPanel>, StoreError
             (Some(panel), None) => add(&mut panels, panel, quantity.name(), quantity.states()),
         }
     }
-    let is_given = |name: &str| Quantity::from_name(name).is_some_and(Quantity::is_of_traction);
+    let is_given =
+        |name: &str| Quantity::from_name(name).is_some_and(|own| own.is_of_traction() || own.is_of_wear());
     let mut silent = vec![];
     for panel in &panels {
         if panel.lines.iter().all(|(_, name)| is_given(name)) && says_nothing(reader, panel)? {

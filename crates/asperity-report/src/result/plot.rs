@@ -3,7 +3,7 @@
 use asperity_io::store::{FieldKind, Reader};
 
 use super::{
-    Options, PlotError, distribution, evolution, fields, fluid, friction, leak, panels, profile, stress,
+    Options, PlotError, distribution, evolution, fields, fluid, friction, leak, panels, profile, stress, wear,
 };
 use crate::figure::{Colours, Figure};
 
@@ -69,6 +69,8 @@ plots! {
     LoadDisplacement "load-displacement" Shows::Load, evolution::load_displacement;
     /// Tangential force over tangential displacement: the loop of a contact with friction.
     TangentialLoop "tangential-loop" Shows::Load, evolution::tangential_loop;
+    /// Worn volume, depth, roughness, contact and pressure over the sliding distance: the running-in curve.
+    Wear "wear" Shows::Load, wear::wear;
     /// Map of the pressure at an instant; of a line contact a curve, and a picture over x and time. So are the other maps.
     Pressure "pressure" Shows::Field(FieldKind::Pressure), map!(Pressure);
     /// Map of the gap at an instant.

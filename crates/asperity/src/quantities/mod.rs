@@ -237,7 +237,7 @@ quantities! {
     /// Root of the mean square of the undeformed gap about its mean, with what is worn, in m.
     WornRoughness = "worn_roughness" ["m"] "roughness of the worn gap (Sq)", Wear, ("Depth and roughness", "length", "roughness of the gap (Sq)");
     /// Share of the worn volume whose place is uncertain because the pressure changes over the steps.
-    WearError = "wear_error" ["1"] "estimated error of the worn depths, relative", Wear, ("Error of the wear", "share of the volume", "");
+    WearError = "wear_error" ["1"] "estimated error of the worn depths, relative", Wear, ("Error of each row", "relative error", "worn depths");
     /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.
     Velocity = "velocity" ["m/s"] "velocity", Motion, ("Velocity", "velocity", "");
     /// Distance that the contact has moved, in m.
@@ -425,6 +425,7 @@ impl Quantity {
                 | Quantity::LeakSpread
                 | Quantity::FrictionIterations
                 | Quantity::FrictionCertificate
+                | Quantity::WearError
         )
     }
 

@@ -4,6 +4,7 @@ use ndarray::Array2;
 
 use crate::error::{Error, Result, require};
 use crate::grid::Grid;
+use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::sliding::Path;
 
@@ -65,6 +66,14 @@ impl Wear {
     /// Of these coefficients, without threshold; the sliding distance is that of motion or slip.
     pub fn new(coefficients: [f64; 2]) -> Self {
         Wear { coefficients, map: None, threshold: 0.0, path: None, cycles: 1.0, depth_limit: None }
+    }
+
+    /// Whether a quantity of wear says anything: that of the counterbody where it wears, the distance where there is one.
+    pub fn has(&self, quantity: Quantity) -> bool {
+        match quantity {
+            Quantity::CounterbodyWearVolume => self.coefficients[1] > 0.0,
+            quantity => quantity.is_of_wear(),
+        }
     }
 
     pub(crate) fn sliding(&self, simulation: &Simulation) -> Sliding {

@@ -53,7 +53,9 @@ templates!(
     "adhesive-sphere",
     "gel-adhesion",
     "fretting-sphere",
-    "rough-fretting"
+    "rough-fretting",
+    "running-in",
+    "fretting-wear"
 );
 
 /// Cases of the figures of Spinu and Cerlinca (2017), which `asperity reproduce` computes.

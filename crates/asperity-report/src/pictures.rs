@@ -75,7 +75,7 @@ pub fn pictures(
         write(&figure(reader, Plot::Leak, &Options::default())?, "leak.png")?;
     }
     for kind in fields.unwrap_or(&reader.header().fields) {
-        let Some(plot) = Plot::of_field(*kind) else { continue };
+        let plot = Plot::Map(*kind);
         let limits = range(reader, *kind)?;
         let line = reader.header().grid.is_line();
         if line && let Some(map) = over_time(reader, *kind)? {

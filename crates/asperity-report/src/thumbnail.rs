@@ -20,7 +20,7 @@ const DOTS: f64 = 72.0;
 pub fn thumbnail(reader: &Reader) -> Result<Vec<u8>, PicturesError> {
     let fields = &reader.header().fields;
     let field = fields.iter().find(|kind| **kind == FieldKind::Pressure).or(fields.first());
-    let plot = field.and_then(|kind| Plot::of_field(*kind)).filter(|_| !reader.field_times().is_empty());
+    let plot = field.map(|kind| Plot::Map(*kind)).filter(|_| !reader.field_times().is_empty());
     let whole = match plot {
         Some(plot) => figure(reader, plot, &Options { at: largest_load(reader)?, ..Options::default() })?,
         None => figure(reader, Plot::Evolution, &Options::default())?,

@@ -43,7 +43,8 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
                 let slid =
                     if way > 0.0 { format!(", after sliding {}", quantity(way, "m")) } else { String::new() };
                 let how = if is_extrapolated { "; at the rate of the last row" } else { "" };
-                (time, format!("to a depth of {}{slid}{how}", quantity(limit, "m")))
+                let all = if cycles == 1.0 { "" } else { ", the time of all cycles" };
+                (time, format!("to a depth of {}{slid}{all}{how}", quantity(limit, "m")))
             }
             None => (f64::NAN, "nothing wears at the end".to_owned()),
         };

@@ -225,29 +225,10 @@ impl OutputKeys {
 
     /// Refuses what the rows of a run under these `conditions` do not have; whether the contact `moves`.
     pub fn possible(&self, at: &Place<'_>, conditions: &Simulation, moves: bool) {
-        let flattening = self.fields.iter().flatten().position(|field| *field == FieldKind::Flattening);
-        if let Some(n) = flattening.filter(|_| conditions.plasticity == Plasticity::Cap) {
-            let message = "there is no permanent flattening with plasticity = \"cap\"";
-            let help = "set solver.plasticity = \"accumulate\"";
-            at.key("fields").item(n).fault::<()>(message, "another field", help);
-        }
-        let law = conditions.traction.as_deref();
-        let adheres = law.is_some_and(|law| law.as_adhesion().is_some());
-        let lacks = |kind: &FieldKind| match kind {
-            FieldKind::ContactPressure => law.is_none(),
-            FieldKind::AdhesiveTraction => !adheres,
-            _ => false,
-        };
-        if let Some(n) = self.fields.iter().flatten().position(lacks) {
-            let message = "only the contact presses on the surfaces of this case";
-            let help = "take \"pressure\", or add [adhesion], or of the contact pressure leakage.coupling = \"two-way\"";
-            at.key("fields").item(n).fault::<()>(message, "another field", help);
-        }
-        let slips = self.fields.iter().flatten().position(|kind| kind.is_of_friction());
-        if let Some(n) = slips.filter(|_| conditions.tangential.is_none()) {
-            let message = "there is no tangential traction and no slip in a case without [tangential]";
-            let help = "leave it out, or add [friction] and [tangential]";
-            at.key("fields").item(n).fault::<()>(message, "another field", help);
+        for (n, kind) in self.fields.iter().flatten().enumerate() {
+            if let Some([message, help]) = kind.lacks(conditions) {
+                at.key("fields").item(n).fault::<()>(message, "another field", help);
+            }
         }
         for (n, quantity) in self.named() {
             let at = at.key("quantities").item(n);

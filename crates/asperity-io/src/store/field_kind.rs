@@ -1,6 +1,7 @@
-//! The fields that a result may keep.
+//! The fields that a result may keep: one table, which store, case, exports, figures, pages and Python read.
 
 use asperity::step::Step;
+use asperity::{Plasticity, Simulation};
 use ndarray::Array2;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -8,64 +9,115 @@ use serde::Deserialize;
 use super::layout::DataType;
 use crate::choice;
 
-/// A field on the grid that a result may keep over time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum FieldKind {
-    /// Pressure p between the surfaces, in Pa, positive in compression; negative where they pull at each other.
+/// How a field is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// In the colours of pressures, of gaps, of amounts from 0 on, of values of both signs, of heat and work.
     Pressure,
-    /// Gap h between the deformed surfaces, in m.
+    /// See above.
     Gap,
-    /// Normal displacement u, in m.
-    Displacement,
-    /// Contact state: 0 out of contact, 1 in contact, 2 at the hardness, 3 slipping under a tangential load.
-    Contact,
-    /// Permanent flattening, in m: what the undeformed gap has gained; with plasticity = "accumulate".
+    /// See above.
+    Amount,
+    /// See above.
+    Signed,
+    /// See above.
+    Heat,
+    /// As states, each with a colour of its own.
+    States,
+}
+
+/// Which contacts have a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Of {
+    All,
     Flattening,
+    Traction,
+    Adhesion,
+    Friction,
+    Wear,
+}
+
+/// A declaration of a field.
+struct Declaration {
+    units: &'static str,
+    long_name: &'static str,
+    short_name: &'static str,
+    look: Look,
+    of: Of,
+    write: fn(&Step<'_>, &mut Array2<f64>),
+}
+
+macro_rules! fields {
+    ($($(#[$doc:meta])* $kind:ident = $name:literal [$units:literal] $long_name:literal, $short_name:literal, $look:ident, $of:ident, $write:expr;)*) => {
+        /// A field on the grid that a result may keep over time.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+        pub enum FieldKind {
+            $($(#[$doc])* #[serde(rename = $name)] $kind,)*
+        }
+
+        impl FieldKind {
+            /// Every kind.
+            pub const ALL: [FieldKind; [$(FieldKind::$kind),*].len()] = [$(FieldKind::$kind),*];
+
+            fn declaration(self) -> Declaration {
+                match self {
+                    $(FieldKind::$kind => Declaration {
+                        units: $units,
+                        long_name: $long_name,
+                        short_name: $short_name,
+                        look: Look::$look,
+                        of: Of::$of,
+                        write: $write,
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+fields! {
+    /// Pressure p between the surfaces, in Pa, positive in compression; negative where they pull at each other.
+    Pressure = "pressure" ["Pa"] "contact pressure", "pressure", Pressure, All, |step, to| to.assign(&step.pressure());
+    /// Gap h between the deformed surfaces, in m.
+    Gap = "gap" ["m"] "gap between the deformed surfaces", "gap", Gap, All, |step, to| step.gap_into(to);
+    /// Normal displacement u, in m.
+    Displacement = "displacement" ["m"] "normal displacement", "displacement", Amount, All, |step, to| step.displacement_into(to);
+    /// Contact state: 0 out of contact, 1 in contact, 2 at the hardness, 3 slipping under a tangential load.
+    Contact = "contact" ["1"] "contact state", "contact", States, All, |step, to| to.assign(&step.pressure());
+    /// Permanent flattening, in m: what the undeformed gap has gained; with plasticity = "accumulate".
+    Flattening = "flattening" ["m"] "permanent flattening", "permanent flattening", Amount, Flattening, |step, to| step.flattening_into(to);
     /// Pressure of the cells in contact, in Pa, 0 or more; with adhesion, where `pressure` is less by the attraction.
-    #[serde(rename = "contact_pressure")]
-    ContactPressure,
+    ContactPressure = "contact_pressure" ["Pa"] "pressure of the cells in contact", "contact pressure", Pressure, Traction,
+        |step, to| to.assign(&step.contact_pressure());
     /// Attraction between the surfaces, in Pa; with adhesion.
-    #[serde(rename = "adhesive_traction")]
-    AdhesiveTraction,
+    AdhesiveTraction = "adhesive_traction" ["Pa"] "attraction between the surfaces", "attraction", Amount, Adhesion,
+        |step, to| step.adhesive_traction_into(to);
     /// Tangential traction along x, in Pa; of a contact with a tangential load, as those that follow.
-    #[serde(rename = "traction_x")]
-    TractionX,
+    TractionX = "traction_x" ["Pa"] "tangential traction along x", "traction along x", Signed, Friction,
+        |step, to| step.tangential_traction_into(0, to);
     /// Tangential traction along y, in Pa.
-    #[serde(rename = "traction_y")]
-    TractionY,
+    TractionY = "traction_y" ["Pa"] "tangential traction along y", "traction along y", Signed, Friction,
+        |step, to| step.tangential_traction_into(1, to);
     /// Slip along x since t = 0, of each cell while it was in contact, in m.
-    #[serde(rename = "slip_x")]
-    SlipX,
+    SlipX = "slip_x" ["m"] "slip along x since t = 0", "slip along x", Signed, Friction, |step, to| step.slip_into(0, to);
     /// Slip along y since t = 0, in m.
-    #[serde(rename = "slip_y")]
-    SlipY,
+    SlipY = "slip_y" ["m"] "slip along y since t = 0", "slip along y", Signed, Friction, |step, to| step.slip_into(1, to);
     /// Length of the path of the slip of each cell since t = 0, in m: four times the amplitude in each cycle to and fro.
-    #[serde(rename = "slip_path")]
-    SlipPath,
+    SlipPath = "slip_path" ["m"] "path of the slip since t = 0", "path of the slip", Heat, Friction, |step, to| step.slip_path_into(to);
     /// Energy per area that friction has turned into heat in each cell since t = 0, in J/m2.
-    #[serde(rename = "friction_work")]
-    FrictionWork,
+    FrictionWork = "friction_work" ["J/m2"] "work of friction per area since t = 0", "work of friction per area", Heat, Friction,
+        |step, to| step.friction_work_into(to);
+    /// Depth that wear has taken off the body, which moves with the contact, since t = 0, in m; of surfaces that wear, as those that follow.
+    WearDepth = "wear_depth" ["m"] "worn depth of the body since t = 0", "worn depth", Amount, Wear, |step, to| step.wear_depth_into(0, to);
+    /// Depth that wear has taken off the counterbody since t = 0, in m.
+    CounterbodyWearDepth = "counterbody_wear_depth" ["m"] "worn depth of the counterbody since t = 0", "worn depth of the counterbody",
+        Amount, Wear, |step, to| step.wear_depth_into(1, to);
+    /// Gap between the undeformed surfaces as they are worn and flattened now, in m.
+    UndeformedGap = "undeformed_gap" ["m"] "gap between the undeformed surfaces", "undeformed gap", Gap, Wear,
+        |step, to| step.undeformed_gap_into(to);
 }
 
 impl FieldKind {
-    /// Every kind.
-    pub const ALL: [FieldKind; 13] = [
-        FieldKind::Pressure,
-        FieldKind::Gap,
-        FieldKind::Displacement,
-        FieldKind::Contact,
-        FieldKind::Flattening,
-        FieldKind::ContactPressure,
-        FieldKind::AdhesiveTraction,
-        FieldKind::TractionX,
-        FieldKind::TractionY,
-        FieldKind::SlipX,
-        FieldKind::SlipY,
-        FieldKind::SlipPath,
-        FieldKind::FrictionWork,
-    ];
-
     /// Its name in case files and results.
     pub fn name(self) -> &'static str {
         choice::word(&self)
@@ -76,75 +128,84 @@ impl FieldKind {
         choice::parse(name)
     }
 
-    /// Whether only a contact with friction has it.
-    pub fn is_of_friction(self) -> bool {
-        use FieldKind::{FrictionWork, SlipPath, SlipX, SlipY, TractionX, TractionY};
-        matches!(self, TractionX | TractionY | SlipX | SlipY | SlipPath | FrictionWork)
-    }
-
     /// Its unit; "1" where it has none.
     pub fn units(self) -> &'static str {
-        match self {
-            FieldKind::Pressure
-            | FieldKind::ContactPressure
-            | FieldKind::AdhesiveTraction
-            | FieldKind::TractionX
-            | FieldKind::TractionY => "Pa",
-            FieldKind::Gap
-            | FieldKind::Displacement
-            | FieldKind::Flattening
-            | FieldKind::SlipX
-            | FieldKind::SlipY
-            | FieldKind::SlipPath => "m",
-            FieldKind::FrictionWork => "J/m2",
-            FieldKind::Contact => "1",
+        self.declaration().units
+    }
+
+    /// What it is, for axes and legends.
+    pub fn long_name(self) -> &'static str {
+        self.declaration().long_name
+    }
+
+    /// What figures and pages call it.
+    pub fn short_name(self) -> &'static str {
+        self.declaration().short_name
+    }
+
+    /// How it is drawn.
+    pub fn look(self) -> Look {
+        self.declaration().look
+    }
+
+    /// Whether it shows where the surfaces touch.
+    pub fn shows_contact(self) -> bool {
+        self.look() == Look::Pressure || self.look() == Look::States
+    }
+
+    /// Its place on a page: pressures first, then states, then lengths; those of friction and wear last.
+    pub fn place(self) -> u8 {
+        let Declaration { of, units, .. } = self.declaration();
+        match (of, units) {
+            (Of::Friction, _) => 3,
+            (Of::Wear, _) => 4,
+            (_, "Pa") => 0,
+            (_, "1") => 1,
+            _ => 2,
+        }
+    }
+
+    /// Whether its values tell which cells are in contact: those that are 0 out of contact or open beyond it.
+    pub fn tells_contact(self) -> bool {
+        self.shows_contact() || self == FieldKind::Gap
+    }
+
+    /// Why a run does not have it, what it may have instead, and what to do: `None` where it has it.
+    pub fn lacks(self, simulation: &Simulation) -> Option<[&'static str; 2]> {
+        let law = simulation.traction.as_deref();
+        let pressed = "only the contact presses on the surfaces of this case";
+        let press =
+            "take \"pressure\", or add [adhesion], or of the contact pressure leakage.coupling = \"two-way\"";
+        match self.declaration().of {
+            Of::Flattening if simulation.plasticity == Plasticity::Cap => Some([
+                "there is no permanent flattening with plasticity = \"cap\"",
+                "set solver.plasticity = \"accumulate\"",
+            ]),
+            Of::Traction if law.is_none() => Some([pressed, press]),
+            Of::Adhesion if law.is_none_or(|law| law.as_adhesion().is_none()) => Some([pressed, press]),
+            Of::Friction if simulation.tangential.is_none() => Some([
+                "there is no tangential traction and no slip in a case without [tangential]",
+                "leave it out, or add [friction] and [tangential]",
+            ]),
+            Of::Wear if simulation.wear.is_none() => {
+                Some(["nothing wears in a case without [wear]", "leave it out, or add [wear]"])
+            }
+            _ => None,
         }
     }
 
     /// Writes the numbers of a row; of the contact state the pressure.
     pub fn of_step(self, step: &Step<'_>, field: &mut Array2<f64>) {
-        match self {
-            FieldKind::Pressure | FieldKind::Contact => field.assign(&step.pressure()),
-            FieldKind::Gap => step.gap_into(field),
-            FieldKind::Displacement => step.displacement_into(field),
-            FieldKind::Flattening => step.flattening_into(field),
-            FieldKind::ContactPressure => field.assign(&step.contact_pressure()),
-            FieldKind::AdhesiveTraction => step.adhesive_traction_into(field),
-            FieldKind::TractionX => step.tangential_traction_into(0, field),
-            FieldKind::TractionY => step.tangential_traction_into(1, field),
-            FieldKind::SlipX => step.slip_into(0, field),
-            FieldKind::SlipY => step.slip_into(1, field),
-            FieldKind::SlipPath => step.slip_path_into(field),
-            FieldKind::FrictionWork => step.friction_work_into(field),
-        }
+        (self.declaration().write)(step, field);
     }
 
     pub(super) fn data_type(self) -> DataType {
-        if self == FieldKind::Contact { DataType::UInt8 } else { DataType::Float64 }
+        if self.look() == Look::States { DataType::UInt8 } else { DataType::Float64 }
     }
 
     /// Bytes per cell.
     pub(crate) fn bytes(self) -> u64 {
         self.data_type().width() as u64
-    }
-
-    /// What it is, for axes and legends.
-    pub fn long_name(self) -> &'static str {
-        match self {
-            FieldKind::Pressure => "contact pressure",
-            FieldKind::Gap => "gap between the deformed surfaces",
-            FieldKind::Displacement => "normal displacement",
-            FieldKind::Contact => "contact state",
-            FieldKind::Flattening => "permanent flattening",
-            FieldKind::ContactPressure => "pressure of the cells in contact",
-            FieldKind::AdhesiveTraction => "attraction between the surfaces",
-            FieldKind::TractionX => "tangential traction along x",
-            FieldKind::TractionY => "tangential traction along y",
-            FieldKind::SlipX => "slip along x since t = 0",
-            FieldKind::SlipY => "slip along y since t = 0",
-            FieldKind::SlipPath => "path of the slip since t = 0",
-            FieldKind::FrictionWork => "work of friction per area since t = 0",
-        }
     }
 }
 

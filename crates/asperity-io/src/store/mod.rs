@@ -77,7 +77,7 @@ mod writer;
 pub use asperity::step::{Checkpoint, Row};
 pub use document::store_error_bars;
 pub use error::{Result, StoreError};
-pub use field_kind::FieldKind;
+pub use field_kind::{FieldKind, Look};
 pub use header::{Header, Status, Work};
 pub(crate) use layout::{ArraySpec, DataType, Storage};
 pub use layout::{SCALARS, Scalar, Series, coordinates};

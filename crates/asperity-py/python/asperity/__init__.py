@@ -45,6 +45,7 @@ from ._stress import Stress as Stress, stress as stress
 from ._study import study as study
 from ._surface import Autocorrelation as Autocorrelation, Surface as Surface
 from ._tangential import Friction as Friction, Tangential as Tangential, tangential as tangential
+from ._wear import Wear as Wear
 from ._threads import set_threads as set_threads, threads as threads
 
 __all__ = sorted(name for name in globals() if name == "__version__" or (name[0] != "_" and name != "open"))

@@ -51,6 +51,7 @@ def _sentences(result: Result) -> list[str]:
         _of_hardness(setup),
         _of_adhesion(setup.get("adhesion")),
         _of_friction(setup.get("friction")),
+        _of_wear(setup.get("wear")),
         _of_load(result, setup),
         _of_motion(result, setup),
         _of_rows(result, setup, relaxes),
@@ -120,6 +121,16 @@ def _of_friction(friction: dict[str, Any] | None) -> str:
         f"Friction with {words}{limit} acted against a prescribed tangential {friction['control']}; stick and slip followed from both components of "
         f"the tangential traction (Kalker, 1990), {effect}."
     )
+
+
+def _of_wear(wear: dict[str, Any] | None) -> str:
+    if wear is None:
+        return ""
+    body, counterbody = wear["coefficients"]
+    both = f" of the body and {counterbody:g} m²/N of the counterbody" if counterbody else ""
+    limit = f" above a threshold of {quantity(wear['threshold'], 'Pa')}" if wear.get("threshold") else ""
+    cycles = f" Each computed cycle stands for {wear['cycles']:g}." if wear.get("cycles", 1.0) != 1.0 else ""
+    return f"The surfaces wear by Archard's law in each cell, with the coefficient {body:g} m²/N{both}{limit}, implicitly in each step.{cycles}"
 
 
 def _of_load(result: Result, setup: dict[str, Any]) -> str:

@@ -79,6 +79,7 @@ def slide(given: Slide) -> Result:
     kind : "slide", or "roll": the contact moves over both bodies
     cells_per_step : cells that the surface moves in a step, at most
     shear_stress : on the area in contact [Pa], for `friction_coefficient_total`
+    wear : what sliding takes off the surfaces, asperity.Wear, or a coefficient [m2/N]
     gap, size, boundary, hardness, temperature, quantities, fields, every, ... : as in :func:`solve`
 
     Returns

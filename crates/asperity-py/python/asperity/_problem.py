@@ -22,6 +22,7 @@ from ._shifts import temperature_keys
 from ._surface import Surface, check_boundary, surface_of
 from ._tangential import Friction, Tangential
 from ._units import bare
+from ._wear import Wear
 from ._words import Boundary, Field, Method, Plasticity, Scheme
 
 if TYPE_CHECKING:
@@ -128,10 +129,19 @@ class InTime(Problem):
     times: Times | npt.ArrayLike
     scheme: Scheme = "linear"
     breaks: Sequence[float] = ()
+    wear: Wear | float | None = None
 
     def __post_init__(self) -> None:
         # Once: a generator gives its times only once.
         self.times = as_times(self.times)
+
+    def parts(self) -> tuple[Surface, dict[str, Any], dict[str, Floats]]:
+        shape, keys, arrays = super().parts()
+        if self.wear is not None:
+            given = self.wear if isinstance(self.wear, Wear) else Wear(self.wear)
+            keys["wear"], factors = given._parts(shape, self.history_keys)
+            arrays |= factors
+        return shape, keys, arrays
 
     def history_keys(self, what: str, value: Any, unit: str | None = None) -> dict[str, Any]:
         if np.size(self.breaks) and not callable(value):

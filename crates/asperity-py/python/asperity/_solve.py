@@ -241,6 +241,8 @@ def solve(given: Solve) -> Result:
     friction, tangential : a load along the surfaces, asperity.tangential(force=...) or (displacement=...), and the friction that holds it, a
         coefficient, one for each cell, or asperity.Friction; each row then also has "tangential_force" and "tangential_displacement" of
         shape (rows, 2), "tangential_stiffness", "stick_area", "slip_area", "slip_work", "friction_iterations", "friction_certificate"
+    wear : what sliding takes off the surfaces, asperity.Wear, or a coefficient [m2/N]; each row then also has "wear_volume",
+        "counterbody_wear_volume" (where it wears), "wear_rate", "wear_distance", "wear_depth_max", "worn_roughness", "wear_error"
     hardness : largest pressure [Pa], for all cells or as array (nx, ny); default: that of the materials
     boundary : "free" (half-space) or "periodic"
     temperature : of the run [K], or (time [s], temperature [K]) points, linear in between and held after the last; it applies
@@ -253,7 +255,8 @@ def solve(given: Solve) -> Result:
         "dissipated_energy", "flattening_work", "external_work", "load_power", and "spot_histogram", "pressure_histogram", "gap_histogram" of that many `bins` up to `largest_pressure` [Pa] (by default the
         hardness) and `largest_gap` [m] (by default that of the undeformed gap)
     fields : fields to keep: "pressure", "gap", "displacement", "contact", "flattening", with adhesion also "contact_pressure",
-        "adhesive_traction", with a fluid "contact_pressure", with friction "traction_x", "traction_y", "slip_x", "slip_y", "slip_path", "friction_work"
+        "adhesive_traction", with a fluid "contact_pressure", with friction "traction_x", "traction_y", "slip_x", "slip_y", "slip_path", "friction_work",
+        with wear "wear_depth", "counterbody_wear_depth", "undeformed_gap"
     every : keep the fields of every n-th row, and of the first and the last; default: of every row, up to 20 rows
     field_times : instead, times at which fields are kept [s]; each becomes a step
     output : path of a result on disk, which is written row by row; the result that is returned reads its fields from there. `force`

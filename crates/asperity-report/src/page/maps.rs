@@ -88,23 +88,9 @@ pub(super) fn one(reader: &Reader, kind: FieldKind, at: At, block: usize) -> Res
 /// The fields to show: those kept, and the contact, which any but displacement, flattening, attraction, traction and slip tells.
 fn kinds(reader: &Reader) -> Vec<FieldKind> {
     let kept = &reader.header().fields;
-    let silent = [FieldKind::Displacement, FieldKind::Flattening, FieldKind::AdhesiveTraction];
-    let tells = kept.iter().any(|kind| !silent.contains(kind) && !kind.is_of_friction());
+    let tells = kept.iter().any(|kind| kind.tells_contact());
     let shown = |kind: &FieldKind| if *kind == FieldKind::Contact { tells } else { kept.contains(kind) };
-    let order = [
-        FieldKind::Pressure,
-        FieldKind::ContactPressure,
-        FieldKind::AdhesiveTraction,
-        FieldKind::Contact,
-        FieldKind::Gap,
-        FieldKind::Displacement,
-        FieldKind::Flattening,
-        FieldKind::TractionX,
-        FieldKind::TractionY,
-        FieldKind::SlipX,
-        FieldKind::SlipY,
-        FieldKind::SlipPath,
-        FieldKind::FrictionWork,
-    ];
-    order.into_iter().filter(shown).collect()
+    let mut kinds: Vec<FieldKind> = FieldKind::ALL.into_iter().filter(shown).collect();
+    kinds.sort_by_key(|kind| kind.place());
+    kinds
 }

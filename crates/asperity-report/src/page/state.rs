@@ -18,7 +18,7 @@ use crate::figure::Colours;
 use crate::leak::sentence;
 use crate::result::ForceCurve;
 use crate::result::panels::{self, CONTACT_PRESSURE, RowPanel};
-use crate::result::{Options, Rows, look, name_of_theory, persson, temperature_at_rows};
+use crate::result::{Options, Rows, colours, name_of_theory, persson, temperature_at_rows};
 
 /// The result's title, or its file name.
 pub(super) fn title(reader: &Reader) -> String {
@@ -186,7 +186,7 @@ fn panel(panel: &RowPanel) -> Value {
 }
 
 fn field(kind: FieldKind, reader: &Reader) -> Value {
-    let (label, colours) = look(kind);
+    let (label, colours) = (kind.short_name(), colours(kind));
     let is_tension = kind == FieldKind::Pressure && reader.header().adhesion().is_some();
     let colours = match colours {
         _ if is_tension => "diverging",

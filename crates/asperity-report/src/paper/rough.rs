@@ -64,7 +64,7 @@ fn geometry(case: &Case, reader: &Reader) -> Result<Reproduction> {
 
 /// Figures 6 and 7.
 fn contact(ours: &Reader, theirs: &Reader, number: u8, at: At) -> Result<Reproduction> {
-    let drawn = figure(ours, Plot::Contact, &Show { at, ..Show::default() })?;
+    let drawn = figure(ours, Plot::Map(FieldKind::Contact), &Show { at, ..Show::default() })?;
     let [a, b] = [ours.field(FieldKind::Contact, at)?, theirs.field(FieldKind::Contact, at)?];
     let cells = a.iter().filter(|state| **state > 0.0).count().max(1) as f64;
     let apart = a.iter().zip(&b).filter(|(a, b)| (**a > 0.0) != (**b > 0.0)).count() as f64;

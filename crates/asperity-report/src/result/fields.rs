@@ -3,7 +3,7 @@
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use ndarray::Array2;
 
-use super::{Options, PlotError, caption, line, look, no_contact};
+use super::{Options, PlotError, caption, colours, line, no_contact};
 use crate::figure::{Colours, Figure, Map, OPEN, State};
 
 /// Names and colours of the contact states.
@@ -52,7 +52,8 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, Pl
     if reader.header().grid.is_line() {
         return Ok(line::field(reader, kind, at)?);
     }
-    let (label, Some(colours)) = look(kind) else { return states(reader, at) };
+    let Some(colours) = colours(kind) else { return states(reader, at) };
+    let label = kind.short_name();
     let is_tension = kind == FieldKind::Pressure && reader.header().adhesion().is_some();
     let colours = if is_tension { Colours::Diverging } else { colours };
     let values = if kind == FieldKind::Gap { gap(reader, at)? } else { reader.field(kind, at)? };

@@ -4,7 +4,7 @@ use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use ndarray::Array2;
 
 use super::fields::contact_states;
-use super::{caption, look, nameless, no_contact};
+use super::{caption, colours, nameless, no_contact};
 use crate::figure::{Axis, COLOURS, Curves, Figure, INK, Map, Series, Style, extent, means, states};
 
 /// Width and height of a panel \[points\].
@@ -103,7 +103,7 @@ fn axis(reader: &Reader, kind: FieldKind) -> Axis {
                 .any(|(key, value)| key.starts_with("hardness") && !value.is_null());
             Axis::states("", if is_capped || names.len() > 3 { &names } else { &names[..2] })
         }
-        kind => Axis::linear(look(kind).0, kind.units()),
+        kind => Axis::linear(kind.short_name(), kind.units()),
     }
 }
 
@@ -138,9 +138,9 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
         held = Some((index, values));
     }
     let size = [reader.header().grid.size()[0], last - first];
-    let map = match look(kind) {
-        (_, None) => Map::states("", contact_states(reader), picture.view(), size),
-        (label, Some(colours)) => Map::new("", [label, kind.units()], colours, picture.view(), size),
+    let map = match colours(kind) {
+        None => Map::states("", contact_states(reader), picture.view(), size),
+        Some(colours) => Map::new("", [kind.short_name(), kind.units()], colours, picture.view(), size),
     };
     Ok(Some(Map { whole, ..map.over_time(first) }))
 }

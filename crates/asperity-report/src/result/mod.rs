@@ -1,12 +1,12 @@
 //! Figures of a result, by name.
 //!
 //! ```no_run
-//! use asperity_io::store::{At, Reader};
+//! use asperity_io::store::{At, FieldKind, Reader};
 //! use asperity_report::result::{Options, Plot, figure};
 //!
 //! let reader = Reader::open("rough_pmma.zarr".as_ref())?;
 //! let options = Options { at: At::Time(500.0), ..Options::default() };
-//! figure(&reader, Plot::Pressure, &options)?.write("pressure.png".as_ref(), false)?;
+//! figure(&reader, Plot::Map(FieldKind::Pressure), &options)?.write("pressure.png".as_ref(), false)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -32,7 +32,7 @@ use asperity::material::{Creep, CreepTerm};
 use asperity_io::answer::Units;
 use asperity_io::choice;
 use asperity_io::readable::{coordinate, quantity};
-use asperity_io::store::{At, Reader, StoreError};
+use asperity_io::store::{At, Look, Reader, StoreError};
 use asperity_io::stress::StressError;
 use serde_json::Value;
 
@@ -43,7 +43,7 @@ pub(crate) use fluid::largest_map as largest_fluid_map;
 pub(crate) use friction::{name_of_theory, persson};
 pub(crate) use leak::last_map as last_leak_map;
 pub use plot::Plot;
-pub(crate) use plot::look;
+pub(crate) use plot::colours;
 pub(crate) use rows::Rows;
 pub use rows::is_logarithmic;
 pub use stress::stress_figure;
@@ -236,7 +236,8 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
     for panel in &mut figure.panels {
         colour(panel, plot, options);
     }
-    if options.log_values && matches!(plot, Plot::InitialGap | Plot::Displacement | Plot::Flattening) {
+    let is_amount = plot == Plot::InitialGap || plot.field().is_some_and(|kind| kind.look() == Look::Amount);
+    if options.log_values && is_amount {
         figure.caption += " Light: not above 0.";
     }
     Ok(figure)

@@ -1,6 +1,6 @@
 //! The figures of a result: one table of what each shows and how it is drawn.
 
-use asperity_io::store::{FieldKind, Reader};
+use asperity_io::store::{FieldKind, Look, Reader};
 
 use super::{
     Options, PlotError, distribution, evolution, fields, fluid, friction, leak, panels, profile, stress, wear,
@@ -30,14 +30,6 @@ enum Shows {
 struct Declaration {
     name: &'static str,
     shows: Shows,
-    draw: fn(&Reader, &Options) -> Result<Figure, PlotError>,
-}
-
-/// Draws the map of a field.
-macro_rules! map {
-    ($kind:ident) => {
-        |reader, options| fields::map(reader, FieldKind::$kind, options.at)
-    };
 }
 
 /// Makes the enum of the figures from a table.
@@ -47,15 +39,25 @@ macro_rules! plots {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Plot {
             $($(#[$doc])* $plot,)*
+            /// Map of a field at an instant; of a line contact a curve, and a picture over x and time.
+            Map(FieldKind),
         }
 
         impl Plot {
-            /// Every plot.
-            pub const ALL: [Plot; [$(Plot::$plot),*].len()] = [$(Plot::$plot),*];
+            const NAMED: [Plot; [$(Plot::$plot),*].len()] = [$(Plot::$plot),*];
 
             fn declaration(self) -> Declaration {
                 match self {
-                    $(Plot::$plot => Declaration { name: $name, shows: $shows, draw: $draw },)*
+                    $(Plot::$plot => Declaration { name: $name, shows: $shows },)*
+                    Plot::Map(kind) => Declaration { name: kind.name(), shows: Shows::Field(kind) },
+                }
+            }
+
+            /// The figure, without the result's title, and with the usual colours.
+            pub(super) fn draw(self, reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
+                match self {
+                    $(Plot::$plot => $draw(reader, options),)*
+                    Plot::Map(kind) => fields::map(reader, kind, options.at),
                 }
             }
         }
@@ -71,32 +73,6 @@ plots! {
     TangentialLoop "tangential-loop" Shows::Load, evolution::tangential_loop;
     /// Worn volume, depth, roughness, contact and pressure over the sliding distance: the running-in curve.
     Wear "wear" Shows::Load, wear::wear;
-    /// Map of the pressure at an instant; of a line contact a curve, and a picture over x and time. So are the other maps.
-    Pressure "pressure" Shows::Field(FieldKind::Pressure), map!(Pressure);
-    /// Map of the gap at an instant.
-    Gap "gap" Shows::Field(FieldKind::Gap), map!(Gap);
-    /// Map of the displacement at an instant.
-    Displacement "displacement" Shows::Field(FieldKind::Displacement), map!(Displacement);
-    /// Map of the contact area at an instant.
-    Contact "contact" Shows::Field(FieldKind::Contact), map!(Contact);
-    /// Map of the permanent flattening at an instant.
-    Flattening "flattening" Shows::Field(FieldKind::Flattening), map!(Flattening);
-    /// Map of the pressure of the cells in contact, of surfaces that adhere.
-    ContactPressure "contact-pressure" Shows::Field(FieldKind::ContactPressure), map!(ContactPressure);
-    /// Map of the attraction between the surfaces at an instant.
-    AdhesiveTraction "adhesive-traction" Shows::Field(FieldKind::AdhesiveTraction), map!(AdhesiveTraction);
-    /// Map of the tangential traction along x at an instant, of a contact with friction.
-    TractionX "traction-x" Shows::Field(FieldKind::TractionX), map!(TractionX);
-    /// Map of the tangential traction along y.
-    TractionY "traction-y" Shows::Field(FieldKind::TractionY), map!(TractionY);
-    /// Map of the slip along x since t = 0.
-    SlipX "slip-x" Shows::Field(FieldKind::SlipX), map!(SlipX);
-    /// Map of the slip along y since t = 0.
-    SlipY "slip-y" Shows::Field(FieldKind::SlipY), map!(SlipY);
-    /// Map of the path of the slip since t = 0.
-    SlipPath "slip-path" Shows::Field(FieldKind::SlipPath), map!(SlipPath);
-    /// Map of the energy per area that friction has turned into heat since t = 0.
-    FrictionWork "friction-work" Shows::Field(FieldKind::FrictionWork), map!(FrictionWork);
     /// Map of the undeformed gap.
     InitialGap "initial-gap" Shows::Undeformed, fields::initial_gap;
     /// Pressure and gap along a line at an instant.
@@ -120,24 +96,25 @@ plots! {
 }
 
 impl Plot {
-    /// Its name on the command line.
+    /// Every plot, the maps of fields last.
+    pub fn all() -> impl Iterator<Item = Plot> {
+        Plot::NAMED.into_iter().chain(FieldKind::ALL.map(Plot::Map))
+    }
+
+    /// Its name on the command line: of a map that of its field, also with hyphens.
     pub fn name(self) -> &'static str {
         self.declaration().name
     }
 
     /// The plot of that name.
     pub fn from_name(name: &str) -> Option<Plot> {
-        Plot::ALL.into_iter().find(|plot| plot.name() == name)
+        let is = |plot: &Plot| plot.name() == name || plot.name() == name.replace('-', "_");
+        Plot::all().find(is)
     }
 
     /// The names of all plots, with commas between them.
     pub fn names() -> String {
-        Plot::ALL.map(Plot::name).join(", ")
-    }
-
-    /// The map of a field.
-    pub fn of_field(kind: FieldKind) -> Option<Plot> {
-        Plot::ALL.into_iter().find(|plot| plot.field() == Some(kind))
+        Plot::all().map(Plot::name).collect::<Vec<_>>().join(", ")
     }
 
     /// The field whose map it is.
@@ -175,39 +152,26 @@ impl Plot {
 
     /// Whether it shows the contact at an instant, and is empty where nothing touches.
     pub(super) fn shows_contact(self) -> bool {
-        matches!(
-            self.declaration().shows,
-            Shows::Instant
-                | Shows::Field(FieldKind::Pressure | FieldKind::ContactPressure | FieldKind::Contact)
-        )
+        match self.declaration().shows {
+            Shows::Field(kind) => kind.shows_contact(),
+            shows => shows == Shows::Instant,
+        }
     }
 
     /// Whether it shows numbers over the rows that are zero where nothing touches.
     pub(super) fn is_of_the_load(self) -> bool {
         self.declaration().shows == Shows::Load
     }
-
-    /// The figure, without the result's title, and with the usual colours.
-    pub(super) fn draw(self, reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
-        (self.declaration().draw)(reader, options)
-    }
 }
 
-/// What figures and pages call a field, and its colours; of states their own.
-pub(crate) fn look(kind: FieldKind) -> (&'static str, Option<Colours>) {
-    match kind {
-        FieldKind::Pressure => ("pressure", Some(Colours::Pressure)),
-        FieldKind::Gap => ("gap", Some(Colours::Gap)),
-        FieldKind::Displacement => ("displacement", Some(Colours::Sequential)),
-        FieldKind::Flattening => ("permanent flattening", Some(Colours::Sequential)),
-        FieldKind::ContactPressure => ("contact pressure", Some(Colours::Pressure)),
-        FieldKind::AdhesiveTraction => ("attraction", Some(Colours::Sequential)),
-        FieldKind::TractionX => ("traction along x", Some(Colours::Diverging)),
-        FieldKind::TractionY => ("traction along y", Some(Colours::Diverging)),
-        FieldKind::SlipX => ("slip along x", Some(Colours::Diverging)),
-        FieldKind::SlipY => ("slip along y", Some(Colours::Diverging)),
-        FieldKind::SlipPath => ("path of the slip", Some(Colours::Heat)),
-        FieldKind::FrictionWork => ("work of friction per area", Some(Colours::Heat)),
-        FieldKind::Contact => ("contact", None),
+/// The colours of a field; of states their own.
+pub(crate) fn colours(kind: FieldKind) -> Option<Colours> {
+    match kind.look() {
+        Look::Pressure => Some(Colours::Pressure),
+        Look::Gap => Some(Colours::Gap),
+        Look::Amount => Some(Colours::Sequential),
+        Look::Signed => Some(Colours::Diverging),
+        Look::Heat => Some(Colours::Heat),
+        Look::States => None,
     }
 }

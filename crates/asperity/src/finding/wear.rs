@@ -9,6 +9,8 @@ use crate::wear::Sliding;
 
 /// Share of the worn volume whose place may be uncertain.
 const UNCERTAIN: f64 = 0.05;
+/// Rows count until so many times their volume is worn.
+const FORGOTTEN: f64 = 10.0;
 
 /// What is known before the run: a counterbody that wears in place, although the surfaces slide further than the domain is long.
 pub(super) fn before(simulation: &Simulation) -> Option<Finding> {
@@ -32,12 +34,19 @@ pub(super) fn before(simulation: &Simulation) -> Option<Finding> {
 pub(super) struct Steps {
     worst: f64,
     rows: Option<[usize; 2]>,
+    /// Worn volume at the last of the rows.
+    volume: f64,
 }
 
 impl Steps {
     pub(super) fn see(&mut self, step: &Step<'_>) {
-        let error = step.quantity(Quantity::WearError).map_or(0.0, |values| values[0]);
+        let of = |quantity| step.quantity(quantity).map_or(0.0, |values| values[0]);
+        let (error, volume) = (of(Quantity::WearError), of(Quantity::WearVolume));
+        if self.rows.is_some() && volume > FORGOTTEN * self.volume {
+            *self = Steps::default();
+        }
         if error > UNCERTAIN {
+            self.volume = volume;
             super::worst::extend(&mut self.rows, step.index());
             self.worst = self.worst.max(error);
         }
@@ -61,6 +70,6 @@ impl Steps {
 
     /// Takes over the finding of an earlier session.
     pub(super) fn resume(&mut self, finding: &Finding) {
-        (self.worst, self.rows) = (finding.value.unwrap_or(0.0), finding.rows);
+        (self.worst, self.rows, self.volume) = (finding.value.unwrap_or(0.0), finding.rows, f64::INFINITY);
     }
 }

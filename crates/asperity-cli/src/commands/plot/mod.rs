@@ -51,7 +51,7 @@ impl Verb for args::Plot {
             return Err(match Path::new(&self.what).exists() {
                 true => no_figure(),
                 false => {
-                    let near = meant(&self.what, &Plot::ALL.map(Plot::name));
+                    let near = meant(&self.what, &Plot::all().map(Plot::name).collect::<Vec<_>>());
                     Failure::input(format!(
                         "there is no figure \"{}\"{near}; choose one of {}",
                         self.what,

@@ -17,7 +17,7 @@ const POINTS: f64 = 72.0 / 0.0254;
 /// Refuses options that say nothing about this figure.
 pub(super) fn check(args: &args::Plot, plot: Plot) -> Result<(), Failure> {
     let with_maps = || {
-        let names: Vec<_> = Plot::ALL.iter().filter(|plot| plot.unit().is_some()).map(|p| p.name()).collect();
+        let names: Vec<_> = Plot::all().filter(|plot| plot.unit().is_some()).map(|p| p.name()).collect();
         names.join(", ")
     };
     let refused = |option: &str, why: String| {
@@ -145,21 +145,22 @@ fn two(text: &str, separators: &[char]) -> Option<[String; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use asperity_io::store::FieldKind;
 
     #[test]
     fn limits_share_the_unit_of_the_second_value() {
-        let pressure = |text| limits(text, Plot::Pressure, false);
+        let pressure = |text| limits(text, Plot::Map(FieldKind::Pressure), false);
         assert_eq!(pressure("10, 20 MPa").unwrap(), [1e7, 2e7]);
         assert_eq!(pressure("0,20 MPa").unwrap(), [0.0, 2e7]);
         assert_eq!(pressure("500 kPa,1e0 MPa").unwrap(), [5e5, 1e6]);
         assert_eq!(pressure("1e6,2e6").unwrap(), [1e6, 2e6]);
-        assert_eq!(limits("-1,2 um", Plot::Gap, false).unwrap(), [-1e-6, 2e-6]);
+        assert_eq!(limits("-1,2 um", Plot::Map(FieldKind::Gap), false).unwrap(), [-1e-6, 2e-6]);
         for bad in
             ["20 MPa", "1,2,3 MPa", "2,1 MPa", "1,1 MPa", "0,20 mm", ",1 MPa", "nan,1 MPa", "0,inf MPa"]
         {
             assert!(pressure(bad).is_err(), "{bad}");
         }
-        assert!(limits("0,1 um", Plot::Gap, true).is_err());
+        assert!(limits("0,1 um", Plot::Map(FieldKind::Gap), true).is_err());
     }
 
     #[test]

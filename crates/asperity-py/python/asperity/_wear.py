@@ -1,0 +1,71 @@
+"""Wear of the surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._arrays import as_plane, field as field_of, number
+from ._core import CaseError
+
+if TYPE_CHECKING:
+    from ._arrays import Floats
+    from ._surface import Surface
+
+
+@dataclass(frozen=True, repr=False)
+class Wear:
+    """Wear by Archard's law, an argument of :func:`asperity.solve`, :func:`asperity.march` and :func:`asperity.slide` (docs/wear.md).
+
+    `coefficient` [m2/N]: worn volume over load and sliding distance, of the body that carries the moving surfaces, or a pair, of that body
+    and of the counterbody. `velocity` [m/s]: the sliding velocity where nothing moves on the grid, a number, a history or a function of
+    time; with :func:`asperity.slide` and with `tangential` their sliding counts instead. `threshold` [Pa]: pressure below which nothing
+    wears. `map`: a factor of the coefficient in each cell, (nx, ny). `cycles_per_step`: cycles that each computed cycle of a tangential
+    load stands for. `depth_limit` [m]: the depth at which a body is worn out, for the answers of a result.
+
+    >>> import asperity as asp
+    >>> sphere = asp.Surface.sphere(cells=(48, 48), size=(0.6e-3, 0.6e-3), radius=10e-3)
+    >>> steel = asp.Elastic(young=210e9, poisson=0.3)
+    >>> worn = asp.solve(sphere, steel, load=10.0, times=asp.uniform(100.0, 10), wear=asp.Wear(1e-15, velocity=0.1))
+    >>> bool(abs(worn.wear_volume[-1] / (1e-15 * 10.0 * 10.0) - 1) < 1e-12)    # k W s
+    True
+    """
+
+    coefficient: float | tuple[float, float]
+    _: KW_ONLY
+    velocity: Any = None
+    threshold: float = 0.0
+    map: npt.ArrayLike | None = None
+    cycles_per_step: float = 1.0
+    depth_limit: float | None = None
+
+    def __repr__(self) -> str:
+        others = {"velocity": None, "threshold": 0.0, "map": None, "cycles_per_step": 1.0, "depth_limit": None}
+        given = {name: getattr(self, name) for name in others}
+        shown = {name: f"<array of {np.shape(value)}>" if name == "map" else repr(value) for name, value in given.items() if value is not None and (name == "map" or value != others[name])}
+        return f"Wear({', '.join([repr(self.coefficient), *(f'{name}={value}' for name, value in shown.items())])})"
+
+    def _parts(self, shape: Surface, history: Callable[[str, Any], dict[str, Any]]) -> tuple[dict[str, Any], dict[str, Floats]]:
+        """The keys of `[wear]`, and the arrays that they name; `history` gives the keys of one."""
+        pair = isinstance(self.coefficient, (tuple, list, np.ndarray))
+        if pair and np.shape(self.coefficient) != (2,):
+            raise CaseError(f"wear coefficient is {self.coefficient!r}, but must be a number [m2/N], or a pair of them, of the body and of the counterbody")
+        keys: dict[str, Any] = {"coefficient": [number("wear coefficient", k) for k in self.coefficient] if pair else number("wear coefficient", self.coefficient)}  # type: ignore[union-attr]
+        if self.velocity is not None:
+            keys["velocity"] = history("velocity", self.velocity)
+        if self.threshold != 0.0:
+            keys["threshold"] = number("threshold", self.threshold)
+        if self.cycles_per_step != 1.0:
+            keys["cycles_per_step"] = number("cycles_per_step", self.cycles_per_step)
+        if self.depth_limit is not None:
+            keys["depth_limit"] = number("depth_limit", self.depth_limit)
+        if self.map is None:
+            return keys, {}
+        cells = field_of("wear map", self.map, line=True, size=shape.size)
+        if cells.shape != shape.cells:
+            raise CaseError(f"the map of wear has shape {cells.shape}, but must have {shape.cells}: one factor for each cell")
+        return {**keys, "array": "wear"}, {"wear": as_plane(cells)}

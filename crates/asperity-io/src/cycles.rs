@@ -9,7 +9,9 @@ use crate::store::{Reader, StoreError};
 pub struct Cyclic {
     /// Number of the stage, from 0.
     pub stage: usize,
-    /// Frequency of its sine \[Hz\].
+    /// When it starts \[s\], and the frequency of its sine \[Hz\].
+    pub start: f64,
+    /// See above.
     pub frequency: f64,
     /// The full cycles stored so far.
     pub cycles: Vec<Cycle>,
@@ -42,7 +44,7 @@ pub fn of_result(reader: &Reader) -> Result<Vec<Cyclic>, StoreError> {
         let [time, load, approach] =
             [column(|row| row.time()), column(|row| row.load), column(|row| row.approach)];
         if let Ok(cycles) = cycles(&time, &load, &approach, frequency, start) {
-            found.push(Cyclic { stage, frequency, cycles });
+            found.push(Cyclic { stage, start, frequency, cycles });
         }
     }
     Ok(found)

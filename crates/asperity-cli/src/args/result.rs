@@ -160,7 +160,7 @@ pub struct Plot {
 pub struct Export {
     /// The result (a Zarr directory)
     pub result: PathBuf,
-    /// netcdf, hdf5, npz, vtk, csv or png (a directory of pictures)
+    /// netcdf, hdf5, npz, vtk, csv, sdf (a surface file of one field at the last stored instant) or png (a directory of pictures)
     #[arg(long)]
     pub to: String,
     /// The file to write [default: the result's name with the extension of the format]

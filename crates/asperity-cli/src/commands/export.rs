@@ -1,7 +1,8 @@
 //! `asperity export`: a result for other programs.
 
 use asperity_io::export::{Format, Options, export};
-use asperity_io::store::{FieldKind, Reader};
+use asperity_io::store::{At, FieldKind, Look, Reader};
+use asperity_io::topography::{self, Topography, write};
 use asperity_report::pictures::pictures;
 
 use crate::args::Export;
@@ -26,10 +27,21 @@ impl Verb for Export {
             pictures(&reader, fields.as_deref(), &directory, self.force)?;
             return crate::print(&format!("{}\n", directory.display()));
         }
+        if self.to == "sdf" {
+            let path = output("sdf");
+            if path.exists() && !self.force {
+                return Err(Failure::input(format!(
+                    "{} exists already; --force replaces it",
+                    path.display()
+                )));
+            }
+            write(&path, &surface(&reader, fields.as_deref())?, topography::Format::Sdf)?;
+            return crate::print(&format!("{}\n", path.display()));
+        }
         let Some(format) = Format::from_name(&self.to) else {
             let names: Vec<_> = Format::ALL.iter().map(|f| f.name()).collect();
             return Err(Failure::input(format!(
-                "there is no export to \"{}\"; choose one of {}, png",
+                "there is no export to \"{}\"; choose one of {}, sdf, png",
                 self.to,
                 names.join(", ")
             )));
@@ -43,10 +55,34 @@ impl Verb for Export {
     }
 }
 
+/// One field of the last stored instant as a surface; of a gap the heights that have it over a flat, so that a case can take it.
+fn surface(reader: &Reader, fields: Option<&[FieldKind]>) -> Result<Topography, Failure> {
+    let grid = &reader.header().grid;
+    let (Some([kind]), false) = (fields, grid.is_line()) else {
+        let expected = "one field of a plane, such as --fields undeformed_gap";
+        return Err(Failure::input(format!("a surface file holds {expected}")));
+    };
+    if kind.units() != "m" {
+        return Err(Failure::input(format!(
+            "{kind} is no length, and a surface file holds heights: take npz"
+        )));
+    }
+    let values = reader.field(*kind, At::Last)?;
+    let heights = if kind.look() == Look::Gap { -values } else { values };
+    let heights = heights.mapv(|height| if height.is_finite() { height } else { f64::NAN });
+    Ok(Topography {
+        format: topography::Format::Sdf,
+        heights,
+        size: grid.size(),
+        channel: Some(kind.name().to_owned()),
+        channels: vec![],
+        metadata: vec![],
+    })
+}
+
 fn field(name: &str) -> Result<FieldKind, Failure> {
     FieldKind::from_name(name).ok_or_else(|| {
-        Failure::input(format!(
-            "there is no field \"{name}\"; choose from pressure, gap, displacement, contact, flattening"
-        ))
+        let names = FieldKind::ALL.map(FieldKind::name).join(", ");
+        Failure::input(format!("there is no field \"{name}\"; choose from {names}"))
     })
 }

@@ -10,6 +10,7 @@
 //! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force` |
 //! | with a sine | `loss_angle`, `dissipated_energy`, `dynamic_stiffness` of the last cycle |
 //! | every contact | `contact_area`, `contact_area_corrected`, `contact_fraction`, `max_pressure`, `approach` and `creep` where the load is given, `load` and `relaxation` where the approach is |
+//! | under a sine, with `plastic_volume` | `flattening_per_cycle` |
 //! | with stress | `max_mises`, `max_mises_depth`, `first_yield_load` |
 //!
 //! They are those of the last row; if nothing touches there, of the row with the largest load, of surfaces that adhere with the largest approach; of a sweep, of the velocity with the largest
@@ -25,6 +26,7 @@ mod tangential;
 mod units;
 mod wear;
 
+use asperity::quantities::Quantity;
 use asperity::step::Row;
 use asperity::{Axis, Coordinate};
 use serde::Serialize;
@@ -55,6 +57,8 @@ pub struct Answer {
     pub resolution: f64,
 }
 
+/// A contact has shaken down where a cycle flattens less than this share of what the first one did.
+const SHAKEN_DOWN: f64 = 1e-6;
 /// Loads that differ by less than this share are equal.
 const SAME: f64 = 1e-6;
 
@@ -141,11 +145,34 @@ fn last_cycle(reader: &Reader) -> Result<Vec<Answer>> {
     };
     let grid = &reader.header().grid;
     let at = format!("cycle {} at {} Hz", part.cycles.len(), part.frequency);
+    let flattened = flattening_per_cycle(reader, part)?;
     Ok([
         Answer::new("loss_angle", cycle.loss_angle, "rad"),
         Answer::new("dissipated_energy", cycle.dissipated_energy, grid.units("J")),
         Answer::new("dynamic_stiffness", cycle.stiffness, grid.units("N/m")),
     ]
     .map(|answer| answer.with_note(at.clone()))
-    .into())
+    .into_iter()
+    .chain(flattened)
+    .collect())
+}
+
+/// What the last cycle of a sine has flattened for good, where the rows say it, and how that compares with the first.
+fn flattening_per_cycle(reader: &Reader, part: &cycles::Cyclic) -> Result<Option<Answer>> {
+    let Ok(volume) = reader.series(Quantity::PlasticVolume.name()) else { return Ok(None) };
+    let times = reader.series("time")?;
+    let at = |cycle: usize| {
+        let time = part.start + cycle as f64 / part.frequency;
+        volume[times.partition_point(|row| *row <= time * (1.0 + 1e-9)).saturating_sub(1)]
+    };
+    let grows = |cycle: usize| at(cycle + 1) - at(cycle);
+    let count = part.cycles.len();
+    let (first, last) = (grows(0), grows(count - 1));
+    let note = match count {
+        1 => "of the first cycle".to_owned(),
+        _ if last <= SHAKEN_DOWN * first => format!("of cycle {count}: the contact has shaken down"),
+        _ => format!("of cycle {count}, {:.1} % of that of the first", 100.0 * last / first),
+    };
+    let unit = reader.header().grid.units("m3");
+    Ok(Some(Answer::new("flattening_per_cycle", last, unit).with_note(note)))
 }

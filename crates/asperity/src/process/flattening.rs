@@ -6,16 +6,23 @@
 
 use super::{Process, Solved};
 use crate::error::Result;
+use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Simulation};
 use crate::step::{Loader, Saver, UndeformedGap};
-use asperity_sweep::each;
+use asperity_sweep::{each, each_with_sums};
 
-pub(super) struct Flattening;
+#[derive(Default)]
+pub(super) struct Flattening {
+    /// Σ of what was flattened, per area of a cell \[m\].
+    depth: f64,
+    cell_area: f64,
+}
 
 impl Flattening {
     /// `None` where the cut-off leaves no flattening.
     pub(super) fn of(simulation: &Simulation) -> Option<Self> {
-        (simulation.plasticity == Plasticity::Accumulate).then_some(Flattening)
+        (simulation.plasticity == Plasticity::Accumulate)
+            .then(|| Flattening { depth: 0.0, cell_area: simulation.grid.cell_area() })
     }
 }
 
@@ -30,21 +37,32 @@ impl Process for Flattening {
         };
         let (p, u) = (&row.now.pressure[..], &row.now.unit_displacement[..]);
         let cells = (p, u, &row.own_gap[..], row.hardness);
-        each(row.undeformed.own_mut(), cells, |h, (p, u, gap, most)| *h += overlap(p, u, gap, most));
+        let [depth] = each_with_sums(row.undeformed.own_mut(), cells, |h, (p, u, gap, most)| {
+            let overlap = overlap(p, u, gap, most);
+            *h += overlap;
+            [overlap]
+        });
+        self.depth += depth;
         each(row.own_gap, (p, u, row.hardness), |gap, (p, u, most)| *gap += overlap(p, u, *gap, most));
         Ok(())
+    }
+
+    fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        (quantity == Quantity::PlasticVolume).then_some(self.depth * self.cell_area)
     }
 
     fn name(&self) -> &'static str {
         "flattening"
     }
 
-    /// Its state is the undeformed gap.
+    /// Its state is the undeformed gap, and what it has gained.
     fn save<'a>(&'a self, to: &mut Saver<'a>, gap: &'a UndeformedGap) {
         to.field("gap", gap.now());
+        to.value("depth", &self.depth);
     }
 
     fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
+        self.depth = from.get("depth")?;
         from.field_into("gap", gap.own_mut())
     }
 }

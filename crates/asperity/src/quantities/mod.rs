@@ -13,6 +13,7 @@
 //! | `dissipated_energy` | J | energy that their dashpots have turned into heat since t = 0 |
 //! | `flattening_work` | J | work on the cells at the hardness |
 //! | `external_work` | J | ∫ W dw since t = 0 |
+//! | `plastic_volume` | m³ | volume that flattening has taken in for good |
 //! | `contact_eccentricity` | m | distance of the centre of pressure from the middle of the contact |
 //! | `load_power` | W | power of the load in the step |
 //! | `spot_histogram` | | number of spots per class of area, by powers of two of the cell |
@@ -156,6 +157,9 @@ quantities! {
     ///
     /// Given back on unloading where the cut-off is reversible, summed up where flattening stays.
     FlatteningWork = "flattening_work" ["J"] "work of flattening", Energy, ("Energy", "energy", "flattening");
+    /// Volume that flattening at the hardness has taken in for good since t = 0, in m3; with plasticity = "accumulate".
+    PlasticVolume = "plastic_volume" ["m3"] "permanently flattened volume", State, ("Flattened volume", "volume", ""),
+        on a line ["m2"] "permanently flattened area of the section" ("Flattened area of the section", "area");
     /// Work of the load since t = 0, in J.
     ///
     /// ∫ W dw from the mean load of each step, jumps exact. It is the sum of the three energies, up to the error of the steps.

@@ -106,6 +106,8 @@ impl Simulation {
              creep"
         } else if quantity == Quantity::ContactStiffness && self.traction.is_some() {
             "one that an adhesive contact, or one that a fluid acts on, has: its stiffness includes theirs and is infinite where cells snap"
+        } else if quantity == Quantity::PlasticVolume && self.plasticity == Plasticity::Cap {
+            "one that the rows have. Flattening disappears with plasticity = \"cap\"; set solver.plasticity to \"accumulate\""
         } else if quantity.is_of_wear() && self.wear.is_none() {
             "one that the rows have. Only surfaces that wear have this one: add [wear]"
         } else if quantity.is_tangential() && self.tangential.is_none() {

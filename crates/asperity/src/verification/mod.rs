@@ -16,6 +16,7 @@ mod springs;
 mod tangential;
 mod temperature;
 mod viscoelastic;
+mod wear;
 
 use crate::drive::{Drive, March};
 use crate::error::Result;
@@ -96,6 +97,7 @@ pub const CASES: &[Case] = &[
     ("tangential-rough", tangential::rough),
     ("glued-punch", tangential::punch),
     ("bonded-contact", tangential::bonded),
+    ("wear", wear::archard),
 ];
 
 /// The checks of one case.

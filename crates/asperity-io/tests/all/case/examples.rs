@@ -40,7 +40,8 @@ fn every_starter_case_is_solved_on_a_coarse_grid() {
         }
         let cells = if line { "[64]" } else { "[64,64]" };
         let mut overrides = vec![format!("domain.cells={cells}")];
-        if template.text.contains("shortest") {
+        // Those of running-in are resolved as they are.
+        if template.text.contains("shortest") && template.name != "running-in" {
             overrides.push("surface.0.shortest=1e-4".to_owned());
         }
         if template.name == "rough-pmma" {

@@ -35,6 +35,7 @@ use crate::cycles;
 use crate::store::{Reader, Result};
 
 pub use units::{MBAR_LITRE, UnitError, Units};
+pub use wear::course as wear_course;
 
 /// A number that a result was made for.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -8,62 +8,69 @@ use super::Answer;
 use crate::readable::quantity;
 use crate::store::{Header, Reader, Result};
 
+/// What wear goes on over, at each row: the sliding distance, the cycles of slip, or the time of all cycles; what it is called, and its unit.
+///
+/// # Errors
+/// [`StoreError`](crate::store::StoreError) where the result is damaged.
+pub fn course(reader: &Reader) -> Result<(Vec<f64>, &'static str, &'static str)> {
+    let has = |own: Quantity| reader.header().quantities.iter().any(|column| column.quantity == own);
+    if has(Quantity::WearDistance) {
+        return Ok((reader.series(Quantity::WearDistance.name())?, "sliding distance", "m"));
+    }
+    let cycles = reader.series(Quantity::WearCycles.name())?;
+    if cycles.iter().all(|count| count.is_finite()) {
+        return Ok((cycles, "cycles", "1"));
+    }
+    let factor = number(reader, Header::WEAR, "cycles").unwrap_or(1.0);
+    Ok((reader.series("time")?.iter().map(|time| factor * time).collect(), "time of all cycles", "s"))
+}
+
+/// A number of the setup.
+fn number(reader: &Reader, of: &str, key: &str) -> Option<f64> {
+    reader.header().setup.get(of)?.get(key).and_then(Value::as_f64)
+}
+
 /// The answers of a run whose surfaces wear; none of another.
 pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
-    let Some(wear) = reader.header().setup.get(Header::WEAR) else { return Ok(vec![]) };
+    if !reader.header().wears() {
+        return Ok(vec![]);
+    }
     let grid = &reader.header().grid;
     let last = rows.len() - 1;
     let of_rows = |quantity: Quantity| reader.series(quantity.name());
-    let [volume, track, depth, distance] = [
-        Quantity::WearVolume,
-        Quantity::CounterbodyWearVolume,
-        Quantity::WearDepthMax,
-        Quantity::WearDistance,
-    ]
-    .map(of_rows);
-    let (volume, depth, distance) = (volume?, depth?, distance?);
-    let track = track.ok().and_then(|track| track.last().copied());
+    let (volume, depth) = (of_rows(Quantity::WearVolume)?, of_rows(Quantity::WearDepthMax)?);
+    let track = of_rows(Quantity::CounterbodyWearVolume).ok().and_then(|track| track.last().copied());
     let error = of_rows(Quantity::WearError)?[last];
-    let number = |key: &str| wear.get(key).and_then(Value::as_f64);
-    let cycles = reader.header().wear_cycles();
-    let way = match distance[last] {
-        0.0 => format!("after {}", after(rows[last].coordinate.value(), cycles)),
-        way => format!("after sliding {}", quantity(way, "m")),
+    let (course, _, unit) = course(reader)?;
+    let after = |way: f64| match unit {
+        "m" => format!("after sliding {}", quantity(way, "m")),
+        "1" => format!("after {} cycles", quantity(way, "")),
+        unit => format!("after {} of all cycles", quantity(way, unit)),
     };
-    let mut answers = vec![Answer::new("wear_volume", volume[last], grid.units("m3")).with_note(way)];
+    let mut answers =
+        vec![Answer::new("wear_volume", volume[last], grid.units("m3")).with_note(after(course[last]))];
     let of_track = |track| Answer::new("counterbody_wear_volume", track, grid.units("m3")).with_note("of it");
     answers.extend(track.map(of_track));
     let note = format!("known to {} %", quantity(100.0 * error, ""));
     answers.push(Answer::new("wear_depth_max", depth[last], "m").with_note(note));
-    if let Some(limit) = number("depth_limit") {
-        let times: Vec<f64> = rows.iter().map(|row| row.coordinate.value()).collect();
-        let (time, note) = match reached(limit, &depth, &times) {
-            Some((time, is_extrapolated)) => {
-                let way = reached(limit, &depth, &distance).map_or(0.0, |(way, _)| way);
-                let slid =
-                    if way > 0.0 { format!(", after sliding {}", quantity(way, "m")) } else { String::new() };
-                let how = if is_extrapolated { "; at the rate of the last row" } else { "" };
-                let all = if cycles == 1.0 { "" } else { ", the time of all cycles" };
-                (time, format!("to a depth of {}{slid}{all}{how}", quantity(limit, "m")))
-            }
-            None => (f64::NAN, "nothing wears at the end".to_owned()),
+    if let Some(limit) = number(reader, Header::WEAR, "depth_limit") {
+        // The time of a cycle that stands for many is that of all of them.
+        let times: Vec<f64> = match (unit, number(reader, Header::FRICTION, "period")) {
+            ("1", Some(period)) => course.iter().map(|cycles| cycles * period).collect(),
+            ("s", _) => course.clone(),
+            _ => rows.iter().map(|row| row.coordinate.value()).collect(),
         };
-        answers.insert(0, Answer::new("wear_life", time * cycles, "s").with_note(note));
+        let of = quantity(limit, "m");
+        let (time, note) = match (reached(limit, &depth, &times), reached(limit, &depth, &course)) {
+            (Some((time, is_extrapolated)), Some((way, _))) => {
+                let how = if is_extrapolated { "; at the rate of the last row" } else { "" };
+                (time, format!("to a depth of {of}, {}{how}", after(way)))
+            }
+            _ => (f64::NAN, format!("to a depth of {of}: nothing wears at the end")),
+        };
+        answers.insert(0, Answer::new("wear_life", time, "s").with_note(note));
     }
     Ok(answers)
-}
-
-/// "10 s", or with cycles that stand for many "10000 s (1000 computed ones times as many)".
-fn after(time: f64, cycles: f64) -> String {
-    match cycles {
-        1.0 => quantity(time, "s"),
-        cycles => format!(
-            "{} ({} computed, times {})",
-            quantity(time * cycles, "s"),
-            quantity(time, "s"),
-            quantity(cycles, "")
-        ),
-    }
 }
 
 /// Where a depth that grows along `way` reaches a limit, between the rows on a straight line; beyond the last row at its rate, and that it

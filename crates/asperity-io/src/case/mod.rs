@@ -340,7 +340,8 @@ impl Case {
             wanted.list.extend(of_rows);
         }
         if let Some(law) = &simulation.wear {
-            let is_new = |own: &Quantity| law.has(*own) && !wanted.list.contains(own);
+            let is_new =
+                |own: &Quantity| law.has(*own, simulation.tangential.is_some()) && !wanted.list.contains(own);
             let new: Vec<Quantity> = Quantity::of_wear().filter(is_new).collect();
             wanted.list.extend(new);
         }

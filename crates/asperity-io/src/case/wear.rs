@@ -32,9 +32,14 @@ pub struct Wear {
     /// Name of an array that a program gives beside the case: the factor of each cell.
     #[schemars(skip)]
     array: Option<String>,
-    /// Cycles that each computed cycle of `[tangential]` stands for; 1 if not given. A finding says when they are too many.
+    /// Cycles that each computed cycle of `[tangential]` stands for, with `cycles_tolerance` at most; 1 if not given. A finding says when they
+    /// are too many.
     #[schemars(example = 1000)]
     cycles_per_step: Option<Number<Positive>>,
+    /// Share of what a computed cycle wears whose place may be uncertain: the cycles that it stands for are chosen by it, from 1 on. They are always
+    /// `cycles_per_step` if not given.
+    #[schemars(example = "2 %")]
+    cycles_tolerance: Option<Number<Positive>>,
     /// Depth at which a body is worn out: the result says after which time, distance and cycles; not asked if not given.
     #[schemars(example = "5 um")]
     depth_limit: Option<Length<Positive>>,
@@ -107,6 +112,7 @@ impl Wear {
                 None => None,
             },
             cycles: self.cycles_per_step.map_or(1.0, Number::get),
+            cycles_tolerance: self.cycles_tolerance.map(Number::get),
             depth_limit: self.depth_limit.map(Length::get),
         };
         Some((law, file.into_iter().collect()))

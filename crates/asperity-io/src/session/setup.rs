@@ -115,7 +115,7 @@ pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
         setup.insert(
             Header::WEAR.into(),
             json!({
-                "coefficients": law.coefficients, "threshold": law.threshold, "cycles": law.cycles, "depth_limit": law.depth_limit,
+                "coefficients": law.coefficients, "threshold": law.threshold, "cycles": law.cycles, "cycles_tolerance": law.cycles_tolerance, "depth_limit": law.depth_limit,
             }),
         );
     }

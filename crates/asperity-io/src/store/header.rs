@@ -104,12 +104,6 @@ impl Header {
         self.setup.contains_key(Header::WEAR)
     }
 
-    /// Cycles that each computed one of a run with wear stands for.
-    pub fn wear_cycles(&self) -> f64 {
-        let of_wear = self.setup.get(Header::WEAR).and_then(|wear| wear.get("cycles")?.as_f64());
-        of_wear.unwrap_or(1.0)
-    }
-
     /// What its rows follow one another in.
     pub fn axis(&self) -> Axis {
         match self.setup.get("motion").and_then(|motion| motion.get("steady")).and_then(Value::as_bool) {

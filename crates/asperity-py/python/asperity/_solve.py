@@ -242,7 +242,7 @@ def solve(given: Solve) -> Result:
         coefficient, one for each cell, or asperity.Friction; each row then also has "tangential_force" and "tangential_displacement" of
         shape (rows, 2), "tangential_stiffness", "stick_area", "slip_area", "slip_work", "friction_iterations", "friction_certificate"
     wear : what sliding takes off the surfaces, asperity.Wear, or a coefficient [m2/N]; each row then also has "wear_volume",
-        "counterbody_wear_volume" (where it wears), "wear_rate", "wear_distance", "wear_depth_max", "worn_roughness", "wear_error"
+        "counterbody_wear_volume" (where it wears), "wear_rate", "wear_distance" or "wear_cycles", "wear_depth_max", "worn_roughness", "wear_error"
     hardness : largest pressure [Pa], for all cells or as array (nx, ny); default: that of the materials
     boundary : "free" (half-space) or "periodic"
     temperature : of the run [K], or (time [s], temperature [K]) points, linear in between and held after the last; it applies

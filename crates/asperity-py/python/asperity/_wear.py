@@ -25,7 +25,7 @@ class Wear:
     and of the counterbody. `velocity` [m/s]: the sliding velocity where nothing moves on the grid, a number, a history or a function of
     time; with :func:`asperity.slide` and with `tangential` their sliding counts instead. `threshold` [Pa]: pressure below which nothing
     wears. `map`: a factor of the coefficient in each cell, (nx, ny). `cycles_per_step`: cycles that each computed cycle of a tangential
-    load stands for. `depth_limit` [m]: the depth at which a body is worn out, for the answers of a result.
+    load stands for; with `cycles_tolerance` that many at most, chosen such that the place of this share of what a cycle wears is uncertain. `depth_limit` [m]: the depth at which a body is worn out, for the answers of a result.
 
     >>> import asperity as asp
     >>> sphere = asp.Surface.sphere(cells=(48, 48), size=(0.6e-3, 0.6e-3), radius=10e-3)
@@ -41,10 +41,11 @@ class Wear:
     threshold: float = 0.0
     map: npt.ArrayLike | None = None
     cycles_per_step: float = 1.0
+    cycles_tolerance: float | None = None
     depth_limit: float | None = None
 
     def __repr__(self) -> str:
-        others = {"velocity": None, "threshold": 0.0, "map": None, "cycles_per_step": 1.0, "depth_limit": None}
+        others = {"velocity": None, "threshold": 0.0, "map": None, "cycles_per_step": 1.0, "cycles_tolerance": None, "depth_limit": None}
         given = {name: getattr(self, name) for name in others}
         shown = {name: f"<array of {np.shape(value)}>" if name == "map" else repr(value) for name, value in given.items() if value is not None and (name == "map" or value != others[name])}
         return f"Wear({', '.join([repr(self.coefficient), *(f'{name}={value}' for name, value in shown.items())])})"
@@ -61,6 +62,8 @@ class Wear:
             keys["threshold"] = number("threshold", self.threshold)
         if self.cycles_per_step != 1.0:
             keys["cycles_per_step"] = number("cycles_per_step", self.cycles_per_step)
+        if self.cycles_tolerance is not None:
+            keys["cycles_tolerance"] = number("cycles_tolerance", self.cycles_tolerance)
         if self.depth_limit is not None:
             keys["depth_limit"] = number("depth_limit", self.depth_limit)
         if self.map is None:

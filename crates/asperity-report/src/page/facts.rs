@@ -60,6 +60,7 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     line("Motion", motion(setup));
     line("Hardness", number("hardness", "Pa"));
     line("Friction", friction(setup));
+    line("Wear", wear(setup));
     match header.axis() {
         Axis::Velocity => {
             let rows = reader.series("time")?;
@@ -140,6 +141,25 @@ fn friction(setup: &Map<String, Value>) -> Option<String> {
         number("shear_limit").map_or(String::new(), |limit| format!(", at most {}", quantity(limit, "Pa")));
     let control = friction.get("control").and_then(Value::as_str).unwrap_or_default();
     Some(format!("{coefficient}{limit}, under a tangential {control}"))
+}
+
+/// "Archard's law with 1e-15 m²/N, each computed cycle stands for 400".
+fn wear(setup: &Map<String, Value>) -> Option<String> {
+    let wear = setup.get("wear")?.as_object()?;
+    let number = |key: &str| wear.get(key).and_then(Value::as_f64);
+    let list = wear.get("coefficients").and_then(Value::as_array)?;
+    let [body, counterbody] = [0, 1].map(|n| list.get(n).and_then(Value::as_f64).unwrap_or(0.0));
+    let of = if counterbody > 0.0 {
+        format!(" of the body and {counterbody:e} m²/N of the counterbody")
+    } else {
+        String::new()
+    };
+    let above = number("threshold").filter(|p| *p > 0.0);
+    let above = above.map_or(String::new(), |p| format!(" above {}", quantity(p, "Pa")));
+    let cycles = number("cycles").filter(|n| *n != 1.0);
+    let most = if number("cycles_tolerance").is_some() { "up to " } else { "" };
+    let cycles = cycles.map_or(String::new(), |n| format!("; each computed cycle stands for {most}{n}"));
+    Some(format!("Archard's law with {body:e} m²/N{of}{above}{cycles}"))
 }
 
 /// The last full cycle of each stage with a sine.

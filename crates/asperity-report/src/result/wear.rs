@@ -1,6 +1,7 @@
-//! The running-in curve: what wear does to the surfaces, over the sliding distance, by slip over the time of all cycles.
+//! The running-in curve: what wear does to the surfaces, over the sliding distance, by slip over the cycles.
 
 use asperity::quantities::Quantity;
+use asperity_io::answer::wear_course;
 use asperity_io::store::{Reader, StoreError};
 
 use super::evolution::shown;
@@ -15,14 +16,8 @@ pub(super) fn wear(reader: &Reader, options: &Options) -> Result<Figure, PlotErr
     let grid = &reader.header().grid;
     let kept = shown(reader, options)?;
     let pick = |values: &[f64]| kept.iter().filter_map(|row| values.get(*row).copied()).collect::<Vec<f64>>();
-    let distance = reader.series(Quantity::WearDistance.name())?;
-    let cycles = reader.header().wear_cycles();
-    let (x, axis) = match distance.iter().any(|way| *way > 0.0) {
-        true => (distance, ("sliding distance", "m")),
-        false => {
-            (reader.series("time")?.iter().map(|time| time * cycles).collect(), ("time of all cycles", "s"))
-        }
-    };
+    let (x, label, unit) = wear_course(reader)?;
+    let axis = (label, if unit == "1" { "" } else { unit });
     let x = pick(&x);
     let is_log = options.log.unwrap_or(is_logarithmic(&x, asperity::Axis::Time));
     let across = || if is_log { Axis::log(axis.0, axis.1) } else { Axis::linear(axis.0, axis.1) };

@@ -287,6 +287,7 @@ impl Diagnostics {
         found.extend(self.fluid.findings());
         found.extend(self.ring.finding());
         found.extend(self.wear.finding(simulation));
+        found.extend(self.wear.worn_layer(simulation));
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
         found

@@ -281,6 +281,8 @@ codes! {
     WEAR_STEPS = "wear-steps";
     /// A counterbody whose wear stays under a contact that slides far.
     WEAR_TRACK = "wear-track";
+    /// More than a tenth of a layer is worn off.
+    LAYER_WORN = "layer-worn";
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Wear: steps in which too much wears, tracks that do not go with the contact.
 
 use super::words::{digits, si};
-use super::{Finding, WEAR_STEPS, WEAR_TRACK};
+use super::{Finding, LAYER_WORN, WEAR_STEPS, WEAR_TRACK};
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::step::Step;
@@ -9,6 +9,8 @@ use crate::wear::Sliding;
 
 /// Share of the worn volume whose place may be uncertain.
 const UNCERTAIN: f64 = 0.05;
+/// Share of the top layer that may be worn off: its thickness stays as it is in the run.
+const WORN_LAYER: f64 = 0.1;
 /// Rows count until so many times their volume is worn.
 const FORGOTTEN: f64 = 10.0;
 
@@ -36,14 +38,17 @@ pub(super) struct Steps {
     rows: Option<[usize; 2]>,
     /// Worn volume at the last of the rows.
     volume: f64,
+    /// Largest worn depth \[m\].
+    deepest: f64,
 }
 
 impl Steps {
     pub(super) fn see(&mut self, step: &Step<'_>) {
         let of = |quantity| step.quantity(quantity).map_or(0.0, |values| values[0]);
         let (error, volume) = (of(Quantity::WearError), of(Quantity::WearVolume));
+        self.deepest = self.deepest.max(of(Quantity::WearDepthMax));
         if self.rows.is_some() && volume > FORGOTTEN * self.volume {
-            *self = Steps::default();
+            *self = Steps { deepest: self.deepest, ..Steps::default() };
         }
         if error > UNCERTAIN {
             self.volume = volume;
@@ -66,6 +71,18 @@ impl Steps {
             digits(100.0 * self.worst)
         );
         Some(Finding::warning(WEAR_STEPS, self.worst, UNCERTAIN, text).at(at))
+    }
+
+    /// A top layer of which much is worn off.
+    pub(super) fn worn_layer(&self, simulation: &Simulation) -> Option<Finding> {
+        let layer = simulation.kernel.top_layer().filter(|layer| self.deepest > WORN_LAYER * layer)?;
+        let text = format!(
+            "Up to {} of a layer of {} is worn off, but the layer stays as thick in the run: from a tenth on its response is off. Take the part \
+             of the run before, or give the layer its mean thickness.",
+            si(self.deepest, "m"),
+            si(layer, "m")
+        );
+        Some(Finding::warning(LAYER_WORN, self.deepest, WORN_LAYER * layer, text))
     }
 
     /// Takes over the finding of an earlier session.

@@ -62,6 +62,11 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
         None
     }
 
+    /// Thickness \[m\] of the thinnest layer at a surface; `None` without layers.
+    fn top_layer(&self) -> Option<f64> {
+        None
+    }
+
     /// Whether this is the elastic half-space, for estimates that only hold for it.
     fn is_half_space(&self) -> bool {
         false

@@ -63,8 +63,7 @@ impl Layered {
 
     /// Longest side that a cell of a free domain may have \[m\]: 4 times the thinnest top layer.
     pub fn longest_cell(&self) -> f64 {
-        let tops = self.stacks.iter().filter_map(|stack| stack.layers().first());
-        COARSEST * tops.map(|layer| layer.thickness).fold(f64::INFINITY, f64::min)
+        COARSEST * self.top_layer().unwrap_or(f64::INFINITY)
     }
 
     /// The bodies; their moduli have a common factor.
@@ -151,6 +150,11 @@ impl Kernel for Layered {
     fn uniform(&self) -> Option<f64> {
         let sum: Option<f64> = self.stacks.iter().map(Stack::uniform).sum();
         sum.map(|sum| self.scale * sum)
+    }
+
+    fn top_layer(&self) -> Option<f64> {
+        let tops = self.stacks.iter().filter_map(|stack| stack.layers().first());
+        tops.map(|layer| layer.thickness).reduce(f64::min)
     }
 
     fn depth(&self) -> Option<f64> {

@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::step::{Interval, Loader, Saver, UndeformedGap, saved};
-use crate::wear::{Depth, RecedingSolver, Recession, Sliding, Wear};
+use crate::wear::{Cycles, Depth, RecedingSolver, Recession, Sliding, Wear};
 
 pub(super) struct Wearing {
     simulation: Arc<Simulation>,
@@ -29,6 +29,7 @@ pub(super) struct Wearing {
     /// The same of the last row.
     offset_before: [f64; 2],
     numbers: Numbers,
+    cycles: Cycles,
     /// The contact after the wear of a row, where slip decides.
     after: Option<After>,
 }
@@ -90,11 +91,12 @@ impl Wearing {
         Some(Wearing {
             depth: Depth::new(&law, simulation.grid, simulation.boundary),
             simulation: simulation.clone(),
-            law,
             sliding,
             offset: [0.0; 2],
             offset_before: [0.0; 2],
             numbers: Numbers::default(),
+            cycles: Cycles::of(&law, simulation),
+            law,
             after,
         })
     }
@@ -110,7 +112,7 @@ impl Wearing {
     /// What the surfaces of a row recede by after it because of its slip, and the pressure that takes it off.
     fn wear_by_slip(&mut self, row: &mut Solved<'_>) -> Result<Recession> {
         let Some(After { solver, state }) = &mut self.after else { return Ok(Recession::default()) };
-        let factor = self.law.total() * self.law.cycles;
+        let factor = self.law.total() * self.cycles.factor();
         let mut cells = std::mem::take(&mut row.slipped);
         each(&mut cells, factors(&self.law), |slip, map| *slip *= factor * map);
         let is_none = asperity_sweep::is_zero(&cells);
@@ -214,6 +216,7 @@ impl Process for Wearing {
             (self.depth.add(recession, row.contact, &before, self.offset), damping)
         };
         self.offset_before = self.offset;
+        self.cycles.take_in([row.step.start, row.step.instant.time], [volume, uncertain]);
         let length = row.step.length();
         let numbers = &mut self.numbers;
         numbers.volume += volume;
@@ -247,6 +250,7 @@ impl Process for Wearing {
             Quantity::CounterbodyWearVolume => numbers.counterbody,
             Quantity::WearRate => numbers.rate,
             Quantity::WearDistance => numbers.distance,
+            Quantity::WearCycles => self.cycles.total(),
             Quantity::WearDepthMax => numbers.deepest,
             Quantity::WearError if numbers.volume > 0.0 => numbers.uncertain / numbers.volume,
             Quantity::WearError => 0.0,
@@ -266,6 +270,7 @@ impl Process for Wearing {
     fn save<'a>(&'a self, to: &mut Saver<'a>, gap: &'a UndeformedGap) {
         self.save_own(to);
         self.numbers.save_own(to);
+        self.cycles.save_own(to);
         to.field("gap", gap.now());
         for (name, field) in ["body", "counterbody"].into_iter().zip(&self.depth.of_bodies) {
             if !field.is_empty() {
@@ -278,6 +283,7 @@ impl Process for Wearing {
         self.load_own(from)?;
         self.offset = self.offset_before;
         self.numbers.load_own(from)?;
+        self.cycles.load_own(from)?;
         from.field_into("gap", gap.own_mut())?;
         for (name, field) in ["body", "counterbody"].into_iter().zip(&mut self.depth.of_bodies) {
             if !field.is_empty() {

@@ -29,6 +29,7 @@
 //! | `friction_iterations`, `friction_certificate` | | iterations of the tangential solver, and its certified error |
 //! | `wear_volume`, `counterbody_wear_volume` | m³ | volume that wear has taken off both bodies, and off the counterbody |
 //! | `wear_rate`, `wear_distance` | m³/s, m | worn volume per time, and sliding distance |
+//! | `wear_cycles` | | cycles of slip, as many as the computed ones stand for |
 //! | `wear_depth_max`, `worn_roughness` | m | largest worn depth, and roughness of the worn gap |
 //! | `wear_error` | | share of the worn volume whose place is uncertain |
 //! | `velocity`, `sliding_distance` | m/s, m | velocity of a contact in motion, and how far it has moved |
@@ -225,7 +226,7 @@ quantities! {
     FrictionIterations = "friction_iterations" ["1"] "iterations of the tangential solver", Tangential, ("Work of each row", "number", "iterations of the tangential solver");
     /// Certified error of the tangential tractions in the energy norm, relative.
     FrictionCertificate = "friction_certificate" ["1"] "certified error of the tangential tractions, relative", Tangential, ("Error of each row", "relative error", "tangential tractions (certificate)");
-    /// Volume that wear has taken off both bodies since t = 0, in m3; of surfaces that wear, as the six that follow.
+    /// Volume that wear has taken off both bodies since t = 0, in m3; of surfaces that wear, as the seven that follow.
     WearVolume = "wear_volume" ["m3"] "worn volume of both bodies", Wear, ("Worn volume", "volume", "both bodies"),
         on a line ["m2"] "worn area of both bodies' sections" ("Worn area of the section", "area");
     /// What of it is of the counterbody, over which the contact moves, in m3.
@@ -234,7 +235,9 @@ quantities! {
     /// Worn volume of the step over its length, in m3/s; 0 in a jump.
     WearRate = "wear_rate" ["m3/s"] "wear rate", Wear, ("Wear rate", "volume per time", ""),
         on a line ["m2/s"] "wear rate" ("Wear rate", "area per time");
-    /// Sliding distance since t = 0, in m; 0 where slip decides.
+    /// Cycles since t = 0 of a load along the surfaces, as many as the computed ones stand for; NaN where it has no period.
+    WearCycles = "wear_cycles" ["1"] "cycles of wear", Wear, ("Cycles", "number", "");
+    /// Sliding distance since t = 0, in m; of surfaces that slide along a path or in motion.
     WearDistance = "wear_distance" ["m"] "sliding distance", Wear, ("Sliding distance", "distance", "");
     /// Largest depth that wear has taken off a body, in m.
     WearDepthMax = "wear_depth_max" ["m"] "largest worn depth", Wear, ("Depth and roughness", "length", "largest worn depth");

@@ -73,7 +73,7 @@ impl Path {
     }
 
     /// Length of the way between two times \[m\], to and fro.
-    pub(crate) fn travel(&self, from: f64, to: f64) -> f64 {
+    pub fn travel(&self, from: f64, to: f64) -> f64 {
         let bends = self.breaks(to).into_iter().filter(|t| *t > from);
         let ends: Vec<f64> = std::iter::once(from).chain(bends).chain([to]).collect();
         let mut turns = vec![from];

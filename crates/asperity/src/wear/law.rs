@@ -45,8 +45,11 @@ pub struct Wear {
     pub threshold: f64,
     /// The sliding distance over time; `None` where the motion of the contact or its slip gives it.
     pub path: Option<Path>,
-    /// Cycles of slip that a computed one stands for.
+    /// Cycles of slip that a computed one stands for, at most.
     pub cycles: f64,
+    /// Share of what a cycle wears whose place may be uncertain: the cycles that each computed one stands for follow from it. They are
+    /// always as many as `cycles` where this is `None`.
+    pub cycles_tolerance: Option<f64>,
     /// The depth at which a body is worn out \[m\]; it only says when that is.
     pub depth_limit: Option<f64>,
 }
@@ -65,13 +68,24 @@ pub(crate) enum Sliding {
 impl Wear {
     /// Of these coefficients, without threshold; the sliding distance is that of motion or slip.
     pub fn new(coefficients: [f64; 2]) -> Self {
-        Wear { coefficients, map: None, threshold: 0.0, path: None, cycles: 1.0, depth_limit: None }
+        Wear {
+            coefficients,
+            map: None,
+            threshold: 0.0,
+            path: None,
+            cycles: 1.0,
+            cycles_tolerance: None,
+            depth_limit: None,
+        }
     }
 
-    /// Whether a quantity of wear says anything: that of the counterbody where it wears, the distance where there is one.
-    pub fn has(&self, quantity: Quantity) -> bool {
+    /// Whether a quantity of wear says anything: that of the counterbody where it wears, cycles where the surfaces slip under a load that
+    /// repeats, else the distance.
+    pub fn has(&self, quantity: Quantity, slips: bool) -> bool {
         match quantity {
             Quantity::CounterbodyWearVolume => self.coefficients[1] > 0.0,
+            Quantity::WearCycles => slips,
+            Quantity::WearDistance => !slips,
             quantity => quantity.is_of_wear(),
         }
     }
@@ -150,7 +164,11 @@ impl Wear {
             .map_err(|error| error.of("wear.map"))?;
         let expected = "1 where no slip repeats; without [tangential] a longer time step or a larger velocity does the same";
         require(self.cycles == 1.0 || sliding == Sliding::Slip, "cycles per step", self.cycles, expected)
-            .map_err(|error| error.of("wear.cycles_per_step"))
+            .map_err(|error| error.of("wear.cycles_per_step"))?;
+        let period = simulation.tangential.as_ref().and_then(|tangential| tangential.period());
+        let expected = "left out, or a load along the surfaces that is a sine with a period";
+        require(self.cycles_tolerance.is_none() || period.is_some(), "cycles_tolerance", "given", expected)
+            .map_err(|error| error.of("wear.cycles_tolerance"))
     }
 
     fn validate_numbers(&self, simulation: &Simulation) -> Result<()> {
@@ -168,6 +186,14 @@ impl Wear {
         let sound = (1.0..=MOST_CYCLES).contains(&self.cycles);
         require(sound, "cycles per step", self.cycles, format!("between 1 and {MOST_CYCLES:e}"))
             .map_err(of("wear.cycles_per_step"))?;
+        let sound = self.cycles_tolerance.is_none_or(|share| share > 0.0 && share <= 1.0);
+        require(
+            sound,
+            "tolerance of the cycles",
+            format!("{:?}", self.cycles_tolerance),
+            "greater than 0 and at most 1",
+        )
+        .map_err(of("wear.cycles_tolerance"))?;
         let sound = self.depth_limit.is_none_or(|depth| depth.is_finite() && depth > 0.0);
         require(
             sound,

@@ -10,6 +10,7 @@
 //!
 //! Depths are those of the body, which moves with the contact, and of the counterbody. Where nothing moves on the grid both stay in place.
 
+mod cycles;
 mod depth;
 mod law;
 mod recession;
@@ -19,6 +20,7 @@ mod tests;
 
 pub use law::Wear;
 
+pub(crate) use cycles::Cycles;
 pub(crate) use depth::Depth;
 pub(crate) use law::Sliding;
 pub(crate) use recession::{Recession, depth};

@@ -159,6 +159,19 @@ fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
         };
         line("friction", format!("coefficient {mu}; {control} of at most {x} along x, {y} along y{held}"));
     }
+    if let Some(law) = &case.conditions.wear {
+        let [body, counterbody] = law.coefficients;
+        let both = if counterbody > 0.0 {
+            format!(" and {counterbody:e} m²/N of the counterbody")
+        } else {
+            String::new()
+        };
+        let path = law.path.as_ref().map(|path| path.travel(0.0, case.conditions.times.end()));
+        let way = path.map_or(String::new(), |way| format!(", sliding {}", quantity(way, "m")));
+        let cycles =
+            if law.cycles == 1.0 { String::new() } else { format!("; each cycle stands for {}", law.cycles) };
+        line("wear", format!("{body:e} m²/N{both}{way}{cycles}"));
+    }
     if let Some(adhesion) = &inputs.adhesion {
         let (work, range) = (quantity(adhesion.work, "J/m2"), quantity(adhesion.range, "m"));
         let strength = quantity(adhesion.strength, "Pa");

@@ -24,7 +24,6 @@ def test_the_worn_volume_is_that_of_archard_and_that_of_the_depths():
     depths = [result.field(name) for name in ("wear_depth", "counterbody_wear_depth")]
     np.testing.assert_allclose([cell * depth.sum() for depth in depths], [1e-13, 3e-13], rtol=1e-12)
     np.testing.assert_allclose(result.field("undeformed_gap") - result.initial_gap, depths[0] + depths[1], atol=1e-20)
-    assert result.answers["wear_life"].value > 100.0
     assert "Archard" in result.methods()
 
 

@@ -185,9 +185,13 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
 
 /// The figure with what it says of rows that a logarithmic axis leaves out, on the paper asked for.
 fn finished(mut figure: Figure, options: &Options) -> Result<Figure, PlotError> {
-    let leaves_out = |panel: &Panel| matches!(panel, Panel::Curves(curves) if curves.leaves_out_zero());
-    if figure.panels.iter().any(leaves_out) {
-        figure.caption += " t = 0 is not shown: the time axis is logarithmic.";
+    let leaves_out = |panel: &Panel| match panel {
+        Panel::Curves(curves) => curves.leaves_out_zero().then(|| curves.x.label.clone()),
+        Panel::Map(_) => None,
+    };
+    if let Some(label) = figure.panels.iter().find_map(leaves_out) {
+        let zero = if label == "time" { "t = 0".to_owned() } else { "0".to_owned() };
+        figure.caption += &format!(" {zero} is not shown: the {label} axis is logarithmic.");
     }
     if let Some((axis, times)) = figure.panels.iter().find_map(stretched) {
         let times = quantity(if times < 10.0 { times } else { times.round() }, "");

@@ -14,6 +14,7 @@ use asperity_sweep::{each, sums};
 use super::{Process, Solved, roll};
 use crate::contact::{ContactState, Problem, Start, Task};
 use crate::error::Result;
+use crate::grid::Boundary;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::step::{Interval, Loader, Saver, UndeformedGap, saved};
@@ -148,6 +149,25 @@ impl Wearing {
         Cow::Owned(moved)
     }
 
+    /// What is left of a wrong depth after a step: where it is too large less is worn. A wave that yields by y per pressure keeps
+    /// y/(y + κ) of it; y is that of the whole contact, on a periodic domain that of its longest wave at least.
+    fn damping(&self, recession: &Recession, state: &ContactState, compliance: f64) -> f64 {
+        let cells = (&state.pressure[..], &state.unit_displacement[..], recession.per_pressure());
+        let [yields, wears, square] = sums(cells, |(p, u, k)| [p * compliance * u, p * p * k, p * p]);
+        if wears == 0.0 {
+            return 1.0;
+        }
+        let Simulation { kernel, grid, boundary, .. } = &*self.simulation;
+        let longest = match boundary {
+            Boundary::Free => 0.0,
+            Boundary::Periodic => {
+                compliance * kernel.symbol(std::f64::consts::TAU / grid.longest_side(), 0.0)
+            }
+        };
+        let (y, k) = ((yields / square).max(longest), wears / square);
+        y / (y + k)
+    }
+
     /// Root of the mean square of the gap's deviation from its mean, over the cells that can touch \[m\].
     fn roughness(gap: &[f64]) -> f64 {
         let [cells, sum] = sums(gap, |h| if h < f64::INFINITY { [1.0, h] } else { [0.0; 2] });
@@ -155,14 +175,6 @@ impl Wearing {
         let [square] = sums(gap, |h| if h < f64::INFINITY { [(h - mean) * (h - mean)] } else { [0.0] });
         (square / cells).sqrt()
     }
-}
-
-/// What is left of a wrong depth after a step: where it is too large less is worn. A wave that yields by y per pressure keeps
-/// y/(y + κ) of it; y of the contact is the mean.
-fn damping(recession: &Recession, state: &ContactState, compliance: f64) -> f64 {
-    let cells = (&state.pressure[..], &state.unit_displacement[..], recession.per_pressure());
-    let [yields, wears] = sums(cells, |(p, u, k)| [p * compliance * u, p * p * k]);
-    if wears > 0.0 { yields / (yields + wears) } else { 1.0 }
 }
 
 /// The number itself, or the whole number that it is up to rounding.
@@ -202,7 +214,7 @@ impl Process for Wearing {
         let ([volume, uncertain], damping) = if self.sliding == Sliding::Slip {
             let recession = self.wear_by_slip(row)?;
             let Some(After { state, .. }) = &self.after else { return Ok(()) };
-            let damping = damping(&recession, state, row.compliance);
+            let damping = self.damping(&recession, state, row.compliance);
             (self.depth.add(&recession, &state.pressure, row.contact, self.offset), damping)
         } else {
             let recession = &row.undeformed.recession;
@@ -212,7 +224,7 @@ impl Process for Wearing {
             let cells = (row.contact, &before[..], recession.per_pressure());
             let [work] = sums(cells, |(p, q, k)| [0.5 * (p + q) * crate::wear::depth(p, k, threshold)]);
             row.other_work -= work * self.simulation.grid.cell_area();
-            let damping = damping(recession, row.now, row.compliance);
+            let damping = self.damping(recession, row.now, row.compliance);
             (self.depth.add(recession, row.contact, &before, self.offset), damping)
         };
         self.offset_before = self.offset;

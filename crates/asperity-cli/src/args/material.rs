@@ -160,7 +160,14 @@ pub struct Fit {
     /// Relative growth of the volume per kelvin for --vertical density, e.g. '6e-4 1/K' [default: a constant density]
     #[arg(long, value_name = "1/K", value_parser = quantity::<Expansion<range::NonNegative>>())]
     pub expansion: Option<Expansion<range::NonNegative>>,
-    /// The file to write, with a `material = { ... }` for a case [default: printed]
+    #[command(flatten)]
+    pub to: FitOutput,
+}
+
+/// Where a fit goes.
+#[derive(Debug, clap::Args)]
+pub struct FitOutput {
+    /// The file to write, with the `material = { ... }` for a [[body]] of a case [default: printed]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
     /// Draw data and fit: a path that ends in .svg, .png or .pdf
@@ -277,16 +284,6 @@ pub struct FitIndentation {
     /// Unit of a quantity, if the header does not name it; may be given several times
     #[arg(long, value_name = "QUANTITY=UNIT")]
     pub unit: Vec<String>,
-    /// Write the material, ready to paste under a [[body]] of a case file
-    #[arg(short, long, value_name = "PATH")]
-    pub output: Option<PathBuf>,
-    /// Draw record and model as PNG, SVG or PDF
-    #[arg(long, value_name = "PATH")]
-    pub plot: Option<PathBuf>,
-    /// Replace existing files
-    #[arg(long)]
-    pub force: bool,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub to: FitOutput,
 }

@@ -1,7 +1,5 @@
 //! `asperity fit-indentation`: the material of a body from a measured indentation.
 
-use std::fmt::Write as _;
-
 use asperity::indentation::{
     Given, IndentationFit, IndentationOptions, IndentationRecord, Interval, SampleLayer, fit_indentation,
 };
@@ -9,7 +7,6 @@ use asperity::layer::Interface;
 use asperity::material::Modulus;
 use asperity::reference::MdrProfile;
 use asperity_io::curve::{Indentation, IndentationTest, MaterialOf, indentation_block};
-use asperity_io::output::write_all;
 use asperity_io::quantity::{Quantity, dimension};
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
@@ -24,7 +21,7 @@ use crate::verb::Verb;
 
 impl Verb for FitIndentation {
     fn files(&self) -> Files {
-        Files::default().reads([&self.record]).writes(&self.output).draws(&self.plot).force(self.force)
+        self.to.files().reads([&self.record])
     }
 
     /// Fits a record.
@@ -59,28 +56,18 @@ impl Verb for FitIndentation {
         let fit =
             fit_indentation(profile, &taken, &options).map_err(Failure::about(self.record.display()))?;
         let block = indentation_block(&record, &IndentationTest { profile, layer }, &fit, of);
-        if let Some(path) = &self.output {
-            write_all(path, self.force, block.as_bytes())?;
-        }
-        if let Some(path) = &self.plot {
-            let title = super::title(&self.record);
-            super::picture::write(&picture(&title, &record, &fit), path, self.force)?;
-        }
-        if self.json {
+        let object = || {
             let mut object = json_of(&fit, of);
             object["notes"] = json!(record.notes.iter().chain(&fit.notes).collect::<Vec<_>>());
-            object["output"] = json!(self.output);
-            object["material"] = json!(block);
-            return crate::print(&format!("{object}\n"));
-        }
-        let mut text = report(self, &record, &fit, of);
-        match &self.output {
-            Some(path) => {
-                let _ = writeln!(text, "written     {}", path.display());
-            }
-            None => text = format!("{text}\n{block}"),
-        }
-        crate::print(&text)
+            object
+        };
+        let title = super::title(&self.record);
+        self.to.deliver(
+            &block,
+            || Ok(picture(&title, &record, &fit)),
+            object,
+            || report(self, &record, &fit, of),
+        )
     }
 }
 

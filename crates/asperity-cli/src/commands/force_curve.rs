@@ -8,7 +8,6 @@ use asperity::layer::Interface;
 use asperity::material::{LongTime, Modulus};
 use asperity_io::choice;
 use asperity_io::curve::{Cantilever, ForceTable, MaterialOf};
-use asperity_io::output::write_all;
 use asperity_io::quantity::{Dimension, Number, Quantity, dimension, range};
 use asperity_report::material::force_curve as picture;
 use serde_json::{Value, json};
@@ -93,28 +92,13 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
     let fit = fit_force_curve(radius, &record, &options).map_err(Failure::about(args.record.display()))?;
     let of = MaterialOf { modulus: args.modulus, poisson: args.poisson.get() };
     let block = block(args, &fit, of);
-    if let Some(path) = &args.output {
-        write_all(path, args.force, block.as_bytes())?;
-    }
-    if let Some(path) = &args.plot {
-        let title = super::title(&args.record);
-        super::picture::write(&picture(&title, &table, &fit), path, args.force)?;
-    }
-    if args.json {
+    let object = || {
         let mut object = json_of(&fit, of);
         object["notes"] = json!(table.notes.iter().chain(&fit.notes).collect::<Vec<_>>());
-        object["output"] = json!(args.output);
-        object["material"] = json!(block);
-        return crate::print(&format!("{object}\n"));
-    }
-    let mut text = report(args, &table, &fit, of);
-    match &args.output {
-        Some(path) => {
-            let _ = writeln!(text, "written     {}", path.display());
-        }
-        None => text = format!("{text}\n{block}"),
-    }
-    crate::print(&text)
+        object
+    };
+    let title = super::title(&args.record);
+    args.to.deliver(&block, || Ok(picture(&title, &table, &fit)), object, || report(args, &table, &fit, of))
 }
 
 /// A stated uncertainty over the value of its quantity; 0 where none is stated.

@@ -7,11 +7,12 @@ use asperity::layer::Interface;
 use asperity::material::Modulus;
 use asperity::reference::MdrProfile;
 use asperity_io::curve::{Indentation, IndentationTest, MaterialOf, indentation_block};
-use asperity_io::quantity::{Quantity, dimension};
+use asperity_io::quantity::Quantity;
+use asperity_io::quantity::dimension::{ForcePerLength, Length};
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
 
-use super::force_curve::{of, share};
+use super::force_curve::share;
 use super::material::{columns, refused};
 use crate::args::FitIndentation;
 use crate::failure::Failure;
@@ -26,7 +27,7 @@ impl Verb for FitIndentation {
 
     /// Fits a record.
     fn run(&self) -> Result<(), Failure> {
-        if let Some(model) = self.model.elastic() {
+        if let Some(model) = self.model.0 {
             return super::force_curve::fit(self, model);
         }
         super::force_curve::not_given(self)?;
@@ -39,11 +40,20 @@ impl Verb for FitIndentation {
         let layer = self.thickness.map(|depth| SampleLayer { thickness: depth.get(), poisson, interface });
         let of = MaterialOf { modulus: self.modulus, poisson };
         let columns = columns(&self.column, &self.unit)?;
-        let Stated { radius, thickness, load } = Stated::of(self)?;
+        let [radius, thickness] = [self.radius, self.thickness].map(|x| x.map(Quantity::get));
+        let stiffness = &self.curve.spring_constant_uncertainty;
         let options = IndentationOptions {
-            radius_uncertainty: radius,
-            thickness_uncertainty: thickness,
-            load_uncertainty: load,
+            radius_uncertainty: share::<Length>(
+                "--radius-uncertainty",
+                &self.curve.radius_uncertainty,
+                radius,
+            )?,
+            thickness_uncertainty: share::<Length>(
+                "--thickness-uncertainty",
+                &self.thickness_uncertainty,
+                thickness,
+            )?,
+            load_uncertainty: share::<ForcePerLength>("--spring-constant-uncertainty", stiffness, None)?,
             given: self.given,
             terms: self.terms,
             long_time: self.long_time,
@@ -68,31 +78,6 @@ impl Verb for FitIndentation {
             object,
             || report(self, &record, &fit, of),
         )
-    }
-}
-
-/// The stated uncertainties over their quantities.
-struct Stated {
-    radius: f64,
-    thickness: f64,
-    load: f64,
-}
-
-impl Stated {
-    fn of(args: &FitIndentation) -> Result<Stated, Failure> {
-        let curve = &args.curve;
-        let length = of::<dimension::Length>;
-        let [radius, thickness] = [args.radius, args.thickness].map(|x| x.map(Quantity::get));
-        Ok(Stated {
-            radius: share("--radius-uncertainty", &curve.radius_uncertainty, radius, length)?,
-            thickness: share("--thickness-uncertainty", &args.thickness_uncertainty, thickness, length)?,
-            load: share(
-                "--spring-constant-uncertainty",
-                &curve.spring_constant_uncertainty,
-                None,
-                of::<dimension::ForcePerLength>,
-            )?,
-        })
     }
 }
 

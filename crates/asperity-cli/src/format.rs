@@ -9,6 +9,19 @@ pub fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
+/// Rows of cells, the first one the head, in columns that are as wide as their cells. A row that ends early may end in a longer text.
+pub fn columns(rows: &[Vec<String>], indent: &str) -> String {
+    let count = rows.first().map_or(0, Vec::len);
+    let cells = |n: usize| rows.iter().filter(move |row| n + 1 < row.len() || row.len() == count);
+    let width = |n: usize| cells(n).map(|row| row[n].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..count).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+        format!("{indent}{}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
+    };
+    rows.iter().map(line).collect()
+}
+
 /// The pressures of a row: nominal mean, mean in the contact, 0 if nothing touches, and largest.
 pub fn pressures(row: &Row, in_contact: f64) -> String {
     let touching = if in_contact.is_nan() { 0.0 } else { in_contact };

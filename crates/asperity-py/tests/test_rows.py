@@ -25,7 +25,9 @@ def declared() -> str:
 
         return f"class {name}:\n" + "".join(f"    @property\n    def {one[0]}(self) -> {of(one)}: ...\n" for one in entries)
 
-    words = "Quantity = Literal[\n" + "".join(f'    "{name}",\n' for name, *_ in registry["quantities"]) + "]\n"
+    def words(name: str, part: str) -> str:
+        return f"{name} = Literal[\n" + "".join(f'    "{one[0]}",\n' for one in registry[part]) + "]\n"
+
     names = "OF_CONTACT: list[str]\n\n"
     holders = (
         ("Columns", numbers, "Floats"),
@@ -34,7 +36,7 @@ def declared() -> str:
         ("ContactColumns", of_contact, "Floats"),
         ("ContactNumbers", of_contact, "float"),
     )
-    return HEAD + words + names + "\n".join(holder(*one) for one in holders)
+    return HEAD + words("Quantity", "quantities") + words("Field", "fields") + names + "\n".join(holder(*one) for one in holders)
 
 
 def test_the_stub_is_that_of_the_registry():

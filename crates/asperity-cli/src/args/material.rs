@@ -6,12 +6,14 @@ use asperity::force_curve::{Branch, ForceModel, PullOffControl};
 use asperity::indentation::Given;
 use asperity::layer::Interface;
 use asperity::material::{LongTime, Moduli, Modulus};
+use asperity_io::choice;
 use asperity_io::curve::{Kind, VerticalWord};
 use asperity_io::material_export::Program;
 use asperity_io::quantity::{Expansion, ForcePerLength, Length, Number, Time, range};
 use clap::Subcommand;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use super::choice;
+use super::choice as words;
 use crate::input::quantity;
 
 #[derive(Debug, Subcommand)]
@@ -30,7 +32,7 @@ pub struct MaterialExport {
     pub file: PathBuf,
     /// The program: abaqus (keywords of an input file), ansys (commands of Mechanical APDL), comsol (branches of the generalised
     /// Maxwell model) or csv (comma-separated values)
-    #[arg(long, value_parser = choice::<Program>())]
+    #[arg(long, value_parser = words::<Program>())]
     pub to: Program,
     /// The body of a case [default: the only one with a viscoelastic material]
     #[arg(long, value_name = "NAME")]
@@ -54,7 +56,7 @@ pub struct MaterialExport {
 pub struct Data {
     /// What was measured: relaxation modulus over time, creep compliance over time, or storage and loss modulus over
     /// frequency (dma) [default: what the header says]
-    #[arg(long, value_parser = choice::<Kind>())]
+    #[arg(long, value_parser = words::<Kind>())]
     pub kind: Option<Kind>,
     /// Column of a quantity, by number from 1 or by header: --column frequency=1 --column storage="E' [MPa]";
     /// quantities: time, modulus, compliance, frequency, storage, loss, tan_delta, phase, complex_modulus,
@@ -111,10 +113,10 @@ pub struct Fit {
     #[command(flatten)]
     pub table: Data,
     /// Whether the numbers are Young's or shear moduli (or compliances) [default: what the header says, E or G, D or J]
-    #[arg(long, value_parser = choice::<Modulus>())]
+    #[arg(long, value_parser = words::<Modulus>())]
     pub modulus: Option<Modulus>,
     /// Moduli of a dma to fit; measured ones often contradict each other, and then storage is usual
-    #[arg(long, value_parser = choice::<Moduli>(), default_value = "both")]
+    #[arg(long, value_parser = words::<Moduli>(), default_value = "both")]
     pub fit: Moduli,
     /// Factor of the residuals of the loss modulus, before they are squared, where both moduli are fitted; that of the storage modulus is 1 [default: 1]
     #[arg(long, value_name = "WEIGHT")]
@@ -138,7 +140,7 @@ pub struct Fit {
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = quantity::<Number<range::Positive>>())]
     pub max_misfit: Option<Number<range::Positive>>,
     /// What comes after the data: whatever fits best (free), no flow (solid), or no modulus left (fluid)
-    #[arg(long, value_parser = choice::<LongTime>(), default_value = "free")]
+    #[arg(long, value_parser = words::<LongTime>(), default_value = "free")]
     pub long_time: LongTime,
     /// Shift for data at several temperatures: --wlf 'C1, C2, REFERENCE', e.g. '8.86, 101.6 K, 20 °C'
     #[arg(long, value_name = "C1,C2,REF", allow_hyphen_values = true, conflicts_with_all = ["arrhenius", "estimate_shift", "shift_table"])]
@@ -155,12 +157,19 @@ pub struct Fit {
     pub estimate_shift: Option<String>,
     /// How the moduli of sweeps at several temperatures depend on temperature, besides their times: as density times absolute
     /// temperature (density, rubbers), or by one factor per sweep, estimated from both moduli (free) [default: they do not]
-    #[arg(long, value_parser = choice::<VerticalWord>())]
+    #[arg(long, value_parser = words::<VerticalWord>())]
     pub vertical: Option<VerticalWord>,
     /// Relative growth of the volume per kelvin for --vertical density, e.g. '6e-4 1/K' [default: a constant density]
     #[arg(long, value_name = "1/K", value_parser = quantity::<Expansion<range::NonNegative>>())]
     pub expansion: Option<Expansion<range::NonNegative>>,
-    /// The file to write, with a `material = { ... }` for a case [default: printed]
+    #[command(flatten)]
+    pub to: FitOutput,
+}
+
+/// Where a fit goes.
+#[derive(Debug, clap::Args)]
+pub struct FitOutput {
+    /// The file to write, with the `material = { ... }` for a [[body]] of a case [default: printed]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
     /// Draw data and fit: a path that ends in .svg, .png or .pdf
@@ -174,26 +183,14 @@ pub struct Fit {
     pub force: bool,
 }
 
-/// What `fit-indentation` fits.
-#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
-pub enum Model {
-    Viscoelastic,
-    Hertz,
-    Dmt,
-    Jkr,
-    Maugis,
-}
+/// What `fit-indentation` fits: the relaxation of the body, or an elastic body to a force curve by one of its models.
+#[derive(Clone, Copy, Debug)]
+pub struct Model(pub Option<ForceModel>);
 
 impl Model {
-    /// The model of a force curve.
-    pub fn elastic(self) -> Option<ForceModel> {
-        Some(match self {
-            Model::Viscoelastic => return None,
-            Model::Hertz => ForceModel::Hertz,
-            Model::Dmt => ForceModel::Dmt,
-            Model::Jkr => ForceModel::Jkr,
-            Model::Maugis => ForceModel::Maugis,
-        })
+    fn parser() -> impl TypedValueParser<Value = Model> {
+        let words = ["viscoelastic"].into_iter().chain(choice::words::<ForceModel>().iter().copied());
+        PossibleValuesParser::new(words).map(|word| Model(choice::parse(&word)))
     }
 }
 
@@ -201,11 +198,11 @@ impl Model {
 #[derive(Debug, Default, clap::Args)]
 pub struct ForceCurve {
     /// Part of a force curve that is fitted: from the largest load on (retraction), or before it (approach) [default: retraction]
-    #[arg(long, value_parser = choice::<Branch>())]
+    #[arg(long, value_parser = words::<Branch>())]
     pub branch: Option<Branch>,
     /// What a force curve was controlled by, which decides where the sphere comes off [default: the height of the cantilever with
     /// --spring-constant, else displacement]
-    #[arg(long, value_parser = choice::<PullOffControl>())]
+    #[arg(long, value_parser = words::<PullOffControl>())]
     pub control: Option<PullOffControl>,
     /// Range of the attraction, in place of a fitted transition of --model maugis, and for Tabor's number, e.g. '0.3 nm'
     #[arg(long, value_name = "LENGTH", value_parser = quantity::<Length<range::Positive>>())]
@@ -239,7 +236,7 @@ pub struct FitIndentation {
     pub cone: Option<Number<range::Positive>>,
     /// What is fitted: the relaxation of the body (viscoelastic), or an elastic body to a force curve, without adhesion (hertz) or with it
     /// (dmt, jkr, maugis); force curves need no column of time
-    #[arg(long, value_enum, default_value = "viscoelastic")]
+    #[arg(long, value_parser = Model::parser(), default_value = "viscoelastic")]
     pub model: Model,
     /// The options of force curves
     #[command(flatten)]
@@ -254,19 +251,19 @@ pub struct FitIndentation {
     #[arg(long, value_name = "LENGTH", requires = "thickness")]
     pub thickness_uncertainty: Option<String>,
     /// Contact of the thin sample with its base
-    #[arg(long, value_parser = choice::<Interface>(), default_value = "bonded", requires = "thickness")]
+    #[arg(long, value_parser = words::<Interface>(), default_value = "bonded", requires = "thickness")]
     pub interface: Interface,
     /// Kind of moduli to report
-    #[arg(long, value_parser = choice::<Modulus>(), default_value = "young")]
+    #[arg(long, value_parser = words::<Modulus>(), default_value = "young")]
     pub modulus: Modulus,
     /// The channel that the test controlled [default: the one that fewer straight pieces describe, ramps and holds]
-    #[arg(long, value_parser = choice::<Given>())]
+    #[arg(long, value_parser = words::<Given>())]
     pub given: Option<Given>,
     /// Number of terms, at most 6 [default: as many as the record justifies]
     #[arg(long, value_name = "N")]
     pub terms: Option<usize>,
     /// Behaviour at times longer than the record: whatever fits best (free), no flow (solid), or no modulus left (fluid)
-    #[arg(long, value_parser = choice::<LongTime>(), default_value = "free")]
+    #[arg(long, value_parser = words::<LongTime>(), default_value = "free")]
     pub long_time: LongTime,
     /// Fit the depth of first touch too, instead of taking it as 0
     #[arg(long)]
@@ -277,16 +274,6 @@ pub struct FitIndentation {
     /// Unit of a quantity, if the header does not name it; may be given several times
     #[arg(long, value_name = "QUANTITY=UNIT")]
     pub unit: Vec<String>,
-    /// Write the material, ready to paste under a [[body]] of a case file
-    #[arg(short, long, value_name = "PATH")]
-    pub output: Option<PathBuf>,
-    /// Draw record and model as PNG, SVG or PDF
-    #[arg(long, value_name = "PATH")]
-    pub plot: Option<PathBuf>,
-    /// Replace existing files
-    #[arg(long)]
-    pub force: bool,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub to: FitOutput,
 }

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use crate::args;
 use crate::failure::Failure;
-use crate::format::{counted, quantity};
+use crate::format::{columns, counted, quantity};
 use crate::verb::Verb;
 
 impl Verb for args::Compare {
@@ -68,24 +68,13 @@ fn object(
     Ok(object)
 }
 
-/// Columns of words, the first line its head.
-fn columns(rows: &[Vec<String>]) -> String {
-    let width = |n: usize| rows.iter().filter_map(|row| Some(row.get(n)?.chars().count())).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
-    let line = |row: &Vec<String>| {
-        let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
-        format!("{}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
-    };
-    rows.iter().map(line).collect()
-}
-
 fn side_by_side(answers: &[Answers], labels: &[String], units: &Units) -> String {
     let mut rows = vec![[&["answers".to_owned()], labels].concat()];
     for answer in answers {
         let values = (0..labels.len()).map(|n| answer.words(n, units));
         rows.push([answer.label()].into_iter().chain(values).collect());
     }
-    format!("\n{}", columns(&rows))
+    format!("\n{}", columns(&rows, ""))
 }
 
 /// The keys that differ, of several results.
@@ -99,7 +88,7 @@ fn cases_of(readers: &[Reader], labels: &[String]) -> String {
         let words = values.into_iter().map(|value| shortened(&value.unwrap_or("-".into()), 24));
         rows.push([key].into_iter().chain(words).collect());
     }
-    columns(&rows)
+    columns(&rows, "")
 }
 
 /// The keys that differ, of two.

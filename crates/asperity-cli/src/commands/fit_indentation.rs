@@ -1,7 +1,5 @@
 //! `asperity fit-indentation`: the material of a body from a measured indentation.
 
-use std::fmt::Write as _;
-
 use asperity::indentation::{
     Given, IndentationFit, IndentationOptions, IndentationRecord, Interval, SampleLayer, fit_indentation,
 };
@@ -9,12 +7,12 @@ use asperity::layer::Interface;
 use asperity::material::Modulus;
 use asperity::reference::MdrProfile;
 use asperity_io::curve::{Indentation, IndentationTest, MaterialOf, indentation_block};
-use asperity_io::output::write_all;
-use asperity_io::quantity::{Quantity, dimension};
+use asperity_io::quantity::Quantity;
+use asperity_io::quantity::dimension::{ForcePerLength, Length};
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
 
-use super::force_curve::{of, share};
+use super::force_curve::share;
 use super::material::{columns, refused};
 use crate::args::FitIndentation;
 use crate::failure::Failure;
@@ -24,12 +22,12 @@ use crate::verb::Verb;
 
 impl Verb for FitIndentation {
     fn files(&self) -> Files {
-        Files::default().reads([&self.record]).writes(&self.output).draws(&self.plot).force(self.force)
+        self.to.files().reads([&self.record])
     }
 
     /// Fits a record.
     fn run(&self) -> Result<(), Failure> {
-        if let Some(model) = self.model.elastic() {
+        if let Some(model) = self.model.0 {
             return super::force_curve::fit(self, model);
         }
         super::force_curve::not_given(self)?;
@@ -42,11 +40,20 @@ impl Verb for FitIndentation {
         let layer = self.thickness.map(|depth| SampleLayer { thickness: depth.get(), poisson, interface });
         let of = MaterialOf { modulus: self.modulus, poisson };
         let columns = columns(&self.column, &self.unit)?;
-        let Stated { radius, thickness, load } = Stated::of(self)?;
+        let [radius, thickness] = [self.radius, self.thickness].map(|x| x.map(Quantity::get));
+        let stiffness = &self.curve.spring_constant_uncertainty;
         let options = IndentationOptions {
-            radius_uncertainty: radius,
-            thickness_uncertainty: thickness,
-            load_uncertainty: load,
+            radius_uncertainty: share::<Length>(
+                "--radius-uncertainty",
+                &self.curve.radius_uncertainty,
+                radius,
+            )?,
+            thickness_uncertainty: share::<Length>(
+                "--thickness-uncertainty",
+                &self.thickness_uncertainty,
+                thickness,
+            )?,
+            load_uncertainty: share::<ForcePerLength>("--spring-constant-uncertainty", stiffness, None)?,
             given: self.given,
             terms: self.terms,
             long_time: self.long_time,
@@ -59,53 +66,18 @@ impl Verb for FitIndentation {
         let fit =
             fit_indentation(profile, &taken, &options).map_err(Failure::about(self.record.display()))?;
         let block = indentation_block(&record, &IndentationTest { profile, layer }, &fit, of);
-        if let Some(path) = &self.output {
-            write_all(path, self.force, block.as_bytes())?;
-        }
-        if let Some(path) = &self.plot {
-            let title = super::title(&self.record);
-            super::picture::write(&picture(&title, &record, &fit), path, self.force)?;
-        }
-        if self.json {
+        let object = || {
             let mut object = json_of(&fit, of);
             object["notes"] = json!(record.notes.iter().chain(&fit.notes).collect::<Vec<_>>());
-            object["output"] = json!(self.output);
-            object["material"] = json!(block);
-            return crate::print(&format!("{object}\n"));
-        }
-        let mut text = report(self, &record, &fit, of);
-        match &self.output {
-            Some(path) => {
-                let _ = writeln!(text, "written     {}", path.display());
-            }
-            None => text = format!("{text}\n{block}"),
-        }
-        crate::print(&text)
-    }
-}
-
-/// The stated uncertainties over their quantities.
-struct Stated {
-    radius: f64,
-    thickness: f64,
-    load: f64,
-}
-
-impl Stated {
-    fn of(args: &FitIndentation) -> Result<Stated, Failure> {
-        let curve = &args.curve;
-        let length = of::<dimension::Length>;
-        let [radius, thickness] = [args.radius, args.thickness].map(|x| x.map(Quantity::get));
-        Ok(Stated {
-            radius: share("--radius-uncertainty", &curve.radius_uncertainty, radius, length)?,
-            thickness: share("--thickness-uncertainty", &args.thickness_uncertainty, thickness, length)?,
-            load: share(
-                "--spring-constant-uncertainty",
-                &curve.spring_constant_uncertainty,
-                None,
-                of::<dimension::ForcePerLength>,
-            )?,
-        })
+            object
+        };
+        let title = super::title(&self.record);
+        self.to.deliver(
+            &block,
+            || Ok(picture(&title, &record, &fit)),
+            object,
+            || report(self, &record, &fit, of),
+        )
     }
 }
 

@@ -8,8 +8,8 @@ use asperity::layer::Interface;
 use asperity::material::{LongTime, Modulus};
 use asperity_io::choice;
 use asperity_io::curve::{Cantilever, ForceTable, MaterialOf};
-use asperity_io::output::write_all;
-use asperity_io::quantity::{Dimension, Number, Quantity, dimension, range};
+use asperity_io::quantity::dimension::{ForcePerLength, Length};
+use asperity_io::quantity::{Dimension, Number, Quantity, range};
 use asperity_report::material::force_curve as picture;
 use serde_json::{Value, json};
 
@@ -73,18 +73,12 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
         branch: curve.branch.unwrap_or_default(),
         control: curve.control,
         range: curve.range.map(Quantity::get),
-        radius_uncertainty: share(
-            "--radius-uncertainty",
-            &curve.radius_uncertainty,
-            Some(radius),
-            of::<dimension::Length>,
-        )?,
+        radius_uncertainty: share::<Length>("--radius-uncertainty", &curve.radius_uncertainty, Some(radius))?,
         spring_constant: spring,
-        load_uncertainty: share(
+        load_uncertainty: share::<ForcePerLength>(
             "--spring-constant-uncertainty",
             &curve.spring_constant_uncertainty,
             spring,
-            of::<dimension::ForcePerLength>,
         )?,
         sensitivity_uncertainty: curve.sensitivity_uncertainty.map_or(0.0, Quantity::get),
     };
@@ -93,52 +87,32 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
     let fit = fit_force_curve(radius, &record, &options).map_err(Failure::about(args.record.display()))?;
     let of = MaterialOf { modulus: args.modulus, poisson: args.poisson.get() };
     let block = block(args, &fit, of);
-    if let Some(path) = &args.output {
-        write_all(path, args.force, block.as_bytes())?;
-    }
-    if let Some(path) = &args.plot {
-        let title = super::title(&args.record);
-        super::picture::write(&picture(&title, &table, &fit), path, args.force)?;
-    }
-    if args.json {
+    let object = || {
         let mut object = json_of(&fit, of);
         object["notes"] = json!(table.notes.iter().chain(&fit.notes).collect::<Vec<_>>());
-        object["output"] = json!(args.output);
-        object["material"] = json!(block);
-        return crate::print(&format!("{object}\n"));
-    }
-    let mut text = report(args, &table, &fit, of);
-    match &args.output {
-        Some(path) => {
-            let _ = writeln!(text, "written     {}", path.display());
-        }
-        None => text = format!("{text}\n{block}"),
-    }
-    crate::print(&text)
+        object
+    };
+    let title = super::title(&args.record);
+    args.to.deliver(&block, || Ok(picture(&title, &table, &fit)), object, || report(args, &table, &fit, of))
 }
 
-/// A stated uncertainty over the value of its quantity; 0 where none is stated.
-pub(super) fn share(
+/// A stated uncertainty, of this dimension or in %, over the value of its quantity; 0 where none is stated.
+pub(super) fn share<D: Dimension>(
     option: &str,
     text: &Option<String>,
     value: Option<f64>,
-    quantity: fn(&str) -> Result<f64, String>,
 ) -> Result<f64, Failure> {
     let Some(text) = text else { return Ok(0.0) };
-    let share = if text.trim_end().ends_with('%') {
+    let wrong = |why: String| Failure::input(format!("{option} is \"{text}\", but {why}"));
+    if text.trim_end().ends_with('%') {
         let share = text.parse::<Number<range::NonNegative>>();
-        share.map(Number::get).map_err(|error| format!("must be {}", error.expected))
-    } else {
-        let value = value.ok_or_else(|| "its quantity is not given: state it in %".to_owned());
-        value.and_then(|value| Ok(quantity(text)? / value))
-    };
-    share.map_err(|why| Failure::input(format!("{option} is \"{text}\", but {why}")))
-}
-
-/// A quantity of a dimension in SI, not negative.
-pub(super) fn of<D: Dimension>(text: &str) -> Result<f64, String> {
-    let quantity = text.parse::<Quantity<D, range::NonNegative>>();
-    quantity.map(Quantity::get).map_err(|error| error.help.unwrap_or(format!("must be {}", error.expected)))
+        return share.map(Number::get).map_err(|error| wrong(format!("must be {}", error.expected)));
+    }
+    let value = value.ok_or_else(|| wrong("its quantity is not given: state it in %".to_owned()))?;
+    let stated = text.parse::<Quantity<D, range::NonNegative>>();
+    stated
+        .map(|stated| stated.get() / value)
+        .map_err(|error| wrong(error.help.unwrap_or(format!("must be {}", error.expected))))
 }
 
 fn report(args: &FitIndentation, table: &ForceTable, fit: &ForceFit, of: MaterialOf) -> String {

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::answers::{note_unused, units};
 use crate::args::{self, StudyAction, StudyFolder};
 use crate::failure::Failure;
-use crate::format::{counted, duration};
+use crate::format::{columns, counted, duration};
 use crate::verb::{Threads, Verb};
 
 impl Verb for args::Study {
@@ -216,22 +216,7 @@ fn lines(study: &Study, table: &Table, units: &Units, most: usize) -> Vec<Vec<St
 }
 
 fn text(study: &Study, table: &Table, units: &Units) -> String {
-    let lines = lines(study, table, units, ANSWERS);
-    let columns = lines[0].len();
-    let is_error = |n: usize, column: usize| {
-        n > 0 && matches!(table.rows[n - 1].state, State::Failed(_)) && column > study.plan.vary.len()
-    };
-    let width = |column: usize| {
-        let cells = lines.iter().enumerate().filter(|(n, _)| !is_error(*n, column));
-        cells.filter_map(|(_, line)| Some(line.get(column)?.chars().count())).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let mut text = String::new();
-    for line in &lines {
-        let cells = line.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
-        text += cells.collect::<Vec<_>>().join("  ").trim_end();
-        text.push('\n');
-    }
+    let mut text = columns(&lines(study, table, units, ANSWERS), "");
     let counts = STATES.iter().filter(|word| table.count(word) > 0);
     let counts: Vec<String> = counts.map(|word| format!("{} {word}", table.count(word))).collect();
     text += &format!("\n{} of {}", counts.join(", "), counted(table.rows.len(), "run"));

@@ -7,18 +7,13 @@
 //! ```
 
 use super::place::Place;
+pub use super::small_table::Origin;
+use super::small_table::{of_key as file_of_key, rows};
 use super::words::number;
-use crate::digest::md5;
 use crate::quantity::range::NonNegative;
 use crate::quantity::{Prescribed, QuantityError, Time};
-use crate::resources::text;
 
-/// A file larger than this is no history.
-const MOST_BYTES: u64 = 64 << 20;
 const MOST_POINTS: usize = 10_000_000;
-
-/// Path of a file as the case writes it, and its MD5.
-pub type Origin = (String, String);
 
 /// The points (time \[s\], value in SI) of the file that the key at `at` names, and where they come from.
 pub fn of_key(
@@ -27,11 +22,7 @@ pub fn of_key(
     value: &str,
     resolve: impl Fn(&Prescribed) -> Result<f64, QuantityError>,
 ) -> Option<(Vec<(f64, f64)>, Origin)> {
-    let full = at.file(path)?;
-    let read = text(&full, MOST_BYTES).and_then(|text| Ok((parse(&text, resolve)?, md5(text.as_bytes()))));
-    let read = read.map_err(|reason| format!("{}: {reason}", full.display()));
-    let (points, digest) = at.data(read, &format!("a file of two columns, time and {value}"))?;
-    Some((points, (path.to_owned(), digest)))
+    file_of_key(at, path, &format!("a file of two columns, time and {value}"), |text| parse(text, resolve))
 }
 
 /// Refuses points of a table that do not begin at 0 or run back in time.
@@ -52,92 +43,30 @@ fn parse(
     text: &str,
     resolve: impl Fn(&Prescribed) -> Result<f64, QuantityError>,
 ) -> Result<Vec<(f64, f64)>, String> {
-    let mut units = [String::new(), String::new()];
-    let mut header_allowed = true;
     let mut points: Vec<(f64, f64)> = Vec::new();
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    for (n, line) in text.lines().enumerate() {
-        let at = |reason: String| format!("line {}: {reason}", n + 1);
-        let line = line.split('#').next().unwrap_or_default().trim();
-        if line.is_empty() {
-            continue;
-        }
-        let cells = cells(line).ok_or_else(|| {
-            at("two columns are expected, time and value, as in \"10 s, 0.5 N\"".to_owned())
-        })?;
-        if header_allowed && cells.iter().all(|cell| !begins_with_number(cell)) {
-            units = cells.map(|cell| header_unit(cell).to_owned());
-            header_allowed = false;
-            continue;
-        }
-        header_allowed = false;
-        let [time, value] =
-            [(cells[0], &units[0]), (cells[1], &units[1])].map(|(cell, unit)| with_unit(cell, unit));
-        let time = Prescribed::Text(time).resolve::<crate::quantity::dimension::Time, NonNegative>();
-        let time: Time<NonNegative> = time.map_err(|error| at(sentence("time", cells[0], &error)))?;
-        let value =
-            resolve(&Prescribed::Text(value)).map_err(|error| at(sentence("value", cells[1], &error)))?;
-        let time = time.get();
+    let two = |cells: &[&str]| match cells {
+        [time, value] if !time.is_empty() && !value.is_empty() => Ok(()),
+        _ => Err("two columns are expected, time and value, as in \"10 s, 0.5 N\"".to_owned()),
+    };
+    rows(text, two, |row| {
+        let time: Time<NonNegative> = row.quantity(0, "time", Prescribed::resolve)?;
+        let (time, value) = (time.get(), row.quantity(1, "value", &resolve)?);
         match points.last() {
-            None if time != 0.0 => {
-                return Err(at(format!("the first time is {time} s; the history must begin at 0 s")));
-            }
+            None if time != 0.0 => Err(format!("the first time is {time} s; the history must begin at 0 s")),
             Some((before, _)) if time < *before => {
-                return Err(at(format!(
-                    "the time {time} s comes after {before} s; list the points in order"
-                )));
+                Err(format!("the time {time} s comes after {before} s; list the points in order"))
             }
-            _ if points.len() == MOST_POINTS => {
-                return Err(at(format!("there are more than {MOST_POINTS} points")));
+            _ if points.len() == MOST_POINTS => Err(format!("there are more than {MOST_POINTS} points")),
+            _ => {
+                points.push((time, value));
+                Ok(())
             }
-            _ => points.push((time, value)),
         }
-    }
+    })?;
     match points.is_empty() {
         true => Err("there is no point in the file".to_owned()),
         false => Ok(points),
     }
-}
-
-/// The two columns: separated by semicolons, commas or tabs if the line has any, otherwise by blanks.
-fn cells(line: &str) -> Option<[&str; 2]> {
-    let separator = [';', ',', '\t'].into_iter().find(|separator| line.contains(*separator));
-    let mut cells: Vec<&str> = match separator {
-        Some(separator) => line.split(separator).map(str::trim).collect(),
-        None => line.split_whitespace().collect(),
-    };
-    if cells.len() == 3 && cells[2].is_empty() {
-        cells.pop(); // a separator ends the line
-    }
-    <[&str; 2]>::try_from(cells).ok().filter(|cells| cells.iter().all(|cell| !cell.is_empty()))
-}
-
-pub(super) fn begins_with_number(cell: &str) -> bool {
-    cell.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.'))
-}
-
-/// "mN" of "load [mN]" or "load (mN)" or "load/mN"; empty where the header names no unit.
-pub(super) fn header_unit(cell: &str) -> &str {
-    for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some((_, rest)) = cell.split_once(open) {
-            return rest.rsplit_once(close).map_or(rest, |(unit, _)| unit).trim();
-        }
-    }
-    cell.split_once('/').map_or("", |(_, unit)| unit.trim())
-}
-
-/// The cell with the column's unit, where it has none of its own.
-pub(super) fn with_unit(cell: &str, unit: &str) -> String {
-    match cell.parse::<f64>() {
-        Ok(_) => format!("{cell} {unit}"),
-        Err(_) => cell.to_owned(),
-    }
-}
-
-pub(super) fn sentence(what: &str, cell: &str, error: &QuantityError) -> String {
-    let help = error.help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
-    let cell: String = cell.chars().take(40).collect();
-    format!("the {what} is {cell:?}, but must be {}{help}", error.expected)
 }
 
 #[cfg(test)]

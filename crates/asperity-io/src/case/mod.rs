@@ -75,6 +75,7 @@ mod roughness;
 mod schema;
 mod seal;
 mod shift;
+mod small_table;
 mod specimen;
 mod stored_times;
 mod stress;

@@ -3,14 +3,12 @@
 use asperity::Control;
 use asperity::seal::{Profile, Shape, Table};
 
-use super::history_file::{Origin, begins_with_number, header_unit, sentence, with_unit};
 use super::keys::*;
 use super::load::Load;
+use super::small_table::{Origin, of_key, rows};
 use super::surface::Surface;
 use super::words::number;
-use crate::digest::md5;
 use crate::leakage::{Leak, LeakDirection};
-use crate::resources::text;
 use crate::seal::{Rough, SealPlan};
 
 /// A whole seal of which the case is a patch: `asperity seal` runs the case at several mean pressures, and computes how the fluid opens the
@@ -48,8 +46,6 @@ pub struct SealKeys {
 
 /// The most runs of a sweep along one key.
 const MOST: usize = 1000;
-/// A file larger than this is no profile.
-const MOST_BYTES: u64 = 16 << 20;
 const SHAPES: [&str; 3] = ["uniform", "hertz", "parabola"];
 
 impl SealKeys {
@@ -152,7 +148,9 @@ impl SealKeys {
             }
             let why = "belongs to a profile of a known shape, but the profile is a file";
             at.without(&["peak", "width"], why, "the file alone", "leave it out")?;
-            let (tables, origin) = read(&at.key("profile"), name)?;
+            let columns =
+                "a file of the columns x, contact pressure and, if there are several, inlet pressure";
+            let (tables, origin) = of_key(&at.key("profile"), name, columns, parse)?;
             return Some((Shape::Table(tables), Some(origin)));
         }
         let (Some(peak), Some(width)) = (self.peak, self.width) else {
@@ -185,75 +183,51 @@ impl Surface {
     }
 }
 
-/// The profile in the file that the key at `at` names.
-fn read(at: &Place<'_>, path: &str) -> Option<(Vec<Table>, Origin)> {
-    let full = at.file(path)?;
-    let read = text(&full, MOST_BYTES).and_then(|text| Ok((parse(&text)?, md5(text.as_bytes()))));
-    let read = read.map_err(|reason| format!("{}: {reason}", full.display()));
-    let (tables, digest) =
-        at.data(read, "a file of the columns x, contact pressure and, if there are several, inlet pressure")?;
-    Some((tables, (path.to_owned(), digest)))
-}
-
+/// The profile in a file, for each of its inlet pressures.
 fn parse(text: &str) -> Result<Vec<Table>, String> {
-    let mut units = vec![String::new(); 3];
     let mut tables: Vec<Table> = vec![];
     let mut columns: Option<usize> = None;
-    for (n, line) in text.strip_prefix('\u{feff}').unwrap_or(text).lines().enumerate() {
-        let at = |reason: String| format!("line {}: {reason}", n + 1);
-        let line = line.split('#').next().unwrap_or_default().trim();
-        if line.is_empty() {
-            continue;
+    let alike = |cells: &[&str]| {
+        let count = cells.len();
+        if (2..=3).contains(&count) && *columns.get_or_insert(count) == count {
+            return Ok(());
         }
-        let separator = [';', ',', '\t'].into_iter().find(|separator| line.contains(*separator));
-        let cells: Vec<&str> = match separator {
-            Some(separator) => line.split(separator).map(str::trim).collect(),
-            None => line.split_whitespace().collect(),
-        };
-        if !(2..=3).contains(&cells.len()) || columns.is_some_and(|columns| columns != cells.len()) {
-            let expected = columns.map_or("2 or 3".to_owned(), |columns| columns.to_string());
-            return Err(at(format!(
-                "there are {} columns, but {expected} are expected, as in \"0.1 mm, 2 MPa\"",
-                cells.len()
-            )));
-        }
-        if columns.replace(cells.len()).is_none() && cells.iter().all(|cell| !begins_with_number(cell)) {
-            units = cells.iter().map(|cell| header_unit(cell).to_owned()).collect();
-            continue;
-        }
-        let written = |n: usize| Prescribed::Text(with_unit(cells[n], &units[n]));
-        let wrong = |what: &str, n: usize, error: &QuantityError| at(sentence(what, cells[n], error));
-        let x =
-            written(0).resolve::<dimension::Length, Finite>().map_err(|error| wrong("place", 0, &error))?;
-        let pressure = |n: usize, what: &str| {
-            let read = written(n).resolve::<dimension::Pressure, Finite>();
-            read.map(|pressure| pressure.get()).map_err(|error| wrong(what, n, &error))
+        let expected = columns.map_or("2 or 3".to_owned(), |columns| columns.to_string());
+        Err(format!("there are {count} columns, but {expected} are expected, as in \"0.1 mm, 2 MPa\""))
+    };
+    rows(text, alike, |row| {
+        let x: Length<Finite> = row.quantity(0, "place", Prescribed::resolve)?;
+        let x = x.get();
+        let pressure = |column: usize, what: &str| -> Result<f64, String> {
+            let read: Pressure<Finite> = row.quantity(column, what, Prescribed::resolve)?;
+            Ok(read.get())
         };
         let p0 = pressure(1, "contact pressure")?;
         if p0 < 0.0 {
-            return Err(at(format!("the contact pressure is {} Pa, but must be 0 or more", number(p0))));
+            return Err(format!("the contact pressure is {} Pa, but must be 0 or more", number(p0)));
         }
-        let inlet = if cells.len() == 3 { pressure(2, "inlet pressure")? } else { 0.0 };
+        let inlet = if row.cells.len() == 3 { pressure(2, "inlet pressure")? } else { 0.0 };
         match tables.last_mut() {
             Some(table) if table.inlet == inlet => {
-                if table.points.last().is_some_and(|last| last.0 >= x.get()) {
-                    return Err(at(format!(
+                if table.points.last().is_some_and(|last| last.0 >= x) {
+                    return Err(format!(
                         "the place {} m does not lie beyond the one before it; sort the rows by inlet pressure, then by x",
-                        number(x.get())
-                    )));
+                        number(x)
+                    ));
                 }
-                table.points.push((x.get(), p0));
+                table.points.push((x, p0));
             }
             Some(table) if table.inlet > inlet => {
-                return Err(at(format!(
+                return Err(format!(
                     "the inlet pressure {} Pa comes after {} Pa; sort the rows by inlet pressure",
                     number(inlet),
                     number(table.inlet)
-                )));
+                ));
             }
-            _ => tables.push(Table { inlet, points: vec![(x.get(), p0)] }),
+            _ => tables.push(Table { inlet, points: vec![(x, p0)] }),
         }
-    }
+        Ok(())
+    })?;
     if tables.is_empty() { Err("there is no row in the file".to_owned()) } else { Ok(tables) }
 }
 

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use asperity::seal::{Opens, SealState};
+use asperity::seal::Opens;
 use serde_json::{Value, json};
 
 use super::answer::{Over, SealAnswer, Spread};
 use super::{SealPlan, State};
+use crate::answer::MBAR_LITRE;
 use crate::finding;
 use crate::output::{WriteError, write_all};
 
@@ -30,7 +31,7 @@ impl SealAnswer {
                 });
                 json!({
                     "seed": seed.seed,
-                    "state": state(flow.state),
+                    "state": flow.state,
                     "opening": match opens {
                         Opens::Between(low, high) => json!([low, high]),
                         Opens::Always => json!("always"),
@@ -100,8 +101,6 @@ impl SealAnswer {
 
 /// Seconds in a year of 365.25 days.
 const YEAR: f64 = 31_557_600.0;
-/// mbar l/s in 1 Pa m^3/s.
-const MBAR_LITRE: f64 = 10.0;
 
 /// The leak in a year per SI value: its factor and its unit.
 pub fn yearly(plan: &SealPlan) -> (f64, &'static str) {
@@ -119,15 +118,5 @@ fn usual(plan: &SealPlan) -> Vec<(&'static str, f64)> {
             ("seal_leak_g_per_year", year),
         ],
         _ => vec![("seal_leak_ml_per_year", year)],
-    }
-}
-
-/// The word of a state.
-fn state(state: SealState) -> &'static str {
-    match state {
-        SealState::Tight => "tight",
-        SealState::Leaks => "leaks",
-        SealState::Lifted => "lifted",
-        SealState::Unknown => "unknown",
     }
 }

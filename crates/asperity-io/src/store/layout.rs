@@ -259,19 +259,32 @@ impl ArraySpec {
             attributes["flag_values"] = json!([0, 1, 2, 3]);
             attributes["flag_meanings"] = json!("out_of_contact in_contact at_hardness slipping");
         }
-        json!({
-            "zarr_format": 3,
-            "node_type": "array",
-            "shape": self.shape(),
-            "data_type": data_type,
-            "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": self.chunk()}},
-            "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}},
-            "fill_value": fill_value,
-            "codecs": codecs,
-            "attributes": attributes,
-            "dimension_names": self.dimensions.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
-        })
+        let dimensions: Vec<_> = self.dimensions.iter().map(|(name, _)| *name).collect();
+        let (shape, chunk) = (self.shape(), self.chunk());
+        array_document([&shape, &chunk], (data_type, fill_value), codecs, attributes, &dimensions)
     }
+}
+
+/// The metadata document of an array of these lengths, in chunks of those, with numbers of a type and what lost ones are filled with.
+pub(crate) fn array_document(
+    [shape, chunk]: [&[usize]; 2],
+    (data_type, fill_value): (&str, Value),
+    codecs: Vec<Value>,
+    attributes: Value,
+    dimensions: &[impl AsRef<str>],
+) -> Value {
+    json!({
+        "zarr_format": 3,
+        "node_type": "array",
+        "shape": shape,
+        "data_type": data_type,
+        "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": chunk}},
+        "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}},
+        "fill_value": fill_value,
+        "codecs": codecs,
+        "attributes": attributes,
+        "dimension_names": dimensions.iter().map(AsRef::as_ref).collect::<Vec<_>>(),
+    })
 }
 
 /// The dimensions of a map and their lengths. Nothing changes along y of a line: it has no such dimension.

@@ -79,7 +79,7 @@ pub use document::store_error_bars;
 pub use error::{Result, StoreError};
 pub use field_kind::{FieldKind, Look};
 pub use header::{Header, Status, Work};
-pub(crate) use layout::{ArraySpec, DataType, Storage};
+pub(crate) use layout::{ArraySpec, DataType, Storage, array_document};
 pub use layout::{SCALARS, Scalar, Series, coordinates};
 pub use leak::{LeakTable, LeakWriter, Leaks, leak_series};
 pub use reader::{At, Reader};

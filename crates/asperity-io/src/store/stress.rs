@@ -75,27 +75,11 @@ const SHEAR_PROFILE: Series =
     Series::new("orthogonal_shear_by_depth", "Pa", "range of the orthogonal shear stress by depth");
 const DEPTH: &str = "depth";
 
-/// Names of the stress fields in a result.
-fn field_name(quantity: StressQuantity) -> &'static str {
-    match quantity {
-        StressQuantity::Mises => "stress_mises",
-        StressQuantity::Tresca => "stress_tresca",
-        StressQuantity::Tension => "stress_tension",
-        StressQuantity::Pressure => "stress_pressure",
-        StressQuantity::Xx => "stress_xx",
-        StressQuantity::Yy => "stress_yy",
-        StressQuantity::Zz => "stress_zz",
-        StressQuantity::Xy => "stress_xy",
-        StressQuantity::Xz => "stress_xz",
-        StressQuantity::Yz => "stress_yz",
-    }
-}
-
 /// The names that arrays of the stress may have.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     let one = MAXIMA.iter().chain(&SHEAR).chain(&PROFILES).map(|series| series.name);
     let rest = [VOLUME.name, SHEAR_PROFILE.name, DEPTH].into_iter();
-    one.chain(rest).chain(StressQuantity::ALL.map(field_name))
+    one.chain(rest).chain(StressQuantity::ALL.map(StressQuantity::field_name))
 }
 
 impl StressSet {
@@ -131,7 +115,7 @@ impl StressSet {
     /// The stored fields: their names in the result.
     pub fn fields(&self) -> Vec<(StressQuantity, Series)> {
         let field = |quantity: &StressQuantity| {
-            (*quantity, Series::new(field_name(*quantity), "Pa", quantity.long_name()))
+            (*quantity, Series::new(quantity.field_name(), "Pa", quantity.long_name()))
         };
         self.quantities.iter().map(field).collect()
     }
@@ -353,6 +337,6 @@ impl Reader {
         if !set.instants.contains(&index) {
             return Ok(Array2::from_elem(self.header().grid.shape(), f64::NAN));
         }
-        self.map(field_name(quantity), &[index as u64, depth as u64])
+        self.map(quantity.field_name(), &[index as u64, depth as u64])
     }
 }

@@ -11,6 +11,7 @@ use super::folder::{Study, failed};
 use super::rows::State;
 use super::table::Table;
 use crate::output::PartialDirectory;
+use crate::store::array_document;
 
 pub(super) const NAME: &str = "study.zarr";
 /// The attribute by which the group is known as ours.
@@ -143,18 +144,9 @@ impl Array {
             Data::Counts(_) => ("int64", json!(-1), little),
             Data::Texts(_) => ("string", json!(""), json!({ "name": "vlen-utf8", "configuration": {} })),
         };
-        json!({
-            "zarr_format": 3,
-            "node_type": "array",
-            "shape": self.shape,
-            "data_type": data_type,
-            "chunk_grid": { "name": "regular", "configuration": { "chunk_shape": self.shape } },
-            "chunk_key_encoding": { "name": "default", "configuration": { "separator": "/" } },
-            "fill_value": fill,
-            "codecs": [codec],
-            "attributes": self.attributes,
-            "dimension_names": self.dimensions,
-        })
+        let attributes = self.attributes.clone();
+        let lengths = [self.shape.as_slice(); 2];
+        array_document(lengths, (data_type, fill), vec![codec], attributes, &self.dimensions)
     }
 
     fn write(&self, root: &Path) -> std::io::Result<()> {

@@ -301,6 +301,15 @@ def line(what: str, value: Any, unit: str | None = None) -> Floats:
     return plain(array)
 
 
+def columns(**given: Any) -> list[Floats]:
+    """One-dimensional arrays of one length."""
+    found = [line(what, values) for what, values in given.items()]
+    if len({len(column) for column in found}) > 1:
+        told = ", ".join(f"{what} {len(column)}" for what, column in zip(given, found))
+        raise CaseError(f"the columns must have the same length; there are: {told}")
+    return found
+
+
 def each(function: Callable[[Floats], Floats], what: str, value: Any) -> Floats:
     """The numbers of a function of a list at each number of an array of any shape."""
     at = array(what, value)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, choice, line, number
+from ._arrays import Floats, choice, columns, number
 from ._core import CaseError
 from ._sealed import ReadOnlyArrays
 
@@ -99,9 +99,7 @@ def fit_force_curve(
     sensitivity_uncertainty: float,
 ) -> ForceFit:
     """What :func:`fit_indentation` does with a `model`."""
-    loads, depths = line("load", load), line("depth", depth)
-    if len(loads) != len(depths):
-        raise CaseError(f"the columns must have the same length; there are: load {len(loads)}, depth {len(depths)}")
+    loads, depths = columns(load=load, depth=depth)
     choice("branch", branch, get_args(Branch))
     if control is not None:
         choice("control", control, get_args(Control))
@@ -110,18 +108,16 @@ def fit_force_curve(
     shares = share("radius", radius_uncertainty, size), *cantilever_shares(spring, spring_constant_uncertainty, sensitivity_uncertainty)
     reach = None if range is None else number("range", range)
     found = _core.fit_force_curve(loads, depths, size, model, branch, control, reach, spring, *shares)
-    factor = 1.0 - poisson**2
-
-    def interval(told: tuple[float, float, float, bool] | None, factor: float = 1.0) -> Any:
-        if told is None:
-            return None
-        value, low, high, determined = told
-        return (factor * value if determined else float("nan"), factor * low, factor * high)
-
-    modulus = found.pop("contact_modulus")
-    own = {name: interval(found[name]) for name in ("work", "transition", "range", "touch", "baseline")}
+    modulus = interval(found.pop("contact_modulus"), 1.0 - poisson**2)
+    own = {name: found[name] and interval(found[name]) for name in ("work", "transition", "range", "touch", "baseline")}
     rows = np.asarray(found["rows"], dtype=np.int64)
-    return ForceFit(**{**found, **own, "rows": rows, "load": loads[rows], "depth": depths[rows]}, young=interval(modulus, factor))
+    return ForceFit(**{**found, **own, "rows": rows, "load": loads[rows], "depth": depths[rows]}, young=modulus)
+
+
+def interval(told: tuple[float, float, float, bool], factor: float = 1.0) -> Interval:
+    """What the core tells of a number and its interval, times a factor; NaN where the record does not determine it."""
+    value, low, high, determined = told
+    return (factor * value if determined else float("nan"), factor * low, factor * high)
 
 
 def share(what: str, uncertainty: Any, value: float | None) -> float:
@@ -186,9 +182,7 @@ class ForceCurve(ReadOnlyArrays):
         sensitivity : of the deflection [m/V]
         metadata : to keep with the curve
         """
-        way, bent = line("height", height), line("deflection", deflection)
-        if len(way) != len(bent):
-            raise CaseError(f"the columns must have the same length; there are: height {len(way)}, deflection {len(bent)}")
+        way, bent = columns(height=height, deflection=deflection)
         stiffness = number("spring_constant", spring_constant)
         scale = 1.0 if sensitivity is None else number("sensitivity", sensitivity)
         for what, value in (("spring_constant", stiffness), ("sensitivity", scale)):

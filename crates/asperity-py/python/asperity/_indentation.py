@@ -7,6 +7,7 @@ numbers of terms that the record allows.
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, get_args, overload
 
@@ -14,9 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, choice, count, line, number
+from ._arrays import Floats, choice, columns, count, number
 from ._core import CaseError
-from ._force_curves import ForceFit, Model, cantilever_shares, fit_force_curve, share
+from ._force_curves import ForceFit, Model, cantilever_shares, fit_force_curve, interval, share
 from ._histories import one_of
 from ._materials import Prony
 from ._sealed import ReadOnlyArrays
@@ -84,6 +85,14 @@ class IndentationFit(ReadOnlyArrays):
             lines += [(f"E_{n} [Pa]", modulus), (f"tau_{n} [s]", time)]
         rows = [(name, *(f"{x:.5g}" if x == x else "not determined" for x in values)) for name, values in lines]
         return _html.table(rows, ("", "value", "95 % from", "to"))
+
+
+#: What goes with a model of an elastic sphere alone, with any model, and with the relaxation alone.
+_OF_CURVE = ("branch", "control", "range")
+_OF_BOTH = ("spring_constant", "radius_uncertainty", "spring_constant_uncertainty", "sensitivity_uncertainty")
+_OF_RECORD = (
+    "slope", "given", "terms", "long_time", "fit_touch", "thickness_uncertainty", "interface", "hardness", "name", "springs", "max_misfit"
+)  # fmt: skip
 
 
 @overload
@@ -230,55 +239,30 @@ def fit_indentation(
     >>> round(pulled.young[0] / 1e6, 3), round(pulled.work[0] * 1e3, 3)
     (1.0, 5.0)
     """
+    told = dict(locals())
+    usual = {name: one.default for name, one in inspect.signature(fit_indentation).parameters.items()}
     choice("model", model, ("viscoelastic", *get_args(Model)))
-    curve: dict[str, Any] = {"branch": branch, "control": control, "range": range}
-    of_both: dict[str, Any] = {
-        "spring_constant": spring_constant,
-        "radius_uncertainty": radius_uncertainty,
-        "spring_constant_uncertainty": spring_constant_uncertainty,
-        "sensitivity_uncertainty": sensitivity_uncertainty,
-    }
-    of_record = {
-        "slope": (slope, None),
-        "given": (given, None),
-        "terms": (terms, None),
-        "long_time": (long_time, "free"),
-        "fit_touch": (fit_touch, False),
-        "thickness_uncertainty": (thickness_uncertainty, 0.0),
-        "interface": (interface, "bonded"),
-        "hardness": (hardness, None),
-        "name": (name, None),
-        "springs": (springs, 150),
-        "max_misfit": (max_misfit, 0.1),
-    }
     if model == "viscoelastic":
-        for what, told in curve.items():
-            if told != (None if what != "branch" else "retraction"):
-                raise CaseError(f"{what} goes with a model of an elastic sphere: give model, one of {', '.join(get_args(Model))}")
+        for what in (name for name in _OF_CURVE if told[name] != usual[name]):
+            raise CaseError(f"{what} goes with a model of an elastic sphere: give model, one of {', '.join(get_args(Model))}")
     else:
         if thickness is not None:
             raise CaseError(
                 f"thickness is {thickness}, but the model {model!r} has the closed form of a half-space, and there is none for adhesion on a thin"
                 ' sample: leave it out. The model "viscoelastic" with terms=0 fits an elastic thin sample without adhesion'
             )
-        for what, (told, default) in of_record.items():
-            if told != default:
-                raise CaseError(f"{what} goes with the model \"viscoelastic\", but model is {model!r}: leave it out")
+        for what in (name for name in _OF_RECORD if told[name] != usual[name]):
+            raise CaseError(f"{what} goes with the model \"viscoelastic\", but model is {model!r}: leave it out")
         if radius is None:
             raise CaseError("radius is missing: the models of force curves are those of a sphere")
-        nu = number("poisson", poisson)
-        if not -1.0 < nu <= 0.5:
-            raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
-        return fit_force_curve(load, depth, radius=radius, poisson=nu, model=model, **curve, **of_both)
-    columns = [line(what, values) for what, values in (("time", time), ("load", load), ("depth", depth))]
-    if len({len(column) for column in columns}) > 1:
-        told = ", ".join(f"{what} {len(column)}" for what, column in zip(("time", "load", "depth"), columns))
-        raise CaseError(f"the columns must have the same length; there are: {told}")
-    what, shape = one_of({"radius": radius, "slope": slope}, "give")
-    profile = "sphere" if what == "radius" else "cone"
     nu = number("poisson", poisson)
     if not -1.0 < nu <= 0.5:
         raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
+    if model != "viscoelastic":
+        return fit_force_curve(load, depth, radius=radius, poisson=nu, model=model, **{name: told[name] for name in (*_OF_CURVE, *_OF_BOTH)})
+    times, loads, depths = columns(time=time, load=load, depth=depth)
+    what, shape = one_of({"radius": radius, "slope": slope}, "give")
+    profile = "sphere" if what == "radius" else "cone"
     most = None if terms is None else count("terms", terms, 0)
     choice("interface", interface, get_args(Interface))
     if thickness is None and interface != "bonded":
@@ -290,14 +274,9 @@ def fit_indentation(
     size = None if radius is None else number("radius", radius)
     of_size, of_thickness = share("radius", radius_uncertainty, size), share("thickness", thickness_uncertainty, thin and thin[0])
     stated = (of_size, of_thickness, of_load, of_deflection), spring
-    found = _core.fit_indentation(columns[0], columns[1], columns[2], profile, number(what, shape), *how, *stated)
+    found = _core.fit_indentation(times, loads, depths, profile, number(what, shape), *how, *stated)
     # E = E* (1 - nu^2)
     factor = 1.0 - nu**2
-
-    def interval(told: tuple[float, float, float, bool], factor: float = 1.0) -> Interval:
-        value, low, high, determined = told
-        return (factor * value if determined else float("nan"), factor * low, factor * high)
-
     rows = np.asarray(found["rows"], dtype=np.int64)
     own = {
         "terms": [(interval(modulus, factor), interval(relaxation)) for modulus, relaxation in found["terms"]],
@@ -305,7 +284,9 @@ def fit_indentation(
         "instantaneous": interval(found["instantaneous"], factor),
         "touch": interval(found["touch"]),
         "rows": rows,
-        **{what: column[rows] for what, column in zip(("time", "load", "depth"), columns)},
+        "time": times[rows],
+        "load": loads[rows],
+        "depth": depths[rows],
     }
     material = Prony(
         equilibrium=factor * found["equilibrium"][0],

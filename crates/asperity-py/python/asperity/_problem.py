@@ -17,13 +17,13 @@ from ._core import CaseError
 from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
 from ._layers import Body
 from ._materials import Material
-from ._rows import Quantity
+from ._rows import Field, Quantity
 from ._shifts import temperature_keys
 from ._surface import Surface, check_boundary, surface_of
 from ._tangential import Friction, Tangential
 from ._units import bare
 from ._wear import Wear
-from ._words import Boundary, Field, Method, Plasticity, Scheme
+from ._words import Boundary, Method, Plasticity, Scheme
 
 if TYPE_CHECKING:
     from ._arrays import Floats

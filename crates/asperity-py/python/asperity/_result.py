@@ -19,10 +19,10 @@ from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECT
 from ._core import CaseError
 from ._findings import Finding, findings_of
 from ._grid import OnGrid
-from ._rows import Columns, StressColumns
+from ._rows import Columns, Field, StressColumns
 from ._sealed import Sealed
 from ._units import written
-from ._words import Field, Flow, Sides
+from ._words import Flow, Sides
 
 if TYPE_CHECKING:
     from ._converge import ErrorBar

@@ -1,14 +1,15 @@
-"""Attributes and words that the library's registry of columns and quantities gives; `_rows.pyi`, which is generated, declares them."""
+"""Attributes and words that the library's registry of columns, quantities and fields gives; `_rows.pyi`, which is generated, declares them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import Literal
 
-from ._columns import COLUMNS, HISTOGRAMS, QUANTITIES, ROW, STRESS, Column, Number
+from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, Column, Number
 
-#: The optional quantities of a row.
+#: The optional quantities of a row, and the fields.
 Quantity = Literal[tuple(QUANTITIES)]
+Field = Literal[tuple(FIELDS)]
 
 
 def _holder(name: str, kind: type[Column] | type[Number], names: Iterable[str]) -> type:

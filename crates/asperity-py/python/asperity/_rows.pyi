@@ -65,6 +65,24 @@ Quantity = Literal[
     "rolling_moment",
     "dissipated_power",
 ]
+Field = Literal[
+    "pressure",
+    "gap",
+    "displacement",
+    "contact",
+    "flattening",
+    "contact_pressure",
+    "adhesive_traction",
+    "traction_x",
+    "traction_y",
+    "slip_x",
+    "slip_y",
+    "slip_path",
+    "friction_work",
+    "wear_depth",
+    "counterbody_wear_depth",
+    "undeformed_gap",
+]
 OF_CONTACT: list[str]
 
 class Columns:

@@ -43,8 +43,9 @@ if TYPE_CHECKING:
     from ._fit import Fit
     from ._force_maps import ForceMap
     from ._result import Result
+    from ._rows import Field
     from ._surface import Surface
-    from ._words import Axis, Field
+    from ._words import Axis
 
 def _told(plots: Any, missing: frozenset[str] = frozenset()) -> str:
     """Which figures there are."""

@@ -27,6 +27,7 @@ const GAUSS: [[f64; 2]; 4] = [
 
 /// How the seal is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum SealState {
     /// Nothing flows.
     Tight,

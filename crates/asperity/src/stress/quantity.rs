@@ -27,6 +27,11 @@ macro_rules! stress_quantities {
                 match self { $(StressQuantity::$variant => $name,)+ }
             }
 
+            /// The name of its field in results: "stress_mises", "stress_xx", ...
+            pub fn field_name(self) -> &'static str {
+                match self { $(StressQuantity::$variant => concat!("stress_", $name),)+ }
+            }
+
             /// Its description for axes and legends.
             pub fn long_name(self) -> &'static str {
                 match self { $(StressQuantity::$variant => $long_name,)+ }

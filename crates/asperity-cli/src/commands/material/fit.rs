@@ -1,10 +1,7 @@
 //! `asperity material fit`: a material from measured data, and how well it describes them.
 
-use std::fmt::Write as _;
-
 use asperity::material::{Misfit, Modulus, Shift, VerticalShift};
 use asperity_io::curve::{Curves, Fitted, Kind, Request, Series, ShiftRequest};
-use asperity_io::output::write_all;
 use asperity_report::material as pictures;
 use serde_json::{Map, Value, json};
 
@@ -21,11 +18,7 @@ pub const ROOM: f64 = 293.15;
 
 impl Verb for Fit {
     fn files(&self) -> Files {
-        Files::default()
-            .reads(self.shift_table.iter().chain([&self.data]))
-            .writes(&self.output)
-            .draws(&self.plot)
-            .force(self.force)
+        self.to.files().reads(self.shift_table.iter().chain([&self.data]))
     }
 
     /// Fits, reports, writes and draws.
@@ -44,29 +37,17 @@ impl Verb for Fit {
         let fitted = Request { measure, shift, vertical, window, options }.fit(&curves).map_err(refused)?;
         let findings = fitted.findings(&self.data.display().to_string());
         let block = fitted.to_toml(&curves);
-        if let Some(path) = &self.output {
-            write_all(path, self.force, block.as_bytes())?;
-        }
-        if let Some(path) = &self.plot {
-            let figure = pictures::fit(&crate::commands::title(&self.data), &curves, &fitted)?;
-            crate::commands::picture::write(&figure, path, self.force)?;
-        }
-        if self.json {
+        let object = || {
             let mut object = json_of(&curves, &fitted);
-            object["output"] = json!(self.output);
-            object["material"] = json!(block);
             object["findings"] = asperity_io::finding::list(&findings);
-            return crate::print(&format!("{object}\n"));
-        }
-        crate::commands::findings::print(&findings);
-        let mut text = report(self, &curves, &fitted);
-        match &self.output {
-            Some(path) => {
-                let _ = writeln!(text, "written     {}", path.display());
-            }
-            None => text = format!("{text}\n{block}"),
-        }
-        crate::print(&text)
+            object
+        };
+        let report = || {
+            crate::commands::findings::print(&findings);
+            report(self, &curves, &fitted)
+        };
+        let title = crate::commands::title(&self.data);
+        self.to.deliver(&block, || pictures::fit(&title, &curves, &fitted), object, report)
     }
 }
 

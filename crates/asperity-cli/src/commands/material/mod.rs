@@ -1,5 +1,6 @@
 //! `asperity material`: functions of materials, and fits of measured curves.
 
+mod deliver;
 mod export;
 mod fit;
 mod layers;

@@ -4,7 +4,7 @@ use asperity_io::finding;
 use asperity_io::stress::{Below, Instant, first_yield};
 use serde_json::{Map, Value, json};
 
-use crate::format::{counted, quantity};
+use crate::format::{columns, counted, quantity};
 
 /// The JSON object.
 pub fn object(below: &Below, written: &[String]) -> Value {
@@ -28,19 +28,6 @@ pub fn object(below: &Below, written: &[String]) -> Value {
     object.insert("findings".into(), finding::list(&below.findings()));
     object.insert("written".into(), json!(written));
     Value::Object(object)
-}
-
-/// Lines of columns, each as wide as its widest word.
-fn table(lines: &[Vec<String>]) -> String {
-    let columns = lines.first().map_or(0, Vec::len);
-    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let line = |line: &Vec<String>| {
-        let words: Vec<String> =
-            line.iter().zip(&widths).map(|(word, width)| format!("{word:<width$}")).collect();
-        format!("  {}\n", words.join("  ").trim_end())
-    };
-    lines.iter().map(line).collect()
 }
 
 /// A number with its unit; a dash where there is none.
@@ -101,7 +88,7 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
         words.extend(extra.iter().map(|series| number(below.number(instant, series.name), series.units)));
         words
     };
-    text += &table(&std::iter::once(head).chain(instants.iter().map(line)).collect::<Vec<_>>());
+    text += &columns(&std::iter::once(head).chain(instants.iter().map(line)).collect::<Vec<_>>(), "  ");
     if instants.len() < below.instants.len() {
         let words = format!("{} of {} times; --json prints all", instants.len(), below.instants.len());
         text += &format!("  ({words})\n");
@@ -135,7 +122,7 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
             let numbers = profiles.iter().map(|series| number(below.profile(instant, series.name)[n], "Pa"));
             lines.push(std::iter::once(number(*depth, "m")).chain(numbers).collect());
         }
-        text += &table(&lines);
+        text += &columns(&lines, "  ");
         text.push('\n');
     }
     if let (Some(limit), Some(first)) = (set.yield_stress, first_yield(below)) {

@@ -26,8 +26,13 @@ fn xarray_reads_the_bits_without_a_warning() {
     dump("time", (0..7).flat_map(|step| case.row(step).time().to_le_bytes()).collect());
     dump("residual", (0..7).flat_map(|step| case.row(step).residual.to_le_bytes()).collect());
 
+    let fields = FieldKind::ALL.map(FieldKind::name).join(" ");
     let check = |status: &str| {
-        let variables = [("ASPERITY_RESULT", path.as_os_str()), ("ASPERITY_STATUS", status.as_ref())];
+        let variables = [
+            ("ASPERITY_RESULT", path.as_os_str()),
+            ("ASPERITY_STATUS", status.as_ref()),
+            ("ASPERITY_FIELDS", fields.as_ref()),
+        ];
         run_python(&python, "test_store.py", &variables);
     };
     // While it is being written, and when it is done.

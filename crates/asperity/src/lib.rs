@@ -19,7 +19,7 @@
 //! - [`contact`]: the elastic contact inside every step;
 //! - [`quantities`], [`spots`]: further numbers of each row, on request;
 //! - [`finding`]: where the numbers of a run may be off;
-//! - [`sliding`]: bodies that slide and roll;
+//! - [`sliding`]: bodies that slide and roll; [`flash`]: how warm that makes them;
 //! - [`leakage`]: flow of a fluid through the gap;
 //! - [`operator`], [`kernel`], [`convolution`]: u = Kp; [`layer`]: K of bodies of layers;
 //! - [`mod@reference`], [`verification`]: closed forms and the checks against them.
@@ -33,6 +33,7 @@ pub mod drive;
 pub mod error;
 mod extrapolation;
 pub mod finding;
+pub mod flash;
 pub mod force_curve;
 pub mod grid;
 pub mod history;

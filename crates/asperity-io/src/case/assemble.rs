@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use asperity::load::Course;
+use asperity::sliding::ShearStress;
 use asperity::tangential::Tangential;
 use asperity::time::Plan;
 use asperity::traction::{OpeningPressure, TractionLaw};
@@ -13,6 +14,7 @@ use ndarray::Array2;
 use super::body::{self, Body};
 use super::document::Document;
 use super::error::CaseError;
+use super::flash;
 use super::hardness::{self, Hardness};
 use super::history::Bodies;
 use super::history_file::Origin;
@@ -20,6 +22,7 @@ use super::material::Sample;
 use super::pair::{self, Pair};
 use super::place::Checks;
 use super::plan::{Motion, Output, Rows, Surface};
+use super::shear;
 use super::temperature::{Temperature, Temperatures};
 use super::text::Text;
 use super::warmth;
@@ -112,6 +115,10 @@ impl Document {
             motion::nothing_moves(&at("surface"), &self.surface);
         }
         let motion = self.motion.as_ref().and_then(|motion| motion.moving(&at("motion"), &self.surface));
+        let motion = match motion {
+            Some(motion) => self.warmed(checks, motion, &parts, points),
+            None => None,
+        };
         if self.motion.is_some() && self.adhesion.is_some() {
             let help = "delete one of the two sections";
             at("motion").fault::<()>("surfaces that slide do not adhere here", "no [adhesion]", help);
@@ -145,6 +152,9 @@ impl Document {
         let output = output.map(|mut output| {
             if self.tangential.is_some() && self.output.is_silent_on_fields() {
                 output.fields.extend([FieldKind::Contact, FieldKind::TractionX, FieldKind::TractionY]);
+            }
+            if self.flash.is_some() && self.output.is_silent_on_fields() {
+                output.fields.insert(FieldKind::FlashTemperature);
             }
             if (self.adhesion.is_some() || acts) && self.output.is_silent_on_fields() {
                 output.fields.insert(FieldKind::ContactPressure);
@@ -220,10 +230,14 @@ impl Document {
         let (tangential, slipped) = tangential.unzip();
         let wear = self.wear(checks, grid.as_ref(), swept.is_some());
         let (wear, worn) = wear.unzip();
+        let materials =
+            pair.as_ref().map(|pair| flash::Materials { parts: &parts, pair, temperatures: points });
+        let flash = self.flash(checks, motion.as_ref(), materials.as_ref());
         let conditions = law.zip(conditions).map(|(traction, conditions)| Simulation {
             traction,
             tangential,
             wear: wear.map(Arc::new),
+            flash: flash.map(Arc::new),
             ..conditions
         });
         if let Some(conditions) = &conditions {
@@ -233,6 +247,7 @@ impl Document {
             // A faulty fluid, or a faulty load along the surfaces, is reported already.
             let slips = self.tangential.is_some() || self.friction.is_some();
             let wears = conditions.wear.is_some() || self.wear.is_none();
+            let wears = wears && (conditions.flash.is_some() || self.flash.is_none());
             if (leakage.is_some() || !acts) && (conditions.tangential.is_some() || !slips) && wears {
                 self.output.possible(&at("output"), conditions, motion.is_some());
             }
@@ -335,6 +350,39 @@ impl Document {
         let bodies = (&at("body"), &pair?.bodies[..]);
         let (law, files) = tangential.law(&at("tangential"), (&at("friction"), friction), grid, bodies)?;
         Some((Arc::new(law), files))
+    }
+
+    /// The motion at the temperature of the run.
+    fn warmed(
+        &self,
+        checks: &Checks<'_>,
+        motion: Motion,
+        parts: &[body::Part<'_>],
+        temperatures: Option<&[(f64, f64)]>,
+    ) -> Option<Motion> {
+        let shear_stress = match motion.shear_stress {
+            Some(law @ ShearStress::Gaussian { .. }) => {
+                let at = checks.at("motion").key("shear_stress");
+                Some(shear::shifted(law, flash::shift_factor(&at, parts, temperatures)?))
+            }
+            other => other,
+        };
+        Some(Motion { shear_stress, ..motion })
+    }
+
+    /// The heat of friction.
+    fn flash(
+        &self,
+        checks: &Checks<'_>,
+        motion: Option<&Motion>,
+        materials: Option<&flash::Materials<'_>>,
+    ) -> Option<asperity::flash::Flash> {
+        let (section, at) = (self.flash.as_ref()?, checks.at("flash"));
+        if self.motion.is_none() {
+            let help = "add [motion] with a velocity, a path or steady states, or delete the section";
+            return at.fault("nothing slides, so nothing makes heat", "a section [motion]", help);
+        }
+        section.law(&at, motion?, materials?)
     }
 
     /// The wear of the surfaces, with the files that it is from; `steady` where the case asks for steady states of motion.

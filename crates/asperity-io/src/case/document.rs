@@ -10,6 +10,7 @@ use super::adhesion::Adhesion;
 use super::body::Body;
 use super::domain::Domain;
 use super::error::CaseError;
+use super::flash::Flash;
 use super::leakage::LeakageKeys;
 use super::load::Load;
 use super::material::Material;
@@ -42,6 +43,7 @@ const SECTIONS: &[&str] = &[
     "friction",
     "tangential",
     "wear",
+    "flash",
     "leakage",
     "seal",
     "solver",
@@ -91,6 +93,9 @@ pub struct Document {
     /// Wear of the surfaces where they slide; none if not given.
     #[schemars(example = serde_json::json!({ "coefficient": "1e-15 m2/N", "velocity": "0.1 m/s" }))]
     pub wear: Option<Wear>,
+    /// How warm friction makes the surfaces of a contact in motion; not computed if not given.
+    #[schemars(example = serde_json::json!({ "conductivity": "0.3 W/(m K)", "diffusivity": "1e-7 m2/s", "friction": 0.3 }))]
+    pub flash: Option<Flash>,
     /// The flow of a fluid through the gap.
     #[schemars(example = serde_json::json!({ "pressure_drop": "2 bar", "viscosity": "1 mPa s" }))]
     pub leakage: Option<LeakageKeys>,
@@ -137,6 +142,7 @@ impl Document {
             friction: reader.table("friction"),
             tangential: reader.table("tangential"),
             wear: reader.table("wear"),
+            flash: reader.table("flash"),
             leakage: reader.table("leakage"),
             seal: reader.table("seal"),
             solver: reader.table("solver").unwrap_or_default(),

@@ -50,6 +50,7 @@ mod domain;
 mod edit;
 mod error;
 mod examine;
+mod flash;
 mod form;
 pub mod fragment;
 pub mod given;
@@ -74,6 +75,7 @@ mod read;
 mod roughness;
 mod schema;
 mod seal;
+mod shear;
 mod shift;
 mod small_table;
 mod specimen;
@@ -305,7 +307,7 @@ impl Case {
             direction: motion.direction,
             velocities: velocities.clone(),
             slopes,
-            shear_stress: motion.shear_stress,
+            shear_stress: motion.shear_stress.clone(),
         };
         steady.validate(simulation).map_err(|error| self.refused("motion", error))?;
         Ok(Some(steady))
@@ -351,6 +353,11 @@ impl Case {
                 Quantity::of_tangential().filter(|quantity| !wanted.list.contains(quantity)).collect();
             wanted.list.extend(new);
         }
+        if let Some(flash) = &simulation.flash {
+            wanted.list.retain(|quantity| !quantity.is_of_flash());
+            wanted.list.extend(Quantity::of_flash());
+            wanted.list.extend(flash.feedback.as_ref().map(|_| Quantity::MaterialTemperature));
+        }
         if let Some(motion) = &self.motion {
             // What steady states have no row of, or what displacements that are known up to a constant do not determine.
             let known = |quantity: &Quantity| match quantity {
@@ -362,7 +369,7 @@ impl Case {
             };
             wanted.list.retain(|quantity| !quantity.is_of_motion());
             wanted.list.extend(Quantity::of_motion().filter(known));
-            wanted.list.extend(motion.shear_stress.map(|_| Quantity::FrictionCoefficientTotal));
+            wanted.list.extend(motion.shear_stress.as_ref().map(|_| Quantity::FrictionCoefficientTotal));
         }
         wanted
     }

@@ -13,6 +13,7 @@ use super::history::{History, Kind};
 use super::keys::*;
 use super::pair::Pair;
 use super::plan::{Motion as Moving, Travel};
+use super::shear::{self, Shear};
 use super::surface::Surface;
 use super::words::number;
 use crate::Code;
@@ -48,9 +49,9 @@ pub struct Motion {
     /// Cells that the contact moves in a time step, at most; 1 if not given.
     #[schemars(example = 1)]
     cells_per_step: Option<Number<Positive>>,
-    /// Shear stress on the area in contact: its share is added in `friction_coefficient_total`.
+    /// Shear stress on the area in contact, or how it depends on velocity: its share is added in `friction_coefficient_total`.
     #[schemars(example = "0.2 MPa")]
-    shear_stress: Option<Pressure<NonNegative>>,
+    shear_stress: Option<Shear>,
 }
 
 /// What the contact moves over.
@@ -209,13 +210,17 @@ impl Motion {
         };
         let cells_per_step = self.cells_per_step.map_or(1.0, Number::get);
         at.core(asperity::process::Motion::check_cells_per_step(cells_per_step))?;
+        let shear_stress = match &self.shear_stress {
+            Some(given) => Some(shear::law(&at.key("shear_stress"), given)?),
+            None => None,
+        };
         Some(Moving {
             travel,
             direction: self.direction.map_or(Direction::X, |heading| heading.0),
             moves: surfaces.iter().map(|surface| surface.moves.unwrap_or(true)).collect(),
             rolls: self.kind == MotionKind::Roll,
             cells_per_step,
-            shear_stress: self.shear_stress.map(Pressure::get),
+            shear_stress,
         })
     }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use asperity::sliding::{Direction, MovingGap, Path};
+use asperity::sliding::{Direction, MovingGap, Path, ShearStress};
 
 use asperity::surface::Part;
 
@@ -33,8 +33,8 @@ pub struct Motion {
     pub rolls: bool,
     /// Cells that it moves in a step, at most.
     pub cells_per_step: f64,
-    /// A shear stress on the area in contact \[Pa\].
-    pub shear_stress: Option<f64>,
+    /// A shear stress on the area in contact.
+    pub shear_stress: Option<ShearStress>,
 }
 
 impl Motion {
@@ -46,7 +46,7 @@ impl Motion {
             direction: self.direction,
             gap,
             cells_per_step: self.cells_per_step,
-            shear_stress: self.shear_stress,
+            shear_stress: self.shear_stress.clone(),
         })
     }
 }

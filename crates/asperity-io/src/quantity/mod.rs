@@ -134,6 +134,10 @@ dimensions! {
     MolarEnergy = "an energy per mole", "J/mol", "J/mol, kJ/mol, kcal/mol", "120 kJ/mol", [2, 1, -2, 0, -1];
     /// An energy per area, which is a force per length \[J/m²\].
     EnergyPerArea = "an energy per area", "J/m2", "mJ/m^2, J/m^2", "50 mJ/m2", [0, 1, -2, 0, 0];
+    /// A thermal conductivity \[W/(m K)\].
+    Conductivity = "a thermal conductivity", "W/(m K)", "W/(m K), W/m/K, mW/(m K)", "0.3 W/(m K)", [1, 1, -3, -1, 0];
+    /// A thermal diffusivity \[m²/s\].
+    Diffusivity = "a thermal diffusivity", "m2/s", "m^2/s, mm^2/s, cm^2/s", "1e-7 m2/s", [2, 0, -1, 0, 0];
     /// A wear coefficient, worn volume over load and sliding distance \[m²/N\].
     WearCoefficient = "a wear coefficient", "m2/N", "m^2/N, mm^3/(N m)", "1e-15 m2/N", [1, -1, 2, 0, 0];
     /// A pure number.

@@ -37,7 +37,13 @@ impl Maps {
                 kind.of_step(step, field);
             }
             if has_moved {
-                let is_unknown = matches!(kind, FieldKind::Gap | FieldKind::Displacement);
+                let is_unknown = matches!(
+                    kind,
+                    FieldKind::Gap
+                        | FieldKind::Displacement
+                        | FieldKind::FlashTemperature
+                        | FieldKind::SliderFlashTemperature
+                );
                 let beyond = if is_unknown { f64::NAN } else { 0.0 };
                 let still = if *kind == FieldKind::Pressure { step.pressure() } else { field.view() };
                 *field = in_contact_frame(still, boundary, shift, beyond);

@@ -3,7 +3,7 @@
 use asperity::kernel::Kernel;
 use asperity::load::Control;
 use asperity::material::Creep;
-use asperity::sliding::SteadyMotion;
+use asperity::sliding::{ShearStress, SteadyMotion};
 use asperity::traction::AdhesionScale;
 use asperity::{Axis, Simulation, TimeGrid};
 use serde_json::{Map, Value, json};
@@ -66,7 +66,14 @@ pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
     if let Some(motion) = &case.motion {
         let steady = case.axis() == Axis::Velocity;
         let [x, y] = motion.direction.unit();
-        let shear = motion.shear_stress;
+        let shear = match &motion.shear_stress {
+            None => Value::Null,
+            Some(ShearStress::Constant(stress)) => json!(stress),
+            Some(ShearStress::Table { points }) => json!({ "points": points }),
+            Some(ShearStress::Gaussian { peak, velocity, width }) => {
+                json!({ "peak": peak, "velocity": velocity, "width": width })
+            }
+        };
         setup.insert(
             "motion".into(),
             json!({ "steady": steady, "direction": [x, y], "rolls": motion.rolls, "shear_stress": shear }),
@@ -116,6 +123,18 @@ pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
             Header::WEAR.into(),
             json!({
                 "coefficients": law.coefficients, "threshold": law.threshold, "cycles": law.cycles, "cycles_tolerance": law.cycles_tolerance, "depth_limit": law.depth_limit,
+            }),
+        );
+    }
+    if let Some(flash) = &simulation.flash {
+        let bodies = flash
+            .bodies
+            .map(|body| json!({ "conductivity": body.conductivity, "diffusivity": body.diffusivity }));
+        setup.insert(
+            Header::FLASH.into(),
+            json!({
+                "bodies": bodies, "partition": flash.partition, "friction": flash.friction, "hysteresis": flash.hysteresis,
+                "heated_for": flash.heated_for, "feedback": flash.feedback.as_ref().map(|feedback| feedback.temperature),
             }),
         );
     }

@@ -35,6 +35,7 @@ enum Of {
     Adhesion,
     Friction,
     Wear,
+    Flash,
 }
 
 /// A declaration of a field.
@@ -115,6 +116,12 @@ fields! {
     /// Gap between the undeformed surfaces as they are worn and flattened now, in m.
     UndeformedGap = "undeformed_gap" ["m"] "gap between the undeformed surfaces", "undeformed gap", Gap, Wear,
         |step, to| step.undeformed_gap_into(to);
+    /// Temperature rise of the surface of the track by friction, in K; of a contact in motion with [flash].
+    FlashTemperature = "flash_temperature" ["K"] "flash temperature of the track", "flash temperature", Heat, Flash,
+        |step, to| step.flash_temperature_into(to);
+    /// The same of the surface of the slider, which carries the surfaces that move, in K.
+    SliderFlashTemperature = "slider_flash_temperature" ["K"] "flash temperature of the slider", "flash temperature of the slider",
+        Heat, Flash, |step, to| step.flash_temperature_of_slider_into(to);
 }
 
 impl FieldKind {
@@ -159,6 +166,7 @@ impl FieldKind {
         match (of, units) {
             (Of::Friction, _) => 3,
             (Of::Wear, _) => 4,
+            (Of::Flash, _) => 5,
             (_, "Pa") => 0,
             (_, "1") => 1,
             _ => 2,
@@ -189,6 +197,9 @@ impl FieldKind {
             ]),
             Of::Wear if simulation.wear.is_none() => {
                 Some(["nothing wears in a case without [wear]", "leave it out, or add [wear]"])
+            }
+            Of::Flash if simulation.flash.is_none() => {
+                Some(["nothing warms the surfaces of a case without [flash]", "leave it out, or add [flash]"])
             }
             _ => None,
         }

@@ -94,6 +94,9 @@ impl Header {
     /// The key of the numbers of its wear in the setup.
     pub(crate) const WEAR: &'static str = "wear";
 
+    /// The key of its flash temperature in the setup.
+    pub(crate) const FLASH: &'static str = "flash";
+
     /// Whether friction holds a load along the surfaces.
     pub fn slips(&self) -> bool {
         self.setup.contains_key(Header::FRICTION)
@@ -102,6 +105,11 @@ impl Header {
     /// Whether its surfaces wear.
     pub fn wears(&self) -> bool {
         self.setup.contains_key(Header::WEAR)
+    }
+
+    /// Whether friction warms its surfaces.
+    pub fn warms(&self) -> bool {
+        self.setup.contains_key(Header::FLASH)
     }
 
     /// What its rows follow one another in.

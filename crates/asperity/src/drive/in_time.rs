@@ -61,6 +61,11 @@ impl March {
         if let (Some(quantity), None) = (of_motion, &simulation.motion) {
             return Err(Error::invalid("quantity of a contact that does not move", quantity, "another one"));
         }
+        if simulation.flash.is_some() && simulation.motion.is_none() {
+            return Err(
+                Error::invalid("heat of friction", "given", "that of a contact in motion").of("flash")
+            );
+        }
         let simulation = Arc::new(simulation);
         Ok(March {
             schedule: Schedule::new(&simulation),

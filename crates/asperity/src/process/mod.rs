@@ -23,6 +23,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::contact::{ContactState, Hardness};
 use crate::error::Result;
+use crate::flash::Rise;
 use crate::history::{Ends, Exchange, History};
 use crate::operator::Operator;
 use crate::quantities::Quantity;
@@ -84,6 +85,11 @@ pub(crate) trait Process: Send {
 
     /// The worn depths of the last row.
     fn worn(&self) -> Option<WornFields<'_>> {
+        None
+    }
+
+    /// How warm the surfaces of the last row are, where this process knows.
+    fn rise(&self) -> Option<&Rise> {
         None
     }
 

@@ -8,11 +8,12 @@ use ndarray::{Array2, ArrayView2};
 
 use super::{Process, Solved};
 use crate::error::{Result, require, significant};
+use crate::flash::{FlashSolver, Rise, Rubbing};
 use crate::grid::Boundary;
 use crate::material::Creep;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Scheme, Simulation};
-use crate::sliding::{ContactForces, Direction, Friction, MovingGap, Path, Slopes};
+use crate::sliding::{ContactForces, Direction, Friction, MovingGap, Path, ShearStress, Slopes};
 use crate::step::{Interval, Loader, Saver, UndeformedGap};
 
 /// How a contact moves.
@@ -26,8 +27,8 @@ pub struct Motion {
     pub gap: MovingGap,
     /// Cells that the gap moves in a step, at most.
     pub cells_per_step: f64,
-    /// A shear stress on the area in contact \[Pa\], for [`Friction::total`].
-    pub shear_stress: Option<f64>,
+    /// A shear stress on the area in contact, for [`Friction::total`].
+    pub shear_stress: Option<ShearStress>,
 }
 
 impl Motion {
@@ -68,6 +69,10 @@ impl Motion {
         let cap = simulation.plasticity == Plasticity::Cap;
         require(cap, "plasticity of a contact in motion", "accumulate", expected)?;
         self.direction.validate(simulation)?;
+        self.shear_stress
+            .iter()
+            .try_for_each(ShearStress::validate)
+            .map_err(|error| error.of("shear_stress"))?;
         if simulation.boundary == Boundary::Free {
             let axis = self.direction.axis();
             let (length, start) = (simulation.grid.size()[axis], self.gap.centre()[axis]);
@@ -102,6 +107,7 @@ pub(super) struct Moving {
     /// Error of the stress of the last row because of the time steps: a short step does not take it back.
     time_error: f64,
     swing: Swing,
+    flash: Option<FlashSolver>,
 }
 
 /// The largest error of the force over the last cell of the way.
@@ -134,6 +140,7 @@ impl Swing {
 impl Moving {
     pub(super) fn new(simulation: &Simulation, motion: &Motion) -> Self {
         let (_, slopes) = motion.gap.at(0.0, motion.direction);
+        let flash = FlashSolver::of(simulation, motion.direction);
         let (motion, spacing) = (motion.clone(), simulation.grid.spacing());
         Moving {
             motion,
@@ -145,11 +152,13 @@ impl Moving {
             friction: Friction::default(),
             time_error: 0.0,
             swing: Swing::default(),
+            flash,
         }
     }
 
     /// The forces at the end of a step; `held` is the error that they state for one that is known of them.
     fn forces(&self, row: &Solved<'_>, time_error: f64, held: impl FnOnce(f64) -> f64) -> Friction {
+        let velocity = self.motion.path.velocity(row.step.instant.time);
         let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
         let worn = row.undeformed.worn_slopes.as_ref().map(|worn| self.slopes.and(worn));
         let contact = ContactForces {
@@ -160,11 +169,23 @@ impl Moving {
             gap: row.gap(),
             compliance: row.compliance,
             remembers: row.simulation.parts().any(remembers),
-            velocity: self.motion.path.velocity(row.step.instant.time),
+            velocity,
             distance: self.distance,
-            shear_stress: self.motion.shear_stress,
+            shear_stress: self.motion.shear_stress.as_ref().map(|law| law.at(velocity, 1.0)),
         };
         Friction::in_time(&contact, time_error, held)
+    }
+
+    /// Finds how warm the surfaces are after as long a time at the velocity of the row as they need.
+    fn warm(&mut self, row: &Solved<'_>) -> Result<()> {
+        let Some(flash) = &mut self.flash else { return Ok(()) };
+        let velocity = self.friction.velocity;
+        flash.warm(Rubbing {
+            velocity,
+            pressure: row.contact,
+            shear: self.motion.shear_stress.as_ref().map_or(0.0, |law| law.at(velocity, 1.0)),
+            loss: self.friction.coefficient * velocity.signum(),
+        })
     }
 
     fn move_to(&mut self, distance: f64, gap: &mut UndeformedGap) {
@@ -198,16 +219,32 @@ impl Process for Moving {
         let before = std::mem::replace(&mut self.before, self.distance);
         row.other_work += 0.5 * (self.friction.force + friction.force) * (self.distance - before);
         (self.friction, self.time_error) = (friction, time_error);
-        Ok(())
+        self.warm(row)
     }
 
     fn preview(&mut self, quantity: Quantity, row: &mut Solved<'_>) -> Result<Option<f64>> {
+        if quantity.is_of_flash() {
+            let (friction, rise) = (self.friction, self.flash.as_ref().map(|flash| flash.rise().clone()));
+            self.friction = self.forces(row, 0.0, |error| error);
+            self.warm(row)?;
+            let found = self.rise().and_then(|rise| rise.row.quantity(quantity));
+            self.friction = friction;
+            self.flash.iter_mut().zip(rise).for_each(|(flash, rise)| flash.restore(rise));
+            return Ok(found);
+        }
         let is_own = quantity.is_of_motion() && quantity != Quantity::DissipatedPower;
         Ok(is_own.then(|| self.forces(row, 0.0, |error| error).quantity(quantity)).flatten())
     }
 
     fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        if let Some(found) = self.rise().and_then(|rise| rise.row.quantity(quantity)) {
+            return Some(found);
+        }
         self.friction.quantity(quantity).filter(|_| quantity != Quantity::DissipatedPower)
+    }
+
+    fn rise(&self) -> Option<&Rise> {
+        self.flash.as_ref().map(FlashSolver::rise)
     }
 
     fn name(&self) -> &'static str {

@@ -38,6 +38,9 @@
 //! | `friction_uncertainty` | | estimated error of the friction force, relative |
 //! | `rolling_moment` | N m | moment of the pressure about the middle of the shapes |
 //! | `dissipated_power` | W | power lost in the bodies |
+//! | `flash_temperature_max`, `flash_temperature_mean` | K | temperature rise of the surfaces by friction: largest, and mean over the contact |
+//! | `heat_share`, `heat_power` | , W | share of the heat of friction that goes into the slider, and all of it |
+//! | `material_temperature` | K | temperature at which the material was taken |
 //!
 //! What each costs and how it is derived: docs/theory.md ("Energy and other
 //! quantities of a row", "Permanent flattening"). A march takes them by
@@ -263,6 +266,16 @@ quantities! {
     RollingMoment = "rolling_moment" ["N m"] "rolling moment", Motion, ("Rolling moment", "moment", "");
     /// Power lost in the bodies, in W.
     DissipatedPower = "dissipated_power" ["W"] "power lost in the bodies", Motion, ("Power lost", "power", "");
+    /// Largest temperature rise of the surfaces by friction, in K; of a contact with [flash], as all that follow.
+    FlashTemperatureMax = "flash_temperature_max" ["K"] "largest flash temperature", Flash, ("Flash temperature", "temperature rise", "largest");
+    /// Mean temperature rise over the contact, in K.
+    FlashTemperatureMean = "flash_temperature_mean" ["K"] "mean flash temperature over the contact", Flash, ("Flash temperature", "temperature rise", "mean over the contact");
+    /// Share of the heat of friction that goes into the slider.
+    HeatShare = "heat_share" ["1"] "share of the heat that goes into the slider", Flash, ("Heat into the slider", "share", "");
+    /// All heat of friction, in W.
+    HeatPower = "heat_power" ["W"] "heat of friction", Flash, ("Heat of friction", "power", "");
+    /// Temperature at which the material was taken, that of the run and the mean flash temperature, in K; with feedback.
+    MaterialTemperature = "material_temperature" ["K"] "temperature of the material", FlashOnRequest, ("Temperature of the material", "temperature", "");
 }
 
 /// The declaration of a quantity.
@@ -310,6 +323,9 @@ enum Kind {
     /// A contact in motion: every row has it, or only on request.
     Motion,
     MotionOnRequest,
+    /// A contact whose friction warms the surfaces: every row has it, or only with feedback.
+    Flash,
+    FlashOnRequest,
 }
 
 /// The panel of a figure that shows a quantity; quantities with the same title share a panel.
@@ -331,6 +347,7 @@ impl Quantity {
                 || quantity.is_of_traction()
                 || quantity.is_tangential()
                 || quantity.is_of_wear()
+                || quantity.is_of_flash()
         };
         Quantity::ALL.into_iter().filter(move |quantity| !is_special(quantity))
     }
@@ -362,6 +379,11 @@ impl Quantity {
     /// The quantities that every row of a contact in motion has.
     pub fn of_motion() -> impl Iterator<Item = Quantity> {
         Quantity::ALL.into_iter().filter(|quantity| quantity.declaration().kind == Kind::Motion)
+    }
+
+    /// The quantities that every row of a contact has whose friction warms the surfaces.
+    pub fn of_flash() -> impl Iterator<Item = Quantity> {
+        Quantity::ALL.into_iter().filter(|quantity| quantity.declaration().kind == Kind::Flash)
     }
 
     /// Its name in case files and results.
@@ -459,6 +481,11 @@ impl Quantity {
     /// Whether it belongs to surfaces that wear.
     pub fn is_of_wear(self) -> bool {
         self.declaration().kind == Kind::Wear
+    }
+
+    /// Whether it belongs to a contact whose friction warms the surfaces.
+    pub fn is_of_flash(self) -> bool {
+        matches!(self.declaration().kind, Kind::Flash | Kind::FlashOnRequest)
     }
 
     /// Whether it belongs to a contact with a tangential load.

@@ -63,7 +63,11 @@ impl RowNumber {
         const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
         let lowest = if pulls { f64::NEG_INFINITY } else { 0.0 };
         match (self, self.units()) {
-            (RowNumber::Quantity(quantity), _) if quantity.is_of_motion() || quantity.is_of_time() => ANY,
+            (RowNumber::Quantity(quantity), _)
+                if quantity.is_of_motion() || quantity.is_of_time() || quantity.is_of_flash() =>
+            {
+                ANY
+            }
             (RowNumber::Quantity(quantity), _) if !quantity.states().is_empty() => {
                 [0.0, (quantity.states().len() - 1) as f64]
             }

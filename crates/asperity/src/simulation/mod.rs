@@ -8,6 +8,7 @@ use ndarray::Array2;
 
 use crate::contact::{Solver, SolverOptions};
 use crate::error::Result;
+use crate::flash::{self, Flash};
 use crate::grid::{Boundary, Grid};
 use crate::history;
 use crate::kernel::{HalfSpace, Kernel};
@@ -97,6 +98,8 @@ pub struct Simulation {
     pub tangential: Option<Arc<Tangential>>,
     /// Wear of the surfaces; `None` for none.
     pub wear: Option<Arc<Wear>>,
+    /// The heat of friction of a contact in motion; `None` where nothing warms the surfaces.
+    pub flash: Option<Arc<Flash>>,
 }
 
 impl Simulation {
@@ -123,6 +126,7 @@ impl Simulation {
             traction: None,
             tangential: None,
             wear: None,
+            flash: None,
         }
     }
 
@@ -193,6 +197,7 @@ impl Simulation {
             + self.traction.as_ref().map_or(0, |law| TractionSolver::bytes(&**law, grid))
             + has(self.quantities.has(Quantity::ContactStiffness), ContactStiffness::bytes(grid, self.boundary))
             + has(self.quantities.list.iter().any(|q| q.connects()), Spots::bytes(grid))
+            + has(self.flash.is_some(), flash::bytes(&self.grid, self.boundary))
             + self.tangential.as_ref().map_or(0, |law| {
                 tangential::bytes(grid, self.boundary, law) + 2 * history::bytes(self)
             })

@@ -47,6 +47,10 @@ impl Simulation {
             self.validate_plasticity(),
             self.validate_scheme(),
             self.validate_layers(),
+            self.flash
+                .as_ref()
+                .map_or(Ok(()), |flash| flash.validate(self))
+                .map_err(|error| error.of("flash")),
             self.validate_traction(),
             self.tangential.as_ref().map_or(Ok(()), |tangential| tangential.validate(self)),
             self.wear.as_ref().map_or(Ok(()), |wear| wear.validate(self)),
@@ -112,6 +116,12 @@ impl Simulation {
             "one that the rows have. Only surfaces that wear have this one: add [wear]"
         } else if quantity.is_tangential() && self.tangential.is_none() {
             "one that the rows have. Only a contact with a load along its surfaces has this one: add [friction] and [tangential]"
+        } else if quantity.is_of_flash() && self.flash.is_none() {
+            "one that the rows have. Only a contact whose friction warms the surfaces has this one: add [flash]"
+        } else if quantity == Quantity::MaterialTemperature
+            && self.flash.as_ref().is_some_and(|flash| flash.feedback.is_none())
+        {
+            "one that the rows have. This one needs flash.feedback = \"mean\""
         } else if quantity.is_of_traction() && !self.has_traction_with(quantity) {
             match Quantity::of_adhesion().any(|own| own == quantity) {
                 true => "one that the rows have. Only an adhesive contact has this one: add [adhesion]",

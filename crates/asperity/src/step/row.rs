@@ -6,6 +6,7 @@ use super::state::StepState;
 use super::{Recorder, Stepper, UndeformedGap};
 use crate::contact::{ContactState, Hardness, Outcome};
 use crate::drive::Coordinate;
+use crate::flash::Rise;
 use crate::history::History;
 use crate::load::Control;
 use crate::process::{Process, SlipFields, cells};
@@ -87,6 +88,8 @@ pub struct Step<'a> {
     pub(crate) recorder: Option<&'a Recorder>,
     /// The forces of a steady state of motion.
     pub(crate) friction: Option<Friction>,
+    /// How warm the surfaces of a steady state of motion are.
+    pub(crate) rise: Option<&'a Rise>,
 }
 
 impl<'a> Step<'a> {
@@ -115,6 +118,7 @@ impl<'a> Step<'a> {
             processes: &[],
             recorder: None,
             friction: None,
+            rise: None,
         }
     }
 
@@ -145,7 +149,8 @@ impl<'a> Step<'a> {
         let of_friction = || self.friction.and_then(|friction| friction.quantity(quantity));
         let of_traction = || self.traction?.quantity(quantity, self.simulation.grid.cell_area());
         let of_process = self.processes.iter().find_map(|process| process.quantity(quantity));
-        of_process.or_else(of_friction).or_else(of_traction)
+        let of_heat = || self.rise?.row.quantity(quantity);
+        of_process.or_else(of_friction).or_else(of_heat).or_else(of_traction)
     }
 
     /// Time, length of the step, prescribed value; `None` of a steady state.
@@ -285,6 +290,20 @@ impl<'a> Step<'a> {
     pub fn undeformed_gap_into(&self, gap: &mut Array2<f64>) {
         let now = self.undeformed.map_or(self.gap, UndeformedGap::now);
         copy_into(Some(now), gap);
+    }
+
+    /// Temperature rise of the surface of the track by friction \[K\]; 0 everywhere without.
+    pub fn flash_temperature_into(&self, temperature: &mut Array2<f64>) {
+        copy_into(self.warm_surfaces().map(|rise| &rise.track[..]), temperature);
+    }
+
+    /// The same of the surface of the slider, where it touches the track \[K\].
+    pub fn flash_temperature_of_slider_into(&self, temperature: &mut Array2<f64>) {
+        copy_into(self.warm_surfaces().map(|rise| &rise.slider[..]), temperature);
+    }
+
+    fn warm_surfaces(&self) -> Option<&'a Rise> {
+        self.rise.or_else(|| self.processes.iter().find_map(|process| process.rise()))
     }
 
     /// The numbers of the row.

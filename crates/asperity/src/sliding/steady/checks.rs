@@ -5,7 +5,7 @@ use crate::error::{Error, Result, require};
 use crate::grid::Boundary;
 use crate::load::{Control, Course, History, Stage};
 use crate::simulation::Simulation;
-use crate::sliding::Streaming;
+use crate::sliding::{ShearStress, Streaming};
 
 impl SteadyMotion {
     /// Checks all that can be known before the first velocity, besides [`Simulation::validate`].
@@ -29,6 +29,11 @@ fn validate(simulation: &Simulation, motion: &SteadyMotion) -> Result<()> {
     let shape = format!("{:?}", motion.slopes.x.dim());
     require(fits, "shape of the slopes", shape, format!("{:?}, that of the grid", grid.shape()))?;
     motion.direction.validate(simulation)?;
+    motion
+        .shear_stress
+        .iter()
+        .try_for_each(ShearStress::validate)
+        .map_err(|error| error.of("shear_stress"))?;
     require(
         simulation.layers.is_none(),
         "body of a steady state of motion",

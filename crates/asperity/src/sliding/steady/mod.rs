@@ -34,10 +34,11 @@ use asperity_sweep::in_pool;
 
 use self::contact::SteadyContact;
 use self::operators::{Operators, Stream};
-use super::{ContactForces, Direction, Friction, Slopes, Streaming};
+use super::{ContactForces, Direction, Friction, ShearStress, Slopes, Streaming};
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem};
 use crate::drive::{Coordinate, Drive};
 use crate::error::Result;
+use crate::flash::{self, FlashSolver, Rubbing};
 use crate::simulation::Simulation;
 use crate::step::{Checkpoint, Loader, Recorder, Saver, Step};
 
@@ -50,8 +51,8 @@ pub struct SteadyMotion {
     pub velocities: Vec<f64>,
     /// Slopes of the gap of the simulation.
     pub slopes: Slopes,
-    /// A shear stress on the area in contact \[Pa\], for [`Friction::total`].
-    pub shear_stress: Option<f64>,
+    /// A shear stress on the area in contact, for [`Friction::total`].
+    pub shear_stress: Option<ShearStress>,
 }
 
 /// A sweep over velocities.
@@ -96,6 +97,9 @@ pub struct Steady {
     state: ContactState,
     outcome: Outcome,
     friction: Friction,
+    flash: Option<FlashSolver>,
+    /// Mean flash temperature of the last velocity done, from which that of the next is found \[K\].
+    warmth: f64,
     recorder: Recorder,
     interrupt: Option<Arc<AtomicBool>>,
 }
@@ -119,6 +123,8 @@ impl Steady {
             state: ContactState::new(cells),
             outcome: Outcome::default(),
             friction: Friction::default(),
+            flash: FlashSolver::of(&simulation, motion.direction),
+            warmth: 0.0,
             recorder: Recorder::new(simulation.columns()?),
             interrupt: None,
             simulation,
@@ -138,6 +144,9 @@ impl Steady {
             return Err(from.foreign(format!("{} velocities", checkpoint.step)));
         }
         from.field_into("pressure", &mut steady.start)?;
+        if steady.feeds_back() {
+            steady.warmth = from.get("warmth")?;
+        }
         steady.index = steady.done.saturating_sub(1);
         steady.state.pressure.copy_from_slice(&steady.start);
         Ok(steady)
@@ -155,13 +164,55 @@ impl Steady {
         Operators::bytes(simulation, direction) + 8 * simulation.grid.len() * fields
     }
 
-    /// Solves for one velocity.
-    fn solve(&mut self, velocity: f64) -> Result<()> {
+    /// Whether the material sees its own temperature.
+    fn feeds_back(&self) -> bool {
+        self.simulation.flash.as_ref().is_some_and(|flash| flash.feedback.is_some())
+    }
+
+    /// Solves for one velocity, at the temperature that its own friction makes.
+    fn solve(&mut self, velocity: f64) -> Result<f64> {
+        let flash = self.simulation.flash.clone();
+        let Some(feedback) = flash.as_ref().and_then(|flash| flash.feedback.as_ref()) else {
+            self.solve_slowed(velocity, 1.0)?;
+            return self.warm(velocity, 1.0);
+        };
+        let (before, mut outcome) = (self.start.clone(), Outcome::default());
+        let settled = flash::settle(self.warmth, |rise| {
+            let slowing = feedback.slowing(rise)?;
+            let solved = self.solve_slowed(velocity, slowing);
+            outcome.iterations += self.outcome.iterations;
+            outcome.convolutions += self.outcome.convolutions;
+            solved?;
+            self.start.copy_from_slice(&self.state.pressure);
+            self.warm(velocity, slowing)
+        });
+        self.start = before;
+        let rise = settled?;
+        self.outcome =
+            Outcome { iterations: outcome.iterations, convolutions: outcome.convolutions, ..self.outcome };
+        self.flash.iter_mut().for_each(|flash| flash.note_material(feedback.temperature + rise));
+        Ok(rise)
+    }
+
+    /// The mean flash temperature over the contact \[K\].
+    fn warm(&mut self, velocity: f64, slowing: f64) -> Result<f64> {
+        let Some(flash) = &mut self.flash else { return Ok(0.0) };
+        flash.warm(Rubbing {
+            velocity,
+            pressure: &self.state.pressure,
+            shear: self.motion.shear_stress.as_ref().map_or(0.0, |law| law.at(velocity, slowing)),
+            loss: self.friction.coefficient,
+        })?;
+        Ok(flash.rise().row.mean)
+    }
+
+    /// Solves for one velocity, which the material sees `slowing` times.
+    fn solve_slowed(&mut self, velocity: f64, slowing: f64) -> Result<()> {
         let stream = Stream {
             simulation: &self.simulation,
             streaming: &self.streaming,
             direction: self.motion.direction,
-            velocity,
+            velocity: velocity * slowing,
         };
         let problem = Problem {
             gap: gap(&self.simulation),
@@ -183,7 +234,7 @@ impl Steady {
             remembers: self.streaming.branches().next().is_some(),
             velocity,
             distance: 0.0,
-            shear_stress: self.motion.shear_stress,
+            shear_stress: self.motion.shear_stress.as_ref().map(|law| law.at(velocity, slowing)),
         };
         self.friction = Friction::steady(&forces, contact.loss(&self.state.pressure));
         solved
@@ -197,6 +248,7 @@ impl Steady {
             coordinate: Coordinate::Velocity(self.motion.velocities[self.index]),
             recorder: Some(&self.recorder),
             friction: Some(self.friction),
+            rise: self.flash.as_ref().map(FlashSolver::rise),
             ..Step::of(&self.simulation, hardness, (&self.state, self.outcome), bodies)
         }
     }
@@ -210,7 +262,7 @@ impl Drive for Steady {
         let mut recorder = std::mem::take(&mut self.recorder);
         self.row().record(&mut recorder);
         self.recorder = recorder;
-        solved?;
+        self.warmth = solved?;
         self.start.copy_from_slice(&self.state.pressure);
         self.done += 1;
         Ok(self.last())
@@ -249,6 +301,9 @@ impl Drive for Steady {
     fn checkpoint(&self) -> Checkpoint<'_> {
         let mut to = Saver::new(self.done, self.simulation.grid.shape());
         to.field("pressure", &self.start);
+        if self.feeds_back() {
+            to.value("warmth", &self.warmth);
+        }
         to.finish()
     }
 

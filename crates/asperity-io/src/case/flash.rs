@@ -1,0 +1,206 @@
+//! `[flash]`: how warm friction makes the surfaces.
+
+use asperity::flash::{Conductor, Feedback, Flash as Law, Partition};
+use asperity::material::Shift;
+
+use super::body::Part;
+use super::keys::*;
+use super::pair::Pair;
+use super::plan::{Motion, Travel};
+use crate::quantity::{Conductivity, Diffusivity};
+
+/// How warm friction makes the surfaces of a contact in motion.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Flash {
+    /// Thermal conductivity of both bodies, or a list of two: of the slider, which carries the surfaces that move, and of the track.
+    #[schemars(example = "0.3 W/(m K)")]
+    #[schemars(example = serde_json::json!(["50 W/(m K)", "0.3 W/(m K)"]))]
+    conductivity: Form<Conductivity<Positive>, Vec<Conductivity<Positive>>, Never>,
+    /// Thermal diffusivity of both bodies, or a list of two, of slider and track.
+    #[schemars(example = "1e-7 m2/s")]
+    diffusivity: Form<Diffusivity<Positive>, Vec<Diffusivity<Positive>>, Never>,
+    /// Friction coefficient: heat per area = friction x pressure x velocity. This, `motion.shear_stress` or `hysteresis`.
+    #[schemars(example = 0.3)]
+    friction: Option<Number<Positive>>,
+    /// Whether the power that the bodies lose counts as heat of the surfaces, spread over the contact as the pressure is; false if not given.
+    #[serde(default)]
+    #[schemars(example = true)]
+    hysteresis: bool,
+    /// How the heat divides: "mean" (both faces have the same mean temperature over the contact), "local" (in each cell), all into the
+    /// "slider" or the "track"; "mean" if not given.
+    #[serde(default)]
+    partition: Partition,
+    /// For how long the surfaces of a periodic domain have been heated; without it temperatures are those above the mean of the surface.
+    #[schemars(example = "20 ms")]
+    heated_for: Option<Time<Positive>>,
+    /// Whether the material of steady states is taken at its mean flash temperature ("mean") or at that of the run ("none"); "none" if not
+    /// given.
+    #[serde(default)]
+    feedback: Choice,
+}
+
+/// Whether the material sees its own temperature.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum Choice {
+    /// It is as warm as the run.
+    #[default]
+    None,
+    /// It is warmer by the mean flash temperature over the contact.
+    Mean,
+}
+
+impl Word for Conductivity<Positive> {
+    const FORMS: &'static str =
+        "a thermal conductivity such as \"0.3 W/(m K)\", or a list of two, of slider and track";
+    const IS_QUANTITY: bool = true;
+}
+
+impl Word for Diffusivity<Positive> {
+    const FORMS: &'static str =
+        "a thermal diffusivity such as \"1e-7 m2/s\", or a list of two, of slider and track";
+    const IS_QUANTITY: bool = true;
+}
+
+/// The materials of a case, and how warm the run is: (time \[s\], temperature \[K\]).
+pub struct Materials<'a> {
+    pub parts: &'a [Part<'a>],
+    pub pair: &'a Pair,
+    pub temperatures: Option<&'a [(f64, f64)]>,
+}
+
+impl Flash {
+    /// The heat of this motion.
+    pub fn law(&self, at: &Place<'_>, motion: &Motion, materials: &Materials<'_>) -> Option<Law> {
+        if motion.rolls {
+            let help = "delete the section, or take motion.kind = \"slide\"";
+            return at.fault("surfaces that roll do not rub", "kind = \"slide\"", help);
+        }
+        match (self.friction, &motion.shear_stress) {
+            (Some(_), Some(_)) => {
+                let help = "delete one of them: both are the friction of the surfaces";
+                let message =
+                    "the heat is that of motion.shear_stress, but a friction coefficient is given too";
+                return at.key("friction").fault(message, "one of the two", help);
+            }
+            (None, None) if !self.hysteresis => {
+                return at.fault(
+                    "nothing makes heat",
+                    "`friction`, `motion.shear_stress` or `hysteresis`",
+                    "give friction = 0.3, a shear_stress in [motion], or hysteresis = true",
+                );
+            }
+            _ => {}
+        }
+        let conductivity = pair_of(&at.key("conductivity"), &self.conductivity, |k| k.get())?;
+        let diffusivity = pair_of(&at.key("diffusivity"), &self.diffusivity, |chi| chi.get())?;
+        let body = |n: usize| Conductor { conductivity: conductivity[n], diffusivity: diffusivity[n] };
+        let feedback = match self.feedback {
+            Choice::None => None,
+            Choice::Mean => Some(feedback(&at.key("feedback"), motion, materials)?),
+        };
+        Some(Law {
+            bodies: [body(0), body(1)],
+            partition: self.partition,
+            friction: self.friction.map_or(0.0, Number::get),
+            hysteresis: self.hysteresis,
+            heated_for: self.heated_for.map(Time::get),
+            feedback,
+        })
+    }
+}
+
+/// One value for both bodies, or two.
+fn pair_of<W: Copy>(
+    at: &Place<'_>,
+    given: &Form<W, Vec<W>, Never>,
+    get: impl Fn(W) -> f64,
+) -> Option<[f64; 2]> {
+    match given {
+        Form::Word(both) => Some([get(*both); 2]),
+        Form::List(list) => match list[..] {
+            [slider, track] => Some([get(slider), get(track)]),
+            _ => at.wrong("one value, or a list of two, of slider and track", ""),
+        },
+        Form::Table(never) => match *never {},
+    }
+}
+
+/// The material that sees its own temperature: that of the bodies whose memory streams by.
+fn feedback(at: &Place<'_>, motion: &Motion, materials: &Materials<'_>) -> Option<Feedback> {
+    if matches!(motion.travel, Travel::Path(_)) {
+        let message = "the feedback of the flash temperature is found for steady states only";
+        let help =
+            "give velocities in [motion.steady] in place of a course over time, or take feedback = \"none\"";
+        return at.fault(message, "steady states of motion", help);
+    }
+    let remembering = materials.parts.iter().zip(&materials.pair.creeps);
+    let remembering: Vec<&Part<'_>> =
+        remembering.filter(|(_, (creep, _))| creep.remembers()).map(|(part, _)| part).collect();
+    let mut found: Option<Feedback> = None;
+    for part in remembering {
+        let place = part.at.key("material");
+        let sample = part.sample.as_ref()?;
+        let Some(shift) = &sample.shift else {
+            let message = format!(
+                "the material of {} has no `shift`, so what its flash temperature does to it is not known",
+                part.name
+            );
+            let help = "add shift = { model = \"wlf\", ... }, or take flash.feedback = \"none\"";
+            return place.fault(message, "a material with a shift", help);
+        };
+        if sample.vertical.is_some() {
+            let message = "feedback shifts the times of a material, not its moduli: `vertical` is not taken into account";
+            let help = "leave `vertical` out, or take flash.feedback = \"none\"";
+            return place.fault(message, "a shift without `vertical`", help);
+        }
+        let temperature = temperature_of(shift, sample.temperature, materials.temperatures);
+        let Some(temperature) = temperature else {
+            let help = "add a section [temperature]";
+            return place.fault("the temperature of the run is not known", "a temperature", help);
+        };
+        let own = Feedback { shift: shift.clone(), temperature };
+        if found.as_ref().is_some_and(|other| *other != own) {
+            let message = "two materials with different shifts or temperatures see the flash temperature";
+            return place.fault(message, "one of them, or the same shift", "take flash.feedback = \"none\"");
+        }
+        found = Some(own);
+    }
+    match found {
+        Some(found) => Some(found),
+        None => at.fault(
+            "no material that remembers moves through the contact, so its temperature changes nothing",
+            "a viscoelastic track",
+            "take feedback = \"none\"",
+        ),
+    }
+}
+
+/// The temperature \[K\] of a material with this shift: its own, that of the run at its start, or the reference.
+fn temperature_of(shift: &Shift, own: Option<f64>, run: Option<&[(f64, f64)]>) -> Option<f64> {
+    own.or(run.and_then(|points| Some(points.first()?.1))).or(shift.reference())
+}
+
+/// How much slower than at the reference the first material with a shift sees velocities at the temperature of the run: a_T; 1 without one.
+/// `None` where the temperature changes.
+pub fn shift_factor(at: &Place<'_>, parts: &[Part<'_>], temperatures: Option<&[(f64, f64)]>) -> Option<f64> {
+    let shifted = parts.iter().filter_map(|part| part.sample.as_ref());
+    let Some((sample, shift)) = shifted.filter_map(|sample| Some((sample, sample.shift.as_ref()?))).next()
+    else {
+        return Some(1.0);
+    };
+    let changes = temperatures.is_some_and(|points| points.iter().any(|point| point.1 != points[0].1));
+    if changes && sample.temperature.is_none() {
+        let message = "a shear stress with a peak shifts with the temperature, which changes in this run";
+        return at.fault(
+            message,
+            "a constant temperature",
+            "take a constant or a table, or hold the temperature",
+        );
+    }
+    match temperature_of(shift, sample.temperature, temperatures) {
+        Some(kelvin) => at.core(shift.factor(kelvin)),
+        None => Some(1.0),
+    }
+}

@@ -1,0 +1,54 @@
+//! The temperature at which a material sees its own friction: a fixed point x = T(x).
+
+use crate::error::{Error, Result};
+
+/// Rounds, at most.
+const ROUNDS: usize = 10;
+/// What is left of a rise, relative to it, or to a kelvin.
+const TOLERANCE: f64 = 1e-3;
+
+/// The rise x \[K\] with `rise_at(x)` = x, from `start` on; `rise_at` has been called last with it.
+///
+/// Between rounds T(x) is taken as exponential, through the last two of them, and x kept between the largest that is too cold and the
+/// least that is too warm: T(0) >= 0, so there is one.
+///
+/// # Errors
+/// [`Error::Invalid`] after ten rounds; those of `rise_at`.
+pub(crate) fn settle(start: f64, mut rise_at: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
+    let (mut x, mut before): (f64, Option<[f64; 2]>) = (start.max(0.0), None);
+    let [mut cold, mut warm] = [0.0, f64::INFINITY];
+    let mut left = f64::INFINITY;
+    for round in 0..ROUNDS {
+        let rise = rise_at(x)?;
+        left = rise - x;
+        tracing::debug!(round, x, left, "feedback");
+        if left.abs() <= TOLERANCE * x.max(1.0) {
+            return Ok(x);
+        }
+        if left > 0.0 {
+            cold = x
+        } else {
+            warm = x
+        }
+        let slope = before.map_or(0.0, |[other, its]| libm::log(rise / its) / (x - other));
+        before = Some([x, rise]);
+        x = meeting(|y| rise * libm::exp(slope * (y - x)) - y, cold, warm.min(2.0 * x.max(rise)));
+    }
+    Err(Error::invalid(
+        format!("change of the flash temperature in the last of {ROUNDS} rounds of its feedback"),
+        format!("{left:.2e} K"),
+        format!(
+            "at most {TOLERANCE:e} of the rise. Take more velocities, so that each starts near the one before, or feedback = \"none\""
+        ),
+    )
+    .of("flash.feedback"))
+}
+
+/// Where a function falls below 0 between two places, or the second one where it does not.
+fn meeting(of: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
+    for _ in 0..60 {
+        let middle = 0.5 * (from + to);
+        if of(middle) > 0.0 { from = middle } else { to = middle }
+    }
+    to
+}

@@ -1,0 +1,148 @@
+//! The temperatures of the rows of a run.
+
+use super::Flash;
+use super::conduction::Conduction;
+use super::partition::{Faces, VECTORS, mean};
+use crate::convolution::torus::Spectrum;
+use crate::error::Result;
+use crate::grid::{Boundary, Grid};
+use crate::quantities::Quantity;
+use crate::simulation::Simulation;
+use crate::sliding::Direction;
+
+/// The numbers of a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FlashRow {
+    /// Largest temperature rise of the two faces \[K\].
+    pub max: f64,
+    /// Mean over the contact of the faces that are heated \[K\].
+    pub mean: f64,
+    /// Share of the heat that goes into the slider.
+    pub share: f64,
+    /// All of the heat \[W\].
+    pub power: f64,
+    /// Temperature at which the material was taken \[K\]; NaN without feedback.
+    pub material: f64,
+}
+
+impl FlashRow {
+    /// The quantity of a row that is one of these.
+    pub(crate) fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        match quantity {
+            Quantity::FlashTemperatureMax => Some(self.max),
+            Quantity::FlashTemperatureMean => Some(self.mean),
+            Quantity::HeatShare => Some(self.share),
+            Quantity::HeatPower => Some(self.power),
+            Quantity::MaterialTemperature => Some(self.material),
+            _ => None,
+        }
+    }
+}
+
+/// How warm the surfaces of a row are above their surroundings \[K\], and its numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Rise {
+    pub(crate) slider: Vec<f64>,
+    pub(crate) track: Vec<f64>,
+    pub(crate) row: FlashRow,
+}
+
+/// What rubs in a row.
+#[derive(Clone, Copy)]
+pub(crate) struct Rubbing<'a> {
+    /// Of the contact over the track, along the direction of motion \[m/s\].
+    pub(crate) velocity: f64,
+    /// Contact pressure \[Pa\].
+    pub(crate) pressure: &'a [f64],
+    /// Shear stress on the area in contact \[Pa\].
+    pub(crate) shear: f64,
+    /// Friction coefficient of the loss in the bodies.
+    pub(crate) loss: f64,
+}
+
+/// Memory that the temperatures take \[bytes\]: heat, two fields, those of the partition, and three spectra.
+pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
+    let on_torus = if boundary == Boundary::Free { 4 } else { 1 };
+    8 * grid.len() * (3 + 2 * VECTORS) + 5 * 16 * on_torus * (grid.len() / 2 + grid.cells()[0])
+}
+
+/// What the rows of a run need.
+pub(crate) struct FlashSolver {
+    flash: Flash,
+    cell: f64,
+    conduction: Conduction,
+    slider: Option<Spectrum>,
+    /// Of the last velocity.
+    track: Option<(f64, Spectrum)>,
+    rise: Rise,
+}
+
+impl FlashSolver {
+    /// `None` where nothing warms the surfaces.
+    pub(crate) fn of(simulation: &Simulation, direction: Direction) -> Option<Self> {
+        let (flash, grid) = (simulation.flash.as_deref()?.clone(), &simulation.grid);
+        let mut conduction = Conduction::new(grid, simulation.boundary, direction, flash.heated_for);
+        let cold = || vec![0.0; grid.len()];
+        Some(FlashSolver {
+            slider: flash.heats_slider().then(|| conduction.spectrum(flash.bodies[0], 0.0)),
+            track: None,
+            cell: grid.cell_area(),
+            conduction,
+            rise: Rise { slider: cold(), track: cold(), row: FlashRow::default() },
+            flash,
+        })
+    }
+
+    pub(crate) fn rise(&self) -> &Rise {
+        &self.rise
+    }
+
+    /// Finds the temperatures under this rubbing; the surfaces are cold without.
+    ///
+    /// # Errors
+    /// As the partition.
+    pub(crate) fn warm(&mut self, rubbing: Rubbing<'_>) -> Result<()> {
+        let Rubbing { velocity, pressure, shear, loss } = rubbing;
+        let coefficient = self.flash.friction + if self.flash.hysteresis { loss.max(0.0) } else { 0.0 };
+        let speed = velocity.abs();
+        let heat_of = |p: f64| if p > 0.0 { (coefficient * p + shear) * speed } else { 0.0 };
+        let heat: Vec<f64> = pressure.iter().map(|p| heat_of(*p)).collect();
+        let power = self.cell * heat.iter().sum::<f64>();
+        if power == 0.0 {
+            self.rise.slider.fill(0.0);
+            self.rise.track.fill(0.0);
+            self.rise.row = FlashRow { material: f64::NAN, ..FlashRow::default() };
+            return Ok(());
+        }
+        let contact: Vec<usize> = (0..pressure.len()).filter(|cell| pressure[*cell] > 0.0).collect();
+        if self.flash.heats_track() && self.track.as_ref().is_none_or(|(of, _)| *of != velocity) {
+            self.track = Some((velocity, self.conduction.spectrum(self.flash.bodies[1], velocity)));
+        }
+        let mut faces = Faces {
+            flash: &self.flash,
+            conduction: &mut self.conduction,
+            spectra: [self.slider.as_ref(), self.track.as_ref().map(|(_, spectrum)| spectrum)],
+        };
+        let ([slider, track], share) = faces.warm(&heat, &contact)?;
+        let heated = if self.flash.heats_track() { &track } else { &slider };
+        let row = FlashRow {
+            max: slider.iter().chain(&track).copied().fold(0.0, f64::max),
+            mean: mean(heated, &contact),
+            share,
+            power,
+            material: f64::NAN,
+        };
+        self.rise = Rise { slider, track, row };
+        Ok(())
+    }
+
+    /// Takes back the temperatures of the last row.
+    pub(crate) fn restore(&mut self, rise: Rise) {
+        self.rise = rise;
+    }
+
+    /// Notes the temperature at which the material was taken \[K\].
+    pub(crate) fn note_material(&mut self, temperature: f64) {
+        self.rise.row.material = temperature;
+    }
+}

@@ -55,7 +55,8 @@ templates!(
     "fretting-sphere",
     "rough-fretting",
     "running-in",
-    "fretting-wear"
+    "fretting-wear",
+    "tyre-flash"
 );
 
 /// Cases of the figures of Spinu and Cerlinca (2017), which `asperity reproduce` computes.

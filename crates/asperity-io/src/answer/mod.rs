@@ -6,6 +6,7 @@
 //! | with a fluid that acts on the surfaces | `fluid_load`, `time_opened` where it opens the contact, `closing_pressure` where that closes as the inlet falls, `lift_off_pressure` on a periodic domain under a load; on request `opening_pressure`, `leak_rate_one_way` |
 //! | with adhesion | `pull_off_force`, `pull_off_approach` |
 //! | with wear | `wear_life` where a depth is given, `wear_volume`, `counterbody_wear_volume`, `wear_depth_max` |
+//! | with flash temperature | `flash_temperature_max`, `flash_temperature_mean` |
 //! | with a load along the surfaces | `loop_energy` of the last loop, `tangential_stiffness`, `largest_tangential_force`, `largest_tangential_displacement`, `slip_share`, `slip_work` |
 //! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force` |
 //! | with a sine | `loss_angle`, `dissipated_energy`, `dynamic_stiffness` of the last cycle |
@@ -18,6 +19,7 @@
 
 mod adhesion;
 mod contact;
+mod flash;
 mod fluid;
 mod leak;
 mod motion;
@@ -113,6 +115,7 @@ pub fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     answers.extend(wear::of(reader, &rows)?);
     answers.extend(tangential::of(reader, &rows)?);
     answers.extend(motion::of(reader, &rows, decisive)?);
+    answers.extend(flash::of(reader, &rows)?);
     answers.extend(last_cycle(reader)?);
     answers.extend(contact::of(reader, &rows, decisive)?);
     answers.extend(stress::of(reader)?);

@@ -16,6 +16,7 @@ True
 
 from . import compat as compat
 from ._adhesion import Adhesion as Adhesion
+from ._flash import Flash as Flash
 from ._fluid import Fluid as Fluid
 from ._core import CaseError as CaseError, ConvergenceError as ConvergenceError, __version__ as __version__
 from ._cite import cite as cite

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, get_args
 
@@ -9,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ._arrays import Floats, choice, direction_of, line, number
+from ._core import CaseError
+from ._flash import Flash
 from ._histories import Function, History, one_of
 from ._options import arguments_of
 from ._problem import InTime, Run
@@ -17,19 +20,37 @@ from ._solve import solved
 from ._words import Movement
 
 
+def _shear(given: Any) -> Any:
+    """The key `shear_stress`."""
+    if isinstance(given, dict):
+        return {name: number(f"shear_stress {name}", value) for name, value in given.items()}
+    if np.ndim(given) == 2:
+        return {"points": [[number("velocity", v), number("shear_stress", stress)] for v, stress in given]}
+    return number("shear_stress", given)
+
+
 @dataclass(kw_only=True)
 class Moving(Run):
     """A contact that moves."""
 
     direction: str | float = "x"
     kind: Movement = "slide"
-    shear_stress: float | None = None
+    shear_stress: float | Sequence[tuple[float, float]] | dict[str, float] | None = None
+    flash: Flash | None = None
 
     def motion_keys(self) -> dict[str, Any]:
         """The keys of `[motion]` that say how it moves."""
         direction = direction_of(self.direction)
         keys = {"direction": direction if isinstance(direction, str) else f"{direction!r} rad", "kind": choice("kind", self.kind, get_args(Movement))}
-        return keys if self.shear_stress is None else {**keys, "shear_stress": number("shear_stress", self.shear_stress)}
+        return keys if self.shear_stress is None else {**keys, "shear_stress": _shear(self.shear_stress)}
+
+    def flash_keys(self) -> dict[str, Any]:
+        """The table `[flash]`, where it is given."""
+        if self.flash is None:
+            return {}
+        if not isinstance(self.flash, Flash):
+            raise CaseError(f"flash is {self.flash!r}, but must be an asperity.Flash")
+        return {"flash": self.flash._keys}
 
 
 @dataclass(kw_only=True)
@@ -51,7 +72,7 @@ class Slide(Moving, InTime):
             "cells_per_step": number("cells_per_step", self.cells_per_step),
             **self.motion_keys(),
         }
-        return {**super().course_keys(), "motion": motion}
+        return {**super().course_keys(), "motion": motion, **self.flash_keys()}
 
 
 @dataclass(kw_only=True)
@@ -61,7 +82,7 @@ class Steady(Moving):
     velocities: npt.ArrayLike
 
     def course_keys(self) -> dict[str, Any]:
-        return {"motion": {"steady": {"velocities": line("velocities", self.velocities).tolist()}, **self.motion_keys()}}
+        return {"motion": {"steady": {"velocities": line("velocities", self.velocities).tolist()}, **self.motion_keys()}, **self.flash_keys()}
 
 
 @arguments_of(Slide)
@@ -78,7 +99,10 @@ def slide(given: Slide) -> Result:
     direction : "x", "y", or on periodic domains an angle from x towards y [rad]
     kind : "slide", or "roll": the contact moves over both bodies
     cells_per_step : cells that the surface moves in a step, at most
-    shear_stress : on the area in contact [Pa], for `friction_coefficient_total`
+    shear_stress : on the area in contact [Pa], for `friction_coefficient_total`: a number; (velocity [m/s], stress) points, linear in the
+        logarithm of the velocity; or a dict with `peak`, `velocity` and `width` (decades), peak exp(-(log10(v/velocity)/width)^2), which
+        shifts with the temperature of the material
+    flash : how warm friction makes the surfaces, asperity.Flash
     wear : what sliding takes off the surfaces, asperity.Wear, or a coefficient [m2/N]
     gap, size, boundary, hardness, temperature, quantities, fields, every, ... : as in :func:`solve`
 
@@ -112,7 +136,7 @@ def steady(given: Steady) -> Result:
     surface, material : as in :func:`solve`
     velocities : of the surface over the body [m/s], each once; they are solved and returned in rising order
     load, pressure : held [N], [Pa], one of them
-    direction, kind, shear_stress : as in :func:`slide`
+    direction, kind, shear_stress, flash : as in :func:`slide`
     fields, every, progress, on_step : as in :func:`solve`
     gap, size, boundary, hardness, temperature, tolerance, ... : as in :func:`solve`
 

@@ -11,10 +11,10 @@ use super::strain::Strain;
 use super::thin::Widest;
 use super::worst::extend;
 use super::{
-    ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, FLUID_CHATTER, FLUID_LIFTS,
-    Finding, LARGE_SLOPE, LARGE_STRAIN, POCKET_TENSION, SLIP_UNRESOLVED, SPOTS_UNRESOLVED, SQUEEZE_SLOW,
-    STEPS_TOO_LONG, WEAR_STEPS, adhesion, domain, fluid, material, plausible, strain, surface, tangential,
-    thin, time, wear,
+    ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, FLASH_WARM, FLUID_CHATTER,
+    FLUID_LIFTS, Finding, LARGE_SLOPE, LARGE_STRAIN, POCKET_TENSION, SLIP_UNRESOLVED, SPOTS_UNRESOLVED,
+    SQUEEZE_SLOW, STEPS_TOO_LONG, WEAR_STEPS, adhesion, domain, flash, fluid, material, plausible, strain,
+    surface, tangential, thin, time, wear,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -80,6 +80,7 @@ pub struct Diagnostics {
     fluid: fluid::Wet,
     ring: tangential::Ring,
     wear: wear::Steps,
+    warm: flash::Warm,
     balance: Balance,
     beyond: Beyond,
     /// Where an approach is held while cells are at the hardness, and the control of each stage.
@@ -120,6 +121,7 @@ impl Diagnostics {
             fluid: fluid::Wet::default(),
             ring: tangential::Ring::default(),
             wear: wear::Steps::default(),
+            warm: flash::Warm::default(),
             balance: Balance::default(),
             beyond: Beyond::default(),
             held: time::Held::default(),
@@ -170,6 +172,7 @@ impl Diagnostics {
                 FLUID_LIFTS | FLUID_CHATTER | POCKET_TENSION | SQUEEZE_SLOW => self.fluid.resume(finding),
                 SLIP_UNRESOLVED => self.ring.resume(finding),
                 WEAR_STEPS => self.wear.resume(finding),
+                FLASH_WARM => self.warm.resume(finding),
                 ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
                 _ => {}
             }
@@ -189,6 +192,7 @@ impl Diagnostics {
         self.fluid.see(step, row);
         self.ring.see(step, row);
         self.wear.see(step);
+        self.warm.see(step);
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);
         }
@@ -287,6 +291,7 @@ impl Diagnostics {
         found.extend(self.fluid.findings());
         found.extend(self.ring.finding());
         found.extend(self.wear.finding(simulation));
+        found.extend(self.warm.finding());
         found.extend(self.wear.worn_layer(simulation));
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
@@ -342,5 +347,6 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     found.extend(fluid::before(simulation));
     found.extend(tangential::before(simulation));
     found.extend(wear::before(simulation));
+    found.extend(flash::before(simulation));
     found
 }

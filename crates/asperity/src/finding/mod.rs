@@ -19,6 +19,7 @@
 //! | `leak` | leaks that are unreliable because of gap, grid or fluid pressure |
 //! | `tangential` | forces that friction does not hold, tangential tractions that act on the pressure |
 //! | `wear` | steps in which much wears, tracks that stay under the contact |
+//! | `flash` | materials that are taken colder than they become |
 //! | `adhesion` | cells that snap one by one, attraction beyond the border |
 //! | `motion` | friction that the grid does not resolve, bodies on their own track |
 //! | `thin` | half-spaces of finite thickness |
@@ -33,6 +34,7 @@ mod diagnostics;
 mod domain;
 mod energy;
 mod expected;
+mod flash;
 mod fluid;
 mod histogram;
 mod leak;
@@ -283,6 +285,10 @@ codes! {
     WEAR_TRACK = "wear-track";
     /// More than a tenth of a layer is worn off.
     LAYER_WORN = "layer-worn";
+    /// A contact that becomes much warmer than its material is taken.
+    FLASH_WARM = "flash-warm";
+    /// Flash temperatures that are not reached in the time of the run.
+    FLASH_STEADY = "flash-steady";
 }
 
 #[cfg(test)]

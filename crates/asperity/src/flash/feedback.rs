@@ -4,35 +4,42 @@ use crate::error::{Error, Result};
 
 /// Rounds, at most.
 const ROUNDS: usize = 10;
-/// What is left of a rise, relative to it, or to a kelvin.
-const TOLERANCE: f64 = 1e-3;
+/// What is left of a rise, or between the rises that are too cold and too warm, relative to it, or to a kelvin.
+const TOLERANCE: f64 = 3e-3;
 
 /// The rise x \[K\] with `rise_at(x)` = x, from `start` on; `rise_at` has been called last with it.
 ///
 /// Between rounds T(x) is taken as exponential, through the last two of them, and x kept between the largest that is too cold and the
-/// least that is too warm: T(0) >= 0, so there is one.
+/// least that is too warm: T(0) >= 0, so there is one. Where that does not halve their distance, their middle is next. T(x) jumps where a
+/// cell leaves the contact, so it may cross x without being x.
 ///
 /// # Errors
 /// [`Error::Invalid`] after ten rounds; those of `rise_at`.
 pub(crate) fn settle(start: f64, mut rise_at: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
     let (mut x, mut before): (f64, Option<[f64; 2]>) = (start.max(0.0), None);
     let [mut cold, mut warm] = [0.0, f64::INFINITY];
-    let mut left = f64::INFINITY;
+    let (mut left, mut width) = (f64::INFINITY, f64::INFINITY);
     for round in 0..ROUNDS {
         let rise = rise_at(x)?;
         left = rise - x;
         tracing::debug!(round, x, left, "feedback");
-        if left.abs() <= TOLERANCE * x.max(1.0) {
-            return Ok(x);
-        }
+        let is_met = left.abs() <= TOLERANCE * x.max(1.0);
         if left > 0.0 {
             cold = x
         } else {
             warm = x
         }
+        if is_met || warm - cold <= TOLERANCE * x.max(1.0) {
+            return Ok(x);
+        }
         let slope = before.map_or(0.0, |[other, its]| libm::log(rise / its) / (x - other));
         before = Some([x, rise]);
-        x = meeting(|y| rise * libm::exp(slope * (y - x)) - y, cold, warm.min(2.0 * x.max(rise)));
+        let is_slow = warm - cold > 0.5 * width;
+        width = warm - cold;
+        x = match width.is_finite() && is_slow {
+            true => 0.5 * (cold + warm),
+            false => meeting(|y| rise * libm::exp(slope * (y - x)) - y, cold, warm.min(2.0 * x.max(rise))),
+        };
     }
     Err(Error::invalid(
         format!("change of the flash temperature in the last of {ROUNDS} rounds of its feedback"),

@@ -22,7 +22,7 @@ pub enum Surface {
     Convert(SurfaceConvert),
 }
 
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Default, clap::Args)]
 pub struct SurfaceInfo {
     #[command(flatten)]
     pub file: SurfaceFile,
@@ -180,7 +180,7 @@ impl SurfaceOutput {
     }
 }
 
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Default, clap::Args)]
 pub struct SurfaceFile {
     /// The measured surface; its format is detected from the content
     pub file: PathBuf,

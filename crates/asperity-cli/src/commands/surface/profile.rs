@@ -150,17 +150,9 @@ pub(super) fn process(
     write_all(&to.output, to.force, text.as_bytes())?;
     let history = history.iter().map(|step| format!("in the file: {step}")).collect();
     let written = Profile { surface: done.surface, history, metadata: profile.metadata, gaps: profile.gaps };
-    let shown = SurfaceInfo {
-        file: SurfaceFile { file: to.output.clone(), size: None, height_unit: None, channel: None },
-        periodic: false,
-        longest: None,
-        shortest: None,
-        cutoff: None,
-        circle: None,
-        plot: to.plot.clone(),
-        force: to.force,
-        json: to.json,
-    };
+    let file = SurfaceFile { file: to.output.clone(), ..SurfaceFile::default() };
+    let plot = to.plot.clone();
+    let shown = SurfaceInfo { file, plot, force: to.force, json: to.json, ..SurfaceInfo::default() };
     info(&shown, written)
 }
 

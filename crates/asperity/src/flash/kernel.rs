@@ -100,7 +100,8 @@ impl Source {
         let passage = |m: f64| (2.0 * (m + 0.5) * dx / a).sqrt();
         let mut nodes = vec![];
         let mut from = 0.0;
-        let mut next = dx.min(if self.is_line { dx } else { dy }) / (4.0 * FLAT);
+        let first = dx.min(if self.is_line { dx } else { dy }) / (4.0 * FLAT);
+        let mut next = if a > 0.0 { first.min(FINEST * passage(0.0)) } else { first };
         loop {
             let to = next;
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));

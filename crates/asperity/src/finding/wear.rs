@@ -7,12 +7,12 @@ use crate::simulation::Simulation;
 use crate::step::Step;
 use crate::wear::Sliding;
 
-/// Share of the worn volume whose place may be uncertain.
+/// Share of the worn volume that may be in the wrong place, or wrong.
 const UNCERTAIN: f64 = 0.05;
 /// Share of the top layer that may be worn off: its thickness stays as it is in the run.
 const WORN_LAYER: f64 = 0.1;
 /// Rows count until so many times their volume is worn.
-const FORGOTTEN: f64 = 10.0;
+const FORGOTTEN: f64 = 4.0;
 
 /// What is known before the run: a counterbody that wears in place, although the surfaces slide further than the domain is long.
 pub(super) fn before(simulation: &Simulation) -> Option<Finding> {
@@ -65,8 +65,8 @@ impl Steps {
             _ => "Take more time steps, or spacing = \"adaptive\"",
         };
         let text = format!(
-            "Much wears in a step ({}): the pressure changes over the steps, so {} % of the worn volume may be in the wrong place. The volume \
-             itself is right. {cure}.",
+            "Much wears in a step ({}): the pressure changes over the steps, so {} % of the worn volume may be in the wrong place, or wrong \
+             where the load changes. {cure}.",
             super::words::rows(at),
             digits(100.0 * self.worst)
         );

@@ -95,7 +95,7 @@ impl Source {
     /// Nodes and weights in s, from 0 to where nothing of the source is left on the domain.
     fn nodes(&self) -> Vec<(f64, f64)> {
         let ([along, _], [dx, dy], a) = (self.cells, self.sides, self.advection);
-        let length = (along as f64 * dx).max(self.cells[1] as f64 * dy);
+        let (way, length) = (along as f64 * dx, (along as f64 * dx).max(self.cells[1] as f64 * dy));
         // The edges of cells pass the source when a s²/2 = (m + 1/2) dx.
         let passage = |m: f64| (2.0 * (m + 0.5) * dx / a).sqrt();
         let mut nodes = vec![];
@@ -107,7 +107,7 @@ impl Source {
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
             nodes.extend(GAUSS_8.iter().rev().map(|(x, w)| (middle - half * x, half * w)));
             nodes.extend(GAUSS_8.iter().map(|(x, w)| (middle + half * x, half * w)));
-            let is_past = 0.5 * a * to * to - length > FLAT * to;
+            let is_past = 0.5 * a * to * to - way > FLAT * to;
             if is_past || to > LONG * length {
                 // A node at the end, without weight.
                 nodes.push((to, 0.0));
@@ -120,9 +120,10 @@ impl Source {
                 let m = (0.5 * a * to * to / dx - 0.5).floor() + 1.0;
                 let m = if passage(m) > to * (1.0 + 1e-9) { m } else { m + 1.0 };
                 let (edge, passing) = (passage(m), passage(m) - if m > 0.0 { passage(m - 1.0) } else { 0.0 });
+                let is_sharp = FINEST * passing > 2.0 / a;
                 let fine = to + (2.0 / a).max(FINEST * passing);
                 // Resolved edges need no panel that ends with them.
-                next = if fine < grown { fine.min(edge) } else { grown };
+                next = if is_sharp { fine.min(edge) } else { fine }.min(grown);
             }
         }
     }

@@ -36,7 +36,7 @@ pub(super) struct Wearing {
 }
 
 /// Volumes \[m³\] of both together and of the counterbody, and of the last row's step over its length \[m³/s\]; sliding distance \[m\];
-/// volume whose place is uncertain \[m³\]; largest depth, and roughness of the gap \[m\].
+/// volumes whose place is uncertain, and that are because the load changes over the steps \[m³\]; largest depth, and roughness of the gap \[m\].
 #[derive(Default)]
 struct Numbers {
     volume: f64,
@@ -44,6 +44,7 @@ struct Numbers {
     rate: f64,
     distance: f64,
     uncertain: f64,
+    of_load: f64,
     deepest: f64,
     roughness: f64,
 }
@@ -68,7 +69,7 @@ impl WornFields<'_> {
 
 saved! {
     Numbers {
-        "volumes": volume, counterbody, uncertain;
+        "volumes": volume, counterbody, uncertain, of_load;
         "distance": distance;
     }
 }
@@ -234,8 +235,13 @@ impl Process for Wearing {
         numbers.volume += volume;
         numbers.counterbody += volume * self.law.shares()[1];
         numbers.uncertain = damping * (numbers.uncertain + uncertain);
+        let distance = self.law.distance(&self.simulation, row.step.start, row.step.instant.time);
+        // The load is that at the end of the step.
+        let [before, now] = row.loads;
+        let per_load = if now > 0.0 { volume / now } else { self.law.total() * distance };
+        numbers.of_load += 0.5 * per_load * (now - before).abs();
         numbers.rate = if length > 0.0 { volume / length } else { 0.0 };
-        numbers.distance += self.law.distance(&self.simulation, row.step.start, row.step.instant.time);
+        numbers.distance += distance;
         numbers.deepest = self.depth.largest();
         numbers.roughness = Self::roughness(row.undeformed.now());
         Ok(())
@@ -250,9 +256,11 @@ impl Process for Wearing {
         let of = |p: f64, k: f64| crate::wear::depth(p, k, threshold);
         let (now, before) = (&ends.now.pressure[..], &ends.before.pressure[..]);
         let cells = (now, before, &ends.now.unit_displacement[..], recession.per_pressure());
-        let [misplaced, moved] =
-            sums(cells, |(p, before, u, k)| [p * 0.5 * (of(p, k) - of(before, k)).abs(), p * compliance * u]);
-        (!recession.is_none() && moved > 0.0).then(|| misplaced / moved)
+        let [misplaced, yields, wears] = sums(cells, |(p, before, u, k)| {
+            [p * 0.5 * (of(p, k) - of(before, k)).abs(), p * compliance * u, p * of(p, k)]
+        });
+        // What is left of it after the step, over the displacement.
+        (!recession.is_none() && yields > 0.0).then(|| misplaced / (yields + wears))
     }
 
     fn quantity(&self, quantity: Quantity) -> Option<f64> {
@@ -264,7 +272,9 @@ impl Process for Wearing {
             Quantity::WearDistance => numbers.distance,
             Quantity::WearCycles => self.cycles.total(),
             Quantity::WearDepthMax => numbers.deepest,
-            Quantity::WearError if numbers.volume > 0.0 => numbers.uncertain / numbers.volume,
+            Quantity::WearError if numbers.volume > 0.0 => {
+                (numbers.uncertain + numbers.of_load) / numbers.volume
+            }
             Quantity::WearError => 0.0,
             Quantity::WornRoughness => numbers.roughness,
             _ => return None,

@@ -246,7 +246,7 @@ quantities! {
     WearDepthMax = "wear_depth_max" ["m"] "largest worn depth", Wear, ("Depth and roughness", "length", "largest worn depth");
     /// Root of the mean square of the undeformed gap about its mean, with what is worn, in m.
     WornRoughness = "worn_roughness" ["m"] "roughness of the worn gap (Sq)", Wear, ("Depth and roughness", "length", "roughness of the gap (Sq)");
-    /// Share of the worn volume whose place is uncertain because the pressure changes over the steps.
+    /// Share of the worn volume whose place is uncertain because the pressure changes over the steps, or that is because the load does.
     WearError = "wear_error" ["1"] "estimated error of the worn depths, relative", Wear, ("Error of each row", "relative error", "worn depths");
     /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.
     Velocity = "velocity" ["m/s"] "velocity", Motion, ("Velocity", "velocity", "");

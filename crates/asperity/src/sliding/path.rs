@@ -14,6 +14,8 @@ pub struct Path {
 
 /// Cells that a run may travel.
 const MOST: f64 = 1e7;
+/// Quarters of a period of a sine that are looked at, at most.
+const MOST_QUARTERS: i64 = 10_000_000;
 
 impl Path {
     /// A velocity \[m/s\] over the time since `start` \[s\]; before it nothing moves.
@@ -74,6 +76,16 @@ impl Path {
 
     /// Length of the way between two times \[m\], to and fro.
     pub fn travel(&self, from: f64, to: f64) -> f64 {
+        // Whole periods are all alike.
+        if let History::Sine { frequency, .. } = self.history {
+            let from = from.max(self.start);
+            let periods = ((to - from) * frequency).floor();
+            if periods > 1.0 {
+                let period = 1.0 / frequency;
+                let one = self.travel(self.start, self.start + period);
+                return periods * one + self.travel(from + periods * period, to.max(from + periods * period));
+            }
+        }
         let bends = self.breaks(to).into_iter().filter(|t| *t > from);
         let ends: Vec<f64> = std::iter::once(from).chain(bends).chain([to]).collect();
         let mut turns = vec![from];
@@ -149,28 +161,36 @@ impl Path {
 
     /// Where the velocity changes its sign within a smooth piece.
     fn turns(&self, from: f64, to: f64) -> Vec<f64> {
-        let n = match self.history {
-            History::Sine { frequency, .. } => {
-                (8.0 * frequency * (to - from)).ceil().clamp(1.0, 1e6) as usize
+        // Between quarters of a period the velocity rises or falls throughout.
+        let mut ends = vec![from];
+        if let History::Sine { frequency, .. } = self.history {
+            let quarter = 0.25 / frequency;
+            let count = |t: f64| (t - self.start) / quarter;
+            let first = count(from).floor() as i64 + 1;
+            let last = (count(to).ceil() as i64 - 1).min(first + MOST_QUARTERS);
+            ends.extend(
+                (first..=last).map(|k| self.start + k as f64 * quarter).filter(|t| *t > from && *t < to),
+            );
+        }
+        ends.push(to);
+        let just = |t: f64, side: f64, piece: f64| self.velocity(t + side * 1e-9 * piece);
+        let mut turns = vec![];
+        for (k, pair) in ends.windows(2).enumerate() {
+            let (mut a, mut b) = (pair[0], pair[1]);
+            let piece = b - a;
+            let sign = just(a, 1.0, piece);
+            if k > 0 && just(a, -1.0, piece) * sign < 0.0 {
+                turns.push(a);
             }
-            _ => 1,
-        };
-        let at = |k: usize| from + (to - from) * k as f64 / n as f64;
-        let just = |t: f64, side: f64| self.velocity(t + side * 1e-9 * (to - from) / n as f64);
-        (0..n)
-            .filter_map(|k| {
-                let (mut a, mut b) = (at(k), at(k + 1));
-                let sign = just(a, 1.0);
-                if sign * just(b, -1.0) >= 0.0 {
-                    return None;
-                }
+            if sign * just(b, -1.0, piece) < 0.0 {
                 for _ in 0..80 {
                     let middle = 0.5 * (a + b);
                     if self.velocity(middle) * sign > 0.0 { a = middle } else { b = middle }
                 }
-                Some(0.5 * (a + b))
-            })
-            .collect()
+                turns.push(0.5 * (a + b));
+            }
+        }
+        turns
     }
 
     /// The instant in a piece without turns at which the position is `x`.
@@ -187,6 +207,42 @@ impl Path {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_travel_is_the_integral_of_the_speed() {
+        let tau = std::f64::consts::TAU;
+        for (mean, frequency) in [(0.0, 0.01), (0.3, 0.7), (0.99, 2.3), (1.5, 0.2), (-0.4, 11.0)] {
+            let path = Path::of_velocity(History::Sine { mean, amplitude: 1.0, frequency }, 2.0).unwrap();
+            let speed = |t: f64| (mean + (tau * frequency * (t - 2.0)).sin()).abs();
+            for (from, to) in [(0.0, 12.0), (2.0, 102.0), (3.0, 3.5), (2.0, 252.0), (7.7, 7.7)] {
+                let n = (400.0 * frequency * (to - from)).max(4000.0) as usize;
+                let dt = (to - f64::max(from, 2.0)) / n as f64;
+                let sum: f64 = (0..n).map(|k| speed(f64::max(from, 2.0) + (k as f64 + 0.5) * dt) * dt).sum();
+                // the rule of midpoints across kinks
+                assert!(
+                    (path.travel(from, to) - sum).abs() < 1e-5 * sum.max(1.0),
+                    "{mean} {frequency} {from} {to}"
+                );
+                let halves =
+                    path.travel(from, 0.4 * from + 0.6 * to) + path.travel(0.4 * from + 0.6 * to, to);
+                assert!((path.travel(from, to) - halves).abs() < 1e-9 * sum.max(1.0));
+            }
+            // Each way to and fro of a position is four amplitudes.
+            let there =
+                Path::of_position(History::Sine { mean: 0.0, amplitude: 0.5, frequency }, 0.0).unwrap();
+            assert!((there.travel(0.0, 5.0 / frequency) / 10.0 - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_sine_crosses_each_place_on_every_way() {
+        // From 0 to 2 A/ω and back, ten times; turns are crossings too.
+        let path =
+            Path::of_velocity(History::Sine { mean: 0.0, amplitude: 0.1, frequency: 0.01 }, 0.0).unwrap();
+        let far = path.position(50.0);
+        let crossings = path.crossings(far / 3.5, 1000.0).unwrap();
+        assert_eq!(crossings.iter().filter(|t| (path.velocity(**t)).abs() > 1e-6).count(), 10 * 6);
+    }
 
     #[test]
     fn the_position_is_the_integral_of_the_velocity() {

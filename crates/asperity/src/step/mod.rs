@@ -179,9 +179,10 @@ impl Stepper {
     fn error(&mut self, step: &Interval) -> Option<f64> {
         let ends = self.state.ends(&self.contact);
         let of_history = self.history.error(step, &ends);
-        let of_process =
-            |process: &Box<dyn Process>| process.error(&ends, &self.state.undeformed, self.state.compliance);
-        self.processes.iter().filter_map(of_process).chain(of_history).reduce(f64::max)
+        let StepState { undeformed, compliance, .. } = &self.state;
+        let of_processes =
+            self.processes.iter().filter_map(|process| process.error(&ends, undeformed, *compliance));
+        of_processes.chain(of_history).reduce(f64::max)
     }
 
     /// Opens the step, or opens it again: moves the gap, and sets compliance, gap and operator.

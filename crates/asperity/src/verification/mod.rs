@@ -8,6 +8,7 @@
 mod adhesion;
 mod elastic;
 mod energy;
+mod flash;
 mod fluid;
 mod invariants;
 mod line;
@@ -98,6 +99,7 @@ pub const CASES: &[Case] = &[
     ("glued-punch", tangential::punch),
     ("bonded-contact", tangential::bonded),
     ("wear", wear::archard),
+    ("jaeger-band", flash::band),
 ];
 
 /// The checks of one case.

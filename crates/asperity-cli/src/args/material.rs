@@ -21,7 +21,7 @@ pub enum Material {
     /// Print relaxation, creep, storage, loss and tan delta over decades; of measured data, what the file holds
     Show(Show),
     /// Fit a Prony series to a relaxation test, a creep test or DMA sweeps
-    Fit(Fit),
+    Fit(Box<Fit>),
     /// Write a material for another program: relative moduli, times and the shift with temperature
     Export(MaterialExport),
 }

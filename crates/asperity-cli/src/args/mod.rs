@@ -132,7 +132,7 @@ impl Command {
             Command::Leak(verb) => verb,
             Command::Seal(verb) => verb,
             Command::Material(Material::Show(verb)) => verb,
-            Command::Material(Material::Fit(verb)) => verb,
+            Command::Material(Material::Fit(verb)) => &**verb,
             Command::Material(Material::Export(verb)) => verb,
             Command::FitIndentation(verb) => verb,
             Command::Export(verb) => verb,

@@ -116,7 +116,7 @@ fields! {
     /// Gap between the undeformed surfaces as they are worn and flattened now, in m.
     UndeformedGap = "undeformed_gap" ["m"] "gap between the undeformed surfaces", "undeformed gap", Gap, Wear,
         |step, to| step.undeformed_gap_into(to);
-    /// Temperature rise of the surface of the track by friction, in K; of a contact in motion with [flash].
+    /// Temperature rise of the surface of the track by friction, in K; of a contact in motion whose flash temperature is asked for.
     FlashTemperature = "flash_temperature" ["K"] "flash temperature of the track", "flash temperature", Heat, Flash,
         |step, to| step.flash_temperature_into(to);
     /// The same of the surface of the slider, which carries the surfaces that move, in K.

@@ -105,7 +105,7 @@ impl Flash {
     /// Checks the numbers, and what they need of the contact.
     ///
     /// # Errors
-    /// [`Error::Invalid`] naming the key of the table `flash`.
+    /// [`Error::Invalid`](crate::Error::Invalid) naming the key of the table `flash`.
     pub fn validate(&self, simulation: &Simulation) -> Result<()> {
         for Conductor { conductivity, diffusivity } in self.bodies {
             positive("thermal conductivity", conductivity, "W/(m K)")

@@ -266,7 +266,7 @@ quantities! {
     RollingMoment = "rolling_moment" ["N m"] "rolling moment", Motion, ("Rolling moment", "moment", "");
     /// Power lost in the bodies, in W.
     DissipatedPower = "dissipated_power" ["W"] "power lost in the bodies", Motion, ("Power lost", "power", "");
-    /// Largest temperature rise of the surfaces by friction, in K; of a contact with [flash], as all that follow.
+    /// Largest temperature rise of the surfaces by friction, in K; of a contact in motion whose flash temperature is asked for, as all that follow.
     FlashTemperatureMax = "flash_temperature_max" ["K"] "largest flash temperature", Flash, ("Flash temperature", "temperature rise", "largest");
     /// Mean temperature rise over the contact, in K.
     FlashTemperatureMean = "flash_temperature_mean" ["K"] "mean flash temperature over the contact", Flash, ("Flash temperature", "temperature rise", "mean over the contact");

@@ -64,6 +64,11 @@ Quantity = Literal[
     "friction_uncertainty",
     "rolling_moment",
     "dissipated_power",
+    "flash_temperature_max",
+    "flash_temperature_mean",
+    "heat_share",
+    "heat_power",
+    "material_temperature",
 ]
 Field = Literal[
     "pressure",
@@ -82,6 +87,8 @@ Field = Literal[
     "wear_depth",
     "counterbody_wear_depth",
     "undeformed_gap",
+    "flash_temperature",
+    "slider_flash_temperature",
 ]
 OF_CONTACT: list[str]
 
@@ -230,6 +237,16 @@ class Columns:
     def rolling_moment(self) -> Floats: ...
     @property
     def dissipated_power(self) -> Floats: ...
+    @property
+    def flash_temperature_max(self) -> Floats: ...
+    @property
+    def flash_temperature_mean(self) -> Floats: ...
+    @property
+    def heat_share(self) -> Floats: ...
+    @property
+    def heat_power(self) -> Floats: ...
+    @property
+    def material_temperature(self) -> Floats: ...
 
 class Numbers:
     @property
@@ -376,6 +393,16 @@ class Numbers:
     def rolling_moment(self) -> float: ...
     @property
     def dissipated_power(self) -> float: ...
+    @property
+    def flash_temperature_max(self) -> float: ...
+    @property
+    def flash_temperature_mean(self) -> float: ...
+    @property
+    def heat_share(self) -> float: ...
+    @property
+    def heat_power(self) -> float: ...
+    @property
+    def material_temperature(self) -> float: ...
 
 class StressColumns:
     @property

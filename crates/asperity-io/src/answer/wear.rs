@@ -51,39 +51,57 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         vec![Answer::new("wear_volume", volume[last], grid.units("m3")).with_note(after(course[last]))];
     let of_track = |track| Answer::new("counterbody_wear_volume", track, grid.units("m3")).with_note("of it");
     answers.extend(track.map(of_track));
-    let note = format!("known to {} %", quantity(100.0 * error, ""));
+    let note = format!("{} % of the volume may be in another place", quantity(100.0 * error, ""));
     answers.push(Answer::new("wear_depth_max", depth[last], "m").with_note(note));
     if let Some(limit) = number(reader, Header::WEAR, "depth_limit") {
-        // The time of a cycle that stands for many is that of all of them.
-        let times: Vec<f64> = match (unit, number(reader, Header::FRICTION, "period")) {
-            ("1", Some(period)) => course.iter().map(|cycles| cycles * period).collect(),
-            ("s", _) => course.clone(),
-            _ => rows.iter().map(|row| row.coordinate.value()).collect(),
-        };
+        // Slip is fastest in the middle of a way, so the rate is that of the last computed cycle.
+        let period = number(reader, Header::FRICTION, "period");
+        let from = period.and_then(|period| {
+            let begin = rows[last].coordinate.value() - period;
+            rows.iter().rposition(|row| row.coordinate.value() <= begin * (1.0 + 1e-9))
+        });
         let of = quantity(limit, "m");
-        let (time, note) = match (reached(limit, &depth, &times), reached(limit, &depth, &course)) {
-            (Some((time, is_extrapolated)), Some((way, _))) => {
-                let how = if is_extrapolated { "; at the rate of the last row" } else { "" };
+        let (time, note) = match reached(limit, &depth, &course, from) {
+            Some(way) => {
+                let share = way / course[last];
+                let time = match (unit, period) {
+                    ("1", Some(period)) => way * period,
+                    ("s", _) => way,
+                    // At the mean velocity of the run.
+                    _ if share > 1.0 => share * rows[last].coordinate.value(),
+                    _ => reached(
+                        limit,
+                        &depth,
+                        &rows.iter().map(|row| row.coordinate.value()).collect::<Vec<_>>(),
+                        None,
+                    )
+                    .unwrap_or(f64::NAN),
+                };
+                let how = match share > 1.0 {
+                    true => {
+                        format!("; extrapolated to {} times the run at its last rate", quantity(share, ""))
+                    }
+                    false => String::new(),
+                };
                 (time, format!("to a depth of {of}, {}{how}", after(way)))
             }
-            _ => (f64::NAN, format!("to a depth of {of}: nothing wears at the end")),
+            None => (f64::NAN, format!("to a depth of {of}: nothing wears at the end")),
         };
         answers.insert(0, Answer::new("wear_life", time, "s").with_note(note));
     }
     Ok(answers)
 }
 
-/// Where a depth that grows along `way` reaches a limit, between the rows on a straight line; beyond the last row at its rate, and that it
-/// is so. `None` where it does not grow.
-fn reached(limit: f64, depth: &[f64], way: &[f64]) -> Option<(f64, bool)> {
-    let beyond = depth.iter().position(|depth| *depth >= limit);
-    let n = beyond.unwrap_or(depth.len() - 1);
-    let grows = (1..=n).rev().find(|n| depth[*n] > depth[n - 1])?;
-    if beyond.is_none() && grows != n {
-        return None;
-    }
-    let share = (limit - depth[grows - 1]) / (depth[grows] - depth[grows - 1]);
-    Some((way[grows - 1] + share * (way[grows] - way[grows - 1]), beyond.is_none()))
+/// Where a depth that grows along `way` reaches a limit, between the rows on a straight line; beyond the last row at its mean rate since
+/// the row `from`, or since the row before. `None` where it does not grow.
+fn reached(limit: f64, depth: &[f64], way: &[f64], from: Option<usize>) -> Option<f64> {
+    let last = depth.len().checked_sub(1)?;
+    let [first, end] = match depth.iter().position(|depth| *depth >= limit) {
+        Some(n) => [n.checked_sub(1)?, n],
+        None => [from.unwrap_or(last.checked_sub(1)?), last],
+    };
+    let grows = depth[end] - depth[first];
+    (grows > 0.0).then(|| way[first] + (limit - depth[first]) / grows * (way[end] - way[first]))
 }
 
 #[cfg(test)]
@@ -93,9 +111,11 @@ mod tests {
     #[test]
     fn a_limit_is_reached_between_rows_or_beyond_the_last() {
         let (depth, way) = ([0.0, 1.0, 2.0, 2.5], [0.0, 1.0, 3.0, 5.0]);
-        assert_eq!(reached(1.5, &depth, &way), Some((2.0, false)));
-        assert_eq!(reached(3.0, &depth, &way), Some((7.0, true)));
-        assert_eq!(reached(3.0, &[0.0, 1.0, 1.0], &[0.0, 1.0, 2.0]), None);
-        assert_eq!(reached(3.0, &[0.0, 0.0], &[0.0, 1.0]), None);
+        assert_eq!(reached(1.5, &depth, &way, None), Some(2.0));
+        assert_eq!(reached(3.0, &depth, &way, None), Some(7.0));
+        // At the mean rate since the second row.
+        assert_eq!(reached(4.0, &depth, &way, Some(1)), Some(9.0));
+        assert_eq!(reached(3.0, &[0.0, 1.0, 1.0], &[0.0, 1.0, 2.0], None), None);
+        assert_eq!(reached(3.0, &[0.0, 0.0], &[0.0, 1.0], None), None);
     }
 }

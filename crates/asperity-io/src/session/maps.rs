@@ -41,6 +41,7 @@ impl Maps {
                     kind,
                     FieldKind::Gap
                         | FieldKind::Displacement
+                        | FieldKind::UndeformedGap
                         | FieldKind::FlashTemperature
                         | FieldKind::SliderFlashTemperature
                 );

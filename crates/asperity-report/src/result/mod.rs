@@ -346,10 +346,13 @@ fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
             let size =
                 |name: &str| Ok::<_, StoreError>(at(&format!("{name}_x"))?.hypot(at(&format!("{name}_y"))?));
             let force = quantity(size("tangential_force")?, grid.units("N"));
-            format!(
-                ", tangential force {force}, displacement {}",
-                quantity(size("tangential_displacement")?, "m")
-            )
+            let moved = size("tangential_displacement")?;
+            // Where a sine passes 0 only its rounding error is left.
+            let farthest = ["x", "y"].map(|axis| reader.series(&format!("tangential_displacement_{axis}")));
+            let farthest =
+                farthest.into_iter().flatten().flatten().fold(0.0, |most: f64, d| most.max(d.abs()));
+            let moved = if moved > 1e-9 * farthest { moved } else { 0.0 };
+            format!(", tangential force {force}, displacement {}", quantity(moved, "m"))
         }
     };
     Ok(format!(

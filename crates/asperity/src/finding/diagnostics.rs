@@ -347,6 +347,7 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     found.extend(fluid::before(simulation));
     found.extend(tangential::before(simulation));
     found.extend(wear::before(simulation));
+    found.extend(wear::unlikely(simulation));
     found.extend(flash::before(simulation));
     found
 }

@@ -1,7 +1,8 @@
 //! Wear: steps in which too much wears, tracks that do not go with the contact.
 
 use super::words::{digits, si};
-use super::{Finding, LAYER_WORN, WEAR_STEPS, WEAR_TRACK};
+use super::{Finding, LAYER_WORN, UNLIKELY_UNIT, WEAR_STEPS, WEAR_TRACK};
+use crate::load::{Control, Course, Stage};
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::step::Step;
@@ -13,6 +14,35 @@ const UNCERTAIN: f64 = 0.05;
 const WORN_LAYER: f64 = 0.1;
 /// Rows count until so many times their volume is worn.
 const FORGOTTEN: f64 = 4.0;
+
+/// A mean depth of this share of the domain suggests a wrong unit of the coefficient.
+const DEEP: f64 = 0.1;
+
+/// A coefficient that takes off more than there is, under the largest prescribed load.
+pub(super) fn unlikely(simulation: &Simulation) -> Option<Finding> {
+    let law = simulation.wear.as_ref()?;
+    let grid = &simulation.grid;
+    let end = simulation.times.end();
+    let [Stage { control, course: Course::Given(history), .. }] = &simulation.loading.stages[..] else {
+        return None;
+    };
+    let pressure = match control {
+        Control::Load => history.range(end)[1] / grid.area(),
+        Control::Pressure => history.range(end)[1],
+        Control::Approach => return None,
+    };
+    let depth = law.total() * law.distance(simulation, 0.0, end) * pressure;
+    let side = grid.longest_side();
+    (depth > DEEP * side).then(|| {
+        let text = format!(
+            "The wear coefficient, {} m²/N, takes {} off the domain in the mean, which is {} long. Check its unit: 1 mm³/(N m) is 1e-9 m²/N.",
+            digits(law.total()),
+            si(depth, "m"),
+            si(side, "m")
+        );
+        Finding::warning(UNLIKELY_UNIT, depth, DEEP * side, text)
+    })
+}
 
 /// What is known before the run: a counterbody that wears in place, although the surfaces slide further than the domain is long.
 pub(super) fn before(simulation: &Simulation) -> Option<Finding> {

@@ -183,6 +183,13 @@ impl Wear {
         let sound = self.threshold.is_finite() && self.threshold >= 0.0;
         require(sound, "threshold of wear", format!("{} Pa", self.threshold), "finite and not negative")
             .map_err(of("wear.threshold"))?;
+        let hardest = simulation
+            .hardness_of_cells()
+            .map_or(simulation.hardness, |cells| cells.into_iter().fold(0.0, f64::max));
+        let expected =
+            format!("less than the hardness, {hardest} Pa: above it there is no pressure, and nothing wears");
+        require(self.threshold < hardest, "threshold of wear", format!("{} Pa", self.threshold), expected)
+            .map_err(of("wear.threshold"))?;
         let sound = (1.0..=MOST_CYCLES).contains(&self.cycles);
         require(sound, "cycles per step", self.cycles, format!("between 1 and {MOST_CYCLES:e}"))
             .map_err(of("wear.cycles_per_step"))?;

@@ -161,16 +161,18 @@ fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
     }
     if let Some(law) = &case.conditions.wear {
         let [body, counterbody] = law.coefficients;
-        let both = if counterbody > 0.0 {
-            format!(" and {counterbody:e} m²/N of the counterbody")
-        } else {
-            String::new()
-        };
+        let of = |k: f64, name: &str| (k > 0.0).then(|| format!("{k:e} m²/N of the {name}"));
+        let bodies = [of(body, "body with the moving surfaces"), of(counterbody, "counterbody")];
+        let bodies = bodies.into_iter().flatten().collect::<Vec<_>>().join(", ");
         let path = law.path.as_ref().map(|path| path.travel(0.0, case.conditions.times.end()));
         let way = path.map_or(String::new(), |way| format!(", sliding {}", quantity(way, "m")));
-        let cycles =
-            if law.cycles == 1.0 { String::new() } else { format!("; each cycle stands for {}", law.cycles) };
-        line("wear", format!("{body:e} m²/N{both}{way}{cycles}"));
+        let most = if law.cycles_tolerance.is_some() { "up to " } else { "" };
+        let cycles = if law.cycles == 1.0 {
+            String::new()
+        } else {
+            format!("; each cycle stands for {most}{}", law.cycles)
+        };
+        line("wear", format!("{bodies}{way}{cycles}"));
     }
     if let Some(adhesion) = &inputs.adhesion {
         let (work, range) = (quantity(adhesion.work, "J/m2"), quantity(adhesion.range, "m"));

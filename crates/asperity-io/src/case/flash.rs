@@ -31,7 +31,7 @@ pub struct Flash {
     /// "slider" or the "track"; "mean" if not given.
     #[serde(default)]
     partition: Partition,
-    /// For how long the surfaces of a periodic domain have been heated; without it temperatures are those above the mean of the surface.
+    /// For how long the surfaces of a periodic domain have been heated; needed there, since its mean never stops warming.
     #[schemars(example = "20 ms")]
     heated_for: Option<Time<Positive>>,
     /// Whether the material of steady states is taken at its mean flash temperature ("mean") or at that of the run ("none"); "none" if not

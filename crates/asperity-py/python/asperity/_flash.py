@@ -20,8 +20,8 @@ class Flash:
 
     `conductivity` [W/(m K)] and `diffusivity` [m2/s] of both bodies, or pairs: of the slider, which carries the surfaces that move, and of
     the track. The heat is that of `friction`, a coefficient, or of the argument `shear_stress`; with `hysteresis` also what the bodies
-    lose. `partition`: how it divides. `heated_for` [s]: for how long the surfaces of a periodic domain have been heated; without it
-    temperatures are those above the mean of the surface. `feedback`: whether the material of steady states is as warm as the contact in the
+    lose. `partition`: how it divides. `heated_for` [s]: for how long the surfaces of a periodic domain have been heated;
+    needed there. `feedback`: whether the material of steady states is as warm as the contact in the
     mean.
 
     >>> import asperity as asp

@@ -94,8 +94,8 @@ pub struct Flash {
     pub friction: f64,
     /// Whether the power that is lost in the bodies counts as heat of the surfaces, spread over the contact as the pressure is.
     pub hysteresis: bool,
-    /// Of a periodic domain: for how long the surfaces have been heated \[s\]. `None`: temperatures are those above the mean of the
-    /// surface, which never stops rising.
+    /// Of a periodic domain: for how long the surfaces have been heated \[s\]; its mean, and streaks along the motion, never stop warming.
+    /// `None` on a free domain.
     pub heated_for: Option<f64>,
     /// Whether the material of a steady state sees its own temperature.
     pub feedback: Option<Feedback>,
@@ -134,10 +134,10 @@ impl Flash {
         )
         .map_err(|error| error.of("partition"))?;
         require(
-            self.partition != Partition::Local || is_open || self.heated_for.is_some(),
-            "partition \"local\" on a periodic domain",
-            "without heated_for",
-            "given together with heated_for, which says how far the mean of the surfaces has risen",
+            is_open || self.heated_for.is_some(),
+            "time of heating on a periodic domain",
+            "not given",
+            "a time: the mean of a periodic surface, and its streaks along the motion, never stop warming",
         )
         .map_err(|error| error.of("heated_for"))?;
         require(

@@ -272,7 +272,8 @@ fn spots_perimeter_and_histograms_agree_with_the_fields() {
         seed: 3,
     };
     let gap = undeformed_gap(&grid, &[Part::SelfAffine(roughness)]).unwrap();
-    let list: Vec<Quantity> = Quantity::at_rest().collect();
+    // Nothing is flattened for good with "cap".
+    let list: Vec<Quantity> = Quantity::at_rest().filter(|own| *own != Quantity::PlasticVolume).collect();
     let simulation = Simulation {
         boundary: Boundary::Periodic,
         creep: burgers(),

@@ -5,9 +5,10 @@ use std::f64::consts::{PI, TAU};
 use rustfft::num_complex::Complex64;
 
 use super::Conductor;
-use super::kernel::{GAUSS_8, Source};
+use super::kernel::Source;
 use crate::convolution::torus::{Spectrum, Torus};
 use crate::grid::{Boundary, Grid};
+use crate::kernel::gauss::GAUSS_8;
 use crate::sliding::Direction;
 
 /// Arguments of the error function from which on its asymptotic series is taken.
@@ -102,7 +103,7 @@ fn error_function(z: Complex64) -> Complex64 {
     let panel = |n: usize| {
         let (middle, half) = ((n as f64 + 0.5) / 16.0, 0.5 / 16.0);
         let at = |x: f64, w: f64| (-z * z * (middle + half * x).powi(2)).exp() * (w * half);
-        GAUSS_8.iter().map(|(x, w)| at(*x, *w) + at(-x, *w)).sum::<Complex64>()
+        GAUSS_8.iter().map(|(x, w)| at(*x, *w)).sum::<Complex64>()
     };
     z * scale * (0..16).map(panel).sum::<Complex64>()
 }

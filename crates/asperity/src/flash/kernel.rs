@@ -17,14 +17,7 @@ use libm::erf;
 use rayon::prelude::*;
 
 use crate::grid::Grid;
-
-/// The rule of Gauss and Legendre of eight points on \[-1, 1\], its half.
-pub(super) const GAUSS_8: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_361_96),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
-    (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
-];
+use crate::kernel::gauss::GAUSS_8;
 
 /// Relative length of a panel; the brackets are smooth functions of ln s.
 const GROWTH: f64 = 0.35;
@@ -105,7 +98,6 @@ impl Source {
         loop {
             let to = next;
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-            nodes.extend(GAUSS_8.iter().rev().map(|(x, w)| (middle - half * x, half * w)));
             nodes.extend(GAUSS_8.iter().map(|(x, w)| (middle + half * x, half * w)));
             let is_past = 0.5 * a * to * to - way > FLAT * to;
             if is_past || to > LONG * length {

@@ -10,6 +10,7 @@
 use super::conductance::Pressed;
 use super::{Conductance, Profile};
 use crate::error::{Error, Result};
+use crate::kernel::gauss::GAUSS_8;
 
 /// Cells across the seal.
 pub const CELLS: usize = 400;
@@ -17,14 +18,6 @@ pub const CELLS: usize = 400;
 const MARCHES: usize = 200;
 /// The march has arrived if the drop is met within this share.
 const ARRIVED: f64 = 1e-12;
-/// Nodes and weights of Gauss and Legendre on \[-1, 1\], one half.
-const GAUSS: [[f64; 2]; 4] = [
-    [0.183_434_642_495_649_8, 0.362_683_783_378_362],
-    [0.525_532_409_916_329, 0.313_706_645_877_887_3],
-    [0.796_666_477_413_626_7, 0.222_381_034_453_374_48],
-    [0.960_289_856_497_536_2, 0.101_228_536_290_376_26],
-];
-
 /// How the seal is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
@@ -291,9 +284,6 @@ impl<'a> Cell<'a> {
     /// The integral of k where it is smooth.
     fn integral(&self, from: f64, to: f64) -> f64 {
         let [middle, half] = [0.5 * (from + to), 0.5 * (to - from)];
-        let pair = |[node, weight]: &[f64; 2]| {
-            weight * (self.k(middle - half * node) + self.k(middle + half * node))
-        };
-        half * GAUSS.iter().map(pair).sum::<f64>()
+        half * GAUSS_8.iter().map(|(x, weight)| weight * self.k(middle + half * x)).sum::<f64>()
     }
 }

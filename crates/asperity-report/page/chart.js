@@ -199,7 +199,7 @@ class Chart {
     const rule = () => css("--rule");
     return {
       scale: key, side: key === "x" ? 2 : 3, font: FONT, labelFont: FONT, stroke: () => css("--ink"),
-      size: key === "x" ? 24 : 50, gap: 5, labelSize: 20, labelGap: 0,
+      size: key === "x" ? 24 : (u, values) => Math.max(50, 14 + 6.5 * Math.max(...(values ?? [""]).map((text) => text.length))), gap: 5, labelSize: 20, labelGap: 0,
       grid: { stroke: rule, width: 1 }, ticks: { show: false }, border: { show: true, stroke: rule, width: 1 },
       label: (u) => { const { text } = this.unit(u, key); return this.spec[key].label + (text ? ` [${text}]` : ""); },
       splits: (u) => this.ticks(u, key).map((tick) => tick.value),

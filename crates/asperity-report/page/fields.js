@@ -164,11 +164,17 @@ async function showOverTime(kind, instant, stale) {
   showLimits(kind, what);
 }
 
+/** The undeformed gap h0 at the chosen instant; of surfaces that move, wear or flatten where it is stored, else nothing. */
+function undeformed() {
+  if (has("undeformed_gap")) return load(`undeformed_gap-${chosen.instant}`);
+  return state.still ? load("initial") : null;
+}
+
 /** Both surfaces in a line contact: z = -u and z = h0 - w, with u = h - h0 + w. */
 async function showSurfaces(instant) {
   const name = has("gap") ? "gap" : has("displacement") ? "displacement" : null;
   $("relief-part").hidden = true;
-  const map = name && (await load(`${name}-${chosen.instant}`)), before = await load("initial");
+  const map = name && (await load(`${name}-${chosen.instant}`)), before = await undeformed();
   if (!map || !before) return;
   const approach = state.series.approach[instant.row];
   const place = Array.from({ length: map.nx }, (_, k) => ((k + 0.5) / map.nx) * state.grid.size[0]);
@@ -197,11 +203,9 @@ async function showProfile(kind, map) {
   const where = ((at + 0.5) / other) * state.grid.size[chosen.along === "x" ? 1 : 0];
   const series = [{ name: kind.name === "gap" ? "now" : "", x, y }];
   if (kind.name === "gap") {
-    const before = await load("initial");
-    if (before) {
-      const [x0, y0] = along(before);
-      series.push({ name: "undeformed", x: x0, y: y0, dashed: true });
-    }
+    const now = await undeformed(), start = now && state.still ? null : await load("initial");
+    if (now) series.push({ name: "undeformed", x, y: along(now)[1], dashed: true });
+    if (start) series.push({ name: "undeformed at the start", x, y: along(start)[1], dashed: true });
   }
   const time = moment(state.instants[chosen.instant]);
   const title = state.grid.line ? `${kind.title} at ${time}` : `${kind.title} at ${across} = ${words(where, "m")}, ${time}`;
@@ -214,9 +218,10 @@ async function showRelief(instant) {
   const name = has("displacement") ? "displacement" : has("gap") ? "gap" : null, index = chosen.instant;
   $("relief-part").hidden = !name;
   if (!name) return;
-  const map = await load(`${name}-${index}`), before = name === "gap" ? await load("initial") : null;
+  const map = await load(`${name}-${index}`), before = name === "gap" ? await undeformed() : null;
   const pressure = has("pressure") ? await load(`pressure-${index}`) : null;
-  if (!map || (name === "gap" && !before) || index !== chosen.instant) return;
+  if (!map || index !== chosen.instant) return;
+  if (name === "gap" && !before) return ($("relief-part").hidden = true);
   const approach = state.series.approach[instant.row];
   const z = Float32Array.from(map.values, (v, n) => (before ? before.values[n] - v - approach : -v));
   const loaded = pressure && pressure.max > 0, finite = z.filter((v) => !isNaN(v));

@@ -16,10 +16,10 @@ pub struct Flash {
     /// Thermal conductivity of both bodies, or a list of two: of the slider, which carries the surfaces that move, and of the track.
     #[schemars(example = "0.3 W/(m K)")]
     #[schemars(example = serde_json::json!(["50 W/(m K)", "0.3 W/(m K)"]))]
-    conductivity: Form<Conductivity<Positive>, Vec<Conductivity<Positive>>, Never>,
+    conductivity: Form<Conductivity<Positive>, Vec<Conductivity<Positive>>>,
     /// Thermal diffusivity of both bodies, or a list of two, of slider and track.
     #[schemars(example = "1e-7 m2/s")]
-    diffusivity: Form<Diffusivity<Positive>, Vec<Diffusivity<Positive>>, Never>,
+    diffusivity: Form<Diffusivity<Positive>, Vec<Diffusivity<Positive>>>,
     /// Friction coefficient: heat per area = friction x pressure x velocity. This, `motion.shear_stress` or `hysteresis`.
     #[schemars(example = 0.3)]
     friction: Option<Number<Positive>>,
@@ -93,37 +93,26 @@ impl Flash {
             }
             _ => {}
         }
-        let conductivity = pair_of(&at.key("conductivity"), &self.conductivity, |k| k.get())?;
-        let diffusivity = pair_of(&at.key("diffusivity"), &self.diffusivity, |chi| chi.get())?;
-        let body = |n: usize| Conductor { conductivity: conductivity[n], diffusivity: diffusivity[n] };
+        let bodies = "slider and track";
+        let conductivity = self.conductivity.one_or_two(&at.key("conductivity"), bodies)?;
+        let diffusivity = self.diffusivity.one_or_two(&at.key("diffusivity"), bodies)?;
+        let slider = Conductor { conductivity: conductivity.0.get(), diffusivity: diffusivity.0.get() };
+        let track = Conductor {
+            conductivity: conductivity.1.map_or(slider.conductivity, Conductivity::get),
+            diffusivity: diffusivity.1.map_or(slider.diffusivity, Diffusivity::get),
+        };
         let feedback = match self.feedback {
             Choice::None => None,
             Choice::Mean => Some(feedback(&at.key("feedback"), motion, materials)?),
         };
         Some(Law {
-            bodies: [body(0), body(1)],
+            bodies: [slider, track],
             partition: self.partition,
             friction: self.friction.map_or(0.0, Number::get),
             hysteresis: self.hysteresis,
             heated_for: self.heated_for.map(Time::get),
             feedback,
         })
-    }
-}
-
-/// One value for both bodies, or two.
-fn pair_of<W: Copy>(
-    at: &Place<'_>,
-    given: &Form<W, Vec<W>, Never>,
-    get: impl Fn(W) -> f64,
-) -> Option<[f64; 2]> {
-    match given {
-        Form::Word(both) => Some([get(*both); 2]),
-        Form::List(list) => match list[..] {
-            [slider, track] => Some([get(slider), get(track)]),
-            _ => at.wrong("one value, or a list of two, of slider and track", ""),
-        },
-        Form::Table(never) => match *never {},
     }
 }
 

@@ -9,6 +9,7 @@ use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor};
 
+use super::place::Place;
 use crate::quantity::scalar::schema;
 
 /// A word, a list or a table.
@@ -41,6 +42,20 @@ impl<'de> Deserialize<'de> for Never {
 }
 
 schema!(Never, "Never", { "not": {} });
+
+impl<W: Copy> Form<W, Vec<W>> {
+    /// One value, or those of two `bodies`.
+    pub fn one_or_two(&self, at: &Place<'_>, bodies: &str) -> Option<(W, Option<W>)> {
+        match self {
+            Form::Word(one) => Some((*one, None)),
+            Form::List(list) => match list[..] {
+                [first, second] => Some((first, Some(second))),
+                _ => at.wrong(&format!("one value, or a list of two, of {bodies}"), ""),
+            },
+            Form::Table(never) => match *never {},
+        }
+    }
+}
 
 impl<'de, W, L, T> Deserialize<'de> for Form<W, L, T>
 where

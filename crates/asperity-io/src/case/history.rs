@@ -87,6 +87,18 @@ pub enum From {
     Current,
 }
 
+/// The history of a velocity: a constant, or a table. There is no earlier value in it.
+pub fn of_velocity(
+    at: &Place<'_>,
+    velocity: &Form<Velocity, Never, Box<History>>,
+) -> Option<asperity::History> {
+    match velocity {
+        Form::Word(velocity) => Some(asperity::History::Step { value: velocity.get() }),
+        Form::Table(table) => table.read(at, Kind::Velocity, "").map(|(history, _)| history),
+        Form::List(never) => match *never {},
+    }
+}
+
 impl History {
     /// The history in SI, and the file that holds it; a hold has none without an earlier value. `help` says what to do instead.
     pub fn read(

@@ -9,7 +9,7 @@ use asperity::{Boundary, Grid, TimeGrid};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 
 use super::body::Body;
-use super::history::{History, Kind};
+use super::history::{History, Kind, of_velocity};
 use super::keys::*;
 use super::pair::Pair;
 use super::plan::{Motion as Moving, Travel};
@@ -176,22 +176,16 @@ impl Motion {
     pub fn moving(&self, at: &Place<'_>, surfaces: &[Surface]) -> Option<Moving> {
         at.exactly_one(&["velocity", "path", "steady"])?;
         let start = self.start.map_or(0.0, Time::get);
-        // There is no earlier value in a history of these.
-        let history = |key: &str, history: &History, kind| {
-            history.read(&at.key(key), kind, "").map(|(history, _)| history)
-        };
         let travel = match (&self.velocity, &self.path) {
             (Some(velocity), _) => {
-                let history = match velocity {
-                    Form::Word(velocity) => asperity::History::Step { value: velocity.get() },
-                    Form::Table(table) => history("velocity", table, Kind::Velocity)?,
-                    Form::List(never) => match *never {},
-                };
-                Travel::Path(at.key("velocity").core(Path::of_velocity(history, start))?)
+                let at = at.key("velocity");
+                Travel::Path(at.core(Path::of_velocity(of_velocity(&at, velocity)?, start))?)
             }
             (None, Some(path)) => {
-                let history = history("path", path, Kind::Position)?;
-                Travel::Path(at.key("path").core(Path::of_position(history, start))?)
+                let at = at.key("path");
+                // There is no earlier value in the history.
+                let (history, _) = path.read(&at, Kind::Position, "")?;
+                Travel::Path(at.core(Path::of_position(history, start))?)
             }
             (None, None) => {
                 let why = "belongs to a motion in time, but the case asks for steady states";

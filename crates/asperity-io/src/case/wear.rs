@@ -5,7 +5,7 @@ use asperity::sliding::Path;
 use asperity::wear::Wear as Law;
 
 use super::hardness::numbers_of_cells;
-use super::history::{History, Kind};
+use super::history::{History, of_velocity};
 use super::history_file::Origin;
 use super::keys::*;
 use crate::quantity::WearCoefficient;
@@ -17,7 +17,7 @@ pub struct Wear {
     /// Wear coefficient k of the body that carries the moving surfaces, or a list of two: of that body and of the counterbody.
     #[schemars(example = "1e-15 m2/N")]
     #[schemars(example = serde_json::json!(["1e-6 mm3/(N m)", "2e-7 mm3/(N m)"]))]
-    coefficient: Form<WearCoefficient<NonNegative>, Vec<WearCoefficient<NonNegative>>, Never>,
+    coefficient: Form<WearCoefficient<NonNegative>, Vec<WearCoefficient<NonNegative>>>,
     /// Sliding velocity where nothing moves on the grid, as of a pin on a disc: a constant, or a history as in `[load]`. With `[motion]` or
     /// `[tangential]` their sliding counts instead.
     #[schemars(example = "0.1 m/s")]
@@ -58,18 +58,9 @@ impl Wear {
         grid: Option<&Grid>,
         slides: Option<&str>,
     ) -> Option<(Law, Vec<Origin>)> {
-        let coefficients = match &self.coefficient {
-            Form::Word(k) => [k.get(), 0.0],
-            Form::List(list) => match list[..] {
-                [body, counterbody] => [body.get(), counterbody.get()],
-                _ => {
-                    return at
-                        .key("coefficient")
-                        .wrong("two wear coefficients, of the body and of the counterbody", "");
-                }
-            },
-            Form::Table(never) => match *never {},
-        };
+        let (body, counterbody) =
+            self.coefficient.one_or_two(&at.key("coefficient"), "the body and the counterbody")?;
+        let coefficients = [body.get(), counterbody.map_or(0.0, WearCoefficient::get)];
         let path = match (&self.velocity, slides) {
             (None, None) => {
                 return at.fault(
@@ -86,14 +77,11 @@ impl Wear {
                     &help,
                 );
             }
-            (velocity, _) => velocity.as_ref().map(|velocity| {
-                let history = match velocity {
-                    Form::Word(velocity) => asperity::History::Step { value: velocity.get() },
-                    Form::Table(table) => table.read(&at.key("velocity"), Kind::Velocity, "")?.0,
-                    Form::List(never) => match *never {},
-                };
-                at.key("velocity").core(Path::of_velocity(history, 0.0))
-            }),
+            (Some(velocity), None) => {
+                let at = at.key("velocity");
+                Some(at.core(Path::of_velocity(of_velocity(&at, velocity)?, 0.0))?)
+            }
+            (None, Some(_)) => None,
         };
         let (map, file) = match (&self.array, &self.map) {
             (Some(name), _) => (Some(at.key("array").array(name, grid?)?), None),
@@ -107,10 +95,7 @@ impl Wear {
             coefficients,
             map,
             threshold: self.threshold.map_or(0.0, Pressure::get),
-            path: match path {
-                Some(read) => Some(read?),
-                None => None,
-            },
+            path,
             cycles: self.cycles_per_step.map_or(1.0, Number::get),
             cycles_tolerance: self.cycles_tolerance.map(Number::get),
             depth_limit: self.depth_limit.map(Length::get),

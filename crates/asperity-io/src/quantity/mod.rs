@@ -80,9 +80,13 @@ macro_rules! dimensions {
                 }
             )*
 
-            /// The SI unit of the dimension with these powers, where it has one here.
-            pub(super) fn unit(powers: Powers) -> Option<&'static str> {
-                [$(($type::POWERS, $type::SI)),*].into_iter().find(|known| known.0 == powers).map(|known| known.1)
+            /// The SI unit of the dimension with these powers, where it has one here; of several that of the one which has a unit
+            /// of this text.
+            pub(super) fn unit(powers: Powers, text: &str) -> Option<&'static str> {
+                let plain = |unit: &str| unit.replace(['^', ' '], "");
+                let known = || [$(($type::POWERS, $type::SI, $type::UNITS)),*].into_iter().filter(|known| known.0 == powers);
+                let is_meant = |units: &str| units.split(',').any(|unit| plain(unit) == plain(text));
+                known().find(|known| is_meant(known.1) || is_meant(known.2)).or(known().next()).map(|known| known.1)
             }
 
             /// The name of the dimension with these powers, where it has one here.
@@ -265,6 +269,7 @@ impl<D: Dimension, R: Range> FromStr for Quantity<D, R> {
 /// assert_eq!(in_si("300 MPa"), Some((300e6, "Pa")));
 /// assert_eq!(in_si("20 °C"), Some((293.15, "K")));
 /// assert_eq!(in_si("7"), Some((7.0, "")));
+/// assert_eq!(in_si("2 mm3/(N m)"), Some((2e-9, "m2/N")));
 /// assert_eq!(in_si("steel"), None);
 /// ```
 pub fn in_si(text: &str) -> Option<(f64, &'static str)> {
@@ -272,7 +277,7 @@ pub fn in_si(text: &str) -> Option<(f64, &'static str)> {
     match Unit::parse(rest) {
         Ok(unit) => {
             let value = number.scaled(unit.exponent) * unit.numerator / unit.denominator;
-            Some((value, dimension::unit(unit.powers)?))
+            Some((value, dimension::unit(unit.powers, rest)?))
         }
         Err(_) => {
             let kelvin = text.parse::<Temperature>().map(|temperature| (temperature.get(), "K"));

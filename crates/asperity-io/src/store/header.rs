@@ -112,6 +112,16 @@ impl Header {
         self.setup.contains_key(Header::FLASH)
     }
 
+    /// Whether its undeformed surfaces change their shape: they wear, or flatten for good.
+    pub fn changes_shape(&self) -> bool {
+        self.wears() || self.setup.get("plasticity").and_then(Value::as_str) == Some("accumulate")
+    }
+
+    /// Whether its surfaces move over each other from row to row.
+    pub fn moves_in_time(&self) -> bool {
+        self.setup.contains_key("motion") && self.axis() == Axis::Time
+    }
+
     /// What its rows follow one another in.
     pub fn axis(&self) -> Axis {
         match self.setup.get("motion").and_then(|motion| motion.get("steady")).and_then(Value::as_bool) {

@@ -175,19 +175,19 @@ impl Map {
         Some(ColourScale::of(&self.values, self.whole, colours, self.palette, self.range, self.log))
     }
 
-    /// The values at the ends of its colours; `None` for states, where all values are 0 and no ends are given, for the pressure where
-    /// nothing touches and the gap where everything does.
+    /// The values at the ends of its colours; `None` for states, and where it shows nothing.
     pub(crate) fn ends(&self) -> Option<[f64; 2]> {
-        let is_zero = self.range.is_none() && self.values.iter().all(|value| *value == 0.0);
-        self.scale().filter(|_| !is_zero && !self.shows_nothing()).map(|scale| scale.ends)
+        self.scale().filter(|_| !self.shows_nothing()).map(|scale| scale.ends)
     }
 
-    /// Whether it is a map of the pressure where nothing touches, or of the gap where everything does, with no ends of its colours
-    /// given.
+    /// Whether no ends of its colours are given and all values are 0; of a pressure by its logarithm whether none is positive.
     pub(super) fn shows_nothing(&self) -> bool {
         let Values::Quantity { colours, .. } = self.meaning else { return false };
-        let is_open = colours.leave_out_zero() && self.range.is_none();
-        is_open && !self.values.iter().any(|value| *value > 0.0 || (*value < 0.0 && !self.log))
+        let shows = |value: &f64| match colours.leave_out_zero() {
+            true => *value > 0.0 || (*value < 0.0 && !self.log),
+            false => *value != 0.0,
+        };
+        self.range.is_none() && !self.values.iter().any(shows)
     }
 
     pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {

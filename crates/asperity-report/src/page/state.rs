@@ -81,6 +81,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "answers": answers,
         "facts": facts(reader)?,
         "case": reader.header().case_text,
+        "still": !reader.header().changes_shape() && !reader.header().moves_in_time(),
         "grid": {"cells": grid.cells(), "size": grid.size(), "line": grid.is_line()},
         "series": series,
         "units": units_of,

@@ -47,6 +47,26 @@ pub(super) fn gap(reader: &Reader, at: At) -> Result<Array2<f64>, StoreError> {
     Ok(gap)
 }
 
+/// The gap between the undeformed surfaces at an instant; where they move, wear or flatten from the fields of that instant, `None` where
+/// these are not kept.
+pub(super) fn undeformed_gap(reader: &Reader, at: At) -> Result<Option<Array2<f64>>, StoreError> {
+    let header = reader.header();
+    let keeps = |kind| header.fields.contains(&kind);
+    if keeps(FieldKind::UndeformedGap) {
+        return Ok(Some(reader.field(FieldKind::UndeformedGap, at)?));
+    }
+    if !header.changes_shape() && !header.moves_in_time() {
+        return Ok(Some(reader.initial_gap()?));
+    }
+    if !keeps(FieldKind::Gap) || !keeps(FieldKind::Displacement) {
+        return Ok(None);
+    }
+    // h = h0 - w + u
+    let approach = super::at_instant(reader, reader.index(at)?, "approach")?;
+    let rise = reader.field(FieldKind::Displacement, at)?;
+    Ok(Some(reader.field(FieldKind::Gap, at)? + approach - rise))
+}
+
 /// The map of a field at an instant.
 pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, PlotError> {
     if reader.header().grid.is_line() {
@@ -70,6 +90,9 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, Pl
             if values.iter().any(|pressure| *pressure <= 0.0) =>
         {
             (no_contact(reader, index)?, " Light: no contact.")
+        }
+        _ if values.iter().all(touches) => {
+            (format!("0 everywhere at {}: {label}", super::moment(reader, reader.field_times()[index])), "")
         }
         _ => (no_contact(reader, index)?, ""),
     };

@@ -62,10 +62,14 @@ pub(super) fn initial_gap(reader: &Reader) -> Result<Figure, StoreError> {
 }
 
 /// Both surfaces in the contact, the deformed one and the other, which stays as it is: z = -u and z = h0 - w, so that their
-/// distance is the gap h = h0 - w + u. `gap` is h.
-pub(super) fn surfaces(reader: &Reader, index: usize, gap: &Array2<f64>) -> Result<Curves, StoreError> {
+/// distance is the gap h = h0 - w + u. `gap` is h, `before` h0.
+pub(super) fn surfaces(
+    reader: &Reader,
+    index: usize,
+    gap: &Array2<f64>,
+    before: &Array2<f64>,
+) -> Result<Curves, StoreError> {
     let approach = super::at_instant(reader, index, "approach")?;
-    let before = reader.initial_gap()?;
     let other: Vec<f64> = before.iter().map(|h0| h0 - approach).collect();
     let deformed: Vec<f64> = other.iter().zip(gap).map(|(z, h)| z - h).collect();
     // Far from the contact the other body rises out of sight: twice the depth of the contact shows what happens.

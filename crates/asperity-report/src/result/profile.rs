@@ -35,13 +35,29 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
     }
     if kept.contains(&FieldKind::Gap) {
         let gap = super::fields::gap(reader, options.at)?;
-        let panel = panel("gap", "m")
-            .with(Series::new("now", Style::Line, &place, of(&gap)))
-            .with(Series::new("undeformed", Style::Dashed, &place, of(&reader.initial_gap()?)));
-        figure = figure.with(panel);
-        if grid.is_line() {
-            figure = figure.with(super::line::surfaces(reader, index, &gap)?);
+        let undeformed = super::fields::undeformed_gap(reader, options.at)?;
+        let mut curves =
+            panel("gap", "m").with(Series::new("between the bodies", Style::Line, &place, of(&gap)));
+        if let Some(undeformed) = &undeformed {
+            curves = curves.with(Series::new("undeformed", Style::Dashed, &place, of(undeformed)));
         }
+        if reader.header().changes_shape() {
+            let start = of(&reader.initial_gap()?);
+            curves = curves.with(Series::new("undeformed at the start", Style::Dotted, &place, start));
+        }
+        figure = figure.with(curves);
+        if let Some(undeformed) = undeformed.filter(|_| grid.is_line()) {
+            figure = figure.with(super::line::surfaces(reader, index, &gap, &undeformed)?);
+        }
+    }
+    let worn = [(FieldKind::WearDepth, "body"), (FieldKind::CounterbodyWearDepth, "counterbody")];
+    let mut curves = panel("worn depth", "m");
+    for (kind, body) in worn.into_iter().filter(|(kind, _)| kept.contains(kind)) {
+        let depth = of(&reader.field(kind, options.at)?);
+        curves = curves.with(Series::new(body, Style::Line, &place, depth));
+    }
+    if !curves.series.is_empty() {
+        figure = figure.with(curves);
     }
     if kept.contains(&FieldKind::Displacement) {
         let displacement = of(&reader.field(FieldKind::Displacement, options.at)?);

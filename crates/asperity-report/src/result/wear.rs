@@ -34,15 +34,14 @@ pub(super) fn wear(reader: &Reader, options: &Options) -> Result<Figure, PlotErr
     let has_track =
         reader.scalars().iter().any(|series| series.name == Quantity::CounterbodyWearVolume.name());
     let mut volume = of(title, label, grid.units("m3"))
-        .with(quantity(if has_track { "both bodies" } else { "" }, Quantity::WearVolume)?);
+        .with(quantity(if has_track { "all" } else { "" }, Quantity::WearVolume)?);
     if has_track {
         volume = volume.with(quantity("counterbody", Quantity::CounterbodyWearVolume)?);
     }
-    let depth = of("Depth and roughness", "length", "m")
-        .with(quantity("largest worn depth", Quantity::WearDepthMax)?)
-        .with(quantity("roughness of the gap (Sq)", Quantity::WornRoughness)?);
+    let depth = of("Largest worn depth", "depth", "m").with(quantity("", Quantity::WearDepthMax)?);
+    let roughness = of("Roughness of the gap", "Sq", "m").with(quantity("", Quantity::WornRoughness)?);
     let area = of("Contact", "contact over nominal area", "").with(line("", "contact_fraction")?);
     let pressure = Series::new("mean over the contact", Style::Line, &x, pick(&reader.contact_pressures()?));
     let pressure = of("Pressure", "pressure", "Pa").with(line("largest", "max_pressure")?).with(pressure);
-    Ok(Figure::new("").with(volume).with(depth).with(area).with(pressure))
+    Ok(Figure::new("").with(volume).with(depth).with(area).with(pressure).with(roughness))
 }

@@ -230,7 +230,7 @@ quantities! {
     /// Certified error of the tangential tractions in the energy norm, relative.
     FrictionCertificate = "friction_certificate" ["1"] "certified error of the tangential tractions, relative", Tangential, ("Error of each row", "relative error", "tangential tractions (certificate)");
     /// Volume that wear has taken off both bodies since t = 0, in m3; of surfaces that wear, as the seven that follow.
-    WearVolume = "wear_volume" ["m3"] "worn volume of both bodies", Wear, ("Worn volume", "volume", "both bodies"),
+    WearVolume = "wear_volume" ["m3"] "worn volume of both bodies", Wear, ("Worn volume", "volume", "all"),
         on a line ["m2"] "worn area of both bodies' sections" ("Worn area of the section", "area");
     /// What of it is of the counterbody, over which the contact moves, in m3.
     CounterbodyWearVolume = "counterbody_wear_volume" ["m3"] "worn volume of the counterbody", Wear, ("Worn volume", "volume", "counterbody"),
@@ -243,9 +243,9 @@ quantities! {
     /// Sliding distance since t = 0, in m; of surfaces that slide along a path or in motion.
     WearDistance = "wear_distance" ["m"] "sliding distance", Wear, ("Sliding distance", "distance", "");
     /// Largest depth that wear has taken off a body, in m.
-    WearDepthMax = "wear_depth_max" ["m"] "largest worn depth", Wear, ("Depth and roughness", "length", "largest worn depth");
+    WearDepthMax = "wear_depth_max" ["m"] "largest worn depth", Wear, ("Largest worn depth", "depth", "");
     /// Root of the mean square of the undeformed gap about its mean, with what is worn, in m.
-    WornRoughness = "worn_roughness" ["m"] "roughness of the worn gap (Sq)", Wear, ("Depth and roughness", "length", "roughness of the gap (Sq)");
+    WornRoughness = "worn_roughness" ["m"] "roughness of the worn gap (Sq)", Wear, ("Roughness of the gap", "Sq", "");
     /// Share of the worn volume whose place is uncertain because the pressure changes over the steps, or that is because the load does.
     WearError = "wear_error" ["1"] "estimated error of the worn depths, relative", Wear, ("Error of each row", "relative error", "worn depths");
     /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.

@@ -83,8 +83,7 @@ impl ProgressDisplay {
         }
         let row = progress.row;
         let moment = format::coordinate(row.coordinate);
-        let friction =
-            progress.friction.map_or(String::new(), |f| format!(", friction {:.4}", f.coefficient));
+        let friction = progress.friction.map_or(String::new(), |f| format!(", friction {:.4}", f.of_all()));
         let state = format!(
             "{moment}, contact {:.2} %{friction}, {}",
             100.0 * row.contact_fraction,

@@ -1,6 +1,7 @@
 //! `asperity show`: a result in the terminal.
 
 use asperity::quantities::Quantity;
+use asperity::sliding::Friction;
 use asperity::step::Row;
 use asperity::{Axis, Grid};
 use asperity_io::answer::{self, Answer, Units};
@@ -163,8 +164,8 @@ fn course(reader: &Reader, rows: &[Row], units: &Units) -> Result<String, StoreE
         Axis::Velocity => line(axis.name(), format!("{first} to {end}")),
         Axis::Time | Axis::None => line(axis.name(), end),
     };
-    if reader.scalars().iter().any(|series| series.name == Quantity::FrictionCoefficient.name()) {
-        let mu = reader.series(Quantity::FrictionCoefficient.name())?;
+    let mu: Vec<f64> = reader.frictions()?.iter().map(Friction::of_all).collect();
+    if !mu.is_empty() {
         let [low, high] = extent(mu.iter().copied());
         let last = mu.last().copied().unwrap_or(f64::NAN);
         text += &line("friction", format!("{last:<14.4}{}  {low:.4} to {high:.4}", bars(&mu)));

@@ -4,6 +4,7 @@ use asperity::quantities::Quantity;
 use asperity::step::Row;
 
 use super::Answer;
+use crate::readable::quantity;
 use crate::store::{Reader, Result};
 
 /// The largest temperatures of all rows; none where friction does not warm the surfaces.
@@ -11,14 +12,19 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
     if !reader.header().warms() {
         return Ok(vec![]);
     }
-    let largest = |quantity: Quantity, note: &str| -> Result<Answer> {
-        let values = reader.series(quantity.name())?;
+    let largest = |own: Quantity, note: &str| -> Result<Answer> {
+        let values = reader.series(own.name())?;
         let warmest = (0..values.len()).reduce(|a, b| if values[b] > values[a] { b } else { a }).unwrap_or(0);
-        let answer = Answer::new(quantity.name(), values[warmest], "K");
-        Ok(answer.at(&rows[warmest]).with_note(note))
+        let answer = Answer::new(own.name(), values[warmest], "K");
+        let at = quantity(rows[warmest].coordinate.value(), reader.header().axis().unit());
+        Ok(answer.at(&rows[warmest]).with_note(format!("{note}, the largest of all rows, at {at}")))
     };
-    Ok(vec![
-        largest(Quantity::FlashTemperatureMax, "above the surroundings, the largest of all rows")?,
-        largest(Quantity::FlashTemperatureMean, "over the contact, the largest of all rows")?,
-    ])
+    let mut answers = vec![
+        largest(Quantity::FlashTemperatureMax, "above the surroundings")?,
+        largest(Quantity::FlashTemperatureMean, "over the contact")?,
+    ];
+    if reader.header().quantities.iter().any(|column| column.quantity == Quantity::MaterialTemperature) {
+        answers.push(largest(Quantity::MaterialTemperature, "at which the feedback takes the material")?);
+    }
+    Ok(answers)
 }

@@ -8,7 +8,7 @@
 //! | with wear | `wear_life` where a depth is given, `wear_volume`, `counterbody_wear_volume`, `wear_depth_max` |
 //! | with flash temperature | `flash_temperature_max`, `flash_temperature_mean` |
 //! | with a load along the surfaces | `loop_energy` of the last loop, `tangential_stiffness`, `largest_tangential_force`, `largest_tangential_displacement`, `slip_share`, `slip_work` |
-//! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force` |
+//! | in motion | `friction_coefficient` (of a sweep the largest, with `velocity_of_largest_friction` and the value at each of a few velocities), `friction_force`, with friction of the surfaces also `friction_force_total` |
 //! | with a sine | `loss_angle`, `dissipated_energy`, `dynamic_stiffness` of the last cycle |
 //! | every contact | `contact_area`, `contact_area_corrected`, `contact_fraction`, `max_pressure`, `approach` and `creep` where the load is given, `load` and `relaxation` where the approach is |
 //! | under a sine, with `plastic_volume` | `flattening_per_cycle` |
@@ -143,7 +143,8 @@ fn decisive(reader: &Reader, rows: &[Row]) -> Result<Option<usize>> {
 
 /// Loss angle, loss and stiffness of the last full cycle of a sine.
 fn last_cycle(reader: &Reader) -> Result<Vec<Answer>> {
-    let stages = cycles::of_result(reader)?;
+    // What wears away is no loss of the material.
+    let stages = if reader.header().wears() { vec![] } else { cycles::of_result(reader)? };
     let Some((part, cycle)) = stages.iter().rev().find_map(|part| Some((part, part.cycles.last()?))) else {
         return Ok(vec![]);
     };

@@ -1,7 +1,7 @@
 //! Friction of a contact in motion.
 
 use asperity::Axis;
-use asperity::quantities::Quantity;
+use asperity::sliding::Friction;
 use asperity::step::Row;
 
 use super::Answer;
@@ -11,11 +11,9 @@ use crate::store::{Reader, Result};
 /// A sweep over at most so many velocities has an answer for each.
 const FEW: usize = 5;
 
-/// The friction coefficient of each row, with the shear stress on the contact where it is given.
+/// The friction coefficient of each row, with the friction of the surfaces where they have any.
 pub(super) fn coefficients(reader: &Reader) -> Result<Vec<f64>> {
-    let total = Quantity::FrictionCoefficientTotal.name();
-    let has_total = reader.scalars().iter().any(|series| series.name == total);
-    reader.series(if has_total { total } else { Quantity::FrictionCoefficient.name() })
+    Ok(reader.frictions()?.iter().map(Friction::of_all).collect())
 }
 
 /// The answers of the row `n`; none where nothing moves.
@@ -28,10 +26,14 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
     let largest = if sweep && rows.len() > 1 { "the largest of the sweep; " } else { "" };
     let error = quantity(100.0 * friction.uncertainty, "");
     let note = format!("{largest}the force is known to {error} %");
-    let mut answers = vec![
-        Answer::new("friction_coefficient", coefficients[n], "1").at(row).with_note(note),
-        Answer::new("friction_force", friction.force, reader.header().grid.units("N")).at(row),
-    ];
+    let force = |name: &str, newton: f64| Answer::new(name, newton, reader.header().grid.units("N")).at(row);
+    let mut answers = vec![Answer::new("friction_coefficient", coefficients[n], "1").at(row).with_note(note)];
+    if friction.total.is_nan() {
+        answers.push(force("friction_force", friction.force));
+    } else {
+        answers.push(force("friction_force_total", friction.total * row.load));
+        answers.push(force("friction_force", friction.force).with_note("of it, of the loss in the bulk"));
+    }
     if sweep && rows.len() > 1 {
         let velocity = |n: usize| rows.get(n).map(|row| row.coordinate.value());
         let own = row.coordinate.value();

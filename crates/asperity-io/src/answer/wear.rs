@@ -92,7 +92,7 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
     Ok(answers)
 }
 
-/// Where a depth that grows along `way` reaches a limit, between the rows on a straight line; beyond the last row at its mean rate since
+/// Where a depth that grows along `way` reaches a limit, between the rows as a power, as depths of running-in grow; beyond the last row at its mean rate since
 /// the row `from`, or since the row before. `None` where it does not grow.
 fn reached(limit: f64, depth: &[f64], way: &[f64], from: Option<usize>) -> Option<f64> {
     let last = depth.len().checked_sub(1)?;
@@ -101,6 +101,11 @@ fn reached(limit: f64, depth: &[f64], way: &[f64], from: Option<usize>) -> Optio
         None => [from.unwrap_or(last.checked_sub(1)?), last],
     };
     let grows = depth[end] - depth[first];
+    let is_inside = depth[end] >= limit;
+    if is_inside && depth[first] > 0.0 && way[first] > 0.0 {
+        let power = (way[end] / way[first]).ln() / (depth[end] / depth[first]).ln();
+        return Some(way[first] * (limit / depth[first]).powf(power));
+    }
     (grows > 0.0).then(|| way[first] + (limit - depth[first]) / grows * (way[end] - way[first]))
 }
 
@@ -111,7 +116,10 @@ mod tests {
     #[test]
     fn a_limit_is_reached_between_rows_or_beyond_the_last() {
         let (depth, way) = ([0.0, 1.0, 2.0, 2.5], [0.0, 1.0, 3.0, 5.0]);
-        assert_eq!(reached(1.5, &depth, &way, None), Some(2.0));
+        let between = reached(1.5, &depth, &way, None).unwrap();
+        // ln 1.5/ln 2 of the way from 1 to 3 on a logarithmic scale.
+        assert!((between - libm::pow(3.0, 1.5f64.ln() / 2f64.ln())).abs() < 1e-12);
+        assert_eq!(reached(0.5, &depth, &way, None), Some(0.5));
         assert_eq!(reached(3.0, &depth, &way, None), Some(7.0));
         // At the mean rate since the second row.
         assert_eq!(reached(4.0, &depth, &way, Some(1)), Some(9.0));

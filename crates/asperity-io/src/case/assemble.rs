@@ -194,7 +194,7 @@ impl Document {
             let end = times.as_ref().map_or(f64::INFINITY, TimeGrid::end);
             section.met(&at("motion"), motion, &self.body, pair, end);
             if let Some(grid) = &grid {
-                let found = motion.findings(&self.surface, grid, boundary, pair);
+                let found = motion.findings(&self.surface, grid, boundary, pair, self.flash.is_some());
                 pair.findings.extend(found);
             }
         }
@@ -380,7 +380,11 @@ impl Document {
         let (section, at) = (self.flash.as_ref()?, checks.at("flash"));
         if self.motion.is_none() {
             let help = "add [motion] with a velocity, a path or steady states, or delete the section";
-            return at.fault("nothing slides, so nothing makes heat", "a section [motion]", help);
+            let message = match self.tangential {
+                Some(_) => "the heat of slip under a tangential load is not computed",
+                None => "nothing slides, so nothing makes heat",
+            };
+            return at.fault(message, "a section [motion]", help);
         }
         section.law(&at, motion?, materials?)
     }

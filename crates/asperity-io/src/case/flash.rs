@@ -91,6 +91,11 @@ impl Flash {
                     "give friction = 0.3, a shear_stress in [motion], or hysteresis = true",
                 );
             }
+            (None, None) if !materials.pair.creeps.iter().any(|(creep, _)| creep.remembers()) => {
+                let message = "the bodies are elastic and lose nothing, so hysteresis makes no heat";
+                let help = "give friction = 0.3, or a shear_stress in [motion]";
+                return at.key("hysteresis").fault(message, "`friction` or `motion.shear_stress`", help);
+            }
             _ => {}
         }
         let bodies = "slider and track";

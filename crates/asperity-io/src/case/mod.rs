@@ -369,7 +369,9 @@ impl Case {
             };
             wanted.list.retain(|quantity| !quantity.is_of_motion());
             wanted.list.extend(Quantity::of_motion().filter(known));
-            wanted.list.extend(motion.shear_stress.as_ref().map(|_| Quantity::FrictionCoefficientTotal));
+            let rubs = motion.shear_stress.is_some()
+                || simulation.flash.as_ref().is_some_and(|flash| flash.friction > 0.0);
+            wanted.list.extend(rubs.then_some(Quantity::FrictionCoefficientTotal));
         }
         wanted
     }

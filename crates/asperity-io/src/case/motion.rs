@@ -403,20 +403,21 @@ impl Moving {
         at.core(path.crossings(self.cells_per_step * self.direction.cell(grid), end))
     }
 
-    /// What is found about a motion before the run.
+    /// What is found about a motion before the run; `rubs` tells whether the surfaces have friction of their own.
     pub(super) fn findings(
         &self,
         surfaces: &[Surface],
         grid: &Grid,
         boundary: Boundary,
         pair: &Pair,
+        rubs: bool,
     ) -> Vec<Finding> {
         let parts = || std::iter::once(&pair.creep).chain(pair.thermal.iter().map(|body| &body.creep));
         let branches: Vec<(f64, f64)> = parts()
             .flat_map(|creep| creep.terms.iter().map(|term| (term.compliance, term.retardation_time)))
             .collect();
         if branches.is_empty() && !parts().any(|creep| creep.fluidity > 0.0) {
-            return vec![finding::friction_zero()];
+            return if self.shear_stress.is_some() || rubs { vec![] } else { vec![finding::friction_zero()] };
         }
         let velocities = match &self.travel {
             Travel::Steady(velocities) => velocities.clone(),

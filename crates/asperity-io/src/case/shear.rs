@@ -44,8 +44,10 @@ pub fn law(at: &Place<'_>, given: &Shear) -> Option<ShearStress> {
             ShearStress::Table { points: points.collect() }
         }
         Form::Table(ShearLaw { peak, velocity, width, .. }) => {
-            let why = "is needed for a peak over the velocity";
-            let Some(peak) = peak else { return at.missing("peak", "or `points` say what the stress is") };
+            let why = ": a peak over the velocity needs it";
+            let Some(peak) = peak else {
+                return at.missing("peak", ": give it, or `points`, which say what the stress is");
+            };
             let Some(velocity) = velocity else { return at.missing("velocity", why) };
             let Some(width) = width else { return at.missing("width", why) };
             ShearStress::Gaussian { peak: peak.get(), velocity: velocity.get(), width: width.get() }

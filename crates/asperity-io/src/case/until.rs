@@ -70,21 +70,12 @@ pub fn resolve(number: RowNumber, value: &Prescribed, line: bool) -> Result<f64,
         Ok(grid) if line => number.units_on(&grid),
         _ => number.units(),
     };
-    fn si<D: Dimension>(value: &Prescribed) -> Result<f64, QuantityError> {
-        value.resolve::<D, Finite>().map(|value| value.get())
-    }
-    match units {
-        "m" => si::<dimension::Length>(value),
-        "m2" => si::<dimension::Area>(value),
-        "m/s" => si::<dimension::Velocity>(value),
-        "N" => si::<dimension::Force>(value),
-        "N/m" => si::<dimension::ForcePerLength>(value),
-        "N m" => si::<dimension::Moment>(value),
-        "Pa" | "N/m2" => si::<dimension::Pressure>(value),
-        "W" => si::<dimension::Power>(value),
-        "W/m" => si::<dimension::PowerPerLength>(value),
-        _ => si::<dimension::Number>(value),
-    }
+    let known = match units {
+        "N/m2" => "Pa",
+        "J/m" => "N",
+        units => units,
+    };
+    dimension::resolve(known, value)
 }
 
 impl JsonSchema for Until {

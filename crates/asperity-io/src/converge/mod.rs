@@ -5,7 +5,7 @@
 //!
 //! - **grid**: half and, where possible, a quarter of the cells along each side. Where the cells cannot be halved (roughness whose
 //!   shortest wave has too few cells then) the grid is refined instead.
-//! - **time**: steps twice as long; where that is not possible, half as long. Elastic contacts at rest have no such error.
+//! - **time**: steps twice as long; where that is not possible, half as long. Elastic contacts at rest that do not wear have no such error.
 //! - **solver**: ten times the tolerance.
 //!
 //! The second and the third are measured on the coarser grid, where they cost little. All together take less than the run itself where

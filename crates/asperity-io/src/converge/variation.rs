@@ -91,7 +91,7 @@ fn cells(case: &Case, table: &Table, change: impl Fn(usize) -> usize) -> Result<
     Ok(keys)
 }
 
-/// Whether the length of the steps can change an answer: bodies that remember, a contact that moves, surfaces that stay flattened or
+/// Whether the length of the steps can change an answer: bodies that remember, a contact that moves, surfaces that wear, stay flattened or
 /// attract each other, and answers about the cycles of a sine. The rows of an elastic contact do not depend on those before them, and a
 /// sweep over velocities has no steps.
 pub(super) fn steps_matter(case: &Case) -> bool {
@@ -101,7 +101,8 @@ pub(super) fn steps_matter(case: &Case) -> bool {
     let has_path = traction.is_some() || case.conditions.plasticity == Plasticity::Accumulate;
     let is_sine = |course: &Course| matches!(course, Course::Given(History::Sine { .. }));
     let has_cycles = loading.stages.iter().any(|stage| is_sine(&stage.course));
-    case.axis() == Axis::Time && (remembers || has_path || has_cycles || case.motion.is_some())
+    case.axis() == Axis::Time
+        && (remembers || has_path || has_cycles || case.motion.is_some() || case.conditions.wear.is_some())
 }
 
 /// Whether a shape of the case has an edge or a tip where the pressure grows without end, and no hardness limits it.

@@ -63,7 +63,7 @@ macro_rules! dimensions {
     ($($(#[$doc:meta])* $type:ident = $name:literal, $si:literal, $units:literal, $example:literal, $powers:expr;)*) => {
         /// The dimensions that a case file knows.
         pub mod dimension {
-            use super::{Dimension, Powers};
+            use super::{Dimension, Finite, Powers, Prescribed, Quantity, QuantityError};
 
             $(
                 #[doc = concat!("The dimension of ", $name, ".")]
@@ -89,6 +89,17 @@ macro_rules! dimensions {
                 known().find(|known| is_meant(known.1) || is_meant(known.2)).or(known().next()).map(|known| known.1)
             }
 
+            /// The value \[SI\] of a quantity whose SI unit is `unit`; of a unit that is not known here that of a number.
+            ///
+            /// # Errors
+            /// [`QuantityError`] for another dimension, or a text that is no quantity.
+            pub fn resolve(unit: &str, value: &Prescribed) -> Result<f64, QuantityError> {
+                $(if unit == $type::SI {
+                    return value.resolve::<$type, Finite>().map(Quantity::get);
+                })*
+                value.resolve::<Number, Finite>().map(Quantity::get)
+            }
+
             /// The name of the dimension with these powers, where it has one here.
             pub(super) fn name(powers: Powers) -> Option<&'static str> {
                 [$(($type::POWERS, $name)),*].into_iter().find(|known| known.0 == powers).map(|known| known.1)
@@ -112,6 +123,12 @@ dimensions! {
     ForcePerLength = "a force per length", "N/m", "N/m, N/mm, kN/m", "2 N/mm", [0, 1, -2, 0, 0];
     /// An area \[m²\].
     Area = "an area", "m2", "um^2, mm^2, m^2", "1 mm^2", [2, 0, 0, 0, 0];
+    /// A volume \[m³\].
+    Volume = "a volume", "m3", "um^3, mm^3, m^3", "1 mm^3", [3, 0, 0, 0, 0];
+    /// A volume per time \[m³/s\].
+    VolumePerTime = "a volume per time", "m3/s", "um^3/s, mm^3/s, ml/min, m^3/s", "1 mm^3/s", [3, 0, -1, 0, 0];
+    /// An energy \[J\].
+    Energy = "an energy", "J", "uJ, mJ, J", "1 mJ", [2, 1, -2, 0, 0];
     /// A moment \[N m\].
     Moment = "a moment", "N m", "N mm, N m", "1 N mm", [2, 1, -2, 0, 0];
     /// A power \[W\].

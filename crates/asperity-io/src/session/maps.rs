@@ -26,7 +26,7 @@ impl Maps {
         }
     }
 
-    /// All fields of the case. Those of a contact that has moved are in its frame: beyond the ends of a free track nothing is known but
+    /// All fields of the case. Those of a contact that has moved are in its frame, but for what is worn off its track: beyond the ends of a free track nothing is known but
     /// that there is no pressure.
     pub(super) fn of<'b>(&'b mut self, step: &Step<'b>) -> Vec<Field<'b>> {
         let (shift, boundary) = (step.frame_shift(), step.simulation().boundary);
@@ -36,7 +36,7 @@ impl Maps {
             if *kind != FieldKind::Pressure {
                 kind.of_step(step, field);
             }
-            if has_moved {
+            if has_moved && *kind != FieldKind::CounterbodyWearDepth {
                 let is_unknown = matches!(
                     kind,
                     FieldKind::Gap

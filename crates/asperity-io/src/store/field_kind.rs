@@ -1,5 +1,6 @@
 //! The fields that a result may keep: one table, which store, case, exports, figures, pages and Python read.
 
+use asperity::flash::Partition;
 use asperity::step::Step;
 use asperity::{Plasticity, Simulation};
 use ndarray::Array2;
@@ -110,7 +111,7 @@ fields! {
         |step, to| step.friction_work_into(to);
     /// Depth that wear has taken off the body, which moves with the contact, since t = 0, in m; of surfaces that wear, as those that follow.
     WearDepth = "wear_depth" ["m"] "worn depth of the body since t = 0", "worn depth", Amount, Wear, |step, to| step.wear_depth_into(0, to);
-    /// Depth that wear has taken off the counterbody since t = 0, in m.
+    /// Depth that wear has taken off the counterbody since t = 0, in m; in motion in the frame of the track, not of the contact.
     CounterbodyWearDepth = "counterbody_wear_depth" ["m"] "worn depth of the counterbody since t = 0", "worn depth of the counterbody",
         Amount, Wear, |step, to| step.wear_depth_into(1, to);
     /// Gap between the undeformed surfaces as they are worn and flattened now, in m.
@@ -200,6 +201,15 @@ impl FieldKind {
             }
             Of::Flash if simulation.flash.is_none() => {
                 Some(["nothing warms the surfaces of a case without [flash]", "leave it out, or add [flash]"])
+            }
+            Of::Flash
+                if self == FieldKind::SliderFlashTemperature
+                    && simulation.flash.as_ref().is_some_and(|flash| flash.partition == Partition::Track) =>
+            {
+                Some([
+                    "the slider takes no heat with partition = \"track\"",
+                    "leave it out, or take another partition",
+                ])
             }
             _ => None,
         }

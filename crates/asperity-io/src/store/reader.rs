@@ -264,7 +264,10 @@ impl Reader {
             At::Last => times.len().checked_sub(1),
             At::Time(time) if !self.is_within(time)? => None,
             At::Time(time) => {
-                let distance = |t: &f64| (t - time).abs();
+                let distance = |t: &f64| match self.header().axis() {
+                    Axis::Velocity if *t > 0.0 && time > 0.0 => libm::log(t / time).abs(),
+                    _ => (t - time).abs(),
+                };
                 let candidates = times.iter().enumerate().filter(|(_, t)| distance(t).is_finite());
                 // The last of several at the same distance.
                 let nearest = candidates.rev().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
@@ -404,6 +407,7 @@ impl Reader {
         let stored =
             |quantity: &Quantity| self.header().quantities.iter().any(|column| column.quantity == *quantity);
         let mut columns: Vec<(Quantity, Vec<f64>)> = Quantity::of_motion()
+            .chain([Quantity::FrictionCoefficientTotal])
             .filter(stored)
             .map(|quantity| Ok((quantity, self.numbers(quantity.name())?)))
             .collect::<Result<_>>()?;

@@ -154,6 +154,10 @@ fn is_of_its_row(reader: &Reader, index: usize, row: &Row) -> Result<()> {
             }
             FieldKind::Gap => {
                 let gap = reader.field(*kind, at)?;
+                // Beyond the ends of a free track nothing is known.
+                if gap.iter().any(|gap| gap.is_nan()) {
+                    continue;
+                }
                 let finite = || gap.iter().filter(|gap| gap.is_finite());
                 let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
                 close(mean, row.mean_gap, finite().fold(row.approach.abs(), |most, gap| most.max(gap.abs())))

@@ -91,6 +91,14 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, Pl
         {
             (no_contact(reader, index)?, " Light: no contact.")
         }
+        FieldKind::FlashTemperature | FieldKind::SliderFlashTemperature => {
+            let face = if kind == FieldKind::FlashTemperature {
+                " Above the surroundings."
+            } else {
+                " Of the slider, above the surroundings."
+            };
+            (no_contact(reader, index)?, face)
+        }
         _ if values.iter().all(touches) => {
             (format!("0 everywhere at {}: {label}", super::moment(reader, reader.field_times()[index])), "")
         }
@@ -99,7 +107,8 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, Pl
     let size = reader.header().grid.size();
     let map = Map::new(heading, [label, kind.units()], colours, values.view(), size);
     let overlap = if kind == FieldKind::Gap && values.iter().any(|gap| *gap < 0.0) { OVERLAP } else { "" };
-    Ok(single(map, caption(reader, index)? + light + overlap))
+    let unknown = if values.iter().any(|value| value.is_nan()) { " Grey: beyond the domain." } else { "" };
+    Ok(single(map, caption(reader, index)? + light + unknown + overlap))
 }
 
 /// The map of the contact states.

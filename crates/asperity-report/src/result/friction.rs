@@ -1,6 +1,7 @@
 //! Friction of a contact in motion: over the velocity of steady states, or over time.
 
 use asperity::Boundary;
+use asperity::quantities::Quantity;
 use asperity::reference::{Correction, Persson, PerssonFriction};
 use asperity::sliding::Direction;
 use asperity::surface::Surface;
@@ -33,13 +34,22 @@ pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, Plo
     let mut coefficient = Curves::new("Friction", axis(), Axis::linear("friction coefficient", ""))
         .with(line(bulk, "friction_coefficient")?);
     if total {
-        coefficient = coefficient.with(line("with the shear stress", "friction_coefficient_total")?);
+        let [all, bulk] =
+            [reader.series("friction_coefficient_total")?, reader.series("friction_coefficient")?];
+        let own = all.iter().zip(&bulk).map(|(all, bulk)| all - bulk).collect::<Vec<f64>>();
+        coefficient = coefficient
+            .with(Series::new("of the surfaces", Style::Line, &x, own))
+            .with(Series::new("in total", Style::Line, &x, all));
     }
     let largest = |name: &str| -> Result<f64, StoreError> {
         Ok(reader.series(name)?.iter().fold(0.0, |most, force| force.abs().max(most)))
     };
-    let mut force = Curves::new("Forces", axis(), Axis::linear("force", grid.units("N")))
-        .with(line("against motion", "friction_force")?);
+    let mut force = Curves::new(
+        if total { "Forces of the loss in the bulk" } else { "Forces" },
+        axis(),
+        Axis::linear("force", grid.units("N")),
+    )
+    .with(line("against motion", "friction_force")?);
     if largest("side_force")? > 1e-3 * largest("friction_force")? {
         force = force.with(line("across it", "side_force")?);
     }
@@ -60,7 +70,7 @@ pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, Plo
             asperity::Axis::Velocity => Axis::log("power lost", grid.units("W")),
             asperity::Axis::Time | asperity::Axis::None => Axis::linear("power lost", grid.units("W")),
         };
-        let power = Curves::new("Power", axis(), own);
+        let power = Curves::new(if total { "Power lost in the bulk" } else { "Power" }, axis(), own);
         figure = figure.with(nameless(power, &x, reader.series("dissipated_power")?));
     }
     Ok(figure)
@@ -93,8 +103,14 @@ pub(crate) fn persson(reader: &Reader) -> Result<Option<Vec<PerssonFriction>>, S
     Ok(theory.ok())
 }
 
-/// The name of its curve. The theory knows no hardness.
+/// The name of its curve. The theory knows neither hardness nor flash temperature.
 pub(crate) fn name_of_theory(reader: &Reader) -> Result<&'static str, StoreError> {
     let is_capped = reader.series("capped_area")?.iter().any(|area| *area > 0.0);
-    Ok(if is_capped { "Persson's theory, without the hardness" } else { "Persson's theory" })
+    let is_warmed = reader.scalars().iter().any(|series| series.name == Quantity::MaterialTemperature.name());
+    Ok(match (is_capped, is_warmed) {
+        (false, false) => "Persson's theory",
+        (true, false) => "Persson's theory, without the hardness",
+        (false, true) => "Persson's theory, without the flash temperature",
+        (true, true) => "Persson's theory, without hardness and flash temperature",
+    })
 }

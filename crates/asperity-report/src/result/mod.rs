@@ -355,6 +355,7 @@ fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
             format!(", tangential force {force}, displacement {}", quantity(moved, "m"))
         }
     };
+    let along = along + &wear::so_far(reader, index)?;
     Ok(format!(
         "{}: load {}, approach {}{along}, contact {area} {} ({:.2} % of the {domain}).{motion}",
         moment(reader, reader.field_times()[index]),

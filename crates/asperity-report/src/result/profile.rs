@@ -50,14 +50,27 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
             figure = figure.with(super::line::surfaces(reader, index, &gap, &undeformed)?);
         }
     }
-    let worn = [(FieldKind::WearDepth, "body"), (FieldKind::CounterbodyWearDepth, "counterbody")];
-    let mut curves = panel("worn depth", "m");
-    for (kind, body) in worn.into_iter().filter(|(kind, _)| kept.contains(kind)) {
-        let depth = of(&reader.field(kind, options.at)?);
-        curves = curves.with(Series::new(body, Style::Line, &place, depth));
-    }
-    if !curves.series.is_empty() {
-        figure = figure.with(curves);
+    let of_both = [
+        (
+            "worn depth",
+            "m",
+            [(FieldKind::WearDepth, "body"), (FieldKind::CounterbodyWearDepth, "counterbody")],
+        ),
+        (
+            "temperature rise",
+            "K",
+            [(FieldKind::FlashTemperature, "track"), (FieldKind::SliderFlashTemperature, "slider")],
+        ),
+    ];
+    for (what, unit, bodies) in of_both {
+        let mut curves = panel(what, unit);
+        for (kind, body) in bodies.into_iter().filter(|(kind, _)| kept.contains(kind)) {
+            let values = of(&reader.field(kind, options.at)?);
+            curves = curves.with(Series::new(body, Style::Line, &place, values));
+        }
+        if !curves.series.is_empty() {
+            figure = figure.with(curves);
+        }
     }
     if kept.contains(&FieldKind::Displacement) {
         let displacement = of(&reader.field(FieldKind::Displacement, options.at)?);

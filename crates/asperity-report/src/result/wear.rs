@@ -2,12 +2,26 @@
 
 use asperity::quantities::Quantity;
 use asperity_io::answer::wear_course;
+use asperity_io::readable::quantity;
 use asperity_io::store::{Reader, StoreError};
 
 use super::evolution::shown;
 use super::rows::is_logarithmic;
 use super::{Options, PlotError};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
+
+/// ", after 6023 cycles" at a stored instant, for captions; empty where nothing wears.
+pub(super) fn so_far(reader: &Reader, index: usize) -> Result<String, StoreError> {
+    if !reader.header().wears() {
+        return Ok(String::new());
+    }
+    let (course, _, unit) = wear_course(reader)?;
+    let gone = course.get(reader.field_steps()[index]).copied().unwrap_or(f64::NAN);
+    Ok(match unit {
+        "1" => format!(", after {} cycles", quantity(gone, "")),
+        unit => format!(", after {} of sliding", quantity(gone, unit)),
+    })
+}
 
 pub(super) fn wear(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     if !reader.header().wears() {

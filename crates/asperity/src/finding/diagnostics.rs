@@ -11,14 +11,15 @@ use super::strain::Strain;
 use super::thin::Widest;
 use super::worst::extend;
 use super::{
-    ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, FLASH_WARM, FLUID_CHATTER,
-    FLUID_LIFTS, Finding, LARGE_SLOPE, LARGE_STRAIN, POCKET_TENSION, SLIP_UNRESOLVED, SPOTS_UNRESOLVED,
-    SQUEEZE_SLOW, STEPS_TOO_LONG, WEAR_STEPS, adhesion, domain, flash, fluid, material, plausible, strain,
-    surface, tangential, thin, time, wear,
+    ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, FLASH_STATES, FLASH_STEADY,
+    FLASH_WARM, FLUID_CHATTER, FLUID_LIFTS, Finding, LARGE_SLOPE, LARGE_STRAIN, POCKET_TENSION,
+    SLIP_UNRESOLVED, SPOTS_UNRESOLVED, SQUEEZE_SLOW, STEPS_TOO_LONG, WEAR_STEPS, adhesion, domain, flash,
+    fluid, material, plausible, strain, surface, tangential, thin, time, wear,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
 use crate::material::Body;
+use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::sliding::{Friction, Streaming};
 use crate::step::{Row, Step};
@@ -81,6 +82,7 @@ pub struct Diagnostics {
     ring: tangential::Ring,
     wear: wear::Steps,
     warm: flash::Warm,
+    heated: flash::Rows,
     balance: Balance,
     beyond: Beyond,
     /// Where an approach is held while cells are at the hardness, and the control of each stage.
@@ -122,6 +124,7 @@ impl Diagnostics {
             ring: tangential::Ring::default(),
             wear: wear::Steps::default(),
             warm: flash::Warm::default(),
+            heated: flash::Rows::default(),
             balance: Balance::default(),
             beyond: Beyond::default(),
             held: time::Held::default(),
@@ -173,6 +176,7 @@ impl Diagnostics {
                 SLIP_UNRESOLVED => self.ring.resume(finding),
                 WEAR_STEPS => self.wear.resume(finding),
                 FLASH_WARM => self.warm.resume(finding),
+                FLASH_STATES | FLASH_STEADY => self.heated.resume(finding),
                 ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
                 _ => {}
             }
@@ -184,7 +188,10 @@ impl Diagnostics {
         let index = step.index();
         self.beyond.see(index, step);
         let (control, compliance) = (step.control(), step.simulation().compliance(row.coordinate.value()));
-        self.see_contact(index, row, step.contact_pressure(), control, compliance);
+        // What is worn off is no strain.
+        let worn = step.quantity(Quantity::WearDepthMax).map_or(0.0, |depth| depth[0]);
+        let strained = Row { approach: row.approach - worn, ..*row };
+        self.see_contact(index, &strained, step.contact_pressure(), control, compliance);
         if let Some(friction) = step.friction() {
             self.slides.see(index, row.coordinate, &friction);
         }
@@ -193,6 +200,7 @@ impl Diagnostics {
         self.ring.see(step, row);
         self.wear.see(step);
         self.warm.see(step);
+        self.heated.see(step, row);
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);
         }
@@ -292,6 +300,7 @@ impl Diagnostics {
         found.extend(self.ring.finding());
         found.extend(self.wear.finding(simulation));
         found.extend(self.warm.finding());
+        found.extend(self.heated.findings());
         found.extend(self.wear.worn_layer(simulation));
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
@@ -348,6 +357,6 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     found.extend(tangential::before(simulation));
     found.extend(wear::before(simulation));
     found.extend(wear::unlikely(simulation));
-    found.extend(flash::before(simulation));
+    found.extend(flash::unlikely(simulation));
     found
 }

@@ -1,11 +1,14 @@
-//! Flash temperature: materials that are taken colder than they become, steady temperatures in a motion that is not.
+//! Flash temperature: materials that are taken colder than they become, several steady states, steady temperatures in a motion that is not
+//! steady.
 
 use super::words::{digits, rows, si};
-use super::worst::extend;
-use super::{FLASH_STEADY, FLASH_WARM, Finding};
+use super::worst::{Worst, extend};
+use super::{FLASH_STATES, FLASH_STEADY, FLASH_WARM, Finding, UNLIKELY_UNIT};
+use crate::flash::Partition;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
-use crate::step::Step;
+use crate::sliding::Path;
+use crate::step::{Row, Step};
 
 /// Rise of the mean temperature of the contact that changes the times of a rubber by up to a decade \[K\].
 const WARM: f64 = 20.0;
@@ -49,21 +52,167 @@ impl Warm {
     }
 }
 
-/// What is known before the run: how long a slider takes to become as warm as it is taken.
-pub(super) fn before(simulation: &Simulation) -> Option<Finding> {
-    let (flash, motion) = (simulation.flash.as_ref()?, simulation.motion.as_ref()?);
-    let way = motion.path.travel(0.0, simulation.times.end());
-    let side = simulation.grid.longest_side();
-    let chi = flash.bodies.map(|body| body.diffusivity);
-    let time = side * side / chi[0].min(chi[1]);
-    (way < side || simulation.times.end() < time).then(|| {
-        let text = format!(
-            "The flash temperatures are those of a steady state with the velocity of each row, but the bodies slide {} in {}, and heat spreads over \
-             the domain in up to {}: until then they are upper bounds.",
-            si(way, "m"),
-            si(simulation.times.end(), "s"),
-            si(time, "s")
-        );
-        Finding::warning(FLASH_STEADY, simulation.times.end(), time, text).as_note()
+/// Conductivities of solids, from aerogels to diamond \[W/(m K)\], and diffusivities \[m²/s\].
+const CONDUCTIVITIES: [f64; 2] = [5e-3, 5e3];
+const DIFFUSIVITIES: [f64; 2] = [1e-9, 5e-3];
+/// Friction coefficients are seldom above 2.
+const FRICTION: f64 = 5.0;
+/// Metals melt, and polymers are gone long before, at such a rise \[K\].
+const HOT: f64 = 1500.0;
+
+/// Numbers that no material has.
+pub(super) fn unlikely(simulation: &Simulation) -> Vec<Finding> {
+    let Some(flash) = &simulation.flash else { return vec![] };
+    let bodies = flash.bodies.iter();
+    let numbers = bodies.flat_map(|body| {
+        [
+            ("thermal conductivity", body.conductivity, "W/(m K)", CONDUCTIVITIES),
+            ("thermal diffusivity", body.diffusivity, "m²/s", DIFFUSIVITIES),
+        ]
+    });
+    let friction = ("friction coefficient of [flash]", flash.friction, "", [0.0, FRICTION]);
+    let all =
+        numbers.chain([friction]).filter(|(_, value, _, [least, most])| !(least..=most).contains(&value));
+    all.map(|(what, value, unit, [least, most])| {
+        let limit = if value < least { least } else { most };
+        let text =
+            format!("The {what} is {value:e} {unit}; materials have {least:e} to {most:e}. Check its unit.");
+        Finding::warning(UNLIKELY_UNIT, value, limit, text)
     })
+    .collect()
+}
+
+/// Surfaces hotter than any material, steady states of which there are several, and rows whose temperatures are not steady.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rows {
+    hot: Worst,
+    /// Rise of a row and another one with which the same velocity would be steady \[K\], and such rows.
+    several: Option<([f64; 2], [usize; 2])>,
+    /// Rows before which the bodies have not slid long enough, or not evenly, and the contact length \[m\] of one of them.
+    early: Option<[usize; 2]>,
+    uneven: Option<[usize; 2]>,
+    length: f64,
+}
+
+/// How far the velocity may be from that of the last contact length, as a factor.
+const EVEN: f64 = 2.0;
+
+impl Rows {
+    pub(super) fn see(&mut self, step: &Step<'_>, row: &Row) {
+        let (simulation, Some(found)) = (step.simulation(), step.flash()) else { return };
+        let Some(flash) = &simulation.flash else { return };
+        self.hot.above(step.index(), found.max, HOT);
+        if found.other.is_finite() {
+            let mut at = self.several.map(|several| several.1);
+            extend(&mut at, step.index());
+            self.several = at.map(|at| ([found.mean, found.other], at));
+        }
+        let (Some(motion), true) = (&simulation.motion, found.power > 0.0 || row.contact_area > 0.0) else {
+            return;
+        };
+        let (path, time) = (&motion.path, row.coordinate.value());
+        let moved = path.travel(0.0, time);
+        if moved == 0.0 {
+            return;
+        }
+        let width = if simulation.grid.is_line() { row.contact_area } else { row.contact_area.sqrt() };
+        let speed = path.velocity(time).abs();
+        let (way, duration) = match flash.heated_for {
+            Some(heated) => (speed * heated, heated),
+            None => {
+                let slow = if flash.partition == Partition::Track {
+                    0.0
+                } else {
+                    width * width / flash.bodies[0].diffusivity
+                };
+                (width, slow)
+            }
+        };
+        if moved < way || time - path.start() < duration {
+            self.length = way;
+            extend(&mut self.early, step.index());
+        } else if way > 0.0 && !is_even(path, time, way, speed) || speed == 0.0 {
+            self.length = way;
+            extend(&mut self.uneven, step.index());
+        }
+    }
+
+    pub(super) fn findings(&self) -> Vec<Finding> {
+        let hot = self.hot.warning(UNLIKELY_UNIT, |hot| {
+            format!(
+                "Friction makes the surfaces {} K warmer{}; no material keeps its properties up to there. Check the units of [flash], of load and \
+                 velocity, and heated_for.",
+                digits(hot.value),
+                hot.place()
+            )
+        });
+        let several = self.several.map(|([rise, other], at)| {
+            let text = format!(
+                "With the feedback of the flash temperature there is more than one steady state ({}): the contact is {} K warmer in the mean, and \
+                 may also settle near {} K. Which one it takes depends on how the velocity was reached; here each row starts from the row before, \
+                 from the smallest velocity on.",
+                rows(at),
+                digits(rise),
+                digits(other)
+            );
+            Finding::warning(FLASH_STATES, rise, other, text).at(at)
+        });
+        let words = |at: [usize; 2], why: &str| {
+            let length = si(self.length, "m");
+            format!(
+                "The flash temperatures are those of a steady state with the velocity of each row. In {} {why} ({length}).",
+                rows(at)
+            )
+        };
+        let early = self.early.map(|at| {
+            let why = "they are upper bounds: the bodies have not slid for as long as the temperatures need, over a few contact lengths and for \
+                       the width of the contact squared over the diffusivity of the slider";
+            Finding::warning(FLASH_STEADY, self.length, f64::NAN, words(at, why)).at(at).as_note()
+        });
+        let uneven = self.uneven.map(|at| {
+            let why = "they may be too low: the bodies have slowed down or turned back within the last contact length";
+            Finding::warning(FLASH_STEADY, self.length, f64::NAN, words(at, why)).at(at)
+        });
+        hot.into_iter().chain(several).chain(early).chain(uneven).collect()
+    }
+
+    /// Takes over a finding of an earlier session.
+    pub(super) fn resume(&mut self, finding: &Finding) {
+        let value = finding.value.unwrap_or(0.0);
+        match finding.code.as_ref() {
+            FLASH_STATES => {
+                self.several = finding.rows.map(|at| ([value, finding.limit.unwrap_or(f64::NAN)], at))
+            }
+            _ if finding.is_warning() => (self.uneven, self.length) = (finding.rows, value),
+            _ => (self.early, self.length) = (finding.rows, value),
+        }
+    }
+}
+
+/// Whether the last `way` before a time was one way, at about this speed.
+fn is_even(path: &Path, time: f64, way: f64, speed: f64) -> bool {
+    let [mut before, mut after] = [0.0, time];
+    for _ in 0..40 {
+        let middle = 0.5 * (before + after);
+        if path.travel(middle, time) > way { before = middle } else { after = middle }
+    }
+    let gone = (path.position(time) - path.position(before)).abs();
+    let mean = way / (time - before);
+    gone > (1.0 - 1e-6) * way && speed < EVEN * mean && mean < EVEN * speed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::History;
+
+    #[test]
+    fn a_stroke_is_even_while_it_goes_one_way_at_one_speed() {
+        let sine =
+            Path::of_velocity(History::Sine { mean: 0.0, amplitude: 1.0, frequency: 0.25 }, 0.0).unwrap();
+        // The stroke is 4/π long and turns at 2 s.
+        assert!(is_even(&sine, 1.0, 0.5, 1.0) && !is_even(&sine, 1.95, 0.5, sine.velocity(1.95).abs()));
+        assert!(!is_even(&sine, 2.3, 0.5, sine.velocity(2.3).abs()) && is_even(&sine, 3.0, 0.5, 1.0));
+        assert!(!is_even(&sine, 3.0, 2.0, 1.0));
+    }
 }

@@ -287,7 +287,9 @@ codes! {
     LAYER_WORN = "layer-worn";
     /// A contact that becomes much warmer than its material is taken.
     FLASH_WARM = "flash-warm";
-    /// Flash temperatures that are not reached in the time of the run.
+    /// Steady states of which there are several at one velocity, because friction warms the material.
+    FLASH_STATES = "flash-states";
+    /// Flash temperatures of rows before which the motion was not steady.
     FLASH_STEADY = "flash-steady";
 }
 

@@ -2,20 +2,22 @@
 
 use crate::error::{Error, Result};
 
-/// Rounds, at most.
-const ROUNDS: usize = 10;
+/// Rounds, at most: two to halve the distance between too cold and too warm. Smooth friction needs two to ten.
+const ROUNDS: usize = 40;
+/// Rises at which nothing holds the temperature any more \[K\].
+const ENDLESS: f64 = 1e5;
 /// What is left of a rise, or between the rises that are too cold and too warm, relative to it, or to a kelvin.
 const TOLERANCE: f64 = 3e-3;
 
-/// The rise x \[K\] with `rise_at(x)` = x, from `start` on; `rise_at` has been called last with it.
+/// The rise x \[K\] with `rise_at(x)` = x at this velocity \[m/s\], from `start` on; `rise_at` has been called last with it.
 ///
 /// Between rounds T(x) is taken as exponential, through the last two of them, and x kept between the largest that is too cold and the
 /// least that is too warm: T(0) >= 0, so there is one. Where that does not halve their distance, their middle is next. T(x) jumps where a
 /// cell leaves the contact, so it may cross x without being x.
 ///
 /// # Errors
-/// [`Error::Invalid`] after ten rounds; those of `rise_at`.
-pub(crate) fn settle(start: f64, mut rise_at: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
+/// [`Error::Invalid`] where the rise is endless; those of `rise_at`.
+pub(crate) fn settle(velocity: f64, start: f64, mut rise_at: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
     let (mut x, mut before): (f64, Option<[f64; 2]>) = (start.max(0.0), None);
     let [mut cold, mut warm] = [0.0, f64::INFINITY];
     let (mut left, mut width) = (f64::INFINITY, f64::INFINITY);
@@ -32,6 +34,9 @@ pub(crate) fn settle(start: f64, mut rise_at: impl FnMut(f64) -> Result<f64>) ->
         if is_met || warm - cold <= TOLERANCE * x.max(1.0) {
             return Ok(x);
         }
+        if x > ENDLESS {
+            break;
+        }
         let slope = before.map_or(0.0, |[other, its]| libm::log(rise / its) / (x - other));
         before = Some([x, rise]);
         let is_slow = warm - cold > 0.5 * width;
@@ -42,13 +47,23 @@ pub(crate) fn settle(start: f64, mut rise_at: impl FnMut(f64) -> Result<f64>) ->
         };
     }
     Err(Error::invalid(
-        format!("change of the flash temperature in the last of {ROUNDS} rounds of its feedback"),
-        format!("{left:.2e} K"),
-        format!(
-            "at most {TOLERANCE:e} of the rise. Take more velocities, so that each starts near the one before, or feedback = \"none\""
-        ),
+        format!("flash temperature with its feedback at {velocity} m/s"),
+        format!("{left:.2e} K from that of the material after {ROUNDS} rounds or more than {ENDLESS:e} K"),
+        "one that the friction of the warmer material makes: it only gets warmer. Lower the load or the velocity, or take feedback = \"none\"",
     )
     .of("flash.feedback"))
+}
+
+/// Another rise than `x` at which the surfaces may be steady, as far as the heat tells: T in proportion to `heat`, which is 1 at x. The
+/// largest of several.
+pub(crate) fn another(x: f64, heat: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    // Rises over four decades around x; each ten per cent beyond the one before.
+    const STEPS: i32 = 48;
+    let at = |n: i32| x * libm::pow(1.1, f64::from(n));
+    let is_warming = |n: i32| heat(at(n)).map(|heat| heat * x > at(n));
+    // A steady state lies where less warming follows more; that of x itself is not one of these.
+    let falls = |n: i32| is_warming(n) == Some(true) && is_warming(n + 1) == Some(false);
+    (-STEPS..STEPS).rev().filter(|n| !(-2..=1).contains(n)).find(|n| x > 0.0 && falls(*n)).map(at)
 }
 
 /// Where a function falls below 0 between two places, or the second one where it does not.

@@ -22,7 +22,7 @@ mod solver;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use feedback::settle;
+pub(crate) use feedback::{another, settle};
 pub use solver::FlashRow;
 pub(crate) use solver::{FlashSolver, Rise, Rubbing, bytes};
 
@@ -38,13 +38,6 @@ pub struct Conductor {
     pub conductivity: f64,
     /// Thermal diffusivity χ \[m²/s\].
     pub diffusivity: f64,
-}
-
-impl Conductor {
-    /// What it takes up of an even flux, k/√χ, relative to another body.
-    fn effusivity(self) -> f64 {
-        self.conductivity / self.diffusivity.sqrt()
-    }
 }
 
 /// How the heat divides between slider and track.
@@ -119,7 +112,7 @@ impl Flash {
             positive("time of heating", time, "s").map_err(|error| error.of("heated_for"))?;
             require(
                 simulation.boundary == Boundary::Periodic,
-                "time of heating on a free domain",
+                "`heated_for` on a free domain",
                 format!("{time} s"),
                 "left out: around a contact on a free domain the temperature becomes steady",
             )
@@ -135,9 +128,10 @@ impl Flash {
         .map_err(|error| error.of("partition"))?;
         require(
             is_open || self.heated_for.is_some(),
-            "time of heating on a periodic domain",
+            "`heated_for` on a periodic domain",
             "not given",
-            "a time: the mean of a periodic surface, and its streaks along the motion, never stop warming",
+            "the time for which the surfaces have been heated, such as heated_for = \"10 ms\": the mean of a periodic surface, and its streaks along \
+             the motion, never stop warming",
         )
         .map_err(|error| error.of("heated_for"))?;
         require(

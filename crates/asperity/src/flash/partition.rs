@@ -27,44 +27,41 @@ impl Faces<'_> {
     /// # Errors
     /// [`Error::Invalid`] where the faces do not come to one temperature.
     pub(super) fn warm(&mut self, heat: &[f64], contact: &[usize]) -> Result<([Vec<f64>; 2], f64)> {
-        match (self.flash.partition, self.spectra) {
-            (Partition::Local, [Some(slider), Some(track)]) => {
-                self.warm_locally([slider, track], heat, contact)
+        let spectra = self.spectra;
+        let mut alone = spectra.map(|spectrum| match spectrum {
+            Some(spectrum) => self.image(spectrum, heat),
+            None => vec![0.0; heat.len()],
+        });
+        let shares = match (alone.each_ref().map(|t| mean(t, contact)), spectra) {
+            ([slider, track], [Some(_), Some(_)]) => [track, slider].map(|t| t / (slider + track)),
+            (_, [slider, _]) => {
+                if slider.is_some() {
+                    [1.0, 0.0]
+                } else {
+                    [0.0, 1.0]
+                }
             }
-            (_, spectra) => {
-                let full = spectra.map(|spectrum| match spectrum {
-                    Some(spectrum) => self.image(spectrum, heat),
-                    None => vec![0.0; heat.len()],
-                });
-                let share = match spectra {
-                    [None, _] => 0.0,
-                    [_, None] => 1.0,
-                    _ => self.share(full.each_ref().map(|t| mean(t, contact))),
-                };
-                let [mut slider, mut track] = full;
-                slider.iter_mut().for_each(|t| *t *= share);
-                track.iter_mut().for_each(|t| *t *= 1.0 - share);
-                Ok(([slider, track], share))
-            }
+        };
+        if let ([Some(slider), Some(track)], Partition::Local) = (spectra, self.flash.partition) {
+            // The flux of the body that takes less is found, so that the tolerance is one of it.
+            let is_slider = shares[0] < shares[1];
+            let ([less, more], wanted) =
+                if is_slider { ([slider, track], &alone[1]) } else { ([track, slider], &alone[0]) };
+            let (share, less, more) = self.warm_locally([less, more], wanted, heat, contact)?;
+            return Ok(if is_slider { ([less, more], share) } else { ([more, less], 1.0 - share) });
         }
+        alone.iter_mut().zip(shares).for_each(|(t, share)| t.iter_mut().for_each(|t| *t *= share));
+        Ok((alone, shares[0]))
     }
 
-    /// s T_1 = (1 - s) T_2. Above the mean of a surface that is heated evenly both are 0, and an even flux divides as the effusivities.
-    fn share(&self, [slider, track]: [f64; 2]) -> f64 {
-        if slider > 0.0 && track > 0.0 {
-            return track / (slider + track);
-        }
-        let [slider, track] = self.flash.bodies.map(super::Conductor::effusivity);
-        slider / (slider + track)
-    }
-
-    /// (K_1 + K_2) q_1 = K_2 q on the contact.
+    /// (K + K_more) q = K_more q_all, `wanted`, on the contact: the share of the body that takes less, and both temperatures.
     fn warm_locally(
         &mut self,
-        [slider, track]: [&Spectrum; 2],
+        [less, more]: [&Spectrum; 2],
+        wanted: &[f64],
         heat: &[f64],
         contact: &[usize],
-    ) -> Result<([Vec<f64>; 2], f64)> {
+    ) -> Result<(f64, Vec<f64>, Vec<f64>)> {
         let cells = heat.len();
         let on = |field: &[f64]| contact.iter().map(|cell| field[*cell]).collect::<Vec<f64>>();
         let off = |on: &[f64]| {
@@ -72,9 +69,9 @@ impl Faces<'_> {
             contact.iter().zip(on).for_each(|(cell, x)| field[*cell] = *x);
             field
         };
-        let both = Spectrum(slider.0.iter().zip(&track.0).map(|(a, b)| a + b).collect());
+        let both = Spectrum(less.0.iter().zip(&more.0).map(|(a, b)| a + b).collect());
         let inverse = Spectrum(both.0.iter().map(inverse).collect());
-        let wanted = on(&self.image(track, heat));
+        let wanted = on(wanted);
         let mut own = vec![0.0; contact.len()];
         let mut left = 1.0;
         for _ in 0..RESTARTS {
@@ -103,7 +100,7 @@ impl Faces<'_> {
         let own = off(&own);
         let other: Vec<f64> = heat.iter().zip(&own).map(|(all, own)| all - own).collect();
         let share = own.iter().sum::<f64>() / heat.iter().sum::<f64>();
-        Ok(([self.image(slider, &own), self.image(track, &other)], share))
+        Ok((share, self.image(less, &own), self.image(more, &other)))
     }
 
     fn image(&mut self, spectrum: &Spectrum, heat: &[f64]) -> Vec<f64> {

@@ -23,6 +23,8 @@ pub struct FlashRow {
     pub power: f64,
     /// Temperature at which the material was taken \[K\]; NaN without feedback.
     pub material: f64,
+    /// Another mean with which this row would be steady, about \[K\]; NaN where none is seen.
+    pub other: f64,
 }
 
 impl FlashRow {
@@ -111,7 +113,7 @@ impl FlashSolver {
         if power == 0.0 {
             self.rise.slider.fill(0.0);
             self.rise.track.fill(0.0);
-            self.rise.row = FlashRow { material: f64::NAN, ..FlashRow::default() };
+            self.rise.row = FlashRow { material: f64::NAN, other: f64::NAN, ..FlashRow::default() };
             return Ok(());
         }
         let contact: Vec<usize> = (0..pressure.len()).filter(|cell| pressure[*cell] > 0.0).collect();
@@ -131,6 +133,7 @@ impl FlashSolver {
             share,
             power,
             material: f64::NAN,
+            other: f64::NAN,
         };
         self.rise = Rise { slider, track, row };
         Ok(())
@@ -141,8 +144,9 @@ impl FlashSolver {
         self.rise = rise;
     }
 
-    /// Notes the temperature at which the material was taken \[K\].
-    pub(crate) fn note_material(&mut self, temperature: f64) {
+    /// Notes the temperature at which the material was taken, and another mean rise with which the row would be steady \[K\].
+    pub(crate) fn note_material(&mut self, temperature: f64, other: Option<f64>) {
         self.rise.row.material = temperature;
+        self.rise.row.other = other.unwrap_or(f64::NAN);
     }
 }

@@ -75,6 +75,64 @@ fn a_disc_that_stands_still_has_q_a_over_k_in_its_middle() {
     assert!((t * BODY.conductivity - 1.0).abs() < 0.2 * 2.2 / n as f64, "{t}");
 }
 
+/// The mean over a cell that is `x` away of what an even cell has spread, once in time s = √(4χt), in one direction and over its images.
+fn spread(x: f64, side: f64, length: f64, s: f64) -> f64 {
+    let ramp = |x: f64| x * libm::erf(x / s) + s / PI.sqrt() * libm::exp(-(x / s).powi(2));
+    let images = (-40..=40).map(|n| x + f64::from(n) * length);
+    images.map(|x| (ramp(x + side) - 2.0 * ramp(x) + ramp(x - side)) / side).sum()
+}
+
+#[test]
+fn on_a_periodic_domain_a_cell_warms_by_the_sum_over_its_past() {
+    // T = 1/(4k√π) ∫ ds X(s) Y(s) up to √(4χt), with the source s² v/4χ ahead.
+    let (grid, time) = (Grid::new([8, 6], [8.0, 3.0]).unwrap(), 3.0);
+    for (angle, velocity) in [(0.0, 0.0), (0.0, 3.0), (0.0, -40.0), (0.5, 10.0)] {
+        let mut conduction = Conduction::new(&grid, Boundary::Periodic, Direction::Angle(angle), Some(time));
+        let spectrum = conduction.spectrum(BODY, velocity);
+        let (mut heat, mut t) = (vec![0.0; 48], vec![0.0; 48]);
+        heat[0] = 1.0;
+        conduction.apply_into(&spectrum, &heat, &mut t);
+        let end = (4.0 * BODY.diffusivity * time).sqrt();
+        let steps = 4000;
+        let largest = t.iter().copied().fold(0.0, f64::max);
+        for (i, j) in [(0, 0), (3, 2), (7, 0), (6, 5)] {
+            let exact: f64 = (0..steps)
+                .map(|n| end * (f64::from(n) + 0.5) / f64::from(steps))
+                .map(|s| {
+                    let moved = velocity * s * s / (4.0 * BODY.diffusivity);
+                    let x = i as f64 + moved * libm::cos(angle);
+                    let y = 0.5 * j as f64 + moved * libm::sin(angle);
+                    spread(x.rem_euclid(8.0), 1.0, 8.0, s) * spread(y.rem_euclid(3.0), 0.5, 3.0, s)
+                })
+                .sum::<f64>()
+                * end
+                / f64::from(steps)
+                / (4.0 * PI.sqrt() * BODY.conductivity);
+            // Waves beyond the third shortest are a density.
+            assert!(
+                (t[i * 6 + j] - exact).abs() < 2e-3 * largest,
+                "{velocity} {i} {j}: {} {exact}",
+                t[i * 6 + j]
+            );
+        }
+    }
+}
+
+#[test]
+fn a_short_heating_of_a_periodic_domain_cools_nothing() {
+    let grid = Grid::new([64, 64], [20e-3, 20e-3]).unwrap();
+    let rubber = Conductor { conductivity: 0.3, diffusivity: 1e-7 };
+    let heat: Vec<f64> = (0..grid.len()).map(|n| f64::from(u8::from((n * 7919) % 64 < 40))).collect();
+    for time in [1e-6, 1e-5, 1e-4, 1e-2] {
+        let mut conduction = Conduction::new(&grid, Boundary::Periodic, Direction::X, Some(time));
+        let spectrum = conduction.spectrum(rubber, 10.0);
+        let mut t = vec![0.0; heat.len()];
+        conduction.apply_into(&spectrum, &heat, &mut t);
+        let [least, most] = t.iter().fold([0.0f64; 2], |[a, b], t| [a.min(*t), b.max(*t)]);
+        assert!(least > -1e-3 * most, "{time}: {least} {most}");
+    }
+}
+
 #[test]
 fn a_fast_source_leaves_the_layer_of_an_even_flux() {
     // At a distance x behind its edge a wide source has heated the surface for x/v: T = (2 q/k) √(χ x/(π v)).
@@ -188,7 +246,7 @@ fn nothing_is_warm_at_rest_and_the_motion_mirrors() {
 fn an_even_flux_on_a_periodic_domain_divides_as_the_effusivities() {
     let grid = Grid::new([8, 8], [8.0, 8.0]).unwrap();
     let flash = flash(Partition::Local, Some(5.0));
-    let [slider, track] = flash.bodies.map(Conductor::effusivity);
+    let [slider, track] = flash.bodies.map(|body| body.conductivity / body.diffusivity.sqrt());
     let simulation = Simulation {
         flash: Some(Arc::new(flash)),
         boundary: Boundary::Periodic,
@@ -208,12 +266,21 @@ fn feedback_settles_or_says_so() {
     // T falls with the temperature of the material, steeply.
     for steepness in [0.0, 0.01, 0.1, 1.0] {
         let mut rounds = 0;
-        let x = settle(0.0, |x| {
+        let x = settle(1.0, 0.0, |x| {
             rounds += 1;
             Ok(100.0 * libm::exp(-steepness * x))
         });
         let x = x.unwrap();
         assert!((100.0 * libm::exp(-steepness * x) - x).abs() <= 3e-3 * x.max(1.0) && rounds <= 10);
     }
-    assert!(settle(0.0, |x| Ok(2.0 * x + 1.0)).is_err());
+    assert!(settle(1.0, 0.0, |x| Ok(2.0 * x + 1.0)).is_err());
+    // A step that heats from 20 K on: from below it settles at 10 K, from above at 70 K, and each sees the other one.
+    let step = |x: f64| 10.0 + 60.0 / (1.0 + libm::exp(20.0 - x));
+    let [cold, warm] = [0.0, 100.0].map(|start| settle(1.0, start, |x| Ok(step(x))).unwrap());
+    assert!((cold - 10.0).abs() < 0.05 && (warm - 70.0).abs() < 0.3, "{cold} {warm}");
+    let other = |x: f64| another(x, |y| Some(step(y) / step(x)));
+    assert!(
+        (other(cold).unwrap() / 70.0 - 1.0).abs() < 0.1 && (other(warm).unwrap() / 10.0 - 1.0).abs() < 0.1
+    );
+    assert!(another(30.0, |y| Some(30.0 / y)).is_none());
 }

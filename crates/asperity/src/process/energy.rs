@@ -4,7 +4,7 @@
 //! springs     (A/2) [ E_inf <u, u> + Σ E_i <u - q_i, u - q_i> ],     <a, b> = Σ a K⁻¹ b,  A the area of a cell
 //! dashpots    the work of the pressure on the bodies less what the springs take
 //! flattening  A Σ p |h| over the cells at the hardness
-//! work        ∫ W dw  =  the sum of the three
+//! work        ∫ W dw  =  the sum of the three, and of what wear takes: A Σ ∫ p dz
 //! ```
 //!
 //! Springs and dashpots are those of the scheme, exactly ([`History::exchange`]). The work is taken from load and approach
@@ -70,7 +70,7 @@ impl Process for Energy {
         // the work is what the bodies take.
         let jump = row.step.length() == 0.0;
         self.work += match jump || !row.before.touches() || self.is_conservative {
-            true => cell_area * step.work + flattened + row.potential - self.potential,
+            true => cell_area * step.work + flattened + row.potential - self.potential + row.worn_work,
             false => step.mean_load * (row.now.approach - self.approach),
         };
         let before = self.dissipated;

@@ -101,6 +101,11 @@ pub(crate) trait Process: Send {
         Ok(())
     }
 
+    /// Work of the load since t = 0 that went into what has worn \[J\].
+    fn worn_work(&self) -> f64 {
+        0.0
+    }
+
     /// The name under which it saves its state.
     fn name(&self) -> &'static str;
 }
@@ -129,6 +134,8 @@ pub(crate) struct Solved<'a> {
     pub(crate) exchange: Option<Exchange>,
     /// Work that was done on the bodies in the step besides that of the load \[J\].
     pub(crate) other_work: f64,
+    /// Work of the load in the step that went into what has worn \[J\].
+    pub(crate) worn_work: f64,
     /// How far each cell has slipped in the step \[m\], where wear asks for it.
     pub(crate) slipped: Vec<f64>,
     /// Convolutions that the processes took.

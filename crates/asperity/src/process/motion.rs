@@ -58,6 +58,14 @@ impl Motion {
     /// Checks what can be known before the run.
     pub(crate) fn validate(&self, simulation: &Simulation) -> Result<()> {
         Motion::check_cells_per_step(self.cells_per_step)?;
+        let is_fine = simulation.wear.is_none() || self.cells_per_step <= 1.0;
+        require(
+            is_fine,
+            "cells_per_step of surfaces that wear",
+            self.cells_per_step,
+            "at most 1: longer steps wear stripes",
+        )
+        .map_err(|error| error.of("cells_per_step"))?;
         let stops = self.stops(simulation)?;
         require(
             simulation.scheme == Scheme::Linear,

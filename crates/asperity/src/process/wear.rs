@@ -36,7 +36,7 @@ pub(super) struct Wearing {
 }
 
 /// Volumes \[m³\] of both together and of the counterbody, and of the last row's step over its length \[m³/s\]; sliding distance \[m\];
-/// volumes whose place is uncertain, and that are because the load changes over the steps \[m³\]; largest depth, and roughness of the gap \[m\].
+/// volumes whose place is uncertain, and that are because load or cycles change over the steps \[m³\]; work \[J\]; largest depth, and roughness of the gap \[m\].
 #[derive(Default)]
 struct Numbers {
     volume: f64,
@@ -45,6 +45,7 @@ struct Numbers {
     distance: f64,
     uncertain: f64,
     of_load: f64,
+    work: f64,
     deepest: f64,
     roughness: f64,
 }
@@ -71,6 +72,7 @@ saved! {
     Numbers {
         "volumes": volume, counterbody, uncertain, of_load;
         "distance": distance;
+        "work": work;
     }
 }
 
@@ -150,6 +152,13 @@ impl Wearing {
         Cow::Owned(moved)
     }
 
+    /// What wear takes of the work of the load: the mean of both pressures times the depth under the first \[J\].
+    fn work(&self, recession: &Recession, [after, before]: [&[f64]; 2]) -> f64 {
+        let cells = (after, before, recession.per_pressure());
+        let [work] = sums(cells, |(p, q, k)| [0.5 * (p + q) * crate::wear::depth(p, k, recession.threshold)]);
+        work * self.simulation.grid.cell_area()
+    }
+
     /// What is left of a wrong depth after a step: where it is too large less is worn. A wave that yields by y per pressure keeps
     /// y/(y + κ) of it; y is that of the whole contact, on a periodic domain that of its longest wave at least.
     fn damping(&self, recession: &Recession, state: &ContactState, compliance: f64) -> f64 {
@@ -216,30 +225,28 @@ impl Process for Wearing {
             let recession = self.wear_by_slip(row)?;
             let Some(After { state, .. }) = &self.after else { return Ok(()) };
             let damping = self.damping(&recession, state, row.compliance);
+            row.worn_work = self.work(&recession, [&state.pressure, row.contact]);
             (self.depth.add(&recession, &state.pressure, row.contact, self.offset), damping)
         } else {
             let recession = &row.undeformed.recession;
             let before = self.before(row);
-            let threshold = recession.threshold;
-            // What wears takes of the work of the load: the mean pressure of the step times the depth.
-            let cells = (row.contact, &before[..], recession.per_pressure());
-            let [work] = sums(cells, |(p, q, k)| [0.5 * (p + q) * crate::wear::depth(p, k, threshold)]);
-            row.other_work -= work * self.simulation.grid.cell_area();
+            row.worn_work = self.work(recession, [row.contact, &before]);
             let damping = self.damping(recession, row.now, row.compliance);
             (self.depth.add(recession, row.contact, &before, self.offset), damping)
         };
         self.offset_before = self.offset;
-        self.cycles.take_in([row.step.start, row.step.instant.time], [volume, uncertain]);
+        let of_cycles = self.cycles.take_in([row.step.start, row.step.instant.time], [volume, uncertain]);
         let length = row.step.length();
         let numbers = &mut self.numbers;
         numbers.volume += volume;
+        numbers.work += row.worn_work;
         numbers.counterbody += volume * self.law.shares()[1];
         numbers.uncertain = damping * (numbers.uncertain + uncertain);
         let distance = self.law.distance(&self.simulation, row.step.start, row.step.instant.time);
         // The load is that at the end of the step.
         let [before, now] = row.loads;
         let per_load = if now > 0.0 { volume / now } else { self.law.total() * distance };
-        numbers.of_load += 0.5 * per_load * (now - before).abs();
+        numbers.of_load += 0.5 * per_load * (now - before).abs() + of_cycles;
         numbers.rate = if length > 0.0 { volume / length } else { 0.0 };
         numbers.distance += distance;
         numbers.deepest = self.depth.largest();
@@ -273,12 +280,16 @@ impl Process for Wearing {
             Quantity::WearCycles => self.cycles.total(),
             Quantity::WearDepthMax => numbers.deepest,
             Quantity::WearError if numbers.volume > 0.0 => {
-                (numbers.uncertain + numbers.of_load) / numbers.volume
+                ((numbers.uncertain + numbers.of_load) / numbers.volume).min(1.0)
             }
             Quantity::WearError => 0.0,
             Quantity::WornRoughness => numbers.roughness,
             _ => return None,
         })
+    }
+
+    fn worn_work(&self) -> f64 {
+        self.numbers.work
     }
 
     fn worn(&self) -> Option<WornFields<'_>> {

@@ -34,7 +34,7 @@
 //! | `wear_error` | | share of the worn volume whose place is uncertain |
 //! | `velocity`, `sliding_distance` | m/s, m | velocity of a contact in motion, and how far it has moved |
 //! | `friction_force`, `side_force` | N | force against motion and across it |
-//! | `friction_coefficient`, `friction_coefficient_total` | | friction force over load, without and with a shear stress on the contact |
+//! | `friction_coefficient`, `friction_coefficient_total` | | friction force over load, of the loss in the bulk alone and with the friction of the surfaces |
 //! | `friction_uncertainty` | | estimated error of the friction force, relative |
 //! | `rolling_moment` | N m | moment of the pressure about the middle of the shapes |
 //! | `dissipated_power` | W | power lost in the bodies |
@@ -258,8 +258,8 @@ quantities! {
     SideForce = "side_force" ["N"] "side force", Motion, ("Friction", "force", "across it");
     /// Friction force over load.
     FrictionCoefficient = "friction_coefficient" ["1"] "friction coefficient of the loss in the bulk", Motion, ("Friction coefficient", "friction coefficient", "of the bulk");
-    /// Friction coefficient with the share of a given shear stress on the area in contact.
-    FrictionCoefficientTotal = "friction_coefficient_total" ["1"] "friction coefficient with the shear stress on the contact", MotionOnRequest, ("Friction coefficient", "friction coefficient", "with the shear stress");
+    /// Friction coefficient with that of the surfaces: of a given shear stress on the area in contact, or of the coefficient of a flash temperature.
+    FrictionCoefficientTotal = "friction_coefficient_total" ["1"] "friction coefficient with that of the surfaces", MotionOnRequest, ("Friction coefficient", "friction coefficient", "in total");
     /// Difference of the friction force from its second estimate, -Σ p du/ds, over the force.
     FrictionUncertainty = "friction_uncertainty" ["1"] "estimated error of the friction force, relative", Motion, ("Uncertainty of friction", "share of the force", "");
     /// Moment of the pressure about the middle of the shapes, in N m.

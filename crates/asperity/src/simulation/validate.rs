@@ -321,12 +321,13 @@ impl Simulation {
     fn validate_awaited(&self, stage: &Stage) -> Result<()> {
         let Some(Event::Number(RowNumber::Quantity(quantity), _)) = stage.until else { return Ok(()) };
         let moves = self.motion.is_some();
-        let sheared = self.motion.as_ref().is_some_and(|motion| motion.shear_stress.is_some());
+        let rubs = self.motion.as_ref().is_some_and(|motion| motion.shear_stress.is_some())
+            || self.flash.as_ref().is_some_and(|flash| flash.friction > 0.0);
         let checked = if quantity.is_of_motion() && !moves {
             let expected = "one that the rows have. Only a contact in motion has this one: add [motion] (in Python use slide)";
             Err(Error::invalid("quantity of the event", quantity, expected))
-        } else if quantity == Quantity::FrictionCoefficientTotal && !sheared {
-            let expected = "one that the rows have. This one needs the shear stress on the contact: give motion.shear_stress";
+        } else if quantity == Quantity::FrictionCoefficientTotal && !rubs {
+            let expected = "one that the rows have. This one needs the friction of the surfaces: give motion.shear_stress or flash.friction";
             Err(Error::invalid("quantity of the event", quantity, expected))
         } else {
             self.allows(quantity)

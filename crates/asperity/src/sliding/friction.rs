@@ -101,7 +101,8 @@ pub struct Friction {
     pub moment: f64,
     /// Power lost in the bodies \[W\].
     pub power: f64,
-    /// Coefficient with the share of a shear stress on the area in contact; NaN where none is given.
+    /// Coefficient with the friction of the surfaces themselves against motion, of a shear stress on the area in contact or of a coefficient;
+    /// NaN where neither is given. Surfaces at rest have none.
     pub total: f64,
 }
 
@@ -157,6 +158,11 @@ pub(crate) struct ContactForces<'a> {
 }
 
 impl Friction {
+    /// The coefficient with the friction of the surfaces where they have any, else that of the loss in the bulk.
+    pub fn of_all(&self) -> f64 {
+        if self.total.is_nan() { self.coefficient } else { self.total }
+    }
+
     /// Of a contact that moves in time: the force is the sum over the slopes.
     ///
     /// What is unknown of it is what the cells leave open, Σ p Dg at the edges and Σ p (dh/ds - Dh) of waves of a few cells, with D the
@@ -169,7 +175,8 @@ impl Friction {
         held: impl FnOnce(f64) -> f64,
     ) -> Friction {
         let sums = contact.sums();
-        let force = if contact.remembers { sums.slopes } else { 0.0 };
+        // What the sum is before anything has moved is the error of the grid.
+        let force = if contact.remembers && contact.distance != 0.0 { sums.slopes } else { 0.0 };
         let unknown = sums.edges.abs() + sums.waves.abs() + time_error * sums.size;
         Friction::new(contact, &sums, [force, held(unknown)], f64::NAN)
     }
@@ -199,10 +206,7 @@ impl Friction {
             uncertainty: if force.abs() > ROUNDING * load { unknown / force.abs() } else { 0.0 },
             moment: sums.moment,
             power,
-            total: contact.shear_stress.map_or(f64::NAN, |stress| match load > 0.0 {
-                true => coefficient + stress * sums.area / load,
-                false => 0.0,
-            }),
+            total: contact.rubbing(sums).map_or(f64::NAN, |own| coefficient + own),
         }
     }
 }
@@ -233,6 +237,19 @@ struct Sums {
 }
 
 impl ContactForces<'_> {
+    /// The friction coefficient of the surfaces themselves, with the sign of the velocity; `None` where they have none.
+    fn rubbing(&self, sums: &Sums) -> Option<f64> {
+        let coefficient = self.simulation.flash.as_ref().map_or(0.0, |flash| flash.friction);
+        if self.shear_stress.is_none() && coefficient == 0.0 {
+            return None;
+        }
+        if sums.load <= 0.0 || self.velocity == 0.0 {
+            return Some(0.0);
+        }
+        let stress = self.shear_stress.unwrap_or(0.0);
+        Some(self.velocity.signum() * (coefficient + stress * sums.area / sums.load))
+    }
+
     fn sums(&self) -> Sums {
         let (Simulation { grid, boundary, .. }, [cx, cy]) = (self.simulation, self.direction.unit());
         let ny = grid.cells()[1];

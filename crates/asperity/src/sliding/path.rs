@@ -51,6 +51,11 @@ impl Path {
         Ok(Path { history, of_velocity, start })
     }
 
+    /// When the motion starts \[s\].
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
     /// Distance moved at time t \[m\]; less where the motion turns back.
     pub fn position(&self, t: f64) -> f64 {
         let inside = t - self.start;

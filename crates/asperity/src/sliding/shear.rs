@@ -41,8 +41,13 @@ impl ShearStress {
         match self {
             ShearStress::Constant(stress) => sound(*stress),
             ShearStress::Table { points } => {
-                require(points.len() > 1, "table of the shear stress", points.len(), "two points at least")
-                    .map_err(|error| error.of("points"))?;
+                require(
+                    points.len() > 1,
+                    "points of the shear stress",
+                    format!("{} in number", points.len()),
+                    "two at least",
+                )
+                .map_err(|error| error.of("points"))?;
                 points
                     .iter()
                     .try_for_each(|(_, stress)| sound(*stress))
@@ -50,9 +55,9 @@ impl ShearStress {
                 let rising = points[0].0 > 0.0 && points.windows(2).all(|pair| pair[0].0 < pair[1].0);
                 require(
                     rising,
-                    "velocities of the shear stress",
-                    "not in order",
-                    "above 0 and in rising order",
+                    "order of the points of the shear stress",
+                    "not that of their velocities",
+                    "by rising velocities above 0, each once",
                 )
                 .map_err(|error| error.of("points"))
             }

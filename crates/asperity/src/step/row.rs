@@ -6,7 +6,7 @@ use super::state::StepState;
 use super::{Recorder, Stepper, UndeformedGap};
 use crate::contact::{ContactState, Hardness, Outcome};
 use crate::drive::Coordinate;
-use crate::flash::Rise;
+use crate::flash::{FlashRow, Rise};
 use crate::history::History;
 use crate::load::Control;
 use crate::process::{Process, SlipFields, cells};
@@ -141,7 +141,8 @@ impl<'a> Step<'a> {
             return None;
         }
         let kept = energy(Quantity::ElasticEnergy)? + energy(Quantity::DissipatedEnergy)?;
-        Some([energy(Quantity::ExternalWork)?, kept + energy(Quantity::FlatteningWork)?])
+        let worn: f64 = self.processes.iter().map(|process| process.worn_work()).sum();
+        Some([energy(Quantity::ExternalWork)?, kept + energy(Quantity::FlatteningWork)? + worn])
     }
 
     /// A quantity that a process tells of this row.
@@ -290,6 +291,11 @@ impl<'a> Step<'a> {
     pub fn undeformed_gap_into(&self, gap: &mut Array2<f64>) {
         let now = self.undeformed.map_or(self.gap, UndeformedGap::now);
         copy_into(Some(now), gap);
+    }
+
+    /// How warm friction makes the surfaces of a contact in motion; `None` where that is not asked for.
+    pub fn flash(&self) -> Option<FlashRow> {
+        self.warm_surfaces().map(|rise| rise.row)
     }
 
     /// Temperature rise of the surface of the track by friction \[K\]; 0 everywhere without.

@@ -22,11 +22,13 @@ pub(crate) struct Cycles {
     /// What this one has worn so far, and how much of it may be in the wrong place \[m³\].
     volume: f64,
     uncertain: f64,
+    /// What one cycle wears by the last computed one that is over, 0 before \[m³\].
+    before: f64,
 }
 
 saved! {
     Cycles {
-        "cycles": factor, total, over, volume, uncertain;
+        "cycles": factor, total, over, volume, uncertain, before;
     }
 }
 
@@ -43,6 +45,7 @@ impl Cycles {
             over: 0.0,
             volume: 0.0,
             uncertain: 0.0,
+            before: 0.0,
         }
     }
 
@@ -56,14 +59,25 @@ impl Cycles {
         if self.period.is_some() { self.total } else { f64::NAN }
     }
 
-    /// Takes in a row at the end of a step, and what it has worn.
-    pub(crate) fn take_in(&mut self, [start, time]: [f64; 2], [volume, uncertain]: [f64; 2]) {
-        let Some(period) = self.period else { return };
+    /// Takes in a row at the end of a step, and what it has worn. Returns the volume that is uncertain because a computed cycle that is over
+    /// wears another volume than the cycles that it stands for.
+    pub(crate) fn take_in(&mut self, [start, time]: [f64; 2], [volume, uncertain]: [f64; 2]) -> f64 {
+        let Some(period) = self.period else { return 0.0 };
+        let mut error = 0.0;
         self.total += self.factor * (time - start) / period;
         self.volume += volume;
         self.uncertain += uncertain;
         if time >= (self.over + 1.0 - ROUNDING) * period {
             self.over = (time / period + ROUNDING).floor();
+            let one = self.volume / self.factor;
+            // The volume of a cycle goes on to change as it did since the cycle before; the first one is a start, unlike the others.
+            error = match self.before {
+                0.0 => 0.0,
+                before if self.over > 2.0 => 0.5 * (self.factor - 1.0) * (one - before).abs(),
+                before => 1.5 * (self.factor - 1.0) * (one - before).abs(),
+            };
+            self.before = one;
+            self.uncertain += error;
             if let (Some(tolerance), true) = (self.tolerance, self.volume > 0.0) {
                 let fits = tolerance * self.volume / self.uncertain;
                 let change = if fits.is_nan() { CHANGE } else { fits.clamp(1.0 / CHANGE, CHANGE) };
@@ -71,5 +85,6 @@ impl Cycles {
             }
             (self.volume, self.uncertain) = (0.0, 0.0);
         }
+        error
     }
 }

@@ -168,6 +168,9 @@ impl Wear {
         let period = simulation.tangential.as_ref().and_then(|tangential| tangential.period());
         let expected = "left out, or a load along the surfaces that is a sine with a period";
         require(self.cycles_tolerance.is_none() || period.is_some(), "cycles_tolerance", "given", expected)
+            .map_err(|error| error.of("wear.cycles_tolerance"))?;
+        let expected = "left out, or cycles_per_step, the largest number of cycles that a computed one stands for";
+        require(self.cycles_tolerance.is_none() || self.cycles > 1.0, "cycles_tolerance", "given", expected)
             .map_err(|error| error.of("wear.cycles_tolerance"))
     }
 
@@ -197,7 +200,7 @@ impl Wear {
         require(
             sound,
             "tolerance of the cycles",
-            format!("{:?}", self.cycles_tolerance),
+            self.cycles_tolerance.unwrap_or_default(),
             "greater than 0 and at most 1",
         )
         .map_err(of("wear.cycles_tolerance"))?;

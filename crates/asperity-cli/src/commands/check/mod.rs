@@ -3,6 +3,7 @@
 mod cost;
 
 use asperity::Axis;
+use asperity::flash::Conductor;
 use asperity::load::{Course, Stage};
 use asperity::tangential::TangentialControl;
 use asperity::traction::FINE_TRAP;
@@ -173,6 +174,27 @@ fn prospects(case: &Case, inputs: &Inputs) -> Vec<[String; 2]> {
             format!("; each cycle stands for {most}{}", law.cycles)
         };
         line("wear", format!("{bodies}{way}{cycles}"));
+    }
+    if let Some(flash) = &case.conditions.flash {
+        let of = |body: &Conductor| {
+            format!("{} W/(m K) and {} m²/s", quantity(body.conductivity, ""), quantity(body.diffusivity, ""))
+        };
+        let [slider, track] = flash.bodies.each_ref().map(of);
+        line("flash", format!("slider, which carries the surfaces that move: {slider}; track: {track}"));
+        let sheared = case.motion.as_ref().is_some_and(|motion| motion.shear_stress.is_some());
+        let sources = [
+            (flash.friction > 0.0).then(|| format!("friction {}", quantity(flash.friction, ""))),
+            sheared.then(|| "the shear stress on the contact".to_owned()),
+            flash.hysteresis.then(|| "the loss in the bodies".to_owned()),
+        ];
+        let sources: Vec<String> = sources.into_iter().flatten().collect();
+        let time =
+            flash.heated_for.map_or(String::new(), |time| format!(", heated for {}", quantity(time, "s")));
+        let feedback = flash.feedback.as_ref().map_or(String::new(), |feedback| {
+            format!("; the material is warmed by it from {:.1} °C", feedback.temperature - 273.15)
+        });
+        let heat = sources.join(" and ");
+        line("", format!("heat of {heat}, partition \"{}\"{time}{feedback}", flash.partition.name()));
     }
     if let Some(adhesion) = &inputs.adhesion {
         let (work, range) = (quantity(adhesion.work, "J/m2"), quantity(adhesion.range, "m"));

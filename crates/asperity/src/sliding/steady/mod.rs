@@ -38,7 +38,7 @@ use super::{ContactForces, Direction, Friction, ShearStress, Slopes, Streaming};
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem};
 use crate::drive::{Coordinate, Drive};
 use crate::error::Result;
-use crate::flash::{self, FlashSolver, Rubbing};
+use crate::flash::{self, Feedback, FlashSolver, Rubbing};
 use crate::simulation::Simulation;
 use crate::step::{Checkpoint, Loader, Recorder, Saver, Step};
 
@@ -177,7 +177,7 @@ impl Steady {
             return self.warm(velocity, 1.0);
         };
         let (before, mut outcome) = (self.start.clone(), Outcome::default());
-        let settled = flash::settle(self.warmth, |rise| {
+        let settled = flash::settle(velocity, self.warmth, |rise| {
             let slowing = feedback.slowing(rise)?;
             let solved = self.solve_slowed(velocity, slowing);
             outcome.iterations += self.outcome.iterations;
@@ -190,8 +190,21 @@ impl Steady {
         let rise = settled?;
         self.outcome =
             Outcome { iterations: outcome.iterations, convolutions: outcome.convolutions, ..self.outcome };
-        self.flash.iter_mut().for_each(|flash| flash.note_material(feedback.temperature + rise));
+        let other = self.another(velocity, rise, feedback);
+        self.flash.iter_mut().for_each(|flash| flash.note_material(feedback.temperature + rise, other));
         Ok(rise)
+    }
+
+    /// Another rise \[K\] than this one with which a velocity may be steady, by the shear stress on the contact as it is now.
+    fn another(&self, velocity: f64, rise: f64, feedback: &Feedback) -> Option<f64> {
+        let law = self.motion.shear_stress.as_ref()?;
+        let flash = self.simulation.flash.as_ref()?;
+        let area = self.simulation.grid.cell_area()
+            * self.state.pressure.iter().filter(|p| **p > 0.0).count() as f64;
+        let bulk = if flash.hysteresis { self.friction.force.max(0.0) } else { 0.0 };
+        let force = |rise: f64| Some(bulk + area * law.at(velocity, feedback.slowing(rise).ok()?));
+        let now = force(rise).filter(|force| *force > 0.0)?;
+        flash::another(rise, |rise| Some(force(rise)? / now))
     }
 
     /// The mean flash temperature over the contact \[K\].

@@ -74,13 +74,17 @@ pub fn shown(unit: &str, largest: f64) -> Shown {
     Shown { factor: 10f64.powi(-3 * prefix * exponent), text }
 }
 
-/// The power of a thousand k for which `largest` / 1000^(k exponent) lies in \[1, 1000), and of areas in \[0.01, 10^4).
+/// The power of a thousand k for which `largest` / 1000^(k exponent) lies in \[1, 1000), of areas in \[0.01, 10^4), and of volumes in
+/// \[0.001, 10^6).
 fn prefix(largest: f64, exponent: i32) -> i32 {
     if !(largest.is_finite() && largest > 0.0) {
         return 0;
     }
     // Half of the fourth digit above: what four digits show as a thousand is one of the next prefix.
-    let few = if exponent.abs() == 2 { 2.0 } else { 0.0 };
+    let few = match exponent.abs() {
+        power @ (2 | 3) => f64::from(power),
+        _ => 0.0,
+    };
     let decades = largest.log10() + 2.17e-5 + if exponent > 0 { few } else { -few };
     let steps = (decades / f64::from(3 * exponent.abs())).floor() as i32;
     if exponent > 0 { steps } else { -steps }

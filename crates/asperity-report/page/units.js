@@ -24,8 +24,8 @@ function shown(unit, largest) {
   const exponent = inverse ? -power : power;
   let prefix = 0;
   if (largest > 0 && isFinite(largest)) {
-    // Areas in 0.01 to 10^4.
-    const few = power === 2 ? (inverse ? -2 : 2) : 0;
+    // Areas in 0.01 to 10^4, volumes in 0.001 to 10^6.
+    const few = power === 2 || power === 3 ? (inverse ? -power : power) : 0;
     const steps = Math.floor((Math.log10(largest) + 2.17e-5 + few) / (3 * power));
     prefix = inverse ? -steps : steps;
   }

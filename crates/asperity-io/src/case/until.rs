@@ -124,3 +124,19 @@ fn member(name: &str, words: String, schema: Value) -> Value {
         "additionalProperties": false,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_of_the_rows_takes_a_value_in_its_own_unit() {
+        for number in RowNumber::all() {
+            let value = match number.units() {
+                "1" | "1/m" => Prescribed::Number(2.0),
+                unit => Prescribed::Text(format!("2 {unit}")),
+            };
+            assert_eq!(resolve(number, &value, false), Ok(2.0), "{}", number.name());
+        }
+    }
+}

@@ -78,7 +78,9 @@ pub fn unknown_key(text: &Text<'_>, spot: Spot, name: &str, known: &[&str]) -> C
         None | Some("") => "the case file",
         Some(table) => table,
     };
-    let known = [known, read::shared(table)].concat();
+    // `array` names what a program gives beside the case; in a file it is of no use.
+    let known: Vec<&str> =
+        [known, read::shared(table)].concat().into_iter().filter(|key| *key != "array").collect();
     let names = known.join(", ");
     let expected = if known.is_empty() { "no key".to_owned() } else { format!("one of {names}") };
     if let Some((_, reason)) = RETIRED.iter().find(|retired| retired.0 == key) {

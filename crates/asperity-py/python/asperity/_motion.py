@@ -159,7 +159,7 @@ def steady(given: Steady) -> Result:
 
 def rubber_friction(result: Result, *, shear_stress: float) -> Floats:
     """Friction coefficient with an adhesive share: that of the loss in the bulk, and `shear_stress` [Pa] on the area in contact,
-    `friction_coefficient + sign(velocity) * shear_stress * contact_area / load`; nothing is added at rest and where there is no load.
+    `friction_coefficient + shear_stress * contact_area / load`; nothing is added where there is no load, and it is subtracted where the velocity is negative.
 
     >>> import asperity as asp
     >>> wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
@@ -171,6 +171,6 @@ def rubber_friction(result: Result, *, shear_stress: float) -> Floats:
     """
     load = np.asarray(result.load)
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(load > 0, number("shear_stress", shear_stress) * np.asarray(result.contact_area) / load, 0.0) * np.sign(result.velocity)
+        share = np.where(load > 0, number("shear_stress", shear_stress) * np.asarray(result.contact_area) / load, 0.0) * np.where(np.asarray(result.velocity) < 0, -1, 1)
     total: Floats = np.asarray(result.friction_coefficient) + share
     return total

@@ -110,7 +110,7 @@ pub(crate) fn name_of_theory(reader: &Reader) -> Result<&'static str, StoreError
     Ok(match (is_capped, is_warmed) {
         (false, false) => "Persson's theory",
         (true, false) => "Persson's theory, without the hardness",
-        (false, true) => "Persson's theory, without the flash temperature",
-        (true, true) => "Persson's theory, without hardness and flash temperature",
+        (false, true) => "Persson's theory, cold",
+        (true, true) => "Persson's theory, cold, without the hardness",
     })
 }

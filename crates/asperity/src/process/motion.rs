@@ -178,6 +178,7 @@ impl Moving {
             compliance: row.compliance,
             remembers: row.simulation.parts().any(remembers),
             velocity,
+            sense: self.motion.path.sense(row.step.instant.time),
             distance: self.distance,
             shear_stress: self.motion.shear_stress.as_ref().map(|law| law.at(velocity, 1.0)),
         };

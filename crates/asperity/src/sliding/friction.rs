@@ -152,6 +152,8 @@ pub(crate) struct ContactForces<'a> {
     /// Whether the bodies remember anything. Those that do not lose nothing: what the sums are then is the error of the grid.
     pub(crate) remembers: bool,
     pub(crate) velocity: f64,
+    /// 1, -1 or at rest 0.
+    pub(crate) sense: f64,
     /// How far the contact has moved.
     pub(crate) distance: f64,
     pub(crate) shear_stress: Option<f64>,
@@ -243,11 +245,11 @@ impl ContactForces<'_> {
         if self.shear_stress.is_none() && coefficient == 0.0 {
             return None;
         }
-        if sums.load <= 0.0 || self.velocity == 0.0 {
+        if sums.load <= 0.0 {
             return Some(0.0);
         }
         let stress = self.shear_stress.unwrap_or(0.0);
-        Some(self.velocity.signum() * (coefficient + stress * sums.area / sums.load))
+        Some(self.sense * (coefficient + stress * sums.area / sums.load))
     }
 
     fn sums(&self) -> Sums {

@@ -123,6 +123,16 @@ impl Path {
         }
     }
 
+    /// The sense of the motion at time t: the sign of its velocity before it, or where that is 0 of a given velocity after it; 0 at rest.
+    pub(crate) fn sense(&self, t: f64) -> f64 {
+        let (before, inside) = (self.velocity(t), t - self.start);
+        let after = if self.of_velocity && inside >= 0.0 { self.history.after(inside) } else { 0.0 };
+        match if before == 0.0 { after } else { before } {
+            0.0 => 0.0,
+            velocity => velocity.signum(),
+        }
+    }
+
     /// Where the motion starts, bends or jumps, up to `end` \[s\].
     pub fn breaks(&self, end: f64) -> Vec<f64> {
         let inside = self.history.breaks(end - self.start).into_iter().map(|t| self.start + t);

@@ -169,7 +169,8 @@ impl Wear {
         let expected = "left out, or a load along the surfaces that is a sine with a period";
         require(self.cycles_tolerance.is_none() || period.is_some(), "cycles_tolerance", "given", expected)
             .map_err(|error| error.of("wear.cycles_tolerance"))?;
-        let expected = "left out, or cycles_per_step, the largest number of cycles that a computed one stands for";
+        let expected =
+            "left out, or cycles_per_step, the largest number of cycles that a computed one stands for";
         require(self.cycles_tolerance.is_none() || self.cycles > 1.0, "cycles_tolerance", "given", expected)
             .map_err(|error| error.of("wear.cycles_tolerance"))
     }

@@ -246,6 +246,7 @@ impl Steady {
             compliance: problem.compliance,
             remembers: self.streaming.branches().next().is_some(),
             velocity,
+            sense: 1.0,
             distance: 0.0,
             shear_stress: self.motion.shear_stress.as_ref().map(|law| law.at(velocity, slowing)),
         };

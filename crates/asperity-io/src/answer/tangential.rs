@@ -75,8 +75,9 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         Answer::new("largest_tangential_force", forces[pulled], grid.units("N")).at(&rows[pulled]),
         Answer::new("largest_tangential_displacement", ways[moved], "m").at(&rows[moved]),
         Answer::new("slip_share", share, "1").with_note("of the contact, under the largest tangential force"),
-        Answer::new(Quantity::SlipWork.name(), work[rows.len() - 1], grid.units("J"))
-            .with_note("since t = 0"),
+        Answer::new(Quantity::SlipWork.name(), work[rows.len() - 1], grid.units("J")).with_note(
+            if reader.header().wears() { "since t = 0, of the computed cycles" } else { "since t = 0" },
+        ),
     ]);
     Ok(answers)
 }

@@ -61,6 +61,7 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     line("Hardness", number("hardness", "Pa"));
     line("Friction", friction(setup));
     line("Wear", wear(setup));
+    line("Flash temperature", flash(setup));
     match header.axis() {
         Axis::Velocity => {
             let rows = reader.series("time")?;
@@ -141,6 +142,23 @@ fn friction(setup: &Map<String, Value>) -> Option<String> {
         number("shear_limit").map_or(String::new(), |limit| format!(", at most {}", quantity(limit, "Pa")));
     let control = friction.get("control").and_then(Value::as_str).unwrap_or_default();
     Some(format!("{coefficient}{limit}, under a tangential {control}"))
+}
+
+/// "slider 2 W/(m K) and 1e-6 m²/s, track 0.3 W/(m K) and 1e-7 m²/s, partition mean".
+fn flash(setup: &Map<String, Value>) -> Option<String> {
+    let flash = setup.get("flash")?.as_object()?;
+    let number = |key: &str| flash.get(key).and_then(Value::as_f64);
+    let body = |n: usize| {
+        let body = flash.get("bodies")?.get(n)?.as_object()?;
+        let of = |key: &str| Some(quantity(body.get(key)?.as_f64()?, ""));
+        Some(format!("{} W/(m K) and {} m²/s", of("conductivity")?, of("diffusivity")?))
+    };
+    let friction = number("friction").filter(|mu| *mu > 0.0);
+    let friction = friction.map_or(String::new(), |mu| format!(", friction {}", quantity(mu, "")));
+    let time = number("heated_for").map_or(String::new(), |t| format!(", heated for {}", quantity(t, "s")));
+    let feedback = if number("feedback").is_some() { ", with feedback on the material" } else { "" };
+    let partition = flash.get("partition").and_then(Value::as_str).unwrap_or_default();
+    Some(format!("slider {}, track {}, partition {partition}{friction}{time}{feedback}", body(0)?, body(1)?))
 }
 
 /// "Archard's law with 1e-15 m²/N, each computed cycle stands for 400".

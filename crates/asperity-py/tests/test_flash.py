@@ -39,14 +39,14 @@ def test_shear_stress_over_the_velocity():
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"flash": asp.Flash(0.2, 1e-7)}, "nothing makes heat"),
-        ({"flash": asp.Flash(-0.2, 1e-7, friction=0.5)}, "conductivity"),
-        ({"flash": asp.Flash((0.2, 1.0, 2.0), 1e-7, friction=0.5)}, "pair"),
-        ({"flash": asp.Flash(0.2, 1e-7, friction=0.5)}, "partition"),
-        ({"flash": 0.5}, "asperity.Flash"),
-        ({"shear_stress": {"peak": 1e5}}, "velocity"),
+        (lambda: {"flash": asp.Flash(0.2, 1e-7)}, "nothing makes heat"),
+        (lambda: {"flash": asp.Flash(-0.2, 1e-7, friction=0.5)}, "conductivity"),
+        (lambda: {"flash": asp.Flash((0.2, 1.0, 2.0), 1e-7, friction=0.5)}, "pair"),
+        (lambda: {"flash": asp.Flash(0.2, 1e-7, friction=0.5)}, "partition"),
+        (lambda: {"flash": 0.5}, "asperity.Flash"),
+        (lambda: {"shear_stress": {"peak": 1e5}}, "velocity"),
     ],
 )
 def test_what_cannot_be_is_refused(given, message):
     with pytest.raises(asp.CaseError, match=message):
-        asp.steady(roller(64), RUBBER, load=300.0, velocities=[0.1], **given)
+        asp.steady(roller(64), RUBBER, load=300.0, velocities=[0.1], **given())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,11 @@ import numpy.typing as npt
 from ._core import CaseError
 from ._units import bare, frequency, has_unit, is_labelled, variable_of
 
+if TYPE_CHECKING:
+    from ._surface import Surface
+
 Floats = npt.NDArray[np.float64]
+Array = TypeVar("Array", bound=npt.NDArray[Any])
 
 
 def number(what: str, value: Any, unit: str | None = None) -> float:
@@ -45,8 +49,9 @@ def shown(value: Any) -> str:
     return repr(value.item() if isinstance(value, np.generic) else value)
 
 
-def choice(what: str, value: Any, words: Sequence[str]) -> Any:
-    """One of these words, or an error that names the nearest."""
+def choice(what: str, value: Any, words: Any) -> Any:
+    """One of these words, a list or a Literal, or an error that names the nearest."""
+    words = get_args(words) or words
     if isinstance(value, str) and value in words:
         return value
     near = difflib.get_close_matches(value, words, 1) if isinstance(value, str) else []
@@ -80,11 +85,6 @@ def distinct(what: str, given: Any, words: Sequence[str]) -> list[str]:
     return names
 
 
-def _gathered(value: Any) -> Any:
-    """The values of a generator as a list; anything else as it is."""
-    return list(value) if isinstance(value, Iterator) else value
-
-
 def in_hertz(what: str, value: Any) -> float:
     """A frequency in Hz; a quantity may be in rad/s or rpm."""
     return number(what, frequency(what, value, angular=False))
@@ -112,10 +112,9 @@ def count(what: str, value: Any, least: int = 1, most: int = 2**53) -> int:
         if real != int(real) if np.isfinite(real) else True:
             raise CaseError(f"{what} is {shown(value)}, but must be a whole number")
         whole = int(real)
-    if whole < least:
-        raise CaseError(f"{what} is {shown(value)}, but must be at least {least}")
-    if whole > most:
-        raise CaseError(f"{what} is {shown(value)}, but must be at most {most}")
+    if not least <= whole <= most:
+        limit = f"at least {least}" if whole < least else f"at most {most}"
+        raise CaseError(f"{what} is {shown(value)}, but must be {limit}")
     return whole
 
 
@@ -170,21 +169,20 @@ def counts(what: str, value: Any) -> tuple[int, int]:
 def plain(array: Any) -> Floats:
     """The array as the core takes it: float64, in C order, aligned (what came through a socket may not be); no copy where
     it is so."""
-    out: Floats = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"])
-    return out
+    return np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"])
 
 
 def array(what: str, value: Any, unit: str | None = None) -> Floats:
     """Real numbers of any shape in SI units."""
-    value = bare(what, _gathered(value), unit)
+    value = bare(what, list(value) if isinstance(value, Iterator) else value, unit)
     found = np.asarray(value)
     if found.dtype.kind not in "fiu":
         told = f"has dtype {found.dtype}" if found.ndim else f"is {value!r}"
         raise CaseError(f"{what} {told}, but must hold real numbers in SI units")
-    return np.asarray(found, dtype=np.float64)
+    return found.astype(np.float64, copy=False)
 
 
-def frozen(values: Any) -> Any:
+def frozen(values: Array) -> Array:
     """The array, read-only."""
     view = values.view()
     view.flags.writeable = False
@@ -266,6 +264,14 @@ def field(what: str, value: Any, line: bool = False, *, unit: str | None = None,
     return plain(array)
 
 
+def per_cell(what: str, value: Any, shape: Surface, unit: str | None = None) -> Floats:
+    """Numbers of each cell of the domain of a surface."""
+    cells = field(what, value, line=True, unit=unit, size=shape.size)
+    if cells.shape != shape.cells:
+        raise CaseError(f"{what} has shape {cells.shape}, but must have {shape.cells}: one number for each cell")
+    return cells
+
+
 def as_plane(array: Floats) -> Floats:
     """The array as the core takes it: that of a line, (n,), as (n, 1)."""
     return array.reshape(-1, 1) if array.ndim == 1 else array
@@ -278,14 +284,14 @@ def size_of(what: str, array: Floats, size: Any) -> list[float]:
         words = "two lengths, size=(Lx, Ly)" if array.ndim == 2 else "one length, size=(L,)"
         raise CaseError(f"size is {size!r}, but {what} has shape {array.shape}, which needs {words}")
     for length in found:
-        check_length("size", length, size)
+        check_length("size", length)
     return list(found)
 
 
-def check_length(what: str, length: float, given: Any) -> None:
+def check_length(what: str, length: float) -> None:
     """Refuses lengths [m] that the core does not take: products of four of them overflow or vanish."""
     if not 1e-60 <= length <= 1e60:
-        raise CaseError(f"{what} is {given!r} m, but must be finite and greater than 0 m (1e-60 m to 1e60 m)")
+        raise CaseError(f"{what} is {length:g} m, but must be finite and greater than 0 m (1e-60 m to 1e60 m)")
 
 
 def cells_of(array: Floats) -> str:
@@ -295,10 +301,10 @@ def cells_of(array: Floats) -> str:
 
 def line(what: str, value: Any, unit: str | None = None) -> Floats:
     """A one-dimensional array of real numbers as float64 in SI units."""
-    array = np.asarray(bare(what, _gathered(value), unit))
-    if array.dtype.kind not in "fiu" or array.ndim != 1:
-        raise CaseError(f"{what} has shape {array.shape} and dtype {array.dtype}, but must be a list of real numbers")
-    return plain(array)
+    found = array(what, value, unit)
+    if found.ndim != 1:
+        raise CaseError(f"{what} has shape {found.shape}, but must be a list of real numbers")
+    return plain(found)
 
 
 def columns(**given: Any) -> list[Floats]:
@@ -318,19 +324,16 @@ def each(function: Callable[[Floats], Floats], what: str, value: Any) -> Floats:
 
 def points(what: str, value: Any, units: tuple[str, str] = ("", "")) -> list[tuple[float, float]]:
     """A list of pairs, whose numbers have these units."""
-    value = _gathered(value)
+    value = list(value) if isinstance(value, Iterator) else value
     if isinstance(value, (list, tuple)) and all(isinstance(pair, (list, tuple)) and len(pair) == 2 for pair in value):
         value = [tuple(bare(what, one, unit) for one, unit in zip(pair, units)) for pair in value]
-    else:
-        value = bare(what, value)
-    array = np.asarray(value)
-    if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
-        shape = f"has the shape {array.shape}" if array.ndim else f"is {value!r}"
+    found = np.asarray(bare(what, value))
+    if found.dtype.kind not in "fiu" or found.ndim != 2 or found.shape[1] != 2:
+        shape = f"has the shape {found.shape}" if found.ndim else f"is {value!r}"
         raise CaseError(f"{what}: the list {shape}, but must be one of pairs of numbers")
-    return [(float(a), float(b)) for a, b in array]
+    return [(float(a), float(b)) for a, b in found]
 
 
 def centres(cells: int, length: float) -> Floats:
     """Centres of equal cells along a length; read-only."""
-    places: Floats = frozen(np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64))
-    return places
+    return frozen(np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64))

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ._arrays import Floats, choice, count, either, in_hertz, line, number, points
 from ._core import CaseError, waitable
+from ._declared import Table
 from ._parameters import Parameter, call
 from ._sampled import as_points
 from ._units import has_unit, is_labelled, unit_among
@@ -250,8 +251,8 @@ def _event_units(load_unit: str) -> dict[str, str]:
     return {"approach": "m", "load": load_unit, "pressure": "Pa", **numbers}
 
 
-@dataclass(frozen=True)
-class Stage:
+@dataclass(frozen=True, repr=False)
+class Stage(Table):
     """A part of a programme: what is prescribed, on a clock that starts with it, and when it ends.
 
     Parameters
@@ -289,11 +290,8 @@ class Stage:
     after_jump: bool = False
     times: Times | npt.ArrayLike | None = None
 
-    def __repr__(self) -> str:
-        shown = {name: value for name, value in vars(self).items() if value is not None and value is not False}
-        return f"Stage({', '.join(f'{name}={value!r}' for name, value in shown.items())})"
-
     def __post_init__(self) -> None:
+        super().__post_init__()
         # Values of its own, which compare and do not follow an array that changes.
         if self.times is not None:
             object.__setattr__(self, "times", as_times(self.times))
@@ -306,25 +304,23 @@ class Stage:
                 raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or one number of the rows with its value, as in {{'load': 0.1}}")
             choice("the event of until", self.until[0], tuple(_event_units("N")))
 
-    def _keys(self, load_unit: str) -> dict[str, Any]:
+    def _given(self, load_unit: str) -> dict[str, Any]:
         """The keys of one of the `stages`; the unit of a load is N, or N/m of a line contact."""
-        given = {"load": self.load, "pressure": self.pressure, "approach": self.approach}
-        control, value = one_of(given, "a stage needs")
-        keys: dict[str, Any] = {
-            "control": control,
-            "history": as_history(control, value, load_unit if control == "load" else None)._keys,
-            "after_jump": self.after_jump,
-        }
-        if self.duration is not None:
-            keys["duration"] = number("duration of the stage", self.duration)
+        keys = self._keys
+        prescribed = {name: keys.pop(name, None) for name in ("load", "pressure", "approach")}
+        keys |= control_keys(prescribed, "a stage needs", load_unit)
         if isinstance(self.until, tuple):
             event, limit = self.until
             keys["until"] = {event: number(f"until {event}", limit, _event_units(load_unit)[event])}
-        elif self.until is not None:
-            keys["until"] = self.until
-        if self.times is not None:
-            keys["time"] = as_times(self.times)._keys
+        if "times" in keys:
+            keys["time"] = as_times(keys.pop("times"))._keys
         return keys
+
+
+def control_keys(prescribed: dict[str, Any], otherwise: str, load_unit: str) -> dict[str, Any]:
+    """The keys of the one quantity that is prescribed; the unit of a load is N, or N/m of a line contact."""
+    control, value = one_of(prescribed, otherwise)
+    return {"control": control, "history": as_history(control, value, load_unit if control == "load" else None)._keys}
 
 
 def one_of(alternatives: dict[str, Any], otherwise: str) -> tuple[str, Any]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, get_args
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import Floats, choice, direction_of, line, number
+from ._arrays import Floats, direction_of, line, number
 from ._core import CaseError
 from ._flash import Flash
 from ._histories import Function, History, one_of
@@ -41,7 +41,7 @@ class Moving(Run):
     def motion_keys(self) -> dict[str, Any]:
         """The keys of `[motion]` that say how it moves."""
         direction = direction_of(self.direction)
-        keys = {"direction": direction if isinstance(direction, str) else f"{direction!r} rad", "kind": choice("kind", self.kind, get_args(Movement))}
+        keys = {"direction": direction if isinstance(direction, str) else f"{direction!r} rad", "kind": self.kind}
         return keys if self.shear_stress is None else {**keys, "shear_stress": _shear(self.shear_stress)}
 
     def flash_keys(self) -> dict[str, Any]:
@@ -66,12 +66,7 @@ class Slide(Moving, InTime):
 
     def course_keys(self) -> dict[str, Any]:
         what, course = one_of({"velocity": self.velocity, "path": self.path}, "give")
-        motion = {
-            what: self.history_keys(what, course),
-            "start": number("start", self.start),
-            "cells_per_step": number("cells_per_step", self.cells_per_step),
-            **self.motion_keys(),
-        }
+        motion = {what: self.history_keys(what, course), "start": self.start, "cells_per_step": self.cells_per_step, **self.motion_keys()}
         return {**super().course_keys(), "motion": motion, **self.flash_keys()}
 
 

@@ -41,5 +41,6 @@ class Parameter(Generic[Value]):
 
 def call(name: str, parameters: dict[str, Any], positional: int = 0) -> str:
     """The call that makes the object, the first parameters without their names."""
-    words = [repr(value) if n < positional else f"{key}={value!r}" for n, (key, value) in enumerate(parameters.items())]
+    told = {key: f"<array of {value.shape}>" if hasattr(value, "shape") else repr(value) for key, value in parameters.items()}
+    words = [value if n < positional else f"{key}={value}" for n, (key, value) in enumerate(told.items())]
     return f"{name}({', '.join(words)})"

@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 from ._adhesion import Adhesion
 from ._fluid import Fluid
-from ._arrays import as_plane, check_places, choice, count, distinct, field as field_of, in_order, number
+from ._arrays import as_plane, check_places, distinct, in_order, number, per_cell
 from ._core import CaseError
+from ._declared import check
 from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
 from ._layers import Body
 from ._materials import Material
@@ -62,12 +63,13 @@ class Problem:
     #: Groups of fields of which exactly one is given.
     alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure"), ("surface", "gap")]
 
+    def __post_init__(self) -> None:
+        check(self)
+
     def parts(self) -> tuple[Surface, dict[str, Any], dict[str, Floats]]:
         """The surface, the keys of the case, and the arrays that the keys name."""
         if isinstance(self.surface, (Material, Body)):
             raise CaseError("the surface is a material: the surface comes first, as in solve(surface, material, ...)")
-        for what, words in (("boundary", Boundary), ("method", Method), ("plasticity", Plasticity)):
-            choice(what, getattr(self, what), get_args(words))
         shape = surface_of(self.surface, self.gap, self.size)
         check_boundary(shape, self.boundary)
         check_places("hardness", self.hardness, self.surface if self.gap is None else self.gap)
@@ -79,7 +81,7 @@ class Problem:
         elif limit is not None:
             bodies = [{**body, "hardness": limit} for body in bodies]
         ends = {"pressure": self.largest_pressure, "gap": self.largest_gap}
-        histogram = {name: number(f"largest_{name}", end) for name, end in ends.items() if end is not None}
+        histogram = {name: end for name, end in ends.items() if end is not None}
         for name, end in histogram.items():
             if not 0.0 < end < float("inf"):
                 raise CaseError(f"largest_{name} is {end:g} {'Pa' if name == 'pressure' else 'm'}, but must be finite and greater than 0")
@@ -88,16 +90,8 @@ class Problem:
             "surface": [{"kind": "array", "array": "heights", "single": bool(shape.metadata.get("single"))}],
             "body": bodies,
             "load": self.load_keys("N/m" if shape.is_line else "N"),
-            "solver": {
-                "method": self.method,
-                "tolerance": number("tolerance", self.tolerance),
-                "max_iterations": count("max_iterations", self.max_iterations),
-                "plasticity": self.plasticity,
-            },
-            "output": {
-                "quantities": distinct("quantities", self.quantities, get_args(Quantity)),
-                "histogram": {"bins": count("bins", self.bins), **histogram},
-            },
+            "solver": {name: getattr(self, name) for name in ("method", "tolerance", "max_iterations", "plasticity")},
+            "output": {"quantities": distinct("quantities", self.quantities, get_args(Quantity)), "histogram": {"bins": self.bins, **histogram}},
             **self.course_keys(),
         }
         if self.temperature is not None:
@@ -132,6 +126,7 @@ class InTime(Problem):
     wear: Wear | float | None = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         # Once: a generator gives its times only once.
         self.times = as_times(self.times)
 
@@ -152,7 +147,7 @@ class InTime(Problem):
         return history._keys
 
     def course_keys(self) -> dict[str, Any]:
-        return {"time": {**as_times(self.times)._keys, "scheme": choice("scheme", self.scheme, get_args(Scheme))}}
+        return {"time": {**as_times(self.times)._keys, "scheme": self.scheme}}
 
 
 @dataclass(kw_only=True)
@@ -200,7 +195,7 @@ class InStages(InTime):
         programme = list(self.stages)
         if not programme or not all(isinstance(stage, Stage) for stage in programme):
             raise CaseError("stages is a list of asperity.Stage, one at least")
-        return {"stages": [stage._keys(load_unit) for stage in programme]}
+        return {"stages": [stage._given(load_unit) for stage in programme]}
 
 
 @dataclass(kw_only=True)
@@ -245,7 +240,4 @@ def hardness_of(hardness: Any, shape: Surface) -> float | Floats | None:
         return None
     if np.ndim(bare("hardness", in_order("hardness", hardness, shape.size))) != len(shape.size):
         return number("hardness", hardness)
-    cells = field_of("hardness", hardness, line=True, size=shape.size)
-    if cells.shape != shape.cells:
-        raise CaseError(f"hardness has shape {cells.shape}, but must have {shape.cells}: one value for each cell")
-    return cells
+    return per_cell("hardness", hardness, shape)

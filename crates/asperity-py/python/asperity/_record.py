@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, as_plane, count, distinct, line
+from ._arrays import Floats, as_plane, distinct, line
 from ._columns import FIELDS, HISTOGRAMS, ROW
 from ._core import CaseError
 from ._problem import InTime, Problem
@@ -26,7 +26,7 @@ class Keep:
     def __init__(self, given: Problem) -> None:
         self.fields = distinct("fields", given.fields, list(FIELDS))
         self.title = given.title
-        self.every = None if given.every is None else count("every", given.every)
+        self.every = given.every
         self.times = None if given.field_times is None else line("field_times", given.field_times)
         #: Times that become steps.
         self.steps: list[float] = []

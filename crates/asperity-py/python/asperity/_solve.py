@@ -17,7 +17,7 @@ from ._arrays import cells_of, path_of
 from ._columns import HISTOGRAMS, Number
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
-from ._histories import History, as_history, one_of
+from ._histories import History, control_keys
 from ._layers import materials_of
 from ._options import arguments_of
 from ._problem import InStages, Problem, Run, Solve, bodies_of
@@ -178,9 +178,7 @@ class March(Sealed):
         >>> bool(abs(areas[-1] / areas[0] - 1) < 0.05), bool(run.result().load[-1] < 3.5e-3)
         (True, True)
         """
-        control, value = one_of({"load": load, "pressure": pressure, "approach": approach}, "prescribe")
-        unit = ("N/m" if len(self.size) == 1 else "N") if control == "load" else None
-        keys = {"control": control, "history": as_history(control, value, unit)._keys}
+        keys = control_keys({"load": load, "pressure": pressure, "approach": approach}, "prescribe", "N/m" if len(self.size) == 1 else "N")
         with self._turn:
             self._core.prescribe(keys)
             self._record.prescribed.append({"row": len(self._record), **keys})

@@ -1,0 +1,72 @@
+"""Arguments that are the fields of a dataclass: what a field is declared as says how it is checked.
+
+A field of the type `float` is a number in SI units, `int` a whole number, `bool` True or False, and a word is one of its Literal in
+:mod:`asperity._words`. Fields of other types are checked where they are used, and limits by the core.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import MISSING, fields
+from typing import TYPE_CHECKING, Any, ClassVar, get_args
+
+import numpy as np
+
+from . import _words
+from ._arrays import choice, count, number
+from ._core import CaseError
+from ._parameters import call
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+
+def _truth(name: str, value: Any) -> bool:
+    if not isinstance(value, (bool, np.bool_)):
+        raise CaseError(f"{name} is {value!r}, but must be True or False")
+    return bool(value)
+
+
+def _of_bodies(name: str, value: Any) -> float | tuple[float, ...]:
+    """A number for both bodies, or one for each."""
+    if np.ndim(value) == 0:
+        return number(name, value)
+    if np.shape(value) != (2,):
+        raise CaseError(f"{name} is {value!r}, but must be a number, or a pair of them, of the body that carries the moving surfaces and of the other")
+    return tuple(number(name, one) for one in value)
+
+
+#: What becomes of a value, by the type of its field.
+_CHECKS: dict[str, Callable[[str, Any], Any]] = {
+    **{"float": number, "int": count, "bool": _truth, "float | tuple[float, float]": _of_bodies},
+    **{name: functools.partial(choice, words=words) for name, words in vars(_words).items() if get_args(words)},
+}
+
+
+def check(given: DataclassInstance) -> None:
+    """Replaces the values of the fields by checked ones; a field that may be None stays None."""
+    for one in fields(given):
+        kind = str(one.type).removesuffix(" | None")
+        value = getattr(given, one.name, None)
+        if kind in _CHECKS and not (value is None and kind != one.type):
+            object.__setattr__(given, one.name, _CHECKS[kind](one.name, value))
+
+
+class Table:
+    """The base of frozen dataclasses whose fields are the keys of a table of the case."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def __repr__(self) -> str:
+        given = {one.name: (getattr(self, one.name), one.default) for one in fields(self)}
+        shown = {name: value for name, (value, usual) in given.items() if isinstance(value, np.ndarray) or value != usual}
+        return call(type(self).__name__, shown, sum(one.default is MISSING and not one.kw_only for one in fields(self)))
+
+    @property
+    def _keys(self) -> dict[str, Any]:
+        """The keys of the table that are given."""
+        return {one.name: value for one in fields(self) if (value := getattr(self, one.name)) is not None}

@@ -160,10 +160,10 @@ def along(what: str, value: Any, dimensions: int, along_y: float = 0.0) -> list[
     return [found[0], along_y] if dimensions == 1 else list(found)
 
 
-def counts(what: str, value: Any) -> tuple[int, int]:
+def counts(what: str, value: Any, least: int = 1) -> tuple[int, int]:
     """Two whole numbers, along x and y."""
     x, y = pair(what, value)
-    return count(f"{what} along x", x), count(f"{what} along y", y)
+    return count(f"{what} along x", x, least), count(f"{what} along y", y, least)
 
 
 def plain(array: Any) -> Floats:

@@ -14,25 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _foreign, _html
-from ._arrays import (
-    Floats,
-    along,
-    angle,
-    as_plane,
-    cell_counts,
-    cells_of,
-    count,
-    counts,
-    field,
-    frozen,
-    in_order,
-    lengths,
-    number,
-    numbers_of,
-    pair,
-    pitch_of,
-    size_of,
-)
+from ._arrays import Floats, along, angle, as_plane, cell_counts, cells_of, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
+from ._arrays import pitch_of, size_of
 from ._core import CaseError
 from ._findings import findings_of, warn, warn_caller
 from ._grid import OnGrid
@@ -202,20 +185,23 @@ class Surface(OnGrid):
         scale = number("factor of the heights", factor, "")
         if not np.isfinite(scale):
             raise CaseError(f"factor is {scale}, but must be finite")
-        words = f"heights times {scale:g}"
-        return Surface(self.heights * scale, size=self.size, metadata={**self.metadata, "history": [*self.history, words]})
+        return self._changed(self.heights * scale, [f"heights times {scale:g}"])
 
     __rmul__ = __mul__
 
     def __truediv__(self, divisor: Any) -> Surface:
         if not _is_number(divisor) and not carries(divisor):
             return NotImplemented
-        if number("divisor of the heights", divisor, "") == 0.0:
+        if (share := number("divisor of the heights", divisor, "")) == 0.0:
             raise CaseError("heights cannot be divided by 0")
-        return self * (1.0 / number("divisor of the heights", divisor, ""))
+        return self * (1.0 / share)
 
     def __neg__(self) -> Surface:
-        return Surface(-self.heights, size=self.size, metadata={**self.metadata, "history": [*self.history, "inverted"]})
+        return self._changed(-self.heights, ["inverted"])
+
+    def _changed(self, heights: Floats, done: list[str], size: Sequence[float] | None = None) -> Surface:
+        """The surface with other heights, on which this was done."""
+        return Surface(heights, size=self.size if size is None else size, metadata={**self.metadata, "history": [*self.history, *done]})
 
     def __pos__(self) -> Surface:
         return self
@@ -260,11 +246,10 @@ class Surface(OnGrid):
         ((4, 4), True, 'crop to 4 x 4 cells from (3, 2)')
         """
         heights, size, done = self._compiled.process([str(step) for step in steps])
-        heights = heights[:, 0] if self.is_line else heights
-        metadata = {**self.metadata, "history": [*self.history, *done]}
+        changed = self._changed(heights[:, 0] if self.is_line else heights, done, size)
         if any("crop" in step for step in done):
-            metadata.pop("repeats", None)
-        return Surface(heights, size=size, metadata=metadata)
+            changed.metadata.pop("repeats", None)
+        return changed
 
     def level(self, form: Form = "plane") -> Surface:
         """The surface without its least-squares "mean", "plane" or "quadratic" form; "none" leaves it."""
@@ -294,13 +279,10 @@ class Surface(OnGrid):
         if defined:
             return self.process("crop defined=true")
         if cells is not None:
-            words = "crop cells={},{}".format(*counts("cells", cells))
-            if start is not None:
-                i, j = pair("start", start)
-                words += f" from={count('start along x', i, 0)},{count('start along y', j, 0)}"
-            return self.process(words)
-        words = "crop size={!r},{!r}".format(*pair("size", size))
-        return self.process(words if corner is None else words + " corner={!r},{!r}".format(*pair("corner", corner)))
+            first = "" if start is None else " from={},{}".format(*counts("start", start, 0))
+            return self.process("crop cells={},{}".format(*counts("cells", cells)) + first)
+        place = "" if corner is None else " corner={!r},{!r}".format(*pair("corner", corner))
+        return self.process("crop size={!r},{!r}".format(*pair("size", size)) + place)
 
     def resample(self, cells: Sequence[int], *, method: Resampling = "band-limited") -> Surface:
         """Other cells over the same rectangle: "band-limited" (by waves; needs every point) or "bilinear"."""
@@ -434,8 +416,7 @@ class Surface(OnGrid):
 
     def _defined(self, what: str) -> Floats:
         """The heights, all of which `what` needs."""
-        missing = int(np.count_nonzero(~np.isfinite(self.heights)))
-        if missing:
+        if missing := int(np.count_nonzero(~np.isfinite(self.heights))):
             raise CaseError(f"{what} needs every height, but {missing} of {self.heights.size} points are undefined: fill() them first")
         return self.heights
 
@@ -580,19 +561,15 @@ class Surface(OnGrid):
         >>> round(surface.statistics()["sq"] * 1e6, 12)
         1.0
         """
-        lay: dict[str, Any] = dict(numbers_of({"ratio": lay_ratio}))
-        turned = 0.0
-        if lay_angle is not None:
-            turned = angle("lay_angle", lay_angle)
-            lay["angle"] = f"{turned!r} rad"
+        given = dict(hurst=hurst, rms_gradient=rms_gradient, rms_height=rms_height, longest=longest, shortest=shortest, roll_off=roll_off)
+        lay = numbers_of({"ratio": lay_ratio}) | ({} if lay_angle is None else {"angle": angle("lay_angle", lay_angle)})
         distribution = numbers_of({"skewness": skewness, "kurtosis": kurtosis})
         if len(lengths("size", size)) == 1 and (lay or distribution):
             raise CaseError("a profile has no lay, and heights of a normal distribution: leave lay, skewness and kurtosis out")
-        numbers = dict(hurst=hurst, rms_gradient=rms_gradient, rms_height=rms_height, longest=longest, shortest=shortest, roll_off=roll_off)
-        given = {"seed": count("seed", seed, 0, 2**63 - 1), "lay": lay, "distribution": distribution}
-        of_lay = {f"lay_{name}": turned if name == "angle" else value for name, value in lay.items()}
-        made = {**numbers_of(numbers), "seed": given["seed"], **of_lay, **distribution}
-        return _made(cells, size, "self-affine", numbers, made, **{name: value for name, value in given.items() if value != {}})
+        numbers = {**numbers_of(given), "seed": count("seed", seed, 0, 2**63 - 1)}
+        parts = {"lay": {**lay, "angle": f"{lay['angle']!r} rad"} if "angle" in lay else lay, "distribution": distribution}
+        made = {**numbers, **{f"lay_{name}": value for name, value in lay.items()}, **distribution}
+        return _made("self-affine", cells, size, made, {**numbers, **{name: part for name, part in parts.items() if part}})
 
     @staticmethod
     def contact_mechanics_challenge(*, cells: Sequence[int], seed: int = 0) -> Surface:
@@ -600,15 +577,15 @@ class Surface(OnGrid):
 
         Hurst exponent 0.8, roll-off 20 um, cut-off 0.1 um, rms gradient 1; it needs 2000 cells a side or more.
         """
-        whole = count("seed", seed, 0, 2**63 - 1)
-        return _made(cells, (1e-4, 1e-4), "self-affine", {}, None, preset="contact-mechanics-challenge", seed=whole)
+        keys = {"preset": "contact-mechanics-challenge", "seed": count("seed", seed, 0, 2**63 - 1)}
+        return _made("self-affine", cells, (1e-4, 1e-4), None, keys)
 
     @staticmethod
     def sphere(
         *, cells: Sequence[int], size: Sequence[float], radius: float, center: Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A paraboloid of that radius [m]; `center` [m] from the middle of the domain."""
-        return _shape(cells, size, center, "sphere", radius=radius)
+        return _shape("sphere", cells, size, center, {"radius": radius})
 
     @staticmethod
     def ellipsoid(
@@ -620,7 +597,7 @@ class Surface(OnGrid):
         center: Sequence[float] = (0.0, 0.0),
     ) -> Surface:
         """A paraboloid of two radii [m]; an infinite one makes a cylinder."""
-        return _shape(cells, size, center, "ellipsoid", radius_x=radius_x, radius_y=radius_y)
+        return _shape("ellipsoid", cells, size, center, {"radius_x": radius_x, "radius_y": radius_y})
 
     @staticmethod
     def cylinder(
@@ -634,21 +611,21 @@ class Surface(OnGrid):
         >>> bool(abs(hertz.pressure.max() / np.sqrt(20e3 * 1e9 / (np.pi * 10e-3)) - 1) < 1e-3)
         True
         """
-        return _shape(cells, size, center, "cylinder", radius=radius)
+        return _shape("cylinder", cells, size, center, {"radius": radius})
 
     @staticmethod
     def wedge(
         *, cells: int | Sequence[int], size: float | Sequence[float], slope: float, center: float | Sequence[float] = 0.0
     ) -> Surface:
         """A wedge along y that rises by `slope` per length; `center` [m] along x from the middle of the domain."""
-        return _shape(cells, size, center, "wedge", slope=slope)
+        return _shape("wedge", cells, size, center, {"slope": slope})
 
     @staticmethod
     def cone(
         *, cells: Sequence[int], size: Sequence[float], slope: float, center: Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A cone that rises by `slope` per length."""
-        return _shape(cells, size, center, "cone", slope=slope)
+        return _shape("cone", cells, size, center, {"slope": slope})
 
     @staticmethod
     def flat_punch(
@@ -661,16 +638,15 @@ class Surface(OnGrid):
     ) -> Surface:
         """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch. On a line of cells a strip of
         half the width `radius`, or of the width `sides`."""
-        face = {} if sides is None else {"size": _along_both("sides", sides, size)}
-        return _shape(cells, size, center, "flat-punch", face, radius=radius)
+        face = {} if sides is None else {"sides": _along_both("sides", sides, size)}
+        return _shape("flat-punch", cells, size, center, {"radius": radius}, face)
 
     @staticmethod
     def wave(
         *, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]
     ) -> Surface:
         """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge. On a line one wavelength."""
-        waves = _along_both("wavelength", wavelength, size)
-        return _made(cells, size, "wave", {"amplitude": amplitude}, {**numbers_of({"amplitude": amplitude}), "wavelength": waves}, wavelength=waves)
+        return _made("wave", cells, size, {**numbers_of({"amplitude": amplitude}), "wavelength": _along_both("wavelength", wavelength, size)})
 
 
 def _along_both(what: str, value: Any, size: Any) -> list[float]:
@@ -679,24 +655,22 @@ def _along_both(what: str, value: Any, size: Any) -> list[float]:
     return along(what, value, dimensions, np.inf)[:dimensions]
 
 
-def _shape(cells: Any, size: Any, center: Any, kind: str, keys: dict[str, Any] | None = None, /, **numbers: Any) -> Surface:
+def _shape(kind: str, cells: Any, size: Any, center: Any, numbers: dict[str, Any], sides: dict[str, list[float]] = {}) -> Surface:
     """A smooth shape at `center` [m] from the middle of the domain."""
     dimensions = len(lengths("size", size))
     # What is straight along y has no place along it.
     straight = kind in ("cylinder", "wedge") and np.size(center) == 1
     place = [*lengths("center", center), 0.0] if straight else along("center", center, dimensions)
-    keys = {**(keys or {}), "center": place[:dimensions]}
-    made = {**numbers_of(numbers), **{"sides" if name == "size" else name: value for name, value in keys.items()}}
-    return _made(cells, size, kind, numbers, made, **keys)
+    return _made(kind, cells, size, {**numbers_of(numbers), **sides, "center": place[:dimensions]})
 
 
-def _made(cells: Any, size: Any, kind: str, numbers: dict[str, Any], made: dict[str, Any] | None, /, **keys: Any) -> Surface:
-    """The surface of a case that has these keys; `made` are the parameters that it was made with."""
+def _made(kind: str, cells: Any, size: Any, made: dict[str, Any] | None, keys: dict[str, Any] | None = None) -> Surface:
+    """The surface of a case that has these keys; `made` are the parameters that it was made with, by default the same."""
     extent, grid = lengths("size", size), cell_counts("cells", cells)
     if len(grid) != len(extent):
         raise CaseError(f"cells is {grid} and size {extent}, but both must have two numbers, or both one for a line of cells")
-    domain = {"cells": list(grid), "size": list(extent)}
-    heights, single = _core.heights({"domain": domain, "surface": [{"kind": kind, **numbers_of(numbers), **keys}]})
+    given = {"size" if name == "sides" else name: value for name, value in (keys or made or {}).items()}
+    heights, single = _core.heights({"domain": {"cells": list(grid), "size": list(extent)}, "surface": [{"kind": kind, **given}]})
     surface = Surface(heights.reshape(grid), size=extent, metadata={"single": True} if single else None)
     if made is not None:
         object.__setattr__(surface, "_made", {"kind": kind, **made})

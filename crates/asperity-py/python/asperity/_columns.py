@@ -41,6 +41,12 @@ STRESS = _REGISTRY["stress"]
 LEAKS, GAS_LEAKS = _REGISTRY["leaks"], _REGISTRY["leaks of a gas"]
 
 
+def told(row: dict[str, Any], line: bool) -> list[tuple[str, str]]:
+    """Numbers of a row in words, with their units."""
+    entries = {name: (ROW[name], ROW[name].attributes(line)["units"]) for name in row}
+    return [(entry.words, f"{row[name]:.6g}{'' if unit == '1' else f' {unit}'}") for name, (entry, unit) in entries.items()]
+
+
 class _Held:
     """A number or column as attribute of its holder, which finds it by a method; it cannot be replaced."""
 

@@ -9,20 +9,20 @@ import os
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, get_args, overload
+from typing import TYPE_CHECKING, Any, TypedDict, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core, _html
 from ._arrays import Floats, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
-from ._columns import FIELDS, ROW
+from ._columns import FIELDS, ROW, told
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
 from ._grid import OnGrid
 from ._histories import one_of
 from ._problem import hardness_of
-from ._result import Result
+from ._result import Result, attributes_of
 from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
 from ._surface import Surface, check_boundary, surface_of
@@ -30,6 +30,8 @@ from ._units import bare, is_labelled
 from ._words import Boundary, Method
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from .plot import CurvePlots, Plots
 
 #: A kernel: numbers, or a function of two coordinates that gives them.
@@ -57,8 +59,7 @@ class ConvergenceHistory(ReadOnlyArrays):
         """The history as pandas.DataFrame."""
         import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
-        names = ("residual", "working_cells", "step", "convolutions")
-        return pandas.DataFrame({name: getattr(self, name) for name in names}, index=pandas.Index(self.iteration, name="iteration"))
+        return pandas.DataFrame(vars(self)).set_index("iteration")
 
     def __repr__(self) -> str:
         return f"<ConvergenceHistory: {len(self)} entries, residual {self.residual[0]:.2e} to {self.residual[-1]:.2e}>"
@@ -102,18 +103,15 @@ class _Planned:
         """One contact."""
         found = self.core.solve(control, value, None if start is None else as_plane(start), history)
         fields = {name: found.pop(name).reshape(self.gap.shape) for name in ("pressure", "displacement")}
-        for name, values in fields.items():
-            if name in out:
-                out[name][...] = values
-                fields[name] = out[name].view()
+        lent = {name: out[name].view() for name in fields if name in out}
+        for name, values in lent.items():
+            values[...] = fields[name]
         findings, iterations = findings_of(json.loads(found.pop("findings"))), found.pop("history")
         told = None
         if history:
-            number_, residual, working, steps, convolutions = zip(*iterations)
-            whole = (np.array(values, dtype=np.int64) for values in (number_, convolutions))
-            told = ConvergenceHistory(next(whole), np.array(residual), np.array(working), tuple(steps), next(whole))
-        lent = {name: values for name, values in fields.items() if name in out}
-        contact = ElasticContact(self, found, fields["pressure"], fields["displacement"], findings, told, lent)
+            numbers, residual, working, steps, convolutions = zip(*iterations)
+            told = ConvergenceHistory(np.array(numbers), np.array(residual), np.array(working), steps, np.array(convolutions))
+        contact = ElasticContact(self, found, fields | lent, findings, told, lent)
         if "gap" in out:
             out["gap"][...] = contact.gap
         return contact
@@ -133,35 +131,27 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
     initial_gap: Floats
     #: Lengths of the domain [m].
     size: tuple[float, ...]
+    #: E* [Pa].
+    contact_modulus: float
     #: "free" or "periodic".
-    boundary: str
+    boundary: Boundary
+    #: "projected-cg" or "polonsky-keer", and the largest residual that it was to leave.
+    method: Method
+    tolerance: float
+    #: Largest pressure [Pa], of all cells or of each; None where there is none.
+    hardness: float | Floats | None
     #: What the solver did, where it was asked for.
     history: ConvergenceHistory | None
 
     def __init__(
-        self,
-        planned: _Planned,
-        row: dict[str, Any],
-        pressure: Floats,
-        displacement: Floats,
-        findings: list[Finding],
-        history: ConvergenceHistory | None,
-        lent: dict[str, Floats],
+        self, planned: _Planned, row: dict[str, Any], fields: dict[str, Floats], findings: list[Finding], history: ConvergenceHistory | None, lent: dict[str, Floats]
     ) -> None:
-        self._planned = planned
-        self._row = row
+        self._planned, self._row, self._findings = planned, row, findings
         self._stiffness: float | None = None
         # Fields in arrays of the caller, which may change: each with its checksum.
         self._lent = {name: (frozen(values), _checksum(values)) for name, values in lent.items()}
-        self.__dict__.update(
-            pressure=frozen(pressure),
-            displacement=frozen(displacement),
-            initial_gap=planned.gap,
-            size=planned.size,
-            boundary=planned.keys["boundary"],
-            history=history,
-        )
-        self._findings = findings
+        given = {name: planned.keys[name] for name in ("contact_modulus", "boundary", "method", "tolerance")}
+        self._hold(**fields, **given, initial_gap=planned.gap, size=planned.size, hardness=planned.hardness, history=history)
 
     def _number(self, name: str) -> Any:
         return self._row[name]
@@ -185,8 +175,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         """Gap of the deformed surfaces [m]; below zero where the pressure is cut off."""
         if "displacement" in self._lent:
             self._whole("the gap")
-        values: Floats = frozen(self.initial_gap + self.displacement - self.approach)
-        return values
+        return frozen(self.initial_gap + self.displacement - self.approach)
 
     @property
     def cells(self) -> tuple[int, ...]:
@@ -208,30 +197,6 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         self._whole("a map of the spots")
         labels = _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary)
         return labels.reshape(self.pressure.shape)
-
-    @property
-    def contact_modulus(self) -> float:
-        """E* [Pa]."""
-        modulus: float = self._planned.keys["contact_modulus"]
-        return modulus
-
-    @property
-    def tolerance(self) -> float:
-        """Largest residual that the solver was to leave."""
-        tolerance: float = self._planned.keys["tolerance"]
-        return tolerance
-
-    @property
-    def method(self) -> Method:
-        """"projected-cg" or "polonsky-keer"."""
-        method: Method = self._planned.keys["method"]
-        return method
-
-    @property
-    def hardness(self) -> float | Floats | None:
-        """Largest pressure [Pa], of all cells or of each; None where there is none."""
-        hardness: float | Floats | None = self._planned.hardness
-        return hardness
 
     @property
     def _setup(self) -> dict[str, Any]:
@@ -274,21 +239,9 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         own = {name: np.array(values) for name, (values, _) in self._lent.items()}
         return {**self.__dict__, "_lent": {}, **own}
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        for name in ("pressure", "displacement", "initial_gap"):
-            self.__dict__[name] = frozen(state[name])
-
     def _repr_html_(self) -> str:
-        rows = [
-            ("load", f"{self.load:.6g} {self._load_unit}"),
-            ("approach", f"{self.approach:.6g} m"),
-            ("contact length" if self.is_line else "contact area", f"{self.contact_area:.6g} {'m' if self.is_line else 'm²'}"),
-            ("contact fraction", f"{100 * self.contact_fraction:.4g} %"),
-            ("largest pressure", f"{self.max_pressure:.6g} Pa"),
-            ("certified error", f"{self.certificate:.1e}"),
-        ]
-        return f"<b>Elastic contact</b>, {cells_of(self.pressure)}{_html.table(rows)}"
+        numbers = told({name: self._row[name] for name in OF_CONTACT}, self.is_line)
+        return f"<b>Elastic contact</b>, {cells_of(self.pressure)}{_html.table(numbers)}"
 
     def __repr__(self) -> str:
         return (
@@ -309,14 +262,12 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
         self._control, self._prescribed = control, tuple(prescribed)
 
     def _column(self, name: str) -> Floats:
-        values: Floats = frozen(np.array([contact._row[name] for contact in self._contacts]))
-        return values
+        return frozen(np.array([contact._row[name] for contact in self._contacts]))
 
     @property
     def stiffness(self) -> Floats:
         """Contact stiffness dW/dw [N/m] of each."""
-        values: Floats = frozen(np.array([contact.stiffness for contact in self._contacts]))
-        return values
+        return frozen(np.array([contact.stiffness for contact in self._contacts]))
 
     @property
     def findings(self) -> list[Finding]:
@@ -372,6 +323,25 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
         )
 
 
+class _How(TypedDict, total=False):
+    """What the contacts of :func:`elastic` have in common, one or several."""
+
+    gap: Any
+    size: float | Sequence[float] | None
+    hardness: float | npt.ArrayLike | None
+    boundary: Boundary
+    kernel: Kernel | None
+    start: ElasticContact | npt.ArrayLike | None
+    history: bool
+    method: Method
+    tolerance: float
+    max_iterations: int
+
+
+#: Values of several contacts.
+_Several = Sequence[float] | npt.NDArray[Any] | None
+
+
 def _checksum(values: Floats) -> int:
     return zlib.crc32(np.ascontiguousarray(values).data)
 
@@ -381,62 +351,25 @@ def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
     first = contacts[0]
     for contact in contacts:
         contact._whole("a result")
-    table = {name: np.array([contact._row[name] for contact in contacts]) for name in ROW}
     names = ("pressure", "gap", "displacement") if with_fields else ()
     return Result(
-        table=table,
+        table={name: np.array([contact._row[name] for contact in contacts]) for name in ROW},
         fields={name: np.array([getattr(contact, name) for contact in contacts]) for name in names},
         field_steps=range(len(contacts)) if with_fields else [],
         initial_gap=first.initial_gap,
         size=first.size,
-        attributes={
-            "title": "Elastic contact",
-            "version": _core.__version__,
-            "status": "complete",
-            "setup": json.dumps(first._setup),
-            "findings": [dict(finding) for finding in first.findings],
-        },
+        attributes=attributes_of("Elastic contact", "complete", first._setup, first.findings),
     )
 
 
 @overload
 def elastic(
-    surface: Any = ...,
-    contact_modulus: float | None = ...,
-    *,
-    load: float | None = ...,
-    pressure: float | None = ...,
-    approach: float | None = ...,
-    gap: Any = ...,
-    size: float | Sequence[float] | None = ...,
-    hardness: float | npt.ArrayLike | None = ...,
-    boundary: Boundary = ...,
-    kernel: Kernel | None = ...,
-    start: ElasticContact | npt.ArrayLike | None = ...,
-    out: Floats | Mapping[str, Floats] | None = ...,
-    history: bool = ...,
-    method: Method = ...,
-    tolerance: float = ...,
-    max_iterations: int = ...,
+    surface: Any = ..., contact_modulus: float | None = ..., *, load: float | None = ..., pressure: float | None = ..., approach: float | None = ...,
+    out: Floats | Mapping[str, Floats] | None = ..., **how: Unpack[_How]
 ) -> ElasticContact: ...
 @overload
 def elastic(
-    surface: Any = ...,
-    contact_modulus: float | None = ...,
-    *,
-    load: Sequence[float] | npt.NDArray[Any] | None = ...,
-    pressure: Sequence[float] | npt.NDArray[Any] | None = ...,
-    approach: Sequence[float] | npt.NDArray[Any] | None = ...,
-    gap: Any = ...,
-    size: float | Sequence[float] | None = ...,
-    hardness: float | npt.ArrayLike | None = ...,
-    boundary: Boundary = ...,
-    kernel: Kernel | None = ...,
-    start: ElasticContact | npt.ArrayLike | None = ...,
-    history: bool = ...,
-    method: Method = ...,
-    tolerance: float = ...,
-    max_iterations: int = ...,
+    surface: Any = ..., contact_modulus: float | None = ..., *, load: _Several = ..., pressure: _Several = ..., approach: _Several = ..., **how: Unpack[_How]
 ) -> ElasticCurve: ...
 def elastic(
     surface: Any = None,
@@ -510,7 +443,7 @@ def elastic(
     >>> curve.contact_area.shape, curve[-1].pressure.shape
     ((3,), (128, 128))
     """
-    boundary, method = choice("boundary", boundary, get_args(Boundary)), choice("method", method, get_args(Method))
+    boundary, method = choice("boundary", boundary, Boundary), choice("method", method, Method)
     shape = surface_of(surface, gap, size)
     check_boundary(shape, boundary)
     if contact_modulus is None and kernel is None:

@@ -14,7 +14,7 @@ from ._arrays import Floats, as_plane, distinct, line
 from ._columns import FIELDS, HISTOGRAMS, ROW
 from ._core import CaseError
 from ._problem import InTime, Problem
-from ._result import Result, open
+from ._result import Result, attributes_of, open
 
 if TYPE_CHECKING:
     from ._solve import March, Step
@@ -125,6 +125,7 @@ class Record:
         shape, steps = self._march.initial_gap.shape, sorted(self._maps)
         stacks = {name: [self._maps[step][name].reshape(shape) for step in steps] for name in self._keep.fields}
         table = {name: np.array([row[name] for row in self._rows]) for name in [*ROW, *self._edges]}
+        prescribed = {"prescribed": self.prescribed} if self.prescribed else {}
         return Result(
             table={name: values if self._rows else np.empty(0) for name, values in table.items() if name not in HISTOGRAMS},
             histograms={name: (ends, table[name]) for name, ends in self._edges.items() if name in HISTOGRAMS},
@@ -132,19 +133,5 @@ class Record:
             field_steps=np.array(steps, dtype=np.int64),
             initial_gap=self._march.initial_gap,
             size=self._march.size,
-            attributes={
-                "title": self._keep.title,
-                "version": _core.__version__,
-                "status": status,
-                "setup": json.dumps({**self._march._setup, **({"prescribed": self.prescribed} if self.prescribed else {})}),
-                **layers_of(self._march._setup),
-                "findings": [dict(finding) for finding in self._march.findings],
-            },
+            attributes=attributes_of(self._keep.title, status, self._march._setup | prescribed, self._march.findings),
         )
-
-
-def layers_of(setup: dict[str, Any]) -> dict[str, Any]:
-    """The attributes of a result on its layers: as a run of a case file has them."""
-    if "layer_separable" not in setup:
-        return {}
-    return {"layer_separable": int(setup["layer_separable"]), "layer_misfit": setup["layer_misfit"]}

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from . import _core, _html
 from ._arrays import Floats, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
 from ._axis import TIME, VELOCITY
-from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, Column
+from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, Column, told
 from ._core import CaseError
 from ._findings import Finding, findings_of
 from ._grid import OnGrid
@@ -536,9 +536,9 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         title = html.escape(str(self._attributes.get("title") or "Result"))
         size = " x ".join(f"{length:g} m" for length in self._size)
         rows = [("domain", f"{cells_of(self.initial_gap)}, {size}"), ("rows", str(len(self)))]
-        for name, entry in ROW.items() if len(self) else ():
-            unit = self.units(name)
-            rows.append((entry.words, f"{self._table[name][-1]:.6g} {'' if unit == '1' else unit}"))
+        if len(self):
+            last = {name: self._table[name][-1] for name in ROW}
+            rows += [(self._axis.name, f"{last.pop('time'):.6g} {self._axis.unit}"), *told(last, self.is_line)]
         return f"<b>{title}</b>, last row:{_html.table(rows)}"
 
     def _index(self, time: float | None, index: int | None) -> int:
@@ -608,6 +608,13 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         shape = (0, *self.cells)
         maps = [self._one(name, n) for n in range(len(self._field_steps))]
         return np.array(maps) if maps else np.empty(shape)
+
+
+def attributes_of(title: str, status: str, setup: dict[str, Any], findings: list[Finding]) -> dict[str, Any]:
+    """The attributes of a result in memory, as a run of a case file stores them."""
+    layers = {"layer_separable": int(setup["layer_separable"]), "layer_misfit": setup["layer_misfit"]} if "layer_separable" in setup else {}
+    known = {"title": title, "version": _core.__version__, "status": status, "setup": json.dumps(setup)}
+    return {**known, **layers, "findings": [dict(finding) for finding in findings]}
 
 
 def _stored(store: _core.Store, name: str) -> Floats:

@@ -10,26 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from . import _drawing as _draw
 from ._arrays import Floats, choice, number
 from ._core import CaseError
-from ._drawing import (
-    _axes,
-    _bar,
-    _beside,
-    _check_style,
-    _image,
-    _in_si,
-    _is_constant,
-    _largest,
-    _legend,
-    _letters,
-    _placed,
-    _robust,
-    _scale,
-    _settle,
-    _stretched,
-    _with,
-)
 from ._last_cycle import last_cycle as _last_cycle_of
 from ._prefixes import quantity, shown
 from ._columns import FIELDS
@@ -114,7 +97,7 @@ class Plots:
         if "friction_coefficient_total" in result._table:
             coefficient = [("of the bulk", result.friction_coefficient), ("in total", result.friction_coefficient_total)]
         force = [("", result.friction_force)]
-        if _largest(result.side_force) > 1e-3 * _largest(result.friction_force):
+        if _draw.magnitude(result.side_force) > 1e-3 * _draw.magnitude(result.friction_force):
             force = [("against motion", result.friction_force), ("across it", result.side_force)]
         panels = [
             _Panel("friction coefficient", "1", 1, coefficient),
@@ -153,7 +136,7 @@ class Plots:
         columns = len(panels) // lines
         if "ax" in style:
             raise TypeError(f"{name} draws into {number} axes: give axes=, as plt.subplots({lines}, {columns}) returns them")
-        _check_style(style)
+        _draw.check_style(style)
         if axes is None:
             import matplotlib.pyplot as plt
 
@@ -173,20 +156,20 @@ class Plots:
         for ax, panel in zip(drawn.flat, panels):
             # Decades on both sides of a second, or of 1 m/s, are powers of ten of it.
             wide = log_time and np.any(over[rows] < 1.0) and over[-1] > 1e6 * np.min(over[rows], initial=np.inf) and over[-1] > 1.0
-            shift = _scale(ax, along.name, 1.0 if wide else _largest(over), along.unit, axis="x", log=log_time)
-            factor = _scale(ax, panel.title, _largest(*(values for _, values in panel.curves)), panel.unit, panel.power)
+            shift = _draw.scale(ax, along.name, 1.0 if wide else _draw.magnitude(over), along.unit, axis="x", log=log_time)
+            factor = _draw.scale(ax, panel.title, _draw.magnitude(*(values for _, values in panel.curves)), panel.unit, panel.power)
             first = None
             for n, (words, values) in enumerate(panel.curves):
                 told = ", ".join(str(part) for part in (label, words) if part not in (None, ""))
                 given = style if first is None else _another(style, n, first if label else None)
                 (line,) = ax.plot(over[rows] * shift, values[rows] * factor, label=told or None, **_marked(given, values[rows]))
                 first = first or line
-            _settle(ax)
+            _draw.settle(ax)
             if log_time:
                 # What another evolution has at the time 0 has no place here either.
                 ax.set_xscale("log", nonpositive="mask")
             if label or any(words for words, _ in panel.curves):
-                _legend(ax, _KINDS)
+                _draw.draw_legend(ax, _KINDS)
         return drawn
 
     def _panels(self) -> list[_Panel]:
@@ -232,12 +215,12 @@ class Plots:
             return _load_displacement(approach[cycle], load[cycle], unit, ax, style)
         import matplotlib.pyplot as plt
 
-        _check_style(style)
+        _draw.check_style(style)
         _, (whole, last) = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
         _load_displacement(approach, load, unit, whole, style)
         _load_displacement(approach[cycle], load[cycle], unit, last, style)
         # If there is a legend, the titles lie above it.
-        pad = 2.0 * _letters() if "label" in style else None
+        pad = 2.0 * _draw.letter_size() if "label" in style else None
         from_, to = result.time[cycle][[0, -1]]
         whole.set_title("all cycles", pad=pad)
         last.set_title(f"last cycle, t = {quantity(from_, 's')} to {quantity(to, 's')}", pad=pad)
@@ -278,14 +261,14 @@ class Plots:
             states = self._field("contact", at)
         else:
             states = result._touches(index=self._row(at)).astype(float)
-        ax = _axes(ax, style, "curve" if result.is_line else "map", result.size)
-        self._tell(ax, at, notes=[] if result.is_line else [_stretched(result.size, style)])
+        ax = _draw.axes(ax, style, "curve" if result.is_line else "map", result.size)
+        self._tell(ax, at, notes=[] if result.is_line else [_draw.stretched(result.size, style)])
         if result.is_line:
-            ax.step(result.x * _scale(ax, "x", result.size[0], "m", axis="x"), states, **{"where": "mid", **style})
+            ax.step(result.x * _draw.scale(ax, "x", result.size[0], "m", axis="x"), states, **{"where": "mid", **style})
             _name_states(ax, states)
             return ax
         colours = [colour for _, colour in _STATES.values()]
-        _image(ax, states, result.size, {"cmap": ListedColormap(colours), "vmin": 0, "vmax": 2, **style})
+        _draw.draw_map(ax, states, result.size, {"cmap": ListedColormap(colours), "vmin": 0, "vmax": 2, **style})
         if not {"cmap", "norm"} & style.keys():
             held = [_STATES[state] for state in _STATES if np.any(states == state)]
             handles = [Patch(facecolor=colour, edgecolor="k", linewidth=0.4, label=name) for name, colour in held]
@@ -298,14 +281,14 @@ class Plots:
         labels = self._result.spots(time=time, velocity=velocity, index=index)
         if self._result.is_line:
             raise CaseError("a map of the spots needs a contact over a plane; result.spots() has the numbers")
-        ax = _axes(ax, style, "map", self._result.size)
+        ax = _draw.axes(ax, style, "map", self._result.size)
         number_ = int(labels.max(initial=0))
         told = "1 contact spot" if number_ == 1 else f"{number_} contact spots" if number_ else ""
-        self._tell(ax, at, told, [_stretched(self._result.size, style)])
+        self._tell(ax, at, told, [_draw.stretched(self._result.size, style)])
         # Neighbouring numbers get colours that differ, the same in each figure.
         shuffled = np.concatenate([[0], 1 + np.random.default_rng(0).permutation(number_)])
         numbers = np.where(labels > 0, shuffled[labels], np.nan)
-        _image(ax, numbers, self._result.size, {"vmin": 1, "vmax": max(number_, 2), **style, "cmap": _with(style.get("cmap", "turbo"), bad=_LIGHT)})
+        _draw.draw_map(ax, numbers, self._result.size, {"vmin": 1, "vmax": max(number_, 2), **style, "cmap": _draw.coloured(style.get("cmap", "turbo"), bad=_LIGHT)})
         return ax
 
     def profile(
@@ -346,20 +329,20 @@ class Plots:
         curves = [(style, values)]
         if before is not None and ax is None and "label" not in style:
             curves = [({"label": "now", **style}, values), ({"label": "undeformed", "color": "0.5", "linestyle": "--"}, before)]
-        ax = _axes(ax, style)
-        x = _scale(ax, "x", self._result.size[0], "m", axis="x")
-        factor = _scale(ax, name, _largest(*(course for _, course in curves)), FIELDS[name].unit)
+        ax = _draw.axes(ax, style)
+        x = _draw.scale(ax, "x", self._result.size[0], "m", axis="x")
+        factor = _draw.scale(ax, name, _draw.magnitude(*(course for _, course in curves)), FIELDS[name].unit)
         for given, course in curves:
             ax.plot(self._result.x * x, course * factor, **_marked(given, course))
-        _settle(ax)
+        _draw.settle(ax)
         if name == "contact":
             _name_states(ax, values)
         if "label" not in style:
             self._tell(ax, at, place, [_FLATTENED] if name == "gap" and np.any(values < 0) else [])
         if "label" in curves[0][0]:
-            _legend(ax)
+            _draw.draw_legend(ax)
             # The title lies above the legend.
-            ax.set_title(ax.get_title(), pad=2.0 * _letters())
+            ax.set_title(ax.get_title(), pad=2.0 * _draw.letter_size())
         return ax
 
     def _map(self, name: str, colours: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
@@ -369,16 +352,16 @@ class Plots:
         values = np.where(np.isfinite(values), values, np.nan)
         if name == "gap":
             values = self._closed(values, at)
-        ax = _axes(ax, style, "map", size)
-        given = _in_si(style, unit)
+        ax = _draw.axes(ax, style, "map", size)
+        given = _draw.in_si(style, unit)
         style = {"cmap": colours, **given}
         light, told = _light(name, values, style)
         if name == "pressure" and self._result._setup.get("adhesion"):
             style, told = _about_zero(values, given), "below 0: the surfaces pull at each other"
-        self._tell(ax, at, notes=[_stretched(size, style), told])
-        image = _image(ax, values, size, {**(style if name == "pressure" else _robust(values, style)), **light})
+        self._tell(ax, at, notes=[_draw.stretched(size, style), told])
+        image = _draw.draw_map(ax, values, size, {**(style if name == "pressure" else _draw.robust(values, style)), **light})
         if not light or "vmax" in style or np.any(values > 0):
-            _bar(ax, image, name, unit)
+            _draw.bar(ax, image, name, unit)
         return ax
 
     def _field(self, name: Any, at: Any) -> Any:
@@ -393,7 +376,7 @@ class Plots:
     def _closed(self, gap: Any, at: Any) -> Any:
         """The gap, 0 in contact, where rounding errors remain; at the hardness it may be negative."""
         result, row = self._result, self._result._field_steps[self._row(at)]
-        closed = np.abs(gap) < _ROUNDING * max(_largest(result.initial_gap), abs(result.approach[row]))
+        closed = np.abs(gap) < _ROUNDING * max(_draw.magnitude(result.initial_gap), abs(result.approach[row]))
         if "contact" in result.fields:
             closed |= self._field("contact", at) == 1
         elif result.capped_area[row] == 0:
@@ -420,7 +403,7 @@ def _about_zero(values: Any, style: dict[str, Any]) -> dict[str, Any]:
     """The style of a map of numbers of both signs, where it gives no colours: 0 in their middle, and light."""
     if {"cmap", "norm", "vmin", "vmax"} & style.keys():
         return {"cmap": "RdBu_r", **style}
-    most = _largest(values) or 1.0
+    most = _draw.magnitude(values) or 1.0
     return {"cmap": "RdBu_r", "vmin": -most, "vmax": most, **style}
 
 
@@ -435,7 +418,7 @@ def _light(name: str, values: Any, style: dict[str, Any]) -> tuple[dict[str, Any
     other_ends = "norm" in style or style.get("vmin") not in (None, 0.0)
     if other_ends or (name == "gap" and not zeros):
         return {}, ""
-    added = {"vmin": np.finfo(float).tiny, "cmap": _with(style["cmap"], under=_LIGHT)}
+    added = {"vmin": np.finfo(float).tiny, "cmap": _draw.coloured(style["cmap"], under=_LIGHT)}
     if nothing:
         return {**added, "vmax": style.get("vmax", 1.0)}, "the bodies touch everywhere" if name == "gap" else ""
     return added, "" if not zeros else "light: no contact" if name == "pressure" else "light: contact"
@@ -449,7 +432,7 @@ def _name_states(ax: Any, states: Any) -> None:
 
 def _marked(style: dict[str, Any], *courses: Any) -> dict[str, Any]:
     """The style of a curve over these courses; one of a single point is seen by its marker only."""
-    single = np.count_nonzero(np.isfinite(courses[-1])) == 1 or (len(courses) > 1 and all(map(_is_constant, courses)))
+    single = np.count_nonzero(np.isfinite(courses[-1])) == 1 or (len(courses) > 1 and all(map(_draw.is_constant, courses)))
     return {"marker": "o", **style} if single else style
 
 
@@ -490,15 +473,15 @@ class CurvePlots:
     def area(self, *, corrected: bool = True, ax: Axes | None = None, **style: Any) -> Axes:
         """Contact fraction over mean pressure; with `corrected` that of the area less its perimeter's share, of a line contact of the length
         less the share of its ends."""
-        curve, ax = self._curve, _axes(ax, style)
-        factor = _scale(ax, "mean pressure", _largest(curve.mean_pressure), "Pa", axis="x")
+        curve, ax = self._curve, _draw.axes(ax, style)
+        factor = _draw.scale(ax, "mean pressure", _draw.magnitude(curve.mean_pressure), "Pa", axis="x")
         fraction, share = curve.contact_fraction, "contact length [% of the domain]" if curve[0].is_line else "contact area [% of nominal]"
         if corrected:
             fraction = curve.contact_area_corrected / math.prod(curve[0].size)
         ax.plot(curve.mean_pressure * factor, 100 * fraction, **{"marker": ".", **style})
         ax.set_ylabel(f"{'corrected ' if corrected else ''}{share}")
         if "label" in style:
-            _legend(ax)
+            _draw.draw_legend(ax)
         return ax
 
     def load_displacement(self, *, ax: Axes | None = None, **style: Any) -> Axes:
@@ -524,15 +507,15 @@ class SurfacePlots:
         surface = self._surface
         z = np.where(np.isfinite(surface.heights), surface.heights, np.nan)
         z = z - np.nanmean(z)
-        ax = _axes(ax, style, "curve" if surface.is_line else "map", surface.size)
+        ax = _draw.axes(ax, style, "curve" if surface.is_line else "map", surface.size)
         if surface.is_line:
-            along = _scale(ax, "x", max(surface.size), "m", axis="x")
-            ax.plot(surface.x * along, z * _scale(ax, "height", _largest(z), "m"), **style)
+            along = _draw.scale(ax, "x", max(surface.size), "m", axis="x")
+            ax.plot(surface.x * along, z * _draw.scale(ax, "height", _draw.magnitude(z), "m"), **style)
             return ax
-        if told := _stretched(surface.size, style):
+        if told := _draw.stretched(surface.size, style):
             ax.set_title(told)
-        image = _image(ax, z, surface.size, {"cmap": "viridis", **_robust(z, _in_si(style, "m"))})
-        _bar(ax, image, "height", "m")
+        image = _draw.draw_map(ax, z, surface.size, {"cmap": "viridis", **_draw.robust(z, _draw.in_si(style, "m"))})
+        _draw.bar(ax, image, "height", "m")
         return ax
 
     def power_spectrum(self, *, per_decade: int = 16, periodic: bool = True, ax: Axes | None = None, **style: Any) -> Axes:
@@ -548,7 +531,7 @@ class SurfacePlots:
     def power_spectrum_2d(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the logarithm of the power spectrum over the wavenumbers along x and y."""
         qx, qy, c = self._surface.power_spectrum_2d()
-        ax = _axes(ax, style, "map")
+        ax = _draw.axes(ax, style, "map")
         # Below is the rounding of the transform, where a synthetic surface has no waves.
         powers = np.log10(np.where(c > 1e-20 * c.max(initial=0.0), c, np.nan))
         half = [0.5 * (q[1] - q[0]) if len(q) > 1 else 0.5 for q in (qx, qy)]
@@ -556,32 +539,32 @@ class SurfacePlots:
         longest = max(qx[-1] + half[0], qy[-1] + half[1])
         factor, text = (1e-6, "µm") if longest >= 1e6 else (1e-3, "mm") if longest >= 1e3 else (1.0, "m")
         extent = tuple(end * factor for end in (qx[0] - half[0], qx[-1] + half[0], qy[0] - half[1], qy[-1] + half[1]))
-        image = _placed(ax, powers, extent, (extent[1] - extent[0], extent[3] - extent[2]), {"cmap": "viridis", **style})
+        image = _draw.placed(ax, powers, extent, (extent[1] - extent[0], extent[3] - extent[2]), {"cmap": "viridis", **style})
         ax.set_xlabel(f"qx [1/{text}]")
         ax.set_ylabel(f"qy [1/{text}]")
-        _beside(ax, image, "log10 of the power spectrum C [m⁴]")
+        _draw.beside(ax, image, "log10 of the power spectrum C [m⁴]")
         return ax
 
     def autocorrelation(self, *, periodic: bool | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the autocorrelation function over the lags."""
         found = self._surface.autocorrelation(periodic=periodic)
-        ax = _axes(ax, style, "map", self._surface.size)
-        if told := _stretched(self._surface.size, style):
+        ax = _draw.axes(ax, style, "map", self._surface.size)
+        if told := _draw.stretched(self._surface.size, style):
             ax.set_title(told)
         factor, text = shown(float(max(np.abs(found.x).max(), np.abs(found.y).max())), "m")
         half = [0.5 * side / n for side, n in zip(self._surface.size, self._surface.cells)]
         extent = [end * factor for end in (found.x[0] - half[0], found.x[-1] + half[0], found.y[0] - half[1], found.y[-1] + half[1])]
-        image = _placed(ax, found.values, extent, self._surface.size, {"cmap": "RdBu_r", "vmin": -1.0, "vmax": 1.0, **style})
+        image = _draw.placed(ax, found.values, extent, self._surface.size, {"cmap": "RdBu_r", "vmin": -1.0, "vmax": 1.0, **style})
         ax.set_xlabel(f"lag along x [{text}]")
         ax.set_ylabel(f"lag along y [{text}]")
-        _beside(ax, image, "autocorrelation")
+        _draw.beside(ax, image, "autocorrelation")
         return ax
 
     def height_distribution(self, *, bins: int = 100, ax: Axes | None = None, **style: Any) -> Axes:
         """Density of the points over height."""
         z, density = self._surface.height_distribution(bins)
-        ax = _axes(ax, style)
-        factor, text = shown(_largest(z), "m")
+        ax = _draw.axes(ax, style)
+        factor, text = shown(_draw.magnitude(z), "m")
         ax.plot(z * factor, density / factor, **style)
         ax.set_xlabel(f"height [{text}]")
         ax.set_ylabel(f"density [1/{text}]")
@@ -590,24 +573,24 @@ class SurfacePlots:
     def bearing_curve(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Height over the share of the surface above it."""
         z, share = self._surface.bearing_curve()
-        ax = _axes(ax, style)
-        ax.plot(100 * share, z * _scale(ax, "height", _largest(z), "m"), **style)
+        ax = _draw.axes(ax, style)
+        ax.plot(100 * share, z * _draw.scale(ax, "height", _draw.magnitude(z), "m"), **style)
         ax.set_xlabel("share of the surface above [%]")
         ax.set_xlim(0, 100)
         return ax
 
 
 def _load_displacement(approach: Any, load: Any, unit: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
-    ax = _axes(ax, style)
-    across = _scale(ax, "load", _largest(load), unit)
-    along = _scale(ax, "approach", _largest(approach), "m", axis="x")
+    ax = _draw.axes(ax, style)
+    across = _draw.scale(ax, "load", _draw.magnitude(load), unit)
+    along = _draw.scale(ax, "approach", _draw.magnitude(approach), "m", axis="x")
     if not np.any(load) and not ax.lines and "label" not in style:
         style = {**style, "label": "nothing touches"}
     ax.plot(approach * along, load * across, **_marked(style, approach, load))
-    _settle(ax)
-    _settle(ax, "x")
+    _draw.settle(ax)
+    _draw.settle(ax, "x")
     if "label" in style:
-        _legend(ax)
+        _draw.draw_legend(ax)
     return ax
 
 
@@ -631,7 +614,7 @@ def _few_numbers(axis: Any, ends: tuple[float, float]) -> None:
 
 
 def _spectrum(q: Any, c: Any, words: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
-    ax = _axes(ax, style)
+    ax = _draw.axes(ax, style)
     # Below is the rounding of the transform, where a synthetic surface has no waves.
     seen = c > 1e-20 * np.max(c, initial=0.0)
     ax.loglog(q[seen], c[seen], **{"marker": ".", **style})
@@ -639,13 +622,13 @@ def _spectrum(q: Any, c: Any, words: str, ax: Axes | None, style: dict[str, Any]
     ax.set_xlabel("wavenumber q [1/m]")
     ax.set_ylabel(f"power spectrum {words}")
     if "label" in style:
-        _legend(ax)
+        _draw.draw_legend(ax)
     return ax
 
 
 def fitted(fit: Fit, ax: Axes | None) -> Any:
     """Points and curves of a fit."""
-    ax = _axes(ax)
+    ax = _draw.axes(ax)
     dma = fit.kind == "dma"
     fine = np.geomspace(fit.x[fit.x > 0].min(), fit.x.max(), 400)
     labels = {"relaxation": ["modulus"], "creep": ["compliance"], "dma": ["storage modulus", "loss modulus"]}[fit.kind]
@@ -659,19 +642,19 @@ def fitted(fit: Fit, ax: Axes | None) -> Any:
     letter = "E" if fit.modulus == "young" else "G"
     names = {"relaxation": f"{letter}(t) [Pa]", "creep": f"{'D' if letter == 'E' else 'J'}(t) [1/Pa]"}
     ax.set_ylabel(names.get(fit.kind, f"{letter}′, {letter}″ [Pa]"))
-    _legend(ax)
+    _draw.draw_legend(ax)
     return ax
 
 
 def recorded(along: tuple[str, str, Floats], name: str, measured: Floats, model: Floats, ax: Axes | None, style: dict[str, Any]) -> Axes:
     """The load or depth of a test as points, and of its model as a line, over what `along` has: name, unit and numbers."""
-    ax = _axes(ax, style)
+    ax = _draw.axes(ax, style)
     words, unit, over = along
-    across = over * _scale(ax, words, _largest(over), unit, axis="x")
-    up = _scale(ax, name, _largest(measured), {"load": "N", "depth": "m"}[name])
+    across = over * _draw.scale(ax, words, _draw.magnitude(over), unit, axis="x")
+    up = _draw.scale(ax, name, _draw.magnitude(measured), {"load": "N", "depth": "m"}[name])
     ax.plot(across, measured * up, ".", markersize=3, color="0.6", label="measured")
     ax.plot(across, model * up, **{"label": "model", **style})
-    _legend(ax)
+    _draw.draw_legend(ax)
     return ax
 
 
@@ -686,19 +669,19 @@ def force_map(found: ForceMap, what: str, ax: Axes | None, style: dict[str, Any]
     words, told, unit = names[choice("quantity", what, tuple(names))]
     values = getattr(found, what)
     size = found.size or tuple(float(count) for count in values.shape)
-    ax = _axes(ax, style, "map", size)
-    colours = {"cmap": "viridis", **_in_si(style, unit)}
+    ax = _draw.axes(ax, style, "map", size)
+    colours = {"cmap": "viridis", **_draw.in_si(style, unit)}
     # Intervals may have no upper end.
     shown_ = np.where(np.isfinite(values), values, np.nan)
-    style = {**_robust(shown_, colours), "cmap": _with(colours["cmap"], bad=_LIGHT)}
+    style = {**_draw.robust(shown_, colours), "cmap": _draw.coloured(colours["cmap"], bad=_LIGHT)}
     if found.size is None:
-        image = _placed(ax, shown_, (0, size[0], 0, size[1]), size, style)
+        image = _draw.placed(ax, shown_, (0, size[0], 0, size[1]), size, style)
         ax.set_xlabel("x [pixels]")
         ax.set_ylabel("y [pixels]")
     else:
-        image = _image(ax, shown_, size, style)
-    _bar(ax, image, words, unit)
+        image = _draw.draw_map(ax, shown_, size, style)
+    _draw.bar(ax, image, words, unit)
     empty = int(np.sum(np.isnan(shown_)))
     missing = f"{empty} of {values.size} pixels without a value (light)" if empty else ""
-    ax.set_title("; ".join(part for part in (told.removeprefix(", "), missing, _stretched(size, style)) if part))
+    ax.set_title("; ".join(part for part in (told.removeprefix(", "), missing, _draw.stretched(size, style)) if part))
     return ax

@@ -4,9 +4,22 @@ from __future__ import annotations
 
 from typing import Any, Literal, NamedTuple, NoReturn, overload
 
+import numpy as np
+import numpy.typing as npt
+
 from . import _core
 from ._arrays import Floats
 from ._units import written
+
+
+Dims = str | tuple[str, ...]
+#: An array of a dataset of xarray: dimensions, values, attributes.
+Variable = tuple[Dims, npt.NDArray[Any], dict[str, str]]
+
+
+def variable(dims: Dims, values: Any, unit: str, words: str) -> Variable:
+    """A copy of the values with their unit and meaning."""
+    return dims, np.array(values), {"units": unit, "long_name": words}
 
 
 class Entry(NamedTuple):
@@ -17,6 +30,10 @@ class Entry(NamedTuple):
     line_unit: str
     words: str
     kind: Literal["real", "count", "vector", "histogram"]
+
+    def variable(self, dims: Dims, values: Any, line: bool = False) -> Variable:
+        """Its array in a dataset."""
+        return variable(dims, values, self.line_unit if line else self.unit, self.words)
 
     def attributes(self, line: bool = False) -> dict[str, str]:
         """The attributes of its array in a dataset."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import errno
+import functools
 import html
 import json
 import os
@@ -15,12 +16,12 @@ import numpy.typing as npt
 from . import _core, _html
 from ._arrays import Floats, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
 from ._axis import TIME, VELOCITY
-from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, Column, told
+from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, Column, told, variable
 from ._core import CaseError
 from ._findings import Finding, findings_of
 from ._grid import OnGrid
 from ._rows import Columns, Field, StressColumns
-from ._sealed import Sealed
+from ._sealed import Sealed, read_only
 from ._units import written
 from ._words import Flow, Sides
 
@@ -60,6 +61,13 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
     those of a result on disk are read anew each time, into arrays of your own.
     """
 
+    #: Lengths of the domain along x and y [m]; of a line contact along x.
+    size: tuple[float, ...]
+    #: Times at which fields were kept [s]; of a sweep the velocities [m/s].
+    field_times: Floats
+    #: Where the result is on disk; None for one in memory.
+    path: str | None
+
     def __init__(
         self,
         *,
@@ -67,7 +75,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         fields: dict[str, Any],
         field_steps: Any,
         initial_gap: Any,
-        size: tuple[float, ...],
+        size: Sequence[float],
         attributes: dict[str, Any],
         path: str | None = None,
         histograms: dict[str, tuple[Floats, Floats]] | None = None,
@@ -76,40 +84,31 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         leaks: dict[str, Floats] | None = None,
         store: _core.Store | None = None,
     ) -> None:
-        self._table = table
-        self._fields = fields
+        self._table: dict[str, Any] = read_only({name: np.asarray(values) for name, values in table.items()})
+        self._fields: dict[str, Any] = read_only(dict(fields))
         self._field_steps = np.asarray(field_steps, dtype=np.int64)
+        self._histograms: dict[str, tuple[Floats, Floats]] = read_only(histograms or {})
+        self._stress, self._leaks = read_only(stress or {}), read_only(leaks or {})
+        self._attributes, self._store = attributes, store
         # A field between two rows belongs to the later one, and has a time of its own.
-        self._field_times: Floats = (
-            np.asarray(table["time"])[self._field_steps] if field_times is None else np.asarray(field_times, dtype=np.float64)
-        )
-        self._initial_gap = initial_gap
-        self._size = tuple(float(length) for length in size)
-        self._attributes = attributes
+        times = self._table["time"][self._field_steps] if field_times is None else np.asarray(field_times, dtype=np.float64)
+        self._hold(size=tuple(float(length) for length in size), field_times=times, path=path)
+        if initial_gap is not None:
+            self._hold(initial_gap=np.asarray(initial_gap))
         # Of a sweep the velocities stand in place of the times.
         self._axis = VELOCITY if (self._setup.get("motion") or {}).get("steady") else TIME
-        self._path = path
-        self._store = store
-        self._histograms = dict(histograms or {})
-        self._stress = dict(stress or {})
-        self._leaks = dict(leaks or {})
-        self._freeze()
 
-    def _freeze(self) -> None:
-        """Makes all arrays read-only."""
-        self._table = {name: frozen(np.asarray(values)) for name, values in self._table.items()}
-        self._fields = {name: held if isinstance(held, _core.Store) else frozen(np.asarray(held)) for name, held in self._fields.items()}
-        self._histograms = {name: (frozen(edges), frozen(numbers)) for name, (edges, numbers) in self._histograms.items()}
-        self._stress = {name: frozen(values) for name, values in self._stress.items()}
-        self._field_times = frozen(self._field_times)
-        if not isinstance(self._initial_gap, _core.Store):
-            self._initial_gap = frozen(np.asarray(self._initial_gap))
+    @functools.cached_property
+    def initial_gap(self) -> Floats:
+        """Undeformed gap [m], shape (nx, ny)."""
+        store = self._disk()
+        assert store is not None
+        return frozen(_on_grid(store.initial_gap(), self.is_line))
 
     @property
     def _setup(self) -> dict[str, Any]:
         """The run in numbers."""
-        setup: dict[str, Any] = json.loads(self._attributes.get("setup") or "{}")
-        return setup
+        return dict(json.loads(self._attributes.get("setup") or "{}"))
 
     def _column(self, name: str) -> Floats:
         """A column of the rows, or why there is none."""
@@ -151,20 +150,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
 
     def __getstate__(self) -> dict[str, Any]:
         # Fields on disk are read, so that a pickle is whole.
-        state = dict(self.__dict__)
-        state["_fields"] = {name: self._stack(name) for name in self._fields}
-        state["_initial_gap"] = self.initial_gap
-        state["_store"] = None
-        return state
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self._freeze()
-
-    @property
-    def path(self) -> str | None:
-        """Where the result is on disk; None for one in memory."""
-        return self._path
+        return {**self.__dict__, "_fields": {name: self._stack(name) for name in self._fields}, "initial_gap": self.initial_gap, "_store": None}
 
     @property
     def attributes(self) -> dict[str, Any]:
@@ -204,16 +190,9 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         return self._axis == VELOCITY
 
     @property
-    def field_times(self) -> Floats:
-        """Times at which fields were kept [s]; of a sweep the velocities [m/s]."""
-        return self._field_times
-
-    @property
     def field_velocities(self) -> Floats:
         """Velocities at which the fields of a sweep were kept [m/s]."""
-        if not self.is_sweep:
-            return self._column("field_velocities")
-        return self._field_times
+        return self.field_times if self.is_sweep else self._column("field_velocities")
 
     def cycles(self, frequency: float, *, start: float = 0.0) -> list[Cycle]:
         """Dissipated energy, stiffness and loss angle of each full period 1/`frequency` [Hz] from `start` [s] on.
@@ -237,11 +216,6 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         return [Cycle(*numbers) for numbers in found]
 
     @property
-    def size(self) -> tuple[float, ...]:
-        """Lengths of the domain along x and y [m]; of a line contact along x."""
-        return self._size
-
-    @property
     def cells(self) -> tuple[int, ...]:
         """Number of cells along x and y; of a line contact along x."""
         return self.initial_gap.shape
@@ -253,15 +227,6 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         if name not in COLUMNS:
             raise CaseError(f"{name!r} is no number of a row; there are {', '.join(COLUMNS)}")
         return COLUMNS[name].attributes(self.is_line)["units"]
-
-    @property
-    def initial_gap(self) -> Floats:
-        """Undeformed gap [m], shape (nx, ny)."""
-        if isinstance(self._initial_gap, _core.Store):
-            stored = self._initial_gap.initial_gap()
-            self._initial_gap = frozen(stored[:, 0] if self.is_line else stored)
-        gap: Floats = self._initial_gap
-        return gap
 
     def field(
         self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None
@@ -275,9 +240,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         if name not in self._fields:
             choice("the field", name, list(FIELDS))
             raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
-        if (velocity is not None and not self.is_sweep) or (time is not None and self.is_sweep):
-            raise CaseError("velocity= is for a sweep over velocities, time= for a run in time")
-        return self._one(name, self._index(time if velocity is None else velocity, index))
+        values: Floats = self._fields[name][self._index(time, velocity, index)]
+        return values
 
     def stress(
         self,
@@ -308,7 +272,6 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         setup = self._setup
         if "layer_separable" in setup:
             raise CaseError(_core.LAYERED_STRESS)
-        boundary = setup.get("boundary", "free")
         if poisson is None:
             known = setup.get("poisson") or []
             if not 0 <= body < max(len(known), 1):
@@ -316,64 +279,57 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             poisson = known[body] if known else None
             creep = (setup.get("poisson_creep") or [None] * (body + 1))[body]
             if poisson is None and creep is not None and "stage_controls" in setup:
-                last = self._index(time, index) + 1
-                rows = np.asarray(self._table["time"])[:last]
+                last = self._index(time=time, index=index) + 1
+                rows = self._table["time"][:last]
                 if "motion" in setup:
                     raise CaseError("the stress of a contact that moves over a body of constant bulk modulus is not computed; give poisson=...")
-                if not np.array_equal(self._field_steps, np.arange(len(self._field_steps))) or not np.array_equal(rows, self._field_times[:last]):
+                if not np.array_equal(self._field_steps, np.arange(len(self._field_steps))) or not np.array_equal(rows, self.field_times[:last]):
                     raise CaseError(
                         "the Poisson's ratio of the body changes with time (constant bulk modulus), so that the stress needs the pressures of "
                         "all rows, but not all were kept: keep every row, or give poisson=... for an estimate with a constant one"
                     )
-                pressures = np.array([self._one("pressure", n) for n in range(last)])
-                stages = np.asarray(self._table["stage"], dtype=np.int64)[:last]
-                return changing(setup, body, (stages.tolist(), rows.tolist()), pressures, self._size, depths)
+                pressures = np.array([self._fields["pressure"][n] for n in range(last)])
+                return changing(setup, body, (self._table["stage"][:last].astype(int).tolist(), rows.tolist()), pressures, self.size, depths)
             if poisson is None:
                 raise CaseError("the result does not say the Poisson's ratio of the body, or it changes with the temperature; give poisson=...")
-        pressure = self.field("pressure", time=time, index=index)
-        tractions = None
+        pressure, tractions = self.field("pressure", time=time, index=index), None
         if "friction" in setup:
             # What acts on the first body acts the other way on the second.
             tractions = [(-1.0 if body else 1.0) * self.field(name, time=time, index=index) for name in ("traction_x", "traction_y")]
-        return stress(pressure, size=self._size, poisson=poisson, depths=depths, boundary=boundary, tractions=tractions)
+        return stress(pressure, size=self.size, poisson=poisson, depths=depths, boundary=setup.get("boundary", "free"), tractions=tractions)
 
     def to_xarray(self) -> Any:
         """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk, with the stress below the surface and the
         leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray."""
         import xarray
 
-        along, at, line = self._axis.name, f"field_{self._axis.name}", self.is_line
+        along, at, line, table = self._axis.name, f"field_{self._axis.name}", self.is_line, self._table
         data: dict[str, Any] = {
-            name: ((along, "axis")[: self._table[name].ndim], np.array(self._table[name]), entry.attributes(line))
+            name: entry.variable((along, "axis")[: table[name].ndim], table[name], line)
             for name, entry in COLUMNS.items()
-            if name != "time" and name in self._table
+            if name != "time" and name in table
         }
-        for name in self._fields:
-            data[name] = ((at, *self._axes), np.array(self._stack(name)), FIELDS[name].attributes())
-        for name, values in self._stress.items():
-            if name != "depth":
-                data[name] = ((at, "depth")[: values.ndim], np.array(values), STRESS[name].attributes(line))
+        data |= {name: FIELDS[name].variable((at, *self._axes), self._stack(name)) for name in self._fields}
+        stress = {name: STRESS[name].variable((at, "depth")[: values.ndim], values, line) for name, values in self._stress.items() if name != "depth"}
         for name in self._stress_fields:
-            data[name] = ((at, "depth", *self._axes), self._stress_volume(name), {"units": "Pa", "long_name": name.replace("_", " ")})
-        data["initial_gap"] = (self._axes, np.array(self.initial_gap), {"units": "m", "long_name": "undeformed gap"})
+            stress[name] = variable((at, "depth", *self._axes), self._stress_volume(name), "Pa", name.replace("_", " "))
+        data |= {**stress, "initial_gap": variable(self._axes, self.initial_gap, "m", "undeformed gap")}
         coordinates = {
-            along: (along, np.array(self._table["time"]), {"units": self.units("time"), "long_name": along}),
-            at: (at, np.array(self.field_times), {"units": self.units("time"), "long_name": f"{along} of the fields"}),
+            along: variable(along, table["time"], self.units("time"), along),
+            at: variable(at, self.field_times, self.units("time"), f"{along} of the fields"),
             **self._coordinates,
         }
-        if any(name in self._table for name in VECTORS):
-            coordinates["axis"] = ("axis", [0.0, 1.0], {"units": "1", "long_name": "0 along x, 1 along y"})
+        if any(name in table for name in VECTORS):
+            coordinates["axis"] = variable("axis", [0.0, 1.0], "1", "0 along x, 1 along y")
         if "depth" in self._stress:
-            coordinates["depth"] = ("depth", np.array(self._stress["depth"]), STRESS["depth"].attributes())
+            coordinates["depth"] = STRESS["depth"].variable("depth", self._stress["depth"])
         for name, (edges, numbers) in self._histograms.items():
             places = _core.histogram_coordinates(name, edges, line)
-            data[name] = ((along, places[0][0]), np.array(numbers), QUANTITIES[name].attributes(line))
-            for place, unit, words, ends in places:
-                coordinates[place] = (place, ends, {"units": written(unit), "long_name": words})
+            data[name] = QUANTITIES[name].variable((along, places[0][0]), numbers, line)
+            coordinates |= {place: variable(place, ends, written(unit), words) for place, unit, words, ends in places}
         # Text, as all other attributes, so that the dataset can be written.
         lists: dict[str, Any] = {name: json.dumps(self._attributes[name]) for name in ("findings", "error_bars") if name in self._attributes}
-        attributes = {**self._attributes, "findings": "[]", **lists}
-        whole = xarray.Dataset(data, coords=coordinates, attrs=attributes)
+        whole = xarray.Dataset(data, coords=coordinates, attrs={**self._attributes, "findings": "[]", **lists})
         if not self._leaks:
             return whole
         from ._leakage import stored
@@ -488,31 +444,31 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         columns = {**quantities, **histograms}
         ends = [(name, edges) for name, (edges, _) in columns.items()]
         # All of it is read first: it may be replaced.
-        stacks = {name: self._planes(name) for name in self._fields}
+        stacks = {name: self._stack(name).reshape(-1, *self.cells, *[1] * self.is_line) for name in self._fields}
         title, setup, gap = str(attributes.get("title") or ""), str(attributes.get("setup") or "{}"), plain(as_plane(self.initial_gap))
-        writer = _core.Writer(os.fspath(path), force, title, setup, list(self._size), gap, list(self._fields), ends, len(self))
+        writer = _core.Writer(os.fspath(path), force, title, setup, list(self.size), gap, list(self._fields), ends, len(self))
         for n in range(len(self)):
             row = {name: float(self._table[name][n]) for name in ROW}
             maps: dict[str, Any] = {}
             for k in np.flatnonzero(self._field_steps == n).tolist():
                 fields = {name: np.require(stack[k], None, ["C_CONTIGUOUS", "ALIGNED"]) for name, stack in stacks.items()}
                 # A state between the row before and this one has a time of its own.
-                if self._field_times[k] < row["time"]:
-                    writer.stage(float(self._field_times[k]), fields)
+                if self.field_times[k] < row["time"]:
+                    writer.stage(float(self.field_times[k]), fields)
                 else:
                     maps = fields
             writer.append(row, [float(number) for _, numbers in columns.values() for number in numbers[n]], maps)
         writer.finish(str(attributes.get("status") or "complete"), json.dumps(attributes.get("findings", [])), None)
-        if self._path is not None and (self._stress or self._leaks):
-            _core.derive_again(self._path, os.fspath(path))
+        if self.path is not None and (self._stress or self._leaks):
+            _core.derive_again(self.path, os.fspath(path))
 
     def report(self, path: str | os.PathLike[str], *, force: bool = False, megabytes: int = 12) -> None:
         """Writes the result as one HTML page with maps and curves, of that size at most.
 
         It shows the fields that were kept.
         """
-        if self._path is not None:
-            _core.report(self._path, os.fspath(path), force, megabytes * 1_000_000)
+        if self.path is not None:
+            _core.report(self.path, os.fspath(path), force, megabytes * 1_000_000)
             return
         import tempfile
 
@@ -534,47 +490,34 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
 
     def _repr_html_(self) -> str:
         title = html.escape(str(self._attributes.get("title") or "Result"))
-        size = " x ".join(f"{length:g} m" for length in self._size)
+        size = " x ".join(f"{length:g} m" for length in self.size)
         rows = [("domain", f"{cells_of(self.initial_gap)}, {size}"), ("rows", str(len(self)))]
         if len(self):
             last = {name: self._table[name][-1] for name in ROW}
             rows += [(self._axis.name, f"{last.pop('time'):.6g} {self._axis.unit}"), *told(last, self.is_line)]
         return f"<b>{title}</b>, last row:{_html.table(rows)}"
 
-    def _index(self, time: float | None, index: int | None) -> int:
+    def _index(self, time: float | None = None, velocity: float | None = None, index: int | None = None) -> int:
+        """The number of the stored instant."""
         kept = len(self._field_steps)
         if kept == 0:
             raise CaseError("no fields were kept")
-        if time is not None and index is not None:
+        if (time if self.is_sweep else velocity) is not None:
+            raise CaseError("velocity= is for a sweep over velocities, time= for a run in time")
+        given = velocity if self.is_sweep else time
+        if given is not None and index is not None:
             raise CaseError("give time or index, exactly one of them")
-        if time is not None:
+        if given is not None:
             what, unit = self._axis.name, self._axis.unit
-            wanted = number(what, time)
-            end = max(np.max(self._table["time"]), np.max(self.field_times))
+            wanted, end = number(what, given), max(np.max(self._table["time"]), np.max(self.field_times))
             # Times that are written with 12 digits are those of rows.
             if not -1e-12 * end <= wanted <= (1 + 1e-12) * end:
                 raise CaseError(f"{what} is {wanted:g} {unit}, but must be one of the run, 0 {unit} to {end:g} {unit}")
-            distance = np.abs(self.field_times - wanted)
             # Of two at the same time, before and after a jump, the later.
-            return int(kept - 1 - np.argmin(distance[::-1]))
-        if index is None:
-            return kept - 1
-        if not -kept <= index < kept:
+            return int(kept - 1 - np.argmin(np.abs(self.field_times - wanted)[::-1]))
+        if not -kept <= (place := -1 if index is None else index) < kept:
             raise CaseError(f"index is {index}, but fields were kept at {kept} times")
-        return int(index) % kept
-
-    def _one(self, name: str, index: int) -> Floats:
-        held = self._fields[name]
-        if not isinstance(held, _core.Store):
-            out: Floats = held[index]
-            return out
-        stored: Floats = held.field(name, index)
-        return stored[:, 0] if self.is_line else stored
-
-    def _planes(self, name: str) -> Floats:
-        """The fields of all kept times, of a line contact as (times, n, 1)."""
-        stack = self._stack(name)
-        return stack[:, :, np.newaxis] if self.is_line else stack
+        return int(place) % kept
 
     def _stress_volume(self, name: str) -> Floats:
         """A stored stress field of shape (field_time, depth, x, y), of a line (field_time, depth, x)."""
@@ -582,7 +525,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         assert store is not None
         depths = range(len(self._stress["depth"]))
         found = np.array([[store.stress_field(name, n, depth) for depth in depths] for n in range(len(self._field_steps))])
-        return found[..., 0] if self.is_line else found
+        return _on_grid(found, self.is_line)
 
     @property
     def _fluid_pressures(self) -> Floats | None:
@@ -598,16 +541,30 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
 
     def _disk(self) -> _core.Store | None:
         """The result on disk; a copy in another process opens it again."""
-        return self._store if self._store is not None or self._path is None else _core.Store(self._path)
+        return self._store if self._store is not None or self.path is None else _core.Store(self.path)
 
     def _stack(self, name: str) -> Floats:
-        held = self._fields[name]
-        if not isinstance(held, _core.Store):
-            out: Floats = held
-            return out
-        shape = (0, *self.cells)
-        maps = [self._one(name, n) for n in range(len(self._field_steps))]
-        return np.array(maps) if maps else np.empty(shape)
+        """A field at all kept times."""
+        return np.asarray(self._fields[name])
+
+
+class _OnDisk:
+    """A field of a result on disk, at all its kept times; each is read when it is used."""
+
+    def __init__(self, store: _core.Store, name: str) -> None:
+        self._store, self._name = store, name
+
+    def __getitem__(self, index: int) -> Floats:
+        return _on_grid(self._store.field(self._name, index), len(self._store.size) == 1)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats:
+        maps = [self[n] for n in range(len(self._store.field_steps))]
+        return np.array(maps) if maps else np.empty((0, *self._store.cells))
+
+
+def _on_grid(values: Floats, line: bool) -> Floats:
+    """Values of cells as the core gives them, (..., nx, ny); those of a line as (..., nx)."""
+    return values[..., 0] if line else values
 
 
 def attributes_of(title: str, status: str, setup: dict[str, Any], findings: list[Finding]) -> dict[str, Any]:
@@ -619,24 +576,21 @@ def attributes_of(title: str, status: str, setup: dict[str, Any], findings: list
 
 def _stored(store: _core.Store, name: str) -> Floats:
     """A column of the rows; of a vector of shape (rows, 2)."""
-    names = [f"{name}_{axis}" for axis in "xy"] if name in VECTORS else [name]
-    columns: list[Floats] = [store.series(one) for one in names]
-    return columns[0] if name not in VECTORS else np.column_stack(columns)
+    return np.column_stack([store.series(f"{name}_{axis}") for axis in "xy"]) if name in VECTORS else store.series(name)
 
 
 def open(path: str | os.PathLike[str]) -> Result:
     """Opens a result on disk, finished or not; its fields are read when they are used."""
     store = _core.Store(os.fspath(path))
-    attributes: dict[str, Any] = json.loads(store.attributes)
     return Result(
         table={name: _stored(store, name) for name in [*ROW, *store.quantities] if name not in HISTOGRAMS},
         histograms={name: store.histogram(name) for name in store.quantities if name in HISTOGRAMS},
-        fields={name: store for name in store.fields},
+        fields={name: _OnDisk(store, name) for name in store.fields},
         field_steps=store.field_steps,
         field_times=store.field_times,
-        initial_gap=store,
-        size=tuple(store.size),
-        attributes=attributes,
+        initial_gap=None,
+        size=store.size,
+        attributes=json.loads(store.attributes),
         path=os.fspath(path),
         stress=store.stress(),
         leaks=store.leaks(),

@@ -371,7 +371,7 @@ class Plots:
     def _row(self, at: Any) -> int:
         """The number of the stored instant."""
         time, velocity, index = at
-        return self._result._index(time if velocity is None else velocity, index)
+        return self._result._index(time, velocity, index)
 
     def _closed(self, gap: Any, at: Any) -> Any:
         """The gap, 0 in contact, where rounding errors remain; at the hardness it may be negative."""

@@ -45,8 +45,7 @@ def draw_map(ax: Any, values: Any, size: tuple[float, ...], style: dict[str, Any
     # Both axes have the same unit, except on a narrow domain.
     (across, x_unit), (up, y_unit) = (shown(side if narrow else max(size), "m") for side in size)
     image = placed(ax, values, (0, size[0] * across, 0, size[1] * up), size, style)
-    ax.set_xlabel(f"x [{x_unit}]")
-    ax.set_ylabel(f"y [{y_unit}]")
+    ax.set(xlabel=f"x [{x_unit}]", ylabel=f"y [{y_unit}]")
     return image
 
 
@@ -64,6 +63,12 @@ def placed(ax: Any, values: Any, extent: Any, size: tuple[float, ...], style: di
         # Few numbers have room along the narrow side.
         ax.locator_params(axis=narrow[0], nbins=2)
     return image
+
+
+def centred(ax: Any, values: Any, x: Any, y: Any, factor: float, size: tuple[float, ...], style: dict[str, Any]) -> Any:
+    """A map over the middles `x` and `y` of its cells, times a factor."""
+    ends = [end for q in (x, y) for half in [0.5 * (q[1] - q[0]) if len(q) > 1 else 0.5] for end in (q[0] - half, q[-1] + half)]
+    return placed(ax, values, [end * factor for end in ends], size, style)
 
 
 def robust(values: Any, style: dict[str, Any]) -> dict[str, Any]:
@@ -132,6 +137,12 @@ def draw_legend(ax: Any, kinds: Sequence[str] = ()) -> None:
     _legend_of(ax, handles, 1, letters * max(room / wide, 0.6))
 
 
+def name_runs(ax: Any, style: dict[str, Any]) -> None:
+    """A legend where the curve that was drawn has a label."""
+    if "label" in style:
+        draw_legend(ax)
+
+
 def _legend_of(ax: Any, handles: list[Any], columns: int, letters: float) -> float:
     """Draws a legend above the axes; returns its width in pixels."""
     place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.1}
@@ -172,16 +183,16 @@ def in_si(style: dict[str, Any], unit: str) -> dict[str, Any]:
     return {key: number(key, value, unit) if key in ("vmin", "vmax") and value is not None else value for key, value in style.items()}
 
 
-def scale(ax: Any, words: str, largest: float, unit: str, power: int = 1, axis: str = "y", log: bool = False) -> float:
+def scale(ax: Any, axis: str, words: str, unit: str, *values: Any, power: int = 1, log: bool = False) -> float:
     """Labels an axis with its unit and returns the factor of that unit: the unit of a curve which is there already, else one that suits
-    the numbers. A logarithmic axis has powers of ten as its numbers, and needs none in its unit."""
+    the `values`. A logarithmic axis has powers of ten as its numbers, and needs none in its unit."""
     label, set_label = (ax.get_ylabel(), ax.set_ylabel) if axis == "y" else (ax.get_xlabel(), ax.set_xlabel)
     if unit == "1":
         set_label(words)
         return 1.0
     suited = prefixed if log else shown
     usual = (suited(10.0**tens, unit, power) for tens in range(-60, 61))
-    factor, text = next((one for one in usual if label == f"{words} [{one[1]}]"), suited(largest, unit, power))
+    factor, text = next((one for one in usual if label == f"{words} [{one[1]}]"), suited(magnitude(*values), unit, power))
     set_label(f"{words} [{text}]")
     return factor
 

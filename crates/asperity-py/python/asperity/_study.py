@@ -132,9 +132,9 @@ def study(
         raise CaseError("over is missing: give the values of the parameters, as in over={'load': [0.1, 0.5]}")
     plan = _Plan(over, zip)
     distinct("fields", fields, list(FIELDS))
-    for what, number in (("workers", workers), ("threads", threads)):
-        if number is not None:
-            count(what, number)
+    for what, given in (("workers", workers), ("threads", threads)):
+        if given is not None:
+            count(what, given)
     common = _common(case, plan.names)
     _check_names(common, plan)
     _check_loads(common, over, plan)
@@ -143,10 +143,8 @@ def study(
         os.makedirs(place, exist_ok=True)
         if os.path.exists(os.path.join(place, "study.csv")):
             raise CaseError(f"{place} is the folder of a study of the command; give it as directory= with vary=, or choose another folder")
-    points = [
-        Point(**common, settings=settings, folder=place, fields=tuple(fields), threads=None if client is None else threads)
-        for settings in plan.points
-    ]
+    shares: dict[str, Any] = {**common, "folder": place, "fields": tuple(fields), "threads": None if client is None else threads}
+    points = [Point(**shares, settings=settings) for settings in plan.points]
     names = [point.name for point in points]
     if len(set(names)) < len(names):
         twice = next(n for n, name in enumerate(names) if name in names[:n])
@@ -157,28 +155,30 @@ def study(
         note(place, "study", {"asperity": _core.__version__, "parameters": plan.names, "points": names})
         done = {n: answer for n, point in enumerate(points) if (answer := found(point, retry)) is not None}
     left = [n for n in range(len(points)) if n not in done]
-    tell = _Teller(len(points), done, progress)
+    show, started = line_of(progress), time.monotonic()
+
+    def dataset() -> xarray.Dataset:
+        """The points so far."""
+        stopped: Solved = ("interrupted", "the study was stopped", None)
+        return _dataset(plan, [done.get(n, stopped) for n in range(len(points))], points, tuple(fields), common.get("case"))
+
     if left:
         tasks = [points[n] for n in left]
-        if client is not None:
-            answers = _on_cluster(client, tasks)
-        else:
-            answers = solved(tasks, *shared(len(tasks), workers, threads))
+        answers = solved(tasks, *shared(len(tasks), workers, threads)) if client is None else _on_cluster(client, tasks)
         with contextlib.closing(answers):
             try:
-                for n, answer in answers:
+                for here, (n, answer) in enumerate(answers, 1):
                     done[left[n]] = answer
-                    tell(done)
+                    failed = sum(one[0] == "failed" for one in done.values())
+                    seconds = (time.monotonic() - started) / here * (len(points) - len(done))
+                    show(f"{len(done)}/{len(points)} points{f', {failed} failed' if failed else ''}  {seconds:.0f} s left")
             except BaseException as error:
-                tell.end()
-                told = type(error).__name__
-                whole = [done.get(n, ("interrupted", f"the study was stopped: {told}", None)) for n in range(len(points))]
                 with contextlib.suppress(Exception):
-                    error.result = _dataset(plan, whole, points, tuple(fields), common.get("case"))  # type: ignore[attr-defined]
+                    error.result = dataset()  # type: ignore[attr-defined]
                 raise
             finally:
-                tell.end()
-    data = _dataset(plan, [done[n] for n in range(len(points))], points, tuple(fields), common.get("case"))
+                show(None)
+    data = dataset()
     try:
         _warn(points, done)
     except ResultWarning as error:
@@ -408,136 +408,112 @@ def _with_threads(point: Point, busy: dict[str, int]) -> Solved:
     return solve_point(point)
 
 
-class _Teller:
-    """The line of progress."""
+class _Table:
+    """A dataset of all points that grows by arrays with a value, or a row of values, for each point."""
 
-    def __init__(self, total: int, done: dict[int, Solved], on: bool | None) -> None:
-        self.total, self.before = total, len(done)
-        self.started = time.monotonic()
-        self.show = line_of(on)
+    def __init__(self, plan: _Plan, points: list[Point], answers: list[Solved], taken: set[str]) -> None:
+        self.results = [answer[2] for answer in answers]
+        self.whole = [result for result in self.results if result is not None]
+        self.shape = plan.shape
+        given = {name: f"{name}_given" if name in taken else name for name in plan.names}
+        self.dims = tuple(given.values()) if plan.product else ("point",)
+        self.columns: dict[str, Any] = {}
+        self.coordinates: dict[str, Any] = {}
+        for name, column in plan.labels.items():
+            values, attributes = _coordinate(column)
+            if points[0].fixed and name in UNITS and values.dtype.kind in "fiu":
+                attributes = {"units": self.whole[0].units("load") if name == "load" and self.whole else UNITS[name]}
+            self.coordinates[given[name]] = (given[name] if plan.product else "point", values, {"long_name": name, **attributes})
 
-    def __call__(self, done: dict[int, Solved]) -> None:
-        failed = sum(answer[0] == "failed" for answer in done.values())
-        here = len(done) - self.before
-        left = (time.monotonic() - self.started) / max(here, 1) * (self.total - len(done))
-        self.show(f"{len(done)}/{self.total} points{f', {failed} failed' if failed else ''}  {left:.0f} s left")
+    def array(self, values: Any, attributes: dict[str, str], *dims: str) -> Any:
+        """An array over the points, and these dimensions of each."""
+        values = np.asarray(values)
+        return (*self.dims, *dims), values.reshape(*self.shape, *values.shape[1:]), attributes
 
-    def end(self) -> None:
-        self.show(None)
+    def padded(self, columns: Callable[[Result], Any], most: int, cells: tuple[int, ...] = ()) -> Any:
+        """A column of each point, or a stack of its fields, with NaN beyond its end."""
+        table = np.full((len(self.results), most, *cells), np.nan)
+        for row, result in zip(table, self.results):
+            if result is not None and (column := columns(result)) is not None:
+                row[: len(column)] = column
+        return table
+
+    def add_rows(self) -> None:
+        """The numbers of the rows."""
+        steps = np.array([0 if result is None else len(result) for result in self.results])
+        most = int(steps.max(initial=0))
+        asked = dict.fromkeys(name for result in self.whole for name in result._table if name not in ROW)
+        for name, entry in {**ROW, **{name: QUANTITIES[name] for name in asked}}.items():
+            table = self.padded(lambda result: result._table.get(name), most, (2,) if name in VECTORS else ())
+            units = {result.units(name) for result in self.whole}
+            attributes = {"units": " or ".join(sorted(units)) or entry.unit, "long_name": entry.words}
+            if name != "time":
+                self.columns[name] = self.array(table, attributes, "step", *["axis"] * (name in VECTORS))
+                continue
+            full = table[steps == most] if most else table
+            along = "velocity" if any(result.is_sweep for result in self.whole) else "time"
+            attributes["long_name"] = along
+            common = len(full) and bool(np.all(full == full[0])) and bool(np.all((steps == most) | (steps == 0)))
+            self.coordinates[along] = ("step", full[0], attributes) if common else self.array(table, attributes, "step")
+        self.columns["steps"] = self.array(steps, {"units": "1", "long_name": "number of rows"})
+
+    def add_answers(self, answers: list[Solved]) -> None:
+        """What became of the points."""
+        findings = [None if result is None else result.findings for result in self.results]
+        for name, words, values in (
+            ("status", "status", [answer[0] for answer in answers]),
+            ("error", "why it failed", [answer[1] for answer in answers]),
+            ("findings", "number of findings, -1 without a result", [-1 if held is None else len(held) for held in findings]),
+            ("finding_codes", "codes of the findings", [" ".join(sorted({finding["code"] for finding in held or ()})) for held in findings]),
+        ):
+            self.columns[name] = self.array(values, {"long_name": words})
+
+    def add_leaks(self) -> None:
+        """Leaks that the cases ask for, at the times of their fields."""
+        leaks = [result._leaks for result in self.whole if result._leaks]
+        most = max((len(table["leak_time"]) for table in leaks), default=0)
+        entries = GAS_LEAKS if any("leak_rate_standard" in table for table in leaks) else LEAKS
+        for name in (name for name in entries if any(name in table for table in leaks)):
+            into = self.coordinates if name == "leak_time" else self.columns
+            into[name] = self.array(self.padded(lambda result: result._leaks.get(name), most), entries[name].attributes(), "leak_step")
+
+    def add_fields(self, names: tuple[str, ...]) -> None:
+        """Fields of these names, where the grids of all points are the same."""
+        grids = {(result.cells, result.size) for result in self.whole}
+        if names and len(grids) > 1:
+            warn_caller("the points have different grids: the dataset holds no fields", UserWarning)
+        if not names or len(grids) != 1:
+            return
+        first = self.whole[0]
+        most = max(len(result.field_times) for result in self.whole)
+        times = self.padded(lambda result: result.field_times, most)
+        self.coordinates["field_time"] = self.array(times, {"units": "s", "long_name": "time of the fields"}, "field_step")
+        self.coordinates |= first._coordinates
+        for name in names:
+            stack = self.padded(lambda result: result._stack(name), most, first.cells)
+            self.columns[name] = self.array(stack, FIELDS[name].attributes(), "field_step", *first._axes)
 
 
-def _dataset(
-    plan: _Plan, answers: list[Solved], points: list[Point], names: tuple[str, ...], case: str | None
-) -> xarray.Dataset:
+def _dataset(plan: _Plan, answers: list[Solved], points: list[Point], names: tuple[str, ...], case: str | None) -> xarray.Dataset:
     import xarray
 
-    taken = _TAKEN | _TAKEN_BY_FIELDS if names else _TAKEN
-    given = {name: f"{name}_given" if name in taken else name for name in plan.names}
-    dims = tuple(given.values()) if plan.product else ("point",)
-    coordinates: dict[str, Any] = {}
-    for name, column in plan.labels.items():
-        values, attributes = _coordinate(column)
-        if points[0].fixed and name in UNITS and values.dtype.kind in "fiu":
-            known = [answer[2].units("load") for answer in answers if answer[2] is not None] if name == "load" else []
-            attributes = {"units": known[0] if known else UNITS[name]}
-        coordinates[given[name]] = (given[name] if plan.product else "point", values, {"long_name": name, **attributes})
-    results = [answer[2] for answer in answers]
-    steps = np.array([0 if result is None else len(result) for result in results])
-    most = int(steps.max(initial=0))
-    columns: dict[str, Any] = {}
-    asked = dict.fromkeys(name for result in results if result is not None for name in result._table if name not in ROW)
-    for name, entry in {**ROW, **{name: QUANTITIES[name] for name in asked}}.items():
-        table = _padded([None if result is None else result._table.get(name) for result in results], most, (2,) if name in VECTORS else ())
-        units = {result.units(name) for result in results if result is not None}
-        attributes = {"units": " or ".join(sorted(units)) or entry.unit, "long_name": entry.words}
-        if name == "time":
-            whole = table[steps == most] if most else table
-            sweeps = any(result is not None and result.is_sweep for result in results)
-            along = "velocity" if sweeps else "time"
-            attributes["long_name"] = along
-            if len(whole) and bool(np.all(whole == whole[0])) and bool(np.all((steps == most) | (steps == 0))):
-                coordinates[along] = ("step", whole[0], attributes)
-            else:
-                coordinates[along] = ((*dims, "step"), table.reshape(*plan.shape, most), attributes)
-            continue
-        columns[name] = ((*dims, "step", "axis")[: len(dims) + table.ndim - 1], table.reshape(*plan.shape, *table.shape[1:]), attributes)
-    columns["steps"] = (dims, steps.reshape(plan.shape), {"units": "1", "long_name": "number of rows"})
-    columns["status"] = (dims, np.array([answer[0] for answer in answers]).reshape(plan.shape), {"long_name": "status"})
-    columns["error"] = (dims, np.array([answer[1] for answer in answers]).reshape(plan.shape), {"long_name": "why it failed"})
-    findings = [None if result is None else result.findings for result in results]
-    counts = np.array([-1 if held is None else len(held) for held in findings])
-    codes = np.array([" ".join(sorted({finding["code"] for finding in held or ()})) for held in findings])
-    columns["findings"] = (dims, counts.reshape(plan.shape), {"long_name": "number of findings, -1 without a result"})
-    columns["finding_codes"] = (dims, codes.reshape(plan.shape), {"long_name": "codes of the findings"})
-    _add_leaks(columns, coordinates, plan, dims, results)
-    if names:
-        _add_fields(columns, coordinates, plan, dims, results, names)
-    attributes = {"asperity_version": _core.__version__}
-    if case is not None:
-        attributes["case"] = case
-    return xarray.Dataset(columns, coords=coordinates, attrs=attributes)
-
-
-def _padded(columns: Sequence[Any], most: int, cells: tuple[int, ...] = ()) -> Any:
-    """The columns of all points, or stacks of their fields, with NaN beyond their ends."""
-    table = np.full((len(columns), most, *cells), np.nan)
-    for n, column in enumerate(columns):
-        if column is not None:
-            table[n, : len(column)] = column
-    return table
-
-
-def _add_leaks(
-    columns: dict[str, Any], coordinates: dict[str, Any], plan: _Plan, dims: tuple[str, ...], results: list[Result | None]
-) -> None:
-    """Leaks that the cases ask for, at the times of their fields."""
-    leaks = [{} if result is None else result._leaks for result in results]
-    most = max((len(table["leak_time"]) for table in leaks if table), default=0)
-    gas = any("leak_rate_standard" in table for table in leaks)
-    for name, entry in (GAS_LEAKS if gas else LEAKS).items():
-        if not any(name in table for table in leaks):
-            continue
-        values = _padded([table.get(name) for table in leaks], most)
-        column = ((*dims, "leak_step"), values.reshape(*plan.shape, most), entry.attributes())
-        (coordinates if name == "leak_time" else columns)[name] = column
-
-
-def _add_fields(
-    columns: dict[str, Any],
-    coordinates: dict[str, Any],
-    plan: _Plan,
-    dims: tuple[str, ...],
-    results: list[Result | None],
-    names: tuple[str, ...],
-) -> None:
-    whole = [result for result in results if result is not None]
-    grids = {(result.cells, result.size) for result in whole}
-    if len(grids) != 1:
-        if grids:
-            warn_caller("the points have different grids: the dataset holds no fields", UserWarning)
-        return
-    first = whole[0]
-    most = max(len(result.field_times) for result in whole)
-    times = _padded([None if result is None else result.field_times for result in results], most)
-    words = {"units": "s", "long_name": "time of the fields"}
-    coordinates["field_time"] = ((*dims, "field_step"), times.reshape(*plan.shape, most), words)
-    coordinates.update(first._coordinates)
-    for name in names:
-        stack = _padded([None if result is None else result._stack(name) for result in results], most, first.cells)
-        shape = (*plan.shape, most, *first.cells)
-        columns[name] = ((*dims, "field_step", *first._axes), stack.reshape(shape), FIELDS[name].attributes())
+    table = _Table(plan, points, answers, _TAKEN | _TAKEN_BY_FIELDS if names else _TAKEN)
+    table.add_rows()
+    table.add_answers(answers)
+    table.add_leaks()
+    table.add_fields(names)
+    attributes = {"asperity_version": _core.__version__, **({} if case is None else {"case": case})}
+    return xarray.Dataset(table.columns, coords=table.coordinates, attrs=attributes)
 
 
 def _coordinate(column: list[Any]) -> tuple[Any, dict[str, str]]:
     """Values of a coordinate; quantities in one unit become numbers with that unit."""
     if all(isinstance(value, str) for value in column):
         matches = [_QUANTITY.fullmatch(value) for value in column]
-        units = {match.group(2) for match in matches if match is not None}
+        units = {match and match.group(2) for match in matches}
         if None not in matches and len(units) == 1:
             (unit,) = units
-            values = np.array([float(match.group(1)) for match in matches if match is not None])
-            return values, {} if unit is None else {"units": unit}
-        return np.array(column), {}
-    if all(isinstance(value, (bool, int, float)) for value in column):
-        return np.array(column), {}
-    return np.array([value if isinstance(value, str) else json.dumps(value) for value in column]), {}
+            return np.array([float(match.group(1)) for match in matches if match is not None]), {} if unit is None else {"units": unit}
+    if not all(isinstance(value, (bool, int, float)) for value in column):
+        column = [value if isinstance(value, str) else json.dumps(value) for value in column]
+    return np.array(column), {}

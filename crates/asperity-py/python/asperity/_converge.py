@@ -74,5 +74,4 @@ def converge(
     >>> abs(bars["approach"]["value"] - hertz) < bars["approach"]["error"] < 0.05 * hertz
     True
     """
-    found: list[ErrorBar] = json.loads(_core.converge(*source(case), overrides(set), refine))
-    return found
+    return list(json.loads(_core.converge(*source(case), overrides(set), refine)))

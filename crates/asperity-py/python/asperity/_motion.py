@@ -164,8 +164,6 @@ def rubber_friction(result: Result, *, shear_stress: float) -> Floats:
     >>> bool(abs(added[0] - 0.5 * result.contact_fraction[0]) < 1e-12)
     True
     """
-    load = np.asarray(result.load)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(load > 0, number("shear_stress", shear_stress) * np.asarray(result.contact_area) / load, 0.0)
-    total: Floats = np.asarray(result.friction_coefficient) + share
-    return total
+    load, force = result.load, number("shear_stress", shear_stress) * result.contact_area
+    share = np.divide(force, load, out=np.zeros_like(load), where=load > 0)
+    return np.asarray(result.friction_coefficient + share)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Generic, Protocol, TypeVar, overload
+from typing import Any, Generic, Protocol, TypeVar, cast, overload
 
 Value = TypeVar("Value")
 
@@ -32,8 +32,7 @@ class Parameter(Generic[Value]):
         if self._name not in known:
             has = f"was made with {', '.join(known)}" if known else "has no parameters"
             raise AttributeError(f"{made!r} has no {self._name!r}; it {has}")
-        value: Value = known[self._name]
-        return value
+        return cast(Value, known[self._name])
 
     def __set__(self, made: Parametrised, value: Value) -> None:
         raise AttributeError(f"{self._name} cannot be set: {type(made).__name__} does not change once it is made; make another")

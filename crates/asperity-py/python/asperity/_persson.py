@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -32,8 +32,7 @@ class Magnification(ReadOnlyArrays):
     @property
     def magnification(self) -> Floats:
         """Wave number over that of the longest waves."""
-        seen: Floats = self.wave_number / self.wave_number[0]
-        return seen
+        return np.asarray(self.wave_number / self.wave_number[0])
 
 
 class PerssonFriction(Sealed):
@@ -119,6 +118,6 @@ def persson_friction(
     keys: dict[str, Any] = {"body": [material._keys]}
     if temperature is not None:
         keys["temperature"] = {"history": {"kind": "constant", "value": number("temperature", temperature)}}
-    how = choice("correction", correction, get_args(Correction))
+    how = choice("correction", correction, Correction)
     theory = _core.Persson(shape.heights, list(shape.size), keys, number("pressure", pressure), word, turned, how)
     return PerssonFriction(theory, speeds)

@@ -62,8 +62,7 @@ class Step(Numbers, Sealed):
 
     def _map(self, name: str) -> Floats:
         """A field as the core gives it."""
-        values: Floats = self._march._core.field(name)
-        return values
+        return self._march._core.field(name)
 
     @property
     def pressure(self) -> Floats:
@@ -381,8 +380,7 @@ def run(
 def check(case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None) -> dict[str, Any]:
     """What a case (as in :func:`run`) will do, in numbers: cells, rows, moduli, memory [byte], ...; the inputs that a slip
     would hide in, the contact to be expected, and the findings that are known before the run."""
-    out: dict[str, Any] = json.loads(_core.check(*source(case), overrides(set)))
-    return out
+    return dict(json.loads(_core.check(*source(case), overrides(set))))
 
 
 def source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str | None]:

@@ -78,8 +78,7 @@ class Stress(Sealed):
 
     def _field(self, name: str) -> Floats:
         found = self._core.field(name, self.depths.tolist())
-        values: Floats = frozen(found[:, :, 0] if self._pressure.ndim == 1 else found)
-        return values
+        return frozen(found[:, :, 0] if self._pressure.ndim == 1 else found)
 
     xx = _Field("Normal stress along x.")
     yy = _Field("Normal stress along y.")

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple, NoReturn, overload
+from typing import Any, Literal, NamedTuple, NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats
 from ._units import written
 
 
@@ -64,45 +63,19 @@ def told(row: dict[str, Any], line: bool) -> list[tuple[str, str]]:
     return [(entry.words, f"{row[name]:.6g}{'' if unit == '1' else f' {unit}'}") for name, (entry, unit) in entries.items()]
 
 
-class _Held:
-    """A number or column as attribute of its holder, which finds it by a method; it cannot be replaced."""
+class Held:
+    """A number or column as attribute of its holder, which finds it by its method `find`; it cannot be replaced. `_rows.pyi` has its type."""
 
-    _find: str
-    _sealed: str
+    def __init__(self, find: str, sealed: str) -> None:
+        self._find, self._sealed = find, sealed
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
         unit, _, words, _ = {**COLUMNS, **STRESS}[name]
         self.__doc__ = f"{words[:1].upper()}{words[1:]}{f' [{unit}]' if unit != '1' else ''}."
 
-    def _of(self, holder: Any) -> Any:
+    def __get__(self, holder: Any, owner: type) -> Any:
         return self if holder is None else getattr(holder, self._find)(self._name)
 
     def __set__(self, holder: object, value: Any) -> NoReturn:
         raise AttributeError(f"{self._name} cannot be set: {self._sealed}")
-
-
-class Column(_Held):
-    """A column of the rows, which its holder finds by `_column(name)`."""
-
-    _find, _sealed = "_column", "a result is what was computed; work on a copy of its numbers"
-
-    @overload
-    def __get__(self, holder: None, owner: type) -> Column: ...
-    @overload
-    def __get__(self, holder: object, owner: type) -> Floats: ...
-    def __get__(self, holder: Any, owner: type) -> Any:
-        return self._of(holder)
-
-
-class Number(_Held):
-    """A number of one row, which its holder finds by `_number(name)`."""
-
-    _find, _sealed = "_number", "a step is what was computed"
-
-    @overload
-    def __get__(self, holder: None, owner: type) -> Number: ...
-    @overload
-    def __get__(self, holder: object, owner: type) -> float: ...
-    def __get__(self, holder: Any, owner: type) -> Any:
-        return self._of(holder)

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from . import _core, _html
 from ._arrays import Floats, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
 from ._axis import TIME, VELOCITY
-from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, Column, told, variable
+from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, told, variable
 from ._core import CaseError
 from ._findings import Finding, findings_of
 from ._grid import OnGrid

@@ -5,23 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal
 
-from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, Column, Number
+from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, Held
 
 #: The optional quantities of a row, and the fields.
 Quantity = Literal[tuple(QUANTITIES)]
 Field = Literal[tuple(FIELDS)]
 
 
-def _holder(name: str, kind: type[Column] | type[Number], names: Iterable[str]) -> type:
-    return type(name, (), {one: kind() for one in names if one not in HISTOGRAMS})
+def _holder(find: str, sealed: str, names: Iterable[str]) -> type:
+    return type("Holder", (), {name: Held(find, sealed) for name in names if name not in HISTOGRAMS})
 
 
-#: A holder of rows has a column for each number that rows may have, a row the number itself.
-Columns = _holder("Columns", Column, COLUMNS)
-Numbers = _holder("Numbers", Number, COLUMNS)
-#: The stress of the instants of a result.
-StressColumns = _holder("StressColumns", Column, STRESS)
-#: Those of a contact without time.
+def _columns(names: Iterable[str]) -> type:
+    return _holder("_column", "a result is what was computed; work on a copy of its numbers", names)
+
+
+def _numbers(names: Iterable[str]) -> type:
+    return _holder("_number", "a step is what was computed", names)
+
+
+#: Numbers of a contact without time.
 OF_CONTACT = [name for name in ROW if name not in ("time", "time_error", "stage")]
-ContactColumns = _holder("ContactColumns", Column, OF_CONTACT)
-ContactNumbers = _holder("ContactNumbers", Number, OF_CONTACT)
+#: A holder of rows has a column for each number that rows may have, a row the number itself; the stress is that of the instants of a result.
+Columns, StressColumns, ContactColumns = _columns(COLUMNS), _columns(STRESS), _columns(OF_CONTACT)
+Numbers, ContactNumbers = _numbers(COLUMNS), _numbers(OF_CONTACT)

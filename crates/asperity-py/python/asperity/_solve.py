@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import cells_of, path_of
-from ._columns import HISTOGRAMS, Number
+from ._columns import HISTOGRAMS
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
 from ._histories import History, control_keys
@@ -89,8 +89,7 @@ class Step(Numbers, Sealed):
 
     def __dir__(self) -> list[str]:
         # Numbers that it does not have are left out.
-        numbers = {name for name, value in vars(Numbers).items() if isinstance(value, Number)}
-        return sorted({*super().__dir__()} - numbers | {name for name in self._row if name not in HISTOGRAMS})
+        return sorted({*super().__dir__()} - {name for name in vars(Numbers) if name[0] != "_"} | {name for name in self._row if name not in HISTOGRAMS})
 
     def __repr__(self) -> str:
         row, unit = self._row, "N/m" if self._march.initial_gap.ndim == 1 else "N"

@@ -20,7 +20,7 @@ from ._units import has_unit, is_labelled, unit_among
 __all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sampled", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
 
 
-#: What the numbers of a history are called in a case.
+#: What the numbers of a history, or of a list of times, are called in a case.
 _NUMBERS = {
     "step": ("value",),
     "ramp": ("value", "duration"),
@@ -28,11 +28,25 @@ _NUMBERS = {
     "triangle": ("peak", "rise", "fall"),
     "trapezoid": ("peak", "rise", "hold", "fall"),
     "sine": ("mean", "amplitude", "frequency"),
+    "uniform": ("end", "steps"),
+    "log": ("end", "steps", "first"),
+    "adaptive": ("end", "tolerance", "first"),
 }
 
 
+class _Made:
+    """What is made of a kind and its numbers."""
+
+    kind: str
+    numbers: tuple[float, ...]
+
+    @property
+    def _parameters(self) -> dict[str, Any]:
+        return dict(zip(_NUMBERS.get(self.kind, ()), self.numbers))
+
+
 @dataclass(frozen=True)
-class History:
+class History(_Made):
     """A load [N], mean pressure [Pa] or approach [m] over time; made by :func:`step`, :func:`ramp` and so on."""
 
     kind: str
@@ -58,18 +72,11 @@ class History:
     frequency = Parameter[float]()
 
     @property
-    def _parameters(self) -> dict[str, Any]:
-        return dict(zip(_NUMBERS.get(self.kind, ()), self.numbers))
-
-    @property
     def end(self) -> float:
         """The time from which on the value stays the same [s]: 0 of a step, infinite of a sine."""
-        if self.kind == "sine":
-            return math.inf
-        if self.kind == "table":
-            return self.points[-1][0]
-        times = ("duration", "rise", "hold", "fall")
-        return float(sum(value for name, value in self._parameters.items() if name in times))
+        if self.kind in ("sine", "table"):
+            return math.inf if self.kind == "sine" else self.points[-1][0]
+        return float(sum(value for name, value in self._parameters.items() if name in ("duration", "rise", "hold", "fall")))
 
     @property
     def _keys(self) -> dict[str, Any]:
@@ -79,15 +86,14 @@ class History:
         return {**kind, **self._parameters, **points}
 
     def __repr__(self) -> str:
-        if len(self.points) > 4:
-            return f"{self.kind}({len(self.points)} points from {self.points[0]} to {self.points[-1]})"
         if self.points:
-            return f"{self.kind}({list(self.points)!r})"
+            several = f"{len(self.points)} points from {self.points[0]} to {self.points[-1]}"
+            return f"{self.kind}({several if len(self.points) > 4 else list(self.points)})"
         return call(self.kind.replace("-", "_"), self._parameters, 0 if self.kind == "sine" else 1)
 
 
 @dataclass(frozen=True)
-class Times:
+class Times(_Made):
     """The times to solve for; made by :func:`uniform`, :func:`log` or :func:`listed`."""
 
     kind: str
@@ -99,14 +105,6 @@ class Times:
     first = Parameter[float]()
     #: Relative error of the stress that adaptive steps aim at.
     tolerance = Parameter[float]()
-
-    @property
-    def _parameters(self) -> dict[str, Any]:
-        if self.kind == "list":
-            return {}
-        end, second, *first = self.numbers
-        name = "tolerance" if self.kind == "adaptive" else "steps"
-        return {"end": end, name: second if self.kind == "adaptive" else int(second), **dict(zip(("first",), first))}
 
     @property
     def end(self) -> float:
@@ -129,10 +127,9 @@ class Times:
         return {"times": list(self.numbers)} if self.kind == "list" else {**self._parameters, "spacing": self.kind}
 
     def __repr__(self) -> str:
-        if self.kind == "list" and len(self.numbers) > 4:
-            return f"listed({len(self.numbers)} times from {self.numbers[0]:g} to {self.numbers[-1]:g} s)"
         if self.kind == "list":
-            return f"listed({list(self.numbers)!r})"
+            several = f"{len(self.numbers)} times from {self.numbers[0]:g} to {self.numbers[-1]:g} s"
+            return f"listed({several if len(self.numbers) > 4 else list(self.numbers)})"
         return call(self.kind, self._parameters, 1 if self.kind == "adaptive" else 2)
 
 
@@ -295,14 +292,13 @@ class Stage(Table):
         # Values of its own, which compare and do not follow an array that changes.
         if self.times is not None:
             object.__setattr__(self, "times", as_times(self.times))
-        if isinstance(self.until, list):
-            object.__setattr__(self, "until", tuple(self.until))
-        if isinstance(self.until, dict) and len(self.until) == 1:
-            object.__setattr__(self, "until", next(iter(self.until.items())))
-        if self.until is not None and self.until != "contact-lost":
-            if not isinstance(self.until, tuple) or len(self.until) != 2:
-                raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or one number of the rows with its value, as in {{'load': 0.1}}")
-            choice("the event of until", self.until[0], tuple(_event_units("N")))
+        if self.until is None or self.until == "contact-lost":
+            return
+        pair = next(iter(self.until.items())) if isinstance(self.until, dict) and len(self.until) == 1 else self.until
+        if not isinstance(pair, (tuple, list)) or len(pair) != 2:
+            raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or one number of the rows with its value, as in {{'load': 0.1}}")
+        choice("the event of until", pair[0], tuple(_event_units("N")))
+        object.__setattr__(self, "until", tuple(pair))
 
     def _given(self, load_unit: str) -> dict[str, Any]:
         """The keys of one of the `stages`; the unit of a load is N, or N/m of a line contact."""
@@ -333,12 +329,12 @@ def one_of(alternatives: dict[str, Any], otherwise: str) -> tuple[str, Any]:
 
 def uniform(end: float, steps: int) -> Times:
     """`steps` equal steps to `end` [s]."""
-    return Times("uniform", (number("end", end), float(count("number of steps", steps))))
+    return Times("uniform", (number("end", end), count("number of steps", steps)))
 
 
 def log(end: float, steps: int, *, first: float) -> Times:
     """`steps` times in geometric progression from `first` to `end` [s]."""
-    return Times("log", (number("end", end), float(count("number of steps", steps)), number("first instant", first)))
+    return Times("log", (number("end", end), count("number of steps", steps), number("first instant", first)))
 
 
 def adaptive(end: float, *, tolerance: float = 1e-3, first: float | None = None) -> Times:
@@ -354,9 +350,8 @@ def adaptive(end: float, *, tolerance: float = 1e-3, first: float | None = None)
     >>> float(result.time[-1]), bool(np.max(result.time_error) < 1e-3)
     (5.0, True)
     """
-    end = number("end", end)
-    soon = 1e-3 * end if first is None else first
-    return Times("adaptive", (number("end", end), number("tolerance", tolerance), number("first step", soon)))
+    last = number("end", end)
+    return Times("adaptive", (last, number("tolerance", tolerance), number("first step", 1e-3 * last if first is None else first)))
 
 
 def listed(instants: npt.ArrayLike) -> Times:

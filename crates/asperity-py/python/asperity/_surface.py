@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _foreign, _html
-from ._arrays import Floats, along, angle, as_plane, cell_counts, cells_of, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
+from ._arrays import Floats, along, angle, as_plane, cell_counts, cells_of, centres, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
 from ._arrays import pitch_of, size_of
 from ._core import CaseError
 from ._findings import findings_of, warn, warn_caller
@@ -135,12 +135,10 @@ class Surface(OnGrid):
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
         """The heights [m]."""
-        wanted = self.heights.dtype if dtype is None else np.dtype(dtype)
-        if copy is None:
-            return self.heights.astype(wanted, copy=False)
-        if not copy and wanted != self.heights.dtype:
+        wanted = np.dtype(np.float64 if dtype is None else dtype)
+        if copy is False and wanted != self.heights.dtype:
             raise ValueError(f"the heights are float64: {wanted} needs a copy")
-        return self.heights.astype(wanted, copy=copy)
+        return self.heights.astype(wanted, copy=bool(copy))
 
     def __eq__(self, other: object) -> bool:
         """Whether cells, size and all heights are the same; undefined points equal each other."""
@@ -154,16 +152,14 @@ class Surface(OnGrid):
                 return self
             raise CaseError("a number cannot be added to a surface, whose heights are measured from no fixed level: add surfaces")
         try:
-            other = as_surface(other, self.size if isinstance(other, np.ndarray) or carries(other) else None)
+            other = self._alike(other)
         except CaseError:
             if isinstance(other, np.ndarray) or carries(other) or is_labelled(other) or hasattr(other, "physical_sizes"):
                 raise
             return NotImplemented
         if self.cells != other.cells or not np.allclose(self.size, other.size, rtol=1e-9, atol=0.0):
-            raise CaseError(
-                f"surfaces of {self.cells} cells on {self.size} m and of {other.cells} cells on {other.size} m "
-                "cannot be added: they must have the same cells and size"
-            )
+            both = " and of ".join(f"{one.cells} cells on {one.size} m" for one in (self, other))
+            raise CaseError(f"surfaces of {both} cannot be added: they must have the same cells and size")
         # What was measured does not repeat beyond its edges, and the sum neither; a single body stays one with roughness on it.
         known: dict[str, Any] = {key: one.metadata[key] for one in (self, other) for key in ("format", "single") if key in one.metadata}
         return Surface(self.heights + other.heights, size=self.size, metadata=known)
@@ -175,9 +171,11 @@ class Surface(OnGrid):
         return self + other
 
     def __sub__(self, other: Summand) -> Surface:
-        if isinstance(other, Surface):
-            return self + -other
-        return NotImplemented if _is_number(other) else self + _negative(other, self.size)
+        return NotImplemented if _is_number(other) else self + -self._alike(other)
+
+    def _alike(self, other: Any) -> Surface:
+        """Another surface; an array has the size of this one."""
+        return as_surface(other, self.size if isinstance(other, np.ndarray) or carries(other) else None)
 
     def __mul__(self, factor: Any) -> Surface:
         if not _is_number(factor) and not carries(factor):
@@ -519,15 +517,14 @@ class Surface(OnGrid):
                 f"{path} looks as if numpy.savetxt had written it: its lines are read along x, so that an array with axes (x, y) comes out "
                 "transposed. Give transpose=True for such an array, or transpose=False if the lines run along x."
             )
+        if transpose and len(extent) != 2:
+            raise CaseError("transpose is for surfaces over a plane, but the file holds a profile")
         if transpose:
-            if len(extent) != 2:
-                raise CaseError("transpose is for surfaces over a plane, but the file holds a profile")
             # A size that was given is along x and y already.
             heights, extent = np.ascontiguousarray(heights.T), extent if given is not None else extent[::-1]
             found = {**found, "history": [*found.get("history", []), "transposed"]}
         surface = Surface(heights[:, 0] if len(extent) == 1 else heights, size=extent, metadata=found)
-        if level is not None:
-            surface = surface.level(level)
+        surface = surface if level is None else surface.level(level)
         return surface if fill is None else surface.fill(fill)
 
     @staticmethod
@@ -758,15 +755,12 @@ def _even(places: Floats, heights: Floats, size: Any) -> tuple[Floats, list[floa
         raise CaseError(f"size is {size!r} m, but the positions of the line scan tell {length:.6g} m: leave size out")
     finest = int(np.ceil(length / steps.min() * (1.0 - 1e-9)))
     cells = min(finest, _FINEST * len(places))
-    middles = places[0] + (np.arange(cells) + 0.5) * (length / cells)
-    words = (
-        f"resampled from {len(places)} points, {steps.min():.3g} m to {steps.max():.3g} m apart, to {cells} cells of {length / cells:.3g} m, "
-        "linear between the points"
-    )
-    lost = f"; distances below {length / cells:.3g} m are not resolved" if cells < finest else ""
+    pitch = length / cells
+    apart = f"{steps.min():.3g} m to {steps.max():.3g} m apart"
+    words = f"resampled from {len(places)} points, {apart}, to {cells} cells of {pitch:.3g} m, linear between the points"
+    lost = f"; distances below {pitch:.3g} m are not resolved" if cells < finest else ""
     warn_caller(f"the line scan is not evenly spaced: {words}{lost}")
-    known = {"format": "SurfaceTopography", "history": [words]}
-    return np.interp(middles, places, heights), [length], known
+    return np.interp(places[0] + centres(cells, length), places, heights), [length], {"format": "SurfaceTopography", "history": [words]}
 
 
 def _of_labelled(what: str, given: Any, size: Any) -> tuple[Any, Any, dict[str, Any]]:
@@ -776,18 +770,13 @@ def _of_labelled(what: str, given: Any, size: Any) -> tuple[Any, Any, dict[str, 
         raise CaseError(f"{what} has the dimensions {tuple(names)}, but must have x and y, or x alone")
     pitches = [pitch_of(what, values, name) for name in names]
     extent = [abs(pitch) * values.sizes[name] for name, pitch in zip(names, pitches) if pitch is not None]
-    if size is None:
-        if len(extent) < len(names):
-            raise CaseError("the array has no coordinates x and y in m, so that its size is needed: size=(Lx, Ly)")
-        return values, extent, {}
+    whole = len(extent) == len(names)
+    if size is None and not whole:
+        raise CaseError("the array has no coordinates x and y in m, so that its size is needed: size=(Lx, Ly)")
     # Numbers of cells are no places.
-    if len(extent) == len(names) and any(abs(pitch or 1.0) != 1.0 for pitch in pitches) and not np.allclose(lengths("size", size), extent, rtol=1e-6, atol=0.0):
+    if size is not None and whole and any(abs(pitch or 1.0) != 1.0 for pitch in pitches) and not np.allclose(lengths("size", size), extent, rtol=1e-6, atol=0.0):
         raise CaseError(f"size is {size!r} m, but the coordinates of {what} tell {tuple(extent)} m: leave size out")
-    return values, size, {}
-
-
-def _negative(value: Any, size: Any) -> Surface:
-    return -as_surface(value, size if isinstance(value, np.ndarray) or carries(value) else None)
+    return values, extent if size is None else size, {}
 
 
 def _is_number(value: Any) -> bool:

@@ -90,12 +90,10 @@ class Shift:
         return keys
 
     def __repr__(self) -> str:
-        raised = ""
-        if self.vertical is not None:
-            raised = f", vertical={list(self.vertical) if isinstance(self.vertical, tuple) else (self.vertical or 'density')!r}"
-        if self.model == "table":
-            return f"shift_table({list(self.points)!r}{raised})"
-        return f"{call(self.model, self._parameters)[:-1]}{raised})"
+        vertical = list(self.vertical) if isinstance(self.vertical, tuple) else "density" if self.vertical == 0.0 else self.vertical
+        given = {**({"pairs": list(self.points)} if self.model == "table" else self._parameters), "vertical": vertical}
+        shown = {name: value for name, value in given.items() if value is not None}
+        return call("shift_table" if self.model == "table" else self.model, shown, int(self.model == "table"))
 
 
 #: What the numbers of a shift are called, and in a case where they have another name there.
@@ -105,8 +103,7 @@ _KEYS = {"activation_energy": "energy"}
 
 def wlf(*, c1: float, c2: float, reference: float, vertical: Vertical = None) -> Shift:
     """log10 a_T = -c1 (T - T_r)/(c2 + T - T_r), c2 and the reference temperature T_r in K; `vertical` as :class:`Shift` says."""
-    numbers = (number("c1", c1), number("c2", c2), _kelvin("reference", reference))
-    return _checked(Shift("wlf", numbers, vertical=_vertical(vertical)))
+    return _checked(Shift("wlf", (number("c1", c1), number("c2", c2), _kelvin("reference", reference)), vertical=_vertical(vertical)))
 
 
 def arrhenius(*, activation_energy: float, reference: float, vertical: Vertical = None) -> Shift:
@@ -134,12 +131,10 @@ def shift_table(
 
 
 def _vertical(given: Vertical) -> float | tuple[tuple[float, float], ...] | None:
-    if given is None:
-        return None
+    if given is None or given == "density":
+        return None if given is None else 0.0
     if isinstance(given, str):
-        if given != "density":
-            raise CaseError(f"vertical is {given!r}, but must be 'density', an expansion in 1/K, or (temperature, b_T) points")
-        return 0.0
+        raise CaseError(f"vertical is {given!r}, but must be 'density', an expansion in 1/K, or (temperature, b_T) points")
     if not isinstance(given, (list, tuple)) and np.ndim(given) == 0:
         return number("vertical", given)
     pairs = points("points of the vertical shift", given, ("K", ""))
@@ -170,11 +165,9 @@ def made(keys: dict[str, Any] | None) -> Shift | None:
         return None
     numbers = tuple(keys[_KEYS.get(name, name)] for name in _NUMBERS[keys["model"]])
     vertical = keys.get("vertical")
-    if isinstance(vertical, list):
-        vertical = tuple(tuple(point) for point in vertical)
-    elif vertical is not None:
-        vertical = 0.0 if vertical == "density" else vertical["expansion"]
-    return Shift(keys["model"], numbers, tuple(tuple(point) for point in keys.get("points", ())), vertical)
+    if isinstance(vertical, dict):
+        vertical = vertical["expansion"]
+    return Shift(keys["model"], numbers, tuple(tuple(point) for point in keys.get("points", ())), _vertical(vertical))
 
 
 def temperature_keys(value: float | Sequence[tuple[float, float]]) -> dict[str, Any]:

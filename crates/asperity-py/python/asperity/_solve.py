@@ -39,9 +39,7 @@ class Step(Numbers, Sealed):
     """
 
     def __init__(self, march: March, row: dict[str, Any], index: int) -> None:
-        self._march = march
-        self._row = row
-        self._index = index
+        self._march, self._row, self._index = march, row, index
 
     @property
     def index(self) -> int:

@@ -54,8 +54,7 @@ class Stress(Sealed):
         tractions: list[Floats] | None = None,
     ) -> None:
         # Fields are computed later: the array of the caller may have changed until then.
-        self._pressure = np.array(pressure)
-        self._poisson = poisson
+        self._pressure, self._poisson = np.array(pressure), poisson
         # Where the Poisson's ratio changes with time: see `changing`.
         confined = None if transverse is None else (as_plane(transverse[0]), transverse[1])
         self._given = as_plane(self._pressure), list(size), boundary, poisson or 0.0, confined, tractions

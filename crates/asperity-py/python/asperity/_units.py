@@ -139,15 +139,12 @@ def bare(what: str, value: Any, unit: str | None = None) -> Any:
         return type(value)([bare(what, one, unit) for one in value])
     if not carries(value):
         return value
-    wanted = "dimensionless" if unit == "" else unit
     if unit == "" and is_angle(value):
         raise CaseError(_NO_ANGLE.format(what, unit_text(value)))
     if unit == "K":
         _check_temperature(what, unit_text(value), _has_offset(value))
     try:
-        if hasattr(value, "m_as"):
-            return value.m_as(wanted)
-        return value.to_value(unit)
+        return value.m_as(unit or "dimensionless") if hasattr(value, "m_as") else value.to_value(unit)
     except Exception as error:  # each package has errors of its own
         raise CaseError(f"{what} is in {unit_text(value)}, but must be {expected(unit)}: {error}") from None
 

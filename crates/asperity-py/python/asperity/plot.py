@@ -93,13 +93,13 @@ class Plots:
     def friction(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
         """Friction coefficient, force, contact area over that of the domain and lost power of a contact in motion, over time or, of
         steady states, over the velocity: four axes, as :meth:`evolution`."""
-        result = self._result
+        result, coefficient = self._result, self._coefficient()
         force = {"": result.friction_force}
         if _draw.magnitude(result.side_force) > 1e-3 * _draw.magnitude(result.friction_force):
             force = {"against motion": result.friction_force, "across it": result.side_force}
         area = _Panel("contact over nominal area", "1", {"": result.contact_fraction})
         power = _Panel("power lost", result.units("dissipated_power"), {"": result.dissipated_power})
-        panels = [self._coefficient(), _Panel("force", result.units("friction_force"), force), area, power]
+        panels = [coefficient, _Panel("force", result.units("friction_force"), force), area, power]
         return self._over_rows("friction", panels, axes, log_time, label, style)
 
     def leak(self, leaks: Any = None, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
@@ -609,27 +609,26 @@ def recorded(along: tuple[str, str, Floats], name: str, measured: Floats, model:
 
 #: What the maps of force curves show.
 _OF_CURVES = {"young": ("Young's modulus", "Pa"), "work": ("work of adhesion", "J/m²")}
-_ENDS = {"": "", "_low": ", lower end of the 95 % interval", "_high": ", upper end of the 95 % interval"}
+_ENDS = {"": "", "_low": "lower end of the 95 % interval", "_high": "upper end of the 95 % interval"}
 
 
 def force_map(found: ForceMap, what: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
     """A quantity of a map of force curves."""
     names = {name + end: (words, told, unit) for name, (words, unit) in _OF_CURVES.items() for end, told in _ENDS.items()}
     words, told, unit = names[choice("quantity", what, tuple(names))]
-    values = getattr(found, what)
+    # Intervals may have no upper end.
+    values = np.where(np.isfinite(getattr(found, what)), getattr(found, what), np.nan)
     size = found.size or tuple(float(count) for count in values.shape)
     ax = _draw.axes(ax, style, "map", size)
     colours = {"cmap": "viridis", **_draw.in_si(style, unit)}
-    # Intervals may have no upper end.
-    shown_ = np.where(np.isfinite(values), values, np.nan)
-    style = {**_draw.robust(shown_, colours), "cmap": _draw.coloured(colours["cmap"], bad=_LIGHT)}
+    style = {**_draw.robust(values, colours), "cmap": _draw.coloured(colours["cmap"], bad=_LIGHT)}
     if found.size is None:
-        image = _draw.placed(ax, shown_, (0, size[0], 0, size[1]), size, style)
+        image = _draw.placed(ax, values, (0, size[0], 0, size[1]), size, style)
         ax.set(xlabel="x [pixels]", ylabel="y [pixels]")
     else:
-        image = _draw.draw_map(ax, shown_, size, style)
+        image = _draw.draw_map(ax, values, size, style)
     _draw.bar(ax, image, words, unit)
-    empty = int(np.sum(np.isnan(shown_)))
+    empty = int(np.sum(np.isnan(values)))
     missing = f"{empty} of {values.size} pixels without a value (light)" if empty else ""
-    ax.set_title("; ".join(part for part in (told.removeprefix(", "), missing, _draw.stretched(size, style)) if part))
+    ax.set_title("; ".join(part for part in (told, missing, _draw.stretched(size, style)) if part))
     return ax

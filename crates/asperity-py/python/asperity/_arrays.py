@@ -61,12 +61,9 @@ def choice(what: str, value: Any, words: Any) -> Any:
 
 def path_of(what: str, given: Any) -> str | None:
     """A path as text; None where none is given."""
-    if given is None:
-        return None
-    try:
-        return str(os.fspath(given))
-    except TypeError:
-        raise CaseError(f"{what} is {given!r}, but must be a path") from None
+    if given is not None and not isinstance(given, (str, os.PathLike)):
+        raise CaseError(f"{what} is {given!r}, but must be a path")
+    return None if given is None else str(os.fspath(given))
 
 
 def either(words: Iterable[str]) -> str:
@@ -105,42 +102,31 @@ def direction_of(value: Any) -> str | float:
 def count(what: str, value: Any, least: int = 1, most: int = 2**53) -> int:
     """A whole number; one that is an integer already keeps all its digits."""
     value = bare(what, value)
-    if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
-        whole = int(value)
-    else:
-        real = number(what, value)
-        if real != int(real) if np.isfinite(real) else True:
-            raise CaseError(f"{what} is {shown(value)}, but must be a whole number")
-        whole = int(real)
+    given = value if isinstance(value, (int, np.integer)) and not isinstance(value, bool) else number(what, value)
+    if isinstance(given, float) and not given.is_integer():
+        raise CaseError(f"{what} is {shown(value)}, but must be a whole number")
+    whole = int(given)
     if not least <= whole <= most:
         limit = f"at least {least}" if whole < least else f"at most {most}"
         raise CaseError(f"{what} is {shown(value)}, but must be {limit}")
     return whole
 
 
-def pair(what: str, value: Any) -> tuple[float, float]:
-    """Two numbers, along x and y."""
-    value = bare(what, value)
-    if isinstance(value, (str, bytes)):
-        raise CaseError(f"{what} is {value!r}, but must be two numbers, along x and y")
-    try:
-        x, y = value
-    except (TypeError, ValueError):
-        raise CaseError(f"{what} is {value!r}, but must be two numbers, along x and y") from None
-    return number(f"{what} along x", x), number(f"{what} along y", y)
-
-
-def lengths(what: str, value: Any) -> tuple[float, ...]:
+def lengths(what: str, value: Any, dimensions: tuple[int, ...] = (1, 2)) -> tuple[float, ...]:
     """Numbers along the directions of a grid: two, along x and y, or one of a line, which may stand without a list."""
     value = bare(what, value)
-    if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
-        return (number(what, value),)
-    if not isinstance(value, (str, bytes)) and np.ndim(value) == 1 and len(value) == 1:
-        return (number(what, value[0]),)
-    try:
-        return pair(what, value)
-    except CaseError:
-        raise CaseError(f"{what} is {value!r}, but must be two numbers, along x and y, or one for a line of cells") from None
+    alone = isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+    listed = [value] if alone else list(value) if np.ndim(value) == 1 else []
+    if len(listed) not in dimensions:
+        raise CaseError(f"{what} is {value!r}, but must be two numbers, along x and y{', or one for a line of cells' if 1 in dimensions else ''}")
+    names = [what] if len(listed) == 1 else [f"{what} along x", f"{what} along y"]
+    return tuple(number(name, one) for name, one in zip(names, listed))
+
+
+def pair(what: str, value: Any) -> tuple[float, float]:
+    """Two numbers, along x and y."""
+    x, y = lengths(what, value, (2,))
+    return x, y
 
 
 def cell_counts(what: str, value: Any) -> tuple[int, ...]:
@@ -196,22 +182,15 @@ def in_order(what: str, value: Any, size: Sequence[float] | None = None) -> Any:
     if not is_labelled(value):
         return value
     names = [str(name) for name in value.dims]
+    if len(names) > 1 and sorted(names) != ["x", "y"]:
+        raise CaseError(f"{what} has the dimensions {tuple(names)}, but must have x and y, or one: select one of the others, as in isel(time=-1)")
     if len(names) == 2:
-        if sorted(names) != ["x", "y"]:
-            raise CaseError(
-                f"{what} has the dimensions {tuple(names)}, but must have x and y, or one: select one of the others, as in isel(time=-1)"
-            )
         value, names = value.transpose("x", "y"), ["x", "y"]
-    elif len(names) > 2:
-        raise CaseError(f"{what} has the dimensions {tuple(names)}, but must have x and y: select one of the others, as in isel(time=-1)")
     for axis, name in enumerate(names):
-        pitch = pitch_of(what, value, name)
-        if pitch is None:
-            continue
-        if pitch < 0.0:
-            value = value.isel({name: slice(None, None, -1)})
+        pitch = pitch_of(what, value, name) or 0.0
+        value = value.isel({name: slice(None, None, -1)}) if pitch < 0.0 else value
         length = abs(pitch) * value.sizes[name]
-        if size is not None and len(size) == len(names) and abs(length - size[axis]) > 0.1 * abs(pitch):
+        if pitch and size is not None and len(size) == len(names) and abs(length - size[axis]) > 0.1 * abs(pitch):
             raise CaseError(f"the coordinate {name} of {what} spans {length:.6g} m, but the surface is {size[axis]:.6g} m long")
     return value
 
@@ -254,14 +233,10 @@ def field(what: str, value: Any, line: bool = False, *, unit: str | None = None,
     value = in_order(what, value, size)
     if np.ma.isMaskedArray(value) and value.dtype.kind in "fiu":
         value = np.ma.filled(value.astype(np.float64), np.nan)
-    array = np.asarray(bare(what, value, unit))
-    if array.dtype.kind not in "fiu":
-        raise CaseError(f"{what} has dtype {array.dtype}, but must hold real numbers")
-    if array.ndim not in ((1, 2) if line else (2,)) or array.size == 0:
-        raise CaseError(
-            f"{what} has shape {array.shape}, but must be two-dimensional, (nx, ny)" + (", or (n,) for a line of cells" if line else "")
-        )
-    return plain(array)
+    found = array(what, value, unit)
+    if found.ndim not in ((1, 2) if line else (2,)) or found.size == 0:
+        raise CaseError(f"{what} has shape {found.shape}, but must be two-dimensional, (nx, ny){', or (n,) for a line of cells' if line else ''}")
+    return plain(found)
 
 
 def per_cell(what: str, value: Any, shape: Surface, unit: str | None = None) -> Floats:

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
+from ._arrays import Floats, array, as_plane, cells_of, check_places, choice, count, field, frozen, number, per_cell
 from ._columns import FIELDS, ROW, told
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
@@ -70,34 +70,24 @@ class _Planned:
 
     def __init__(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> None:
         self.gap: Floats = frozen(surface.gap())
-        self.size = surface.size
-        self.keys = {"contact_modulus": modulus, **keys}
+        self.size, self.keys, self.kernel = surface.size, {"contact_modulus": modulus, **keys}, kernel
         # The array of the caller may change.
-        self.kernel = kernel
         self.hardness: Any = np.array(hardness) if isinstance(hardness, np.ndarray) else hardness
 
     @functools.cached_property
     def core(self) -> _core.Elastic:
         """The plan; a copy makes its own when it needs one."""
-        cells = self.hardness if isinstance(self.hardness, np.ndarray) else None
-        return _core.Elastic(
-            gap=as_plane(self.gap),
-            size=list(self.size),
-            hardness=self.hardness if isinstance(self.hardness, float) else math.inf,
-            hardness_map=None if cells is None else as_plane(cells),
-            kernel=self.kernel,
-            **self.keys,
-        )
+        limit = self.hardness if isinstance(self.hardness, float) else math.inf
+        cells = as_plane(self.hardness) if isinstance(self.hardness, np.ndarray) else None
+        return _core.Elastic(gap=as_plane(self.gap), size=list(self.size), hardness=limit, hardness_map=cells, kernel=self.kernel, **self.keys)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "core"}
 
     def is_for(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> bool:
         """Whether it was planned for this."""
-        if self.keys != {"contact_modulus": modulus, **keys} or self.size != surface.size:
-            return False
-        same = (np.array_equal(ours, theirs) for ours, theirs in ((self.hardness, hardness), (self.kernel, kernel)))
-        return all(same) and np.array_equal(self.gap, surface.gap())
+        same = self.keys == {"contact_modulus": modulus, **keys} and self.size == surface.size
+        return same and np.array_equal(self.hardness, hardness) and np.array_equal(self.kernel, kernel) and np.array_equal(self.gap, surface.gap())
 
     def solve(self, control: str, value: float, start: Floats | None, history: bool, out: Any) -> ElasticContact:
         """One contact."""
@@ -201,15 +191,10 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
     @property
     def _setup(self) -> dict[str, Any]:
         """The contact in numbers, as a result has them."""
-        return {
-            "boundary": self.boundary,
-            "contact_modulus": self.contact_modulus,
-            "hardness": self.hardness if isinstance(self.hardness, float) else None,
-            "hardness_of_cells": isinstance(self.hardness, np.ndarray),
-            "kernel": "given" if self._planned.kernel is not None else "half-space",
-            "solver_method": self.method,
-            "solver_tolerance": self.tolerance,
-        }
+        known = {"boundary": self.boundary, "contact_modulus": self.contact_modulus, "solver_method": self.method, "solver_tolerance": self.tolerance}
+        of_cells = isinstance(self.hardness, np.ndarray)
+        kernel = "half-space" if self._planned.kernel is None else "given"
+        return {**known, "hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel}
 
     def methods(self, *, bibtex: bool = False) -> str:
         """A paragraph on what was computed, as :meth:`Result.methods`."""
@@ -448,18 +433,17 @@ def elastic(
     check_boundary(shape, boundary)
     if contact_modulus is None and kernel is None:
         raise CaseError("give contact_modulus, E* [Pa] in (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*")
-    modulus = 1.0 if contact_modulus is None else number("contact_modulus", contact_modulus)
+    modulus, table = 1.0 if contact_modulus is None else number("contact_modulus", contact_modulus), None
     for what, value in (("hardness", hardness), ("start of the pressure", start)):
         check_places(what, value, surface if gap is None else gap)
-    limit = hardness_of(hardness, shape)
-    table = None if kernel is None else _table(kernel, shape, boundary, "m/Pa" if contact_modulus is None else "m")
-    if table is not None:
+    if kernel is not None:
+        table = _table(kernel, shape, boundary, "m/Pa" if contact_modulus is None else "m")
         factor = _scale(table, shape, boundary)
         table, modulus = table * factor, modulus * factor
-    keys = {"boundary": boundary, "method": method, "tolerance": number("tolerance", tolerance)}
-    keys["max_iterations"] = count("max_iterations", max_iterations)
+    solver = {"method": method, "tolerance": number("tolerance", tolerance), "max_iterations": count("max_iterations", max_iterations)}
+    wanted = shape, modulus, hardness_of(hardness, shape), table, {"boundary": boundary, **solver}
     held = start._planned if isinstance(start, ElasticContact) else None
-    planned = held if held is not None and held.is_for(shape, modulus, limit, table, keys) else _Planned(shape, modulus, limit, table, keys)
+    planned = held if held is not None and held.is_for(*wanted) else _Planned(*wanted)
 
     what, values = one_of({"load": load, "pressure": pressure, "approach": approach}, "give")
     unit = {"load": "N/m" if shape.is_line else "N", "pressure": "Pa", "approach": "m"}[what]
@@ -472,12 +456,8 @@ def elastic(
     receives = _receivers(out, shape)
     if several and receives:
         raise CaseError("out is for one contact, but a list is given: the contacts of a curve have fields of their own")
-    first: Floats | None = None
-    if start is not None:
-        held_pressure = start.pressure if isinstance(start, ElasticContact) else start
-        first = field("start of the pressure", held_pressure, line=True, size=shape.size)
-        if first.shape != shape.heights.shape:
-            raise CaseError(f"start has shape {first.shape}, but the surface has {shape.heights.shape} cells")
+    begin = start.pressure if isinstance(start, ElasticContact) else start
+    first = None if begin is None else per_cell("start of the pressure", begin, shape)
     contacts: list[ElasticContact] = []
     try:
         for value in numbers:
@@ -523,18 +503,13 @@ def _table(kernel: Any, shape: Surface, boundary: str, unit: str) -> Floats:
         names = sorted(map(str, kernel.dims)) if is_labelled(kernel) else []
         ordered = kernel.transpose(*names) if names in (["x", "y"], ["qx", "qy"]) else kernel
         return as_plane(field("kernel", bare("kernel", ordered, unit), line=True))
-    cells = (*shape.cells, 1)[:2]
-    lengths = (*shape.size, 1.0)[:2]
-    if boundary == "periodic":
-        first, second = (2.0 * np.pi / length * np.arange(n // 2 + 1) for n, length in zip(cells, lengths))
-    else:
-        first, second = (length / n * np.arange(n) for n, length in zip(cells, lengths))
-    at = np.meshgrid(first, second, indexing="ij")
+    sides = [*zip(shape.cells, shape.size), (1, 1.0)][:2]
+    waves = [2.0 * np.pi / length * np.arange(n // 2 + 1) for n, length in sides]
+    at = np.meshgrid(*(waves if boundary == "periodic" else [length / n * np.arange(n) for n, length in sides]), indexing="ij")
 
     def values(x: Floats, y: Floats) -> Floats:
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = np.broadcast_to(array("kernel", kernel(x, y), unit), x.shape)
-        return np.array(found)
+            return np.array(np.broadcast_to(array("kernel", kernel(x, y), unit), x.shape))
 
     table = values(*at)
     # Only half of the numbers are asked for: the others must be their mirror images.

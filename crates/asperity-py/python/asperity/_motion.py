@@ -10,11 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ._arrays import Floats, direction_of, line, number
-from ._core import CaseError
 from ._flash import Flash
 from ._histories import Function, History, one_of
 from ._options import arguments_of
-from ._problem import InTime, Run
+from ._problem import InTime, Run, table_keys
 from ._result import Result
 from ._solve import solved
 from ._words import Movement
@@ -46,11 +45,7 @@ class Moving(Run):
 
     def flash_keys(self) -> dict[str, Any]:
         """The table `[flash]`, where it is given."""
-        if self.flash is None:
-            return {}
-        if not isinstance(self.flash, Flash):
-            raise CaseError(f"flash is {self.flash!r}, but must be an asperity.Flash")
-        return {"flash": self.flash._keys}
+        return table_keys(self, "flash", Flash, "flash")
 
 
 @dataclass(kw_only=True)

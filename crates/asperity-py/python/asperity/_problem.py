@@ -14,7 +14,7 @@ from ._adhesion import Adhesion
 from ._fluid import Fluid
 from ._arrays import as_plane, check_places, distinct, in_order, number, per_cell
 from ._core import CaseError
-from ._declared import check
+from ._declared import Table, check
 from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
 from ._layers import Body
 from ._materials import Material
@@ -179,14 +179,7 @@ class InStages(InTime):
         return {**super().controls(), "approach": self.approach, "stages": self.stages}
 
     def course_keys(self) -> dict[str, Any]:
-        keys = super().course_keys()
-        for name, section, kind in (("adhesion", "adhesion", Adhesion), ("fluid", "leakage", Fluid)):
-            if (given := getattr(self, name)) is None:
-                continue
-            if not isinstance(given, kind):
-                raise CaseError(f"{name} is {given!r}, but must be an asperity.{kind.__name__}")
-            keys[section] = given._keys
-        return keys
+        return {**super().course_keys(), **table_keys(self, "adhesion", Adhesion, "adhesion"), **table_keys(self, "fluid", Fluid, "leakage")}
 
     def load_keys(self, load_unit: str) -> dict[str, Any]:
         if self.stages is None:
@@ -215,11 +208,18 @@ class Solve(Run, InStages):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.fields == ("pressure",) and (self.adhesion is not None or self.fluid is not None):
-            # Which cells touch does not follow from the pressure there.
-            self.fields = ("pressure", "contact_pressure")
-        if self.fields == ("pressure",) and self.tangential is not None:
-            self.fields = ("pressure", "contact", "traction_x", "traction_y")
+        if self.fields == ("pressure",):
+            # With adhesion or a fluid it does not follow from the pressure which cells touch.
+            attracted = self.adhesion is not None or self.fluid is not None
+            along: Sequence[Field] = () if self.tangential is None else ("contact", "traction_x", "traction_y")
+            self.fields = ("pressure", "contact_pressure") if attracted else ("pressure", *along)
+
+
+def table_keys(given: Problem, name: str, kind: type[Table], section: str) -> dict[str, Any]:
+    """The table of the case that an argument is, where it is given."""
+    if (value := getattr(given, name)) is not None and not isinstance(value, kind):
+        raise CaseError(f"{name} is {value!r}, but must be an asperity.{kind.__name__}")
+    return {} if value is None else {section: value._keys}
 
 
 def bodies_of(material: Any) -> list[Material | Body]:

@@ -47,7 +47,7 @@ class Record:
 
     def __init__(self, march: March, keep: Keep, output: str | None, force: bool) -> None:
         core = march._core
-        self._march, self._keep = march, keep
+        self._march, self._keep, self._output = march, keep, output
         self._edges: dict[str, Floats] = {name: np.array(ends) for name, ends in core.columns()}
         self._rows: list[dict[str, Any]] = []
         #: What was prescribed between two rows: the number of the row that followed, control and history.
@@ -60,14 +60,12 @@ class Record:
         self._end = core.times()[-1]
         for time in () if keep.times is None else keep.times[keep.times > self._end * (1 + 1e-12)]:
             raise CaseError(f"field_times holds {time:g} s, but the run ends at {self._end:g} s")
-        self._output = output
         self._writer: _core.Writer | None = None
         if output is not None:
             if not force and os.path.exists(output):
                 raise FileExistsError(errno.EEXIST, "exists already; choose another output or replace it with force=True", output)
-            columns = [(name, ends) for name, ends in self._edges.items()]
             setup, gap = json.dumps(march._setup), np.array(as_plane(march.initial_gap))
-            self._writer = _core.Writer(output, force, keep.title, setup, list(march.size), gap, keep.fields, columns, rows)
+            self._writer = _core.Writer(output, force, keep.title, setup, list(march.size), gap, keep.fields, list(self._edges.items()), rows)
 
     def __len__(self) -> int:
         return len(self._rows)

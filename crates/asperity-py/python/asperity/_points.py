@@ -28,8 +28,7 @@ from ._core import CaseError
 from ._findings import ResultWarning
 from ._materials import Material
 from ._result import Result, open as open_result
-from ._motion import slide, steady
-from ._solve import overrides, solve
+from ._solve import overrides
 from ._surface import Surface
 
 #: Answer to a point: a result, or why there is none.
@@ -40,14 +39,13 @@ Solved = tuple[str, str, Result | None]
 class Point:
     """One point: a case file with changed keys, or a function with its arguments."""
 
-    #: What all points have in common, digested: see :func:`base_of`.
+    #: What all points have in common, digested.
     base: str
     settings: dict[str, Any]
     #: Text of the case; None of a function.
     case: str | None = None
     #: Where the files of the case lie.
     directory: str = ""
-    #: None: :func:`asperity.solve`.
     function: Any = None
     fixed: dict[str, Any] = field(default_factory=dict)
     #: Where points are kept; None: nowhere.
@@ -63,11 +61,14 @@ class Point:
         return digest(self.base, self.settings, _files(self.directory, repr(self.settings)))[:16]
 
 
-def base_of(case: str | None, directory: str, function: Any, fixed: dict[str, Any]) -> str:
-    """Digest of a case with the files that it names, or of a function and its arguments."""
-    if case is not None:
-        return digest(case, _files(directory, case))
-    return digest(None if function is solve else function, fixed)
+def base_of_case(case: str, directory: str) -> str:
+    """Digest of a case with the files that it names."""
+    return digest(case, _files(directory, case))
+
+
+def base_of_function(function: Any, fixed: dict[str, Any]) -> str:
+    """Digest of a function and its arguments; those of this package count by their names."""
+    return digest(function.__name__ if hasattr(function, "options") else function, fixed)
 
 
 def _files(directory: str, text: str) -> dict[str, bytes]:
@@ -150,11 +151,10 @@ def _solved(point: Point, folder: str) -> Result:
             # What a killed process left of it cannot be continued: from the beginning.
             _core.run(point.directory, point.case, keys, path, True, False, None)
         return open_result(path)
-    call = solve if point.function is None else point.function
     given = {**point.fixed, **point.settings}
-    if call in (solve, slide, steady):
+    if hasattr(point.function, "options"):
         given = {"progress": False, "fields": point.fields, **given}
-    found = call(**given)
+    found = point.function(**given)
     if not isinstance(found, Result):
         raise TypeError(f"the function of a study must return an asperity.Result, but returned {type(found).__name__}")
     found.save(path, force=True)

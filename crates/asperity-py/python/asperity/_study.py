@@ -22,7 +22,7 @@ from . import _core
 from ._arrays import count, distinct, number
 from ._core import CaseError
 from ._findings import Finding, ResultWarning, warn_caller
-from ._points import Point, Solved, base_of, found, label, label_all, note, solve_point
+from ._points import Point, Solved, base_of_case, base_of_function, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
 from ._progress import line_of
 from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW, VECTORS
@@ -208,24 +208,18 @@ class _Plan:
             columns = {str(name): _values(str(name), values) for name, values in over.items()}
             if not columns:
                 raise CaseError("over names no parameter: give at least one, as in over={'load': [0.1, 0.5]}")
-            self.names = list(columns)
-            labels = {name: [pair[0] for pair in column] for name, column in columns.items()}
-            lengths = [len(column) for column in columns.values()]
-            if zipped:
-                if len(set(lengths)) > 1:
-                    told = ", ".join(f"{name} {n}" for name, n in _pairs(self.names, lengths))
-                    raise CaseError(f"zip needs the same number of values for every parameter; there are: {told}")
-                rows: Any = _pairs(*columns.values())
-                self.shape: tuple[int, ...] = (lengths[0],)
-            else:
-                for name, column in labels.items():
-                    if len(set(column)) < len(column):
-                        raise CaseError(f"the values of {name} must differ from each other; there are: {column}")
-                rows = itertools.product(*columns.values())
-                self.shape = tuple(lengths)
-            self.points = [{name: pair[1] for name, pair in _pairs(self.names, row)} for row in rows]
-            self.labels = labels
-            self.product = not zipped
+            self.names, self.product = list(columns), not zipped
+            self.labels = {name: [pair[0] for pair in column] for name, column in columns.items()}
+            lengths = tuple(len(column) for column in columns.values())
+            if zipped and len(set(lengths)) > 1:
+                told = ", ".join(f"{name} {n}" for name, n in zip(self.names, lengths))
+                raise CaseError(f"zip needs the same number of values for every parameter; there are: {told}")
+            for name, column in self.labels.items() if self.product else ():
+                if len(set(column)) < len(column):
+                    raise CaseError(f"the values of {name} must differ from each other; there are: {column}")
+            rows: Any = itertools.product(*columns.values()) if self.product else zip(*columns.values())
+            self.points = [{name: pair[1] for name, pair in zip(self.names, row)} for row in rows]
+            self.shape = lengths if self.product else lengths[:1]
             return
         if isinstance(over, (str, bytes)) or not isinstance(over, Sequence) or not all(isinstance(p, Mapping) for p in over):
             raise CaseError(f"over is {over!r}, but must be values by parameter, or a list of points (dictionaries)")
@@ -237,9 +231,6 @@ class _Plan:
             raise CaseError(f"point {other[0]} has the parameters {list(self.points[other[0]])}, but the first {self.names}")
         self.labels = {name: [label(point[name]) for point in self.points] for name in self.names}
         self.shape, self.product = (len(self.points),), False
-
-
-_pairs = zip
 
 
 def _load_unit(values: Any) -> str | None:
@@ -283,39 +274,25 @@ def _common(case: Any, names: list[str]) -> dict[str, Any]:
     """What all points share."""
     if isinstance(case, Mapping) and ("material" in case or "material" in names):
         given = {str(key): value for key, value in case.items()}
-        function = _solver({*given, *names})
-        return {"fixed": given, "function": function, "base": base_of(None, "", function, given)}
+        known = {*given, *names}
+        function = steady if "velocities" in known else slide if known & {"velocity", "path"} else solve
+        return {"fixed": given, "function": function, "base": base_of_function(function, given)}
     if callable(case) and not isinstance(case, (str, os.PathLike)):
-        function = None if case is solve else case
-        return {"function": function, "base": base_of(None, "", function, {})}
+        return {"function": case, "base": base_of_function(case, {})}
     try:
         path, text = source(case)
-    except FileNotFoundError as error:
-        raise CaseError(f"the case {error.filename} cannot be read: {error.strerror}") from None
-    directory = path
-    if text is None:
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise CaseError(f"the case {path} cannot be read: {error}") from None
-        directory = os.path.dirname(path)
-    directory = os.path.abspath(directory)
-    return {"case": text, "directory": directory, "base": base_of(text, directory, None, {})}
-
-
-def _solver(names: set[str]) -> Callable[..., Result] | None:
-    """What solves parameters of these names: None is :func:`asperity.solve`."""
-    if "velocities" in names:
-        return steady
-    return slide if names & {"velocity", "path"} else None
+        whole = Path(path).read_text(encoding="utf-8") if text is None else text
+    except (OSError, UnicodeDecodeError) as error:
+        raise CaseError(f"the case {getattr(error, 'filename', None) or case} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    directory = os.path.abspath(os.path.dirname(path) if text is None else path)
+    return {"case": whole, "directory": directory, "base": base_of_case(whole, directory)}
 
 
 def _check_names(common: dict[str, Any], plan: _Plan) -> None:
     """Refuses parameters that what is solved does not have: every point would fail."""
     if "case" in common:
-        _check_keys(common, plan)
-        return
-    fixed, function = common.get("fixed", {}), common.get("function") or solve
+        return _check_keys(common, plan)
+    fixed, function = common.get("fixed", {}), common["function"]
     for name in plan.names if fixed else ():
         if name in UNITS and (text := [point[name] for point in plan.points if isinstance(point[name], str)]):
             raise CaseError(f"the values of {name} hold the text {text[0]!r}, but must be numbers [{UNITS[name]}] or quantities with a unit")

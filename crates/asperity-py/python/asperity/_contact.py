@@ -357,23 +357,11 @@ def elastic(
     surface: Any = ..., contact_modulus: float | None = ..., *, load: _Several = ..., pressure: _Several = ..., approach: _Several = ..., **how: Unpack[_How]
 ) -> ElasticCurve: ...
 def elastic(
-    surface: Any = None,
-    contact_modulus: float | None = None,
-    *,
-    load: Any = None,
-    pressure: Any = None,
-    approach: Any = None,
-    gap: Any = None,
-    size: float | Sequence[float] | None = None,
-    hardness: float | npt.ArrayLike | None = None,
-    boundary: Boundary = "free",
-    kernel: Kernel | None = None,
-    start: ElasticContact | npt.ArrayLike | None = None,
-    out: Floats | Mapping[str, Floats] | None = None,
-    history: bool = False,
-    method: Method = "projected-cg",
-    tolerance: float = 1e-6,
-    max_iterations: int = 5000,
+    surface: Any = None, contact_modulus: float | None = None, *, load: Any = None, pressure: Any = None, approach: Any = None,
+    gap: Any = None, size: float | Sequence[float] | None = None, hardness: float | npt.ArrayLike | None = None,
+    boundary: Boundary = "free", kernel: Kernel | None = None, start: ElasticContact | npt.ArrayLike | None = None,
+    out: Floats | Mapping[str, Floats] | None = None, history: bool = False, method: Method = "projected-cg",
+    tolerance: float = 1e-6, max_iterations: int = 5000
 ) -> ElasticContact | ElasticCurve:
     """Solves an elastic contact, or those of a list of loads.
 

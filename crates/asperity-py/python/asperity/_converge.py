@@ -38,10 +38,7 @@ class ErrorBar(TypedDict, total=False):
 
 
 def converge(
-    case: str | os.PathLike[str] | Mapping[str, Any],
-    *,
-    set: dict[str, Any] | Sequence[str] | None = None,
-    refine: bool = False,
+    case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None, refine: bool = False
 ) -> list[ErrorBar]:
     """The answers of a case (as in :func:`asperity.run`) with their errors, as ``asperity converge`` prints them.
 

@@ -97,13 +97,8 @@ class Fit(ReadOnlyArrays):
         return self.with_body(**self._body)
 
     def with_body(
-        self,
-        *,
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        temperature: float | None = None,
+        self, *, poisson: float | None = None, bulk_modulus: float | None = None, hardness: float | None = None,
+        name: str | None = None, temperature: float | None = None
     ) -> Material:
         """The material with this Poisson's ratio or bulk modulus [Pa], hardness [Pa], and constant temperature [K]; it knows the times
         that the data cover."""

@@ -154,14 +154,8 @@ class ForceCurve(ReadOnlyArrays):
 
     @classmethod
     def from_deflection(
-        cls,
-        height: Any,
-        deflection: Any,
-        /,
-        *,
-        spring_constant: float,
-        sensitivity: float | None = None,
-        metadata: dict[str, Any] | None = None,
+        cls, height: Any, deflection: Any, /, *, spring_constant: float, sensitivity: float | None = None,
+        metadata: dict[str, Any] | None = None
     ) -> ForceCurve:
         """From the way of the cantilever's base towards the sample [m] and the deflection.
 

@@ -134,33 +134,12 @@ def fit_indentation(
 @overload
 def fit_indentation(time: Any, load: Any, depth: Any, /, *, radius: float, poisson: float, model: Model, **how: Unpack[_OfForces]) -> ForceFit: ...
 def fit_indentation(
-    time: Any,
-    load: Any,
-    depth: Any,
-    /,
-    *,
-    radius: float | None = None,
-    slope: float | None = None,
-    poisson: float,
-    given: str | None = None,
-    terms: int | None = None,
-    long_time: LongTime = "free",
-    fit_touch: bool = False,
-    thickness: float | None = None,
-    interface: Interface = "bonded",
-    hardness: float | None = None,
-    name: str | None = None,
-    springs: int = 150,
-    max_misfit: float = 0.1,
-    model: str = "viscoelastic",
-    branch: str = "retraction",
-    control: str | None = None,
-    range: float | None = None,
-    spring_constant: float | None = None,
-    radius_uncertainty: float = 0.0,
-    thickness_uncertainty: float = 0.0,
-    spring_constant_uncertainty: float = 0.0,
-    sensitivity_uncertainty: float = 0.0,
+    time: Any, load: Any, depth: Any, /, *, radius: float | None = None, slope: float | None = None, poisson: float,
+    given: str | None = None, terms: int | None = None, long_time: LongTime = "free", fit_touch: bool = False,
+    thickness: float | None = None, interface: Interface = "bonded", hardness: float | None = None, name: str | None = None,
+    springs: int = 150, max_misfit: float = 0.1, model: str = "viscoelastic", branch: str = "retraction",
+    control: str | None = None, range: float | None = None, spring_constant: float | None = None, radius_uncertainty: float = 0.0,
+    thickness_uncertainty: float = 0.0, spring_constant_uncertainty: float = 0.0, sensitivity_uncertainty: float = 0.0
 ) -> IndentationFit | ForceFit:
     """Fits the relaxation modulus of a half-space, or of a thin sample, to a record of its indentation by a rigid sphere or cone; or, with
     a `model` of an elastic sphere, its modulus and work of adhesion to a force curve.

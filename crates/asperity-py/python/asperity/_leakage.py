@@ -80,16 +80,8 @@ class Leakage(Sealed):
         return self.hydraulic_gap**3 * drop * across / (12 * mu * along)
 
     def gas_leak_rate(
-        self,
-        *,
-        inlet: float,
-        outlet: float,
-        gas: str | None = None,
-        viscosity: float | None = None,
-        molar_mass: float | None = None,
-        temperature: float = 293.15,
-        rarefaction: str = "boltzmann",
-        standard: bool = False,
+        self, *, inlet: float, outlet: float, gas: str | None = None, viscosity: float | None = None,
+        molar_mass: float | None = None, temperature: float = 293.15, rarefaction: str = "boltzmann", standard: bool = False
     ) -> float:
         """Leak of a gas [kg/s] between absolute pressures [Pa]; with `standard` in Pa m^3/s at 0 degC (1 mbar l/s = 0.1 Pa m^3/s).
 
@@ -111,13 +103,8 @@ class Leakage(Sealed):
 
 
 def leakage(
-    gap: Any,
-    contact: Any = None,
-    *,
-    size: Sequence[float] | None = None,
-    direction: Flow = "x",
-    sides: Sides = "periodic",
-    smallest_gap: float = 0.0,
+    gap: Any, contact: Any = None, *, size: Sequence[float] | None = None, direction: Flow = "x", sides: Sides = "periodic",
+    smallest_gap: float = 0.0
 ) -> Leakage:
     """The flow of a fluid through a gap, between opposite borders of the domain, by Reynolds' equation.
 

@@ -61,15 +61,8 @@ class PerssonFriction(Sealed):
 
 
 def persson_friction(
-    surface: Any,
-    material: Material,
-    *,
-    pressure: float,
-    velocities: npt.ArrayLike,
-    correction: Correction = "yang-persson",
-    direction: str | float = "x",
-    temperature: float | None = None,
-    size: Sequence[float] | None = None,
+    surface: Any, material: Material, *, pressure: float, velocities: npt.ArrayLike, correction: Correction = "yang-persson",
+    direction: str | float = "x", temperature: float | None = None, size: Sequence[float] | None = None
 ) -> PerssonFriction:
     """Friction and contact area of a rigid rough surface that slides over a viscoelastic body, by Persson's theory.
 

@@ -69,20 +69,10 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
     path: str | None
 
     def __init__(
-        self,
-        *,
-        table: dict[str, Any],
-        fields: dict[str, Any],
-        field_steps: Any,
-        initial_gap: Any,
-        size: Sequence[float],
-        attributes: dict[str, Any],
-        path: str | None = None,
-        histograms: dict[str, tuple[Floats, Floats]] | None = None,
-        field_times: Any = None,
-        stress: dict[str, Floats] | None = None,
-        leaks: dict[str, Floats] | None = None,
-        store: _core.Store | None = None,
+        self, *, table: dict[str, Any], fields: dict[str, Any], field_steps: Any, initial_gap: Any, size: Sequence[float],
+        attributes: dict[str, Any], path: str | None = None, histograms: dict[str, tuple[Floats, Floats]] | None = None,
+        field_times: Any = None, stress: dict[str, Floats] | None = None, leaks: dict[str, Floats] | None = None,
+        store: _core.Store | None = None
     ) -> None:
         self._table: dict[str, Any] = read_only({name: np.asarray(values) for name, values in table.items()})
         self._fields: dict[str, Any] = read_only(dict(fields))
@@ -244,13 +234,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         return values
 
     def stress(
-        self,
-        *,
-        time: float | None = None,
-        index: int | None = None,
-        depths: str | Sequence[float] = "auto",
-        poisson: float | None = None,
-        body: int = 0,
+        self, *, time: float | None = None, index: int | None = None, depths: str | Sequence[float] = "auto",
+        poisson: float | None = None, body: int = 0
     ) -> Stress:
         """The stress below the surface at the stored time nearest to `time` [s], or with that index; default the last.
 
@@ -337,20 +322,10 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         return whole.merge(stored(self), combine_attrs="override")
 
     def leakage(
-        self,
-        *,
-        direction: Flow | None = None,
-        pressure_drop: float | None = None,
-        viscosity: float | None = None,
-        gas: str | None = None,
-        molar_mass: float | None = None,
-        temperature: float | None = None,
-        inlet: float | None = None,
-        outlet: float | None = None,
-        rarefaction: str | None = None,
-        sides: Sides | None = None,
-        smallest_gap: float | None = None,
-        field: bool | None = None,
+        self, *, direction: Flow | None = None, pressure_drop: float | None = None, viscosity: float | None = None,
+        gas: str | None = None, molar_mass: float | None = None, temperature: float | None = None, inlet: float | None = None,
+        outlet: float | None = None, rarefaction: str | None = None, sides: Sides | None = None, smallest_gap: float | None = None,
+        field: bool | None = None
     ) -> Any:
         """Leakage at the times of the stored fields, as xarray.Dataset over `leak_time` (see :func:`leakage` and docs/leakage.md).
 

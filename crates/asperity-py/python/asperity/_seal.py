@@ -111,13 +111,8 @@ class Seal(Sealed):
 
 
 def seal(
-    case: str | os.PathLike[str] | Mapping[str, Any],
-    *,
-    set: dict[str, Any] | Sequence[str] | None = None,
-    directory: str | os.PathLike[str] | None = None,
-    jobs: int | None = None,
-    threads: int | None = None,
-    progress: bool = True,
+    case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None,
+    directory: str | os.PathLike[str] | None = None, jobs: int | None = None, threads: int | None = None, progress: bool = True
 ) -> Seal:
     """A whole seal of which the case is a patch, as ``asperity seal`` computes it: with the same numbers and the same folder.
 

@@ -304,14 +304,9 @@ def solved(given: Run) -> Result:
 
 
 def run(
-    case: str | os.PathLike[str] | Mapping[str, Any],
-    *,
-    set: dict[str, Any] | Sequence[str] | None = None,
-    output: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    resume: bool = False,
-    progress: bool | None = None,
-    on_row: Callable[[dict[str, Any], int, int], object] | None = None,
+    case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None,
+    output: str | os.PathLike[str] | None = None, force: bool = False, resume: bool = False, progress: bool | None = None,
+    on_row: Callable[[dict[str, Any], int, int], object] | None = None
 ) -> Result:
     """Runs a case, as ``asperity run`` does, and opens its result.
 

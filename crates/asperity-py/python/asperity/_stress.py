@@ -44,14 +44,8 @@ class Stress(Sealed):
     depths: Floats
 
     def __init__(
-        self,
-        pressure: Floats,
-        size: Sequence[float],
-        depths: str | Sequence[float],
-        poisson: float | None,
-        boundary: str,
-        transverse: tuple[Floats, float] | None = None,
-        tractions: list[Floats] | None = None,
+        self, pressure: Floats, size: Sequence[float], depths: str | Sequence[float], poisson: float | None, boundary: str,
+        transverse: tuple[Floats, float] | None = None, tractions: list[Floats] | None = None
     ) -> None:
         # Fields are computed later: the array of the caller may have changed until then.
         self._pressure, self._poisson = np.array(pressure), poisson
@@ -116,13 +110,8 @@ class Stress(Sealed):
 
 
 def stress(
-    pressure: Any,
-    *,
-    size: float | Sequence[float] | None = None,
-    poisson: float,
-    depths: str | Sequence[float] = "auto",
-    boundary: Boundary = "free",
-    tractions: Sequence[Any] | None = None,
+    pressure: Any, *, size: float | Sequence[float] | None = None, poisson: float, depths: str | Sequence[float] = "auto",
+    boundary: Boundary = "free", tractions: Sequence[Any] | None = None
 ) -> Stress:
     """The stress below a pressure on a half-space.
 

@@ -46,19 +46,10 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\
 
 def study(
     case: str | os.PathLike[str] | Mapping[str, Any] | Callable[..., Result],
-    over: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
-    *,
-    vary: Mapping[str, Any] | None = None,
-    directory: str | os.PathLike[str] | None = None,
-    zip: bool = False,
-    folder: str | os.PathLike[str] | None = None,
-    fields: Sequence[str] = (),
-    error_bars: bool = False,
-    workers: int | None = None,
-    threads: int | None = None,
-    client: Any = None,
-    retry: bool = False,
-    progress: bool | None = None,
+    over: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None, *, vary: Mapping[str, Any] | None = None,
+    directory: str | os.PathLike[str] | None = None, zip: bool = False, folder: str | os.PathLike[str] | None = None,
+    fields: Sequence[str] = (), error_bars: bool = False, workers: int | None = None, threads: int | None = None,
+    client: Any = None, retry: bool = False, progress: bool | None = None
 ) -> xarray.Dataset:
     """Solves a case for many values of its parameters, in parallel, and returns all results as one dataset.
 

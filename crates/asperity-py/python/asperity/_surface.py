@@ -263,13 +263,8 @@ class Surface(OnGrid):
         return self.process(f"fill method={method} share={number('share', share)!r}")
 
     def crop(
-        self,
-        *,
-        cells: Sequence[int] | None = None,
-        start: Sequence[int] | None = None,
-        size: Sequence[float] | None = None,
-        corner: Sequence[float] | None = None,
-        defined: bool = False,
+        self, *, cells: Sequence[int] | None = None, start: Sequence[int] | None = None, size: Sequence[float] | None = None,
+        corner: Sequence[float] | None = None, defined: bool = False
     ) -> Surface:
         """A rectangle of it: `cells` from the cell `start`, or `size` [m] from the `corner` [m], else about the middle;
         or the smallest rectangle that holds every defined point."""
@@ -470,14 +465,8 @@ class Surface(OnGrid):
 
     @staticmethod
     def read(
-        path: str | os.PathLike[str],
-        *,
-        size: float | Sequence[float] | None = None,
-        height_unit: float | None = None,
-        channel: str | int | None = None,
-        level: Form | None = None,
-        fill: Fill | None = None,
-        transpose: bool | None = None,
+        path: str | os.PathLike[str], *, size: float | Sequence[float] | None = None, height_unit: float | None = None,
+        channel: str | int | None = None, level: Form | None = None, fill: Fill | None = None, transpose: bool | None = None
     ) -> Surface:
         """Reads a measured surface; the format is found from the content.
 
@@ -529,20 +518,10 @@ class Surface(OnGrid):
 
     @staticmethod
     def self_affine(
-        *,
-        cells: int | Sequence[int],
-        size: float | Sequence[float],
-        hurst: float,
-        longest: float,
-        shortest: float,
-        rms_gradient: float | None = None,
-        rms_height: float | None = None,
-        roll_off: float | None = None,
-        seed: int = 0,
-        lay_angle: float | None = None,
-        lay_ratio: float | None = None,
-        skewness: float | None = None,
-        kurtosis: float | None = None,
+        *, cells: int | Sequence[int], size: float | Sequence[float], hurst: float, longest: float, shortest: float,
+        rms_gradient: float | None = None, rms_height: float | None = None, roll_off: float | None = None, seed: int = 0,
+        lay_angle: float | None = None, lay_ratio: float | None = None, skewness: float | None = None,
+        kurtosis: float | None = None
     ) -> Surface:
         """Self-affine roughness, periodic, the same on every machine for one seed.
 
@@ -586,12 +565,7 @@ class Surface(OnGrid):
 
     @staticmethod
     def ellipsoid(
-        *,
-        cells: Sequence[int],
-        size: Sequence[float],
-        radius_x: float,
-        radius_y: float,
-        center: Sequence[float] = (0.0, 0.0),
+        *, cells: Sequence[int], size: Sequence[float], radius_x: float, radius_y: float, center: Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A paraboloid of two radii [m]; an infinite one makes a cylinder."""
         return _shape("ellipsoid", cells, size, center, {"radius_x": radius_x, "radius_y": radius_y})
@@ -626,12 +600,8 @@ class Surface(OnGrid):
 
     @staticmethod
     def flat_punch(
-        *,
-        cells: int | Sequence[int],
-        size: float | Sequence[float],
-        radius: float | None = None,
-        sides: float | Sequence[float] | None = None,
-        center: float | Sequence[float] = (0.0, 0.0),
+        *, cells: int | Sequence[int], size: float | Sequence[float], radius: float | None = None,
+        sides: float | Sequence[float] | None = None, center: float | Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch. On a line of cells a strip of
         half the width `radius`, or of the width `sides`."""

@@ -277,15 +277,8 @@ class Plots:
         return ax
 
     def profile(
-        self,
-        *,
-        time: float | None = None,
-        velocity: float | None = None,
-        index: int | None = None,
-        y: float | None = None,
-        field: Field = "pressure",
-        ax: Axes | None = None,
-        **style: Any,
+        self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, y: float | None = None,
+        field: Field = "pressure", ax: Axes | None = None, **style: Any
     ) -> Axes:
         """A field along x at `y` [m]; default the pressure through the middle. In a new figure the gap has the undeformed one beside,
         where no `label` is given."""

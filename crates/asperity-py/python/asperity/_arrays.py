@@ -5,16 +5,13 @@ from __future__ import annotations
 import difflib
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar, get_args
+from typing import Any, TypeVar, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from ._core import CaseError
 from ._units import bare, frequency, has_unit, is_labelled, variable_of
-
-if TYPE_CHECKING:
-    from ._surface import Surface
 
 Floats = npt.NDArray[np.float64]
 Array = TypeVar("Array", bound=npt.NDArray[Any])
@@ -237,14 +234,6 @@ def field(what: str, value: Any, line: bool = False, *, unit: str | None = None,
     if found.ndim not in ((1, 2) if line else (2,)) or found.size == 0:
         raise CaseError(f"{what} has shape {found.shape}, but must be two-dimensional, (nx, ny){', or (n,) for a line of cells' if line else ''}")
     return plain(found)
-
-
-def per_cell(what: str, value: Any, shape: Surface, unit: str | None = None) -> Floats:
-    """Numbers of each cell of the domain of a surface."""
-    cells = field(what, value, line=True, unit=unit, size=shape.size)
-    if cells.shape != shape.cells:
-        raise CaseError(f"{what} has shape {cells.shape}, but must have {shape.cells}: one number for each cell")
-    return cells
 
 
 def as_plane(array: Floats) -> Floats:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._units import written
+
+if TYPE_CHECKING:
+    import xarray
 
 
 Dims = str | tuple[str, ...]
@@ -19,6 +22,20 @@ Variable = tuple[Dims, npt.NDArray[Any], dict[str, str]]
 def variable(dims: Dims, values: Any, unit: str, words: str) -> Variable:
     """A copy of the values with their unit and meaning."""
     return dims, np.array(values), {"units": unit, "long_name": words}
+
+
+def dataset(arrays: dict[str, Any], coordinates: dict[str, Any] = {}, attributes: dict[str, Any] = {}) -> xarray.Dataset:
+    """A dataset of these arrays."""
+    import xarray
+
+    return xarray.Dataset(arrays, coords=coordinates, attrs=attributes)
+
+
+def frame(columns: dict[str, Any]) -> Any:
+    """A pandas.DataFrame of these columns."""
+    import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+
+    return pandas.DataFrame(columns)
 
 
 class Entry(NamedTuple):

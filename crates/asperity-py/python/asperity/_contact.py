@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, array, as_plane, cells_of, check_places, choice, count, field, frozen, number, per_cell
-from ._columns import FIELDS, ROW, told
+from ._arrays import Floats, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
+from ._columns import FIELDS, ROW, frame, told
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
 from ._grid import OnGrid
@@ -25,14 +25,13 @@ from ._problem import hardness_of
 from ._result import Result, attributes_of
 from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
-from ._surface import Surface, check_boundary, surface_of
+from ._surface import Surface, check_boundary, per_cell, surface_of
 from ._units import bare, is_labelled
 from ._words import Boundary, Method
+from .plot import CurvePlots, Plots
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
-
-    from .plot import CurvePlots, Plots
 
 #: A kernel: numbers, or a function of two coordinates that gives them.
 Kernel = npt.ArrayLike | Callable[[Floats, Floats], npt.ArrayLike]
@@ -57,9 +56,7 @@ class ConvergenceHistory(ReadOnlyArrays):
 
     def to_dataframe(self) -> Any:
         """The history as pandas.DataFrame."""
-        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
-
-        return pandas.DataFrame(vars(self)).set_index("iteration")
+        return frame(vars(self)).set_index("iteration")
 
     def __repr__(self) -> str:
         return f"<ConvergenceHistory: {len(self)} entries, residual {self.residual[0]:.2e} to {self.residual[-1]:.2e}>"
@@ -277,27 +274,20 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
 
     def to_dataframe(self) -> Any:
         """The numbers as pandas.DataFrame, a row for each contact."""
-        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
-
-        return pandas.DataFrame({name: np.array(self._column(name)) for name in OF_CONTACT})
+        return frame({name: np.array(self._column(name)) for name in OF_CONTACT})
 
     def to_xarray(self) -> Any:
         """The numbers and the pressures as xarray.Dataset over what was prescribed, `load`, `mean_pressure` or `approach`, with the values
         as they were given: curves of other surfaces under the same values have the same index."""
-        import xarray
-
         index = {"pressure": "mean_pressure"}.get(self._control, self._control)
         rows = _result(self._contacts, False).to_xarray().drop_vars(["time_error", "stage", "field_time"])
-        prescribed = xarray.Variable(("time",), np.array(self._prescribed), rows[index].attrs)
-        rows = rows.assign_coords({index: prescribed}).swap_dims(time=index).drop_vars("time")
-        pressures = np.array([contact.pressure for contact in self._contacts])
-        return rows.assign(pressure=xarray.Variable((index, *self._contacts[0]._axes), pressures, FIELDS["pressure"].attributes()))
+        rows = rows.assign_coords({index: ("time", np.array(self._prescribed), rows[index].attrs)}).swap_dims(time=index).drop_vars("time")
+        pressures = [contact.pressure for contact in self._contacts]
+        return rows.assign(pressure=FIELDS["pressure"].variable((index, *self._contacts[0]._axes), pressures))
 
     @property
     def plot(self) -> CurvePlots:
         """Figures by matplotlib: ``curve.plot.area()``, ``curve.plot.load_displacement()``."""
-        from .plot import CurvePlots
-
         return CurvePlots(self)
 
     def __repr__(self) -> str:

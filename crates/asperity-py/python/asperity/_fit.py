@@ -28,6 +28,7 @@ from ._options import arguments_of
 from ._sealed import ReadOnlyArrays
 from ._shifts import Shift, made
 from ._words import LongTime, Measure, Moduli, Vertical
+from .plot import fitted
 from ._units import bare, frequency as angular_frequency, has_unit
 
 #: Temperatures closer than this belong to one sweep [K], and those of one sweep spread by no more.
@@ -134,8 +135,6 @@ class Fit(ReadOnlyArrays):
 
     def plot(self, *, ax: Any = None) -> Any:
         """Points and fitted curves over reduced time or angular frequency, on logarithmic axes."""
-        from .plot import fitted
-
         return fitted(self, ax)
 
     def __repr__(self) -> str:

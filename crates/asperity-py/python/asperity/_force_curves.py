@@ -14,6 +14,7 @@ from ._arrays import Floats, choice, columns, number
 from ._core import CaseError
 from ._sealed import ReadOnlyArrays
 from ._words import Branch, Control
+from .plot import recorded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
@@ -62,8 +63,6 @@ class ForceFit(ReadOnlyArrays):
     def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Load over depth, from the load of the free sphere and the depth of first touch: the record as points, the model as a line, which
         takes the further arguments."""
-        from .plot import recorded
-
         along, baseline = ("depth", "m", self.depth - self.touch[0]), self.baseline[0]
         return recorded(along, "load", self.load - baseline, self.predicted - baseline, ax, style)
 

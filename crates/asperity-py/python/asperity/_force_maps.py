@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arrays import Floats, centres
+from ._columns import dataset
 from ._core import CaseError
 from ._force_curves import ForceCurve
 from ._indentation import fit_indentation
 from ._sealed import ReadOnlyArrays
+from .plot import force_map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
@@ -55,19 +57,15 @@ class ForceMap(ReadOnlyArrays):
 
     def to_xarray(self) -> Any:
         """The maps as a dataset over x and y [m], pixels where the curves do not state the size of the grid."""
-        import xarray as xr
-
         units = {f"{name}{end}": unit for name, unit in _QUANTITIES.items() for end in _ENDS} | {"touch": "m", "relative_rms": "1"}
         maps: dict[str, Any] = {name: (("x", "y"), getattr(self, name).copy(), {"units": unit}) for name, unit in units.items()}
         for name, count, side in zip("xy", self.young.shape, self.size or (None, None)):
             maps[name] = (name, np.arange(count), {}) if side is None else (name, centres(count, side).copy(), {"units": "m"})
-        return xr.Dataset(maps)
+        return dataset(maps)
 
     def plot(self, quantity: str = "young", *, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of "young" or "work", or of an end of their intervals ("young_low", "work_high", ...); what has no value is light, and the title
         says how many pixels that are. Further arguments go to matplotlib's ``imshow``."""
-        from .plot import force_map
-
         return force_map(self, quantity, ax, style)
 
 

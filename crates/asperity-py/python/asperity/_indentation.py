@@ -22,6 +22,7 @@ from ._histories import one_of
 from ._materials import Prony
 from ._sealed import ReadOnlyArrays
 from ._words import Branch, Control, Interface, LongTime, Model
+from .plot import recorded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
@@ -64,8 +65,6 @@ class IndentationFit(ReadOnlyArrays):
 
     def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """The channel that was fitted over time: the record as points, the model as a line, which takes the further arguments."""
-        from .plot import recorded
-
         name, measured = ("load", self.load) if self.given == "depth" else ("depth", self.depth)
         return recorded(("time", "s", self.time), name, measured, self.predicted, ax, style)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import Floats, choice, field, in_order, number, numbers_of, pair
-from ._columns import GAS_LEAKS, LEAKS, variable
+from ._columns import GAS_LEAKS, LEAKS, dataset, variable
 from ._findings import Finding, findings_of, warn
 from ._sealed import Sealed
 from ._surface import _parts
@@ -191,8 +191,6 @@ def stored(result: Result) -> xarray.Dataset:
 
 def _dataset(result: Result, columns: dict[str, Any], pressures: Any) -> xarray.Dataset:
     """Leaks over time with their units."""
-    import xarray
-
     entries = GAS_LEAKS if "leak_rate_standard" in columns else LEAKS
     values = {name: columns[name].astype(bool) if name in _FLAGS else columns[name] for name in columns if name in entries}
     data: dict[str, Any] = {name: entries[name].variable("leak_time", column) for name, column in values.items()}
@@ -203,4 +201,4 @@ def _dataset(result: Result, columns: dict[str, Any], pressures: Any) -> xarray.
     if pressures is not None:
         data["fluid_pressure"] = variable(("leak_time", "x", "y"), pressures, "Pa", "pressure of the fluid")
         data |= result._coordinates
-    return xarray.Dataset(data)
+    return dataset(data)

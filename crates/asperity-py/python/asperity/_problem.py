@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ._adhesion import Adhesion
 from ._fluid import Fluid
-from ._arrays import as_plane, check_places, distinct, in_order, number, per_cell
+from ._arrays import Floats, as_plane, check_places, distinct, in_order, number
 from ._core import CaseError
 from ._declared import Table, check
 from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
@@ -20,14 +20,13 @@ from ._layers import Body
 from ._materials import Material
 from ._rows import Field, Quantity
 from ._shifts import temperature_keys
-from ._surface import Surface, check_boundary, surface_of
+from ._surface import Surface, check_boundary, per_cell, surface_of
 from ._tangential import Friction, Tangential
 from ._units import bare
 from ._wear import Wear
 from ._words import Boundary, Method, Plasticity, Scheme
 
 if TYPE_CHECKING:
-    from ._arrays import Floats
     from ._solve import Step
 
 

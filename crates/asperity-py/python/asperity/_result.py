@@ -8,6 +8,8 @@ import functools
 import html
 import json
 import os
+import tempfile
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,21 +18,21 @@ import numpy.typing as npt
 from . import _core, _html
 from ._arrays import Floats, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
 from ._axis import TIME, VELOCITY
-from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, told, variable
+from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, dataset, frame, told, variable
 from ._core import CaseError
 from ._findings import Finding, findings_of
 from ._grid import OnGrid
+from ._leakage import over_time, stored
+from ._methods import paragraph
 from ._rows import Columns, Field, StressColumns
 from ._sealed import Sealed, read_only
+from ._stress import Stress, changing, stress
 from ._units import written
 from ._words import Flow, Sides
+from .plot import Plots
 
 if TYPE_CHECKING:
     from ._converge import ErrorBar
-    from collections.abc import Sequence
-
-    from ._stress import Stress
-    from .plot import Plots
 
 class Cycle(NamedTuple):
     """One period of a cyclic load; made by :meth:`Result.cycles`."""
@@ -252,8 +254,6 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         >>> bool(abs(below.survey()["max_mises"] / result.max_pressure[-1] - 0.62) < 0.03)
         True
         """
-        from ._stress import changing, stress
-
         setup = self._setup
         if "layer_separable" in setup:
             raise CaseError(_core.LAYERED_STRESS)
@@ -286,8 +286,6 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
     def to_xarray(self) -> Any:
         """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk, with the stress below the surface and the
         leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray."""
-        import xarray
-
         along, at, line, table = self._axis.name, f"field_{self._axis.name}", self.is_line, self._table
         data: dict[str, Any] = {
             name: entry.variable((along, "axis")[: table[name].ndim], table[name], line)
@@ -314,12 +312,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             coordinates |= {place: variable(place, ends, written(unit), words) for place, unit, words, ends in places}
         # Text, as all other attributes, so that the dataset can be written.
         lists: dict[str, Any] = {name: json.dumps(self._attributes[name]) for name in ("findings", "error_bars") if name in self._attributes}
-        whole = xarray.Dataset(data, coords=coordinates, attrs={**self._attributes, "findings": "[]", **lists})
-        if not self._leaks:
-            return whole
-        from ._leakage import stored
-
-        return whole.merge(stored(self), combine_attrs="override")
+        whole = dataset(data, coordinates, {**self._attributes, "findings": "[]", **lists})
+        return whole.merge(stored(self), combine_attrs="override") if self._leaks else whole
 
     def leakage(
         self, *, direction: Flow | None = None, pressure_drop: float | None = None, viscosity: float | None = None,
@@ -333,10 +327,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         gas (`inlet`, `outlet` [Pa, absolute], `gas`, or `viscosity` and `molar_mass` [kg/mol]; `temperature` [K]; `rarefaction`), or
         without a fluid the gap alone. `field` adds `fluid_pressure`.
         """
-        arguments = locals()
-        from ._leakage import over_time, stored
-
-        given = numbers_of({name: value for name, value in arguments.items() if name != "self"})
+        given = numbers_of({name: value for name, value in locals().items() if name != "self"})
         return over_time(self, given) if given or not self._leaks else stored(self)
 
     def methods(self, *, bibtex: bool = False) -> str:
@@ -350,15 +341,11 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         >>> print(result.methods().split(". ")[2])
         The contact modulus is 4 MPa at once and 2 MPa after relaxation
         """
-        from ._methods import paragraph
-
         return paragraph(self, bibtex)
 
     @property
     def plot(self) -> Plots:
         """Figures by matplotlib: ``result.plot.evolution()``, ``result.plot.pressure(time=500.0)``, ..."""
-        from .plot import Plots
-
         return Plots(self)
 
     def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> npt.NDArray[np.uint32]:
@@ -393,13 +380,11 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
     def to_dataframe(self) -> Any:
         """The rows as pandas.DataFrame, with the time (of a sweep the velocity) as index and a column for each number; units are in
         ``frame.attrs["units"]``."""
-        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
-
         along = self._axis.name
         columns = {name: np.array(self._table[name]) for name in COLUMNS if name != "time" and name in self._table}
-        frame = pandas.DataFrame(columns, index=pandas.Index(np.array(self._table["time"]), name=along))
-        frame.attrs["units"] = {along: self.units("time"), **{name: self.units(name) for name in columns}}
-        return frame
+        rows = frame({along: np.array(self._table["time"]), **columns}).set_index(along)
+        rows.attrs["units"] = {along: self.units("time"), **{name: self.units(name) for name in columns}}
+        return rows
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Writes the result as a Zarr group, as a run of a case file does: :func:`open` and xarray read it. Stress below the surface
@@ -445,8 +430,6 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         if self.path is not None:
             _core.report(self.path, os.fspath(path), force, megabytes * 1_000_000)
             return
-        import tempfile
-
         with tempfile.TemporaryDirectory() as folder:
             stored = os.path.join(folder, "result.zarr")
             self.save(stored)

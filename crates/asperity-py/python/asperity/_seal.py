@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ._arrays import Floats
-from ._columns import variable
+from ._columns import dataset, variable
 from ._command import answered
 from ._findings import Finding, findings_of, warn
 from ._sealed import Sealed
@@ -80,8 +80,6 @@ class Seal(Sealed):
     def to_xarray(self) -> xarray.Dataset:
         """The leak over `inlet` pressure and `time`, the pressures over `x`, and the conductance of the patch over `pressure`: with the
         dimension `seed` where they differ from seed to seed."""
-        import xarray
-
         found, unit = self._found, self._found["unit"].replace("m3", "m^3")
         seeds = found["seeds"]
 
@@ -107,7 +105,7 @@ class Seal(Sealed):
             "pressure": variable("pressure", [point["pressure"] for point in seeds[0]["seal_sweep"]], "Pa", "mean pressure on the patch"),
             "seed": [-1 if seed["seed"] is None else seed["seed"] for seed in seeds],
         }
-        return xarray.Dataset(columns, coords=coordinates)
+        return dataset(columns, coordinates)
 
 
 def seal(

@@ -25,7 +25,7 @@ from ._findings import Finding, ResultWarning, warn_caller
 from ._points import Point, Solved, base_of_case, base_of_function, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
 from ._progress import line_of
-from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW, VECTORS
+from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW, VECTORS, dataset
 from ._histories import one_of
 from ._motion import slide, steady
 from ._units import UNITS, bare, carries, has_unit, is_labelled, unit_among
@@ -148,7 +148,7 @@ def study(
     left = [n for n in range(len(points)) if n not in done]
     show, started = line_of(progress), time.monotonic()
 
-    def dataset() -> xarray.Dataset:
+    def so_far() -> xarray.Dataset:
         """The points so far."""
         stopped: Solved = ("interrupted", "the study was stopped", None)
         return _dataset(plan, [done.get(n, stopped) for n in range(len(points))], points, tuple(fields), common.get("case"))
@@ -165,11 +165,11 @@ def study(
                     show(f"{len(done)}/{len(points)} points{f', {failed} failed' if failed else ''}  {seconds:.0f} s left")
             except BaseException as error:
                 with contextlib.suppress(Exception):
-                    error.result = dataset()  # type: ignore[attr-defined]
+                    error.result = so_far()  # type: ignore[attr-defined]
                 raise
             finally:
                 show(None)
-    data = dataset()
+    data = so_far()
     try:
         _warn(points, done)
     except ResultWarning as error:
@@ -463,15 +463,13 @@ class _Table:
 
 
 def _dataset(plan: _Plan, answers: list[Solved], points: list[Point], names: tuple[str, ...], case: str | None) -> xarray.Dataset:
-    import xarray
-
     table = _Table(plan, points, answers, _TAKEN | _TAKEN_BY_FIELDS if names else _TAKEN)
     table.add_rows()
     table.add_answers(answers)
     table.add_leaks()
     table.add_fields(names)
     attributes = {"asperity_version": _core.__version__, **({} if case is None else {"case": case})}
-    return xarray.Dataset(table.columns, coords=table.coordinates, attrs=attributes)
+    return dataset(table.columns, table.coordinates, attributes)
 
 
 def _coordinate(column: list[Any]) -> tuple[Any, dict[str, str]]:

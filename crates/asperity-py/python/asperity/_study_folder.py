@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._columns import dataset
 from ._command import answered
 from ._core import CaseError
 from ._solve import _toml
@@ -37,8 +38,6 @@ def _written(key: str, values: Any) -> str:
 
 
 def _dataset(found: dict[str, Any]) -> xarray.Dataset:
-    import xarray
-
     keys, runs, zipped = found["keys"], found["runs"], found["zip"]
     dims = ("run",) if zipped else tuple(key["key"] for key in keys)
     shape = (len(runs),) if zipped else tuple(len(key["values"]) for key in keys)
@@ -63,7 +62,7 @@ def _dataset(found: dict[str, Any]) -> xarray.Dataset:
     for name, words in texts.items():
         columns["path" if name == "result" else name] = array([run[name] or "" for run in runs], words)
     places = {key["key"]: ("run" if zipped else key["key"], *_place_of(key)) for key in keys}
-    return xarray.Dataset(columns, coords=places, attrs={"study": found["study"]})
+    return dataset(columns, places, {"study": found["study"]})
 
 
 def _place_of(key: dict[str, Any]) -> tuple[Any, dict[str, str]]:

@@ -8,7 +8,7 @@ import os
 import re
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field as dataclass_field
-from typing import TYPE_CHECKING, Any, Protocol, Union
+from typing import Any, Protocol, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -24,9 +24,7 @@ from ._parameters import Parameter, call
 from ._sealed import ReadOnlyArrays
 from ._units import carries, factor_of, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
-
-if TYPE_CHECKING:
-    from .plot import SurfacePlots
+from .plot import SurfacePlots
 
 
 class Labelled(Protocol):
@@ -440,8 +438,6 @@ class Surface(OnGrid):
     @property
     def plot(self) -> SurfacePlots:
         """Figures by matplotlib: ``surface.plot.heights()``, ``surface.plot.power_spectrum()``, ..."""
-        from .plot import SurfacePlots
-
         return SurfacePlots(self)
 
     def _repr_html_(self) -> str:
@@ -668,6 +664,14 @@ def surface_of(surface: Any, gap: Any, size: float | Sequence[float] | None) -> 
     if wrong := [value for value in values[np.isnan(values) | (values == -np.inf)][:1]]:
         raise CaseError(f"gap holds {wrong[0]}, but must be finite, or infinite where a cell cannot touch")
     return Surface(-values, size=size)
+
+
+def per_cell(what: str, value: Any, shape: Surface, unit: str | None = None) -> Floats:
+    """Numbers of each cell of the domain of a surface."""
+    cells = field(what, value, line=True, unit=unit, size=shape.size)
+    if cells.shape != shape.cells:
+        raise CaseError(f"{what} has shape {cells.shape}, but must have {shape.cells}: one number for each cell")
+    return cells
 
 
 def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict[str, Any]]:

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import as_plane, number, per_cell
+from ._arrays import Floats, as_plane, number
 from ._core import CaseError
 from ._declared import Table
 from ._histories import History, as_history, one_of
+from ._surface import Surface, per_cell
 from ._words import Coupled
-
-if TYPE_CHECKING:
-    from ._arrays import Floats
-    from ._surface import Surface
 
 
 @dataclass(frozen=True, repr=False)

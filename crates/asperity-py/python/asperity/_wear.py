@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy.typing as npt
 
-from ._arrays import as_plane, per_cell
+from ._arrays import Floats, as_plane
 from ._declared import Table
-
-if TYPE_CHECKING:
-    from ._arrays import Floats
-    from ._surface import Surface
+from ._surface import Surface, per_cell
 
 
 @dataclass(frozen=True, repr=False)

@@ -165,16 +165,10 @@ def trimmed(result: Result, names: tuple[str, ...]) -> Result:
     """The result with these fields only, in memory."""
     for name in (name for name in names if name not in result.fields):
         raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(result.fields) or 'none'}")
+    gap = result.initial_gap if names else np.empty((0, 0))
     return Result(
-        table=result._table,
-        fields={name: result._stack(name) for name in names},
-        field_steps=result._field_steps,
-        field_times=result.field_times,
-        initial_gap=result.initial_gap if names else np.empty((0, 0)),
-        size=result.size,
-        attributes=result.attributes,
-        histograms=result._histograms,
-        leaks=result._leaks,
+        table=result._table, histograms=result._histograms, fields={name: result._stack(name) for name in names}, field_steps=result._field_steps,
+        field_times=result.field_times, initial_gap=gap, size=result.size, attributes=result.attributes, leaks=result._leaks
     )
 
 

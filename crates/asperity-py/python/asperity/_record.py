@@ -128,8 +128,6 @@ class Record:
             table={name: values if self._rows else np.empty(0) for name, values in table.items() if name not in HISTOGRAMS},
             histograms={name: (ends, table[name]) for name, ends in self._edges.items() if name in HISTOGRAMS},
             fields={name: np.array(stack) if stack else np.empty((0, *shape)) for name, stack in stacks.items()},
-            field_steps=np.array(steps, dtype=np.int64),
-            initial_gap=self._march.initial_gap,
-            size=self._march.size,
             attributes=attributes_of(self._keep.title, status, self._march._setup | prescribed, self._march.findings),
+            field_steps=steps, initial_gap=self._march.initial_gap, size=self._march.size
         )

@@ -111,20 +111,16 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             columns["velocity"] = columns.pop("time")
         if name in columns:
             return columns[name]
-        if name == "time":
-            raise AttributeError("a sweep over velocities has no 'time'; use velocity")
-        if name in STRESS:
-            words = "which [stress] of a case, or `asperity stress RESULT`, stores; stress(time=...) computes it now"
-            raise AttributeError(f"the result has no {name!r}, {words}")
-        if name in held.get("_histograms", {}):
-            raise AttributeError(f"{name!r} has a number for each bin: use histogram({name!r})")
-        if name in QUANTITIES:
-            raise AttributeError(f"the result has no {name!r}, because it was not requested: quantities=[{name!r}]")
-        if name == "y" and self.is_line:
-            raise AttributeError("a line contact has no y: nothing changes along it")
-        if name == "field_velocities":
-            raise AttributeError("the result is a run in time: its fields have field_times, and no field_velocities")
-        raise AttributeError(f"a result has no {name!r}; it has {', '.join(ROW)}, field(name, time=...) and plot")
+        reasons = {
+            **{one: f"because it was not requested: quantities=[{one!r}]" for one in QUANTITIES},
+            **{one: f"but one number for each bin: use histogram({one!r})" for one in held.get("_histograms", {})},
+            **dict.fromkeys(STRESS, "which [stress] of a case, or `asperity stress RESULT`, stores; stress(time=...) computes it now"),
+            "time": "because it is a sweep over velocities: use velocity",
+            "field_velocities": "because it is a run in time: its fields have field_times",
+            "y": "because a line contact has no y: nothing changes along it",
+        }
+        known = f"; it has {', '.join(ROW)}, field(name, time=...) and plot"
+        raise AttributeError(f"the result has no {name!r}{f', {reasons[name]}' if name in reasons else known}")
 
     if not TYPE_CHECKING:  # where it would hide misspelt names
 
@@ -540,17 +536,10 @@ def _stored(store: _core.Store, name: str) -> Floats:
 def open(path: str | os.PathLike[str]) -> Result:
     """Opens a result on disk, finished or not; its fields are read when they are used."""
     store = _core.Store(os.fspath(path))
+    table = {name: _stored(store, name) for name in [*ROW, *store.quantities] if name not in HISTOGRAMS}
+    histograms = {name: store.histogram(name) for name in store.quantities if name in HISTOGRAMS}
+    fields = {name: _OnDisk(store, name) for name in store.fields}
     return Result(
-        table={name: _stored(store, name) for name in [*ROW, *store.quantities] if name not in HISTOGRAMS},
-        histograms={name: store.histogram(name) for name in store.quantities if name in HISTOGRAMS},
-        fields={name: _OnDisk(store, name) for name in store.fields},
-        field_steps=store.field_steps,
-        field_times=store.field_times,
-        initial_gap=None,
-        size=store.size,
-        attributes=json.loads(store.attributes),
-        path=os.fspath(path),
-        stress=store.stress(),
-        leaks=store.leaks(),
-        store=store,
+        table=table, histograms=histograms, fields=fields, field_steps=store.field_steps, field_times=store.field_times, initial_gap=None,
+        size=store.size, attributes=json.loads(store.attributes), path=os.fspath(path), stress=store.stress(), leaks=store.leaks(), store=store
     )

@@ -5,12 +5,23 @@ from __future__ import annotations
 import difflib
 import functools
 import inspect
-from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ParamSpec, TypeVar
 
 Arguments = ParamSpec("Arguments")
 Options = TypeVar("Options")
 Answer = TypeVar("Answer")
+
+
+def check_call(name: str, signature: inspect.Signature, positional: Sequence[Any], named: Mapping[str, Any]) -> None:
+    """Refuses arguments that a function of this signature does not take, with the nearest one that it does."""
+    try:
+        signature.bind(*positional, **named)
+    except TypeError as error:
+        for unknown in (one for one in named if one not in signature.parameters):
+            near = difflib.get_close_matches(unknown, signature.parameters, 1)
+            raise TypeError(f"{name}() takes no argument {unknown!r}{f'; did you mean {near[0]!r}?' if near else ''}") from None
+        raise TypeError(f"{name}(): {error}") from None
 
 
 def arguments_of(options: Callable[Arguments, Options]) -> Callable[[Callable[[Options], Answer]], Callable[Arguments, Answer]]:
@@ -20,16 +31,8 @@ def arguments_of(options: Callable[Arguments, Options]) -> Callable[[Callable[[O
     def decorate(function: Callable[[Options], Answer]) -> Callable[Arguments, Answer]:
         @functools.wraps(function)
         def call(*positional: Arguments.args, **named: Arguments.kwargs) -> Answer:
-            try:
-                signature.bind(*positional, **named)
-            except TypeError as error:
-                unknown = [name for name in named if name not in signature.parameters]
-                raise TypeError(_wrong(function.__name__, unknown[0]) if unknown else f"{function.__name__}(): {error}") from None
+            check_call(function.__name__, signature, positional, named)
             return function(options(*positional, **named))
-
-        def _wrong(called: str, name: str) -> str:
-            near = difflib.get_close_matches(name, signature.parameters, 1)
-            return f"{called}() takes no argument {name!r}" + (f"; did you mean {near[0]!r}?" if near else "")
 
         answer = inspect.signature(function).return_annotation
         call.__signature__ = signature.replace(return_annotation=answer)  # type: ignore[attr-defined]

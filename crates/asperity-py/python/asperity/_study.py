@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import difflib
 import importlib
 import inspect
 import itertools
@@ -28,6 +27,7 @@ from ._progress import line_of
 from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW, VECTORS, dataset
 from ._histories import one_of
 from ._motion import slide, steady
+from ._options import check_call
 from ._units import UNITS, bare, carries, has_unit, is_labelled, unit_among
 from ._result import Result
 from ._solve import overrides, solve, source
@@ -288,27 +288,18 @@ def _check_names(common: dict[str, Any], plan: _Plan) -> None:
         if name in UNITS and (text := [point[name] for point in plan.points if isinstance(point[name], str)]):
             raise CaseError(f"the values of {name} hold the text {text[0]!r}, but must be numbers [{UNITS[name]}] or quantities with a unit")
     try:
-        parameters = inspect.signature(function).parameters
+        signature = inspect.signature(function)
     except (TypeError, ValueError):  # of some compiled functions it is not known
         return
-    called = getattr(function, "__name__", function)
-    words = f"asperity.{called}" if hasattr(function, "options") else f"the function {called!r}"
-    takes_all = any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values())
-    known = [name for name, parameter in parameters.items() if parameter.kind is not parameter.POSITIONAL_ONLY and name[0] != "_"]
-    given = [*fixed, *plan.names]
-    for name in given if not takes_all else ():
-        if name not in known:
-            near = difflib.get_close_matches(name, known, 1)
-            hint = f"did you mean {near[0]!r}?" if near else f"it takes {', '.join(known)}"
-            raise CaseError(f"{words} has no parameter {name!r}: {hint}")
+    try:
+        check_call(getattr(function, "__name__", str(function)), signature, (), {**fixed, **plan.points[0]})
+    except TypeError as error:
+        raise CaseError(f"no point can be solved: {error}") from None
     # Points that prescribe nothing, or two things at once.
     alternatives = getattr(getattr(function, "options", None), "alternatives", [])
     for point, names in itertools.product(plan.points, alternatives):
         whole = {**fixed, **point}
         one_of({name: whole.get(name) for name in names}, f"the point {label_all(point)} needs")
-    for name in known if not takes_all else ():
-        if name not in given and parameters[name].default is parameters[name].empty:
-            raise CaseError(f"{words} needs the parameter {name!r}, which neither the common parameters nor `over` hold")
 
 
 def _check_keys(common: dict[str, Any], plan: _Plan) -> None:

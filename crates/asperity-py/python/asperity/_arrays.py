@@ -51,9 +51,13 @@ def choice(what: str, value: Any, words: Any) -> Any:
     words = get_args(words) or words
     if isinstance(value, str) and value in words:
         return value
-    near = difflib.get_close_matches(value, words, 1) if isinstance(value, str) else []
-    hint = f"; did you mean {near[0]!r}?" if near else ""
-    raise CaseError(f"{what} is {value!r}, but must be {either(map(repr, words))}{hint}")
+    raise CaseError(f"{what} is {value!r}, but must be {either(map(repr, words))}{meant(value, words)}")
+
+
+def meant(word: Any, words: Iterable[str]) -> str:
+    """Asks for the word that a misspelt one is nearest to."""
+    near = difflib.get_close_matches(word, list(words), 1, 0.5) if isinstance(word, str) else []
+    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def path_of(what: str, given: Any) -> str | None:

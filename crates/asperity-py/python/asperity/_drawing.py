@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import number
+from ._arrays import meant, number
 from ._prefixes import prefixed, shown
 
 if TYPE_CHECKING:
@@ -240,9 +239,7 @@ def check_style(style: dict[str, Any], kind: str = "curve") -> None:
     """Refuses what matplotlib does not take for a "curve" or a "map"."""
     for name in style:
         if name not in _takes(kind):
-            near = difflib.get_close_matches(name, sorted(_takes(kind)), 1, 0.5)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
-            raise TypeError(f"a {kind} takes no argument {name!r}{hint}")
+            raise TypeError(f"a {kind} takes no argument {name!r}{meant(name, sorted(_takes(kind)))}")
 
 
 def axes(ax: Axes | None, style: dict[str, Any] | None = None, kind: str = "curve", size: tuple[float, ...] = (1.0, 1.0)) -> Axes:

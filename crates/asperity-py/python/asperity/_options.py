@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ParamSpec, TypeVar
+
+from ._arrays import meant
 
 Arguments = ParamSpec("Arguments")
 Options = TypeVar("Options")
@@ -19,8 +20,7 @@ def check_call(name: str, signature: inspect.Signature, positional: Sequence[Any
         signature.bind(*positional, **named)
     except TypeError as error:
         for unknown in (one for one in named if one not in signature.parameters):
-            near = difflib.get_close_matches(unknown, signature.parameters, 1)
-            raise TypeError(f"{name}() takes no argument {unknown!r}{f'; did you mean {near[0]!r}?' if near else ''}") from None
+            raise TypeError(f"{name}() takes no argument {unknown!r}{meant(unknown, signature.parameters)}") from None
         raise TypeError(f"{name}(): {error}") from None
 
 

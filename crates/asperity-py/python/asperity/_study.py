@@ -146,7 +146,7 @@ def study(
         note(place, "study", {"asperity": _core.__version__, "parameters": plan.names, "points": names})
         done = {n: answer for n, point in enumerate(points) if (answer := found(point, retry)) is not None}
     left = [n for n in range(len(points)) if n not in done]
-    show, started = line_of(progress), time.monotonic()
+    show, started = line_of(progress) or (lambda text: None), time.monotonic()
 
     def so_far() -> xarray.Dataset:
         """The points so far."""

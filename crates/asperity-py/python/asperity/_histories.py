@@ -13,7 +13,7 @@ import numpy.typing as npt
 from ._arrays import Floats, choice, count, either, in_hertz, line, number, points
 from ._core import CaseError, waitable
 from ._declared import Table
-from ._parameters import Parameter, call
+from ._parameters import call, parameters
 from ._sampled import as_points
 from ._units import has_unit, is_labelled, unit_among
 
@@ -57,19 +57,12 @@ class History(_Made):
     #: Of a function: the largest distance of its table that was found.
     error: float | None = None
 
-    #: Value of a step, or at the end of a ramp.
-    value = Parameter[float]()
-    #: Duration of a ramp [s].
-    duration = Parameter[float]()
+    #: Value of a step, or at the end of a ramp, and its duration [s].
+    value, duration = parameters(float, 2)
     #: Largest value of a triangle or trapezoid, and how long [s] it rises, holds and falls.
-    peak = Parameter[float]()
-    rise = Parameter[float]()
-    hold = Parameter[float]()
-    fall = Parameter[float]()
+    peak, rise, hold, fall = parameters(float, 4)
     #: Mean, amplitude and frequency [Hz] of a sine.
-    mean = Parameter[float]()
-    amplitude = Parameter[float]()
-    frequency = Parameter[float]()
+    mean, amplitude, frequency = parameters(float, 3)
 
     @property
     def end(self) -> float:
@@ -100,11 +93,9 @@ class Times(_Made):
     numbers: tuple[float, ...]
 
     #: Number of steps of uniform and logarithmic times.
-    steps = Parameter[int]()
-    #: First instant [s] of logarithmic times; the longest first step of adaptive ones.
-    first = Parameter[float]()
-    #: Relative error of the stress that adaptive steps aim at.
-    tolerance = Parameter[float]()
+    (steps,) = parameters(int, 1)
+    #: First instant [s] of logarithmic times, or the longest first step of adaptive ones; and the relative error of the stress that these aim at.
+    first, tolerance = parameters(float, 2)
 
     @property
     def end(self) -> float:

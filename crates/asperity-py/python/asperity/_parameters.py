@@ -38,6 +38,11 @@ class Parameter(Generic[Value]):
         raise AttributeError(f"{self._name} cannot be set: {type(made).__name__} does not change once it is made; make another")
 
 
+def parameters(kind: type[Value], number: int) -> list[Parameter[Value]]:
+    """As many attributes of this kind, which take the names that they are given."""
+    return [Parameter[Value]() for _ in range(number)]
+
+
 def call(name: str, parameters: dict[str, Any], positional: int = 0) -> str:
     """The call that makes the object, the first parameters without their names."""
     told = {key: f"<array of {value.shape}>" if hasattr(value, "shape") else repr(value) for key, value in parameters.items()}

@@ -22,7 +22,7 @@ from . import _core
 from ._arrays import Floats, each, number, points
 from ._core import CaseError
 from ._findings import warn_caller
-from ._parameters import Parameter, call
+from ._parameters import call, parameters
 from ._units import carries
 
 
@@ -46,13 +46,8 @@ class Shift:
     #: How moduli depend on temperature: the expansion [1/K] of a density, or points (temperature [K], b_T).
     vertical: float | tuple[tuple[float, float], ...] | None = None
 
-    #: Constants of WLF: c1, and c2 [K].
-    c1 = Parameter[float]()
-    c2 = Parameter[float]()
-    #: Activation energy of Arrhenius [J/mol].
-    activation_energy = Parameter[float]()
-    #: Reference temperature [K].
-    reference = Parameter[float]()
+    #: Constants of WLF: c1, and c2 [K]; activation energy of Arrhenius [J/mol]; reference temperature [K].
+    c1, c2, activation_energy, reference = parameters(float, 4)
 
     @property
     def _parameters(self) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from ._core import CaseError
 from ._findings import findings_of, warn, warn_caller
 from ._grid import OnGrid
 from ._histories import one_of
-from ._parameters import Parameter, call
+from ._parameters import call, parameters
 from ._sealed import ReadOnlyArrays
 from ._units import carries, factor_of, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
@@ -89,22 +89,11 @@ class Surface(OnGrid):
 
     #: What a shape was made with: radius of a sphere, cylinder or punch [m], radii of an ellipsoid [m], slope of a cone or wedge, sides
     #: of a punch [m], amplitude and wavelengths of a wave [m], and the `center` from the middle of the domain [m].
-    radius = Parameter[float]()
-    radius_x = Parameter[float]()
-    radius_y = Parameter[float]()
-    slope = Parameter[float]()
-    sides = Parameter[list[float]]()
-    amplitude = Parameter[float]()
-    wavelength = Parameter[list[float]]()
-    center = Parameter[list[float]]()
+    radius, radius_x, radius_y, slope, amplitude = parameters(float, 5)
+    sides, wavelength, center = parameters(list[float], 3)
     #: What self-affine roughness was made with: Hurst exponent, rms gradient or height [m], wavelengths [m], seed.
-    hurst = Parameter[float]()
-    rms_gradient = Parameter[float]()
-    rms_height = Parameter[float]()
-    longest = Parameter[float]()
-    shortest = Parameter[float]()
-    roll_off = Parameter[float]()
-    seed = Parameter[int]()
+    hurst, rms_gradient, rms_height, longest, shortest, roll_off = parameters(float, 6)
+    (seed,) = parameters(int, 1)
 
     @property
     def _parameters(self) -> dict[str, Any]:

@@ -13,7 +13,11 @@ import numpy.typing as npt
 from ._core import CaseError
 from ._units import bare, frequency, has_unit, is_labelled, variable_of
 
+ArrayLike = npt.ArrayLike
+AnyArray = npt.NDArray[Any]
 Floats = npt.NDArray[np.float64]
+Counts = npt.NDArray[np.int64]
+Labels = npt.NDArray[np.uint32]
 Array = TypeVar("Array", bound=npt.NDArray[Any])
 
 

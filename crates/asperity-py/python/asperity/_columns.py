@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
+from ._arrays import AnyArray
 from ._units import written
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Dims = str | tuple[str, ...]
 #: An array of a dataset of xarray: dimensions, values, attributes.
-Variable = tuple[Dims, npt.NDArray[Any], dict[str, str]]
+Variable = tuple[Dims, AnyArray, dict[str, str]]
 
 
 def variable(dims: Dims, values: Any, unit: str, words: str) -> Variable:

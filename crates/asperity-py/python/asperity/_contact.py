@@ -12,10 +12,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypedDict, overload
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
+from ._arrays import AnyArray, ArrayLike, Counts, Floats, Labels, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
 from ._columns import FIELDS, ROW, frame, told
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
@@ -34,14 +33,14 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 #: A kernel: numbers, or a function of two coordinates that gives them.
-Kernel = npt.ArrayLike | Callable[[Floats, Floats], npt.ArrayLike]
+Kernel = ArrayLike | Callable[[Floats, Floats], ArrayLike]
 
 
 @dataclass(frozen=True, eq=False)
 class ConvergenceHistory(ReadOnlyArrays):
     """What a solver did, one entry for each iteration, and the state in which it stopped."""
 
-    iteration: npt.NDArray[np.int64]
+    iteration: Counts
     #: Largest violation of the contact conditions over the mean displacement, before the step.
     residual: Floats
     #: Cells in the working set.
@@ -49,7 +48,7 @@ class ConvergenceHistory(ReadOnlyArrays):
     #: Kind of the step, "converged" at the end.
     step: tuple[str, ...]
     #: Convolutions so far.
-    convolutions: npt.NDArray[np.int64]
+    convolutions: Counts
 
     def __len__(self) -> int:
         return len(self.iteration)
@@ -179,7 +178,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
             self._stiffness = self._planned.core.stiffness(np.array(as_plane(self.pressure)))
         return self._stiffness
 
-    def spots(self) -> npt.NDArray[np.uint32]:
+    def spots(self) -> Labels:
         """The contact spots as a labelled image; see :meth:`Result.spots`."""
         self._whole("a map of the spots")
         labels = _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary)
@@ -303,10 +302,10 @@ class _How(TypedDict, total=False):
 
     gap: Any
     size: float | Sequence[float] | None
-    hardness: float | npt.ArrayLike | None
+    hardness: float | ArrayLike | None
     boundary: Boundary
     kernel: Kernel | None
-    start: ElasticContact | npt.ArrayLike | None
+    start: ElasticContact | ArrayLike | None
     history: bool
     method: Method
     tolerance: float
@@ -314,7 +313,7 @@ class _How(TypedDict, total=False):
 
 
 #: Values of several contacts.
-_Several = Sequence[float] | npt.NDArray[Any] | None
+_Several = Sequence[float] | AnyArray | None
 
 
 def _checksum(values: Floats) -> int:
@@ -348,8 +347,8 @@ def elastic(
 ) -> ElasticCurve: ...
 def elastic(
     surface: Any = None, contact_modulus: float | None = None, *, load: Any = None, pressure: Any = None, approach: Any = None,
-    gap: Any = None, size: float | Sequence[float] | None = None, hardness: float | npt.ArrayLike | None = None,
-    boundary: Boundary = "free", kernel: Kernel | None = None, start: ElasticContact | npt.ArrayLike | None = None,
+    gap: Any = None, size: float | Sequence[float] | None = None, hardness: float | ArrayLike | None = None,
+    boundary: Boundary = "free", kernel: Kernel | None = None, start: ElasticContact | ArrayLike | None = None,
     out: Floats | Mapping[str, Floats] | None = None, history: bool = False, method: Method = "projected-cg",
     tolerance: float = 1e-6, max_iterations: int = 5000
 ) -> ElasticContact | ElasticCurve:

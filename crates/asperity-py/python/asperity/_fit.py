@@ -16,10 +16,9 @@ from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, count, line, number, pair, plain
+from ._arrays import ArrayLike, Floats, count, line, number, pair, plain
 from ._core import CaseError
 from ._declared import check
 from ._findings import Finding, findings_of, warn
@@ -114,7 +113,7 @@ class Fit(ReadOnlyArrays):
         made._hold(_fit=self)
         return made
 
-    def curve(self, x: npt.ArrayLike) -> tuple[Floats, ...]:
+    def curve(self, x: ArrayLike) -> tuple[Floats, ...]:
         """The fitted curves at reduced times [s], or angular frequencies [rad/s] of a DMA."""
         # The functions of a material do not depend on Poisson's ratio.
         material = self.with_body(poisson=0.5)
@@ -468,7 +467,7 @@ def CreepFunction(given: OfFunction) -> Material:
 
 def _sweeps(x: Floats, curves: list[Floats], temperature: Any) -> list[tuple[float | None, Floats, list[Floats]]]:
     """The points by temperature, the coldest first; a sweep that goes down is turned."""
-    groups: list[tuple[float | None, npt.NDArray[np.intp]]] = []
+    groups: list[tuple[float | None, Any]] = []
     if temperature is None or np.ndim(temperature) == 0:
         groups.append((None if temperature is None else number("temperature", temperature), np.arange(len(x))))
     else:

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, choice, columns, number
+from ._arrays import Counts, Floats, choice, columns, number
 from ._core import CaseError
 from ._sealed import ReadOnlyArrays
 from ._words import Branch, Control
@@ -49,7 +48,7 @@ class ForceFit(ReadOnlyArrays):
     #: Largest radius of the contact [m].
     contact_radius: float
     #: Numbers of the rows that were fitted, load [N] and depth [m] that were measured there, and the load of the model.
-    rows: npt.NDArray[np.int64]
+    rows: Counts
     load: Floats
     depth: Floats
     predicted: Floats

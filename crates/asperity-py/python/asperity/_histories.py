@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
-from ._arrays import Floats, choice, count, either, in_hertz, line, number, points
+from ._arrays import AnyArray, ArrayLike, Floats, choice, count, either, in_hertz, line, number, points
 from ._core import CaseError, waitable
 from ._declared import Table
 from ._parameters import call, parameters
@@ -163,7 +162,7 @@ def sine(*, mean: float, amplitude: float, frequency: float) -> History:
     return _history("sine", {"mean": mean, "amplitude": amplitude}, frequency=in_hertz("frequency", frequency))
 
 
-def table(pairs: Sequence[tuple[float, float]] | npt.NDArray[Any]) -> History:
+def table(pairs: Sequence[tuple[float, float]] | AnyArray) -> History:
     """Linear between (time [s], value) points; two points at one time are a jump; held after the last. A one-dimensional array of xarray with
     its coordinate, or a series of pandas with its index, has the times of its values."""
     pairs = _timed(pairs)
@@ -276,7 +275,7 @@ class Stage(Table):
     duration: float | None = None
     until: Literal["contact-lost"] | tuple[str, Any] | dict[str, Any] | None = None
     after_jump: bool = False
-    times: Times | npt.ArrayLike | None = None
+    times: Times | ArrayLike | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -345,7 +344,7 @@ def adaptive(end: float, *, tolerance: float = 1e-3, first: float | None = None)
     return Times("adaptive", (last, number("tolerance", tolerance), number("first step", 1e-3 * last if first is None else first)))
 
 
-def listed(instants: npt.ArrayLike) -> Times:
+def listed(instants: ArrayLike) -> Times:
     """The times after 0 [s], increasing; a 0 at their beginning is the start, which each run has."""
     given = [float(t) for t in line("times", instants)]
     return Times("list", tuple(given[1:] if len(given) > 1 and given[0] == 0.0 else given))
@@ -368,6 +367,6 @@ def as_history(what: str, value: Any, unit: str | None = None, *, over: Times | 
     return value
 
 
-def as_times(value: Times | npt.ArrayLike) -> Times:
+def as_times(value: Times | ArrayLike) -> Times:
     """A time grid; a sequence or an array holds the times."""
     return value if isinstance(value, Times) else listed(value)

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, get_args, overload
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, choice, columns, count, number
+from ._arrays import Counts, Floats, choice, columns, count, number
 from ._core import CaseError
 from ._force_curves import ForceFit, Interval, cantilever, fit_force_curve, interval, share, table
 from ._histories import one_of
@@ -48,7 +47,7 @@ class IndentationFit(ReadOnlyArrays):
     depth: Floats
     predicted: Floats
     #: Numbers of these rows.
-    rows: npt.NDArray[np.int64]
+    rows: Counts
     #: Root of the mean square of model less measurement [N or m], and the same over the largest value.
     rms: float
     relative_rms: float

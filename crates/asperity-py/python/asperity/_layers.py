@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, check_length, each, number
+from ._arrays import ArrayLike, Floats, check_length, each, number
 from ._core import CaseError
 from ._declared import Table
 from ._materials import Material
@@ -91,7 +90,7 @@ def materials_of(body: Material | Body) -> list[Material]:
     return [*(layer.material for layer in body.layers), *base]
 
 
-def layer_compliance(q: npt.ArrayLike, body: Material | Body, *, time: float = 0.0) -> Floats:
+def layer_compliance(q: ArrayLike, body: Material | Body, *, time: float = 0.0) -> Floats:
     """C(q) [m/Pa]: the displacement of the surface under a wave of pressure of unit amplitude.
 
     `q` are wave numbers [rad/m], of any shape; with a `time` [s] after 0 the pressure is held since 0. The half-space that

@@ -21,11 +21,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, array, choice, each, line, number, points
+from ._arrays import ArrayLike, Floats, array, choice, each, line, number, points
 from ._core import CaseError
 from ._declared import check
 from ._parameters import call
@@ -129,7 +127,7 @@ class Material(Sealed):
     def _of(self, measure: Measure | None) -> str:
         return str(choice("measure", self.measure if measure is None else measure, Measure))
 
-    def creep_compliance(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+    def creep_compliance(self, t: ArrayLike, *, measure: Measure | None = None) -> Floats:
         """Creep compliance [1/Pa] at times `t` [s] of the modulus `measure`, "young" or "shear"; by default the one that the material was
         given in (:attr:`measure`).
 
@@ -140,7 +138,7 @@ class Material(Sealed):
         """
         return each(lambda times: self._body.creep(times, self._of(measure)), "times", t)
 
-    def relaxation_modulus(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+    def relaxation_modulus(self, t: ArrayLike, *, measure: Measure | None = None) -> Floats:
         """Relaxation modulus [Pa] at times `t` [s]: Young's modulus with ``measure="young"``, the shear modulus with "shear"; by default the
         one that the material was given in (:attr:`measure`). The pulse at t = 0 with which a body without instantaneous compliance
         (:class:`KelvinVoigt`) answers a step of the strain is left out.
@@ -152,7 +150,7 @@ class Material(Sealed):
         """
         return each(lambda times: self._body.relaxation(times, self._of(measure)), "times", t)
 
-    def storage_loss(self, omega: npt.ArrayLike, *, measure: Measure | None = None) -> tuple[Floats, Floats]:
+    def storage_loss(self, omega: ArrayLike, *, measure: Measure | None = None) -> tuple[Floats, Floats]:
         """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s] (quantities may be in Hz or rpm) of the modulus `measure`,
         as :meth:`relaxation_modulus`.
 
@@ -169,11 +167,11 @@ class Material(Sealed):
     #: Short for `creep_compliance` and `relaxation_modulus`.
     creep, relaxation = creep_compliance, relaxation_modulus
 
-    def storage(self, omega: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+    def storage(self, omega: ArrayLike, *, measure: Measure | None = None) -> Floats:
         """The storage modulus [Pa], as :meth:`storage_loss`."""
         return self.storage_loss(omega, measure=measure)[0]
 
-    def loss(self, omega: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+    def loss(self, omega: ArrayLike, *, measure: Measure | None = None) -> Floats:
         """The loss modulus [Pa], as :meth:`storage_loss`.
 
         >>> import asperity as asp
@@ -183,7 +181,7 @@ class Material(Sealed):
         """
         return self.storage_loss(omega, measure=measure)[1]
 
-    def contact_compliance(self, t: npt.ArrayLike) -> Floats:
+    def contact_compliance(self, t: ArrayLike) -> Floats:
         """Contact creep compliance C(t) [1/Pa] against a rigid body: 1/E* of an elastic one."""
         return each(self._body.contact_creep, "times", t)
 

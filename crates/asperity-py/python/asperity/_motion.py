@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
-from ._arrays import Floats, direction_of, line, number
+from ._arrays import ArrayLike, Floats, direction_of, line, number
 from ._flash import Flash
 from ._histories import Function, History, one_of
 from ._options import arguments_of
@@ -69,7 +68,7 @@ class Slide(Moving, InTime):
 class Steady(Moving):
     """The arguments of :func:`asperity.steady`."""
 
-    velocities: npt.ArrayLike
+    velocities: ArrayLike
 
     def course_keys(self) -> dict[str, Any]:
         return {"motion": {"steady": {"velocities": line("velocities", self.velocities).tolist()}, **self.motion_keys()}, **self.flash_keys()}

@@ -8,11 +8,10 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, get_args
 
 import numpy as np
-import numpy.typing as npt
 
 from ._adhesion import Adhesion
 from ._fluid import Fluid
-from ._arrays import Floats, as_plane, check_places, distinct, in_order, number
+from ._arrays import ArrayLike, Floats, as_plane, check_places, distinct, in_order, number
 from ._core import CaseError
 from ._declared import Table, check
 from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
@@ -41,7 +40,7 @@ class Problem:
     pressure: History | Function | float | None = None
     gap: Any = None
     size: float | Sequence[float] | None = None
-    hardness: float | npt.ArrayLike | None = None
+    hardness: float | ArrayLike | None = None
     temperature: float | Sequence[tuple[float, float]] | None = None
     boundary: Boundary = "free"
     method: Method = "projected-cg"
@@ -54,7 +53,7 @@ class Problem:
     largest_gap: float | None = None
     fields: Sequence[Field] = ()
     every: int | None = None
-    field_times: npt.ArrayLike | None = None
+    field_times: ArrayLike | None = None
     title: str = ""
     #: Of each history that was given as a function: the points of its table, and the largest distance that was found.
     sampled: dict[str, dict[str, float]] = field(init=False, default_factory=dict)
@@ -119,7 +118,7 @@ class Problem:
 class InTime(Problem):
     """A run in time."""
 
-    times: Times | npt.ArrayLike
+    times: Times | ArrayLike
     scheme: Scheme = "linear"
     breaks: Sequence[float] = ()
     wear: Wear | float | None = None
@@ -157,7 +156,7 @@ class InStages(InTime):
     stages: Sequence[Stage] | None = None
     adhesion: Adhesion | None = None
     fluid: Fluid | None = None
-    friction: Friction | float | npt.ArrayLike | None = None
+    friction: Friction | float | ArrayLike | None = None
     tangential: Tangential | None = None
 
     alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure", "approach", "stages"), ("surface", "gap")]

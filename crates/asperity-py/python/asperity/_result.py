@@ -13,10 +13,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
+from ._arrays import AnyArray, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
 from ._axis import TIME, VELOCITY
 from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, dataset, frame, told, variable
 from ._core import CaseError
@@ -344,7 +343,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         """Figures by matplotlib: ``result.plot.evolution()``, ``result.plot.pressure(time=500.0)``, ..."""
         return Plots(self)
 
-    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> npt.NDArray[np.uint32]:
+    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> Labels:
         """The contact spots as a labelled image of shape (nx, ny): the number of the spot of each cell, 1 for the largest, 0 where
         nothing touches. Cells that share an edge are of one spot, on a periodic domain also across the borders. At the stored time
         nearest to `time`, as :meth:`field`.
@@ -357,10 +356,10 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         """
         touches = self._touches(time=time, velocity=velocity, index=index).astype(np.float64)
         boundary = self._setup.get("boundary", "free")
-        labels: npt.NDArray[np.uint32] = _core.spot_labels(plain(as_plane(touches)), boundary)
+        labels: Labels = _core.spot_labels(plain(as_plane(touches)), boundary)
         return labels.reshape(touches.shape)
 
-    def _touches(self, **at: Any) -> npt.NDArray[np.uint8]:
+    def _touches(self, **at: Any) -> AnyArray:
         """Where the surfaces touch at a stored instant: from the field that tells it."""
         coupling = (self._setup.get("leakage") or {}).get("coupling")
         pressure: Field = "contact_pressure" if self._setup.get("adhesion") or coupling else "pressure"

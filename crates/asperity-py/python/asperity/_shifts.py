@@ -16,10 +16,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, each, number, points
+from ._arrays import ArrayLike, Floats, each, number, points
 from ._core import CaseError
 from ._findings import warn_caller
 from ._parameters import call, parameters
@@ -53,7 +52,7 @@ class Shift:
     def _parameters(self) -> dict[str, Any]:
         return dict(zip(_NUMBERS[self.model], self.numbers))
 
-    def factor(self, temperature: npt.ArrayLike) -> Floats:
+    def factor(self, temperature: ArrayLike) -> Floats:
         """a_T at temperatures [K]: processes take a_T times as long as at the reference temperature.
 
         >>> import asperity as asp
@@ -62,7 +61,7 @@ class Shift:
         """
         return each(functools.partial(_core.shift_factor, self._keys), "temperatures", temperature)
 
-    def vertical_factor(self, temperature: npt.ArrayLike) -> Floats:
+    def vertical_factor(self, temperature: ArrayLike) -> Floats:
         """b_T at temperatures [K]: moduli are those at the reference temperature over b_T; 1 without a vertical shift.
 
         >>> import asperity as asp

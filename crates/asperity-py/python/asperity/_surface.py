@@ -11,10 +11,9 @@ from dataclasses import dataclass, field as dataclass_field
 from typing import Any, Protocol, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _foreign, _html
-from ._arrays import Floats, along, angle, as_plane, cell_counts, cells_of, centres, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
+from ._arrays import AnyArray, Floats, along, angle, as_plane, cell_counts, cells_of, centres, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
 from ._arrays import pitch_of, size_of
 from ._core import CaseError
 from ._findings import findings_of, warn, warn_caller
@@ -45,7 +44,7 @@ class Topography(Protocol):
 
 
 #: What adds to a surface; of numbers only the 0 with which sum() begins.
-Summand = Union["Surface", npt.NDArray[Any], Labelled, Topography, int]
+Summand = Union["Surface", AnyArray, Labelled, Topography, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +119,7 @@ class Surface(OnGrid):
         """Number of cells along x and y; of a line one number."""
         return self.heights.shape
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> AnyArray:
         """The heights [m]."""
         wanted = np.dtype(np.float64 if dtype is None else dtype)
         if copy is False and wanted != self.heights.dtype:

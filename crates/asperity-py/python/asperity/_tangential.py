@@ -6,9 +6,8 @@ from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from ._arrays import Floats, as_plane, number
+from ._arrays import ArrayLike, Floats, as_plane, number
 from ._core import CaseError
 from ._declared import Table
 from ._histories import History, as_history, one_of
@@ -29,7 +28,7 @@ class Friction(Table):
     Friction(0.3, shear_limit=50000000.0)
     """
 
-    coefficient: float | npt.ArrayLike
+    coefficient: float | ArrayLike
     _: KW_ONLY
     shear_limit: float | None = None
     coupling: Coupled = "neglect"

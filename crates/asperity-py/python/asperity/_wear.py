@@ -6,9 +6,8 @@ from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
-import numpy.typing as npt
 
-from ._arrays import Floats, as_plane
+from ._arrays import ArrayLike, Floats, as_plane
 from ._declared import Table
 from ._surface import Surface, per_cell
 
@@ -35,7 +34,7 @@ class Wear(Table):
     _: KW_ONLY
     velocity: Any = None
     threshold: float = 0.0
-    map: npt.ArrayLike | None = None
+    map: ArrayLike | None = None
     cycles_per_step: float = 1.0
     cycles_tolerance: float | None = None
     depth_limit: float | None = None

@@ -8,10 +8,9 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _drawing as _draw
-from ._arrays import Floats, choice, number
+from ._arrays import AnyArray, Floats, choice, number
 from ._core import CaseError
 from ._last_cycle import last_cycle as _last_cycle_of
 from ._prefixes import quantity, shown
@@ -61,7 +60,7 @@ class _Panel(NamedTuple):
     title: str
     unit: str
     #: Numbers of the rows by their names in the legend.
-    curves: dict[str, npt.NDArray[Any]]
+    curves: dict[str, AnyArray]
     #: 2 for an area, whose unit is that of the length squared.
     power: int = 1
 
@@ -83,14 +82,14 @@ class Plots:
         there |= dict.fromkeys(("contact", "spots"), bool({"pressure", "contact"} & fields))
         return _told(self, frozenset(name for name, drawn in there.items() if not drawn))
 
-    def evolution(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
+    def evolution(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> AnyArray:
         """Contact area, approach, load and pressure over time (of a sweep: friction in place of the load, over the velocity): four axes,
         in a new figure or the `axes` that another evolution returned. The pressure is the nominal mean (load by the area of the
         domain), the largest one and the mean over the contact. Time is logarithmic where half of the rows lie in the first tenth of
         the run (velocities where they span a decade), and where `log_time` says so; the row at the time 0 is not shown then."""
         return self._over_rows("evolution", self._panels(), axes, log_time, label, style)
 
-    def friction(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
+    def friction(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> AnyArray:
         """Friction coefficient, force, contact area over that of the domain and lost power of a contact in motion, over time or, of
         steady states, over the velocity: four axes, as :meth:`evolution`."""
         result, coefficient = self._result, self._coefficient()
@@ -102,7 +101,7 @@ class Plots:
         panels = [coefficient, _Panel("force", result.units("friction_force"), force), area, power]
         return self._over_rows("friction", panels, axes, log_time, label, style)
 
-    def leak(self, leaks: Any = None, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
+    def leak(self, leaks: Any = None, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> AnyArray:
         """Leak rate with its two estimates, and hydraulic and critical gap over time, on logarithmic axes: two axes, or one (the gaps) where
         no fluid is given. `leaks` is what :meth:`Result.leakage` returns; by default the leaks that the run stored. Times at which the seal
         is tight are left out."""
@@ -123,7 +122,7 @@ class Plots:
 
     def _over_rows(
         self, name: str, panels: list[_Panel], axes: Any, log_time: bool | None, label: str | None, style: dict[str, Any], over: Any = None
-    ) -> npt.NDArray[Any]:
+    ) -> AnyArray:
         """The panels over the rows, or over these times, each in axes of its own."""
         result, along = self._result, self._result._axis
         lines, number = {4: (2, "four"), 2: (1, "two"), 1: (1, "one")}[len(panels)]
@@ -137,7 +136,7 @@ class Plots:
             _, axes = plt.subplots(lines, columns, figsize=(4 * columns, 2.7 * lines), layout="constrained")
         if np.size(axes) != len(panels):
             raise CaseError(f"axes holds {np.size(axes)} axes, but must hold {number}, as plt.subplots({lines}, {columns}) returns them")
-        drawn: npt.NDArray[Any] = np.asarray(axes, dtype=object)
+        drawn: AnyArray = np.asarray(axes, dtype=object)
         over = result._table["time"] if over is None else over
         if log_time is None:
             before = [ax.get_xscale() == "log" for ax in drawn.flat if ax.lines]

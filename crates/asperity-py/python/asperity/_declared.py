@@ -1,4 +1,4 @@
-"""Arguments that are the fields of a dataclass: what a field is declared as says how it is checked.
+"""Arguments that are the fields of a dataclass, which functions may share: what a field is declared as says how it is checked.
 
 A field of the type `float` is a number in SI units, `int` a whole number, `bool` True or False, and a word is one of its Literal in
 :mod:`asperity._words`. Fields of other types are checked where they are used, and limits by the core.
@@ -7,19 +7,24 @@ A field of the type `float` is a number in SI units, `int` a whole number, `bool
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+import inspect
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, fields
-from typing import TYPE_CHECKING, Any, ClassVar, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, TypeVar, get_args
 
 import numpy as np
 
 from . import _words
-from ._arrays import choice, count, number
+from ._arrays import choice, count, meant, number
 from ._core import CaseError
 from ._parameters import call
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
+
+Arguments = ParamSpec("Arguments")
+Options = TypeVar("Options")
+Answer = TypeVar("Answer")
 
 
 def _truth(name: str, value: Any) -> bool:
@@ -70,3 +75,31 @@ class Table:
     def _keys(self) -> dict[str, Any]:
         """The keys of the table that are given."""
         return {one.name: value for one in fields(self) if (value := getattr(self, one.name)) is not None}
+
+
+def check_call(name: str, signature: inspect.Signature, positional: Sequence[Any], named: Mapping[str, Any]) -> None:
+    """Refuses arguments that a function of this signature does not take, with the nearest one that it does."""
+    try:
+        signature.bind(*positional, **named)
+    except TypeError as error:
+        for unknown in (one for one in named if one not in signature.parameters):
+            raise TypeError(f"{name}() takes no argument {unknown!r}{meant(unknown, signature.parameters)}") from None
+        raise TypeError(f"{name}(): {error}") from None
+
+
+def arguments_of(options: Callable[Arguments, Options]) -> Callable[[Callable[[Options], Answer]], Callable[Arguments, Answer]]:
+    """Makes a function of an `options` object one that takes the fields of the object as its arguments."""
+    signature = inspect.signature(options)
+
+    def decorate(function: Callable[[Options], Answer]) -> Callable[Arguments, Answer]:
+        @functools.wraps(function)
+        def call(*positional: Arguments.args, **named: Arguments.kwargs) -> Answer:
+            check_call(function.__name__, signature, positional, named)
+            return function(options(*positional, **named))
+
+        answer = inspect.signature(function).return_annotation
+        call.__signature__ = signature.replace(return_annotation=answer)  # type: ignore[attr-defined]
+        call.options = options  # type: ignore[attr-defined]
+        return call
+
+    return decorate

@@ -20,10 +20,9 @@ import numpy as np
 from . import _core, _html
 from ._arrays import ArrayLike, Floats, count, line, number, pair, plain
 from ._core import CaseError
-from ._declared import check
+from ._declared import arguments_of, check
 from ._findings import Finding, findings_of, warn
 from ._materials import _OF_BODY, Creep, Material, Prony
-from ._options import arguments_of
 from ._sealed import ReadOnlyArrays
 from ._shifts import Shift, made
 from ._words import LongTime, Measure, Moduli, Vertical

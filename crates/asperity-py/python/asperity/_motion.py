@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ._declared import arguments_of
 from ._arrays import ArrayLike, Floats, direction_of, line, number
 from ._flash import Flash
 from ._histories import Function, History, one_of
-from ._options import arguments_of
 from ._problem import InTime, Run, table_keys
 from ._result import Result
 from ._solve import solved

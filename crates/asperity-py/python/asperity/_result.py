@@ -16,7 +16,6 @@ import numpy as np
 
 from . import _core, _html
 from ._arrays import AnyArray, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
-from ._axis import TIME, VELOCITY
 from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, dataset, frame, told, variable
 from ._core import CaseError
 from ._findings import Finding, findings_of
@@ -32,6 +31,21 @@ from .plot import Plots
 
 if TYPE_CHECKING:
     from ._converge import ErrorBar
+
+class Axis(NamedTuple):
+    """What the rows of a result follow one another in: times, or the velocities of steady states of motion."""
+
+    #: Its name, also of its dimension.
+    name: str
+    #: Its symbol.
+    symbol: str
+    #: Its unit.
+    unit: str
+
+
+TIME = Axis("time", "t", "s")
+VELOCITY = Axis("velocity", "v", "m/s")
+
 
 class Cycle(NamedTuple):
     """One period of a cyclic load; made by :meth:`Result.cycles`."""
@@ -215,9 +229,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             raise CaseError(f"{name!r} is no number of a row; there are {', '.join(COLUMNS)}")
         return COLUMNS[name].attributes(self.is_line)["units"]
 
-    def field(
-        self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None
-    ) -> Floats:
+    def field(self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> Floats:
         """A field of shape (nx, ny), of a line contact (n,), at the stored time nearest to `time` [s], or with that index; default the
         last. Of a sweep at the stored velocity nearest to `velocity` [m/s]. Fields of a contact that moves are in its frame.
 

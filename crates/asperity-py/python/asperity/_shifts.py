@@ -107,9 +107,7 @@ def arrhenius(*, activation_energy: float, reference: float, vertical: Vertical 
     return _checked(Shift("arrhenius", numbers, vertical=_vertical(vertical)))
 
 
-def shift_table(
-    pairs: Sequence[tuple[float, float]] | str | os.PathLike[str], *, vertical: Vertical = None
-) -> Shift:
+def shift_table(pairs: Sequence[tuple[float, float]] | str | os.PathLike[str], *, vertical: Vertical = None) -> Shift:
     """log10 a_T, linear between (temperature [K], log10 a_T) points in order of temperature; or the path of a table of temperatures
     and shift factors with a header, in a text file or a spreadsheet, as ``asperity material fit --shift-table`` reads it.
 

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
+from ._declared import arguments_of
 from ._arrays import cells_of, path_of
 from ._columns import HISTOGRAMS
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
 from ._histories import History, control_keys
 from ._layers import materials_of
-from ._options import arguments_of
 from ._problem import InStages, Problem, Run, Solve, bodies_of
 from ._progress import Progress
 from ._record import Keep, Record

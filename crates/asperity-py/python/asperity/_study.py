@@ -20,6 +20,7 @@ import numpy as np
 from . import _core
 from ._arrays import count, distinct, number
 from ._core import CaseError
+from ._declared import check_call
 from ._findings import Finding, ResultWarning, warn_caller
 from ._points import Point, Solved, base_of_case, base_of_function, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
@@ -27,7 +28,6 @@ from ._progress import line_of
 from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW, VECTORS, dataset
 from ._histories import one_of
 from ._motion import slide, steady
-from ._options import check_call
 from ._units import UNITS, bare, carries, has_unit, is_labelled, unit_among
 from ._result import Result
 from ._solve import overrides, solve, source

@@ -297,9 +297,7 @@ class Surface(OnGrid):
         words = f"window shape={shape}"
         return self.process(words if share is None else f"{words} share={number('share', share)!r}")
 
-    def statistics(
-        self, *, periodic: bool | None = None, longest: float | None = None, shortest: float | None = None
-    ) -> dict[str, float]:
+    def statistics(self, *, periodic: bool | None = None, longest: float | None = None, shortest: float | None = None) -> dict[str, float]:
         """The statistics of ``asperity surface info`` of the heights as they are.
 
         Parameters
@@ -541,23 +539,17 @@ class Surface(OnGrid):
         return _made("self-affine", cells, (1e-4, 1e-4), None, keys)
 
     @staticmethod
-    def sphere(
-        *, cells: Sequence[int], size: Sequence[float], radius: float, center: Sequence[float] = (0.0, 0.0)
-    ) -> Surface:
+    def sphere(*, cells: Sequence[int], size: Sequence[float], radius: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A paraboloid of that radius [m]; `center` [m] from the middle of the domain."""
         return _shape("sphere", cells, size, center, {"radius": radius})
 
     @staticmethod
-    def ellipsoid(
-        *, cells: Sequence[int], size: Sequence[float], radius_x: float, radius_y: float, center: Sequence[float] = (0.0, 0.0)
-    ) -> Surface:
+    def ellipsoid(*, cells: Sequence[int], size: Sequence[float], radius_x: float, radius_y: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A paraboloid of two radii [m]; an infinite one makes a cylinder."""
         return _shape("ellipsoid", cells, size, center, {"radius_x": radius_x, "radius_y": radius_y})
 
     @staticmethod
-    def cylinder(
-        *, cells: int | Sequence[int], size: float | Sequence[float], radius: float, center: float | Sequence[float] = 0.0
-    ) -> Surface:
+    def cylinder(*, cells: int | Sequence[int], size: float | Sequence[float], radius: float, center: float | Sequence[float] = 0.0) -> Surface:
         """A cylinder along y, as a parabola of that radius [m]; `center` [m] along x from the middle of the domain.
 
         >>> import asperity as asp, numpy as np
@@ -569,16 +561,12 @@ class Surface(OnGrid):
         return _shape("cylinder", cells, size, center, {"radius": radius})
 
     @staticmethod
-    def wedge(
-        *, cells: int | Sequence[int], size: float | Sequence[float], slope: float, center: float | Sequence[float] = 0.0
-    ) -> Surface:
+    def wedge(*, cells: int | Sequence[int], size: float | Sequence[float], slope: float, center: float | Sequence[float] = 0.0) -> Surface:
         """A wedge along y that rises by `slope` per length; `center` [m] along x from the middle of the domain."""
         return _shape("wedge", cells, size, center, {"slope": slope})
 
     @staticmethod
-    def cone(
-        *, cells: Sequence[int], size: Sequence[float], slope: float, center: Sequence[float] = (0.0, 0.0)
-    ) -> Surface:
+    def cone(*, cells: Sequence[int], size: Sequence[float], slope: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A cone that rises by `slope` per length."""
         return _shape("cone", cells, size, center, {"slope": slope})
 
@@ -593,9 +581,7 @@ class Surface(OnGrid):
         return _shape("flat-punch", cells, size, center, {"radius": radius}, face)
 
     @staticmethod
-    def wave(
-        *, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]
-    ) -> Surface:
+    def wave(*, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]) -> Surface:
         """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge. On a line one wavelength."""
         return _made("wave", cells, size, {**numbers_of({"amplitude": amplitude}), "wavelength": _along_both("wavelength", wavelength, size)})
 

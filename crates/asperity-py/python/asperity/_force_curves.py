@@ -203,15 +203,8 @@ def read_force_curves(path: str | os.PathLike[str]) -> list[ForceCurve]:
         raise CaseError(f"{name}: no such file")
     try:
         found = [_curve(data) for data in afmformats.load_data(name)]
-    except CaseError:
-        raise
     # Any reader fails in its own way on a damaged file, and the package's own errors are no Exceptions.
-    except (
-        Exception,
-        afmformats.errors.AFMFileFormatError,
-        afmformats.errors.MissingMetaDataError,
-        afmformats.meta.MetaDataMissingError,
-    ) as error:
+    except (Exception, afmformats.errors.AFMFileFormatError, afmformats.errors.MissingMetaDataError, afmformats.meta.MetaDataMissingError) as error:
         raise CaseError(f"{name}: afmformats {afmformats.__version__} cannot read it: {error}") from error
     curves = [curve for curve in found if curve is not None]
     if not curves:

@@ -28,7 +28,7 @@ Answer = TypeVar("Answer")
 
 
 def _truth(name: str, value: Any) -> bool:
-    if not isinstance(value, (bool, np.bool_)):
+    if not isinstance(value, (bool, np.bool_, int)) or value not in (0, 1):
         raise CaseError(f"{name} is {value!r}, but must be True or False")
     return bool(value)
 
@@ -52,9 +52,9 @@ _CHECKS: dict[str, Callable[[str, Any], Any]] = {
 def check(given: DataclassInstance) -> None:
     """Replaces the values of the fields by checked ones; a field that may be None stays None."""
     for one in fields(given):
-        kind = str(one.type).removesuffix(" | None")
-        value = getattr(given, one.name, None)
-        if kind in _CHECKS and not (value is None and kind != one.type):
+        declared = one.type.__name__ if isinstance(one.type, type) else str(one.type)
+        kind, value = declared.removesuffix(" | None"), getattr(given, one.name, None)
+        if kind in _CHECKS and not (value is None and kind != declared):
             object.__setattr__(given, one.name, _CHECKS[kind](one.name, value))
 
 

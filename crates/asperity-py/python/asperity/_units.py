@@ -98,20 +98,15 @@ def frequency(what: str, value: Any, *, angular: bool) -> Any:
     rad/s is angular. Plain numbers are returned as they are."""
     if isinstance(value, (list, tuple)) and any(carries(one) or is_labelled(one) for one in value):
         return type(value)([frequency(what, one, angular=angular) for one in value])
-    if is_labelled(value) and not carries(value.data):
-        if "units" not in value.attrs:
-            return bare(what, value, "1/s")
+    value = value.data if is_labelled(value) and carries(value.data) else value
+    if not has_unit(value):
+        return bare(what, value, "1/s")
+    given = is_angle(value)
+    if is_labelled(value):
         text = str(value.attrs["units"]).strip()
-        given = is_angle(value) and text not in _TURNS
-        plain = value.copy()
-        plain.attrs["units"] = _TURNS.get(text, re.sub(r"\brad(ian)?s?\b", "1", text))
-        found = bare(what, plain, "1/s")
-    else:
-        held = value.data if is_labelled(value) else value
-        if not carries(held):
-            return held
-        given = is_angle(held)
-        found = bare(what, held, "rad/s" if given else "1/s")
+        given, value = given and text not in _TURNS, value.copy()
+        value.attrs["units"] = _TURNS.get(text, re.sub(r"\brad(ian)?s?\b", "1", text))
+    found = bare(what, value, "rad/s" if given and not is_labelled(value) else "1/s")
     return found * (1.0 if given == angular else 2.0 * math.pi if angular else 0.5 / math.pi)
 
 
@@ -121,32 +116,27 @@ def bare(what: str, value: Any, unit: str | None = None) -> Any:
     value = variable_of(what, value)
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise CaseError(f"{what} has masked values: leave them out, or fill them")
-    if is_labelled(value):
-        given = value.attrs.get("units")
-        if carries(value.data):
-            return bare(what, value.data, unit)
-        numbers = np.asarray(value.data)
-        if given is None:
-            return numbers
-        if unit == "" and is_angle(value):
-            raise CaseError(_NO_ANGLE.format(what, given))
-        if unit == "K" and (scale := _unit_words.temperature(str(given).strip())) is not None:
-            _check_temperature(what, str(given), True)
-            return numbers * scale[1] + scale[0]
-        factor = factor_of(what, given, unit)
-        return numbers if factor == 1.0 else numbers * factor
     if isinstance(value, (list, tuple)) and any(carries(one) or is_labelled(one) for one in value):
         return type(value)([bare(what, one, unit) for one in value])
-    if not carries(value):
-        return value
+    value = value.data if is_labelled(value) and carries(value.data) else value
+    if not has_unit(value):
+        return np.asarray(value.data) if is_labelled(value) else value
+    text = unit_text(value)
     if unit == "" and is_angle(value):
-        raise CaseError(_NO_ANGLE.format(what, unit_text(value)))
+        raise CaseError(_NO_ANGLE.format(what, text))
+    if is_labelled(value):
+        numbers = np.asarray(value.data)
+        if unit == "K" and (scale := _unit_words.temperature(text.strip())) is not None:
+            _check_temperature(what, text, True)
+            return numbers * scale[1] + scale[0]
+        factor = factor_of(what, text, unit)
+        return numbers if factor == 1.0 else numbers * factor
     if unit == "K":
-        _check_temperature(what, unit_text(value), _has_offset(value))
+        _check_temperature(what, text, _has_offset(value))
     try:
         return value.m_as(unit or "dimensionless") if hasattr(value, "m_as") else value.to_value(unit)
     except Exception as error:  # each package has errors of its own
-        raise CaseError(f"{what} is in {unit_text(value)}, but must be {expected(unit)}: {error}") from None
+        raise CaseError(f"{what} is in {text}, but must be {expected(unit)}: {error}") from None
 
 
 def _check_temperature(what: str, text: str, offset: bool) -> None:

@@ -150,17 +150,26 @@ class Fit(ReadOnlyArrays):
 
 
 @dataclass(kw_only=True)
-class Options:
+class OfBody:
+    """What is said of the body; all arguments are checked as they are declared."""
+
+    poisson: float | None = None
+    bulk_modulus: float | None = None
+    hardness: float | None = None
+    name: str | None = None
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(kw_only=True)
+class Options(OfBody):
     """How a material is fitted; :func:`fit_relaxation` describes the fields."""
 
     modulus: Measure | None = "young"
     shift: Shift | str | None = None
     reference: float | None = None
     vertical: Vertical | None = None
-    poisson: float | None = None
-    bulk_modulus: float | None = None
-    hardness: float | None = None
-    name: str | None = None
     window: Sequence[float] | None = None
     per_decade: float = 3.0
     margin: float = 1.0
@@ -168,9 +177,6 @@ class Options:
     max_misfit: float = 0.1
     max_terms: int | None = None
     misfit: float | None = None
-
-    def __post_init__(self) -> None:
-        check(self)
 
     def keys(self, kind: str | None) -> dict[str, Any]:
         """The options as the core takes them, for curves of that kind."""
@@ -379,24 +385,17 @@ _PER_DECADE = 20
 
 
 @dataclass
-class OfFunction:
+class OfFunction(OfBody):
     """The arguments of :func:`Relaxation` and :func:`CreepFunction`."""
 
     function: Callable[[float], Any]
     _: KW_ONLY
     window: Sequence[float]
     modulus: Measure = "young"
-    poisson: float | None = None
-    bulk_modulus: float | None = None
-    hardness: float | None = None
-    name: str | None = None
     shift: Shift | None = None
     temperature: float | None = None
     per_decade: float = 3.0
     max_misfit: float = 0.01
-
-    def __post_init__(self) -> None:
-        check(self)
 
     def material(self, kind: str) -> Material:
         """The material with this function of time."""

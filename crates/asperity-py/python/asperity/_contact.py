@@ -181,8 +181,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
     def spots(self) -> Labels:
         """The contact spots as a labelled image; see :meth:`Result.spots`."""
         self._whole("a map of the spots")
-        labels = _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary)
-        return labels.reshape(self.pressure.shape)
+        return _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary).reshape(self.pressure.shape)
 
     @property
     def _setup(self) -> dict[str, Any]:
@@ -202,8 +201,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
 
     def to_xarray(self) -> Any:
         """The contact as xarray.Dataset with coordinates and units."""
-        data = self.to_result().to_xarray().isel(time=0, field_time=0, drop=True)
-        return data.drop_vars(["time_error", "stage"])
+        return self.to_result().to_xarray().isel(time=0, field_time=0, drop=True).drop_vars(["time_error", "stage"])
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Writes the contact as a result of one row, as :meth:`Result.save`."""
@@ -253,8 +251,7 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
     @property
     def findings(self) -> list[Finding]:
         """Where the numbers may be off, of any of the contacts."""
-        found = {finding["code"]: finding for contact in reversed(self._contacts) for finding in contact.findings}
-        return list(found.values())
+        return list({finding["code"]: finding for contact in reversed(self._contacts) for finding in contact.findings}.values())
 
     @overload
     def __getitem__(self, index: int) -> ElasticContact: ...

@@ -68,8 +68,7 @@ class Leakage(Sealed):
         return findings_of(self._findings)
 
     def _solved(self, fluid: dict[str, Any]) -> dict[str, Any]:
-        keys = json.dumps({**self._keys, **fluid})
-        return _core.leakage(self._gap, self._contact, list(self._size), keys, [], 0.0)
+        return _core.leakage(self._gap, self._contact, list(self._size), json.dumps({**self._keys, **fluid}), [], 0.0)
 
     def leak_rate(self, *, pressure_drop: float, viscosity: float) -> float:
         """Leak of a liquid [m^3/s] under a pressure drop [Pa], with a viscosity [Pa s] (water: 1e-3)."""

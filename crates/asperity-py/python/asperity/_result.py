@@ -367,9 +367,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         8
         """
         touches = self._touches(time=time, velocity=velocity, index=index).astype(np.float64)
-        boundary = self._setup.get("boundary", "free")
-        labels: Labels = _core.spot_labels(plain(as_plane(touches)), boundary)
-        return labels.reshape(touches.shape)
+        return _core.spot_labels(plain(as_plane(touches)), self._setup.get("boundary", "free")).reshape(touches.shape)
 
     def _touches(self, **at: Any) -> AnyArray:
         """Where the surfaces touch at a stored instant: from the field that tells it."""

@@ -13,6 +13,9 @@ import numpy.typing as npt
 from ._core import CaseError
 from ._units import bare, frequency, has_unit, is_labelled, variable_of
 
+AnyPath = str | os.PathLike[str]
+#: Lengths of a domain along x and y [m], or of a line.
+Size = float | Sequence[float] | None
 ArrayLike = npt.ArrayLike
 AnyArray = npt.NDArray[Any]
 Floats = npt.NDArray[np.float64]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import json
 import math
-import os
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, overload
 import numpy as np
 
 from . import _core, _html
-from ._arrays import AnyArray, ArrayLike, Counts, Floats, Labels, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
+from ._arrays import AnyArray, AnyPath, ArrayLike, Counts, Floats, Labels, Size, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
 from ._columns import FIELDS, ROW, frame, told
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
@@ -203,7 +202,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         """The contact as xarray.Dataset with coordinates and units."""
         return self.to_result().to_xarray().isel(time=0, field_time=0, drop=True).drop_vars(["time_error", "stage"])
 
-    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    def save(self, path: AnyPath, *, force: bool = False) -> None:
         """Writes the contact as a result of one row, as :meth:`Result.save`."""
         self.to_result().save(path, force=force)
 
@@ -298,7 +297,7 @@ class _How(TypedDict, total=False):
     """What the contacts of :func:`elastic` have in common, one or several."""
 
     gap: Any
-    size: float | Sequence[float] | None
+    size: Size
     hardness: float | ArrayLike | None
     boundary: Boundary
     kernel: Kernel | None
@@ -344,7 +343,7 @@ def elastic(
 ) -> ElasticCurve: ...
 def elastic(
     surface: Any = None, contact_modulus: float | None = None, *, load: Any = None, pressure: Any = None, approach: Any = None,
-    gap: Any = None, size: float | Sequence[float] | None = None, hardness: float | ArrayLike | None = None,
+    gap: Any = None, size: Size = None, hardness: float | ArrayLike | None = None,
     boundary: Boundary = "free", kernel: Kernel | None = None, start: ElasticContact | ArrayLike | None = None,
     out: Floats | Mapping[str, Floats] | None = None, history: bool = False, method: Method = "projected-cg",
     tolerance: float = 1e-6, max_iterations: int = 5000

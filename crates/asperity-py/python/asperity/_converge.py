@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Mapping, Sequence
-from typing import Any, TypedDict
+from typing import TypedDict
 
 from . import _core
-from ._solve import overrides, source
+from ._solve import Case, Changes, overrides, source
 
 __all__ = ["ErrorBar", "converge"]
 
@@ -37,9 +35,7 @@ class ErrorBar(TypedDict, total=False):
     note: str
 
 
-def converge(
-    case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None, refine: bool = False
-) -> list[ErrorBar]:
+def converge(case: Case, *, set: Changes = None, refine: bool = False) -> list[ErrorBar]:
     """The answers of a case (as in :func:`asperity.run`) with their errors, as ``asperity converge`` prints them.
 
     The case is solved, and again with half and a quarter of the cells along each side, with steps of twice the length and with ten

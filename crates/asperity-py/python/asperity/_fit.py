@@ -18,7 +18,7 @@ from typing import Any, Literal
 import numpy as np
 
 from . import _core, _html
-from ._arrays import ArrayLike, Floats, count, line, number, pair, plain
+from ._arrays import AnyPath, ArrayLike, Floats, count, line, number, pair, plain
 from ._core import CaseError
 from ._declared import arguments_of, check
 from ._findings import Finding, findings_of, warn
@@ -269,7 +269,7 @@ class OfDma(Points, Spectra):
 class OfFile(Spectra):
     """The arguments of :func:`fit_file`."""
 
-    path: str | os.PathLike[str]
+    path: AnyPath
     _: KW_ONLY
     kind: str | None = None
     sheet: str | None = None

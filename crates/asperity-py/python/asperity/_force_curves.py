@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core, _html
-from ._arrays import Counts, Floats, choice, columns, number
+from ._arrays import AnyPath, Counts, Floats, choice, columns, number
 from ._core import CaseError
 from ._sealed import ReadOnlyArrays
 from ._words import Branch, Control
@@ -179,7 +179,7 @@ class ForceCurve(ReadOnlyArrays):
         return f"<ForceCurve of {len(self.force)} points, loads {self.force.min():.4g} to {self.force.max():.4g} N>"
 
 
-def read_force_curves(path: str | os.PathLike[str]) -> list[ForceCurve]:
+def read_force_curves(path: AnyPath) -> list[ForceCurve]:
     """The force curves of a file of an atomic force microscope or a nanoindenter, by the package `afmformats`.
 
     JPK, Asylum Research, NT-MDT, AFM workshop, Optics11 and other files; a map gives one curve per pixel, with "grid index x" and

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, get_args
@@ -11,7 +10,7 @@ import numpy as np
 
 from ._adhesion import Adhesion
 from ._fluid import Fluid
-from ._arrays import ArrayLike, Floats, as_plane, check_places, distinct, in_order, number
+from ._arrays import AnyPath, ArrayLike, Floats, as_plane, check_places, distinct, in_order, number
 from ._core import CaseError
 from ._declared import Table, check
 from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
@@ -194,7 +193,7 @@ class Run(Problem):
     """A run to its end."""
 
     fields: Sequence[Field] = ("pressure",)
-    output: str | os.PathLike[str] | None = None
+    output: AnyPath | None = None
     force: bool = False
     progress: bool | None = None
     on_step: Callable[[Step], object] | None = None

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _core, _html
-from ._arrays import AnyArray, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
+from ._arrays import AnyArray, AnyPath, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
 from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, dataset, frame, told, variable
 from ._core import CaseError
 from ._findings import Finding, findings_of
@@ -391,7 +391,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         rows.attrs["units"] = {along: self.units("time"), **{name: self.units(name) for name in columns}}
         return rows
 
-    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    def save(self, path: AnyPath, *, force: bool = False) -> None:
         """Writes the result as a Zarr group, as a run of a case file does: :func:`open` and xarray read it. Stress below the surface
         and leaks that are stored with the result are written too.
 
@@ -427,7 +427,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         if self.path is not None and (self._stress or self._leaks):
             _core.derive_again(self.path, os.fspath(path))
 
-    def report(self, path: str | os.PathLike[str], *, force: bool = False, megabytes: int = 12) -> None:
+    def report(self, path: AnyPath, *, force: bool = False, megabytes: int = 12) -> None:
         """Writes the result as one HTML page with maps and curves, of that size at most.
 
         It shows the fields that were kept.
@@ -542,7 +542,7 @@ def _stored(store: _core.Store, name: str) -> Floats:
     return np.column_stack([store.series(f"{name}_{axis}") for axis in "xy"]) if name in VECTORS else store.series(name)
 
 
-def open(path: str | os.PathLike[str]) -> Result:
+def open(path: AnyPath) -> Result:
     """Opens a result on disk, finished or not; its fields are read when they are used."""
     store = _core.Store(os.fspath(path))
     table = {name: _stored(store, name) for name in [*ROW, *store.quantities] if name not in HISTOGRAMS}

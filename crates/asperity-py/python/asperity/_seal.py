@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ._arrays import Floats
+from ._arrays import AnyPath, Floats
 from ._columns import dataset, variable
 from ._command import answered
 from ._findings import Finding, findings_of, warn
 from ._sealed import Sealed
-from ._solve import overrides
+from ._solve import Case, Changes, overrides
 
 if TYPE_CHECKING:
     import xarray
@@ -109,8 +108,8 @@ class Seal(Sealed):
 
 
 def seal(
-    case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None,
-    directory: str | os.PathLike[str] | None = None, jobs: int | None = None, threads: int | None = None, progress: bool = True
+    case: Case, *, set: Changes = None,
+    directory: AnyPath | None = None, jobs: int | None = None, threads: int | None = None, progress: bool = True
 ) -> Seal:
     """A whole seal of which the case is a patch, as ``asperity seal`` computes it: with the same numbers and the same folder.
 

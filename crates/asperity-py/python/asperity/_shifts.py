@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import ArrayLike, Floats, each, number, points
+from ._arrays import AnyPath, ArrayLike, Floats, each, number, points
 from ._core import CaseError
 from ._findings import warn_caller
 from ._parameters import call, parameters
@@ -107,7 +107,7 @@ def arrhenius(*, activation_energy: float, reference: float, vertical: Vertical 
     return _checked(Shift("arrhenius", numbers, vertical=_vertical(vertical)))
 
 
-def shift_table(pairs: Sequence[tuple[float, float]] | str | os.PathLike[str], *, vertical: Vertical = None) -> Shift:
+def shift_table(pairs: Sequence[tuple[float, float]] | AnyPath, *, vertical: Vertical = None) -> Shift:
     """log10 a_T, linear between (temperature [K], log10 a_T) points in order of temperature; or the path of a table of temperatures
     and shift factors with a header, in a text file or a spreadsheet, as ``asperity material fit --shift-table`` reads it.
 

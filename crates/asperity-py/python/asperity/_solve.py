@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _core
 from ._declared import arguments_of
-from ._arrays import cells_of, path_of
+from ._arrays import AnyPath, cells_of, path_of
 from ._columns import HISTOGRAMS
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
@@ -29,6 +29,11 @@ from ._sealed import Sealed
 
 if TYPE_CHECKING:
     from ._arrays import Floats
+
+
+#: A case: the path of its file, its text or its keys; and changed keys of it.
+Case = AnyPath | Mapping[str, Any]
+Changes = dict[str, Any] | Sequence[str] | None
 
 
 class Step(Numbers, Sealed):
@@ -304,9 +309,8 @@ def solved(given: Run) -> Result:
 
 
 def run(
-    case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None,
-    output: str | os.PathLike[str] | None = None, force: bool = False, resume: bool = False, progress: bool | None = None,
-    on_row: Callable[[dict[str, Any], int, int], object] | None = None
+    case: Case, *, set: Changes = None, output: AnyPath | None = None, force: bool = False, resume: bool = False,
+    progress: bool | None = None, on_row: Callable[[dict[str, Any], int, int], object] | None = None
 ) -> Result:
     """Runs a case, as ``asperity run`` does, and opens its result.
 
@@ -369,13 +373,13 @@ def run(
     return result
 
 
-def check(case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None) -> dict[str, Any]:
+def check(case: Case, *, set: Changes = None) -> dict[str, Any]:
     """What a case (as in :func:`run`) will do, in numbers: cells, rows, moduli, memory [byte], ...; the inputs that a slip
     would hide in, the contact to be expected, and the findings that are known before the run."""
     return dict(json.loads(_core.check(*source(case), overrides(set))))
 
 
-def source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str | None]:
+def source(case: Case) -> tuple[str, str | None]:
     """The path of a case file; or where the files of a case lie that is given as text or keys, and its text."""
     if isinstance(case, Mapping):
         return os.curdir, _core.case_text(dict(case))

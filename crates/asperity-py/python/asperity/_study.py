@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import count, distinct, number
+from ._arrays import AnyPath, count, distinct, number
 from ._core import CaseError
 from ._declared import check_call
 from ._findings import Finding, ResultWarning, warn_caller
@@ -30,7 +30,7 @@ from ._histories import one_of
 from ._motion import slide, steady
 from ._units import UNITS, bare, carries, has_unit, is_labelled, unit_among
 from ._result import Result
-from ._solve import overrides, solve, source
+from ._solve import Case, overrides, solve, source
 from ._study_folder import study_in_folder
 from ._surface import Surface
 
@@ -45,9 +45,8 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\
 
 
 def study(
-    case: str | os.PathLike[str] | Mapping[str, Any] | Callable[..., Result],
-    over: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None, *, vary: Mapping[str, Any] | None = None,
-    directory: str | os.PathLike[str] | None = None, zip: bool = False, folder: str | os.PathLike[str] | None = None,
+    case: Case | Callable[..., Result], over: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None, *,
+    vary: Mapping[str, Any] | None = None, directory: AnyPath | None = None, zip: bool = False, folder: AnyPath | None = None,
     fields: Sequence[str] = (), error_bars: bool = False, workers: int | None = None, threads: int | None = None,
     client: Any = None, retry: bool = False, progress: bool | None = None
 ) -> xarray.Dataset:

@@ -13,7 +13,7 @@ from typing import Any, Protocol, Union
 import numpy as np
 
 from . import _core, _foreign, _html
-from ._arrays import AnyArray, Floats, along, angle, as_plane, cell_counts, cells_of, centres, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
+from ._arrays import AnyArray, AnyPath, Floats, Size, along, angle, as_plane, cell_counts, cells_of, centres, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
 from ._arrays import pitch_of, size_of
 from ._core import CaseError
 from ._findings import findings_of, warn, warn_caller
@@ -103,7 +103,7 @@ class Surface(OnGrid):
     __array_ufunc__ = None
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, heights: Any, *, size: float | Sequence[float] | None = None, metadata: dict[str, Any] | None = None) -> None:
+    def __init__(self, heights: Any, *, size: Size = None, metadata: dict[str, Any] | None = None) -> None:
         values, size, known = _parts(heights, size)
         values = field("heights", values, line=True)
         object.__setattr__(self, "heights", frozen(np.array(values)))
@@ -436,7 +436,7 @@ class Surface(OnGrid):
         rows += [("history" if n == 0 else "", step) for n, step in enumerate(self.history)]
         return f"<b>Surface</b>, {cells_of(self.heights)}{_html.table(rows)}"
 
-    def write(self, path: str | os.PathLike[str], *, format: str | None = None, force: bool = False) -> None:
+    def write(self, path: AnyPath, *, format: str | None = None, force: bool = False) -> None:
         """Writes NPZ, GWY, X3P, SDF, NetCDF or text, selected by the path's extension or by `format`."""
         path = os.fspath(path)
         if not force and os.path.exists(path):
@@ -447,7 +447,7 @@ class Surface(OnGrid):
 
     @staticmethod
     def read(
-        path: str | os.PathLike[str], *, size: float | Sequence[float] | None = None, height_unit: float | None = None,
+        path: AnyPath, *, size: Size = None, height_unit: float | None = None,
         channel: str | int | None = None, level: Form | None = None, fill: Fill | None = None, transpose: bool | None = None
     ) -> Surface:
         """Reads a measured surface; the format is found from the content.
@@ -573,7 +573,7 @@ class Surface(OnGrid):
     @staticmethod
     def flat_punch(
         *, cells: int | Sequence[int], size: float | Sequence[float], radius: float | None = None,
-        sides: float | Sequence[float] | None = None, center: float | Sequence[float] = (0.0, 0.0)
+        sides: Size = None, center: float | Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch. On a line of cells a strip of
         half the width `radius`, or of the width `sides`."""
@@ -614,7 +614,7 @@ def _made(kind: str, cells: Any, size: Any, made: dict[str, Any] | None, keys: d
     return surface
 
 
-def as_surface(value: Any, size: float | Sequence[float] | None) -> Surface:
+def as_surface(value: Any, size: Size) -> Surface:
     """A surface; heights as an array need their size; topographies of SurfaceTopography and xarray are understood."""
     return value if isinstance(value, Surface) and size is None else Surface(value, size=size)
 
@@ -625,7 +625,7 @@ def check_boundary(surface: Surface, boundary: str) -> None:
         warn_caller('the topography is periodic, but boundary is "free", so that its edges are edges of the contact: give boundary="periodic", or a topography that is not periodic')
 
 
-def surface_of(surface: Any, gap: Any, size: float | Sequence[float] | None) -> Surface:
+def surface_of(surface: Any, gap: Any, size: Size) -> Surface:
     """The surface that is given by its heights, or by the undeformed gap that it leaves."""
     if (surface is None) == (gap is None):
         raise CaseError("give a surface (its heights), or gap= (the undeformed gap), exactly one of them")

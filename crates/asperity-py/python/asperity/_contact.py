@@ -95,7 +95,8 @@ class _Planned:
         told = None
         if history:
             numbers, residual, working, steps, convolutions = zip(*iterations)
-            told = ConvergenceHistory(np.array(numbers), np.array(residual), np.array(working), steps, np.array(convolutions))
+            counts = (np.array(values, dtype=np.int64) for values in (numbers, convolutions))
+            told = ConvergenceHistory(next(counts), np.array(residual), np.array(working), steps, next(counts))
         contact = ElasticContact(self, found, fields | lent, findings, told, lent)
         if "gap" in out:
             out["gap"][...] = contact.gap

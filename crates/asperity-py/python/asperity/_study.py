@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections
 import contextlib
 import dataclasses
 import importlib
@@ -147,9 +148,9 @@ def study(
     left = [n for n in range(len(points)) if n not in done]
     show, started = line_of(progress) or (lambda text: None), time.monotonic()
 
-    def so_far() -> xarray.Dataset:
-        """The points so far."""
-        stopped: Solved = ("interrupted", "the study was stopped", None)
+    def so_far(ended: str = "") -> xarray.Dataset:
+        """The points so far, those after a study that was ended without results."""
+        stopped: Solved = ("interrupted", f"the study was stopped: {ended}", None)
         return _dataset(plan, [done.get(n, stopped) for n in range(len(points))], points, tuple(fields), common.get("case"))
 
     if left:
@@ -164,7 +165,7 @@ def study(
                     show(f"{len(done)}/{len(points)} points{f', {failed} failed' if failed else ''}  {seconds:.0f} s left")
             except BaseException as error:
                 with contextlib.suppress(Exception):
-                    error.result = so_far()  # type: ignore[attr-defined]
+                    error.result = so_far(type(error).__name__)  # type: ignore[attr-defined]
                 raise
             finally:
                 show(None)
@@ -341,14 +342,13 @@ def _on_cluster(client: Any, points: list[Point]) -> Generator[tuple[int, Solved
 
 def _tasks_by_host(client: Any) -> dict[str, int]:
     """How many tasks the workers of each machine run at once."""
-    tasks: dict[str, int] = {}
+    tasks: dict[str, int] = collections.Counter()
     try:
         known = client.scheduler_info(n_workers=-1)
     except TypeError:  # before version 2025.4
         known = client.scheduler_info()
     for address, worker in known["workers"].items():
-        host = _host(address)
-        tasks[host] = tasks.get(host, 0) + int(worker["nthreads"])
+        tasks[_host(address)] += int(worker["nthreads"])
     return tasks
 
 

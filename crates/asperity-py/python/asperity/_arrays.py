@@ -61,9 +61,9 @@ def choice(what: str, value: Any, words: Any) -> Any:
     raise CaseError(f"{what} is {value!r}, but must be {either(map(repr, words))}{meant(value, words)}")
 
 
-def meant(word: Any, words: Iterable[str]) -> str:
-    """Asks for the word that a misspelt one is nearest to."""
-    near = difflib.get_close_matches(word, list(words), 1, 0.5) if isinstance(word, str) else []
+def meant(word: Any, words: Iterable[str], alike: float = 0.6) -> str:
+    """Asks for the word that a misspelt one is nearest to, where they are that much alike."""
+    near = difflib.get_close_matches(word, list(words), 1, alike) if isinstance(word, str) else []
     return f"; did you mean {near[0]!r}?" if near else ""
 
 

@@ -239,7 +239,7 @@ def check_style(style: dict[str, Any], kind: str = "curve") -> None:
     """Refuses what matplotlib does not take for a "curve" or a "map"."""
     for name in style:
         if name not in _takes(kind):
-            raise TypeError(f"a {kind} takes no argument {name!r}{meant(name, sorted(_takes(kind)))}")
+            raise TypeError(f"a {kind} takes no argument {name!r}{meant(name, sorted(_takes(kind)), 0.5)}")
 
 
 def axes(ax: Axes | None, style: dict[str, Any] | None = None, kind: str = "curve", size: tuple[float, ...] = (1.0, 1.0)) -> Axes:

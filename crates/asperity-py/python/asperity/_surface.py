@@ -31,8 +31,6 @@ class Labelled(Protocol):
 
     @property
     def dims(self) -> tuple[Hashable, ...]: ...
-    @property
-    def coords(self) -> Any: ...
 
 
 class Topography(Protocol):
@@ -40,7 +38,6 @@ class Topography(Protocol):
 
     @property
     def physical_sizes(self) -> Any: ...
-    def heights(self) -> Any: ...
 
 
 #: What adds to a surface; of numbers only the 0 with which sum() begins.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -81,10 +81,10 @@ def told(row: dict[str, Any], line: bool) -> list[tuple[str, str]]:
 
 
 class Held:
-    """A number or column as attribute of its holder, which finds it by its method `find`; it cannot be replaced. `_rows.pyi` has its type."""
+    """A number or column as attribute of its holder, which finds it by its method `find`. `_rows.pyi` has its type."""
 
-    def __init__(self, find: str, sealed: str) -> None:
-        self._find, self._sealed = find, sealed
+    def __init__(self, find: str) -> None:
+        self._find = find
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
@@ -93,6 +93,3 @@ class Held:
 
     def __get__(self, holder: Any, owner: type) -> Any:
         return self if holder is None else getattr(holder, self._find)(self._name)
-
-    def __set__(self, holder: object, value: Any) -> NoReturn:
-        raise AttributeError(f"{self._name} cannot be set: {self._sealed}")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ._core import CaseError
 from ._declared import Table
 from ._histories import History, as_history
 from ._words import Coupling, Flow, Pockets, Reference, Sides
@@ -50,7 +49,5 @@ class Fluid(Table):
     @property
     def _keys(self) -> dict[str, Any]:
         """The keys of `[leakage]`."""
-        if not isinstance(self.inlet, History):
-            raise CaseError(f"inlet is {self.inlet!r}, but must be a pressure [Pa] or a history")
-        given = {**super()._keys, "inlet": self.inlet._keys}
+        given = {**super()._keys, "inlet": as_history("inlet", self.inlet, "Pa")._keys}
         return {name: value for name, value in given.items() if name != "pockets" or self.coupling != "uniform"}

@@ -34,9 +34,6 @@ class Parameter(Generic[Value]):
             raise AttributeError(f"{made!r} has no {self._name!r}; it {has}")
         return cast(Value, known[self._name])
 
-    def __set__(self, made: Parametrised, value: Value) -> None:
-        raise AttributeError(f"{self._name} cannot be set: {type(made).__name__} does not change once it is made; make another")
-
 
 def parameters(kind: type[Value], number: int) -> list[Parameter[Value]]:
     """As many attributes of this kind, which take the names that they are given."""

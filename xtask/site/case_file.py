@@ -45,28 +45,20 @@ class Reference:
 
     def body(self, definition, level):
         """Description, forms and keys of an object."""
-        lines = []
-        if description := definition.get("description"):
-            lines += [one_line(description), ""]
+        lines = paragraph(definition)
         forms = [self.resolved(form) for form in definition.get("oneOf", []) + definition.get("anyOf", [])]
         plain = [form for form in forms if "properties" not in form]
-        if values := [v for form in plain for v in choices(form)]:
-            lines += ["One of " + ", ".join(f"`{v}`" for v in values) + ".", ""]
-            for form in plain:
-                if "const" in form and form.get("description"):
-                    lines += [f"- `{form['const']}`: {one_line(form['description'])}"]
-            lines += [""]
+        if values := [value for form in plain for value in choices(form)]:
+            told = [f"- `{form['const']}`: {text(form)}" for form in plain if "const" in form and text(form)]
+            lines += ["One of " + ", ".join(f"`{value}`" for value in values) + ".", "", *told, ""]
         for form in plain:
-            if not choices(form) and form.get("description"):
-                lines += [f"- {one_line(form['description'])}", ""]
+            if not choices(form) and text(form):
+                lines += [f"- {text(form)}", ""]
         if "properties" in definition:
             lines += self.keys(definition)
         for form in forms:
             if "properties" in form:
-                lines += [f"{'#' * level} {title(form)}", ""]
-                if form.get("description"):
-                    lines += [one_line(form["description"]), ""]
-                lines += self.keys(form)
+                lines += [f"{'#' * level} {title(form)}", "", *paragraph(form), *self.keys(form)]
         return lines
 
     def keys(self, definition):
@@ -82,8 +74,7 @@ class Reference:
     def kind(self, value):
         """What a key takes, linked where a section describes it."""
         if "$ref" in value:
-            name = value["$ref"].rsplit("/", 1)[1]
-            definition = self.definitions[name]
+            name, definition = self.target(value), self.resolved(value)
             if described(definition):
                 if name not in self.done and name not in self.waiting:
                     self.waiting.append(name)
@@ -92,12 +83,10 @@ class Reference:
                 return cell(" \\| ".join(f"`\"{v}\"`" for v in values))
             return words(name)
         if value.get("type") == "array":
-            items = value.get("items", {})
-            return f"list of {self.kind(items)}" if items else "list"
+            return f"list of {self.kind(value['items'])}" if value.get("items") else "list"
         if values := choices(value):
             return " \\| ".join(f"`\"{v}\"`" for v in values)
-        forms = value.get("anyOf") or value.get("oneOf")
-        if forms:
+        if forms := value.get("anyOf") or value.get("oneOf"):
             return " or ".join(dict.fromkeys(self.kind(form) for form in forms if form.get("type") != "null"))
         kinds = value.get("type", "value")
         kinds = [k for k in ([kinds] if isinstance(kinds, str) else kinds) if k != "null"]
@@ -105,12 +94,12 @@ class Reference:
         return " or ".join(plain.get(kind, kind) for kind in kinds)
 
     def target(self, value):
-        """The definition with keys behind a top-level key."""
+        """The name of the definition that a value, or the values of a list, refer to."""
         reference = value.get("$ref") or value.get("items", {}).get("$ref")
         return reference.rsplit("/", 1)[1] if reference else None
 
     def resolved(self, value):
-        return self.definitions[value["$ref"].rsplit("/", 1)[1]] if "$ref" in value else value
+        return self.definitions[self.target(value)] if "$ref" in value else value
 
 
 def described(definition):
@@ -145,11 +134,11 @@ def words(name):
 
 
 def text(value):
-    return one_line(value.get("description", ""))
+    return " ".join(value.get("description", "").split())
 
 
-def one_line(description):
-    return " ".join(description.split())
+def paragraph(value):
+    return [text(value), ""] if text(value) else []
 
 
 def cell(content):

@@ -46,13 +46,9 @@ def main():
 
 class Checks:
     def __init__(self, chromium, address):
-        self.page = chromium.new_page(viewport={"width": PHONE, "height": 844})
-        self.address = address
-        self.faults = []
-        self.anchors = {}
-        self.links = []
-        self.formulas = 0
-        self.current = ""
+        self.page, self.address = chromium.new_page(viewport={"width": PHONE, "height": 844}), address
+        self.faults, self.anchors, self.links = [], {}, []
+        self.formulas, self.current = 0, ""
         self.page.on("console", lambda message: message.type in ("error", "warning") and self.fault(f"console: {message.text}"))
         self.page.on("pageerror", lambda error: self.fault(f"script: {error}"))
         self.page.on("response", lambda response: response.status >= 400 and self.fault(f"{response.status}: {response.url}"))
@@ -83,22 +79,19 @@ class Checks:
         self.anchors[place] = set(found["anchors"])
         self.links += [(place, link) for link in found["links"]]
         self.formulas += found["formulas"]
-        if found["width"] > PHONE:
-            self.fault(f"{found['width']} px wide on a phone: {found['widest']}")
-        for formula in found["flat"]:
-            self.fault(f"a formula is not drawn: {formula}")
-        for picture in found["broken"]:
-            self.fault(f"picture {picture}")
-        for source in found["raw"]:
-            self.fault(f"unread markup: {source}")
+        wide = [f"{found['width']} px wide on a phone: {found['widest']}"] if found["width"] > PHONE else []
+        flat = [f"a formula is not drawn: {formula}" for formula in found["flat"]]
+        broken = [f"picture {picture}" for picture in found["broken"]]
+        for fault in [*wide, *flat, *broken, *(f"unread markup: {source}" for source in found["raw"])]:
+            self.fault(fault)
 
     def follow(self):
         """Links within the site lead to pages and headings."""
         for place, link in dict.fromkeys(self.links):
-            self.current = place
-            target = urlsplit(urljoin(self.address + place, link))
-            if not urljoin(self.address + place, link).startswith(self.address):
+            self.current, whole = place, urljoin(self.address + place, link)
+            if not whole.startswith(self.address):
                 continue
+            target = urlsplit(whole)
             path = unquote(target.path).lstrip("/") or "index.html"
             if not (SITE / path).is_file():
                 self.fault(f"dead link {link}")

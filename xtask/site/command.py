@@ -32,9 +32,7 @@ def section(program, words):
 
 
 def help_of(program, words):
-    ran = subprocess.run([program, *words, "--help"], capture_output=True, text=True, encoding="utf-8", check=True, env=WIDE)
-    return ran.stdout
-
+    return subprocess.run([program, *words, "--help"], capture_output=True, text=True, encoding="utf-8", check=True, env=WIDE).stdout
 
 
 #: Lines of the width of a page.

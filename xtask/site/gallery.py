@@ -1,6 +1,7 @@
 """The gallery: each picture is drawn from a case that its reader can copy."""
 
 import os
+import shlex
 import subprocess
 
 import markup
@@ -45,11 +46,10 @@ def page(program, root, work, pictures):
         picture = pictures / f"{number + 1:02}-{name}.png"
         if "RESULT" in draw and not newer(result / "zarr.json", case, program):
             asperity(program, root, ["run", "--quiet", "--force", str(case), "-o", str(result)])
-        words = [word.strip("'") for word in split(draw)]
         if not newer(picture, result / "zarr.json" if "RESULT" in draw else case, program):
             picture.unlink(missing_ok=True)
             given = {"RESULT": str(result), "PICTURE": str(picture), "CASE": str(case)}
-            asperity(program, root, [given.get(word, word) for word in words])
+            asperity(program, root, [given.get(word, word) for word in shlex.split(draw)])
         thumbs.append(thumb(caption, picture.name))
         cards.append(card(name, draw, caption, picture.name, case.read_text(encoding="utf-8")))
     return OPENING + "<div class='thumbs' markdown>\n\n" + "\n".join(thumbs) + "\n\n</div>\n\n" + "\n".join(cards)
@@ -67,7 +67,7 @@ def thumb(caption, picture):
 def card(name, draw, caption, picture, case):
     shown = {"RESULT": f"{name}.zarr", "PICTURE": f"{name}.png", "CASE": f"{name}.toml"}
     commands = [f"asperity run {name}.toml -o {name}.zarr"] if "RESULT" in draw else []
-    commands.append("asperity " + " ".join(shown.get(word, word) for word in split(draw)))
+    commands.append(shlex.join(["asperity", *(shown.get(word, word) for word in shlex.split(draw))]))
     block = "\n".join(f"    {line}" if line else "" for line in case.splitlines())
     return f"""## {title(caption)}
 
@@ -85,18 +85,6 @@ def card(name, draw, caption, picture, case):
 {block}
     ```
 """
-
-
-def split(draw):
-    """Words of a command line with single quotes, which they keep."""
-    words, quoted = [], False
-    for piece in draw.split(" "):
-        if quoted:
-            words[-1] += " " + piece
-        else:
-            words.append(piece)
-        quoted ^= piece.count("'") % 2 == 1
-    return words
 
 
 def asperity(program, root, words):

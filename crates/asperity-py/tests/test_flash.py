@@ -36,17 +36,27 @@ def test_shear_stress_over_the_velocity():
     np.testing.assert_allclose(peak.friction_coefficient_total - peak.friction_coefficient, own * [1, np.exp(-1)], rtol=1e-9)
 
 
+def test_the_friction_of_the_surfaces_is_against_motion_and_none_at_rest():
+    given = {"load": 300.0, "times": np.linspace(0, 0.02, 21), "start": 0.01, "flash": asp.Flash(0.2, 1e-7, friction=0.5, partition="track")}
+    there, back = (asp.slide(roller(64), RUBBER, velocity=v, **given) for v in (0.01, -0.01))
+    own = [result.friction_coefficient_total - result.friction_coefficient for result in (there, back)]
+    moves = there.time >= 0.01
+    np.testing.assert_allclose(own, [0.5 * moves, -0.5 * moves], atol=1e-12)
+    # The power of friction is the heat of the surfaces.
+    np.testing.assert_allclose(back.heat_power, 0.5 * 300.0 * 0.01 * (there.time > 0.01), rtol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"flash": asp.Flash(0.2, 1e-7)}, "nothing makes heat"),
-        ({"flash": asp.Flash(-0.2, 1e-7, friction=0.5)}, "conductivity"),
-        ({"flash": asp.Flash((0.2, 1.0, 2.0), 1e-7, friction=0.5)}, "pair"),
-        ({"flash": asp.Flash(0.2, 1e-7, friction=0.5)}, "partition"),
-        ({"flash": 0.5}, "asperity.Flash"),
-        ({"shear_stress": {"peak": 1e5}}, "velocity"),
+        (lambda: {"flash": asp.Flash(0.2, 1e-7)}, "nothing makes heat"),
+        (lambda: {"flash": asp.Flash(-0.2, 1e-7, friction=0.5)}, "conductivity"),
+        (lambda: {"flash": asp.Flash((0.2, 1.0, 2.0), 1e-7, friction=0.5)}, "pair"),
+        (lambda: {"flash": asp.Flash(0.2, 1e-7, friction=0.5)}, "partition"),
+        (lambda: {"flash": 0.5}, "asperity.Flash"),
+        (lambda: {"shear_stress": {"peak": 1e5}}, "velocity"),
     ],
 )
 def test_what_cannot_be_is_refused(given, message):
     with pytest.raises(asp.CaseError, match=message):
-        asp.steady(roller(64), RUBBER, load=300.0, velocities=[0.1], **given)
+        asp.steady(roller(64), RUBBER, load=300.0, velocities=[0.1], **given())

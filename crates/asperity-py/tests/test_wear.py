@@ -40,15 +40,15 @@ def test_a_number_is_a_coefficient_and_a_map_is_a_factor():
 @pytest.mark.parametrize(
     ("wear", "message"),
     [
-        (asp.Wear(-1e-15, velocity=0.1), "coefficient"),
-        (asp.Wear(0.0, velocity=0.1), "greater than 0"),
-        (asp.Wear(1e-15), "how far the surfaces slide"),
-        (asp.Wear((1e-15, 1e-15, 1e-15), velocity=1.0), "pair"),
-        (asp.Wear(1e-15, velocity=0.1, map=np.ones((3, 3))), "shape"),
-        (asp.Wear(1e-15, velocity=0.1, cycles_per_step=100.0), "cycles"),
-        (asp.Wear(1e-15, velocity=0.1, threshold=-1.0), "threshold"),
+        (lambda: asp.Wear(-1e-15, velocity=0.1), "coefficient"),
+        (lambda: asp.Wear(0.0, velocity=0.1), "greater than 0"),
+        (lambda: asp.Wear(1e-15), "how far the surfaces slide"),
+        (lambda: asp.Wear((1e-15, 1e-15, 1e-15), velocity=1.0), "pair"),
+        (lambda: asp.Wear(1e-15, velocity=0.1, map=np.ones((3, 3))), "shape"),
+        (lambda: asp.Wear(1e-15, velocity=0.1, cycles_per_step=100.0), "cycles"),
+        (lambda: asp.Wear(1e-15, velocity=0.1, threshold=-1.0), "threshold"),
     ],
 )
 def test_what_cannot_be_is_refused(wear, message):
     with pytest.raises(asp.CaseError, match=message):
-        asp.solve(ball(), STEEL, load=10.0, times=[1.0], wear=wear)
+        asp.solve(ball(), STEEL, load=10.0, times=[1.0], wear=wear())

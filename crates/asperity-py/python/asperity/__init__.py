@@ -49,4 +49,4 @@ from ._tangential import Friction as Friction, Tangential as Tangential, tangent
 from ._wear import Wear as Wear
 from ._threads import set_threads as set_threads, threads as threads
 
-__all__ = sorted(name for name in globals() if name == "__version__" or (name[0] != "_" and name != "open"))
+__all__ = sorted(name for name in globals() if name == "__version__" or (name[0] != "_" and name not in ("open", "plot")))

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, fields
-from typing import Any, get_args
+from dataclasses import dataclass
 
-import numpy as np
-
-from ._arrays import choice, number
 from ._core import CaseError
+from ._declared import Table
 from ._words import AdhesionLaw
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Adhesion:
+class Adhesion(Table):
     """An attraction between the surfaces, an argument of :func:`asperity.solve` and :func:`asperity.march`.
 
     `work` of adhesion [J/m2]; the `range` of the gap [m] over which it falls, or its largest value, the `strength` [Pa]; the `law`
@@ -40,25 +37,10 @@ class Adhesion:
     tolerance: float = 1e-4
 
     def __post_init__(self) -> None:
-        choice("law", self.law, get_args(AdhesionLaw))
+        super().__post_init__()
         if (self.range is None) == (self.strength is None):
             raise CaseError("Adhesion takes a range [m] or a strength [Pa], one of the two")
-        if not isinstance(self.allow_unresolved, (bool, np.bool_)):
-            raise CaseError(f"allow_unresolved is {self.allow_unresolved!r}, but must be True or False")
-        for name, unit in (("work", "J/m2"), ("range", "m"), ("strength", "Pa"), ("tolerance", "")):
-            if (given := getattr(self, name)) is None:
-                continue
-            value = number(name, given)
-            if not (0.0 < value < math.inf or (name == "work" and value == 0.0)):
-                least = "0 or greater" if name == "work" else "greater than 0"
-                raise CaseError(f"{name} is {f'{value:g} {unit}'.strip()}, but must be finite and {least}")
-            object.__setattr__(self, name, value)
-
-    def __repr__(self) -> str:
-        told = (f"{field.name}={getattr(self, field.name)!r}" for field in fields(self) if getattr(self, field.name) != field.default)
-        return f"Adhesion({', '.join(told)})"
-
-    @property
-    def _keys(self) -> dict[str, Any]:
-        """The keys of `[adhesion]`."""
-        return {name: value for name, value in asdict(self).items() if value is not None}
+        for name, unit in {"work": " J/m2", "range": " m", "strength": " Pa", "tolerance": ""}.items():
+            value, least = getattr(self, name), "0 or greater" if name == "work" else "greater than 0"
+            if value is not None and not (0.0 < value < math.inf or (name == "work" and value == 0.0)):
+                raise CaseError(f"{name} is {value:g}{unit}, but must be finite and {least}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any
+from typing import Any, TypeVar, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,15 @@ import numpy.typing as npt
 from ._core import CaseError
 from ._units import bare, frequency, has_unit, is_labelled, variable_of
 
+AnyPath = str | os.PathLike[str]
+#: Lengths of a domain along x and y [m], or of a line.
+Size = float | Sequence[float] | None
+ArrayLike = npt.ArrayLike
+AnyArray = npt.NDArray[Any]
 Floats = npt.NDArray[np.float64]
+Counts = npt.NDArray[np.int64]
+Labels = npt.NDArray[np.uint32]
+Array = TypeVar("Array", bound=npt.NDArray[Any])
 
 
 def number(what: str, value: Any, unit: str | None = None) -> float:
@@ -45,23 +53,25 @@ def shown(value: Any) -> str:
     return repr(value.item() if isinstance(value, np.generic) else value)
 
 
-def choice(what: str, value: Any, words: Sequence[str]) -> Any:
-    """One of these words, or an error that names the nearest."""
+def choice(what: str, value: Any, words: Any) -> Any:
+    """One of these words, a list or a Literal, or an error that names the nearest."""
+    words = get_args(words) or words
     if isinstance(value, str) and value in words:
         return value
-    near = difflib.get_close_matches(value, words, 1) if isinstance(value, str) else []
-    hint = f"; did you mean {near[0]!r}?" if near else ""
-    raise CaseError(f"{what} is {value!r}, but must be {either(map(repr, words))}{hint}")
+    raise CaseError(f"{what} is {value!r}, but must be {either(map(repr, words))}{meant(value, words)}")
+
+
+def meant(word: Any, words: Iterable[str], alike: float = 0.6) -> str:
+    """Asks for the word that a misspelt one is nearest to, where they are that much alike."""
+    near = difflib.get_close_matches(word, list(words), 1, alike) if isinstance(word, str) else []
+    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def path_of(what: str, given: Any) -> str | None:
     """A path as text; None where none is given."""
-    if given is None:
-        return None
-    try:
-        return str(os.fspath(given))
-    except TypeError:
-        raise CaseError(f"{what} is {given!r}, but must be a path") from None
+    if given is not None and not isinstance(given, (str, os.PathLike)):
+        raise CaseError(f"{what} is {given!r}, but must be a path")
+    return None if given is None else str(os.fspath(given))
 
 
 def either(words: Iterable[str]) -> str:
@@ -78,11 +88,6 @@ def distinct(what: str, given: Any, words: Sequence[str]) -> list[str]:
     if twice := [name for name in names if names.count(name) > 1]:
         raise CaseError(f"{what} holds {twice[0]!r} twice")
     return names
-
-
-def _gathered(value: Any) -> Any:
-    """The values of a generator as a list; anything else as it is."""
-    return list(value) if isinstance(value, Iterator) else value
 
 
 def in_hertz(what: str, value: Any) -> float:
@@ -105,43 +110,31 @@ def direction_of(value: Any) -> str | float:
 def count(what: str, value: Any, least: int = 1, most: int = 2**53) -> int:
     """A whole number; one that is an integer already keeps all its digits."""
     value = bare(what, value)
-    if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
-        whole = int(value)
-    else:
-        real = number(what, value)
-        if real != int(real) if np.isfinite(real) else True:
-            raise CaseError(f"{what} is {shown(value)}, but must be a whole number")
-        whole = int(real)
-    if whole < least:
-        raise CaseError(f"{what} is {shown(value)}, but must be at least {least}")
-    if whole > most:
-        raise CaseError(f"{what} is {shown(value)}, but must be at most {most}")
+    given = value if isinstance(value, (int, np.integer)) and not isinstance(value, bool) else number(what, value)
+    if isinstance(given, float) and not given.is_integer():
+        raise CaseError(f"{what} is {shown(value)}, but must be a whole number")
+    whole = int(given)
+    if not least <= whole <= most:
+        limit = f"at least {least}" if whole < least else f"at most {most}"
+        raise CaseError(f"{what} is {shown(value)}, but must be {limit}")
     return whole
+
+
+def lengths(what: str, value: Any, dimensions: tuple[int, ...] = (1, 2)) -> tuple[float, ...]:
+    """Numbers along the directions of a grid: two, along x and y, or one of a line, which may stand without a list."""
+    value = bare(what, value)
+    alone = isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+    listed = [value] if alone else list(value) if np.ndim(value) == 1 else []
+    if len(listed) not in dimensions:
+        raise CaseError(f"{what} is {value!r}, but must be two numbers, along x and y{', or one for a line of cells' if 1 in dimensions else ''}")
+    names = [what] if len(listed) == 1 else [f"{what} along x", f"{what} along y"]
+    return tuple(number(name, one) for name, one in zip(names, listed))
 
 
 def pair(what: str, value: Any) -> tuple[float, float]:
     """Two numbers, along x and y."""
-    value = bare(what, value)
-    if isinstance(value, (str, bytes)):
-        raise CaseError(f"{what} is {value!r}, but must be two numbers, along x and y")
-    try:
-        x, y = value
-    except (TypeError, ValueError):
-        raise CaseError(f"{what} is {value!r}, but must be two numbers, along x and y") from None
-    return number(f"{what} along x", x), number(f"{what} along y", y)
-
-
-def lengths(what: str, value: Any) -> tuple[float, ...]:
-    """Numbers along the directions of a grid: two, along x and y, or one of a line, which may stand without a list."""
-    value = bare(what, value)
-    if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
-        return (number(what, value),)
-    if not isinstance(value, (str, bytes)) and np.ndim(value) == 1 and len(value) == 1:
-        return (number(what, value[0]),)
-    try:
-        return pair(what, value)
-    except CaseError:
-        raise CaseError(f"{what} is {value!r}, but must be two numbers, along x and y, or one for a line of cells") from None
+    x, y = lengths(what, value, (2,))
+    return x, y
 
 
 def cell_counts(what: str, value: Any) -> tuple[int, ...]:
@@ -161,30 +154,29 @@ def along(what: str, value: Any, dimensions: int, along_y: float = 0.0) -> list[
     return [found[0], along_y] if dimensions == 1 else list(found)
 
 
-def counts(what: str, value: Any) -> tuple[int, int]:
+def counts(what: str, value: Any, least: int = 1) -> tuple[int, int]:
     """Two whole numbers, along x and y."""
     x, y = pair(what, value)
-    return count(f"{what} along x", x), count(f"{what} along y", y)
+    return count(f"{what} along x", x, least), count(f"{what} along y", y, least)
 
 
 def plain(array: Any) -> Floats:
     """The array as the core takes it: float64, in C order, aligned (what came through a socket may not be); no copy where
     it is so."""
-    out: Floats = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"])
-    return out
+    return np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"])
 
 
 def array(what: str, value: Any, unit: str | None = None) -> Floats:
     """Real numbers of any shape in SI units."""
-    value = bare(what, _gathered(value), unit)
+    value = bare(what, list(value) if isinstance(value, Iterator) else value, unit)
     found = np.asarray(value)
     if found.dtype.kind not in "fiu":
         told = f"has dtype {found.dtype}" if found.ndim else f"is {value!r}"
         raise CaseError(f"{what} {told}, but must hold real numbers in SI units")
-    return np.asarray(found, dtype=np.float64)
+    return found.astype(np.float64, copy=False)
 
 
-def frozen(values: Any) -> Any:
+def frozen(values: Array) -> Array:
     """The array, read-only."""
     view = values.view()
     view.flags.writeable = False
@@ -198,22 +190,15 @@ def in_order(what: str, value: Any, size: Sequence[float] | None = None) -> Any:
     if not is_labelled(value):
         return value
     names = [str(name) for name in value.dims]
+    if len(names) > 1 and sorted(names) != ["x", "y"]:
+        raise CaseError(f"{what} has the dimensions {tuple(names)}, but must have x and y, or one: select one of the others, as in isel(time=-1)")
     if len(names) == 2:
-        if sorted(names) != ["x", "y"]:
-            raise CaseError(
-                f"{what} has the dimensions {tuple(names)}, but must have x and y, or one: select one of the others, as in isel(time=-1)"
-            )
         value, names = value.transpose("x", "y"), ["x", "y"]
-    elif len(names) > 2:
-        raise CaseError(f"{what} has the dimensions {tuple(names)}, but must have x and y: select one of the others, as in isel(time=-1)")
     for axis, name in enumerate(names):
-        pitch = pitch_of(what, value, name)
-        if pitch is None:
-            continue
-        if pitch < 0.0:
-            value = value.isel({name: slice(None, None, -1)})
+        pitch = pitch_of(what, value, name) or 0.0
+        value = value.isel({name: slice(None, None, -1)}) if pitch < 0.0 else value
         length = abs(pitch) * value.sizes[name]
-        if size is not None and len(size) == len(names) and abs(length - size[axis]) > 0.1 * abs(pitch):
+        if pitch and size is not None and len(size) == len(names) and abs(length - size[axis]) > 0.1 * abs(pitch):
             raise CaseError(f"the coordinate {name} of {what} spans {length:.6g} m, but the surface is {size[axis]:.6g} m long")
     return value
 
@@ -256,14 +241,10 @@ def field(what: str, value: Any, line: bool = False, *, unit: str | None = None,
     value = in_order(what, value, size)
     if np.ma.isMaskedArray(value) and value.dtype.kind in "fiu":
         value = np.ma.filled(value.astype(np.float64), np.nan)
-    array = np.asarray(bare(what, value, unit))
-    if array.dtype.kind not in "fiu":
-        raise CaseError(f"{what} has dtype {array.dtype}, but must hold real numbers")
-    if array.ndim not in ((1, 2) if line else (2,)) or array.size == 0:
-        raise CaseError(
-            f"{what} has shape {array.shape}, but must be two-dimensional, (nx, ny)" + (", or (n,) for a line of cells" if line else "")
-        )
-    return plain(array)
+    found = array(what, value, unit)
+    if found.ndim not in ((1, 2) if line else (2,)) or found.size == 0:
+        raise CaseError(f"{what} has shape {found.shape}, but must be two-dimensional, (nx, ny){', or (n,) for a line of cells' if line else ''}")
+    return plain(found)
 
 
 def as_plane(array: Floats) -> Floats:
@@ -278,14 +259,14 @@ def size_of(what: str, array: Floats, size: Any) -> list[float]:
         words = "two lengths, size=(Lx, Ly)" if array.ndim == 2 else "one length, size=(L,)"
         raise CaseError(f"size is {size!r}, but {what} has shape {array.shape}, which needs {words}")
     for length in found:
-        check_length("size", length, size)
+        check_length("size", length)
     return list(found)
 
 
-def check_length(what: str, length: float, given: Any) -> None:
+def check_length(what: str, length: float) -> None:
     """Refuses lengths [m] that the core does not take: products of four of them overflow or vanish."""
     if not 1e-60 <= length <= 1e60:
-        raise CaseError(f"{what} is {given!r} m, but must be finite and greater than 0 m (1e-60 m to 1e60 m)")
+        raise CaseError(f"{what} is {length:g} m, but must be finite and greater than 0 m (1e-60 m to 1e60 m)")
 
 
 def cells_of(array: Floats) -> str:
@@ -295,10 +276,10 @@ def cells_of(array: Floats) -> str:
 
 def line(what: str, value: Any, unit: str | None = None) -> Floats:
     """A one-dimensional array of real numbers as float64 in SI units."""
-    array = np.asarray(bare(what, _gathered(value), unit))
-    if array.dtype.kind not in "fiu" or array.ndim != 1:
-        raise CaseError(f"{what} has shape {array.shape} and dtype {array.dtype}, but must be a list of real numbers")
-    return plain(array)
+    found = array(what, value, unit)
+    if found.ndim != 1:
+        raise CaseError(f"{what} has shape {found.shape}, but must be a list of real numbers")
+    return plain(found)
 
 
 def columns(**given: Any) -> list[Floats]:
@@ -318,19 +299,16 @@ def each(function: Callable[[Floats], Floats], what: str, value: Any) -> Floats:
 
 def points(what: str, value: Any, units: tuple[str, str] = ("", "")) -> list[tuple[float, float]]:
     """A list of pairs, whose numbers have these units."""
-    value = _gathered(value)
+    value = list(value) if isinstance(value, Iterator) else value
     if isinstance(value, (list, tuple)) and all(isinstance(pair, (list, tuple)) and len(pair) == 2 for pair in value):
         value = [tuple(bare(what, one, unit) for one, unit in zip(pair, units)) for pair in value]
-    else:
-        value = bare(what, value)
-    array = np.asarray(value)
-    if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
-        shape = f"has the shape {array.shape}" if array.ndim else f"is {value!r}"
+    found = np.asarray(bare(what, value))
+    if found.dtype.kind not in "fiu" or found.ndim != 2 or found.shape[1] != 2:
+        shape = f"has the shape {found.shape}" if found.ndim else f"is {value!r}"
         raise CaseError(f"{what}: the list {shape}, but must be one of pairs of numbers")
-    return [(float(a), float(b)) for a, b in array]
+    return [(float(a), float(b)) for a, b in found]
 
 
 def centres(cells: int, length: float) -> Floats:
     """Centres of equal cells along a length; read-only."""
-    places: Floats = frozen(np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64))
-    return places
+    return frozen(np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64))

@@ -2,11 +2,40 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple, NoReturn, overload
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
 
 from . import _core
-from ._arrays import Floats
+from ._arrays import AnyArray
 from ._units import written
+
+if TYPE_CHECKING:
+    import xarray
+
+
+Dims = str | tuple[str, ...]
+#: An array of a dataset of xarray: dimensions, values, attributes.
+Variable = tuple[Dims, AnyArray, dict[str, str]]
+
+
+def variable(dims: Dims, values: Any, unit: str, words: str) -> Variable:
+    """A copy of the values with their unit and meaning."""
+    return dims, np.array(values), {"units": unit, "long_name": words}
+
+
+def dataset(arrays: dict[str, Any], coordinates: dict[str, Any] = {}, attributes: dict[str, Any] = {}) -> xarray.Dataset:
+    """A dataset of these arrays."""
+    import xarray
+
+    return xarray.Dataset(arrays, coords=coordinates, attrs=attributes)
+
+
+def frame(columns: dict[str, Any]) -> Any:
+    """A pandas.DataFrame of these columns."""
+    import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+
+    return pandas.DataFrame(columns)
 
 
 class Entry(NamedTuple):
@@ -17,6 +46,10 @@ class Entry(NamedTuple):
     line_unit: str
     words: str
     kind: Literal["real", "count", "vector", "histogram"]
+
+    def variable(self, dims: Dims, values: Any, line: bool = False) -> Variable:
+        """Its array in a dataset."""
+        return variable(dims, values, self.line_unit if line else self.unit, self.words)
 
     def attributes(self, line: bool = False) -> dict[str, str]:
         """The attributes of its array in a dataset."""
@@ -41,45 +74,22 @@ STRESS = _REGISTRY["stress"]
 LEAKS, GAS_LEAKS = _REGISTRY["leaks"], _REGISTRY["leaks of a gas"]
 
 
-class _Held:
-    """A number or column as attribute of its holder, which finds it by a method; it cannot be replaced."""
+def told(row: dict[str, Any], line: bool) -> list[tuple[str, str]]:
+    """Numbers of a row in words, with their units."""
+    entries = {name: (ROW[name], ROW[name].attributes(line)["units"]) for name in row}
+    return [(entry.words, f"{row[name]:.6g}{'' if unit == '1' else f' {unit}'}") for name, (entry, unit) in entries.items()]
 
-    _find: str
-    _sealed: str
+
+class Held:
+    """A number or column as attribute of its holder, which finds it by its method `find`. `_rows.pyi` has its type."""
+
+    def __init__(self, find: str) -> None:
+        self._find = find
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
         unit, _, words, _ = {**COLUMNS, **STRESS}[name]
         self.__doc__ = f"{words[:1].upper()}{words[1:]}{f' [{unit}]' if unit != '1' else ''}."
 
-    def _of(self, holder: Any) -> Any:
+    def __get__(self, holder: Any, owner: type) -> Any:
         return self if holder is None else getattr(holder, self._find)(self._name)
-
-    def __set__(self, holder: object, value: Any) -> NoReturn:
-        raise AttributeError(f"{self._name} cannot be set: {self._sealed}")
-
-
-class Column(_Held):
-    """A column of the rows, which its holder finds by `_column(name)`."""
-
-    _find, _sealed = "_column", "a result is what was computed; work on a copy of its numbers"
-
-    @overload
-    def __get__(self, holder: None, owner: type) -> Column: ...
-    @overload
-    def __get__(self, holder: object, owner: type) -> Floats: ...
-    def __get__(self, holder: Any, owner: type) -> Any:
-        return self._of(holder)
-
-
-class Number(_Held):
-    """A number of one row, which its holder finds by `_number(name)`."""
-
-    _find, _sealed = "_number", "a step is what was computed"
-
-    @overload
-    def __get__(self, holder: None, owner: type) -> Number: ...
-    @overload
-    def __get__(self, holder: object, owner: type) -> float: ...
-    def __get__(self, holder: Any, owner: type) -> Any:
-        return self._of(holder)

@@ -15,15 +15,17 @@ from ._core import CaseError
 from ._solve import source
 
 
-def answered(words: Sequence[str], quiet: bool) -> dict[str, Any]:
-    """The object that ``asperity WORDS --json`` prints; what it tells goes to stderr unless `quiet`."""
+def answered(verb: str, case: Any, directory: Any, words: Sequence[str], quiet: bool, **options: Any) -> dict[str, Any]:
+    """The object that ``asperity VERB CASE WORDS -o DIRECTORY --OPTIONS --json`` prints; what it tells goes to stderr unless `quiet`."""
+    words = [verb, _case_file(case, directory, f"a {verb}"), *words, *["-q"] * quiet]
+    for option, value in {"-o": directory, **{f"--{name}": value for name, value in options.items()}}.items():
+        words += [] if value is None else [option, str(value)]
     told: list[str] = []
     # A pipe for the answer would fill up, and stop the command, while this reads what it tells.
+    command = [sys.executable, "-m", "asperity", *words, "--json"]
     with (
         tempfile.TemporaryFile("w+", encoding="utf-8") as answer,
-        subprocess.Popen(
-            [sys.executable, "-m", "asperity", *words, "--json"], stdout=answer, stderr=subprocess.PIPE, encoding="utf-8"
-        ) as process,
+        subprocess.Popen(command, stdout=answer, stderr=subprocess.PIPE, encoding="utf-8") as process,
     ):
         try:
             assert process.stderr is not None
@@ -40,12 +42,11 @@ def answered(words: Sequence[str], quiet: bool) -> dict[str, Any]:
     if process.returncode == 2:
         raise CaseError("".join(told).removeprefix("error: ").strip())
     if not text:
-        raise RuntimeError("".join(told).strip() or f"asperity {words[0]} ended with exit code {process.returncode}")
-    found: dict[str, Any] = json.loads(text)
-    return found
+        raise RuntimeError("".join(told).strip() or f"asperity {verb} ended with exit code {process.returncode}")
+    return dict(json.loads(text))
 
 
-def case_file(case: Any, directory: Any, what: str) -> str:
+def _case_file(case: Any, directory: Any, what: str) -> str:
     """The file of a case; one that is given as text or keys is written into the folder of `what`."""
     try:
         path, text = source(case)

@@ -5,42 +5,41 @@ from __future__ import annotations
 import functools
 import json
 import math
-import os
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, get_args, overload
+from typing import TYPE_CHECKING, Any, TypedDict, overload
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
-from ._columns import FIELDS, ROW
+from ._arrays import AnyArray, AnyPath, ArrayLike, Counts, Floats, Labels, Size, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
+from ._columns import FIELDS, ROW, frame, told
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
 from ._grid import OnGrid
 from ._histories import one_of
 from ._problem import hardness_of
-from ._result import Result
+from ._result import Result, attributes_of
 from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
-from ._surface import Surface, check_boundary, surface_of
+from ._surface import Surface, check_boundary, per_cell, surface_of
 from ._units import bare, is_labelled
 from ._words import Boundary, Method
+from .plot import CurvePlots, Plots
 
 if TYPE_CHECKING:
-    from .plot import CurvePlots, Plots
+    from typing_extensions import Unpack
 
 #: A kernel: numbers, or a function of two coordinates that gives them.
-Kernel = npt.ArrayLike | Callable[[Floats, Floats], npt.ArrayLike]
+Kernel = ArrayLike | Callable[[Floats, Floats], ArrayLike]
 
 
 @dataclass(frozen=True, eq=False)
 class ConvergenceHistory(ReadOnlyArrays):
     """What a solver did, one entry for each iteration, and the state in which it stopped."""
 
-    iteration: npt.NDArray[np.int64]
+    iteration: Counts
     #: Largest violation of the contact conditions over the mean displacement, before the step.
     residual: Floats
     #: Cells in the working set.
@@ -48,17 +47,14 @@ class ConvergenceHistory(ReadOnlyArrays):
     #: Kind of the step, "converged" at the end.
     step: tuple[str, ...]
     #: Convolutions so far.
-    convolutions: npt.NDArray[np.int64]
+    convolutions: Counts
 
     def __len__(self) -> int:
         return len(self.iteration)
 
     def to_dataframe(self) -> Any:
         """The history as pandas.DataFrame."""
-        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
-
-        names = ("residual", "working_cells", "step", "convolutions")
-        return pandas.DataFrame({name: getattr(self, name) for name in names}, index=pandas.Index(self.iteration, name="iteration"))
+        return frame(vars(self)).set_index("iteration")
 
     def __repr__(self) -> str:
         return f"<ConvergenceHistory: {len(self)} entries, residual {self.residual[0]:.2e} to {self.residual[-1]:.2e}>"
@@ -69,51 +65,39 @@ class _Planned:
 
     def __init__(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> None:
         self.gap: Floats = frozen(surface.gap())
-        self.size = surface.size
-        self.keys = {"contact_modulus": modulus, **keys}
+        self.size, self.keys, self.kernel = surface.size, {"contact_modulus": modulus, **keys}, kernel
         # The array of the caller may change.
-        self.kernel = kernel
         self.hardness: Any = np.array(hardness) if isinstance(hardness, np.ndarray) else hardness
 
     @functools.cached_property
     def core(self) -> _core.Elastic:
         """The plan; a copy makes its own when it needs one."""
-        cells = self.hardness if isinstance(self.hardness, np.ndarray) else None
-        return _core.Elastic(
-            gap=as_plane(self.gap),
-            size=list(self.size),
-            hardness=self.hardness if isinstance(self.hardness, float) else math.inf,
-            hardness_map=None if cells is None else as_plane(cells),
-            kernel=self.kernel,
-            **self.keys,
-        )
+        limit = self.hardness if isinstance(self.hardness, float) else math.inf
+        cells = as_plane(self.hardness) if isinstance(self.hardness, np.ndarray) else None
+        return _core.Elastic(gap=as_plane(self.gap), size=list(self.size), hardness=limit, hardness_map=cells, kernel=self.kernel, **self.keys)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "core"}
 
     def is_for(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> bool:
         """Whether it was planned for this."""
-        if self.keys != {"contact_modulus": modulus, **keys} or self.size != surface.size:
-            return False
-        same = (np.array_equal(ours, theirs) for ours, theirs in ((self.hardness, hardness), (self.kernel, kernel)))
-        return all(same) and np.array_equal(self.gap, surface.gap())
+        same = self.keys == {"contact_modulus": modulus, **keys} and self.size == surface.size
+        return same and np.array_equal(self.hardness, hardness) and np.array_equal(self.kernel, kernel) and np.array_equal(self.gap, surface.gap())
 
     def solve(self, control: str, value: float, start: Floats | None, history: bool, out: Any) -> ElasticContact:
         """One contact."""
         found = self.core.solve(control, value, None if start is None else as_plane(start), history)
         fields = {name: found.pop(name).reshape(self.gap.shape) for name in ("pressure", "displacement")}
-        for name, values in fields.items():
-            if name in out:
-                out[name][...] = values
-                fields[name] = out[name].view()
+        lent = {name: out[name].view() for name in fields if name in out}
+        for name, values in lent.items():
+            values[...] = fields[name]
         findings, iterations = findings_of(json.loads(found.pop("findings"))), found.pop("history")
         told = None
         if history:
-            number_, residual, working, steps, convolutions = zip(*iterations)
-            whole = (np.array(values, dtype=np.int64) for values in (number_, convolutions))
-            told = ConvergenceHistory(next(whole), np.array(residual), np.array(working), tuple(steps), next(whole))
-        lent = {name: values for name, values in fields.items() if name in out}
-        contact = ElasticContact(self, found, fields["pressure"], fields["displacement"], findings, told, lent)
+            numbers, residual, working, steps, convolutions = zip(*iterations)
+            counts = (np.array(values, dtype=np.int64) for values in (numbers, convolutions))
+            told = ConvergenceHistory(next(counts), np.array(residual), np.array(working), steps, next(counts))
+        contact = ElasticContact(self, found, fields | lent, findings, told, lent)
         if "gap" in out:
             out["gap"][...] = contact.gap
         return contact
@@ -133,35 +117,27 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
     initial_gap: Floats
     #: Lengths of the domain [m].
     size: tuple[float, ...]
+    #: E* [Pa].
+    contact_modulus: float
     #: "free" or "periodic".
-    boundary: str
+    boundary: Boundary
+    #: "projected-cg" or "polonsky-keer", and the largest residual that it was to leave.
+    method: Method
+    tolerance: float
+    #: Largest pressure [Pa], of all cells or of each; None where there is none.
+    hardness: float | Floats | None
     #: What the solver did, where it was asked for.
     history: ConvergenceHistory | None
 
     def __init__(
-        self,
-        planned: _Planned,
-        row: dict[str, Any],
-        pressure: Floats,
-        displacement: Floats,
-        findings: list[Finding],
-        history: ConvergenceHistory | None,
-        lent: dict[str, Floats],
+        self, planned: _Planned, row: dict[str, Any], fields: dict[str, Floats], findings: list[Finding], history: ConvergenceHistory | None, lent: dict[str, Floats]
     ) -> None:
-        self._planned = planned
-        self._row = row
+        self._planned, self._row, self._findings = planned, row, findings
         self._stiffness: float | None = None
         # Fields in arrays of the caller, which may change: each with its checksum.
         self._lent = {name: (frozen(values), _checksum(values)) for name, values in lent.items()}
-        self.__dict__.update(
-            pressure=frozen(pressure),
-            displacement=frozen(displacement),
-            initial_gap=planned.gap,
-            size=planned.size,
-            boundary=planned.keys["boundary"],
-            history=history,
-        )
-        self._findings = findings
+        given = {name: planned.keys[name] for name in ("contact_modulus", "boundary", "method", "tolerance")}
+        self._hold(**fields, **given, initial_gap=planned.gap, size=planned.size, hardness=planned.hardness, history=history)
 
     def _number(self, name: str) -> Any:
         return self._row[name]
@@ -185,8 +161,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         """Gap of the deformed surfaces [m]; below zero where the pressure is cut off."""
         if "displacement" in self._lent:
             self._whole("the gap")
-        values: Floats = frozen(self.initial_gap + self.displacement - self.approach)
-        return values
+        return frozen(self.initial_gap + self.displacement - self.approach)
 
     @property
     def cells(self) -> tuple[int, ...]:
@@ -203,48 +178,18 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
             self._stiffness = self._planned.core.stiffness(np.array(as_plane(self.pressure)))
         return self._stiffness
 
-    def spots(self) -> npt.NDArray[np.uint32]:
+    def spots(self) -> Labels:
         """The contact spots as a labelled image; see :meth:`Result.spots`."""
         self._whole("a map of the spots")
-        labels = _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary)
-        return labels.reshape(self.pressure.shape)
-
-    @property
-    def contact_modulus(self) -> float:
-        """E* [Pa]."""
-        modulus: float = self._planned.keys["contact_modulus"]
-        return modulus
-
-    @property
-    def tolerance(self) -> float:
-        """Largest residual that the solver was to leave."""
-        tolerance: float = self._planned.keys["tolerance"]
-        return tolerance
-
-    @property
-    def method(self) -> Method:
-        """"projected-cg" or "polonsky-keer"."""
-        method: Method = self._planned.keys["method"]
-        return method
-
-    @property
-    def hardness(self) -> float | Floats | None:
-        """Largest pressure [Pa], of all cells or of each; None where there is none."""
-        hardness: float | Floats | None = self._planned.hardness
-        return hardness
+        return _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary).reshape(self.pressure.shape)
 
     @property
     def _setup(self) -> dict[str, Any]:
         """The contact in numbers, as a result has them."""
-        return {
-            "boundary": self.boundary,
-            "contact_modulus": self.contact_modulus,
-            "hardness": self.hardness if isinstance(self.hardness, float) else None,
-            "hardness_of_cells": isinstance(self.hardness, np.ndarray),
-            "kernel": "given" if self._planned.kernel is not None else "half-space",
-            "solver_method": self.method,
-            "solver_tolerance": self.tolerance,
-        }
+        known = {"boundary": self.boundary, "contact_modulus": self.contact_modulus, "solver_method": self.method, "solver_tolerance": self.tolerance}
+        of_cells = isinstance(self.hardness, np.ndarray)
+        kernel = "half-space" if self._planned.kernel is None else "given"
+        return {**known, "hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel}
 
     def methods(self, *, bibtex: bool = False) -> str:
         """A paragraph on what was computed, as :meth:`Result.methods`."""
@@ -256,10 +201,9 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
 
     def to_xarray(self) -> Any:
         """The contact as xarray.Dataset with coordinates and units."""
-        data = self.to_result().to_xarray().isel(time=0, field_time=0, drop=True)
-        return data.drop_vars(["time_error", "stage"])
+        return self.to_result().to_xarray().isel(time=0, field_time=0, drop=True).drop_vars(["time_error", "stage"])
 
-    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    def save(self, path: AnyPath, *, force: bool = False) -> None:
         """Writes the contact as a result of one row, as :meth:`Result.save`."""
         self.to_result().save(path, force=force)
 
@@ -274,21 +218,9 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         own = {name: np.array(values) for name, (values, _) in self._lent.items()}
         return {**self.__dict__, "_lent": {}, **own}
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        for name in ("pressure", "displacement", "initial_gap"):
-            self.__dict__[name] = frozen(state[name])
-
     def _repr_html_(self) -> str:
-        rows = [
-            ("load", f"{self.load:.6g} {self._load_unit}"),
-            ("approach", f"{self.approach:.6g} m"),
-            ("contact length" if self.is_line else "contact area", f"{self.contact_area:.6g} {'m' if self.is_line else 'm²'}"),
-            ("contact fraction", f"{100 * self.contact_fraction:.4g} %"),
-            ("largest pressure", f"{self.max_pressure:.6g} Pa"),
-            ("certified error", f"{self.certificate:.1e}"),
-        ]
-        return f"<b>Elastic contact</b>, {cells_of(self.pressure)}{_html.table(rows)}"
+        numbers = told({name: self._row[name] for name in OF_CONTACT}, self.is_line)
+        return f"<b>Elastic contact</b>, {cells_of(self.pressure)}{_html.table(numbers)}"
 
     def __repr__(self) -> str:
         return (
@@ -309,20 +241,17 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
         self._control, self._prescribed = control, tuple(prescribed)
 
     def _column(self, name: str) -> Floats:
-        values: Floats = frozen(np.array([contact._row[name] for contact in self._contacts]))
-        return values
+        return frozen(np.array([contact._row[name] for contact in self._contacts]))
 
     @property
     def stiffness(self) -> Floats:
         """Contact stiffness dW/dw [N/m] of each."""
-        values: Floats = frozen(np.array([contact.stiffness for contact in self._contacts]))
-        return values
+        return frozen(np.array([contact.stiffness for contact in self._contacts]))
 
     @property
     def findings(self) -> list[Finding]:
         """Where the numbers may be off, of any of the contacts."""
-        found = {finding["code"]: finding for contact in reversed(self._contacts) for finding in contact.findings}
-        return list(found.values())
+        return list({finding["code"]: finding for contact in reversed(self._contacts) for finding in contact.findings}.values())
 
     @overload
     def __getitem__(self, index: int) -> ElasticContact: ...
@@ -341,27 +270,20 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
 
     def to_dataframe(self) -> Any:
         """The numbers as pandas.DataFrame, a row for each contact."""
-        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
-
-        return pandas.DataFrame({name: np.array(self._column(name)) for name in OF_CONTACT})
+        return frame({name: np.array(self._column(name)) for name in OF_CONTACT})
 
     def to_xarray(self) -> Any:
         """The numbers and the pressures as xarray.Dataset over what was prescribed, `load`, `mean_pressure` or `approach`, with the values
         as they were given: curves of other surfaces under the same values have the same index."""
-        import xarray
-
         index = {"pressure": "mean_pressure"}.get(self._control, self._control)
         rows = _result(self._contacts, False).to_xarray().drop_vars(["time_error", "stage", "field_time"])
-        prescribed = xarray.Variable(("time",), np.array(self._prescribed), rows[index].attrs)
-        rows = rows.assign_coords({index: prescribed}).swap_dims(time=index).drop_vars("time")
-        pressures = np.array([contact.pressure for contact in self._contacts])
-        return rows.assign(pressure=xarray.Variable((index, *self._contacts[0]._axes), pressures, FIELDS["pressure"].attributes()))
+        rows = rows.assign_coords({index: ("time", np.array(self._prescribed), rows[index].attrs)}).swap_dims(time=index).drop_vars("time")
+        pressures = [contact.pressure for contact in self._contacts]
+        return rows.assign(pressure=FIELDS["pressure"].variable((index, *self._contacts[0]._axes), pressures))
 
     @property
     def plot(self) -> CurvePlots:
         """Figures by matplotlib: ``curve.plot.area()``, ``curve.plot.load_displacement()``."""
-        from .plot import CurvePlots
-
         return CurvePlots(self)
 
     def __repr__(self) -> str:
@@ -370,6 +292,25 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
             f"<ElasticCurve: {len(self)} contacts of {cells_of(first.pressure)}, load {first.load:.4g} to {last.load:.4g} {first._load_unit}, contact "
             f"{100 * first.contact_fraction:.4g} to {100 * last.contact_fraction:.4g} %>"
         )
+
+
+class _How(TypedDict, total=False):
+    """What the contacts of :func:`elastic` have in common, one or several."""
+
+    gap: Any
+    size: Size
+    hardness: float | ArrayLike | None
+    boundary: Boundary
+    kernel: Kernel | None
+    start: ElasticContact | ArrayLike | None
+    history: bool
+    method: Method
+    tolerance: float
+    max_iterations: int
+
+
+#: Values of several contacts.
+_Several = Sequence[float] | AnyArray | None
 
 
 def _checksum(values: Floats) -> int:
@@ -381,81 +322,32 @@ def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
     first = contacts[0]
     for contact in contacts:
         contact._whole("a result")
-    table = {name: np.array([contact._row[name] for contact in contacts]) for name in ROW}
     names = ("pressure", "gap", "displacement") if with_fields else ()
     return Result(
-        table=table,
+        table={name: np.array([contact._row[name] for contact in contacts]) for name in ROW},
         fields={name: np.array([getattr(contact, name) for contact in contacts]) for name in names},
         field_steps=range(len(contacts)) if with_fields else [],
         initial_gap=first.initial_gap,
         size=first.size,
-        attributes={
-            "title": "Elastic contact",
-            "version": _core.__version__,
-            "status": "complete",
-            "setup": json.dumps(first._setup),
-            "findings": [dict(finding) for finding in first.findings],
-        },
+        attributes=attributes_of("Elastic contact", "complete", first._setup, first.findings),
     )
 
 
 @overload
 def elastic(
-    surface: Any = ...,
-    contact_modulus: float | None = ...,
-    *,
-    load: float | None = ...,
-    pressure: float | None = ...,
-    approach: float | None = ...,
-    gap: Any = ...,
-    size: float | Sequence[float] | None = ...,
-    hardness: float | npt.ArrayLike | None = ...,
-    boundary: Boundary = ...,
-    kernel: Kernel | None = ...,
-    start: ElasticContact | npt.ArrayLike | None = ...,
-    out: Floats | Mapping[str, Floats] | None = ...,
-    history: bool = ...,
-    method: Method = ...,
-    tolerance: float = ...,
-    max_iterations: int = ...,
+    surface: Any = ..., contact_modulus: float | None = ..., *, load: float | None = ..., pressure: float | None = ..., approach: float | None = ...,
+    out: Floats | Mapping[str, Floats] | None = ..., **how: Unpack[_How]
 ) -> ElasticContact: ...
 @overload
 def elastic(
-    surface: Any = ...,
-    contact_modulus: float | None = ...,
-    *,
-    load: Sequence[float] | npt.NDArray[Any] | None = ...,
-    pressure: Sequence[float] | npt.NDArray[Any] | None = ...,
-    approach: Sequence[float] | npt.NDArray[Any] | None = ...,
-    gap: Any = ...,
-    size: float | Sequence[float] | None = ...,
-    hardness: float | npt.ArrayLike | None = ...,
-    boundary: Boundary = ...,
-    kernel: Kernel | None = ...,
-    start: ElasticContact | npt.ArrayLike | None = ...,
-    history: bool = ...,
-    method: Method = ...,
-    tolerance: float = ...,
-    max_iterations: int = ...,
+    surface: Any = ..., contact_modulus: float | None = ..., *, load: _Several = ..., pressure: _Several = ..., approach: _Several = ..., **how: Unpack[_How]
 ) -> ElasticCurve: ...
 def elastic(
-    surface: Any = None,
-    contact_modulus: float | None = None,
-    *,
-    load: Any = None,
-    pressure: Any = None,
-    approach: Any = None,
-    gap: Any = None,
-    size: float | Sequence[float] | None = None,
-    hardness: float | npt.ArrayLike | None = None,
-    boundary: Boundary = "free",
-    kernel: Kernel | None = None,
-    start: ElasticContact | npt.ArrayLike | None = None,
-    out: Floats | Mapping[str, Floats] | None = None,
-    history: bool = False,
-    method: Method = "projected-cg",
-    tolerance: float = 1e-6,
-    max_iterations: int = 5000,
+    surface: Any = None, contact_modulus: float | None = None, *, load: Any = None, pressure: Any = None, approach: Any = None,
+    gap: Any = None, size: Size = None, hardness: float | ArrayLike | None = None,
+    boundary: Boundary = "free", kernel: Kernel | None = None, start: ElasticContact | ArrayLike | None = None,
+    out: Floats | Mapping[str, Floats] | None = None, history: bool = False, method: Method = "projected-cg",
+    tolerance: float = 1e-6, max_iterations: int = 5000
 ) -> ElasticContact | ElasticCurve:
     """Solves an elastic contact, or those of a list of loads.
 
@@ -510,23 +402,22 @@ def elastic(
     >>> curve.contact_area.shape, curve[-1].pressure.shape
     ((3,), (128, 128))
     """
-    boundary, method = choice("boundary", boundary, get_args(Boundary)), choice("method", method, get_args(Method))
+    boundary, method = choice("boundary", boundary, Boundary), choice("method", method, Method)
     shape = surface_of(surface, gap, size)
     check_boundary(shape, boundary)
     if contact_modulus is None and kernel is None:
         raise CaseError("give contact_modulus, E* [Pa] in (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*")
-    modulus = 1.0 if contact_modulus is None else number("contact_modulus", contact_modulus)
+    modulus, table = 1.0 if contact_modulus is None else number("contact_modulus", contact_modulus), None
     for what, value in (("hardness", hardness), ("start of the pressure", start)):
         check_places(what, value, surface if gap is None else gap)
-    limit = hardness_of(hardness, shape)
-    table = None if kernel is None else _table(kernel, shape, boundary, "m/Pa" if contact_modulus is None else "m")
-    if table is not None:
+    if kernel is not None:
+        table = _table(kernel, shape, boundary, "m/Pa" if contact_modulus is None else "m")
         factor = _scale(table, shape, boundary)
         table, modulus = table * factor, modulus * factor
-    keys = {"boundary": boundary, "method": method, "tolerance": number("tolerance", tolerance)}
-    keys["max_iterations"] = count("max_iterations", max_iterations)
+    solver = {"method": method, "tolerance": number("tolerance", tolerance), "max_iterations": count("max_iterations", max_iterations)}
+    wanted = shape, modulus, hardness_of(hardness, shape), table, {"boundary": boundary, **solver}
     held = start._planned if isinstance(start, ElasticContact) else None
-    planned = held if held is not None and held.is_for(shape, modulus, limit, table, keys) else _Planned(shape, modulus, limit, table, keys)
+    planned = held if held is not None and held.is_for(*wanted) else _Planned(*wanted)
 
     what, values = one_of({"load": load, "pressure": pressure, "approach": approach}, "give")
     unit = {"load": "N/m" if shape.is_line else "N", "pressure": "Pa", "approach": "m"}[what]
@@ -539,12 +430,8 @@ def elastic(
     receives = _receivers(out, shape)
     if several and receives:
         raise CaseError("out is for one contact, but a list is given: the contacts of a curve have fields of their own")
-    first: Floats | None = None
-    if start is not None:
-        held_pressure = start.pressure if isinstance(start, ElasticContact) else start
-        first = field("start of the pressure", held_pressure, line=True, size=shape.size)
-        if first.shape != shape.heights.shape:
-            raise CaseError(f"start has shape {first.shape}, but the surface has {shape.heights.shape} cells")
+    begin = start.pressure if isinstance(start, ElasticContact) else start
+    first = None if begin is None else per_cell("start of the pressure", begin, shape)
     contacts: list[ElasticContact] = []
     try:
         for value in numbers:
@@ -590,18 +477,13 @@ def _table(kernel: Any, shape: Surface, boundary: str, unit: str) -> Floats:
         names = sorted(map(str, kernel.dims)) if is_labelled(kernel) else []
         ordered = kernel.transpose(*names) if names in (["x", "y"], ["qx", "qy"]) else kernel
         return as_plane(field("kernel", bare("kernel", ordered, unit), line=True))
-    cells = (*shape.cells, 1)[:2]
-    lengths = (*shape.size, 1.0)[:2]
-    if boundary == "periodic":
-        first, second = (2.0 * np.pi / length * np.arange(n // 2 + 1) for n, length in zip(cells, lengths))
-    else:
-        first, second = (length / n * np.arange(n) for n, length in zip(cells, lengths))
-    at = np.meshgrid(first, second, indexing="ij")
+    sides = [*zip(shape.cells, shape.size), (1, 1.0)][:2]
+    waves = [2.0 * np.pi / length * np.arange(n // 2 + 1) for n, length in sides]
+    at = np.meshgrid(*(waves if boundary == "periodic" else [length / n * np.arange(n) for n, length in sides]), indexing="ij")
 
     def values(x: Floats, y: Floats) -> Floats:
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = np.broadcast_to(array("kernel", kernel(x, y), unit), x.shape)
-        return np.array(found)
+            return np.array(np.broadcast_to(array("kernel", kernel(x, y), unit), x.shape))
 
     table = values(*at)
     # Only half of the numbers are asked for: the others must be their mirror images.

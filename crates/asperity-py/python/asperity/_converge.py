@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Mapping, Sequence
-from typing import Any, TypedDict
+from typing import TypedDict
 
 from . import _core
-from ._solve import overrides, source
+from ._solve import Case, Changes, overrides, source
 
 __all__ = ["ErrorBar", "converge"]
 
@@ -37,12 +35,7 @@ class ErrorBar(TypedDict, total=False):
     note: str
 
 
-def converge(
-    case: str | os.PathLike[str] | Mapping[str, Any],
-    *,
-    set: dict[str, Any] | Sequence[str] | None = None,
-    refine: bool = False,
-) -> list[ErrorBar]:
+def converge(case: Case, *, set: Changes = None, refine: bool = False) -> list[ErrorBar]:
     """The answers of a case (as in :func:`asperity.run`) with their errors, as ``asperity converge`` prints them.
 
     The case is solved, and again with half and a quarter of the cells along each side, with steps of twice the length and with ten
@@ -74,5 +67,4 @@ def converge(
     >>> abs(bars["approach"]["value"] - hertz) < bars["approach"]["error"] < 0.05 * hertz
     True
     """
-    found: list[ErrorBar] = json.loads(_core.converge(*source(case), overrides(set), refine))
-    return found
+    return list(json.loads(_core.converge(*source(case), overrides(set), refine)))

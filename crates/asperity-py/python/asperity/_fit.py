@@ -16,17 +16,17 @@ from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, count, line, number, pair, plain
+from ._arrays import AnyPath, ArrayLike, Floats, count, line, number, pair, plain
 from ._core import CaseError
+from ._declared import arguments_of, check
 from ._findings import Finding, findings_of, warn
-from ._materials import Creep, Material, Prony
-from ._options import arguments_of
+from ._materials import _OF_BODY, Creep, Material, Prony
 from ._sealed import ReadOnlyArrays
 from ._shifts import Shift, made
 from ._words import LongTime, Measure, Moduli, Vertical
+from .plot import fitted
 from ._units import bare, frequency as angular_frequency, has_unit
 
 #: Temperatures closer than this belong to one sweep [K], and those of one sweep spread by no more.
@@ -96,31 +96,23 @@ class Fit(ReadOnlyArrays):
         return self.with_body(**self._body)
 
     def with_body(
-        self,
-        *,
-        poisson: float | None = None,
-        bulk_modulus: float | None = None,
-        hardness: float | None = None,
-        name: str | None = None,
-        temperature: float | None = None,
+        self, *, poisson: float | None = None, bulk_modulus: float | None = None, hardness: float | None = None,
+        name: str | None = None, temperature: float | None = None
     ) -> Material:
         """The material with this Poisson's ratio or bulk modulus [Pa], hardness [Pa], and constant temperature [K]; it knows the times
         that the data cover."""
-        rest: dict[str, Any] = dict(
-            poisson=poisson, bulk_modulus=bulk_modulus, hardness=hardness, name=name, shift=self.shift, temperature=temperature, window=self.window
-        )
+        given = dict(poisson=poisson, bulk_modulus=bulk_modulus, hardness=hardness, name=name, temperature=temperature)
+        rest: dict[str, Any] = {**given, "terms": self.terms, "shift": self.shift, "window": self.window}
         made: Material
         if self.equilibrium is not None:
-            made = Prony(equilibrium=self.equilibrium, terms=self.terms, modulus=self.modulus, **rest)
+            made = Prony(equilibrium=self.equilibrium, modulus=self.modulus, **rest)
         else:
             assert self.instantaneous is not None and self.fluidity is not None
-            made = Creep(
-                instantaneous=self.instantaneous, terms=self.terms, fluidity=self.fluidity, compliance=self.modulus, **rest
-            )
+            made = Creep(instantaneous=self.instantaneous, fluidity=self.fluidity, compliance=self.modulus, **rest)
         made._hold(_fit=self)
         return made
 
-    def curve(self, x: npt.ArrayLike) -> tuple[Floats, ...]:
+    def curve(self, x: ArrayLike) -> tuple[Floats, ...]:
         """The fitted curves at reduced times [s], or angular frequencies [rad/s] of a DMA."""
         # The functions of a material do not depend on Poisson's ratio.
         material = self.with_body(poisson=0.5)
@@ -136,15 +128,11 @@ class Fit(ReadOnlyArrays):
         out = {axis: self.x}
         for label, data, fitted in zip(_LABELS[self.kind], self.curves, self.curve(self.x)):
             key = label.replace(" ", "_")
-            out[key] = data
-            out[f"{key}_fitted"] = fitted
-            out[f"{key}_misfit"] = fitted / data - 1.0
+            out |= {key: data, f"{key}_fitted": fitted, f"{key}_misfit": fitted / data - 1.0}
         return out
 
     def plot(self, *, ax: Any = None) -> Any:
         """Points and fitted curves over reduced time or angular frequency, on logarithmic axes."""
-        from .plot import fitted
-
         return fitted(self, ax)
 
     def __repr__(self) -> str:
@@ -156,24 +144,32 @@ class Fit(ReadOnlyArrays):
 
     def _repr_html_(self) -> str:
         weight = "modulus [Pa]" if self.equilibrium is not None else "compliance [1/Pa]"
-        rows = [
-            (f"{w:.6g}", f"{t:.6g}", f"{100 * a:.2g} %", f"{100 * b:.2g} %") for (w, t), (a, b) in zip(self.terms, self.uncertainty)
-        ]
+        both = zip(self.terms, self.uncertainty)
+        rows = [(f"{w:.6g}", f"{t:.6g}", f"{100 * a:.2g} %", f"{100 * b:.2g} %") for (w, t), (a, b) in both]
         return f"<p>{html.escape(repr(self).strip('<>'))}</p>{_html.table(rows, (weight, 'time [s]', '± weight', '± time'))}"
 
 
 @dataclass(kw_only=True)
-class Options:
+class OfBody:
+    """What is said of the body; all arguments are checked as they are declared."""
+
+    poisson: float | None = None
+    bulk_modulus: float | None = None
+    hardness: float | None = None
+    name: str | None = None
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(kw_only=True)
+class Options(OfBody):
     """How a material is fitted; :func:`fit_relaxation` describes the fields."""
 
     modulus: Measure | None = "young"
     shift: Shift | str | None = None
     reference: float | None = None
     vertical: Vertical | None = None
-    poisson: float | None = None
-    bulk_modulus: float | None = None
-    hardness: float | None = None
-    name: str | None = None
     window: Sequence[float] | None = None
     per_decade: float = 3.0
     margin: float = 1.0
@@ -184,20 +180,9 @@ class Options:
 
     def keys(self, kind: str | None) -> dict[str, Any]:
         """The options as the core takes them, for curves of that kind."""
-        return {
-            "modulus": self.modulus,
-            "shift": self._shift_keys(),
-            "vertical": self.vertical,
-            "window": self._window(kind),
-            "per_decade": number("per_decade", self.per_decade),
-            "margin": number("margin", self.margin),
-            "long_time": self.long_time,
-            "max_misfit": number("max_misfit", self.max_misfit),
-            "max_terms": None if self.max_terms is None else count("max_terms", self.max_terms),
-            "misfit": None if self.misfit is None else number("misfit", self.misfit),
-            "moduli": "both",
-            "loss_weight": 1.0,
-        }
+        as_given = ("modulus", "vertical", "per_decade", "margin", "long_time", "max_misfit", "max_terms", "misfit")
+        given = {name: getattr(self, name) for name in as_given}
+        return {**given, "shift": self._shift_keys(), "window": self._window(kind), "moduli": "both", "loss_weight": 1.0}
 
     def _shift_keys(self) -> dict[str, Any] | None:
         estimated = isinstance(self.shift, str) and self.shift == "estimated"
@@ -209,20 +194,18 @@ class Options:
             raise CaseError("reference goes with shift='estimated'; other shifts have their own")
         if isinstance(self.shift, Shift):
             return self.shift._keys
-        return {"model": "estimated", "reference": number("reference", self.reference)} if estimated else None
+        return {"model": "estimated", "reference": self.reference} if estimated else None
 
     def _window(self, kind: str | None) -> list[float] | None:
         """The ends of the window [s], of a DMA [rad/s]; with a unit only where the kind is known."""
         given: Any = self.window
-        if given is None:
-            return None
         if has_unit(given) and kind is not None:
             given = angular_frequency("window", given, angular=True) if kind == "dma" else bare("window", given, "s")
-        return list(pair("window", given))
+        return None if given is None else list(pair("window", given))
 
     def fit_of(self, found: dict[str, Any]) -> Fit:
         """The fit of these numbers of the core."""
-        body = {key: getattr(self, key) for key in ("poisson", "bulk_modulus", "hardness", "name")}
+        body = {key: getattr(self, key) for key in _OF_BODY}
         lists = {key: tuple(found[key]) for key in ("terms", "curves")}
         findings = findings_of(json.loads(found["findings"]))
         warn(findings)
@@ -260,7 +243,7 @@ class Spectra(Options):
     loss_weight: float = 1.0
 
     def keys(self, kind: str | None) -> dict[str, Any]:
-        return {**super().keys(kind), "moduli": self.moduli, "loss_weight": number("loss_weight", self.loss_weight)}
+        return {**super().keys(kind), "moduli": self.moduli, "loss_weight": self.loss_weight}
 
 
 @dataclass
@@ -286,7 +269,7 @@ class OfDma(Points, Spectra):
 class OfFile(Spectra):
     """The arguments of :func:`fit_file`."""
 
-    path: str | os.PathLike[str]
+    path: AnyPath
     _: KW_ONLY
     kind: str | None = None
     sheet: str | None = None
@@ -402,17 +385,13 @@ _PER_DECADE = 20
 
 
 @dataclass
-class OfFunction:
+class OfFunction(OfBody):
     """The arguments of :func:`Relaxation` and :func:`CreepFunction`."""
 
     function: Callable[[float], Any]
     _: KW_ONLY
     window: Sequence[float]
     modulus: Measure = "young"
-    poisson: float | None = None
-    bulk_modulus: float | None = None
-    hardness: float | None = None
-    name: str | None = None
     shift: Shift | None = None
     temperature: float | None = None
     per_decade: float = 3.0
@@ -429,17 +408,14 @@ class OfFunction:
         times = np.geomspace(first, last, max(3, math.ceil(_PER_DECADE * math.log10(last / first)) + 1))
         unit = "Pa" if kind == "relaxation" else "1/Pa"
         values = np.array([number(f"{label} at {time:g} s", function(float(time)), unit) for time in times])
-        limit = number("max_misfit", self.max_misfit)
-        curve = OfCurve(times, values, modulus=self.modulus, shift=self.shift, per_decade=self.per_decade, max_misfit=limit)
+        curve = OfCurve(times, values, modulus=self.modulus, shift=self.shift, per_decade=self.per_decade, max_misfit=self.max_misfit)
         fit = curve.fit(kind, times, [values])
-        if fit.max_misfit > limit:
+        if fit.max_misfit > self.max_misfit:
             raise CaseError(
-                f"the {label} is {100 * fit.max_misfit:.2g} % off its Prony series at {fit.worst:g} s, more than max_misfit, {100 * limit:g} %: "
+                f"the {label} is {100 * fit.max_misfit:.2g} % off its Prony series at {fit.worst:g} s, more than max_misfit, {100 * self.max_misfit:g} %: "
                 "a passive material relaxes by decaying exponentials only; give a larger per_decade, a shorter window or a larger max_misfit"
             )
-        return fit.with_body(
-            poisson=self.poisson, bulk_modulus=self.bulk_modulus, hardness=self.hardness, name=self.name, temperature=self.temperature
-        )
+        return fit.with_body(**{name: getattr(self, name) for name in (*_OF_BODY, "temperature")})
 
 
 @arguments_of(OfFunction)
@@ -489,31 +465,21 @@ def CreepFunction(given: OfFunction) -> Material:
 
 def _sweeps(x: Floats, curves: list[Floats], temperature: Any) -> list[tuple[float | None, Floats, list[Floats]]]:
     """The points by temperature, the coldest first; a sweep that goes down is turned."""
-
-    def turned(rows: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
-        return rows[::-1] if len(rows) > 1 and bool(np.all(np.diff(x[rows]) < 0)) else rows
-
-    def sweep(kelvin: float | None, rows: npt.NDArray[np.intp]) -> tuple[float | None, Floats, list[Floats]]:
-        rows = turned(rows)
-        return kelvin, plain(x[rows]), [plain(curve[rows]) for curve in curves]
-
-    everything = np.arange(len(x))
-    if temperature is None:
-        return [sweep(None, everything)]
-    if np.ndim(temperature) == 0:
-        return [sweep(number("temperature", temperature), everything)]
-    kelvin = line("temperature", temperature)
-    if len(kelvin) != len(x):
-        raise CaseError(f"temperature has {len(kelvin)} values for {len(x)} points")
-    order = np.argsort(kelvin, kind="stable")
-    groups = np.split(order, np.flatnonzero(np.diff(kelvin[order]) > _SAME) + 1)
-    found = []
-    for rows in groups:
-        held = kelvin[rows]
-        if np.ptp(held) > _SPREAD:
-            raise CaseError(
-                f"the temperatures from {held.min():g} K to {held.max():g} K follow each other within {_SAME:g} K; "
-                "sweeps at held temperatures are needed"
-            )
-        found.append(sweep(float(held.mean()), np.sort(rows)))
-    return found
+    groups: list[tuple[float | None, Any]] = []
+    if temperature is None or np.ndim(temperature) == 0:
+        groups.append((None if temperature is None else number("temperature", temperature), np.arange(len(x))))
+    else:
+        kelvin = line("temperature", temperature)
+        if len(kelvin) != len(x):
+            raise CaseError(f"temperature has {len(kelvin)} values for {len(x)} points")
+        order = np.argsort(kelvin, kind="stable")
+        for rows in np.split(order, np.flatnonzero(np.diff(kelvin[order]) > _SAME) + 1):
+            held = kelvin[rows]
+            if np.ptp(held) > _SPREAD:
+                raise CaseError(
+                    f"the temperatures from {held.min():g} K to {held.max():g} K follow each other within {_SAME:g} K; "
+                    "sweeps at held temperatures are needed"
+                )
+            groups.append((float(held.mean()), np.sort(rows)))
+    turned = [(mean, rows[::-1] if len(rows) > 1 and np.all(np.diff(x[rows]) < 0) else rows) for mean, rows in groups]
+    return [(mean, plain(x[rows]), [plain(curve[rows]) for curve in curves]) for mean, rows in turned]

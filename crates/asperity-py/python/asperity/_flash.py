@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import Any, Literal, get_args
 
-import numpy as np
-
-from ._arrays import choice, number
-from ._core import CaseError
-
-Partition = Literal["mean", "local", "slider", "track"]
-Feedback = Literal["none", "mean"]
+from ._declared import Table
+from ._words import Feedback, Partition
 
 
-@dataclass(frozen=True)
-class Flash:
+@dataclass(frozen=True, repr=False)
+class Flash(Table):
     """How warm friction makes the surfaces, an argument of :func:`asperity.slide` and :func:`asperity.steady` (docs/flash.md).
 
     `conductivity` [W/(m K)] and `diffusivity` [m2/s] of both bodies, or pairs: of the slider, which carries the surfaces that move, and of
@@ -41,25 +35,3 @@ class Flash:
     partition: Partition = "mean"
     heated_for: float | None = None
     feedback: Feedback = "none"
-
-    @property
-    def _keys(self) -> dict[str, Any]:
-        """The keys of `[flash]`."""
-        keys: dict[str, Any] = {
-            "conductivity": _of_bodies("conductivity", self.conductivity),
-            "diffusivity": _of_bodies("diffusivity", self.diffusivity),
-            "hysteresis": bool(self.hysteresis),
-            "partition": choice("partition", self.partition, get_args(Partition)),
-            "feedback": choice("feedback", self.feedback, get_args(Feedback)),
-        }
-        given = {"friction": self.friction, "heated_for": self.heated_for}
-        return keys | {name: number(name, value) for name, value in given.items() if value is not None}
-
-
-def _of_bodies(name: str, value: Any) -> float | list[float]:
-    """One number for both bodies, or two, of slider and track."""
-    if np.ndim(value) == 0:
-        return number(name, value)
-    if np.shape(value) != (2,):
-        raise CaseError(f"{name} is {value!r}, but must be a number, or a pair of them, of slider and track")
-    return [number(name, one) for one in value]

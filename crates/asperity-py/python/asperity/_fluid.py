@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Any, get_args
+from dataclasses import dataclass
+from typing import Any
 
-from ._arrays import choice, number
-from ._core import CaseError
+from ._declared import Table
 from ._histories import History, as_history
 from ._words import Coupling, Flow, Pockets, Reference, Sides
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Fluid:
+class Fluid(Table):
     """A fluid that acts on the surfaces, an argument of :func:`asperity.solve` and :func:`asperity.march` (docs/leakage.md).
 
     `inlet`, a number or a history, and `outlet`: absolute pressures [Pa]; the `viscosity` [Pa s] of a liquid, or a `gas` ("air", "helium",
@@ -44,26 +43,11 @@ class Fluid:
     smallest_gap: float = 0.0
 
     def __post_init__(self) -> None:
-        words = {"coupling": Coupling, "pockets": Pockets, "reference": Reference, "direction": Flow}
-        for name, allowed in words.items():
-            choice(name, getattr(self, name), get_args(allowed))
-        if self.sides is not None:
-            choice("sides", self.sides, get_args(Sides))
-        for name in ("outlet", "viscosity", "molar_mass", "temperature", "bulk_modulus", "smallest_gap"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, number(name, getattr(self, name)))
+        super().__post_init__()
         object.__setattr__(self, "inlet", as_history("inlet", self.inlet, "Pa"))
-
-    def __repr__(self) -> str:
-        told = (f"{field.name}={getattr(self, field.name)!r}" for field in fields(self) if getattr(self, field.name) != field.default)
-        return f"Fluid({', '.join(told)})"
 
     @property
     def _keys(self) -> dict[str, Any]:
         """The keys of `[leakage]`."""
-        if not isinstance(self.inlet, History):
-            raise CaseError(f"inlet is {self.inlet!r}, but must be a pressure [Pa] or a history")
-        given = {field.name: getattr(self, field.name) for field in fields(self) if getattr(self, field.name) is not None}
-        if self.coupling == "uniform":
-            del given["pockets"]
-        return {**given, "inlet": self.inlet._keys}
+        given = {**super()._keys, "inlet": as_history("inlet", self.inlet, "Pa")._keys}
+        return {name: value for name, value in given.items() if name != "pockets" or self.coupling != "uniform"}

@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, choice, columns, number
+from ._arrays import AnyPath, Counts, Floats, choice, columns, number
 from ._core import CaseError
 from ._sealed import ReadOnlyArrays
+from ._words import Branch, Control
+from .plot import recorded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
-#: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it.
+#: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it: the ends
+#: are more than a factor of 10 apart.
 Interval = tuple[float, float, float]
-Model = Literal["hertz", "dmt", "jkr", "maugis"]
-Branch = Literal["retraction", "approach"]
-Control = Literal["load", "displacement"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +48,7 @@ class ForceFit(ReadOnlyArrays):
     #: Largest radius of the contact [m].
     contact_radius: float
     #: Numbers of the rows that were fitted, load [N] and depth [m] that were measured there, and the load of the model.
-    rows: npt.NDArray[np.int64]
+    rows: Counts
     load: Floats
     depth: Floats
     predicted: Floats
@@ -63,8 +62,6 @@ class ForceFit(ReadOnlyArrays):
     def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Load over depth, from the load of the free sphere and the depth of first touch: the record as points, the model as a line, which
         takes the further arguments."""
-        from .plot import recorded
-
         along, baseline = ("depth", "m", self.depth - self.touch[0]), self.baseline[0]
         return recorded(along, "load", self.load - baseline, self.predicted - baseline, ax, style)
 
@@ -79,35 +76,26 @@ class ForceFit(ReadOnlyArrays):
         return f"<ForceFit {self.model} of {len(self.rows)} rows: {told}>"
 
     def _repr_html_(self) -> str:
-        rows = [(name, *(f"{x:.5g}" if x == x else "not determined" for x in values)) for name, values in self._lines()]
-        return _html.table(rows, ("", "value", "95 % from", "to"))
+        return table(self._lines())
 
 
-def fit_force_curve(
-    load: Any,
-    depth: Any,
-    *,
-    radius: Any,
-    poisson: float,
-    model: str,
-    branch: str,
-    control: str | None,
-    range: float | None,
-    spring_constant: float | None,
-    radius_uncertainty: float,
-    spring_constant_uncertainty: float,
-    sensitivity_uncertainty: float,
-) -> ForceFit:
+def table(lines: list[tuple[str, Interval]]) -> str:
+    """Names and intervals as a notebook shows them."""
+    rows = [(name, *(f"{x:.5g}" if x == x else "not determined" for x in values)) for name, values in lines]
+    return _html.table(rows, ("", "value", "95 % from", "to"))
+
+
+def fit_force_curve(load: Any, depth: Any, radius: Any, poisson: float, model: str, how: dict[str, Any]) -> ForceFit:
     """What :func:`fit_indentation` does with a `model`."""
     loads, depths = columns(load=load, depth=depth)
-    choice("branch", branch, get_args(Branch))
-    if control is not None:
-        choice("control", control, get_args(Control))
+    choice("branch", how["branch"], Branch)
+    if how["control"] is not None:
+        choice("control", how["control"], Control)
     size = number("radius", radius)
-    spring = None if spring_constant is None else number("spring_constant", spring_constant)
-    shares = share("radius", radius_uncertainty, size), *cantilever_shares(spring, spring_constant_uncertainty, sensitivity_uncertainty)
-    reach = None if range is None else number("range", range)
-    found = _core.fit_force_curve(loads, depths, size, model, branch, control, reach, spring, *shares)
+    spring, of_spring = cantilever(*(how[name] for name in ("spring_constant", "spring_constant_uncertainty", "sensitivity_uncertainty")))
+    shares = share("radius", how["radius_uncertainty"], size), *of_spring
+    reach = None if how["range"] is None else number("range", how["range"])
+    found = _core.fit_force_curve(loads, depths, size, model, how["branch"], how["control"], reach, spring, *shares)
     modulus = interval(found.pop("contact_modulus"), 1.0 - poisson**2)
     own = {name: found[name] and interval(found[name]) for name in ("work", "transition", "range", "touch", "baseline")}
     rows = np.asarray(found["rows"], dtype=np.int64)
@@ -129,11 +117,12 @@ def share(what: str, uncertainty: Any, value: float | None) -> float:
     return stated / value if value else 0.0
 
 
-def cantilever_shares(spring: float | None, spring_constant_uncertainty: Any, sensitivity_uncertainty: Any) -> tuple[float, float]:
-    """The uncertainties of the scales of load and deflection."""
+def cantilever(spring_constant: Any, spring_constant_uncertainty: Any, sensitivity_uncertainty: Any) -> tuple[float | None, tuple[float, float]]:
+    """The spring constant, and the uncertainties of the scales of load and deflection."""
+    spring = None if spring_constant is None else number("spring_constant", spring_constant)
     if spring is None and sensitivity_uncertainty:
         raise CaseError("sensitivity_uncertainty changes the deflection: give spring_constant too")
-    return share("spring_constant", spring_constant_uncertainty, spring), number("sensitivity_uncertainty", sensitivity_uncertainty)
+    return spring, (share("spring_constant", spring_constant_uncertainty, spring), number("sensitivity_uncertainty", sensitivity_uncertainty))
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,14 +152,8 @@ class ForceCurve(ReadOnlyArrays):
 
     @classmethod
     def from_deflection(
-        cls,
-        height: Any,
-        deflection: Any,
-        /,
-        *,
-        spring_constant: float,
-        sensitivity: float | None = None,
-        metadata: dict[str, Any] | None = None,
+        cls, height: Any, deflection: Any, /, *, spring_constant: float, sensitivity: float | None = None,
+        metadata: dict[str, Any] | None = None
     ) -> ForceCurve:
         """From the way of the cantilever's base towards the sample [m] and the deflection.
 
@@ -196,7 +179,7 @@ class ForceCurve(ReadOnlyArrays):
         return f"<ForceCurve of {len(self.force)} points, loads {self.force.min():.4g} to {self.force.max():.4g} N>"
 
 
-def read_force_curves(path: str | os.PathLike[str]) -> list[ForceCurve]:
+def read_force_curves(path: AnyPath) -> list[ForceCurve]:
     """The force curves of a file of an atomic force microscope or a nanoindenter, by the package `afmformats`.
 
     JPK, Asylum Research, NT-MDT, AFM workshop, Optics11 and other files; a map gives one curve per pixel, with "grid index x" and
@@ -220,15 +203,8 @@ def read_force_curves(path: str | os.PathLike[str]) -> list[ForceCurve]:
         raise CaseError(f"{name}: no such file")
     try:
         found = [_curve(data) for data in afmformats.load_data(name)]
-    except CaseError:
-        raise
     # Any reader fails in its own way on a damaged file, and the package's own errors are no Exceptions.
-    except (
-        Exception,
-        afmformats.errors.AFMFileFormatError,
-        afmformats.errors.MissingMetaDataError,
-        afmformats.meta.MetaDataMissingError,
-    ) as error:
+    except (Exception, afmformats.errors.AFMFileFormatError, afmformats.errors.MissingMetaDataError, afmformats.meta.MetaDataMissingError) as error:
         raise CaseError(f"{name}: afmformats {afmformats.__version__} cannot read it: {error}") from error
     curves = [curve for curve in found if curve is not None]
     if not curves:

@@ -8,17 +8,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import Floats
+from ._arrays import Floats, centres
+from ._columns import dataset
 from ._core import CaseError
 from ._force_curves import ForceCurve
 from ._indentation import fit_indentation
 from ._sealed import ReadOnlyArrays
+from .plot import force_map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
-#: What a map has of each fit, with the unit.
+#: What a map has of each fit, with the unit: the value, and the ends of its interval.
 _QUANTITIES = {"young": "Pa", "work": "J/m2"}
+_ENDS = ("", "_low", "_high")
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,21 +57,15 @@ class ForceMap(ReadOnlyArrays):
 
     def to_xarray(self) -> Any:
         """The maps as a dataset over x and y [m], pixels where the curves do not state the size of the grid."""
-        import xarray as xr
-
-        units = {f"{name}{end}": unit for name, unit in _QUANTITIES.items() for end in ("", "_low", "_high")} | {"touch": "m", "relative_rms": "1"}
-        maps = {name: (("x", "y"), getattr(self, name).copy(), {"units": unit}) for name, unit in units.items()}
-        places = {}
+        units = {f"{name}{end}": unit for name, unit in _QUANTITIES.items() for end in _ENDS} | {"touch": "m", "relative_rms": "1"}
+        maps: dict[str, Any] = {name: (("x", "y"), getattr(self, name).copy(), {"units": unit}) for name, unit in units.items()}
         for name, count, side in zip("xy", self.young.shape, self.size or (None, None)):
-            middles = np.arange(count) if side is None else (np.arange(count) + 0.5) * side / count
-            places[name] = (name, middles, {} if side is None else {"units": "m"})
-        return xr.Dataset(maps, coords=places)
+            maps[name] = (name, np.arange(count), {}) if side is None else (name, centres(count, side).copy(), {"units": "m"})
+        return dataset(maps)
 
     def plot(self, quantity: str = "young", *, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of "young" or "work", or of an end of their intervals ("young_low", "work_high", ...); what has no value is light, and the title
         says how many pixels that are. Further arguments go to matplotlib's ``imshow``."""
-        from .plot import force_map
-
         return force_map(self, quantity, ax, style)
 
 
@@ -122,34 +119,27 @@ def fit_force_map(curves: Iterable[ForceCurve], /, *, radius: float, poisson: fl
     if not fits:
         place, why = next(iter(failures.items()))
         raise CaseError(f"none of the {len(placed)} curves can be fitted; at the pixel {place}: {why}")
-    shape = tuple(_side([curve.metadata.get(f"grid shape {axis}") for curve in placed.values()], [place[k] for place in placed]) for k, axis in enumerate("xy"))
+    # As many pixels along a side as are stated, or as many as the curves need.
+    stated = [[int(curve.metadata.get(f"grid shape {axis}") or 0) for curve in placed.values()] for axis in "xy"]
+    shape = tuple(max([*stated[k], 1 + max(place[k] for place in placed)]) for k in (0, 1))
     maps = {name: np.full(shape, np.nan) for name in ForceMap.__annotations__ if name not in ("size", "failures", "notes")}
-    notes = {place: fit.notes for place, fit in fits.items() if fit.notes}
     for place, fit in fits.items():
-        for name in _QUANTITIES:
-            for end, value in zip(("", "_low", "_high"), getattr(fit, name)):
-                maps[name + end][place] = value
-        maps["touch"][place], maps["relative_rms"][place] = fit.touch[0], fit.relative_rms
+        numbers = {name + end: value for name in _QUANTITIES for end, value in zip(_ENDS, getattr(fit, name))}
+        for name, value in {**numbers, "touch": fit.touch[0], "relative_rms": fit.relative_rms}.items():
+            maps[name][place] = value
     sides: list[set[Any]] = [{curve.metadata.get(f"grid size {axis}") for curve in placed.values()} for axis in "xy"]
     known = all(len(side) == 1 and None not in side for side in sides)
     size = (float(sides[0].pop()), float(sides[1].pop())) if known else None
-    return ForceMap(**maps, size=size, failures=failures, notes=notes)
+    return ForceMap(**maps, size=size, failures=failures, notes={place: fit.notes for place, fit in fits.items() if fit.notes})
 
 
 def _place(n: int, curve: ForceCurve) -> tuple[int, int]:
     """The pixel of a curve."""
-    found = []
-    for axis in "xy":
-        name = f"grid index {axis}"
-        value = curve.metadata.get(name)
-        if value is None:
+    names = ("grid index x", "grid index y")
+    for name in names:
+        if (value := curve.metadata.get(name)) is None:
             raise CaseError(f'curve {n} has no "{name}" in its metadata, which a map needs')
         if value != int(value) or value < 0:
             raise CaseError(f'"{name}" of curve {n} is {value}, but must be a whole number, 0 or greater')
-        found.append(int(value))
-    return found[0], found[1]
-
-
-def _side(stated: list[Any], indices: list[int]) -> int:
-    """Number of pixels along a side: as stated, or as many as the curves need."""
-    return max([int(count) for count in stated if count is not None] + [1 + max(indices)])
+    x, y = (int(curve.metadata[name]) for name in names)
+    return x, y

@@ -13,9 +13,7 @@ def read(path: str, size: list[float] | None, height_unit: float | None, channel
     """Heights [m], size [m] and what the file says, as ``_core.read_surface`` returns them; else raises `error`."""
     try:
         import SurfaceTopography as other  # type: ignore[import-not-found,import-untyped,unused-ignore]
-        from SurfaceTopography.Support.UnitConversion import (  # type: ignore[import-not-found,import-untyped,unused-ignore]
-            get_unit_conversion_factor,
-        )
+        from SurfaceTopography.Support import UnitConversion  # type: ignore[import-not-found,import-untyped,unused-ignore]
     except ImportError:
         raise error from None
     try:
@@ -28,20 +26,16 @@ def read(path: str, size: list[float] | None, height_unit: float | None, channel
     if reader.channels[index].dim != 2:
         raise CaseError(f"{path}: the channel {names[index]!r} is a profile, and not an area")
 
-    def metres(unit: Any) -> float | None:
-        return None if not isinstance(unit, str) else get_unit_conversion_factor(unit, "m")
-
-    options = {}
-    if reader.channels[index].physical_sizes is None:
-        if size is None:
-            raise CaseError(f"{path}: the file holds no physical size; give the lengths along x and y (size=)")
-        options["physical_sizes"] = tuple(size)
+    sized = reader.channels[index].physical_sizes is not None
+    if not sized and size is None:
+        raise CaseError(f"{path}: the file holds no physical size; give the lengths along x and y (size=)")
+    options = {} if sized else {"physical_sizes": tuple(size or ())}
     try:
         topography = reader.topography(channel_index=index, **options)
     except Exception as why:
         raise OSError(f"{path}: the package SurfaceTopography cannot read it: {why}") from why
 
-    unit = metres(topography.unit)
+    unit: Any = UnitConversion.get_unit_conversion_factor(topography.unit, "m") if isinstance(topography.unit, str) else None
     if height_unit is None and unit is None:
         raise CaseError(f"{path}: the file holds no unit of length for its heights (it says {topography.unit!r}); give it (height_unit=)")
     if size is None:
@@ -49,18 +43,10 @@ def read(path: str, size: list[float] | None, height_unit: float | None, channel
             raise CaseError(f"{path}: the file holds no unit for its physical size; give the lengths along x and y (size=)")
         size = [float(length) * unit for length in topography.physical_sizes]
     heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
-    scale = height_unit if height_unit is not None else unit if unit is not None else 1.0
-    return {
-        **told(topography),
-        **({"repeats": True} if topography.is_periodic else {}),
-        "format": str(reader.format()),
-        "reader": f"SurfaceTopography {other.__version__}",
-        "history": [],
-        "size": size,
-        "channel": names[index],
-        "channels": names,
-        "heights": np.ascontiguousarray(heights * scale),
-    }
+    heights = np.ascontiguousarray(heights * (height_unit if height_unit is not None else unit))
+    found = {"format": str(reader.format()), "reader": f"SurfaceTopography {other.__version__}", "history": [], "size": size}
+    repeats = {"repeats": True} if topography.is_periodic else {}
+    return {**told(topography), **repeats, **found, "channel": names[index], "channels": names, "heights": heights}
 
 
 def told(topography: Any) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ._arrays import Floats, centres
 
@@ -10,17 +10,12 @@ from ._arrays import Floats, centres
 class OnGrid:
     """Fields on the cells of a rectangle, or on those of a line, along which nothing changes in y."""
 
-    if TYPE_CHECKING:
+    size: tuple[float, ...]
 
-        @property
-        def size(self) -> tuple[float, ...]:
-            """Lengths of the domain along x and y [m]; of a line its length along x."""
-            raise NotImplementedError
-
-        @property
-        def cells(self) -> tuple[int, ...]:
-            """Number of cells along x and y; of a line one number."""
-            raise NotImplementedError
+    @property
+    def cells(self) -> tuple[int, ...]:
+        """Number of cells along x and y; of a line one number."""
+        raise NotImplementedError
 
     @property
     def is_line(self) -> bool:

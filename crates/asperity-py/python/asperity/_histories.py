@@ -8,18 +8,18 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
-from ._arrays import Floats, choice, count, either, in_hertz, line, number, points
+from ._arrays import AnyArray, ArrayLike, Floats, choice, count, either, in_hertz, line, number, points
 from ._core import CaseError, waitable
-from ._parameters import Parameter, call
+from ._declared import Table
+from ._parameters import call, parameters
 from ._sampled import as_points
 from ._units import has_unit, is_labelled, unit_among
 
 __all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sampled", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
 
 
-#: What the numbers of a history are called in a case.
+#: What the numbers of a history, or of a list of times, are called in a case.
 _NUMBERS = {
     "step": ("value",),
     "ramp": ("value", "duration"),
@@ -27,11 +27,25 @@ _NUMBERS = {
     "triangle": ("peak", "rise", "fall"),
     "trapezoid": ("peak", "rise", "hold", "fall"),
     "sine": ("mean", "amplitude", "frequency"),
+    "uniform": ("end", "steps"),
+    "log": ("end", "steps", "first"),
+    "adaptive": ("end", "tolerance", "first"),
 }
 
 
+class _Made:
+    """What is made of a kind and its numbers."""
+
+    kind: str
+    numbers: tuple[float, ...]
+
+    @property
+    def _parameters(self) -> dict[str, Any]:
+        return dict(zip(_NUMBERS.get(self.kind, ()), self.numbers))
+
+
 @dataclass(frozen=True)
-class History:
+class History(_Made):
     """A load [N], mean pressure [Pa] or approach [m] over time; made by :func:`step`, :func:`ramp` and so on."""
 
     kind: str
@@ -42,33 +56,19 @@ class History:
     #: Of a function: the largest distance of its table that was found.
     error: float | None = None
 
-    #: Value of a step, or at the end of a ramp.
-    value = Parameter[float]()
-    #: Duration of a ramp [s].
-    duration = Parameter[float]()
+    #: Value of a step, or at the end of a ramp, and its duration [s].
+    value, duration = parameters(float, 2)
     #: Largest value of a triangle or trapezoid, and how long [s] it rises, holds and falls.
-    peak = Parameter[float]()
-    rise = Parameter[float]()
-    hold = Parameter[float]()
-    fall = Parameter[float]()
+    peak, rise, hold, fall = parameters(float, 4)
     #: Mean, amplitude and frequency [Hz] of a sine.
-    mean = Parameter[float]()
-    amplitude = Parameter[float]()
-    frequency = Parameter[float]()
-
-    @property
-    def _parameters(self) -> dict[str, Any]:
-        return dict(zip(_NUMBERS.get(self.kind, ()), self.numbers))
+    mean, amplitude, frequency = parameters(float, 3)
 
     @property
     def end(self) -> float:
         """The time from which on the value stays the same [s]: 0 of a step, infinite of a sine."""
-        if self.kind == "sine":
-            return math.inf
-        if self.kind == "table":
-            return self.points[-1][0]
-        times = ("duration", "rise", "hold", "fall")
-        return float(sum(value for name, value in self._parameters.items() if name in times))
+        if self.kind in ("sine", "table"):
+            return math.inf if self.kind == "sine" else self.points[-1][0]
+        return float(sum(value for name, value in self._parameters.items() if name in ("duration", "rise", "hold", "fall")))
 
     @property
     def _keys(self) -> dict[str, Any]:
@@ -78,34 +78,23 @@ class History:
         return {**kind, **self._parameters, **points}
 
     def __repr__(self) -> str:
-        if len(self.points) > 4:
-            return f"{self.kind}({len(self.points)} points from {self.points[0]} to {self.points[-1]})"
         if self.points:
-            return f"{self.kind}({list(self.points)!r})"
+            several = f"{len(self.points)} points from {self.points[0]} to {self.points[-1]}"
+            return f"{self.kind}({several if len(self.points) > 4 else list(self.points)})"
         return call(self.kind.replace("-", "_"), self._parameters, 0 if self.kind == "sine" else 1)
 
 
 @dataclass(frozen=True)
-class Times:
+class Times(_Made):
     """The times to solve for; made by :func:`uniform`, :func:`log` or :func:`listed`."""
 
     kind: str
     numbers: tuple[float, ...]
 
     #: Number of steps of uniform and logarithmic times.
-    steps = Parameter[int]()
-    #: First instant [s] of logarithmic times; the longest first step of adaptive ones.
-    first = Parameter[float]()
-    #: Relative error of the stress that adaptive steps aim at.
-    tolerance = Parameter[float]()
-
-    @property
-    def _parameters(self) -> dict[str, Any]:
-        if self.kind == "list":
-            return {}
-        end, second, *first = self.numbers
-        name = "tolerance" if self.kind == "adaptive" else "steps"
-        return {"end": end, name: second if self.kind == "adaptive" else int(second), **dict(zip(("first",), first))}
+    (steps,) = parameters(int, 1)
+    #: First instant [s] of logarithmic times, or the longest first step of adaptive ones; and the relative error of the stress that these aim at.
+    first, tolerance = parameters(float, 2)
 
     @property
     def end(self) -> float:
@@ -128,10 +117,9 @@ class Times:
         return {"times": list(self.numbers)} if self.kind == "list" else {**self._parameters, "spacing": self.kind}
 
     def __repr__(self) -> str:
-        if self.kind == "list" and len(self.numbers) > 4:
-            return f"listed({len(self.numbers)} times from {self.numbers[0]:g} to {self.numbers[-1]:g} s)"
         if self.kind == "list":
-            return f"listed({list(self.numbers)!r})"
+            several = f"{len(self.numbers)} times from {self.numbers[0]:g} to {self.numbers[-1]:g} s"
+            return f"listed({several if len(self.numbers) > 4 else list(self.numbers)})"
         return call(self.kind, self._parameters, 1 if self.kind == "adaptive" else 2)
 
 
@@ -174,7 +162,7 @@ def sine(*, mean: float, amplitude: float, frequency: float) -> History:
     return _history("sine", {"mean": mean, "amplitude": amplitude}, frequency=in_hertz("frequency", frequency))
 
 
-def table(pairs: Sequence[tuple[float, float]] | npt.NDArray[Any]) -> History:
+def table(pairs: Sequence[tuple[float, float]] | AnyArray) -> History:
     """Linear between (time [s], value) points; two points at one time are a jump; held after the last. A one-dimensional array of xarray with
     its coordinate, or a series of pandas with its index, has the times of its values."""
     pairs = _timed(pairs)
@@ -250,8 +238,8 @@ def _event_units(load_unit: str) -> dict[str, str]:
     return {"approach": "m", "load": load_unit, "pressure": "Pa", **numbers}
 
 
-@dataclass(frozen=True)
-class Stage:
+@dataclass(frozen=True, repr=False)
+class Stage(Table):
     """A part of a programme: what is prescribed, on a clock that starts with it, and when it ends.
 
     Parameters
@@ -287,44 +275,38 @@ class Stage:
     duration: float | None = None
     until: Literal["contact-lost"] | tuple[str, Any] | dict[str, Any] | None = None
     after_jump: bool = False
-    times: Times | npt.ArrayLike | None = None
-
-    def __repr__(self) -> str:
-        shown = {name: value for name, value in vars(self).items() if value is not None and value is not False}
-        return f"Stage({', '.join(f'{name}={value!r}' for name, value in shown.items())})"
+    times: Times | ArrayLike | None = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         # Values of its own, which compare and do not follow an array that changes.
         if self.times is not None:
             object.__setattr__(self, "times", as_times(self.times))
-        if isinstance(self.until, list):
-            object.__setattr__(self, "until", tuple(self.until))
-        if isinstance(self.until, dict) and len(self.until) == 1:
-            object.__setattr__(self, "until", next(iter(self.until.items())))
-        if self.until is not None and self.until != "contact-lost":
-            if not isinstance(self.until, tuple) or len(self.until) != 2:
-                raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or one number of the rows with its value, as in {{'load': 0.1}}")
-            choice("the event of until", self.until[0], tuple(_event_units("N")))
+        if self.until is None or self.until == "contact-lost":
+            return
+        pair = next(iter(self.until.items())) if isinstance(self.until, dict) and len(self.until) == 1 else self.until
+        if not isinstance(pair, (tuple, list)) or len(pair) != 2:
+            raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or one number of the rows with its value, as in {{'load': 0.1}}")
+        choice("the event of until", pair[0], tuple(_event_units("N")))
+        object.__setattr__(self, "until", tuple(pair))
 
-    def _keys(self, load_unit: str) -> dict[str, Any]:
+    def _given(self, load_unit: str) -> dict[str, Any]:
         """The keys of one of the `stages`; the unit of a load is N, or N/m of a line contact."""
-        given = {"load": self.load, "pressure": self.pressure, "approach": self.approach}
-        control, value = one_of(given, "a stage needs")
-        keys: dict[str, Any] = {
-            "control": control,
-            "history": as_history(control, value, load_unit if control == "load" else None)._keys,
-            "after_jump": self.after_jump,
-        }
-        if self.duration is not None:
-            keys["duration"] = number("duration of the stage", self.duration)
+        keys = self._keys
+        prescribed = {name: keys.pop(name, None) for name in ("load", "pressure", "approach")}
+        keys |= control_keys(prescribed, "a stage needs", load_unit)
         if isinstance(self.until, tuple):
             event, limit = self.until
             keys["until"] = {event: number(f"until {event}", limit, _event_units(load_unit)[event])}
-        elif self.until is not None:
-            keys["until"] = self.until
-        if self.times is not None:
-            keys["time"] = as_times(self.times)._keys
+        if "times" in keys:
+            keys["time"] = as_times(keys.pop("times"))._keys
         return keys
+
+
+def control_keys(prescribed: dict[str, Any], otherwise: str, load_unit: str) -> dict[str, Any]:
+    """The keys of the one quantity that is prescribed; the unit of a load is N, or N/m of a line contact."""
+    control, value = one_of(prescribed, otherwise)
+    return {"control": control, "history": as_history(control, value, load_unit if control == "load" else None)._keys}
 
 
 def one_of(alternatives: dict[str, Any], otherwise: str) -> tuple[str, Any]:
@@ -337,12 +319,12 @@ def one_of(alternatives: dict[str, Any], otherwise: str) -> tuple[str, Any]:
 
 def uniform(end: float, steps: int) -> Times:
     """`steps` equal steps to `end` [s]."""
-    return Times("uniform", (number("end", end), float(count("number of steps", steps))))
+    return Times("uniform", (number("end", end), count("number of steps", steps)))
 
 
 def log(end: float, steps: int, *, first: float) -> Times:
     """`steps` times in geometric progression from `first` to `end` [s]."""
-    return Times("log", (number("end", end), float(count("number of steps", steps)), number("first instant", first)))
+    return Times("log", (number("end", end), count("number of steps", steps), number("first instant", first)))
 
 
 def adaptive(end: float, *, tolerance: float = 1e-3, first: float | None = None) -> Times:
@@ -358,12 +340,11 @@ def adaptive(end: float, *, tolerance: float = 1e-3, first: float | None = None)
     >>> float(result.time[-1]), bool(np.max(result.time_error) < 1e-3)
     (5.0, True)
     """
-    end = number("end", end)
-    soon = 1e-3 * end if first is None else first
-    return Times("adaptive", (number("end", end), number("tolerance", tolerance), number("first step", soon)))
+    last = number("end", end)
+    return Times("adaptive", (last, number("tolerance", tolerance), number("first step", 1e-3 * last if first is None else first)))
 
 
-def listed(instants: npt.ArrayLike) -> Times:
+def listed(instants: ArrayLike) -> Times:
     """The times after 0 [s], increasing; a 0 at their beginning is the start, which each run has."""
     given = [float(t) for t in line("times", instants)]
     return Times("list", tuple(given[1:] if len(given) > 1 and given[0] == 0.0 else given))
@@ -386,6 +367,6 @@ def as_history(what: str, value: Any, unit: str | None = None, *, over: Times | 
     return value
 
 
-def as_times(value: Times | npt.ArrayLike) -> Times:
+def as_times(value: Times | ArrayLike) -> Times:
     """A time grid; a sequence or an array holds the times."""
     return value if isinstance(value, Times) else listed(value)

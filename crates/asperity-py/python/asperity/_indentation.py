@@ -9,26 +9,23 @@ from __future__ import annotations
 
 import inspect
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, get_args, overload
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, get_args, overload
 
 import numpy as np
-import numpy.typing as npt
 
-from . import _core, _html
-from ._arrays import Floats, choice, columns, count, number
+from . import _core
+from ._arrays import Counts, Floats, choice, columns, count, number
 from ._core import CaseError
-from ._force_curves import ForceFit, Model, cantilever_shares, fit_force_curve, interval, share
+from ._force_curves import ForceFit, Interval, cantilever, fit_force_curve, interval, share, table
 from ._histories import one_of
 from ._materials import Prony
 from ._sealed import ReadOnlyArrays
-from ._words import Interface, LongTime
+from ._words import Branch, Control, Interface, LongTime, Model
+from .plot import recorded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
-
-#: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it: the ends
-#: are more than a factor of 10 apart.
-Interval = tuple[float, float, float]
+    from typing_extensions import Unpack
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +47,7 @@ class IndentationFit(ReadOnlyArrays):
     depth: Floats
     predicted: Floats
     #: Numbers of these rows.
-    rows: npt.NDArray[np.int64]
+    rows: Counts
     #: Root of the mean square of model less measurement [N or m], and the same over the largest value.
     rms: float
     relative_rms: float
@@ -67,8 +64,6 @@ class IndentationFit(ReadOnlyArrays):
 
     def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """The channel that was fitted over time: the record as points, the model as a line, which takes the further arguments."""
-        from .plot import recorded
-
         name, measured = ("load", self.load) if self.given == "depth" else ("depth", self.depth)
         return recorded(("time", "s", self.time), name, measured, self.predicted, ax, style)
 
@@ -83,91 +78,66 @@ class IndentationFit(ReadOnlyArrays):
         lines = [("E(0) [Pa]", self.instantaneous), ("E(inf) [Pa]", self.equilibrium)]
         for n, (modulus, time) in enumerate(self.terms, 1):
             lines += [(f"E_{n} [Pa]", modulus), (f"tau_{n} [s]", time)]
-        rows = [(name, *(f"{x:.5g}" if x == x else "not determined" for x in values)) for name, values in lines]
-        return _html.table(rows, ("", "value", "95 % from", "to"))
+        return table(lines)
 
 
-#: What goes with a model of an elastic sphere alone, with any model, and with the relaxation alone.
-_OF_CURVE = ("branch", "control", "range")
-_OF_BOTH = ("spring_constant", "radius_uncertainty", "spring_constant_uncertainty", "sensitivity_uncertainty")
-_OF_RECORD = (
-    "slope", "given", "terms", "long_time", "fit_touch", "thickness_uncertainty", "interface", "hardness", "name", "springs", "max_misfit"
-)  # fmt: skip
+class _OfCurve(TypedDict, total=False):
+    """What goes with a model of an elastic sphere alone."""
+
+    branch: Branch
+    control: Control | None
+    range: float | None
+
+
+class _OfBoth(TypedDict, total=False):
+    """What goes with any model."""
+
+    spring_constant: float | None
+    radius_uncertainty: float
+    spring_constant_uncertainty: float
+    sensitivity_uncertainty: float
+
+
+class _OfRecord(TypedDict, total=False):
+    """What goes with the relaxation alone."""
+
+    slope: float | None
+    given: str | None
+    terms: int | None
+    long_time: LongTime
+    fit_touch: bool
+    thickness: float | None
+    thickness_uncertainty: float
+    interface: Interface
+    hardness: float | None
+    name: str | None
+    springs: int
+    max_misfit: float
+
+
+class _OfForces(_OfCurve, _OfBoth, total=False):
+    """What goes with a model of an elastic sphere."""
+
+
+class _OfRelaxation(_OfRecord, _OfBoth, total=False):
+    """What goes with the relaxation."""
+
+    radius: float | None
 
 
 @overload
 def fit_indentation(
-    time: Any,
-    load: Any,
-    depth: Any,
-    /,
-    *,
-    radius: float | None = None,
-    slope: float | None = None,
-    poisson: float,
-    model: Literal["viscoelastic"] = "viscoelastic",
-    given: str | None = None,
-    terms: int | None = None,
-    long_time: LongTime = "free",
-    fit_touch: bool = False,
-    thickness: float | None = None,
-    interface: Interface = "bonded",
-    hardness: float | None = None,
-    name: str | None = None,
-    springs: int = 150,
-    max_misfit: float = 0.1,
-    spring_constant: float | None = None,
-    radius_uncertainty: float = 0.0,
-    thickness_uncertainty: float = 0.0,
-    spring_constant_uncertainty: float = 0.0,
-    sensitivity_uncertainty: float = 0.0,
+    time: Any, load: Any, depth: Any, /, *, poisson: float, model: Literal["viscoelastic"] = "viscoelastic", **how: Unpack[_OfRelaxation]
 ) -> IndentationFit: ...
 @overload
+def fit_indentation(time: Any, load: Any, depth: Any, /, *, radius: float, poisson: float, model: Model, **how: Unpack[_OfForces]) -> ForceFit: ...
 def fit_indentation(
-    time: Any,
-    load: Any,
-    depth: Any,
-    /,
-    *,
-    radius: float,
-    poisson: float,
-    model: Model,
-    branch: str = "retraction",
-    control: str | None = None,
-    range: float | None = None,
-    spring_constant: float | None = None,
-    radius_uncertainty: float = 0.0,
-    spring_constant_uncertainty: float = 0.0,
-    sensitivity_uncertainty: float = 0.0,
-) -> ForceFit: ...
-def fit_indentation(
-    time: Any,
-    load: Any,
-    depth: Any,
-    /,
-    *,
-    radius: float | None = None,
-    slope: float | None = None,
-    poisson: float,
-    given: str | None = None,
-    terms: int | None = None,
-    long_time: LongTime = "free",
-    fit_touch: bool = False,
-    thickness: float | None = None,
-    interface: Interface = "bonded",
-    hardness: float | None = None,
-    name: str | None = None,
-    springs: int = 150,
-    max_misfit: float = 0.1,
-    model: str = "viscoelastic",
-    branch: str = "retraction",
-    control: str | None = None,
-    range: float | None = None,
-    spring_constant: float | None = None,
-    radius_uncertainty: float = 0.0,
-    thickness_uncertainty: float = 0.0,
-    spring_constant_uncertainty: float = 0.0,
-    sensitivity_uncertainty: float = 0.0,
+    time: Any, load: Any, depth: Any, /, *, radius: float | None = None, slope: float | None = None, poisson: float,
+    given: str | None = None, terms: int | None = None, long_time: LongTime = "free", fit_touch: bool = False,
+    thickness: float | None = None, interface: Interface = "bonded", hardness: float | None = None, name: str | None = None,
+    springs: int = 150, max_misfit: float = 0.1, model: str = "viscoelastic", branch: str = "retraction",
+    control: str | None = None, range: float | None = None, spring_constant: float | None = None, radius_uncertainty: float = 0.0,
+    thickness_uncertainty: float = 0.0, spring_constant_uncertainty: float = 0.0, sensitivity_uncertainty: float = 0.0
 ) -> IndentationFit | ForceFit:
     """Fits the relaxation modulus of a half-space, or of a thin sample, to a record of its indentation by a rigid sphere or cone; or, with
     a `model` of an elastic sphere, its modulus and work of adhesion to a force curve.
@@ -242,58 +212,42 @@ def fit_indentation(
     told = dict(locals())
     usual = {name: one.default for name, one in inspect.signature(fit_indentation).parameters.items()}
     choice("model", model, ("viscoelastic", *get_args(Model)))
-    if model == "viscoelastic":
-        for what in (name for name in _OF_CURVE if told[name] != usual[name]):
-            raise CaseError(f"{what} goes with a model of an elastic sphere: give model, one of {', '.join(get_args(Model))}")
-    else:
+    nu = number("poisson", poisson)
+    if not -1.0 < nu <= 0.5:
+        raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
+    if model != "viscoelastic":
         if thickness is not None:
             raise CaseError(
                 f"thickness is {thickness}, but the model {model!r} has the closed form of a half-space, and there is none for adhesion on a thin"
                 ' sample: leave it out. The model "viscoelastic" with terms=0 fits an elastic thin sample without adhesion'
             )
-        for what in (name for name in _OF_RECORD if told[name] != usual[name]):
+        for what in (name for name in _OfRecord.__annotations__ if told[name] != usual[name]):
             raise CaseError(f"{what} goes with the model \"viscoelastic\", but model is {model!r}: leave it out")
         if radius is None:
             raise CaseError("radius is missing: the models of force curves are those of a sphere")
-    nu = number("poisson", poisson)
-    if not -1.0 < nu <= 0.5:
-        raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
-    if model != "viscoelastic":
-        return fit_force_curve(load, depth, radius=radius, poisson=nu, model=model, **{name: told[name] for name in (*_OF_CURVE, *_OF_BOTH)})
+        return fit_force_curve(load, depth, radius, nu, model, {name: told[name] for name in _OfForces.__annotations__})
+    for what in (name for name in _OfCurve.__annotations__ if told[name] != usual[name]):
+        raise CaseError(f"{what} goes with a model of an elastic sphere: give model, one of {', '.join(get_args(Model))}")
     times, loads, depths = columns(time=time, load=load, depth=depth)
     what, shape = one_of({"radius": radius, "slope": slope}, "give")
     profile = "sphere" if what == "radius" else "cone"
     most = None if terms is None else count("terms", terms, 0)
-    choice("interface", interface, get_args(Interface))
+    choice("interface", interface, Interface)
     if thickness is None and interface != "bonded":
         raise CaseError("interface is that of a thin sample to its base: give its thickness too")
     thin = None if thickness is None else (number("thickness", thickness), nu, interface)
     how = given, most, long_time, bool(fit_touch), thin, count("springs", springs), number("max_misfit", max_misfit)
-    spring = None if spring_constant is None else number("spring_constant", spring_constant)
-    of_load, of_deflection = cantilever_shares(spring, spring_constant_uncertainty, sensitivity_uncertainty)
+    spring, of_spring = cantilever(spring_constant, spring_constant_uncertainty, sensitivity_uncertainty)
     size = None if radius is None else number("radius", radius)
-    of_size, of_thickness = share("radius", radius_uncertainty, size), share("thickness", thickness_uncertainty, thin and thin[0])
-    stated = (of_size, of_thickness, of_load, of_deflection), spring
-    found = _core.fit_indentation(times, loads, depths, profile, number(what, shape), *how, *stated)
+    shares = share("radius", radius_uncertainty, size), share("thickness", thickness_uncertainty, thin and thin[0]), *of_spring
+    found = _core.fit_indentation(times, loads, depths, profile, number(what, shape), *how, shares, spring)
     # E = E* (1 - nu^2)
     factor = 1.0 - nu**2
     rows = np.asarray(found["rows"], dtype=np.int64)
-    own = {
-        "terms": [(interval(modulus, factor), interval(relaxation)) for modulus, relaxation in found["terms"]],
-        "equilibrium": interval(found["equilibrium"], factor),
-        "instantaneous": interval(found["instantaneous"], factor),
-        "touch": interval(found["touch"]),
-        "rows": rows,
-        "time": times[rows],
-        "load": loads[rows],
-        "depth": depths[rows],
-    }
-    material = Prony(
-        equilibrium=factor * found["equilibrium"][0],
-        terms=[(factor * modulus[0], relaxation[0]) for modulus, relaxation in found["terms"]],
-        poisson=nu,
-        hardness=hardness,
-        name=name,
-        window=found["window"],
-    )
-    return IndentationFit(**{**found, **own}, material=material)
+    own = {name: interval(found[name], factor) for name in ("equilibrium", "instantaneous")} | {"touch": interval(found["touch"])}
+    fitted = [(interval(modulus, factor), interval(relaxation)) for modulus, relaxation in found["terms"]]
+    series = [(factor * modulus[0], relaxation[0]) for modulus, relaxation in found["terms"]]
+    of_body = dict(poisson=nu, hardness=hardness, name=name, window=found["window"])
+    material = Prony(equilibrium=factor * found["equilibrium"][0], terms=series, **of_body)
+    record = {"terms": fitted, "rows": rows, "time": times[rows], "load": loads[rows], "depth": depths[rows]}
+    return IndentationFit(**{**found, **own, **record}, material=material)

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Any, get_args
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, check_length, choice, each, number
+from ._arrays import ArrayLike, Floats, check_length, each, number
 from ._core import CaseError
+from ._declared import Table
 from ._materials import Material
 from ._words import Interface
 
 
-@dataclass(frozen=True, kw_only=True)
-class Layer:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Layer(Table):
     """A layer of a body.
 
     `thickness` in m; `material` as of a half-space, with `poisson` instead of its own where given; `interface` to what lies
@@ -30,25 +30,21 @@ class Layer:
     interface: Interface = "bonded"
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not isinstance(self.material, Material):
             raise CaseError(f"material of a layer is {self.material!r}, but must be a material, such as asperity.Elastic(...)")
-        thickness = number("thickness of a layer", self.thickness)
-        check_length("thickness of a layer", thickness, self.thickness)
-        object.__setattr__(self, "thickness", thickness)
-        if self.poisson is not None:
-            object.__setattr__(self, "poisson", number("poisson", self.poisson))
-        choice("interface", self.interface, get_args(Interface))
+        check_length("thickness of a layer", self.thickness)
 
     @property
     def _keys(self) -> dict[str, Any]:
         """The keys of a `[[body.layer]]`."""
-        own = {"thickness": self.thickness, "interface": self.interface, "material": self.material._keys["material"]}
-        lateral = {key: value for key, value in self.material._keys.items() if key in ("poisson", "bulk_modulus")}
-        return {**own, **(lateral if self.poisson is None else {"poisson": self.poisson})}
+        whole = self.material._keys
+        lateral = {key: value for key, value in whole.items() if key in ("poisson", "bulk_modulus") and self.poisson is None}
+        return {**super()._keys, **lateral, "material": whole["material"]}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Body:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Body(Table):
     """A body of layers.
 
     `layers` from the surface down, on a `base`: "rigid", or the material of a half-space. `hardness` [Pa] cuts off the pressure
@@ -66,12 +62,11 @@ class Body:
     layers: Sequence[Layer]
     base: Material | str = "rigid"
     hardness: float | None = None
-    name: str | None = field(default=None)
+    name: str | None = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         object.__setattr__(self, "layers", tuple(self.layers))
-        if self.hardness is not None:
-            object.__setattr__(self, "hardness", number("hardness", self.hardness))
         if not self.layers or not all(isinstance(layer, Layer) for layer in self.layers):
             raise CaseError("layers is a list of asperity.Layer, one at least, from the surface down")
         if not isinstance(self.base, Material) and self.base != "rigid":
@@ -80,15 +75,11 @@ class Body:
     @property
     def _keys(self) -> dict[str, Any]:
         """The keys of a `[[body]]`."""
-        own: dict[str, Any] = {"layer": [layer._keys for layer in self.layers]}
-        hardness = self.layers[0].material._given.get("hardness") if self.hardness is None else self.hardness
-        if hardness is not None:
-            own["hardness"] = hardness
-        if self.name is not None:
-            own["name"] = self.name
-        if isinstance(self.base, Material):
-            return {**{key: value for key, value in self.base._keys.items() if key not in ("name", "hardness")}, **own}
-        return {"base": "rigid", **own}
+        layers = {"layer": [layer._keys for layer in self.layers]}
+        base = {key: value for key, value in self.base._keys.items() if key not in ("name", "hardness")} if isinstance(self.base, Material) else {"base": "rigid"}
+        hardness = {"hardness": self.layers[0].material.hardness} if self.layers[0].material.hardness is not None else {}
+        own = {key: value for key, value in super()._keys.items() if key in ("name", "hardness")}
+        return {**base, **layers, **hardness, **own}
 
 
 def materials_of(body: Material | Body) -> list[Material]:
@@ -99,7 +90,7 @@ def materials_of(body: Material | Body) -> list[Material]:
     return [*(layer.material for layer in body.layers), *base]
 
 
-def layer_compliance(q: npt.ArrayLike, body: Material | Body, *, time: float = 0.0) -> Floats:
+def layer_compliance(q: ArrayLike, body: Material | Body, *, time: float = 0.0) -> Floats:
     """C(q) [m/Pa]: the displacement of the surface under a wave of pressure of unit amplitude.
 
     `q` are wave numbers [rad/m], of any shape; with a `time` [s] after 0 the pressure is held since 0. The half-space that

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
 from ._arrays import Floats, choice, field, in_order, number, numbers_of, pair
-from ._columns import GAS_LEAKS, LEAKS
+from ._columns import GAS_LEAKS, LEAKS, dataset, variable
 from ._findings import Finding, findings_of, warn
 from ._sealed import Sealed
 from ._surface import _parts
@@ -58,11 +58,9 @@ class Leakage(Sealed):
         self._gap, self._contact, self._size, self._keys = np.array(gap), contact, size, keys
         found = self._solved({})
         self._findings = json.loads(found.pop("findings"))
-        if found["conductance"] is not None:
-            found["conductance"] = np.array(found["conductance"])
-        for name in ("leak_rate", "leak_rate_standard", "leak_estimate_junction", "leak_estimate_medium", "knudsen_number"):
-            found.pop(name)
-        self._hold(**found)
+        found["conductance"] = None if found["conductance"] is None else np.array(found["conductance"])
+        # The leaks of a fluid are those of its pressures.
+        self._hold(**{name: found[name] for name in Leakage.__annotations__})
 
     @property
     def findings(self) -> list[Finding]:
@@ -70,8 +68,7 @@ class Leakage(Sealed):
         return findings_of(self._findings)
 
     def _solved(self, fluid: dict[str, Any]) -> dict[str, Any]:
-        keys = json.dumps({**self._keys, **fluid})
-        return _core.leakage(self._gap, self._contact, list(self._size), keys, [], 0.0)
+        return _core.leakage(self._gap, self._contact, list(self._size), json.dumps({**self._keys, **fluid}), [], 0.0)
 
     def leak_rate(self, *, pressure_drop: float, viscosity: float) -> float:
         """Leak of a liquid [m^3/s] under a pressure drop [Pa], with a viscosity [Pa s] (water: 1e-3)."""
@@ -82,16 +79,8 @@ class Leakage(Sealed):
         return self.hydraulic_gap**3 * drop * across / (12 * mu * along)
 
     def gas_leak_rate(
-        self,
-        *,
-        inlet: float,
-        outlet: float,
-        gas: str | None = None,
-        viscosity: float | None = None,
-        molar_mass: float | None = None,
-        temperature: float = 293.15,
-        rarefaction: str = "boltzmann",
-        standard: bool = False,
+        self, *, inlet: float, outlet: float, gas: str | None = None, viscosity: float | None = None,
+        molar_mass: float | None = None, temperature: float = 293.15, rarefaction: str = "boltzmann", standard: bool = False
     ) -> float:
         """Leak of a gas [kg/s] between absolute pressures [Pa]; with `standard` in Pa m^3/s at 0 degC (1 mbar l/s = 0.1 Pa m^3/s).
 
@@ -102,11 +91,8 @@ class Leakage(Sealed):
         temperature : [K]
         rarefaction : "boltzmann", "slip" or "continuum"
         """
-        fluid: dict[str, Any] = {"inlet": inlet, "outlet": outlet, "temperature": temperature}
-        fluid |= {"gas": gas, "viscosity": viscosity, "molar_mass": molar_mass, "rarefaction": rarefaction}
-        found = self._solved(numbers_of(fluid))
-        rate: float = found["leak_rate_standard" if standard else "leak_rate"]
-        return rate
+        fluid = {name: value for name, value in locals().items() if name not in ("self", "standard")}
+        return float(self._solved(numbers_of(fluid))["leak_rate_standard" if standard else "leak_rate"])
 
     def __repr__(self) -> str:
         nx, ny = self._gap.shape
@@ -116,13 +102,8 @@ class Leakage(Sealed):
 
 
 def leakage(
-    gap: Any,
-    contact: Any = None,
-    *,
-    size: Sequence[float] | None = None,
-    direction: Flow = "x",
-    sides: Sides = "periodic",
-    smallest_gap: float = 0.0,
+    gap: Any, contact: Any = None, *, size: Sequence[float] | None = None, direction: Flow = "x", sides: Sides = "periodic",
+    smallest_gap: float = 0.0
 ) -> Leakage:
     """The flow of a fluid through a gap, between opposite borders of the domain, by Reynolds' equation.
 
@@ -161,8 +142,8 @@ def leakage(
     touches = None if held is None else np.ascontiguousarray(np.asarray(getattr(held, "magnitude", held)) != 0, dtype=np.uint8)
     if touches is not None and touches.shape != h.shape:
         raise _core.CaseError(f"contact has shape {touches.shape}, but gap has {h.shape}")
-    keys = {"direction": choice("direction", direction, get_args(Flow)), "sides": choice("sides", sides, get_args(Sides)), "smallest_gap": number("smallest_gap", smallest_gap)}
-    return Leakage(h, touches, extent, keys)
+    keys = {"direction": choice("direction", direction, Flow), "sides": choice("sides", sides, Sides)}
+    return Leakage(h, touches, extent, {**keys, "smallest_gap": number("smallest_gap", smallest_gap)})
 
 
 def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
@@ -174,7 +155,7 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     keys = {"sides": "periodic" if boundary == "periodic" else "closed", **keys}
     if keys.get("direction") == "both" and boundary != "periodic":
         raise _core.CaseError("direction is 'both', the conductance of a gap that repeats, but the domain is free: use 'x' or 'y'")
-    for name, words in (("direction", get_args(Flow)), ("sides", get_args(Sides))):
+    for name, words in (("direction", Flow), ("sides", Sides)):
         if name in keys:
             choice(name, keys[name], words)
     temperatures = [(float(t), float(kelvin)) for t, kelvin in (setup.get("leakage") or {}).get("temperatures", [])]
@@ -191,48 +172,32 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
         # The mean displacement in the contact, to which the tolerance is relative.
         displacement = float(touching.mean()) + float(result.approach[step]) if touching.size else 0.0
         narrowest = found["critical_gap"] if found["percolates"] else None
-        pressure = float(result.mean_pressure[step])
-        states.append((step, narrowest, found["critical_width"], tolerance * abs(displacement), drop, pressure))
+        states.append((step, narrowest, found["critical_width"], tolerance * abs(displacement), drop, float(result.mean_pressure[step])))
         rows.append(found)
     resolved, told = _core.judge_leaks(states)
     for row, good in zip(rows, resolved):
         row["leak_resolved"] = good
     warn(findings_of(json.loads(told)))
-    gas = rows[0]["leak_rate_standard"] is not None
-    columns = {name: np.array([row[name] for row in rows]) for name in LEAKS if rows[0].get(name) is not None}
-    conductance = None if rows[0]["conductance"] is None else np.array([row["conductance"] for row in rows])
+    columns = {name: np.array([row[name] for row in rows]) for name in (*LEAKS, "leak_rate_standard", "conductance") if rows[0].get(name) is not None}
     pressures = np.array([row["pressure"] for row in rows]) if keys.get("field") else None
-    return dataset(result, result.field_times, columns, gas, conductance, pressures)
+    return _dataset(result, {**columns, "leak_time": result.field_times}, pressures)
 
 
 def stored(result: Result) -> xarray.Dataset:
     """The leaks that a result on disk holds."""
-    columns = dict(result._leaks)
-    times = columns.pop("leak_time")
-    tensor = columns.pop("conductance", None)
-    conductance = None if tensor is None else tensor.reshape(-1, 2, 2)
-    gas = "leak_rate_standard" in columns
-    return dataset(result, times, columns, gas, conductance, result._fluid_pressures)
+    return _dataset(result, result._leaks, result._fluid_pressures)
 
 
-def dataset(
-    result: Result, times: Floats, columns: dict[str, Any], gas: bool, conductance: Any, pressures: Any
-) -> xarray.Dataset:
+def _dataset(result: Result, columns: dict[str, Any], pressures: Any) -> xarray.Dataset:
     """Leaks over time with their units."""
-    import xarray
-
-    def column(name: str) -> Any:
-        values = columns[name].astype(bool) if name in _FLAGS else columns[name]
-        return ("leak_time", values, (GAS_LEAKS if gas else LEAKS)[name].attributes())
-
-    data: dict[str, Any] = {name: column(name) for name in columns if name in LEAKS}
-    coordinates: dict[str, Any] = {"leak_time": ("leak_time", np.asarray(times), LEAKS["leak_time"].attributes())}
-    if conductance is not None:
-        words = {"units": "m^3", "long_name": "effective conductance"}
-        data["conductance"] = (("leak_time", "flow_direction", "gradient_direction"), conductance, words)
-        coordinates |= {"flow_direction": ["x", "y"], "gradient_direction": ["x", "y"]}
+    entries = GAS_LEAKS if "leak_rate_standard" in columns else LEAKS
+    values = {name: columns[name].astype(bool) if name in _FLAGS else columns[name] for name in columns if name in entries}
+    data: dict[str, Any] = {name: entries[name].variable("leak_time", column) for name, column in values.items()}
+    if "conductance" in columns:
+        tensor = columns["conductance"].reshape(-1, 2, 2)
+        data["conductance"] = variable(("leak_time", "flow_direction", "gradient_direction"), tensor, "m^3", "effective conductance")
+        data |= {axis: (axis, ["x", "y"]) for axis in ("flow_direction", "gradient_direction")}
     if pressures is not None:
-        words = {"units": "Pa", "long_name": "pressure of the fluid"}
-        data["fluid_pressure"] = (("leak_time", "x", "y"), pressures, words)
-        coordinates |= {"x": result.x, "y": result.y}
-    return xarray.Dataset(data, coords=coordinates)
+        data["fluid_pressure"] = variable(("leak_time", "x", "y"), pressures, "Pa", "pressure of the fluid")
+        data |= result._coordinates
+    return dataset(data)

@@ -19,14 +19,14 @@ import functools
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, array, choice, each, line, number, points
+from ._arrays import ArrayLike, Floats, array, choice, each, line, number, points
 from ._core import CaseError
+from ._declared import check
+from ._parameters import call
 from ._sealed import Sealed
 from ._shifts import Shift
 from ._units import frequency
@@ -61,7 +61,9 @@ class Material(Sealed):
         if self.shift is not None and not isinstance(self.shift, Shift):
             raise CaseError(f"shift is {self.shift!r}, but must be one of asperity.wlf, arrhenius or shift_table")
         # Plain numbers, so that materials are compared, shown and sent without the package of their units.
-        self._hold(**{key: self._plain(key, value) for key, value in self._given.items()})
+        check(self)
+        if self.window is not None:
+            self._hold(window=_window(self.window))
         own = {key: value for key, value in self._given.items() if key in _OF_BODY}
         keys = {**own, "name": str(own.get("name", type(self).__name__)), "material": self._material()}
         self._hold(_keys=keys, _body=_core.Body(keys))
@@ -72,15 +74,6 @@ class Material(Sealed):
         names = [one.name for one in fields(self) if one.init]
         names.sort(key=lambda name: name in Material.__dataclass_fields__)
         return {name: value for name in names if (value := getattr(self, name)) is not None}
-
-    def _plain(self, key: str, value: Any) -> Any:
-        """A parameter without its unit."""
-        if key in ("name", "modulus", "compliance", "shift"):
-            return value
-        if key == "window":
-            return _window(value)
-        found = number(key, value)
-        return value if type(value) in (int, float) else found
 
     def _material(self) -> dict[str, Any]:
         """The keys of its `material`."""
@@ -94,14 +87,14 @@ class Material(Sealed):
     @property
     def _whole(self) -> str:
         """All numbers, as Python takes them."""
-        return f"{type(self).__name__}({', '.join(f'{key}={value!r}' for key, value in self._given.items())})"
+        return call(type(self).__name__, self._given)
 
     def __repr__(self) -> str:
         terms = self._given.get("terms", [])
         if len(terms) <= 3:
             return self._whole
-        others = ", ".join(f"{key}={value!r}" for key, value in self._given.items() if key != "terms")
-        return f"{type(self).__name__}({others}, {len(terms)} terms from {terms[0]} to {terms[-1]})"
+        others = call(type(self).__name__, {key: value for key, value in self._given.items() if key != "terms"})
+        return f"{others[:-1]}, {len(terms)} terms from {terms[0]} to {terms[-1]})"
 
     def _repr_html_(self) -> str:
         def words(value: Any) -> str:
@@ -124,19 +117,17 @@ class Material(Sealed):
     @property
     def fit(self) -> Fit | None:
         """The fit that it comes from; None of one that was given by its numbers."""
-        found: Fit | None = self.__dict__.get("_fit")
-        return found
+        return self.__dict__.get("_fit")
 
     @property
     def measure(self) -> Measure:
         """"young" or "shear": the modulus that the material was given in."""
         return self._body.measure
 
-    def _of(self, measure: Measure | None) -> Measure:
-        found: Measure = self.measure if measure is None else choice("measure", measure, get_args(Measure))
-        return found
+    def _of(self, measure: Measure | None) -> str:
+        return str(choice("measure", self.measure if measure is None else measure, Measure))
 
-    def creep_compliance(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+    def creep_compliance(self, t: ArrayLike, *, measure: Measure | None = None) -> Floats:
         """Creep compliance [1/Pa] at times `t` [s] of the modulus `measure`, "young" or "shear"; by default the one that the material was
         given in (:attr:`measure`).
 
@@ -147,7 +138,7 @@ class Material(Sealed):
         """
         return each(lambda times: self._body.creep(times, self._of(measure)), "times", t)
 
-    def relaxation_modulus(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+    def relaxation_modulus(self, t: ArrayLike, *, measure: Measure | None = None) -> Floats:
         """Relaxation modulus [Pa] at times `t` [s]: Young's modulus with ``measure="young"``, the shear modulus with "shear"; by default the
         one that the material was given in (:attr:`measure`). The pulse at t = 0 with which a body without instantaneous compliance
         (:class:`KelvinVoigt`) answers a step of the strain is left out.
@@ -159,7 +150,7 @@ class Material(Sealed):
         """
         return each(lambda times: self._body.relaxation(times, self._of(measure)), "times", t)
 
-    def storage_loss(self, omega: npt.ArrayLike, *, measure: Measure | None = None) -> tuple[Floats, Floats]:
+    def storage_loss(self, omega: ArrayLike, *, measure: Measure | None = None) -> tuple[Floats, Floats]:
         """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s] (quantities may be in Hz or rpm) of the modulus `measure`,
         as :meth:`relaxation_modulus`.
 
@@ -173,19 +164,14 @@ class Material(Sealed):
         storage, loss = self._body.complex(line("angular frequencies", at.reshape(-1)), self._of(measure))
         return storage.reshape(at.shape), loss.reshape(at.shape)
 
-    def creep(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
-        """Short for :meth:`creep_compliance`."""
-        return self.creep_compliance(t, measure=measure)
+    #: Short for `creep_compliance` and `relaxation_modulus`.
+    creep, relaxation = creep_compliance, relaxation_modulus
 
-    def relaxation(self, t: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
-        """Short for :meth:`relaxation_modulus`."""
-        return self.relaxation_modulus(t, measure=measure)
-
-    def storage(self, omega: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+    def storage(self, omega: ArrayLike, *, measure: Measure | None = None) -> Floats:
         """The storage modulus [Pa], as :meth:`storage_loss`."""
         return self.storage_loss(omega, measure=measure)[0]
 
-    def loss(self, omega: npt.ArrayLike, *, measure: Measure | None = None) -> Floats:
+    def loss(self, omega: ArrayLike, *, measure: Measure | None = None) -> Floats:
         """The loss modulus [Pa], as :meth:`storage_loss`.
 
         >>> import asperity as asp
@@ -195,7 +181,7 @@ class Material(Sealed):
         """
         return self.storage_loss(omega, measure=measure)[1]
 
-    def contact_compliance(self, t: npt.ArrayLike) -> Floats:
+    def contact_compliance(self, t: ArrayLike) -> Floats:
         """Contact creep compliance C(t) [1/Pa] against a rigid body: 1/E* of an elastic one."""
         return each(self._body.contact_creep, "times", t)
 
@@ -322,14 +308,14 @@ class Prony(Material):
     terms: Sequence[tuple[float, float]]
     modulus: Measure = "young"
 
-    def _plain(self, key: str, value: Any) -> Any:
-        if key == "terms":
-            return _pairs(value, ("" if self.equilibrium is None else "Pa", "s"))
-        return number(key, value, "Pa") if key == "instantaneous" else super()._plain(key, value)
+    def __post_init__(self) -> None:
+        self._hold(terms=_pairs(self.terms, ("" if self.equilibrium is None else "Pa", "s")))
+        if self.instantaneous is not None:
+            self._hold(instantaneous=number("instantaneous", self.instantaneous, "Pa"))
+        super().__post_init__()
 
     def _material(self) -> dict[str, Any]:
-        value = "fraction" if self.equilibrium is None else "modulus"
-        return {**super()._material(), "terms": [{value: amount, "time": time} for amount, time in self.terms]}
+        return {**super()._material(), "terms": _terms("fraction" if self.equilibrium is None else "modulus", self.terms)}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -344,13 +330,12 @@ class Creep(Material):
     fluidity: float = 0.0
     compliance: Measure = "young"
 
-    def _plain(self, key: str, value: Any) -> Any:
-        if key == "terms":
-            return _pairs(value, ("1/Pa", "s"))
-        return number(key, value, "1/Pa") if key == "instantaneous" else super()._plain(key, value)
+    def __post_init__(self) -> None:
+        self._hold(terms=_pairs(self.terms, ("1/Pa", "s")), instantaneous=number("instantaneous", self.instantaneous, "1/Pa"))
+        super().__post_init__()
 
     def _material(self) -> dict[str, Any]:
-        return {**super()._material(), "terms": [{"compliance": amount, "time": time} for amount, time in self.terms]}
+        return {**super()._material(), "terms": _terms("compliance", self.terms)}
 
 
 def _window(value: Any) -> tuple[float, float]:
@@ -368,6 +353,11 @@ def _pairs(terms: Sequence[tuple[float, float]], units: tuple[str, str]) -> list
     return points("terms", listed, units) if len(listed) else []
 
 
+def _terms(amount: str, terms: Sequence[tuple[float, float]]) -> list[dict[str, float]]:
+    """The keys of the terms."""
+    return [{amount: value, "time": time} for value, time in terms]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class _Fractional(Material):
     """A model that becomes a Prony sum."""
@@ -382,19 +372,12 @@ class _Fractional(Material):
 
     def _material(self) -> dict[str, Any]:
         own = super()._material()
-        window = own.pop("window")
         # The sum stands for the model where it was fitted.
-        known: dict[str, Any] = {"window": window, **{key: own.pop(key) for key in ("shift", "temperature") if key in own}}
-        self._hold(_sum=_core.Body({"poisson": 0.5, "material": own}, window))
+        known: dict[str, Any] = {key: own.pop(key) for key in ("window", "shift", "temperature") if key in own}
+        self._hold(_sum=_core.Body({"poisson": 0.5, "material": own}, known["window"]))
         instantaneous, terms, fluidity = self._sum.creep_terms()
-        return {
-            "model": "creep",
-            "compliance": "young" if any(key.startswith("young") for key in own) else "shear",
-            "instantaneous": instantaneous,
-            "terms": [{"compliance": amount, "time": time} for amount, time in terms],
-            "fluidity": fluidity,
-            **known,
-        }
+        series = {"instantaneous": instantaneous, "terms": _terms("compliance", terms), "fluidity": fluidity}
+        return {"model": "creep", "compliance": "young" if any(key.startswith("young") for key in own) else "shear", **series, **known}
 
     @property
     def error(self) -> float | None:

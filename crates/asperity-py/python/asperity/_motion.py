@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, get_args
+from typing import Any, ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
-from ._arrays import Floats, choice, direction_of, line, number
-from ._core import CaseError
+from ._declared import arguments_of
+from ._arrays import ArrayLike, Floats, direction_of, line, number
 from ._flash import Flash
 from ._histories import Function, History, one_of
-from ._options import arguments_of
-from ._problem import InTime, Run
+from ._problem import InTime, Run, table_keys
 from ._result import Result
 from ._solve import solved
 from ._words import Movement
@@ -41,16 +39,12 @@ class Moving(Run):
     def motion_keys(self) -> dict[str, Any]:
         """The keys of `[motion]` that say how it moves."""
         direction = direction_of(self.direction)
-        keys = {"direction": direction if isinstance(direction, str) else f"{direction!r} rad", "kind": choice("kind", self.kind, get_args(Movement))}
+        keys = {"direction": direction if isinstance(direction, str) else f"{direction!r} rad", "kind": self.kind}
         return keys if self.shear_stress is None else {**keys, "shear_stress": _shear(self.shear_stress)}
 
     def flash_keys(self) -> dict[str, Any]:
         """The table `[flash]`, where it is given."""
-        if self.flash is None:
-            return {}
-        if not isinstance(self.flash, Flash):
-            raise CaseError(f"flash is {self.flash!r}, but must be an asperity.Flash")
-        return {"flash": self.flash._keys}
+        return table_keys(self, "flash", Flash, "flash")
 
 
 @dataclass(kw_only=True)
@@ -66,12 +60,7 @@ class Slide(Moving, InTime):
 
     def course_keys(self) -> dict[str, Any]:
         what, course = one_of({"velocity": self.velocity, "path": self.path}, "give")
-        motion = {
-            what: self.history_keys(what, course),
-            "start": number("start", self.start),
-            "cells_per_step": number("cells_per_step", self.cells_per_step),
-            **self.motion_keys(),
-        }
+        motion = {what: self.history_keys(what, course), "start": self.start, "cells_per_step": self.cells_per_step, **self.motion_keys()}
         return {**super().course_keys(), "motion": motion, **self.flash_keys()}
 
 
@@ -79,7 +68,7 @@ class Slide(Moving, InTime):
 class Steady(Moving):
     """The arguments of :func:`asperity.steady`."""
 
-    velocities: npt.ArrayLike
+    velocities: ArrayLike
 
     def course_keys(self) -> dict[str, Any]:
         return {"motion": {"steady": {"velocities": line("velocities", self.velocities).tolist()}, **self.motion_keys()}, **self.flash_keys()}
@@ -159,7 +148,8 @@ def steady(given: Steady) -> Result:
 
 def rubber_friction(result: Result, *, shear_stress: float) -> Floats:
     """Friction coefficient with an adhesive share: that of the loss in the bulk, and `shear_stress` [Pa] on the area in contact,
-    `friction_coefficient + shear_stress * contact_area / load`; nothing is added where there is no load, and it is subtracted where the velocity is negative.
+    `friction_coefficient + shear_stress * contact_area / load`; nothing is added where there is no load, and the share is negative where
+    the velocity is.
 
     >>> import asperity as asp
     >>> wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
@@ -169,8 +159,6 @@ def rubber_friction(result: Result, *, shear_stress: float) -> Floats:
     >>> bool(abs(added[0] - 0.5 * result.contact_fraction[0]) < 1e-12)
     True
     """
-    load = np.asarray(result.load)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(load > 0, number("shear_stress", shear_stress) * np.asarray(result.contact_area) / load, 0.0) * np.where(np.asarray(result.velocity) < 0, -1, 1)
-    total: Floats = np.asarray(result.friction_coefficient) + share
-    return total
+    load, force = result.load, number("shear_stress", shear_stress) * result.contact_area
+    share = np.divide(force, load, out=np.zeros_like(load), where=load > 0)
+    return np.asarray(result.friction_coefficient + np.where(result.velocity < 0, -share, share))

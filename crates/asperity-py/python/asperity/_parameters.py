@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Generic, Protocol, TypeVar, overload
+from typing import Any, Generic, Protocol, TypeVar, cast, overload
 
 Value = TypeVar("Value")
 
@@ -32,14 +32,16 @@ class Parameter(Generic[Value]):
         if self._name not in known:
             has = f"was made with {', '.join(known)}" if known else "has no parameters"
             raise AttributeError(f"{made!r} has no {self._name!r}; it {has}")
-        value: Value = known[self._name]
-        return value
+        return cast(Value, known[self._name])
 
-    def __set__(self, made: Parametrised, value: Value) -> None:
-        raise AttributeError(f"{self._name} cannot be set: {type(made).__name__} does not change once it is made; make another")
+
+def parameters(kind: type[Value], number: int) -> list[Parameter[Value]]:
+    """As many attributes of this kind, which take the names that they are given."""
+    return [Parameter[Value]() for _ in range(number)]
 
 
 def call(name: str, parameters: dict[str, Any], positional: int = 0) -> str:
     """The call that makes the object, the first parameters without their names."""
-    words = [repr(value) if n < positional else f"{key}={value!r}" for n, (key, value) in enumerate(parameters.items())]
+    told = {key: f"<array of {value.shape}>" if hasattr(value, "shape") else repr(value) for key, value in parameters.items()}
+    words = [value if n < positional else f"{key}={value}" for n, (key, value) in enumerate(told.items())]
     return f"{name}({', '.join(words)})"

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, array, choice, direction_of, line, number
+from ._arrays import ArrayLike, Floats, array, choice, direction_of, line, number
 from ._core import CaseError
 from ._materials import Material
 from ._sealed import ReadOnlyArrays, Sealed
@@ -32,8 +31,7 @@ class Magnification(ReadOnlyArrays):
     @property
     def magnification(self) -> Floats:
         """Wave number over that of the longest waves."""
-        seen: Floats = self.wave_number / self.wave_number[0]
-        return seen
+        return np.asarray(self.wave_number / self.wave_number[0])
 
 
 class PerssonFriction(Sealed):
@@ -62,15 +60,8 @@ class PerssonFriction(Sealed):
 
 
 def persson_friction(
-    surface: Any,
-    material: Material,
-    *,
-    pressure: float,
-    velocities: npt.ArrayLike,
-    correction: Correction = "yang-persson",
-    direction: str | float = "x",
-    temperature: float | None = None,
-    size: Sequence[float] | None = None,
+    surface: Any, material: Material, *, pressure: float, velocities: ArrayLike, correction: Correction = "yang-persson",
+    direction: str | float = "x", temperature: float | None = None, size: Sequence[float] | None = None
 ) -> PerssonFriction:
     """Friction and contact area of a rigid rough surface that slides over a viscoelastic body, by Persson's theory.
 
@@ -119,6 +110,6 @@ def persson_friction(
     keys: dict[str, Any] = {"body": [material._keys]}
     if temperature is not None:
         keys["temperature"] = {"history": {"kind": "constant", "value": number("temperature", temperature)}}
-    how = choice("correction", correction, get_args(Correction))
+    how = choice("correction", correction, Correction)
     theory = _core.Persson(shape.heights, list(shape.size), keys, number("pressure", pressure), word, turned, how)
     return PerssonFriction(theory, speeds)

@@ -6,6 +6,7 @@ what it has.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import json
@@ -15,7 +16,7 @@ import re
 import tempfile
 import types
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -27,8 +28,7 @@ from ._core import CaseError
 from ._findings import ResultWarning
 from ._materials import Material
 from ._result import Result, open as open_result
-from ._motion import slide, steady
-from ._solve import overrides, solve
+from ._solve import overrides
 from ._surface import Surface
 
 #: Answer to a point: a result, or why there is none.
@@ -39,14 +39,13 @@ Solved = tuple[str, str, Result | None]
 class Point:
     """One point: a case file with changed keys, or a function with its arguments."""
 
-    #: What all points have in common, digested: see :func:`base_of`.
+    #: What all points have in common, digested.
     base: str
     settings: dict[str, Any]
     #: Text of the case; None of a function.
     case: str | None = None
     #: Where the files of the case lie.
     directory: str = ""
-    #: None: :func:`asperity.solve`.
     function: Any = None
     fixed: dict[str, Any] = field(default_factory=dict)
     #: Where points are kept; None: nowhere.
@@ -62,11 +61,14 @@ class Point:
         return digest(self.base, self.settings, _files(self.directory, repr(self.settings)))[:16]
 
 
-def base_of(case: str | None, directory: str, function: Any, fixed: dict[str, Any]) -> str:
-    """Digest of a case with the files that it names, or of a function and its arguments."""
-    if case is not None:
-        return digest(case, _files(directory, case))
-    return digest(None if function is solve else function, fixed)
+def base_of_case(case: str, directory: str) -> str:
+    """Digest of a case with the files that it names."""
+    return digest(case, _files(directory, case))
+
+
+def base_of_function(function: Any, fixed: dict[str, Any]) -> str:
+    """Digest of a function and its arguments; those of this package count by their names."""
+    return digest(function.__name__ if hasattr(function, "options") else function, fixed)
 
 
 def _files(directory: str, text: str) -> dict[str, bytes]:
@@ -82,87 +84,58 @@ def _files(directory: str, text: str) -> dict[str, bytes]:
 
 def digest(*values: Any) -> str:
     """The same for the same values, in this process and in the next."""
-    hasher = hashlib.sha256()
-    for value in values:
-        _feed(hasher.update, value)
-    return hasher.hexdigest()
+    return hashlib.sha256(repr([_parts(value) for value in values]).encode()).hexdigest()
 
 
-def _feed(update: Callable[[bytes], None], value: Any) -> None:
-    def tag(word: str) -> None:
-        update(word.encode() + b"\0")
-
-    if value is None or isinstance(value, (bool, int, float, complex, str)):
-        tag(f"{type(value).__name__} {value!r}")
-    elif isinstance(value, bytes):
-        tag(f"bytes {len(value)}")
-        update(value)
-    elif isinstance(value, np.generic):
-        _feed(update, value.item())
-    elif isinstance(value, np.ndarray) and value.dtype.kind != "O":
-        tag(f"array {value.dtype.str} {value.shape}")
-        update(np.ascontiguousarray(value).tobytes())
-    elif isinstance(value, (list, tuple)):
-        tag(f"{type(value).__name__} {len(value)}")
-        for item in value:
-            _feed(update, item)
-    elif isinstance(value, Mapping):
-        tag(f"mapping {len(value)}")
-        for key in sorted(value, key=repr):
-            _feed(update, key)
-            _feed(update, value[key])
-    elif isinstance(value, Material):
-        tag(type(value).__name__)
-        _feed(update, value._given)
-    elif isinstance(value, Surface):
-        tag("Surface")
-        _feed(update, [value.heights, value.size])
-    elif is_dataclass(value) and not isinstance(value, type):
-        tag(type(value).__qualname__)
-        _feed(update, {one.name: getattr(value, one.name) for one in fields(value)})
-    elif isinstance(value, functools.partial):
-        tag("partial")
-        _feed(update, [value.func, value.args, value.keywords])
-    elif isinstance(value, types.FunctionType):
+def _parts(value: Any) -> Any:
+    """What tells a value from others, in text, numbers and bytes."""
+    name = type(value).__qualname__
+    if value is None or isinstance(value, (bool, int, float, complex, str, bytes)):
+        return name, value
+    if isinstance(value, np.generic):
+        return _parts(value.item())
+    if isinstance(value, np.ndarray) and value.dtype.kind != "O":
+        return "array", value.dtype.str, value.shape, hashlib.sha256(np.ascontiguousarray(value).tobytes()).digest()
+    if isinstance(value, (list, tuple)):
+        return name, [_parts(item) for item in value]
+    if isinstance(value, Mapping):
+        return "mapping", [(_parts(key), _parts(value[key])) for key in sorted(value, key=repr)]
+    if isinstance(value, Material):
+        return name, _parts(value._given)
+    if isinstance(value, Surface):
+        return name, _parts([value.heights, value.size])
+    if is_dataclass(value) and not isinstance(value, type):
+        return name, _parts({one.name: getattr(value, one.name) for one in fields(value)})
+    if isinstance(value, functools.partial):
+        return name, _parts([value.func, value.args, value.keywords])
+    if isinstance(value, types.FunctionType):
         # A function that was changed is another one.
-        tag(f"function {value.__module__} {value.__qualname__}")
-        _feed(update, value.__code__)
-        _feed(update, [value.__defaults__, value.__kwdefaults__])
-        _feed(update, [cell.cell_contents for cell in value.__closure__ or ()])
-    elif isinstance(value, types.CodeType):
-        tag("code")
-        update(value.co_code)
-        _feed(update, [value.co_names, value.co_varnames, value.co_consts])
-    else:
-        tag(type(value).__qualname__)
-        try:
-            update(pickle.dumps(value, protocol=4))
-        except Exception as error:
-            raise CaseError(f"a point of the study holds {value!r}, which cannot be sent to another process: {error}") from None
+        held = [cell.cell_contents for cell in value.__closure__ or ()]
+        return value.__module__, value.__qualname__, _parts([value.__code__, value.__defaults__, value.__kwdefaults__, held])
+    if isinstance(value, types.CodeType):
+        return name, value.co_code, _parts([value.co_names, value.co_varnames, value.co_consts])
+    try:
+        return name, pickle.dumps(value, protocol=4)
+    except Exception as error:
+        raise CaseError(f"a point of the study holds {value!r}, which cannot be sent to another process: {error}") from None
 
 
 def solve_point(point: Point) -> Solved:
     """Solves a point: ("complete", "", result) or ("failed", error, None). An interruption goes on to the caller.
 
     The study warns of its findings, where the filters of the caller hold."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ResultWarning)
-        return _solve_point(point)
-
-
-def _solve_point(point: Point) -> Solved:
     if point.threads is not None:
         _core.set_threads(point.threads)
-    try:
-        if point.folder is None:
-            with tempfile.TemporaryDirectory() as folder:
-                return "complete", "", trimmed(_solved(point, folder), point.fields)
-        return "complete", "", trimmed(_solved(point, point.folder), point.fields)
-    except Exception as error:
-        message = f"{type(error).__name__}: {error}"
-        if point.folder is not None:
-            note(point.folder, point.name, {"status": "failed", "error": message, "settings": label_all(point.settings)})
-        return "failed", message, None
+    with warnings.catch_warnings(), contextlib.ExitStack() as until_done:
+        warnings.simplefilter("ignore", ResultWarning)
+        try:
+            folder = point.folder or until_done.enter_context(tempfile.TemporaryDirectory())
+            return "complete", "", trimmed(_solved(point, folder), point.fields)
+        except Exception as error:
+            message = f"{type(error).__name__}: {error}"
+            if point.folder is not None:
+                note(point.folder, point.name, {"status": "failed", "error": message, "settings": label_all(point.settings)})
+            return "failed", message, None
 
 
 def _solved(point: Point, folder: str) -> Result:
@@ -178,11 +151,10 @@ def _solved(point: Point, folder: str) -> Result:
             # What a killed process left of it cannot be continued: from the beginning.
             _core.run(point.directory, point.case, keys, path, True, False, None)
         return open_result(path)
-    call = solve if point.function is None else point.function
     given = {**point.fixed, **point.settings}
-    if call in (solve, slide, steady):
+    if hasattr(point.function, "options"):
         given = {"progress": False, "fields": point.fields, **given}
-    found = call(**given)
+    found = point.function(**given)
     if not isinstance(found, Result):
         raise TypeError(f"the function of a study must return an asperity.Result, but returned {type(found).__name__}")
     found.save(path, force=True)
@@ -191,19 +163,12 @@ def _solved(point: Point, folder: str) -> Result:
 
 def trimmed(result: Result, names: tuple[str, ...]) -> Result:
     """The result with these fields only, in memory."""
-    missing = [name for name in names if name not in result.fields]
-    if missing:
-        raise CaseError(f"the field {missing[0]!r} was not kept; kept: {', '.join(result.fields) or 'none'}")
+    for name in (name for name in names if name not in result.fields):
+        raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(result.fields) or 'none'}")
+    gap = result.initial_gap if names else np.empty((0, 0))
     return Result(
-        table={name: np.asarray(values) for name, values in result._table.items()},
-        fields={name: result._stack(name) for name in names},
-        field_steps=result._field_steps,
-        field_times=result.field_times,
-        initial_gap=result.initial_gap if names else np.empty((0, 0)),
-        size=result.size,
-        attributes=result.attributes,
-        histograms=result._histograms,
-        leaks=result._leaks,
+        table=result._table, histograms=result._histograms, fields={name: result._stack(name) for name in names}, field_steps=result._field_steps,
+        field_times=result.field_times, initial_gap=gap, size=result.size, attributes=result.attributes, leaks=result._leaks
     )
 
 
@@ -211,12 +176,10 @@ def found(point: Point, again: bool) -> Solved | None:
     """What the folder holds of a point that needs no more work; `again`: failed ones do."""
     assert point.folder is not None
     path = os.path.join(point.folder, f"{point.name}.zarr")
-    try:
+    with contextlib.suppress(OSError, CaseError):
         result = open_result(path)
         if result.attributes.get("status") == "complete":
             return "complete", "", trimmed(result, point.fields)
-    except (OSError, CaseError):
-        pass
     try:
         told = json.loads(Path(point.folder, f"{point.name}.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -237,8 +200,7 @@ def note(folder: str, name: str, content: dict[str, Any]) -> None:
 
 def label(value: Any) -> Any:
     """A value as a coordinate: a number or text."""
-    if isinstance(value, np.generic):
-        value = value.item()
+    value = value.item() if isinstance(value, np.generic) else value
     if isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, Material):

@@ -31,9 +31,8 @@ def quantity(value: float, unit: str) -> str:
     factor, text = prefixed(abs(value), unit)
     number = value * factor
     if number == 0 or 1e-4 <= abs(number) < 1e6:
-        digits = 0 if number == 0 else max(0, 3 - math.floor(math.log10(abs(number))))
-        written = f"{number:.{digits}f}"
-        written = written.rstrip("0").rstrip(".") if digits else written
+        digits = 1 if number == 0 else max(0, 3 - math.floor(math.log10(abs(number))))
+        written = f"{number:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{number:.0f}"
     else:
         first, tens = f"{number:.3e}".split("e")
         written = f"{first}×10{str(int(tens)).translate(_SUPERSCRIPT)}"

@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, get_args
 
 import numpy as np
-import numpy.typing as npt
 
 from ._adhesion import Adhesion
 from ._fluid import Fluid
-from ._arrays import as_plane, check_places, choice, count, distinct, field as field_of, in_order, number
+from ._arrays import AnyPath, ArrayLike, Floats, as_plane, check_places, distinct, in_order, number
 from ._core import CaseError
+from ._declared import Table, check
 from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
 from ._layers import Body
 from ._materials import Material
 from ._rows import Field, Quantity
 from ._shifts import temperature_keys
-from ._surface import Surface, check_boundary, surface_of
+from ._surface import Surface, check_boundary, per_cell, surface_of
 from ._tangential import Friction, Tangential
 from ._units import bare
 from ._wear import Wear
 from ._words import Boundary, Method, Plasticity, Scheme
 
 if TYPE_CHECKING:
-    from ._arrays import Floats
     from ._solve import Step
 
 
@@ -41,7 +39,7 @@ class Problem:
     pressure: History | Function | float | None = None
     gap: Any = None
     size: float | Sequence[float] | None = None
-    hardness: float | npt.ArrayLike | None = None
+    hardness: float | ArrayLike | None = None
     temperature: float | Sequence[tuple[float, float]] | None = None
     boundary: Boundary = "free"
     method: Method = "projected-cg"
@@ -54,7 +52,7 @@ class Problem:
     largest_gap: float | None = None
     fields: Sequence[Field] = ()
     every: int | None = None
-    field_times: npt.ArrayLike | None = None
+    field_times: ArrayLike | None = None
     title: str = ""
     #: Of each history that was given as a function: the points of its table, and the largest distance that was found.
     sampled: dict[str, dict[str, float]] = field(init=False, default_factory=dict)
@@ -62,12 +60,13 @@ class Problem:
     #: Groups of fields of which exactly one is given.
     alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure"), ("surface", "gap")]
 
+    def __post_init__(self) -> None:
+        check(self)
+
     def parts(self) -> tuple[Surface, dict[str, Any], dict[str, Floats]]:
         """The surface, the keys of the case, and the arrays that the keys name."""
         if isinstance(self.surface, (Material, Body)):
             raise CaseError("the surface is a material: the surface comes first, as in solve(surface, material, ...)")
-        for what, words in (("boundary", Boundary), ("method", Method), ("plasticity", Plasticity)):
-            choice(what, getattr(self, what), get_args(words))
         shape = surface_of(self.surface, self.gap, self.size)
         check_boundary(shape, self.boundary)
         check_places("hardness", self.hardness, self.surface if self.gap is None else self.gap)
@@ -79,7 +78,7 @@ class Problem:
         elif limit is not None:
             bodies = [{**body, "hardness": limit} for body in bodies]
         ends = {"pressure": self.largest_pressure, "gap": self.largest_gap}
-        histogram = {name: number(f"largest_{name}", end) for name, end in ends.items() if end is not None}
+        histogram = {name: end for name, end in ends.items() if end is not None}
         for name, end in histogram.items():
             if not 0.0 < end < float("inf"):
                 raise CaseError(f"largest_{name} is {end:g} {'Pa' if name == 'pressure' else 'm'}, but must be finite and greater than 0")
@@ -88,16 +87,8 @@ class Problem:
             "surface": [{"kind": "array", "array": "heights", "single": bool(shape.metadata.get("single"))}],
             "body": bodies,
             "load": self.load_keys("N/m" if shape.is_line else "N"),
-            "solver": {
-                "method": self.method,
-                "tolerance": number("tolerance", self.tolerance),
-                "max_iterations": count("max_iterations", self.max_iterations),
-                "plasticity": self.plasticity,
-            },
-            "output": {
-                "quantities": distinct("quantities", self.quantities, get_args(Quantity)),
-                "histogram": {"bins": count("bins", self.bins), **histogram},
-            },
+            "solver": {name: getattr(self, name) for name in ("method", "tolerance", "max_iterations", "plasticity")},
+            "output": {"quantities": distinct("quantities", self.quantities, get_args(Quantity)), "histogram": {"bins": self.bins, **histogram}},
             **self.course_keys(),
         }
         if self.temperature is not None:
@@ -126,12 +117,13 @@ class Problem:
 class InTime(Problem):
     """A run in time."""
 
-    times: Times | npt.ArrayLike
+    times: Times | ArrayLike
     scheme: Scheme = "linear"
     breaks: Sequence[float] = ()
     wear: Wear | float | None = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         # Once: a generator gives its times only once.
         self.times = as_times(self.times)
 
@@ -152,7 +144,7 @@ class InTime(Problem):
         return history._keys
 
     def course_keys(self) -> dict[str, Any]:
-        return {"time": {**as_times(self.times)._keys, "scheme": choice("scheme", self.scheme, get_args(Scheme))}}
+        return {"time": {**as_times(self.times)._keys, "scheme": self.scheme}}
 
 
 @dataclass(kw_only=True)
@@ -163,7 +155,7 @@ class InStages(InTime):
     stages: Sequence[Stage] | None = None
     adhesion: Adhesion | None = None
     fluid: Fluid | None = None
-    friction: Friction | float | npt.ArrayLike | None = None
+    friction: Friction | float | ArrayLike | None = None
     tangential: Tangential | None = None
 
     alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure", "approach", "stages"), ("surface", "gap")]
@@ -184,14 +176,7 @@ class InStages(InTime):
         return {**super().controls(), "approach": self.approach, "stages": self.stages}
 
     def course_keys(self) -> dict[str, Any]:
-        keys = super().course_keys()
-        for name, section, kind in (("adhesion", "adhesion", Adhesion), ("fluid", "leakage", Fluid)):
-            if (given := getattr(self, name)) is None:
-                continue
-            if not isinstance(given, kind):
-                raise CaseError(f"{name} is {given!r}, but must be an asperity.{kind.__name__}")
-            keys[section] = given._keys
-        return keys
+        return {**super().course_keys(), **table_keys(self, "adhesion", Adhesion, "adhesion"), **table_keys(self, "fluid", Fluid, "leakage")}
 
     def load_keys(self, load_unit: str) -> dict[str, Any]:
         if self.stages is None:
@@ -200,7 +185,7 @@ class InStages(InTime):
         programme = list(self.stages)
         if not programme or not all(isinstance(stage, Stage) for stage in programme):
             raise CaseError("stages is a list of asperity.Stage, one at least")
-        return {"stages": [stage._keys(load_unit) for stage in programme]}
+        return {"stages": [stage._given(load_unit) for stage in programme]}
 
 
 @dataclass(kw_only=True)
@@ -208,7 +193,7 @@ class Run(Problem):
     """A run to its end."""
 
     fields: Sequence[Field] = ("pressure",)
-    output: str | os.PathLike[str] | None = None
+    output: AnyPath | None = None
     force: bool = False
     progress: bool | None = None
     on_step: Callable[[Step], object] | None = None
@@ -220,11 +205,18 @@ class Solve(Run, InStages):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.fields == ("pressure",) and (self.adhesion is not None or self.fluid is not None):
-            # Which cells touch does not follow from the pressure there.
-            self.fields = ("pressure", "contact_pressure")
-        if self.fields == ("pressure",) and self.tangential is not None:
-            self.fields = ("pressure", "contact", "traction_x", "traction_y")
+        if self.fields == ("pressure",):
+            # With adhesion or a fluid it does not follow from the pressure which cells touch.
+            attracted = self.adhesion is not None or self.fluid is not None
+            along: Sequence[Field] = () if self.tangential is None else ("contact", "traction_x", "traction_y")
+            self.fields = ("pressure", "contact_pressure") if attracted else ("pressure", *along)
+
+
+def table_keys(given: Problem, name: str, kind: type[Table], section: str) -> dict[str, Any]:
+    """The table of the case that an argument is, where it is given."""
+    if (value := getattr(given, name)) is not None and not isinstance(value, kind):
+        raise CaseError(f"{name} is {value!r}, but must be an asperity.{kind.__name__}")
+    return {} if value is None else {section: value._keys}
 
 
 def bodies_of(material: Any) -> list[Material | Body]:
@@ -245,7 +237,4 @@ def hardness_of(hardness: Any, shape: Surface) -> float | Floats | None:
         return None
     if np.ndim(bare("hardness", in_order("hardness", hardness, shape.size))) != len(shape.size):
         return number("hardness", hardness)
-    cells = field_of("hardness", hardness, line=True, size=shape.size)
-    if cells.shape != shape.cells:
-        raise CaseError(f"hardness has shape {cells.shape}, but must have {shape.cells}: one value for each cell")
-    return cells
+    return per_cell("hardness", hardness, shape)

@@ -6,6 +6,7 @@ script without a guard. A process that dies takes its own point with it and no o
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
 import queue
@@ -45,15 +46,11 @@ class _Process:
     def __init__(self, threads: int, answers: queue.SimpleQueue[tuple[_Process, Any]]) -> None:
         self.point: int | None = None
         package = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-        self.process = subprocess.Popen(
-            [sys.executable, "-c", _CODE, package],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            # Ctrl-C is for the study, which tells its processes.
-            start_new_session=True,
-            creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
-        )
-        self._write(pickle.dumps({"path": list(sys.path), "threads": threads}))
+        pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+        # Ctrl-C is for the study, which tells its processes.
+        alone: dict[str, Any] = {"start_new_session": True, "creationflags": getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)}
+        self.process = subprocess.Popen([sys.executable, "-c", _CODE, package], **pipes, **alone)
+        self._write({"path": list(sys.path), "threads": threads})
         threading.Thread(target=self._listen, args=(answers,), daemon=True).start()
 
     def _listen(self, answers: queue.SimpleQueue[tuple[_Process, Any]]) -> None:
@@ -64,25 +61,23 @@ class _Process:
         except Exception:
             answers.put((self, None))
 
-    def _write(self, data: bytes) -> None:
+    def _write(self, what: Any) -> None:
         assert self.process.stdin is not None
-        try:
-            self.process.stdin.write(data)
+        # One that has ended cannot be told; who listens says so.
+        with contextlib.suppress(OSError):
+            self.process.stdin.write(pickle.dumps(what))
             self.process.stdin.flush()
-        except OSError:
-            pass  # It has ended; who listens says so.
 
-    def send(self, number: int, task: bytes) -> None:
-        self.point = number
-        self._write(pickle.dumps(task))
+    def send(self, point: int, task: bytes) -> None:
+        self.point = point
+        self._write(task)
 
     def close(self) -> None:
         """Tells it to stop."""
-        try:
+        self.point = None
+        with contextlib.suppress(OSError):
             assert self.process.stdin is not None
             self.process.stdin.close()
-        except OSError:
-            pass
 
     def end(self) -> None:
         """Waits until it has."""
@@ -113,8 +108,7 @@ def pickled(point: Point) -> bytes:
                 f"the function {getattr(function, '__name__', function)!r} of this script or notebook cannot be sent to another "
                 "process: install cloudpickle, or put the function into a module"
             ) from None
-        data: bytes = cloudpickle.dumps(point)
-        return data
+        return bytes(cloudpickle.dumps(point))
     try:
         return pickle.dumps(point, protocol=pickle.HIGHEST_PROTOCOL)
     except Exception as error:
@@ -129,38 +123,33 @@ def solved(points: Sequence[Point], workers: int, threads: int) -> Generator[tup
     running: set[_Process] = set()
 
     def occupy(process: _Process) -> None:
+        running.add(process)
         if waiting:
             number = waiting.pop()
             process.send(number, tasks[number])
         else:
-            process.point = None
             process.close()
 
     try:
         for _ in range(min(workers, len(points))):
-            process = _Process(threads, answers)
-            running.add(process)
-            occupy(process)
+            occupy(_Process(threads, answers))
         while running:
             try:
                 # With an end, so that Ctrl-C is heard on every system.
                 process, answer = answers.get(timeout=0.5)
             except queue.Empty:
                 continue
-            if answer is None:
+            point = process.point
+            if answer is not None:
+                occupy(process)
+            else:
                 running.discard(process)
-                if process.point is not None:
-                    yield process.point, ("failed", process.fate(), None)
-                    if waiting:
-                        fresh = _Process(threads, answers)
-                        running.add(fresh)
-                        occupy(fresh)
+                answer = ("failed", process.fate(), None)
+                if point is not None and waiting:
+                    occupy(_Process(threads, answers))
                 process.end()
-                continue
-            number = process.point
-            assert number is not None
-            occupy(process)
-            yield number, answer
+            if point is not None:
+                yield point, answer
     finally:
         for process in running:
             process.close()

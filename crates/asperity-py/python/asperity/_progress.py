@@ -16,33 +16,25 @@ class Progress:
     """Shows rows done, contact area and time left; nothing unless `on`, or unless stderr is a terminal or notebook."""
 
     def __init__(self, total: int | None, on: bool | None) -> None:
-        self.total = total
-        self.started = time.monotonic()
-        self.told = 0.0
+        self.total, self.started, self.told = total, time.monotonic(), 0.0
         self.rows: list[tuple[float, float]] = []  # time and contact fraction
-        self.on = _wanted(on)
         self.show = line_of(on)
 
     def tell(self, row: dict[str, Any], done: int) -> None:
         """One row more."""
-        if not self.on:
-            return
         self.rows.append((row["time"], row["contact_fraction"]))
         now = time.monotonic()
-        if now - self.told < PAUSE and (self.total is None or done < self.total):
+        if self.show is None or (now - self.told < PAUSE and (self.total is None or done < self.total)):
             return
         self.told = now
-        text = f"t = {row['time']:.4g} s  contact {100 * row['contact_fraction']:.2f} % {sparkline(self.rows)}"
-        if self.total is None:
-            text = f"{done} rows  {text}"
-        else:
-            left = (now - self.started) / max(done, 1) * (self.total - done)
-            text = f"{done}/{self.total} rows  {text}  {left:.0f} s left"
-        self.show(text)
+        of, left = "", ""
+        if self.total is not None:
+            of, left = f"/{self.total}", f"  {(now - self.started) / max(done, 1) * (self.total - done):.0f} s left"
+        self.show(f"{done}{of} rows  t = {row['time']:.4g} s  contact {100 * row['contact_fraction']:.2f} % {sparkline(self.rows)}{left}")
 
     def end(self) -> None:
         """Clears the line."""
-        if self.rows:
+        if self.rows and self.show is not None:
             self.show(None)
 
 
@@ -61,15 +53,11 @@ def sparkline(rows: list[tuple[float, float]], width: int = 16) -> str:
     return "".join(bars)
 
 
-def _wanted(on: bool | None) -> bool:
-    return (_notebook() is not None or sys.stderr.isatty()) if on is None else on
-
-
-def line_of(on: bool | None) -> Callable[[str | None], None]:
-    """A function that shows a line in place of the one before; None clears it. Silent as :class:`Progress`."""
+def line_of(on: bool | None) -> Callable[[str | None], None] | None:
+    """A function that shows a line in place of the one before; given None it clears it. None as :class:`Progress` shows nothing."""
     notebook = _notebook()
-    if not _wanted(on):
-        return lambda text: None
+    if not (notebook is not None or sys.stderr.isatty() if on is None else on):
+        return None
     handle: Any = None
 
     def show(text: str | None) -> None:

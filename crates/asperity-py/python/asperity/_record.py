@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, as_plane, count, distinct, line
+from ._arrays import Floats, as_plane, distinct, line
 from ._columns import FIELDS, HISTOGRAMS, ROW
 from ._core import CaseError
 from ._problem import InTime, Problem
-from ._result import Result, open
+from ._result import Result, attributes_of, open
 
 if TYPE_CHECKING:
     from ._solve import March, Step
@@ -26,7 +26,7 @@ class Keep:
     def __init__(self, given: Problem) -> None:
         self.fields = distinct("fields", given.fields, list(FIELDS))
         self.title = given.title
-        self.every = None if given.every is None else count("every", given.every)
+        self.every = given.every
         self.times = None if given.field_times is None else line("field_times", given.field_times)
         #: Times that become steps.
         self.steps: list[float] = []
@@ -47,7 +47,7 @@ class Record:
 
     def __init__(self, march: March, keep: Keep, output: str | None, force: bool) -> None:
         core = march._core
-        self._march, self._keep = march, keep
+        self._march, self._keep, self._output = march, keep, output
         self._edges: dict[str, Floats] = {name: np.array(ends) for name, ends in core.columns()}
         self._rows: list[dict[str, Any]] = []
         #: What was prescribed between two rows: the number of the row that followed, control and history.
@@ -60,14 +60,12 @@ class Record:
         self._end = core.times()[-1]
         for time in () if keep.times is None else keep.times[keep.times > self._end * (1 + 1e-12)]:
             raise CaseError(f"field_times holds {time:g} s, but the run ends at {self._end:g} s")
-        self._output = output
         self._writer: _core.Writer | None = None
         if output is not None:
             if not force and os.path.exists(output):
                 raise FileExistsError(errno.EEXIST, "exists already; choose another output or replace it with force=True", output)
-            columns = [(name, ends) for name, ends in self._edges.items()]
             setup, gap = json.dumps(march._setup), np.array(as_plane(march.initial_gap))
-            self._writer = _core.Writer(output, force, keep.title, setup, list(march.size), gap, keep.fields, columns, rows)
+            self._writer = _core.Writer(output, force, keep.title, setup, list(march.size), gap, keep.fields, list(self._edges.items()), rows)
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -125,26 +123,11 @@ class Record:
         shape, steps = self._march.initial_gap.shape, sorted(self._maps)
         stacks = {name: [self._maps[step][name].reshape(shape) for step in steps] for name in self._keep.fields}
         table = {name: np.array([row[name] for row in self._rows]) for name in [*ROW, *self._edges]}
+        prescribed = {"prescribed": self.prescribed} if self.prescribed else {}
         return Result(
             table={name: values if self._rows else np.empty(0) for name, values in table.items() if name not in HISTOGRAMS},
             histograms={name: (ends, table[name]) for name, ends in self._edges.items() if name in HISTOGRAMS},
             fields={name: np.array(stack) if stack else np.empty((0, *shape)) for name, stack in stacks.items()},
-            field_steps=np.array(steps, dtype=np.int64),
-            initial_gap=self._march.initial_gap,
-            size=self._march.size,
-            attributes={
-                "title": self._keep.title,
-                "version": _core.__version__,
-                "status": status,
-                "setup": json.dumps({**self._march._setup, **({"prescribed": self.prescribed} if self.prescribed else {})}),
-                **layers_of(self._march._setup),
-                "findings": [dict(finding) for finding in self._march.findings],
-            },
+            attributes=attributes_of(self._keep.title, status, self._march._setup | prescribed, self._march.findings),
+            field_steps=steps, initial_gap=self._march.initial_gap, size=self._march.size
         )
-
-
-def layers_of(setup: dict[str, Any]) -> dict[str, Any]:
-    """The attributes of a result on its layers: as a run of a case file has them."""
-    if "layer_separable" not in setup:
-        return {}
-    return {"layer_separable": int(setup["layer_separable"]), "layer_misfit": setup["layer_misfit"]}

@@ -4,32 +4,48 @@ from __future__ import annotations
 
 import copy
 import errno
+import functools
 import html
 import json
 import os
+import tempfile
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _html
-from ._arrays import Floats, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
-from ._axis import TIME, VELOCITY
-from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, Column
+from ._arrays import AnyArray, AnyPath, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
+from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, dataset, frame, told, variable
 from ._core import CaseError
 from ._findings import Finding, findings_of
 from ._grid import OnGrid
+from ._leakage import over_time, stored
+from ._methods import paragraph
 from ._rows import Columns, Field, StressColumns
-from ._sealed import Sealed
+from ._sealed import Sealed, read_only
+from ._stress import Stress, changing, stress
 from ._units import written
 from ._words import Flow, Sides
+from .plot import Plots
 
 if TYPE_CHECKING:
     from ._converge import ErrorBar
-    from collections.abc import Sequence
 
-    from ._stress import Stress
-    from .plot import Plots
+class Axis(NamedTuple):
+    """What the rows of a result follow one another in: times, or the velocities of steady states of motion."""
+
+    #: Its name, also of its dimension.
+    name: str
+    #: Its symbol.
+    symbol: str
+    #: Its unit.
+    unit: str
+
+
+TIME = Axis("time", "t", "s")
+VELOCITY = Axis("velocity", "v", "m/s")
+
 
 class Cycle(NamedTuple):
     """One period of a cyclic load; made by :meth:`Result.cycles`."""
@@ -60,56 +76,44 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
     those of a result on disk are read anew each time, into arrays of your own.
     """
 
+    #: Lengths of the domain along x and y [m]; of a line contact along x.
+    size: tuple[float, ...]
+    #: Times at which fields were kept [s]; of a sweep the velocities [m/s].
+    field_times: Floats
+    #: Where the result is on disk; None for one in memory.
+    path: str | None
+
     def __init__(
-        self,
-        *,
-        table: dict[str, Any],
-        fields: dict[str, Any],
-        field_steps: Any,
-        initial_gap: Any,
-        size: tuple[float, ...],
-        attributes: dict[str, Any],
-        path: str | None = None,
-        histograms: dict[str, tuple[Floats, Floats]] | None = None,
-        field_times: Any = None,
-        stress: dict[str, Floats] | None = None,
-        leaks: dict[str, Floats] | None = None,
-        store: _core.Store | None = None,
+        self, *, table: dict[str, Any], fields: dict[str, Any], field_steps: Any, initial_gap: Any, size: Sequence[float],
+        attributes: dict[str, Any], path: str | None = None, histograms: dict[str, tuple[Floats, Floats]] | None = None,
+        field_times: Any = None, stress: dict[str, Floats] | None = None, leaks: dict[str, Floats] | None = None,
+        store: _core.Store | None = None
     ) -> None:
-        self._table = table
-        self._fields = fields
+        self._table: dict[str, Any] = read_only({name: np.asarray(values) for name, values in table.items()})
+        self._fields: dict[str, Any] = read_only(dict(fields))
         self._field_steps = np.asarray(field_steps, dtype=np.int64)
+        self._histograms: dict[str, tuple[Floats, Floats]] = read_only(histograms or {})
+        self._stress, self._leaks = read_only(stress or {}), read_only(leaks or {})
+        self._attributes, self._store = attributes, store
         # A field between two rows belongs to the later one, and has a time of its own.
-        self._field_times: Floats = (
-            np.asarray(table["time"])[self._field_steps] if field_times is None else np.asarray(field_times, dtype=np.float64)
-        )
-        self._initial_gap = initial_gap
-        self._size = tuple(float(length) for length in size)
-        self._attributes = attributes
+        times = self._table["time"][self._field_steps] if field_times is None else np.asarray(field_times, dtype=np.float64)
+        self._hold(size=tuple(float(length) for length in size), field_times=times, path=path)
+        if initial_gap is not None:
+            self._hold(initial_gap=np.asarray(initial_gap))
         # Of a sweep the velocities stand in place of the times.
         self._axis = VELOCITY if (self._setup.get("motion") or {}).get("steady") else TIME
-        self._path = path
-        self._store = store
-        self._histograms = dict(histograms or {})
-        self._stress = dict(stress or {})
-        self._leaks = dict(leaks or {})
-        self._freeze()
 
-    def _freeze(self) -> None:
-        """Makes all arrays read-only."""
-        self._table = {name: frozen(np.asarray(values)) for name, values in self._table.items()}
-        self._fields = {name: held if isinstance(held, _core.Store) else frozen(np.asarray(held)) for name, held in self._fields.items()}
-        self._histograms = {name: (frozen(edges), frozen(numbers)) for name, (edges, numbers) in self._histograms.items()}
-        self._stress = {name: frozen(values) for name, values in self._stress.items()}
-        self._field_times = frozen(self._field_times)
-        if not isinstance(self._initial_gap, _core.Store):
-            self._initial_gap = frozen(np.asarray(self._initial_gap))
+    @functools.cached_property
+    def initial_gap(self) -> Floats:
+        """Undeformed gap [m], shape (nx, ny)."""
+        store = self._disk()
+        assert store is not None
+        return frozen(_on_grid(store.initial_gap(), self.is_line))
 
     @property
     def _setup(self) -> dict[str, Any]:
         """The run in numbers."""
-        setup: dict[str, Any] = json.loads(self._attributes.get("setup") or "{}")
-        return setup
+        return dict(json.loads(self._attributes.get("setup") or "{}"))
 
     def _column(self, name: str) -> Floats:
         """A column of the rows, or why there is none."""
@@ -120,20 +124,16 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             columns["velocity"] = columns.pop("time")
         if name in columns:
             return columns[name]
-        if name == "time":
-            raise AttributeError("a sweep over velocities has no 'time'; use velocity")
-        if name in STRESS:
-            words = "which [stress] of a case, or `asperity stress RESULT`, stores; stress(time=...) computes it now"
-            raise AttributeError(f"the result has no {name!r}, {words}")
-        if name in held.get("_histograms", {}):
-            raise AttributeError(f"{name!r} has a number for each bin: use histogram({name!r})")
-        if name in QUANTITIES:
-            raise AttributeError(f"the result has no {name!r}, because it was not requested: quantities=[{name!r}]")
-        if name == "y" and self.is_line:
-            raise AttributeError("a line contact has no y: nothing changes along it")
-        if name == "field_velocities":
-            raise AttributeError("the result is a run in time: its fields have field_times, and no field_velocities")
-        raise AttributeError(f"a result has no {name!r}; it has {', '.join(ROW)}, field(name, time=...) and plot")
+        reasons = {
+            **{one: f"because it was not requested: quantities=[{one!r}]" for one in QUANTITIES},
+            **{one: f"but one number for each bin: use histogram({one!r})" for one in held.get("_histograms", {})},
+            **dict.fromkeys(STRESS, "which [stress] of a case, or `asperity stress RESULT`, stores; stress(time=...) computes it now"),
+            "time": "because it is a sweep over velocities: use velocity",
+            "field_velocities": "because it is a run in time: its fields have field_times",
+            "y": "because a line contact has no y: nothing changes along it",
+        }
+        known = f"; it has {', '.join(ROW)}, field(name, time=...) and plot"
+        raise AttributeError(f"the result has no {name!r}{f', {reasons[name]}' if name in reasons else known}")
 
     if not TYPE_CHECKING:  # where it would hide misspelt names
 
@@ -151,20 +151,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
 
     def __getstate__(self) -> dict[str, Any]:
         # Fields on disk are read, so that a pickle is whole.
-        state = dict(self.__dict__)
-        state["_fields"] = {name: self._stack(name) for name in self._fields}
-        state["_initial_gap"] = self.initial_gap
-        state["_store"] = None
-        return state
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self._freeze()
-
-    @property
-    def path(self) -> str | None:
-        """Where the result is on disk; None for one in memory."""
-        return self._path
+        return {**self.__dict__, "_fields": {name: self._stack(name) for name in self._fields}, "initial_gap": self.initial_gap, "_store": None}
 
     @property
     def attributes(self) -> dict[str, Any]:
@@ -204,16 +191,9 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         return self._axis == VELOCITY
 
     @property
-    def field_times(self) -> Floats:
-        """Times at which fields were kept [s]; of a sweep the velocities [m/s]."""
-        return self._field_times
-
-    @property
     def field_velocities(self) -> Floats:
         """Velocities at which the fields of a sweep were kept [m/s]."""
-        if not self.is_sweep:
-            return self._column("field_velocities")
-        return self._field_times
+        return self.field_times if self.is_sweep else self._column("field_velocities")
 
     def cycles(self, frequency: float, *, start: float = 0.0) -> list[Cycle]:
         """Dissipated energy, stiffness and loss angle of each full period 1/`frequency` [Hz] from `start` [s] on.
@@ -237,11 +217,6 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         return [Cycle(*numbers) for numbers in found]
 
     @property
-    def size(self) -> tuple[float, ...]:
-        """Lengths of the domain along x and y [m]; of a line contact along x."""
-        return self._size
-
-    @property
     def cells(self) -> tuple[int, ...]:
         """Number of cells along x and y; of a line contact along x."""
         return self.initial_gap.shape
@@ -254,18 +229,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             raise CaseError(f"{name!r} is no number of a row; there are {', '.join(COLUMNS)}")
         return COLUMNS[name].attributes(self.is_line)["units"]
 
-    @property
-    def initial_gap(self) -> Floats:
-        """Undeformed gap [m], shape (nx, ny)."""
-        if isinstance(self._initial_gap, _core.Store):
-            stored = self._initial_gap.initial_gap()
-            self._initial_gap = frozen(stored[:, 0] if self.is_line else stored)
-        gap: Floats = self._initial_gap
-        return gap
-
-    def field(
-        self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None
-    ) -> Floats:
+    def field(self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> Floats:
         """A field of shape (nx, ny), of a line contact (n,), at the stored time nearest to `time` [s], or with that index; default the
         last. Of a sweep at the stored velocity nearest to `velocity` [m/s]. Fields of a contact that moves are in its frame.
 
@@ -275,18 +239,12 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         if name not in self._fields:
             choice("the field", name, list(FIELDS))
             raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
-        if (velocity is not None and not self.is_sweep) or (time is not None and self.is_sweep):
-            raise CaseError("velocity= is for a sweep over velocities, time= for a run in time")
-        return self._one(name, self._index(time if velocity is None else velocity, index))
+        values: Floats = self._fields[name][self._index(time, velocity, index)]
+        return values
 
     def stress(
-        self,
-        *,
-        time: float | None = None,
-        index: int | None = None,
-        depths: str | Sequence[float] = "auto",
-        poisson: float | None = None,
-        body: int = 0,
+        self, *, time: float | None = None, index: int | None = None, depths: str | Sequence[float] = "auto",
+        poisson: float | None = None, body: int = 0
     ) -> Stress:
         """The stress below the surface at the stored time nearest to `time` [s], or with that index; default the last.
 
@@ -303,12 +261,9 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         >>> bool(abs(below.survey()["max_mises"] / result.max_pressure[-1] - 0.62) < 0.03)
         True
         """
-        from ._stress import changing, stress
-
         setup = self._setup
         if "layer_separable" in setup:
             raise CaseError(_core.LAYERED_STRESS)
-        boundary = setup.get("boundary", "free")
         if poisson is None:
             known = setup.get("poisson") or []
             if not 0 <= body < max(len(known), 1):
@@ -316,85 +271,62 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             poisson = known[body] if known else None
             creep = (setup.get("poisson_creep") or [None] * (body + 1))[body]
             if poisson is None and creep is not None and "stage_controls" in setup:
-                last = self._index(time, index) + 1
-                rows = np.asarray(self._table["time"])[:last]
+                last = self._index(time=time, index=index) + 1
+                rows = self._table["time"][:last]
                 if "motion" in setup:
                     raise CaseError("the stress of a contact that moves over a body of constant bulk modulus is not computed; give poisson=...")
-                if not np.array_equal(self._field_steps, np.arange(len(self._field_steps))) or not np.array_equal(rows, self._field_times[:last]):
+                if not np.array_equal(self._field_steps, np.arange(len(self._field_steps))) or not np.array_equal(rows, self.field_times[:last]):
                     raise CaseError(
                         "the Poisson's ratio of the body changes with time (constant bulk modulus), so that the stress needs the pressures of "
                         "all rows, but not all were kept: keep every row, or give poisson=... for an estimate with a constant one"
                     )
-                pressures = np.array([self._one("pressure", n) for n in range(last)])
-                stages = np.asarray(self._table["stage"], dtype=np.int64)[:last]
-                return changing(setup, body, (stages.tolist(), rows.tolist()), pressures, self._size, depths)
+                pressures = np.array([self._fields["pressure"][n] for n in range(last)])
+                return changing(setup, body, (self._table["stage"][:last].astype(int).tolist(), rows.tolist()), pressures, self.size, depths)
             if poisson is None:
                 raise CaseError("the result does not say the Poisson's ratio of the body, or it changes with the temperature; give poisson=...")
-        pressure = self.field("pressure", time=time, index=index)
-        tractions = None
+        pressure, tractions = self.field("pressure", time=time, index=index), None
         if "friction" in setup:
             # What acts on the first body acts the other way on the second.
             tractions = [(-1.0 if body else 1.0) * self.field(name, time=time, index=index) for name in ("traction_x", "traction_y")]
-        return stress(pressure, size=self._size, poisson=poisson, depths=depths, boundary=boundary, tractions=tractions)
+        return stress(pressure, size=self.size, poisson=poisson, depths=depths, boundary=setup.get("boundary", "free"), tractions=tractions)
 
     def to_xarray(self) -> Any:
         """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk, with the stress below the surface and the
         leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray."""
-        import xarray
-
-        along, at, line = self._axis.name, f"field_{self._axis.name}", self.is_line
+        along, at, line, table = self._axis.name, f"field_{self._axis.name}", self.is_line, self._table
         data: dict[str, Any] = {
-            name: ((along, "axis")[: self._table[name].ndim], np.array(self._table[name]), entry.attributes(line))
+            name: entry.variable((along, "axis")[: table[name].ndim], table[name], line)
             for name, entry in COLUMNS.items()
-            if name != "time" and name in self._table
+            if name != "time" and name in table
         }
-        for name in self._fields:
-            data[name] = ((at, *self._axes), np.array(self._stack(name)), FIELDS[name].attributes())
-        for name, values in self._stress.items():
-            if name != "depth":
-                data[name] = ((at, "depth")[: values.ndim], np.array(values), STRESS[name].attributes(line))
+        data |= {name: FIELDS[name].variable((at, *self._axes), self._stack(name)) for name in self._fields}
+        stress = {name: STRESS[name].variable((at, "depth")[: values.ndim], values, line) for name, values in self._stress.items() if name != "depth"}
         for name in self._stress_fields:
-            data[name] = ((at, "depth", *self._axes), self._stress_volume(name), {"units": "Pa", "long_name": name.replace("_", " ")})
-        data["initial_gap"] = (self._axes, np.array(self.initial_gap), {"units": "m", "long_name": "undeformed gap"})
+            stress[name] = variable((at, "depth", *self._axes), self._stress_volume(name), "Pa", name.replace("_", " "))
+        data |= {**stress, "initial_gap": variable(self._axes, self.initial_gap, "m", "undeformed gap")}
         coordinates = {
-            along: (along, np.array(self._table["time"]), {"units": self.units("time"), "long_name": along}),
-            at: (at, np.array(self.field_times), {"units": self.units("time"), "long_name": f"{along} of the fields"}),
+            along: variable(along, table["time"], self.units("time"), along),
+            at: variable(at, self.field_times, self.units("time"), f"{along} of the fields"),
             **self._coordinates,
         }
-        if any(name in self._table for name in VECTORS):
-            coordinates["axis"] = ("axis", [0.0, 1.0], {"units": "1", "long_name": "0 along x, 1 along y"})
+        if any(name in table for name in VECTORS):
+            coordinates["axis"] = variable("axis", [0.0, 1.0], "1", "0 along x, 1 along y")
         if "depth" in self._stress:
-            coordinates["depth"] = ("depth", np.array(self._stress["depth"]), STRESS["depth"].attributes())
+            coordinates["depth"] = STRESS["depth"].variable("depth", self._stress["depth"])
         for name, (edges, numbers) in self._histograms.items():
             places = _core.histogram_coordinates(name, edges, line)
-            data[name] = ((along, places[0][0]), np.array(numbers), QUANTITIES[name].attributes(line))
-            for place, unit, words, ends in places:
-                coordinates[place] = (place, ends, {"units": written(unit), "long_name": words})
+            data[name] = QUANTITIES[name].variable((along, places[0][0]), numbers, line)
+            coordinates |= {place: variable(place, ends, written(unit), words) for place, unit, words, ends in places}
         # Text, as all other attributes, so that the dataset can be written.
         lists: dict[str, Any] = {name: json.dumps(self._attributes[name]) for name in ("findings", "error_bars") if name in self._attributes}
-        attributes = {**self._attributes, "findings": "[]", **lists}
-        whole = xarray.Dataset(data, coords=coordinates, attrs=attributes)
-        if not self._leaks:
-            return whole
-        from ._leakage import stored
-
-        return whole.merge(stored(self), combine_attrs="override")
+        whole = dataset(data, coordinates, {**self._attributes, "findings": "[]", **lists})
+        return whole.merge(stored(self), combine_attrs="override") if self._leaks else whole
 
     def leakage(
-        self,
-        *,
-        direction: Flow | None = None,
-        pressure_drop: float | None = None,
-        viscosity: float | None = None,
-        gas: str | None = None,
-        molar_mass: float | None = None,
-        temperature: float | None = None,
-        inlet: float | None = None,
-        outlet: float | None = None,
-        rarefaction: str | None = None,
-        sides: Sides | None = None,
-        smallest_gap: float | None = None,
-        field: bool | None = None,
+        self, *, direction: Flow | None = None, pressure_drop: float | None = None, viscosity: float | None = None,
+        gas: str | None = None, molar_mass: float | None = None, temperature: float | None = None, inlet: float | None = None,
+        outlet: float | None = None, rarefaction: str | None = None, sides: Sides | None = None, smallest_gap: float | None = None,
+        field: bool | None = None
     ) -> Any:
         """Leakage at the times of the stored fields, as xarray.Dataset over `leak_time` (see :func:`leakage` and docs/leakage.md).
 
@@ -402,10 +334,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         gas (`inlet`, `outlet` [Pa, absolute], `gas`, or `viscosity` and `molar_mass` [kg/mol]; `temperature` [K]; `rarefaction`), or
         without a fluid the gap alone. `field` adds `fluid_pressure`.
         """
-        arguments = locals()
-        from ._leakage import over_time, stored
-
-        given = numbers_of({name: value for name, value in arguments.items() if name != "self"})
+        given = numbers_of({name: value for name, value in locals().items() if name != "self"})
         return over_time(self, given) if given or not self._leaks else stored(self)
 
     def methods(self, *, bibtex: bool = False) -> str:
@@ -419,18 +348,14 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         >>> print(result.methods().split(". ")[2])
         The contact modulus is 4 MPa at once and 2 MPa after relaxation
         """
-        from ._methods import paragraph
-
         return paragraph(self, bibtex)
 
     @property
     def plot(self) -> Plots:
         """Figures by matplotlib: ``result.plot.evolution()``, ``result.plot.pressure(time=500.0)``, ..."""
-        from .plot import Plots
-
         return Plots(self)
 
-    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> npt.NDArray[np.uint32]:
+    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> Labels:
         """The contact spots as a labelled image of shape (nx, ny): the number of the spot of each cell, 1 for the largest, 0 where
         nothing touches. Cells that share an edge are of one spot, on a periodic domain also across the borders. At the stored time
         nearest to `time`, as :meth:`field`.
@@ -442,11 +367,9 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         8
         """
         touches = self._touches(time=time, velocity=velocity, index=index).astype(np.float64)
-        boundary = self._setup.get("boundary", "free")
-        labels: npt.NDArray[np.uint32] = _core.spot_labels(plain(as_plane(touches)), boundary)
-        return labels.reshape(touches.shape)
+        return _core.spot_labels(plain(as_plane(touches)), self._setup.get("boundary", "free")).reshape(touches.shape)
 
-    def _touches(self, **at: Any) -> npt.NDArray[np.uint8]:
+    def _touches(self, **at: Any) -> AnyArray:
         """Where the surfaces touch at a stored instant: from the field that tells it."""
         coupling = (self._setup.get("leakage") or {}).get("coupling")
         pressure: Field = "contact_pressure" if self._setup.get("adhesion") or coupling else "pressure"
@@ -462,15 +385,13 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
     def to_dataframe(self) -> Any:
         """The rows as pandas.DataFrame, with the time (of a sweep the velocity) as index and a column for each number; units are in
         ``frame.attrs["units"]``."""
-        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
-
         along = self._axis.name
         columns = {name: np.array(self._table[name]) for name in COLUMNS if name != "time" and name in self._table}
-        frame = pandas.DataFrame(columns, index=pandas.Index(np.array(self._table["time"]), name=along))
-        frame.attrs["units"] = {along: self.units("time"), **{name: self.units(name) for name in columns}}
-        return frame
+        rows = frame({along: np.array(self._table["time"]), **columns}).set_index(along)
+        rows.attrs["units"] = {along: self.units("time"), **{name: self.units(name) for name in columns}}
+        return rows
 
-    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    def save(self, path: AnyPath, *, force: bool = False) -> None:
         """Writes the result as a Zarr group, as a run of a case file does: :func:`open` and xarray read it. Stress below the surface
         and leaks that are stored with the result are written too.
 
@@ -488,34 +409,32 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         columns = {**quantities, **histograms}
         ends = [(name, edges) for name, (edges, _) in columns.items()]
         # All of it is read first: it may be replaced.
-        stacks = {name: self._planes(name) for name in self._fields}
+        stacks = {name: self._stack(name).reshape(-1, *self.cells, *[1] * self.is_line) for name in self._fields}
         title, setup, gap = str(attributes.get("title") or ""), str(attributes.get("setup") or "{}"), plain(as_plane(self.initial_gap))
-        writer = _core.Writer(os.fspath(path), force, title, setup, list(self._size), gap, list(self._fields), ends, len(self))
+        writer = _core.Writer(os.fspath(path), force, title, setup, list(self.size), gap, list(self._fields), ends, len(self))
         for n in range(len(self)):
             row = {name: float(self._table[name][n]) for name in ROW}
             maps: dict[str, Any] = {}
             for k in np.flatnonzero(self._field_steps == n).tolist():
                 fields = {name: np.require(stack[k], None, ["C_CONTIGUOUS", "ALIGNED"]) for name, stack in stacks.items()}
                 # A state between the row before and this one has a time of its own.
-                if self._field_times[k] < row["time"]:
-                    writer.stage(float(self._field_times[k]), fields)
+                if self.field_times[k] < row["time"]:
+                    writer.stage(float(self.field_times[k]), fields)
                 else:
                     maps = fields
             writer.append(row, [float(number) for _, numbers in columns.values() for number in numbers[n]], maps)
         writer.finish(str(attributes.get("status") or "complete"), json.dumps(attributes.get("findings", [])), None)
-        if self._path is not None and (self._stress or self._leaks):
-            _core.derive_again(self._path, os.fspath(path))
+        if self.path is not None and (self._stress or self._leaks):
+            _core.derive_again(self.path, os.fspath(path))
 
-    def report(self, path: str | os.PathLike[str], *, force: bool = False, megabytes: int = 12) -> None:
+    def report(self, path: AnyPath, *, force: bool = False, megabytes: int = 12) -> None:
         """Writes the result as one HTML page with maps and curves, of that size at most.
 
         It shows the fields that were kept.
         """
-        if self._path is not None:
-            _core.report(self._path, os.fspath(path), force, megabytes * 1_000_000)
+        if self.path is not None:
+            _core.report(self.path, os.fspath(path), force, megabytes * 1_000_000)
             return
-        import tempfile
-
         with tempfile.TemporaryDirectory() as folder:
             stored = os.path.join(folder, "result.zarr")
             self.save(stored)
@@ -534,47 +453,34 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
 
     def _repr_html_(self) -> str:
         title = html.escape(str(self._attributes.get("title") or "Result"))
-        size = " x ".join(f"{length:g} m" for length in self._size)
+        size = " x ".join(f"{length:g} m" for length in self.size)
         rows = [("domain", f"{cells_of(self.initial_gap)}, {size}"), ("rows", str(len(self)))]
-        for name, entry in ROW.items() if len(self) else ():
-            unit = self.units(name)
-            rows.append((entry.words, f"{self._table[name][-1]:.6g} {'' if unit == '1' else unit}"))
+        if len(self):
+            last = {name: self._table[name][-1] for name in ROW}
+            rows += [(self._axis.name, f"{last.pop('time'):.6g} {self._axis.unit}"), *told(last, self.is_line)]
         return f"<b>{title}</b>, last row:{_html.table(rows)}"
 
-    def _index(self, time: float | None, index: int | None) -> int:
+    def _index(self, time: float | None = None, velocity: float | None = None, index: int | None = None) -> int:
+        """The number of the stored instant."""
         kept = len(self._field_steps)
         if kept == 0:
             raise CaseError("no fields were kept")
-        if time is not None and index is not None:
+        if (time if self.is_sweep else velocity) is not None:
+            raise CaseError("velocity= is for a sweep over velocities, time= for a run in time")
+        given = velocity if self.is_sweep else time
+        if given is not None and index is not None:
             raise CaseError("give time or index, exactly one of them")
-        if time is not None:
+        if given is not None:
             what, unit = self._axis.name, self._axis.unit
-            wanted = number(what, time)
-            end = max(np.max(self._table["time"]), np.max(self.field_times))
+            wanted, end = number(what, given), max(np.max(self._table["time"]), np.max(self.field_times))
             # Times that are written with 12 digits are those of rows.
             if not -1e-12 * end <= wanted <= (1 + 1e-12) * end:
                 raise CaseError(f"{what} is {wanted:g} {unit}, but must be one of the run, 0 {unit} to {end:g} {unit}")
-            distance = np.abs(self.field_times - wanted)
             # Of two at the same time, before and after a jump, the later.
-            return int(kept - 1 - np.argmin(distance[::-1]))
-        if index is None:
-            return kept - 1
-        if not -kept <= index < kept:
+            return int(kept - 1 - np.argmin(np.abs(self.field_times - wanted)[::-1]))
+        if not -kept <= (place := -1 if index is None else index) < kept:
             raise CaseError(f"index is {index}, but fields were kept at {kept} times")
-        return int(index) % kept
-
-    def _one(self, name: str, index: int) -> Floats:
-        held = self._fields[name]
-        if not isinstance(held, _core.Store):
-            out: Floats = held[index]
-            return out
-        stored: Floats = held.field(name, index)
-        return stored[:, 0] if self.is_line else stored
-
-    def _planes(self, name: str) -> Floats:
-        """The fields of all kept times, of a line contact as (times, n, 1)."""
-        stack = self._stack(name)
-        return stack[:, :, np.newaxis] if self.is_line else stack
+        return int(place) % kept
 
     def _stress_volume(self, name: str) -> Floats:
         """A stored stress field of shape (field_time, depth, x, y), of a line (field_time, depth, x)."""
@@ -582,7 +488,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         assert store is not None
         depths = range(len(self._stress["depth"]))
         found = np.array([[store.stress_field(name, n, depth) for depth in depths] for n in range(len(self._field_steps))])
-        return found[..., 0] if self.is_line else found
+        return _on_grid(found, self.is_line)
 
     @property
     def _fluid_pressures(self) -> Floats | None:
@@ -598,40 +504,51 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
 
     def _disk(self) -> _core.Store | None:
         """The result on disk; a copy in another process opens it again."""
-        return self._store if self._store is not None or self._path is None else _core.Store(self._path)
+        return self._store if self._store is not None or self.path is None else _core.Store(self.path)
 
     def _stack(self, name: str) -> Floats:
-        held = self._fields[name]
-        if not isinstance(held, _core.Store):
-            out: Floats = held
-            return out
-        shape = (0, *self.cells)
-        maps = [self._one(name, n) for n in range(len(self._field_steps))]
-        return np.array(maps) if maps else np.empty(shape)
+        """A field at all kept times."""
+        return np.asarray(self._fields[name])
+
+
+class _OnDisk:
+    """A field of a result on disk, at all its kept times; each is read when it is used."""
+
+    def __init__(self, store: _core.Store, name: str) -> None:
+        self._store, self._name = store, name
+
+    def __getitem__(self, index: int) -> Floats:
+        return _on_grid(self._store.field(self._name, index), len(self._store.size) == 1)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats:
+        maps = [self[n] for n in range(len(self._store.field_steps))]
+        return np.array(maps) if maps else np.empty((0, *self._store.cells))
+
+
+def _on_grid(values: Floats, line: bool) -> Floats:
+    """Values of cells as the core gives them, (..., nx, ny); those of a line as (..., nx)."""
+    return values[..., 0] if line else values
+
+
+def attributes_of(title: str, status: str, setup: dict[str, Any], findings: list[Finding]) -> dict[str, Any]:
+    """The attributes of a result in memory, as a run of a case file stores them."""
+    layers = {"layer_separable": int(setup["layer_separable"]), "layer_misfit": setup["layer_misfit"]} if "layer_separable" in setup else {}
+    known = {"title": title, "version": _core.__version__, "status": status, "setup": json.dumps(setup)}
+    return {**known, **layers, "findings": [dict(finding) for finding in findings]}
 
 
 def _stored(store: _core.Store, name: str) -> Floats:
     """A column of the rows; of a vector of shape (rows, 2)."""
-    names = [f"{name}_{axis}" for axis in "xy"] if name in VECTORS else [name]
-    columns: list[Floats] = [store.series(one) for one in names]
-    return columns[0] if name not in VECTORS else np.column_stack(columns)
+    return np.column_stack([store.series(f"{name}_{axis}") for axis in "xy"]) if name in VECTORS else store.series(name)
 
 
-def open(path: str | os.PathLike[str]) -> Result:
+def open(path: AnyPath) -> Result:
     """Opens a result on disk, finished or not; its fields are read when they are used."""
     store = _core.Store(os.fspath(path))
-    attributes: dict[str, Any] = json.loads(store.attributes)
+    table = {name: _stored(store, name) for name in [*ROW, *store.quantities] if name not in HISTOGRAMS}
+    histograms = {name: store.histogram(name) for name in store.quantities if name in HISTOGRAMS}
+    fields = {name: _OnDisk(store, name) for name in store.fields}
     return Result(
-        table={name: _stored(store, name) for name in [*ROW, *store.quantities] if name not in HISTOGRAMS},
-        histograms={name: store.histogram(name) for name in store.quantities if name in HISTOGRAMS},
-        fields={name: store for name in store.fields},
-        field_steps=store.field_steps,
-        field_times=store.field_times,
-        initial_gap=store,
-        size=tuple(store.size),
-        attributes=attributes,
-        path=os.fspath(path),
-        stress=store.stress(),
-        leaks=store.leaks(),
-        store=store,
+        table=table, histograms=histograms, fields=fields, field_steps=store.field_steps, field_times=store.field_times, initial_gap=None,
+        size=store.size, attributes=json.loads(store.attributes), path=os.fspath(path), stress=store.stress(), leaks=store.leaks(), store=store
     )

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ._arrays import Floats
-from ._command import answered, case_file
+from ._arrays import AnyPath, Floats
+from ._columns import dataset, variable
+from ._command import answered
 from ._findings import Finding, findings_of, warn
 from ._sealed import Sealed
-from ._solve import overrides
+from ._solve import Case, Changes, overrides
 
 if TYPE_CHECKING:
     import xarray
@@ -56,21 +56,11 @@ class Seal(Sealed):
 
     def __init__(self, found: dict[str, Any]) -> None:
         self._found = found
-        usual = {unit: found[f"seal_leak_{name}"] for unit, name in _USUAL.items() if f"seal_leak_{name}" in found}
-        opening = found["seal_opening_pressure"]
-        self._hold(
-            leak=_spread(found["seal_leak"]),
-            leak_per_metre=_spread(found["seal_leak_per_metre"]),
-            leak_one_way=_spread(found["seal_leak_one_way"]),
-            usual={unit: _spread(spread) for unit, spread in usual.items()},
-            opening_pressure=None if opening is None else _spread(opening),
-            states=[seed["state"] for seed in found["seeds"]],
-            inlet=found["inlet"],
-            outlet=found["outlet"],
-            x=np.array(found["x"]),
-            contact_pressure=np.array(found["contact_pressure"]),
-            fluid_pressure=_numbers([seed["seal_pressure"] for seed in found["seeds"]]),
-        )
+        spreads = {name: found[f"seal_{name}"] and _spread(found[f"seal_{name}"]) for name in ("leak", "leak_per_metre", "leak_one_way", "opening_pressure")}
+        usual = {unit: _spread(found[f"seal_leak_{name}"]) for unit, name in _USUAL.items() if f"seal_leak_{name}" in found}
+        self._hold(**spreads, usual=usual, inlet=found["inlet"], outlet=found["outlet"], states=[seed["state"] for seed in found["seeds"]])
+        pressures = _numbers([seed["seal_pressure"] for seed in found["seeds"]])
+        self._hold(x=np.array(found["x"]), contact_pressure=np.array(found["contact_pressure"]), fluid_pressure=pressures)
 
     @property
     def findings(self) -> list[Finding]:
@@ -89,56 +79,37 @@ class Seal(Sealed):
     def to_xarray(self) -> xarray.Dataset:
         """The leak over `inlet` pressure and `time`, the pressures over `x`, and the conductance of the patch over `pressure`: with the
         dimension `seed` where they differ from seed to seed."""
-        import xarray
-
-        found, unit, leak = self._found, self._found["unit"].replace("m3", "m^3"), "leak of the seal"
+        found, unit = self._found, self._found["unit"].replace("m3", "m^3")
         seeds = found["seeds"]
-        sweep = seeds[0]["seal_sweep"]
 
-        def of(name: str, unit: str, words: str, dims: tuple[str, ...], values: Any) -> dict[str, Any]:
-            return {name: (dims, _numbers(values), {"units": unit, "long_name": words})}
+        def over(dim: str) -> dict[str, Any]:
+            """The leak over the inlet pressure, or the time."""
+            rows = found[f"by_{dim}"]
+            of_seeds = {f"leak_{dim}{end}": [row["seal_leak"][name] for row in rows] for end, name in (("", "mean"), ("_least", "least"), ("_largest", "largest"))}
+            leaks = {**of_seeds, f"leak_{dim}_one_way": [row["one_way"] for row in rows]}
+            return {name: variable(dim, _numbers(values), unit, "leak of the seal") for name, values in leaks.items()}
 
-        def over(dim: str, key: str) -> dict[str, Any]:
-            rows = found[key]
-            parts = {
-                f"leak_{dim}": [row["seal_leak"]["mean"] for row in rows],
-                f"leak_{dim}_least": [row["seal_leak"]["least"] for row in rows],
-                f"leak_{dim}_largest": [row["seal_leak"]["largest"] for row in rows],
-                f"leak_{dim}_one_way": [row["one_way"] for row in rows],
-            }
-            return {name: ((dim,), _numbers(values), {"units": unit, "long_name": leak}) for name, values in parts.items()}
-
+        conductance = _numbers([[point["conductance"] for point in seed["seal_sweep"]] for seed in seeds])
         columns = {
-            **over("inlet", "by_inlet"),
-            **over("time", "by_time"),
-            **of("contact_pressure", "Pa", "contact pressure", ("x",), self.contact_pressure),
-            **of("fluid_pressure", "Pa", "pressure of the fluid", ("seed", "x"), self.fluid_pressure),
-            **of(
-                "conductance",
-                "m^3",
-                "hydraulic gap of the patch, cubed",
-                ("seed", "pressure", "time"),
-                [[point["conductance"] for point in seed["seal_sweep"]] for seed in seeds],
-            ),
+            **over("inlet"),
+            **over("time"),
+            "contact_pressure": variable("x", self.contact_pressure, "Pa", "contact pressure"),
+            "fluid_pressure": variable(("seed", "x"), self.fluid_pressure, "Pa", "pressure of the fluid"),
+            "conductance": variable(("seed", "pressure", "time"), conductance, "m^3", "hydraulic gap of the patch, cubed"),
         }
         coordinates = {
-            **of("inlet", "Pa", "pressure at the inlet", ("inlet",), [row["inlet"] for row in found["by_inlet"]]),
-            **of("time", "s", "time", ("time",), found["time"]),
-            **of("x", "m", "place across the seal", ("x",), self.x),
-            **of("pressure", "Pa", "mean pressure on the patch", ("pressure",), [point["pressure"] for point in sweep]),
+            "inlet": variable("inlet", [row["inlet"] for row in found["by_inlet"]], "Pa", "pressure at the inlet"),
+            "time": variable("time", found["time"], "s", "time"),
+            "x": variable("x", self.x, "m", "place across the seal"),
+            "pressure": variable("pressure", [point["pressure"] for point in seeds[0]["seal_sweep"]], "Pa", "mean pressure on the patch"),
             "seed": [-1 if seed["seed"] is None else seed["seed"] for seed in seeds],
         }
-        return xarray.Dataset(columns, coords=coordinates)
+        return dataset(columns, coordinates)
 
 
 def seal(
-    case: str | os.PathLike[str] | Mapping[str, Any],
-    *,
-    set: dict[str, Any] | Sequence[str] | None = None,
-    directory: str | os.PathLike[str] | None = None,
-    jobs: int | None = None,
-    threads: int | None = None,
-    progress: bool = True,
+    case: Case, *, set: Changes = None,
+    directory: AnyPath | None = None, jobs: int | None = None, threads: int | None = None, progress: bool = True
 ) -> Seal:
     """A whole seal of which the case is a patch, as ``asperity seal`` computes it: with the same numbers and the same folder.
 
@@ -177,13 +148,8 @@ def seal(
     >>> found.states, found.leak.mean > 2 * found.leak_one_way.mean
     (['leaks'], True)
     """
-    words = ["seal", case_file(case, directory, "a seal")]
-    for key in overrides(set):
-        words += ["--set", key]
-    words += [] if directory is None else ["-o", os.fspath(directory)]
-    for option, value in (("--jobs", jobs), ("--threads", threads)):
-        words += [] if value is None else [option, str(value)]
-    found = Seal(answered([*words, *["-q"] * (not progress)], not progress))
+    changed = [word for key in overrides(set) for word in ("--set", key)]
+    found = Seal(answered("seal", case, directory, changed, not progress, jobs=jobs, threads=threads))
     warn(found.findings)
     return found
 

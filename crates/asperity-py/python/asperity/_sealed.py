@@ -10,11 +10,13 @@ from ._arrays import frozen
 
 
 def read_only(value: Any) -> Any:
-    """An array, or a tuple of some, that cannot be written to; anything else as it is."""
+    """An array, or a tuple or dictionary of some, that cannot be written to; anything else as it is."""
     if isinstance(value, np.ndarray):
         return frozen(value)
     if type(value) is tuple and any(isinstance(one, np.ndarray) for one in value):
         return tuple(read_only(one) for one in value)
+    if type(value) is dict and any(isinstance(one, (np.ndarray, tuple)) for one in value.values()):
+        return {name: read_only(one) for name, one in value.items()}
     return value
 
 

@@ -16,13 +16,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, each, number, points
+from ._arrays import AnyPath, ArrayLike, Floats, each, number, points
 from ._core import CaseError
 from ._findings import warn_caller
-from ._parameters import Parameter, call
+from ._parameters import call, parameters
 from ._units import carries
 
 
@@ -46,19 +45,14 @@ class Shift:
     #: How moduli depend on temperature: the expansion [1/K] of a density, or points (temperature [K], b_T).
     vertical: float | tuple[tuple[float, float], ...] | None = None
 
-    #: Constants of WLF: c1, and c2 [K].
-    c1 = Parameter[float]()
-    c2 = Parameter[float]()
-    #: Activation energy of Arrhenius [J/mol].
-    activation_energy = Parameter[float]()
-    #: Reference temperature [K].
-    reference = Parameter[float]()
+    #: Constants of WLF: c1, and c2 [K]; activation energy of Arrhenius [J/mol]; reference temperature [K].
+    c1, c2, activation_energy, reference = parameters(float, 4)
 
     @property
     def _parameters(self) -> dict[str, Any]:
         return dict(zip(_NUMBERS[self.model], self.numbers))
 
-    def factor(self, temperature: npt.ArrayLike) -> Floats:
+    def factor(self, temperature: ArrayLike) -> Floats:
         """a_T at temperatures [K]: processes take a_T times as long as at the reference temperature.
 
         >>> import asperity as asp
@@ -67,7 +61,7 @@ class Shift:
         """
         return each(functools.partial(_core.shift_factor, self._keys), "temperatures", temperature)
 
-    def vertical_factor(self, temperature: npt.ArrayLike) -> Floats:
+    def vertical_factor(self, temperature: ArrayLike) -> Floats:
         """b_T at temperatures [K]: moduli are those at the reference temperature over b_T; 1 without a vertical shift.
 
         >>> import asperity as asp
@@ -90,12 +84,10 @@ class Shift:
         return keys
 
     def __repr__(self) -> str:
-        raised = ""
-        if self.vertical is not None:
-            raised = f", vertical={list(self.vertical) if isinstance(self.vertical, tuple) else (self.vertical or 'density')!r}"
-        if self.model == "table":
-            return f"shift_table({list(self.points)!r}{raised})"
-        return f"{call(self.model, self._parameters)[:-1]}{raised})"
+        vertical = list(self.vertical) if isinstance(self.vertical, tuple) else "density" if self.vertical == 0.0 else self.vertical
+        given = {**({"pairs": list(self.points)} if self.model == "table" else self._parameters), "vertical": vertical}
+        shown = {name: value for name, value in given.items() if value is not None}
+        return call("shift_table" if self.model == "table" else self.model, shown, int(self.model == "table"))
 
 
 #: What the numbers of a shift are called, and in a case where they have another name there.
@@ -105,8 +97,7 @@ _KEYS = {"activation_energy": "energy"}
 
 def wlf(*, c1: float, c2: float, reference: float, vertical: Vertical = None) -> Shift:
     """log10 a_T = -c1 (T - T_r)/(c2 + T - T_r), c2 and the reference temperature T_r in K; `vertical` as :class:`Shift` says."""
-    numbers = (number("c1", c1), number("c2", c2), _kelvin("reference", reference))
-    return _checked(Shift("wlf", numbers, vertical=_vertical(vertical)))
+    return _checked(Shift("wlf", (number("c1", c1), number("c2", c2), _kelvin("reference", reference)), vertical=_vertical(vertical)))
 
 
 def arrhenius(*, activation_energy: float, reference: float, vertical: Vertical = None) -> Shift:
@@ -116,9 +107,7 @@ def arrhenius(*, activation_energy: float, reference: float, vertical: Vertical 
     return _checked(Shift("arrhenius", numbers, vertical=_vertical(vertical)))
 
 
-def shift_table(
-    pairs: Sequence[tuple[float, float]] | str | os.PathLike[str], *, vertical: Vertical = None
-) -> Shift:
+def shift_table(pairs: Sequence[tuple[float, float]] | AnyPath, *, vertical: Vertical = None) -> Shift:
     """log10 a_T, linear between (temperature [K], log10 a_T) points in order of temperature; or the path of a table of temperatures
     and shift factors with a header, in a text file or a spreadsheet, as ``asperity material fit --shift-table`` reads it.
 
@@ -134,12 +123,10 @@ def shift_table(
 
 
 def _vertical(given: Vertical) -> float | tuple[tuple[float, float], ...] | None:
-    if given is None:
-        return None
+    if given is None or given == "density":
+        return None if given is None else 0.0
     if isinstance(given, str):
-        if given != "density":
-            raise CaseError(f"vertical is {given!r}, but must be 'density', an expansion in 1/K, or (temperature, b_T) points")
-        return 0.0
+        raise CaseError(f"vertical is {given!r}, but must be 'density', an expansion in 1/K, or (temperature, b_T) points")
     if not isinstance(given, (list, tuple)) and np.ndim(given) == 0:
         return number("vertical", given)
     pairs = points("points of the vertical shift", given, ("K", ""))
@@ -170,11 +157,9 @@ def made(keys: dict[str, Any] | None) -> Shift | None:
         return None
     numbers = tuple(keys[_KEYS.get(name, name)] for name in _NUMBERS[keys["model"]])
     vertical = keys.get("vertical")
-    if isinstance(vertical, list):
-        vertical = tuple(tuple(point) for point in vertical)
-    elif vertical is not None:
-        vertical = 0.0 if vertical == "density" else vertical["expansion"]
-    return Shift(keys["model"], numbers, tuple(tuple(point) for point in keys.get("points", ())), vertical)
+    if isinstance(vertical, dict):
+        vertical = vertical["expansion"]
+    return Shift(keys["model"], numbers, tuple(tuple(point) for point in keys.get("points", ())), _vertical(vertical))
 
 
 def temperature_keys(value: float | Sequence[tuple[float, float]]) -> dict[str, Any]:

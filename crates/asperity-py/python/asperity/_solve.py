@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, path_of
-from ._columns import HISTOGRAMS, Number
+from ._declared import arguments_of
+from ._arrays import AnyPath, cells_of, path_of
+from ._columns import HISTOGRAMS
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
-from ._histories import History, as_history, one_of
+from ._histories import History, control_keys
 from ._layers import materials_of
-from ._options import arguments_of
 from ._problem import InStages, Problem, Run, Solve, bodies_of
 from ._progress import Progress
 from ._record import Keep, Record
@@ -31,6 +31,11 @@ if TYPE_CHECKING:
     from ._arrays import Floats
 
 
+#: A case: the path of its file, its text or its keys; and changed keys of it.
+Case = AnyPath | Mapping[str, Any]
+Changes = dict[str, Any] | Sequence[str] | None
+
+
 class Step(Numbers, Sealed):
     """The state after one row of a march: its numbers as attributes, its fields as arrays.
 
@@ -39,9 +44,7 @@ class Step(Numbers, Sealed):
     """
 
     def __init__(self, march: March, row: dict[str, Any], index: int) -> None:
-        self._march = march
-        self._row = row
-        self._index = index
+        self._march, self._row, self._index = march, row, index
 
     @property
     def index(self) -> int:
@@ -62,8 +65,7 @@ class Step(Numbers, Sealed):
 
     def _map(self, name: str) -> Floats:
         """A field as the core gives it."""
-        values: Floats = self._march._core.field(name)
-        return values
+        return self._march._core.field(name)
 
     @property
     def pressure(self) -> Floats:
@@ -90,8 +92,7 @@ class Step(Numbers, Sealed):
 
     def __dir__(self) -> list[str]:
         # Numbers that it does not have are left out.
-        numbers = {name for name, value in vars(Numbers).items() if isinstance(value, Number)}
-        return sorted({*super().__dir__()} - numbers | {name for name in self._row if name not in HISTOGRAMS})
+        return sorted({*super().__dir__()} - {name for name in vars(Numbers) if name[0] != "_"} | {name for name in self._row if name not in HISTOGRAMS})
 
     def __repr__(self) -> str:
         row, unit = self._row, "N/m" if self._march.initial_gap.ndim == 1 else "N"
@@ -178,9 +179,7 @@ class March(Sealed):
         >>> bool(abs(areas[-1] / areas[0] - 1) < 0.05), bool(run.result().load[-1] < 3.5e-3)
         (True, True)
         """
-        control, value = one_of({"load": load, "pressure": pressure, "approach": approach}, "prescribe")
-        unit = ("N/m" if len(self.size) == 1 else "N") if control == "load" else None
-        keys = {"control": control, "history": as_history(control, value, unit)._keys}
+        keys = control_keys({"load": load, "pressure": pressure, "approach": approach}, "prescribe", "N/m" if len(self.size) == 1 else "N")
         with self._turn:
             self._core.prescribe(keys)
             self._record.prescribed.append({"row": len(self._record), **keys})
@@ -310,14 +309,8 @@ def solved(given: Run) -> Result:
 
 
 def run(
-    case: str | os.PathLike[str] | Mapping[str, Any],
-    *,
-    set: dict[str, Any] | Sequence[str] | None = None,
-    output: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    resume: bool = False,
-    progress: bool | None = None,
-    on_row: Callable[[dict[str, Any], int, int], object] | None = None,
+    case: Case, *, set: Changes = None, output: AnyPath | None = None, force: bool = False, resume: bool = False,
+    progress: bool | None = None, on_row: Callable[[dict[str, Any], int, int], object] | None = None
 ) -> Result:
     """Runs a case, as ``asperity run`` does, and opens its result.
 
@@ -380,14 +373,13 @@ def run(
     return result
 
 
-def check(case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None) -> dict[str, Any]:
+def check(case: Case, *, set: Changes = None) -> dict[str, Any]:
     """What a case (as in :func:`run`) will do, in numbers: cells, rows, moduli, memory [byte], ...; the inputs that a slip
     would hide in, the contact to be expected, and the findings that are known before the run."""
-    out: dict[str, Any] = json.loads(_core.check(*source(case), overrides(set)))
-    return out
+    return dict(json.loads(_core.check(*source(case), overrides(set))))
 
 
-def source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str | None]:
+def source(case: Case) -> tuple[str, str | None]:
     """The path of a case file; or where the files of a case lie that is given as text or keys, and its text."""
     if isinstance(case, Mapping):
         return os.curdir, _core.case_text(dict(case))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Sequence
 from typing import Any
@@ -17,21 +18,11 @@ from ._words import Boundary
 from ._arrays import Floats, array, as_plane, cells_of, field, frozen, number, plain, size_of
 
 
-class _Field:
+def _lazily(name: str, words: str) -> functools.cached_property[Floats]:
     """A field of a stress, which is computed when it is first asked for."""
-
-    def __init__(self, words: str) -> None:
-        self.__doc__ = words
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-
-    def __get__(self, holder: Any, owner: type) -> Floats:
-        # A class shows the description of its fields.
-        if holder is None:
-            return self  # type: ignore[return-value]
-        values: Floats = holder._field(self._name)
-        return holder.__dict__.setdefault(self._name, values)  # type: ignore[no-any-return]
+    made = functools.cached_property(lambda stress: stress._field(name))
+    made.__doc__ = words
+    return made
 
 
 class Stress(Sealed):
@@ -44,18 +35,11 @@ class Stress(Sealed):
     depths: Floats
 
     def __init__(
-        self,
-        pressure: Floats,
-        size: Sequence[float],
-        depths: str | Sequence[float],
-        poisson: float | None,
-        boundary: str,
-        transverse: tuple[Floats, float] | None = None,
-        tractions: list[Floats] | None = None,
+        self, pressure: Floats, size: Sequence[float], depths: str | Sequence[float], poisson: float | None, boundary: str,
+        transverse: tuple[Floats, float] | None = None, tractions: list[Floats] | None = None
     ) -> None:
         # Fields are computed later: the array of the caller may have changed until then.
-        self._pressure = np.array(pressure)
-        self._poisson = poisson
+        self._pressure, self._poisson = np.array(pressure), poisson
         # Where the Poisson's ratio changes with time: see `changing`.
         confined = None if transverse is None else (as_plane(transverse[0]), transverse[1])
         self._given = as_plane(self._pressure), list(size), boundary, poisson or 0.0, confined, tractions
@@ -78,19 +62,18 @@ class Stress(Sealed):
 
     def _field(self, name: str) -> Floats:
         found = self._core.field(name, self.depths.tolist())
-        values: Floats = frozen(found[:, :, 0] if self._pressure.ndim == 1 else found)
-        return values
+        return frozen(found[:, :, 0] if self._pressure.ndim == 1 else found)
 
-    xx = _Field("Normal stress along x.")
-    yy = _Field("Normal stress along y.")
-    zz = _Field("Normal stress along z; minus the pressure at the surface.")
-    xy = _Field("Shear stress in the plane.")
-    xz = _Field("Shear stress on planes parallel to the surface, along x.")
-    yz = _Field("Shear stress on planes parallel to the surface, along y.")
-    mises = _Field("von Mises stress.")
-    tresca = _Field("Largest shear stress, half the difference of the largest and the least principal stress.")
-    tension = _Field("Largest principal stress.")
-    pressure = _Field("Minus the mean of the normal stresses.")
+    xx = _lazily("xx", "Normal stress along x.")
+    yy = _lazily("yy", "Normal stress along y.")
+    zz = _lazily("zz", "Normal stress along z; minus the pressure at the surface.")
+    xy = _lazily("xy", "Shear stress in the plane.")
+    xz = _lazily("xz", "Shear stress on planes parallel to the surface, along x.")
+    yz = _lazily("yz", "Shear stress on planes parallel to the surface, along y.")
+    mises = _lazily("mises", "von Mises stress.")
+    tresca = _lazily("tresca", "Largest shear stress, half the difference of the largest and the least principal stress.")
+    tension = _lazily("tension", "Largest principal stress.")
+    pressure = _lazily("pressure", "Minus the mean of the normal stresses.")
 
     def survey(self, threshold: float | None = None, *, rolling: str | None = None) -> dict[str, Any]:
         """Maxima, refined between the depths, with their places: `max_mises`, `max_mises_depth`, `max_mises_x`, `max_mises_y`,
@@ -118,13 +101,8 @@ class Stress(Sealed):
 
 
 def stress(
-    pressure: Any,
-    *,
-    size: float | Sequence[float] | None = None,
-    poisson: float,
-    depths: str | Sequence[float] = "auto",
-    boundary: Boundary = "free",
-    tractions: Sequence[Any] | None = None,
+    pressure: Any, *, size: float | Sequence[float] | None = None, poisson: float, depths: str | Sequence[float] = "auto",
+    boundary: Boundary = "free", tractions: Sequence[Any] | None = None
 ) -> Stress:
     """The stress below a pressure on a half-space.
 

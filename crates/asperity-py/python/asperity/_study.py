@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import collections
 import contextlib
 import dataclasses
-import difflib
 import importlib
 import inspect
 import itertools
@@ -19,18 +19,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import count, distinct, number
+from ._arrays import AnyPath, count, distinct, number
 from ._core import CaseError
+from ._declared import check_call
 from ._findings import Finding, ResultWarning, warn_caller
-from ._points import Point, Solved, base_of, found, label, label_all, note, solve_point
+from ._points import Point, Solved, base_of_case, base_of_function, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
 from ._progress import line_of
-from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW, VECTORS
+from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW, VECTORS, dataset
 from ._histories import one_of
 from ._motion import slide, steady
 from ._units import UNITS, bare, carries, has_unit, is_labelled, unit_among
 from ._result import Result
-from ._solve import overrides, solve, source
+from ._solve import Case, overrides, solve, source
 from ._study_folder import study_in_folder
 from ._surface import Surface
 
@@ -45,20 +46,10 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\
 
 
 def study(
-    case: str | os.PathLike[str] | Mapping[str, Any] | Callable[..., Result],
-    over: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
-    *,
-    vary: Mapping[str, Any] | None = None,
-    directory: str | os.PathLike[str] | None = None,
-    zip: bool = False,
-    folder: str | os.PathLike[str] | None = None,
-    fields: Sequence[str] = (),
-    error_bars: bool = False,
-    workers: int | None = None,
-    threads: int | None = None,
-    client: Any = None,
-    retry: bool = False,
-    progress: bool | None = None,
+    case: Case | Callable[..., Result], over: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None, *,
+    vary: Mapping[str, Any] | None = None, directory: AnyPath | None = None, zip: bool = False, folder: AnyPath | None = None,
+    fields: Sequence[str] = (), error_bars: bool = False, workers: int | None = None, threads: int | None = None,
+    client: Any = None, retry: bool = False, progress: bool | None = None
 ) -> xarray.Dataset:
     """Solves a case for many values of its parameters, in parallel, and returns all results as one dataset.
 
@@ -132,9 +123,9 @@ def study(
         raise CaseError("over is missing: give the values of the parameters, as in over={'load': [0.1, 0.5]}")
     plan = _Plan(over, zip)
     distinct("fields", fields, list(FIELDS))
-    for what, number in (("workers", workers), ("threads", threads)):
-        if number is not None:
-            count(what, number)
+    for what, given in (("workers", workers), ("threads", threads)):
+        if given is not None:
+            count(what, given)
     common = _common(case, plan.names)
     _check_names(common, plan)
     _check_loads(common, over, plan)
@@ -143,10 +134,8 @@ def study(
         os.makedirs(place, exist_ok=True)
         if os.path.exists(os.path.join(place, "study.csv")):
             raise CaseError(f"{place} is the folder of a study of the command; give it as directory= with vary=, or choose another folder")
-    points = [
-        Point(**common, settings=settings, folder=place, fields=tuple(fields), threads=None if client is None else threads)
-        for settings in plan.points
-    ]
+    shares: dict[str, Any] = {**common, "folder": place, "fields": tuple(fields), "threads": None if client is None else threads}
+    points = [Point(**shares, settings=settings) for settings in plan.points]
     names = [point.name for point in points]
     if len(set(names)) < len(names):
         twice = next(n for n, name in enumerate(names) if name in names[:n])
@@ -157,28 +146,30 @@ def study(
         note(place, "study", {"asperity": _core.__version__, "parameters": plan.names, "points": names})
         done = {n: answer for n, point in enumerate(points) if (answer := found(point, retry)) is not None}
     left = [n for n in range(len(points)) if n not in done]
-    tell = _Teller(len(points), done, progress)
+    show, started = line_of(progress) or (lambda text: None), time.monotonic()
+
+    def so_far(ended: str = "") -> xarray.Dataset:
+        """The points so far, those after a study that was ended without results."""
+        stopped: Solved = ("interrupted", f"the study was stopped: {ended}", None)
+        return _dataset(plan, [done.get(n, stopped) for n in range(len(points))], points, tuple(fields), common.get("case"))
+
     if left:
         tasks = [points[n] for n in left]
-        if client is not None:
-            answers = _on_cluster(client, tasks)
-        else:
-            answers = solved(tasks, *shared(len(tasks), workers, threads))
+        answers = solved(tasks, *shared(len(tasks), workers, threads)) if client is None else _on_cluster(client, tasks)
         with contextlib.closing(answers):
             try:
-                for n, answer in answers:
+                for here, (n, answer) in enumerate(answers, 1):
                     done[left[n]] = answer
-                    tell(done)
+                    failed = sum(one[0] == "failed" for one in done.values())
+                    seconds = (time.monotonic() - started) / here * (len(points) - len(done))
+                    show(f"{len(done)}/{len(points)} points{f', {failed} failed' if failed else ''}  {seconds:.0f} s left")
             except BaseException as error:
-                tell.end()
-                told = type(error).__name__
-                whole = [done.get(n, ("interrupted", f"the study was stopped: {told}", None)) for n in range(len(points))]
                 with contextlib.suppress(Exception):
-                    error.result = _dataset(plan, whole, points, tuple(fields), common.get("case"))  # type: ignore[attr-defined]
+                    error.result = so_far(type(error).__name__)  # type: ignore[attr-defined]
                 raise
             finally:
-                tell.end()
-    data = _dataset(plan, [done[n] for n in range(len(points))], points, tuple(fields), common.get("case"))
+                show(None)
+    data = so_far()
     try:
         _warn(points, done)
     except ResultWarning as error:
@@ -208,24 +199,18 @@ class _Plan:
             columns = {str(name): _values(str(name), values) for name, values in over.items()}
             if not columns:
                 raise CaseError("over names no parameter: give at least one, as in over={'load': [0.1, 0.5]}")
-            self.names = list(columns)
-            labels = {name: [pair[0] for pair in column] for name, column in columns.items()}
-            lengths = [len(column) for column in columns.values()]
-            if zipped:
-                if len(set(lengths)) > 1:
-                    told = ", ".join(f"{name} {n}" for name, n in _pairs(self.names, lengths))
-                    raise CaseError(f"zip needs the same number of values for every parameter; there are: {told}")
-                rows: Any = _pairs(*columns.values())
-                self.shape: tuple[int, ...] = (lengths[0],)
-            else:
-                for name, column in labels.items():
-                    if len(set(column)) < len(column):
-                        raise CaseError(f"the values of {name} must differ from each other; there are: {column}")
-                rows = itertools.product(*columns.values())
-                self.shape = tuple(lengths)
-            self.points = [{name: pair[1] for name, pair in _pairs(self.names, row)} for row in rows]
-            self.labels = labels
-            self.product = not zipped
+            self.names, self.product = list(columns), not zipped
+            self.labels = {name: [pair[0] for pair in column] for name, column in columns.items()}
+            lengths = tuple(len(column) for column in columns.values())
+            if zipped and len(set(lengths)) > 1:
+                told = ", ".join(f"{name} {n}" for name, n in zip(self.names, lengths))
+                raise CaseError(f"zip needs the same number of values for every parameter; there are: {told}")
+            for name, column in self.labels.items() if self.product else ():
+                if len(set(column)) < len(column):
+                    raise CaseError(f"the values of {name} must differ from each other; there are: {column}")
+            rows: Any = itertools.product(*columns.values()) if self.product else zip(*columns.values())
+            self.points = [{name: pair[1] for name, pair in zip(self.names, row)} for row in rows]
+            self.shape = lengths if self.product else lengths[:1]
             return
         if isinstance(over, (str, bytes)) or not isinstance(over, Sequence) or not all(isinstance(p, Mapping) for p in over):
             raise CaseError(f"over is {over!r}, but must be values by parameter, or a list of points (dictionaries)")
@@ -237,9 +222,6 @@ class _Plan:
             raise CaseError(f"point {other[0]} has the parameters {list(self.points[other[0]])}, but the first {self.names}")
         self.labels = {name: [label(point[name]) for point in self.points] for name in self.names}
         self.shape, self.product = (len(self.points),), False
-
-
-_pairs = zip
 
 
 def _load_unit(values: Any) -> str | None:
@@ -283,64 +265,41 @@ def _common(case: Any, names: list[str]) -> dict[str, Any]:
     """What all points share."""
     if isinstance(case, Mapping) and ("material" in case or "material" in names):
         given = {str(key): value for key, value in case.items()}
-        function = _solver({*given, *names})
-        return {"fixed": given, "function": function, "base": base_of(None, "", function, given)}
+        known = {*given, *names}
+        function = steady if "velocities" in known else slide if known & {"velocity", "path"} else solve
+        return {"fixed": given, "function": function, "base": base_of_function(function, given)}
     if callable(case) and not isinstance(case, (str, os.PathLike)):
-        function = None if case is solve else case
-        return {"function": function, "base": base_of(None, "", function, {})}
+        return {"function": case, "base": base_of_function(case, {})}
     try:
         path, text = source(case)
-    except FileNotFoundError as error:
-        raise CaseError(f"the case {error.filename} cannot be read: {error.strerror}") from None
-    directory = path
-    if text is None:
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise CaseError(f"the case {path} cannot be read: {error}") from None
-        directory = os.path.dirname(path)
-    directory = os.path.abspath(directory)
-    return {"case": text, "directory": directory, "base": base_of(text, directory, None, {})}
-
-
-def _solver(names: set[str]) -> Callable[..., Result] | None:
-    """What solves parameters of these names: None is :func:`asperity.solve`."""
-    if "velocities" in names:
-        return steady
-    return slide if names & {"velocity", "path"} else None
+        whole = Path(path).read_text(encoding="utf-8") if text is None else text
+    except (OSError, UnicodeDecodeError) as error:
+        raise CaseError(f"the case {getattr(error, 'filename', None) or case} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    directory = os.path.abspath(os.path.dirname(path) if text is None else path)
+    return {"case": whole, "directory": directory, "base": base_of_case(whole, directory)}
 
 
 def _check_names(common: dict[str, Any], plan: _Plan) -> None:
     """Refuses parameters that what is solved does not have: every point would fail."""
     if "case" in common:
-        _check_keys(common, plan)
-        return
-    fixed, function = common.get("fixed", {}), common.get("function") or solve
+        return _check_keys(common, plan)
+    fixed, function = common.get("fixed", {}), common["function"]
     for name in plan.names if fixed else ():
         if name in UNITS and (text := [point[name] for point in plan.points if isinstance(point[name], str)]):
             raise CaseError(f"the values of {name} hold the text {text[0]!r}, but must be numbers [{UNITS[name]}] or quantities with a unit")
     try:
-        parameters = inspect.signature(function).parameters
+        signature = inspect.signature(function)
     except (TypeError, ValueError):  # of some compiled functions it is not known
         return
-    called = getattr(function, "__name__", function)
-    words = f"asperity.{called}" if hasattr(function, "options") else f"the function {called!r}"
-    takes_all = any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values())
-    known = [name for name, parameter in parameters.items() if parameter.kind is not parameter.POSITIONAL_ONLY and name[0] != "_"]
-    given = [*fixed, *plan.names]
-    for name in given if not takes_all else ():
-        if name not in known:
-            near = difflib.get_close_matches(name, known, 1)
-            hint = f"did you mean {near[0]!r}?" if near else f"it takes {', '.join(known)}"
-            raise CaseError(f"{words} has no parameter {name!r}: {hint}")
+    try:
+        check_call(getattr(function, "__name__", str(function)), signature, (), {**fixed, **plan.points[0]})
+    except TypeError as error:
+        raise CaseError(f"no point can be solved: {error}") from None
     # Points that prescribe nothing, or two things at once.
     alternatives = getattr(getattr(function, "options", None), "alternatives", [])
     for point, names in itertools.product(plan.points, alternatives):
         whole = {**fixed, **point}
         one_of({name: whole.get(name) for name in names}, f"the point {label_all(point)} needs")
-    for name in known if not takes_all else ():
-        if name not in given and parameters[name].default is parameters[name].empty:
-            raise CaseError(f"{words} needs the parameter {name!r}, which neither the common parameters nor `over` hold")
 
 
 def _check_keys(common: dict[str, Any], plan: _Plan) -> None:
@@ -383,14 +342,13 @@ def _on_cluster(client: Any, points: list[Point]) -> Generator[tuple[int, Solved
 
 def _tasks_by_host(client: Any) -> dict[str, int]:
     """How many tasks the workers of each machine run at once."""
-    tasks: dict[str, int] = {}
+    tasks: dict[str, int] = collections.Counter()
     try:
         known = client.scheduler_info(n_workers=-1)
     except TypeError:  # before version 2025.4
         known = client.scheduler_info()
     for address, worker in known["workers"].items():
-        host = _host(address)
-        tasks[host] = tasks.get(host, 0) + int(worker["nthreads"])
+        tasks[_host(address)] += int(worker["nthreads"])
     return tasks
 
 
@@ -408,136 +366,110 @@ def _with_threads(point: Point, busy: dict[str, int]) -> Solved:
     return solve_point(point)
 
 
-class _Teller:
-    """The line of progress."""
+class _Table:
+    """A dataset of all points that grows by arrays with a value, or a row of values, for each point."""
 
-    def __init__(self, total: int, done: dict[int, Solved], on: bool | None) -> None:
-        self.total, self.before = total, len(done)
-        self.started = time.monotonic()
-        self.show = line_of(on)
+    def __init__(self, plan: _Plan, points: list[Point], answers: list[Solved], taken: set[str]) -> None:
+        self.results = [answer[2] for answer in answers]
+        self.whole = [result for result in self.results if result is not None]
+        self.shape = plan.shape
+        given = {name: f"{name}_given" if name in taken else name for name in plan.names}
+        self.dims = tuple(given.values()) if plan.product else ("point",)
+        self.columns: dict[str, Any] = {}
+        self.coordinates: dict[str, Any] = {}
+        for name, column in plan.labels.items():
+            values, attributes = _coordinate(column)
+            if points[0].fixed and name in UNITS and values.dtype.kind in "fiu":
+                attributes = {"units": self.whole[0].units("load") if name == "load" and self.whole else UNITS[name]}
+            self.coordinates[given[name]] = (given[name] if plan.product else "point", values, {"long_name": name, **attributes})
 
-    def __call__(self, done: dict[int, Solved]) -> None:
-        failed = sum(answer[0] == "failed" for answer in done.values())
-        here = len(done) - self.before
-        left = (time.monotonic() - self.started) / max(here, 1) * (self.total - len(done))
-        self.show(f"{len(done)}/{self.total} points{f', {failed} failed' if failed else ''}  {left:.0f} s left")
+    def array(self, values: Any, attributes: dict[str, str], *dims: str) -> Any:
+        """An array over the points, and these dimensions of each."""
+        values = np.asarray(values)
+        return (*self.dims, *dims), values.reshape(*self.shape, *values.shape[1:]), attributes
 
-    def end(self) -> None:
-        self.show(None)
+    def padded(self, columns: Callable[[Result], Any], most: int, cells: tuple[int, ...] = ()) -> Any:
+        """A column of each point, or a stack of its fields, with NaN beyond its end."""
+        table = np.full((len(self.results), most, *cells), np.nan)
+        for row, result in zip(table, self.results):
+            if result is not None and (column := columns(result)) is not None:
+                row[: len(column)] = column
+        return table
 
-
-def _dataset(
-    plan: _Plan, answers: list[Solved], points: list[Point], names: tuple[str, ...], case: str | None
-) -> xarray.Dataset:
-    import xarray
-
-    taken = _TAKEN | _TAKEN_BY_FIELDS if names else _TAKEN
-    given = {name: f"{name}_given" if name in taken else name for name in plan.names}
-    dims = tuple(given.values()) if plan.product else ("point",)
-    coordinates: dict[str, Any] = {}
-    for name, column in plan.labels.items():
-        values, attributes = _coordinate(column)
-        if points[0].fixed and name in UNITS and values.dtype.kind in "fiu":
-            known = [answer[2].units("load") for answer in answers if answer[2] is not None] if name == "load" else []
-            attributes = {"units": known[0] if known else UNITS[name]}
-        coordinates[given[name]] = (given[name] if plan.product else "point", values, {"long_name": name, **attributes})
-    results = [answer[2] for answer in answers]
-    steps = np.array([0 if result is None else len(result) for result in results])
-    most = int(steps.max(initial=0))
-    columns: dict[str, Any] = {}
-    asked = dict.fromkeys(name for result in results if result is not None for name in result._table if name not in ROW)
-    for name, entry in {**ROW, **{name: QUANTITIES[name] for name in asked}}.items():
-        table = _padded([None if result is None else result._table.get(name) for result in results], most, (2,) if name in VECTORS else ())
-        units = {result.units(name) for result in results if result is not None}
-        attributes = {"units": " or ".join(sorted(units)) or entry.unit, "long_name": entry.words}
-        if name == "time":
-            whole = table[steps == most] if most else table
-            sweeps = any(result is not None and result.is_sweep for result in results)
-            along = "velocity" if sweeps else "time"
+    def add_rows(self) -> None:
+        """The numbers of the rows."""
+        steps = np.array([0 if result is None else len(result) for result in self.results])
+        most = int(steps.max(initial=0))
+        asked = dict.fromkeys(name for result in self.whole for name in result._table if name not in ROW)
+        for name, entry in {**ROW, **{name: QUANTITIES[name] for name in asked}}.items():
+            table = self.padded(lambda result: result._table.get(name), most, (2,) if name in VECTORS else ())
+            units = {result.units(name) for result in self.whole}
+            attributes = {"units": " or ".join(sorted(units)) or entry.unit, "long_name": entry.words}
+            if name != "time":
+                self.columns[name] = self.array(table, attributes, "step", *["axis"] * (name in VECTORS))
+                continue
+            full = table[steps == most] if most else table
+            along = "velocity" if any(result.is_sweep for result in self.whole) else "time"
             attributes["long_name"] = along
-            if len(whole) and bool(np.all(whole == whole[0])) and bool(np.all((steps == most) | (steps == 0))):
-                coordinates[along] = ("step", whole[0], attributes)
-            else:
-                coordinates[along] = ((*dims, "step"), table.reshape(*plan.shape, most), attributes)
-            continue
-        columns[name] = ((*dims, "step", "axis")[: len(dims) + table.ndim - 1], table.reshape(*plan.shape, *table.shape[1:]), attributes)
-    columns["steps"] = (dims, steps.reshape(plan.shape), {"units": "1", "long_name": "number of rows"})
-    columns["status"] = (dims, np.array([answer[0] for answer in answers]).reshape(plan.shape), {"long_name": "status"})
-    columns["error"] = (dims, np.array([answer[1] for answer in answers]).reshape(plan.shape), {"long_name": "why it failed"})
-    findings = [None if result is None else result.findings for result in results]
-    counts = np.array([-1 if held is None else len(held) for held in findings])
-    codes = np.array([" ".join(sorted({finding["code"] for finding in held or ()})) for held in findings])
-    columns["findings"] = (dims, counts.reshape(plan.shape), {"long_name": "number of findings, -1 without a result"})
-    columns["finding_codes"] = (dims, codes.reshape(plan.shape), {"long_name": "codes of the findings"})
-    _add_leaks(columns, coordinates, plan, dims, results)
-    if names:
-        _add_fields(columns, coordinates, plan, dims, results, names)
-    attributes = {"asperity_version": _core.__version__}
-    if case is not None:
-        attributes["case"] = case
-    return xarray.Dataset(columns, coords=coordinates, attrs=attributes)
+            common = len(full) and bool(np.all(full == full[0])) and bool(np.all((steps == most) | (steps == 0)))
+            self.coordinates[along] = ("step", full[0], attributes) if common else self.array(table, attributes, "step")
+        self.columns["steps"] = self.array(steps, {"units": "1", "long_name": "number of rows"})
 
+    def add_answers(self, answers: list[Solved]) -> None:
+        """What became of the points."""
+        findings = [None if result is None else result.findings for result in self.results]
+        for name, words, values in (
+            ("status", "status", [answer[0] for answer in answers]),
+            ("error", "why it failed", [answer[1] for answer in answers]),
+            ("findings", "number of findings, -1 without a result", [-1 if held is None else len(held) for held in findings]),
+            ("finding_codes", "codes of the findings", [" ".join(sorted({finding["code"] for finding in held or ()})) for held in findings]),
+        ):
+            self.columns[name] = self.array(values, {"long_name": words})
 
-def _padded(columns: Sequence[Any], most: int, cells: tuple[int, ...] = ()) -> Any:
-    """The columns of all points, or stacks of their fields, with NaN beyond their ends."""
-    table = np.full((len(columns), most, *cells), np.nan)
-    for n, column in enumerate(columns):
-        if column is not None:
-            table[n, : len(column)] = column
-    return table
+    def add_leaks(self) -> None:
+        """Leaks that the cases ask for, at the times of their fields."""
+        leaks = [result._leaks for result in self.whole if result._leaks]
+        most = max((len(table["leak_time"]) for table in leaks), default=0)
+        entries = GAS_LEAKS if any("leak_rate_standard" in table for table in leaks) else LEAKS
+        for name in (name for name in entries if any(name in table for table in leaks)):
+            into = self.coordinates if name == "leak_time" else self.columns
+            into[name] = self.array(self.padded(lambda result: result._leaks.get(name), most), entries[name].attributes(), "leak_step")
 
-
-def _add_leaks(
-    columns: dict[str, Any], coordinates: dict[str, Any], plan: _Plan, dims: tuple[str, ...], results: list[Result | None]
-) -> None:
-    """Leaks that the cases ask for, at the times of their fields."""
-    leaks = [{} if result is None else result._leaks for result in results]
-    most = max((len(table["leak_time"]) for table in leaks if table), default=0)
-    gas = any("leak_rate_standard" in table for table in leaks)
-    for name, entry in (GAS_LEAKS if gas else LEAKS).items():
-        if not any(name in table for table in leaks):
-            continue
-        values = _padded([table.get(name) for table in leaks], most)
-        column = ((*dims, "leak_step"), values.reshape(*plan.shape, most), entry.attributes())
-        (coordinates if name == "leak_time" else columns)[name] = column
-
-
-def _add_fields(
-    columns: dict[str, Any],
-    coordinates: dict[str, Any],
-    plan: _Plan,
-    dims: tuple[str, ...],
-    results: list[Result | None],
-    names: tuple[str, ...],
-) -> None:
-    whole = [result for result in results if result is not None]
-    grids = {(result.cells, result.size) for result in whole}
-    if len(grids) != 1:
-        if grids:
+    def add_fields(self, names: tuple[str, ...]) -> None:
+        """Fields of these names, where the grids of all points are the same."""
+        grids = {(result.cells, result.size) for result in self.whole}
+        if names and len(grids) > 1:
             warn_caller("the points have different grids: the dataset holds no fields", UserWarning)
-        return
-    first = whole[0]
-    most = max(len(result.field_times) for result in whole)
-    times = _padded([None if result is None else result.field_times for result in results], most)
-    words = {"units": "s", "long_name": "time of the fields"}
-    coordinates["field_time"] = ((*dims, "field_step"), times.reshape(*plan.shape, most), words)
-    coordinates.update(first._coordinates)
-    for name in names:
-        stack = _padded([None if result is None else result._stack(name) for result in results], most, first.cells)
-        shape = (*plan.shape, most, *first.cells)
-        columns[name] = ((*dims, "field_step", *first._axes), stack.reshape(shape), FIELDS[name].attributes())
+        if not names or len(grids) != 1:
+            return
+        first = self.whole[0]
+        most = max(len(result.field_times) for result in self.whole)
+        times = self.padded(lambda result: result.field_times, most)
+        self.coordinates["field_time"] = self.array(times, {"units": "s", "long_name": "time of the fields"}, "field_step")
+        self.coordinates |= first._coordinates
+        for name in names:
+            stack = self.padded(lambda result: result._stack(name), most, first.cells)
+            self.columns[name] = self.array(stack, FIELDS[name].attributes(), "field_step", *first._axes)
+
+
+def _dataset(plan: _Plan, answers: list[Solved], points: list[Point], names: tuple[str, ...], case: str | None) -> xarray.Dataset:
+    table = _Table(plan, points, answers, _TAKEN | _TAKEN_BY_FIELDS if names else _TAKEN)
+    table.add_rows()
+    table.add_answers(answers)
+    table.add_leaks()
+    table.add_fields(names)
+    attributes = {"asperity_version": _core.__version__, **({} if case is None else {"case": case})}
+    return dataset(table.columns, table.coordinates, attributes)
 
 
 def _coordinate(column: list[Any]) -> tuple[Any, dict[str, str]]:
     """Values of a coordinate; quantities in one unit become numbers with that unit."""
     if all(isinstance(value, str) for value in column):
         matches = [_QUANTITY.fullmatch(value) for value in column]
-        units = {match.group(2) for match in matches if match is not None}
+        units = {match and match.group(2) for match in matches}
         if None not in matches and len(units) == 1:
             (unit,) = units
-            values = np.array([float(match.group(1)) for match in matches if match is not None])
-            return values, {} if unit is None else {"units": unit}
-        return np.array(column), {}
-    if all(isinstance(value, (bool, int, float)) for value in column):
-        return np.array(column), {}
-    return np.array([value if isinstance(value, str) else json.dumps(value) for value in column]), {}
+            return np.array([float(match.group(1)) for match in matches if match is not None]), {} if unit is None else {"units": unit}
+    if not all(isinstance(value, (bool, int, float)) for value in column):
+        column = [value if isinstance(value, str) else json.dumps(value) for value in column]
+    return np.array(column), {}

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._command import answered, case_file
+from ._columns import dataset
+from ._command import answered
 from ._core import CaseError
 from ._solve import _toml
 
@@ -18,24 +18,12 @@ if TYPE_CHECKING:
 
 
 def study_in_folder(
-    case: Any,
-    vary: Mapping[str, Any] | None,
-    directory: Any,
-    zipped: bool,
-    error_bars: bool,
-    jobs: int | None,
-    threads: int | None,
-    quiet: bool,
+    case: Any, vary: Mapping[str, Any] | None, directory: Any, zipped: bool, error_bars: bool, jobs: int | None, threads: int | None, quiet: bool
 ) -> xarray.Dataset:
     """Runs ``asperity study`` and returns its table: a dimension for each key, or `run` where values go together."""
-    words = ["study", case_file(case, directory, "a study")]
-    for key, values in (vary or {}).items():
-        words += ["--vary", f"{key}={_written(key, values)}"]
-    words += [] if directory is None else ["-o", os.fspath(directory)]
-    for option, value in (("--jobs", jobs), ("--threads", threads)):
-        words += [] if value is None else [option, str(value)]
-    words += ["--zip"] * zipped + ["--error-bars"] * error_bars + ["-q"] * quiet
-    return _dataset(answered(words, quiet))
+    words = [word for key, values in (vary or {}).items() for word in ("--vary", f"{key}={_written(key, values)}")]
+    words += ["--zip"] * zipped + ["--error-bars"] * error_bars
+    return _dataset(answered("study", case, directory, words, quiet, jobs=jobs, threads=threads))
 
 
 def _written(key: str, values: Any) -> str:
@@ -50,40 +38,33 @@ def _written(key: str, values: Any) -> str:
 
 
 def _dataset(found: dict[str, Any]) -> xarray.Dataset:
-    import xarray
-
-    keys, runs = found["keys"], found["runs"]
-    zipped = found["zip"]
+    keys, runs, zipped = found["keys"], found["runs"], found["zip"]
     dims = ("run",) if zipped else tuple(key["key"] for key in keys)
     shape = (len(runs),) if zipped else tuple(len(key["values"]) for key in keys)
-    coordinates = {}
-    for key in keys:
-        attributes = {"long_name": key["key"], **({"units": key["unit"]} if key["unit"] else {})}
-        coordinates[key["key"]] = ("run" if zipped else key["key"], np.array(key["values"]), attributes)
-    columns: dict[str, Any] = {}
 
-    def note(n: int, name: str, unit: str, words: str, value: float | None) -> None:
-        if name not in columns:
-            columns[name] = (dims, np.full(len(runs), np.nan), {"units": unit, "long_name": words})
-        columns[name][1][n] = np.nan if value is None else value
+    def array(values: Any, words: str, unit: str | None = None) -> Any:
+        return dims, np.array(values).reshape(shape), {"long_name": words, **({"units": unit} if unit else {})}
 
+    #: Numbers of the runs by name, unit and words.
+    numbers: dict[tuple[str, str, str], Any] = {}
     for n, run in enumerate(runs):
         errors = {bar["name"]: bar["error"] for bar in run["error_bars"]}
         for answer in run["answers"]:
             name, unit = answer["name"], answer["unit"]
             words = name.replace("_", " ")
-            note(n, name, unit, words, answer["value"])
-            if name in errors:
-                note(n, f"{name}_error", unit, f"error of the {words}", errors[name])
-    columns = {name: (dims, values.reshape(shape), attributes) for name, (dims, values, attributes) in columns.items()}
-    findings = np.array([run["findings"] if run["status"] == "done" else -1 for run in runs]).reshape(shape)
-    columns["findings"] = (dims, findings, {"long_name": "number of findings, -1 of runs that are not done"})
-    for name, words in (
-        ("finding_codes", "codes of the findings"),
-        ("status", "how far the run is"),
-        ("error", "why the run failed"),
-        ("result", "path of the result"),
-    ):
-        values = np.array([run[name] or "" for run in runs]).reshape(shape)
-        columns[name if name != "result" else "path"] = (dims, values, {"long_name": words})
-    return xarray.Dataset(columns, coords=coordinates, attrs={"study": found["study"]})
+            told = {(name, unit, words): answer["value"]} | ({(f"{name}_error", unit, f"error of the {words}"): errors[name]} if name in errors else {})
+            for key, value in told.items():
+                numbers.setdefault(key, np.full(len(runs), np.nan))[n] = np.nan if value is None else value
+    columns = {name: array(values, words, unit) for (name, unit, words), values in numbers.items()}
+    findings = [run["findings"] if run["status"] == "done" else -1 for run in runs]
+    columns["findings"] = array(findings, "number of findings, -1 of runs that are not done")
+    texts = {"finding_codes": "codes of the findings", "status": "how far the run is", "error": "why the run failed", "result": "path of the result"}
+    for name, words in texts.items():
+        columns["path" if name == "result" else name] = array([run[name] or "" for run in runs], words)
+    places = {key["key"]: ("run" if zipped else key["key"], *_place_of(key)) for key in keys}
+    return dataset(columns, places, {"study": found["study"]})
+
+
+def _place_of(key: dict[str, Any]) -> tuple[Any, dict[str, str]]:
+    """The values of a key, with their unit."""
+    return np.array(key["values"]), {"long_name": key["key"], **({"units": key["unit"]} if key["unit"] else {})}

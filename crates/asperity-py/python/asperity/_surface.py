@@ -8,42 +8,22 @@ import os
 import re
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field as dataclass_field
-from typing import TYPE_CHECKING, Any, Protocol, Union
+from typing import Any, Protocol, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _foreign, _html
-from ._arrays import (
-    Floats,
-    along,
-    angle,
-    as_plane,
-    cell_counts,
-    cells_of,
-    count,
-    counts,
-    field,
-    frozen,
-    in_order,
-    lengths,
-    number,
-    numbers_of,
-    pair,
-    pitch_of,
-    size_of,
-)
+from ._arrays import AnyArray, AnyPath, Floats, Size, along, angle, as_plane, cell_counts, cells_of, centres, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
+from ._arrays import pitch_of, size_of
 from ._core import CaseError
 from ._findings import findings_of, warn, warn_caller
 from ._grid import OnGrid
 from ._histories import one_of
-from ._parameters import Parameter, call
+from ._parameters import call, parameters
 from ._sealed import ReadOnlyArrays
 from ._units import carries, factor_of, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
-
-if TYPE_CHECKING:
-    from .plot import SurfacePlots
+from .plot import SurfacePlots
 
 
 class Labelled(Protocol):
@@ -51,8 +31,6 @@ class Labelled(Protocol):
 
     @property
     def dims(self) -> tuple[Hashable, ...]: ...
-    @property
-    def coords(self) -> Any: ...
 
 
 class Topography(Protocol):
@@ -60,11 +38,10 @@ class Topography(Protocol):
 
     @property
     def physical_sizes(self) -> Any: ...
-    def heights(self) -> Any: ...
 
 
 #: What adds to a surface; of numbers only the 0 with which sum() begins.
-Summand = Union["Surface", npt.NDArray[Any], Labelled, Topography, int]
+Summand = Union["Surface", AnyArray, Labelled, Topography, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,22 +85,11 @@ class Surface(OnGrid):
 
     #: What a shape was made with: radius of a sphere, cylinder or punch [m], radii of an ellipsoid [m], slope of a cone or wedge, sides
     #: of a punch [m], amplitude and wavelengths of a wave [m], and the `center` from the middle of the domain [m].
-    radius = Parameter[float]()
-    radius_x = Parameter[float]()
-    radius_y = Parameter[float]()
-    slope = Parameter[float]()
-    sides = Parameter[list[float]]()
-    amplitude = Parameter[float]()
-    wavelength = Parameter[list[float]]()
-    center = Parameter[list[float]]()
+    radius, radius_x, radius_y, slope, amplitude = parameters(float, 5)
+    sides, wavelength, center = parameters(list[float], 3)
     #: What self-affine roughness was made with: Hurst exponent, rms gradient or height [m], wavelengths [m], seed.
-    hurst = Parameter[float]()
-    rms_gradient = Parameter[float]()
-    rms_height = Parameter[float]()
-    longest = Parameter[float]()
-    shortest = Parameter[float]()
-    roll_off = Parameter[float]()
-    seed = Parameter[int]()
+    hurst, rms_gradient, rms_height, longest, shortest, roll_off = parameters(float, 6)
+    (seed,) = parameters(int, 1)
 
     @property
     def _parameters(self) -> dict[str, Any]:
@@ -134,7 +100,7 @@ class Surface(OnGrid):
     __array_ufunc__ = None
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, heights: Any, *, size: float | Sequence[float] | None = None, metadata: dict[str, Any] | None = None) -> None:
+    def __init__(self, heights: Any, *, size: Size = None, metadata: dict[str, Any] | None = None) -> None:
         values, size, known = _parts(heights, size)
         values = field("heights", values, line=True)
         object.__setattr__(self, "heights", frozen(np.array(values)))
@@ -150,14 +116,12 @@ class Surface(OnGrid):
         """Number of cells along x and y; of a line one number."""
         return self.heights.shape
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> AnyArray:
         """The heights [m]."""
-        wanted = self.heights.dtype if dtype is None else np.dtype(dtype)
-        if copy is None:
-            return self.heights.astype(wanted, copy=False)
-        if not copy and wanted != self.heights.dtype:
+        wanted = np.dtype(np.float64 if dtype is None else dtype)
+        if copy is False and wanted != self.heights.dtype:
             raise ValueError(f"the heights are float64: {wanted} needs a copy")
-        return self.heights.astype(wanted, copy=copy)
+        return self.heights.astype(wanted, copy=bool(copy))
 
     def __eq__(self, other: object) -> bool:
         """Whether cells, size and all heights are the same; undefined points equal each other."""
@@ -171,16 +135,14 @@ class Surface(OnGrid):
                 return self
             raise CaseError("a number cannot be added to a surface, whose heights are measured from no fixed level: add surfaces")
         try:
-            other = as_surface(other, self.size if isinstance(other, np.ndarray) or carries(other) else None)
+            other = self._alike(other)
         except CaseError:
             if isinstance(other, np.ndarray) or carries(other) or is_labelled(other) or hasattr(other, "physical_sizes"):
                 raise
             return NotImplemented
         if self.cells != other.cells or not np.allclose(self.size, other.size, rtol=1e-9, atol=0.0):
-            raise CaseError(
-                f"surfaces of {self.cells} cells on {self.size} m and of {other.cells} cells on {other.size} m "
-                "cannot be added: they must have the same cells and size"
-            )
+            both = " and of ".join(f"{one.cells} cells on {one.size} m" for one in (self, other))
+            raise CaseError(f"surfaces of {both} cannot be added: they must have the same cells and size")
         # What was measured does not repeat beyond its edges, and the sum neither; a single body stays one with roughness on it.
         known: dict[str, Any] = {key: one.metadata[key] for one in (self, other) for key in ("format", "single") if key in one.metadata}
         return Surface(self.heights + other.heights, size=self.size, metadata=known)
@@ -192,9 +154,11 @@ class Surface(OnGrid):
         return self + other
 
     def __sub__(self, other: Summand) -> Surface:
-        if isinstance(other, Surface):
-            return self + -other
-        return NotImplemented if _is_number(other) else self + _negative(other, self.size)
+        return NotImplemented if _is_number(other) else self + -self._alike(other)
+
+    def _alike(self, other: Any) -> Surface:
+        """Another surface; an array has the size of this one."""
+        return as_surface(other, self.size if isinstance(other, np.ndarray) or carries(other) else None)
 
     def __mul__(self, factor: Any) -> Surface:
         if not _is_number(factor) and not carries(factor):
@@ -202,20 +166,23 @@ class Surface(OnGrid):
         scale = number("factor of the heights", factor, "")
         if not np.isfinite(scale):
             raise CaseError(f"factor is {scale}, but must be finite")
-        words = f"heights times {scale:g}"
-        return Surface(self.heights * scale, size=self.size, metadata={**self.metadata, "history": [*self.history, words]})
+        return self._changed(self.heights * scale, [f"heights times {scale:g}"])
 
     __rmul__ = __mul__
 
     def __truediv__(self, divisor: Any) -> Surface:
         if not _is_number(divisor) and not carries(divisor):
             return NotImplemented
-        if number("divisor of the heights", divisor, "") == 0.0:
+        if (share := number("divisor of the heights", divisor, "")) == 0.0:
             raise CaseError("heights cannot be divided by 0")
-        return self * (1.0 / number("divisor of the heights", divisor, ""))
+        return self * (1.0 / share)
 
     def __neg__(self) -> Surface:
-        return Surface(-self.heights, size=self.size, metadata={**self.metadata, "history": [*self.history, "inverted"]})
+        return self._changed(-self.heights, ["inverted"])
+
+    def _changed(self, heights: Floats, done: list[str], size: Sequence[float] | None = None) -> Surface:
+        """The surface with other heights, on which this was done."""
+        return Surface(heights, size=self.size if size is None else size, metadata={**self.metadata, "history": [*self.history, *done]})
 
     def __pos__(self) -> Surface:
         return self
@@ -260,11 +227,10 @@ class Surface(OnGrid):
         ((4, 4), True, 'crop to 4 x 4 cells from (3, 2)')
         """
         heights, size, done = self._compiled.process([str(step) for step in steps])
-        heights = heights[:, 0] if self.is_line else heights
-        metadata = {**self.metadata, "history": [*self.history, *done]}
+        changed = self._changed(heights[:, 0] if self.is_line else heights, done, size)
         if any("crop" in step for step in done):
-            metadata.pop("repeats", None)
-        return Surface(heights, size=size, metadata=metadata)
+            changed.metadata.pop("repeats", None)
+        return changed
 
     def level(self, form: Form = "plane") -> Surface:
         """The surface without its least-squares "mean", "plane" or "quadratic" form; "none" leaves it."""
@@ -280,13 +246,8 @@ class Surface(OnGrid):
         return self.process(f"fill method={method} share={number('share', share)!r}")
 
     def crop(
-        self,
-        *,
-        cells: Sequence[int] | None = None,
-        start: Sequence[int] | None = None,
-        size: Sequence[float] | None = None,
-        corner: Sequence[float] | None = None,
-        defined: bool = False,
+        self, *, cells: Sequence[int] | None = None, start: Sequence[int] | None = None, size: Sequence[float] | None = None,
+        corner: Sequence[float] | None = None, defined: bool = False
     ) -> Surface:
         """A rectangle of it: `cells` from the cell `start`, or `size` [m] from the `corner` [m], else about the middle;
         or the smallest rectangle that holds every defined point."""
@@ -294,13 +255,10 @@ class Surface(OnGrid):
         if defined:
             return self.process("crop defined=true")
         if cells is not None:
-            words = "crop cells={},{}".format(*counts("cells", cells))
-            if start is not None:
-                i, j = pair("start", start)
-                words += f" from={count('start along x', i, 0)},{count('start along y', j, 0)}"
-            return self.process(words)
-        words = "crop size={!r},{!r}".format(*pair("size", size))
-        return self.process(words if corner is None else words + " corner={!r},{!r}".format(*pair("corner", corner)))
+            first = "" if start is None else " from={},{}".format(*counts("start", start, 0))
+            return self.process("crop cells={},{}".format(*counts("cells", cells)) + first)
+        place = "" if corner is None else " corner={!r},{!r}".format(*pair("corner", corner))
+        return self.process("crop size={!r},{!r}".format(*pair("size", size)) + place)
 
     def resample(self, cells: Sequence[int], *, method: Resampling = "band-limited") -> Surface:
         """Other cells over the same rectangle: "band-limited" (by waves; needs every point) or "bilinear"."""
@@ -336,9 +294,7 @@ class Surface(OnGrid):
         words = f"window shape={shape}"
         return self.process(words if share is None else f"{words} share={number('share', share)!r}")
 
-    def statistics(
-        self, *, periodic: bool | None = None, longest: float | None = None, shortest: float | None = None
-    ) -> dict[str, float]:
+    def statistics(self, *, periodic: bool | None = None, longest: float | None = None, shortest: float | None = None) -> dict[str, float]:
         """The statistics of ``asperity surface info`` of the heights as they are.
 
         Parameters
@@ -434,8 +390,7 @@ class Surface(OnGrid):
 
     def _defined(self, what: str) -> Floats:
         """The heights, all of which `what` needs."""
-        missing = int(np.count_nonzero(~np.isfinite(self.heights)))
-        if missing:
+        if missing := int(np.count_nonzero(~np.isfinite(self.heights))):
             raise CaseError(f"{what} needs every height, but {missing} of {self.heights.size} points are undefined: fill() them first")
         return self.heights
 
@@ -466,8 +421,6 @@ class Surface(OnGrid):
     @property
     def plot(self) -> SurfacePlots:
         """Figures by matplotlib: ``surface.plot.heights()``, ``surface.plot.power_spectrum()``, ..."""
-        from .plot import SurfacePlots
-
         return SurfacePlots(self)
 
     def _repr_html_(self) -> str:
@@ -480,7 +433,7 @@ class Surface(OnGrid):
         rows += [("history" if n == 0 else "", step) for n, step in enumerate(self.history)]
         return f"<b>Surface</b>, {cells_of(self.heights)}{_html.table(rows)}"
 
-    def write(self, path: str | os.PathLike[str], *, format: str | None = None, force: bool = False) -> None:
+    def write(self, path: AnyPath, *, format: str | None = None, force: bool = False) -> None:
         """Writes NPZ, GWY, X3P, SDF, NetCDF or text, selected by the path's extension or by `format`."""
         path = os.fspath(path)
         if not force and os.path.exists(path):
@@ -491,14 +444,8 @@ class Surface(OnGrid):
 
     @staticmethod
     def read(
-        path: str | os.PathLike[str],
-        *,
-        size: float | Sequence[float] | None = None,
-        height_unit: float | None = None,
-        channel: str | int | None = None,
-        level: Form | None = None,
-        fill: Fill | None = None,
-        transpose: bool | None = None,
+        path: AnyPath, *, size: Size = None, height_unit: float | None = None,
+        channel: str | int | None = None, level: Form | None = None, fill: Fill | None = None, transpose: bool | None = None
     ) -> Surface:
         """Reads a measured surface; the format is found from the content.
 
@@ -538,33 +485,22 @@ class Surface(OnGrid):
                 f"{path} looks as if numpy.savetxt had written it: its lines are read along x, so that an array with axes (x, y) comes out "
                 "transposed. Give transpose=True for such an array, or transpose=False if the lines run along x."
             )
+        if transpose and len(extent) != 2:
+            raise CaseError("transpose is for surfaces over a plane, but the file holds a profile")
         if transpose:
-            if len(extent) != 2:
-                raise CaseError("transpose is for surfaces over a plane, but the file holds a profile")
             # A size that was given is along x and y already.
             heights, extent = np.ascontiguousarray(heights.T), extent if given is not None else extent[::-1]
             found = {**found, "history": [*found.get("history", []), "transposed"]}
         surface = Surface(heights[:, 0] if len(extent) == 1 else heights, size=extent, metadata=found)
-        if level is not None:
-            surface = surface.level(level)
+        surface = surface if level is None else surface.level(level)
         return surface if fill is None else surface.fill(fill)
 
     @staticmethod
     def self_affine(
-        *,
-        cells: int | Sequence[int],
-        size: float | Sequence[float],
-        hurst: float,
-        longest: float,
-        shortest: float,
-        rms_gradient: float | None = None,
-        rms_height: float | None = None,
-        roll_off: float | None = None,
-        seed: int = 0,
-        lay_angle: float | None = None,
-        lay_ratio: float | None = None,
-        skewness: float | None = None,
-        kurtosis: float | None = None,
+        *, cells: int | Sequence[int], size: float | Sequence[float], hurst: float, longest: float, shortest: float,
+        rms_gradient: float | None = None, rms_height: float | None = None, roll_off: float | None = None, seed: int = 0,
+        lay_angle: float | None = None, lay_ratio: float | None = None, skewness: float | None = None,
+        kurtosis: float | None = None
     ) -> Surface:
         """Self-affine roughness, periodic, the same on every machine for one seed.
 
@@ -580,19 +516,15 @@ class Surface(OnGrid):
         >>> round(surface.statistics()["sq"] * 1e6, 12)
         1.0
         """
-        lay: dict[str, Any] = dict(numbers_of({"ratio": lay_ratio}))
-        turned = 0.0
-        if lay_angle is not None:
-            turned = angle("lay_angle", lay_angle)
-            lay["angle"] = f"{turned!r} rad"
+        given = dict(hurst=hurst, rms_gradient=rms_gradient, rms_height=rms_height, longest=longest, shortest=shortest, roll_off=roll_off)
+        lay = numbers_of({"ratio": lay_ratio}) | ({} if lay_angle is None else {"angle": angle("lay_angle", lay_angle)})
         distribution = numbers_of({"skewness": skewness, "kurtosis": kurtosis})
         if len(lengths("size", size)) == 1 and (lay or distribution):
             raise CaseError("a profile has no lay, and heights of a normal distribution: leave lay, skewness and kurtosis out")
-        numbers = dict(hurst=hurst, rms_gradient=rms_gradient, rms_height=rms_height, longest=longest, shortest=shortest, roll_off=roll_off)
-        given = {"seed": count("seed", seed, 0, 2**63 - 1), "lay": lay, "distribution": distribution}
-        of_lay = {f"lay_{name}": turned if name == "angle" else value for name, value in lay.items()}
-        made = {**numbers_of(numbers), "seed": given["seed"], **of_lay, **distribution}
-        return _made(cells, size, "self-affine", numbers, made, **{name: value for name, value in given.items() if value != {}})
+        numbers = {**numbers_of(given), "seed": count("seed", seed, 0, 2**63 - 1)}
+        parts = {"lay": {**lay, "angle": f"{lay['angle']!r} rad"} if "angle" in lay else lay, "distribution": distribution}
+        made = {**numbers, **{f"lay_{name}": value for name, value in lay.items()}, **distribution}
+        return _made("self-affine", cells, size, made, {**numbers, **{name: part for name, part in parts.items() if part}})
 
     @staticmethod
     def contact_mechanics_challenge(*, cells: Sequence[int], seed: int = 0) -> Surface:
@@ -600,32 +532,21 @@ class Surface(OnGrid):
 
         Hurst exponent 0.8, roll-off 20 um, cut-off 0.1 um, rms gradient 1; it needs 2000 cells a side or more.
         """
-        whole = count("seed", seed, 0, 2**63 - 1)
-        return _made(cells, (1e-4, 1e-4), "self-affine", {}, None, preset="contact-mechanics-challenge", seed=whole)
+        keys = {"preset": "contact-mechanics-challenge", "seed": count("seed", seed, 0, 2**63 - 1)}
+        return _made("self-affine", cells, (1e-4, 1e-4), None, keys)
 
     @staticmethod
-    def sphere(
-        *, cells: Sequence[int], size: Sequence[float], radius: float, center: Sequence[float] = (0.0, 0.0)
-    ) -> Surface:
+    def sphere(*, cells: Sequence[int], size: Sequence[float], radius: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A paraboloid of that radius [m]; `center` [m] from the middle of the domain."""
-        return _shape(cells, size, center, "sphere", radius=radius)
+        return _shape("sphere", cells, size, center, {"radius": radius})
 
     @staticmethod
-    def ellipsoid(
-        *,
-        cells: Sequence[int],
-        size: Sequence[float],
-        radius_x: float,
-        radius_y: float,
-        center: Sequence[float] = (0.0, 0.0),
-    ) -> Surface:
+    def ellipsoid(*, cells: Sequence[int], size: Sequence[float], radius_x: float, radius_y: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A paraboloid of two radii [m]; an infinite one makes a cylinder."""
-        return _shape(cells, size, center, "ellipsoid", radius_x=radius_x, radius_y=radius_y)
+        return _shape("ellipsoid", cells, size, center, {"radius_x": radius_x, "radius_y": radius_y})
 
     @staticmethod
-    def cylinder(
-        *, cells: int | Sequence[int], size: float | Sequence[float], radius: float, center: float | Sequence[float] = 0.0
-    ) -> Surface:
+    def cylinder(*, cells: int | Sequence[int], size: float | Sequence[float], radius: float, center: float | Sequence[float] = 0.0) -> Surface:
         """A cylinder along y, as a parabola of that radius [m]; `center` [m] along x from the middle of the domain.
 
         >>> import asperity as asp, numpy as np
@@ -634,43 +555,32 @@ class Surface(OnGrid):
         >>> bool(abs(hertz.pressure.max() / np.sqrt(20e3 * 1e9 / (np.pi * 10e-3)) - 1) < 1e-3)
         True
         """
-        return _shape(cells, size, center, "cylinder", radius=radius)
+        return _shape("cylinder", cells, size, center, {"radius": radius})
 
     @staticmethod
-    def wedge(
-        *, cells: int | Sequence[int], size: float | Sequence[float], slope: float, center: float | Sequence[float] = 0.0
-    ) -> Surface:
+    def wedge(*, cells: int | Sequence[int], size: float | Sequence[float], slope: float, center: float | Sequence[float] = 0.0) -> Surface:
         """A wedge along y that rises by `slope` per length; `center` [m] along x from the middle of the domain."""
-        return _shape(cells, size, center, "wedge", slope=slope)
+        return _shape("wedge", cells, size, center, {"slope": slope})
 
     @staticmethod
-    def cone(
-        *, cells: Sequence[int], size: Sequence[float], slope: float, center: Sequence[float] = (0.0, 0.0)
-    ) -> Surface:
+    def cone(*, cells: Sequence[int], size: Sequence[float], slope: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A cone that rises by `slope` per length."""
-        return _shape(cells, size, center, "cone", slope=slope)
+        return _shape("cone", cells, size, center, {"slope": slope})
 
     @staticmethod
     def flat_punch(
-        *,
-        cells: int | Sequence[int],
-        size: float | Sequence[float],
-        radius: float | None = None,
-        sides: float | Sequence[float] | None = None,
-        center: float | Sequence[float] = (0.0, 0.0),
+        *, cells: int | Sequence[int], size: float | Sequence[float], radius: float | None = None,
+        sides: Size = None, center: float | Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch. On a line of cells a strip of
         half the width `radius`, or of the width `sides`."""
-        face = {} if sides is None else {"size": _along_both("sides", sides, size)}
-        return _shape(cells, size, center, "flat-punch", face, radius=radius)
+        face = {} if sides is None else {"sides": _along_both("sides", sides, size)}
+        return _shape("flat-punch", cells, size, center, {"radius": radius}, face)
 
     @staticmethod
-    def wave(
-        *, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]
-    ) -> Surface:
+    def wave(*, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]) -> Surface:
         """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge. On a line one wavelength."""
-        waves = _along_both("wavelength", wavelength, size)
-        return _made(cells, size, "wave", {"amplitude": amplitude}, {**numbers_of({"amplitude": amplitude}), "wavelength": waves}, wavelength=waves)
+        return _made("wave", cells, size, {**numbers_of({"amplitude": amplitude}), "wavelength": _along_both("wavelength", wavelength, size)})
 
 
 def _along_both(what: str, value: Any, size: Any) -> list[float]:
@@ -679,31 +589,29 @@ def _along_both(what: str, value: Any, size: Any) -> list[float]:
     return along(what, value, dimensions, np.inf)[:dimensions]
 
 
-def _shape(cells: Any, size: Any, center: Any, kind: str, keys: dict[str, Any] | None = None, /, **numbers: Any) -> Surface:
+def _shape(kind: str, cells: Any, size: Any, center: Any, numbers: dict[str, Any], sides: dict[str, list[float]] = {}) -> Surface:
     """A smooth shape at `center` [m] from the middle of the domain."""
     dimensions = len(lengths("size", size))
     # What is straight along y has no place along it.
     straight = kind in ("cylinder", "wedge") and np.size(center) == 1
     place = [*lengths("center", center), 0.0] if straight else along("center", center, dimensions)
-    keys = {**(keys or {}), "center": place[:dimensions]}
-    made = {**numbers_of(numbers), **{"sides" if name == "size" else name: value for name, value in keys.items()}}
-    return _made(cells, size, kind, numbers, made, **keys)
+    return _made(kind, cells, size, {**numbers_of(numbers), **sides, "center": place[:dimensions]})
 
 
-def _made(cells: Any, size: Any, kind: str, numbers: dict[str, Any], made: dict[str, Any] | None, /, **keys: Any) -> Surface:
-    """The surface of a case that has these keys; `made` are the parameters that it was made with."""
+def _made(kind: str, cells: Any, size: Any, made: dict[str, Any] | None, keys: dict[str, Any] | None = None) -> Surface:
+    """The surface of a case that has these keys; `made` are the parameters that it was made with, by default the same."""
     extent, grid = lengths("size", size), cell_counts("cells", cells)
     if len(grid) != len(extent):
         raise CaseError(f"cells is {grid} and size {extent}, but both must have two numbers, or both one for a line of cells")
-    domain = {"cells": list(grid), "size": list(extent)}
-    heights, single = _core.heights({"domain": domain, "surface": [{"kind": kind, **numbers_of(numbers), **keys}]})
+    given = {"size" if name == "sides" else name: value for name, value in (keys or made or {}).items()}
+    heights, single = _core.heights({"domain": {"cells": list(grid), "size": list(extent)}, "surface": [{"kind": kind, **given}]})
     surface = Surface(heights.reshape(grid), size=extent, metadata={"single": True} if single else None)
     if made is not None:
         object.__setattr__(surface, "_made", {"kind": kind, **made})
     return surface
 
 
-def as_surface(value: Any, size: float | Sequence[float] | None) -> Surface:
+def as_surface(value: Any, size: Size) -> Surface:
     """A surface; heights as an array need their size; topographies of SurfaceTopography and xarray are understood."""
     return value if isinstance(value, Surface) and size is None else Surface(value, size=size)
 
@@ -714,7 +622,7 @@ def check_boundary(surface: Surface, boundary: str) -> None:
         warn_caller('the topography is periodic, but boundary is "free", so that its edges are edges of the contact: give boundary="periodic", or a topography that is not periodic')
 
 
-def surface_of(surface: Any, gap: Any, size: float | Sequence[float] | None) -> Surface:
+def surface_of(surface: Any, gap: Any, size: Size) -> Surface:
     """The surface that is given by its heights, or by the undeformed gap that it leaves."""
     if (surface is None) == (gap is None):
         raise CaseError("give a surface (its heights), or gap= (the undeformed gap), exactly one of them")
@@ -727,6 +635,14 @@ def surface_of(surface: Any, gap: Any, size: float | Sequence[float] | None) -> 
     if wrong := [value for value in values[np.isnan(values) | (values == -np.inf)][:1]]:
         raise CaseError(f"gap holds {wrong[0]}, but must be finite, or infinite where a cell cannot touch")
     return Surface(-values, size=size)
+
+
+def per_cell(what: str, value: Any, shape: Surface, unit: str | None = None) -> Floats:
+    """Numbers of each cell of the domain of a surface."""
+    cells = field(what, value, line=True, unit=unit, size=shape.size)
+    if cells.shape != shape.cells:
+        raise CaseError(f"{what} has shape {cells.shape}, but must have {shape.cells}: one number for each cell")
+    return cells
 
 
 def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict[str, Any]]:
@@ -784,15 +700,12 @@ def _even(places: Floats, heights: Floats, size: Any) -> tuple[Floats, list[floa
         raise CaseError(f"size is {size!r} m, but the positions of the line scan tell {length:.6g} m: leave size out")
     finest = int(np.ceil(length / steps.min() * (1.0 - 1e-9)))
     cells = min(finest, _FINEST * len(places))
-    middles = places[0] + (np.arange(cells) + 0.5) * (length / cells)
-    words = (
-        f"resampled from {len(places)} points, {steps.min():.3g} m to {steps.max():.3g} m apart, to {cells} cells of {length / cells:.3g} m, "
-        "linear between the points"
-    )
-    lost = f"; distances below {length / cells:.3g} m are not resolved" if cells < finest else ""
+    pitch = length / cells
+    apart = f"{steps.min():.3g} m to {steps.max():.3g} m apart"
+    words = f"resampled from {len(places)} points, {apart}, to {cells} cells of {pitch:.3g} m, linear between the points"
+    lost = f"; distances below {pitch:.3g} m are not resolved" if cells < finest else ""
     warn_caller(f"the line scan is not evenly spaced: {words}{lost}")
-    known = {"format": "SurfaceTopography", "history": [words]}
-    return np.interp(middles, places, heights), [length], known
+    return np.interp(places[0] + centres(cells, length), places, heights), [length], {"format": "SurfaceTopography", "history": [words]}
 
 
 def _of_labelled(what: str, given: Any, size: Any) -> tuple[Any, Any, dict[str, Any]]:
@@ -802,18 +715,13 @@ def _of_labelled(what: str, given: Any, size: Any) -> tuple[Any, Any, dict[str, 
         raise CaseError(f"{what} has the dimensions {tuple(names)}, but must have x and y, or x alone")
     pitches = [pitch_of(what, values, name) for name in names]
     extent = [abs(pitch) * values.sizes[name] for name, pitch in zip(names, pitches) if pitch is not None]
-    if size is None:
-        if len(extent) < len(names):
-            raise CaseError("the array has no coordinates x and y in m, so that its size is needed: size=(Lx, Ly)")
-        return values, extent, {}
+    whole = len(extent) == len(names)
+    if size is None and not whole:
+        raise CaseError("the array has no coordinates x and y in m, so that its size is needed: size=(Lx, Ly)")
     # Numbers of cells are no places.
-    if len(extent) == len(names) and any(abs(pitch or 1.0) != 1.0 for pitch in pitches) and not np.allclose(lengths("size", size), extent, rtol=1e-6, atol=0.0):
+    if size is not None and whole and any(abs(pitch or 1.0) != 1.0 for pitch in pitches) and not np.allclose(lengths("size", size), extent, rtol=1e-6, atol=0.0):
         raise CaseError(f"size is {size!r} m, but the coordinates of {what} tell {tuple(extent)} m: leave size out")
-    return values, size, {}
-
-
-def _negative(value: Any, size: Any) -> Surface:
-    return -as_surface(value, size if isinstance(value, np.ndarray) or carries(value) else None)
+    return values, extent if size is None else size, {}
 
 
 def _is_number(value: Any) -> bool:

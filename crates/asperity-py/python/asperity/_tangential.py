@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from ._arrays import as_plane, field as field_of, number
+from ._arrays import ArrayLike, Floats, as_plane, number
 from ._core import CaseError
+from ._declared import Table
 from ._histories import History, as_history, one_of
-
-if TYPE_CHECKING:
-    from ._arrays import Floats
-    from ._surface import Surface
+from ._surface import Surface, per_cell
+from ._words import Coupled
 
 
 @dataclass(frozen=True, repr=False)
-class Friction:
+class Friction(Table):
     """Friction between the surfaces, an argument of :func:`asperity.solve` and :func:`asperity.march` (docs/tangential.md).
 
     `coefficient`, a number or an array (nx, ny) with one for each cell; `shear_limit` [Pa]: the largest tangential traction, whatever the
@@ -30,26 +28,18 @@ class Friction:
     Friction(0.3, shear_limit=50000000.0)
     """
 
-    coefficient: float | npt.ArrayLike
+    coefficient: float | ArrayLike
     _: KW_ONLY
     shear_limit: float | None = None
-    coupling: Literal["neglect", "full"] = "neglect"
-
-    def __repr__(self) -> str:
-        given = f"{self.coefficient!r}" if np.ndim(self.coefficient) == 0 else f"<array of {np.shape(self.coefficient)}>"
-        limit = "" if self.shear_limit is None else f", shear_limit={self.shear_limit!r}"
-        return f"Friction({given}{limit}{'' if self.coupling == 'neglect' else f', coupling={self.coupling!r}'})"
+    coupling: Coupled = "neglect"
 
     def _parts(self, shape: Surface) -> tuple[dict[str, Any], dict[str, Floats]]:
         """The keys of `[friction]`, and the arrays that they name."""
-        others: dict[str, Any] = {} if self.shear_limit is None else {"shear_limit": number("shear_limit", self.shear_limit)}
-        others |= {} if self.coupling == "neglect" else {"coupling": self.coupling}
+        keys = self._keys
         if np.ndim(self.coefficient) == 0:
-            return {"coefficient": number("friction", self.coefficient), **others}, {}
-        cells = field_of("friction", self.coefficient, line=True, size=shape.size)
-        if cells.shape != shape.cells:
-            raise CaseError(f"friction has shape {cells.shape}, but must have {shape.cells}: one coefficient for each cell")
-        return {"array": "friction", **others}, {"friction": as_plane(cells)}
+            return {**keys, "coefficient": number("friction", self.coefficient)}, {}
+        keys["array"] = "friction"
+        return keys, {"friction": as_plane(per_cell("friction", keys.pop("coefficient"), shape, ""))}
 
 
 @dataclass(frozen=True, repr=False)

@@ -16,32 +16,29 @@ from ._core import CaseError
 
 #: SI unit of each parameter, by its name in messages; parameters that are not listed have no unit.
 UNITS: dict[str, str] = {
-    **dict.fromkeys(["size", "size along x", "size along y", "center", "center along x", "center along y"], "m"),
-    **dict.fromkeys(["corner", "corner along x", "corner along y", "sides", "sides along x", "sides along y"], "m"),
-    **dict.fromkeys(["wavelength", "wavelength along x", "wavelength along y", "amplitude", "radius", "radius_x", "radius_y"], "m"),
-    **dict.fromkeys(["heights", "gap", "initial gap", "depth", "depths", "thickness of a layer", "height_unit", "smallest_gap"], "m"),
-    **dict.fromkeys(["longest", "shortest", "roll_off", "rms_height", "largest_gap", "x", "y", "approach", "path"], "m"),
-    **dict.fromkeys(["young", "young_kelvin", "shear", "shear_kelvin", "bulk_modulus", "equilibrium", "instantaneous modulus"], "Pa"),
-    **dict.fromkeys(["young_equilibrium", "young_instantaneous", "shear_equilibrium", "shear_instantaneous"], "Pa"),
-    **dict.fromkeys(["equilibrium modulus", "contact_modulus", "hardness", "pressure", "largest_pressure", "shear_stress"], "Pa"),
-    **dict.fromkeys(["pressure_drop", "inlet", "outlet", "threshold", "shear_moduli", "E", "modulus", "storage modulus"], "Pa"),
-    **dict.fromkeys(["loss modulus", "relaxation modulus", "start of the pressure"], "Pa"),
-    **dict.fromkeys(["compliance", "creep compliance"], "1/Pa"),
-    **dict.fromkeys(["thickness", "thickness_uncertainty", "radius_uncertainty", "height", "range"], "m"),
-    **dict.fromkeys(["spring_constant", "spring_constant_uncertainty"], "N/m"),
-    "work": "J/m^2",
-    "strength": "Pa",
-    "fluidity": "1/(Pa s)",
-    "viscosity": "Pa s",
-    "molar_mass": "kg/mol",
-    "activation_energy": "J/mol",
-    "load": "N",
-    **dict.fromkeys(["time", "times", "end", "first instant", "first step", "duration", "duration of the stage", "start"], "s"),
-    **dict.fromkeys(["rise", "fall", "hold", "relaxation_time", "retardation_time", "characteristic_times", "field_times"], "s"),
-    **dict.fromkeys(["first time of the window", "last time of the window", "include"], "s"),
-    **dict.fromkeys(["temperature", "temperatures", "reference", "c2"], "K"),
-    **dict.fromkeys(["velocity", "velocities"], "m/s"),
-    "wave numbers": "1/m",
+    name: unit
+    for unit, names in {
+        "m": "size, center, corner, sides, wavelength, amplitude, radius, radius_x, radius_y, heights, gap, initial gap, depth, depths, thickness, "
+        "thickness of a layer, height, height_unit, smallest_gap, longest, shortest, roll_off, rms_height, largest_gap, depth_limit, x, y, approach, path, range, "
+        "radius_uncertainty, thickness_uncertainty",
+        "Pa": "young, young_kelvin, young_equilibrium, young_instantaneous, shear, shear_kelvin, shear_equilibrium, shear_instantaneous, E, modulus, "
+        "bulk_modulus, contact_modulus, shear_moduli, equilibrium, equilibrium modulus, instantaneous modulus, relaxation modulus, storage modulus, "
+        "loss modulus, hardness, strength, shear_stress, pressure, largest_pressure, start of the pressure, pressure_drop, inlet, outlet, threshold",
+        "1/Pa": "compliance, creep compliance",
+        "s": "time, times, end, first instant, first step, duration, start, rise, fall, hold, relaxation_time, retardation_time, characteristic_times, "
+        "field_times, first time of the window, last time of the window, include",
+        "K": "temperature, temperatures, reference, c2",
+        "m/s": "velocity, velocities",
+        "N": "load",
+        "N/m": "spring_constant, spring_constant_uncertainty",
+        "J/m^2": "work",
+        "Pa s": "viscosity",
+        "1/(Pa s)": "fluidity",
+        "kg/mol": "molar_mass",
+        "J/mol": "activation_energy",
+        "1/m": "wave numbers",
+    }.items()
+    for name in names.split(", ")
 }
 #: Units of an angle: packages of units take their numbers as plain ones, in radian.
 _ANGLE = re.compile(r"rad|deg|rpm|rps|turn|revol|cycle|arc_?(min|sec)|gon\b|°(?![CF])|′|″", re.IGNORECASE)
@@ -101,58 +98,45 @@ def frequency(what: str, value: Any, *, angular: bool) -> Any:
     rad/s is angular. Plain numbers are returned as they are."""
     if isinstance(value, (list, tuple)) and any(carries(one) or is_labelled(one) for one in value):
         return type(value)([frequency(what, one, angular=angular) for one in value])
-    if is_labelled(value) and not carries(value.data):
-        if "units" not in value.attrs:
-            return bare(what, value, "1/s")
+    value = value.data if is_labelled(value) and carries(value.data) else value
+    if not has_unit(value):
+        return bare(what, value, "1/s")
+    given = is_angle(value)
+    if is_labelled(value):
         text = str(value.attrs["units"]).strip()
-        given = is_angle(value) and text not in _TURNS
-        plain = value.copy()
-        plain.attrs["units"] = _TURNS.get(text, re.sub(r"\brad(ian)?s?\b", "1", text))
-        found = bare(what, plain, "1/s")
-    else:
-        held = value.data if is_labelled(value) else value
-        if not carries(held):
-            return held
-        given = is_angle(held)
-        found = bare(what, held, "rad/s" if given else "1/s")
+        given, value = given and text not in _TURNS, value.copy()
+        value.attrs["units"] = _TURNS.get(text, re.sub(r"\brad(ian)?s?\b", "1", text))
+    found = bare(what, value, "rad/s" if given and not is_labelled(value) else "1/s")
     return found * (1.0 if given == angular else 2.0 * math.pi if angular else 0.5 / math.pi)
 
 
 def bare(what: str, value: Any, unit: str | None = None) -> Any:
     """`value` in the SI unit `unit`, by default that of the parameter `what`; what carries no unit is returned as it is."""
-    unit = UNITS.get(what, "") if unit is None else unit
+    unit = UNITS.get(re.sub(" along [xy]$", "", what), "") if unit is None else unit
     value = variable_of(what, value)
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise CaseError(f"{what} has masked values: leave them out, or fill them")
-    if is_labelled(value):
-        given = value.attrs.get("units")
-        if carries(value.data):
-            return bare(what, value.data, unit)
-        numbers = np.asarray(value.data)
-        if given is None:
-            return numbers
-        if unit == "" and is_angle(value):
-            raise CaseError(_NO_ANGLE.format(what, given))
-        if unit == "K" and (scale := _unit_words.temperature(str(given).strip())) is not None:
-            _check_temperature(what, str(given), True)
-            return numbers * scale[1] + scale[0]
-        factor = factor_of(what, given, unit)
-        return numbers if factor == 1.0 else numbers * factor
     if isinstance(value, (list, tuple)) and any(carries(one) or is_labelled(one) for one in value):
         return type(value)([bare(what, one, unit) for one in value])
-    if not carries(value):
-        return value
-    wanted = "dimensionless" if unit == "" else unit
+    value = value.data if is_labelled(value) and carries(value.data) else value
+    if not has_unit(value):
+        return np.asarray(value.data) if is_labelled(value) else value
+    text = unit_text(value)
     if unit == "" and is_angle(value):
-        raise CaseError(_NO_ANGLE.format(what, unit_text(value)))
+        raise CaseError(_NO_ANGLE.format(what, text))
+    if is_labelled(value):
+        numbers = np.asarray(value.data)
+        if unit == "K" and (scale := _unit_words.temperature(text.strip())) is not None:
+            _check_temperature(what, text, True)
+            return numbers * scale[1] + scale[0]
+        factor = factor_of(what, text, unit)
+        return numbers if factor == 1.0 else numbers * factor
     if unit == "K":
-        _check_temperature(what, unit_text(value), _has_offset(value))
+        _check_temperature(what, text, _has_offset(value))
     try:
-        if hasattr(value, "m_as"):
-            return value.m_as(wanted)
-        return value.to_value(unit)
+        return value.m_as(unit or "dimensionless") if hasattr(value, "m_as") else value.to_value(unit)
     except Exception as error:  # each package has errors of its own
-        raise CaseError(f"{what} is in {unit_text(value)}, but must be {expected(unit)}: {error}") from None
+        raise CaseError(f"{what} is in {text}, but must be {expected(unit)}: {error}") from None
 
 
 def _check_temperature(what: str, text: str, offset: bool) -> None:

@@ -4,21 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
-import numpy.typing as npt
 
-from ._arrays import as_plane, field as field_of, number
-from ._core import CaseError
-
-if TYPE_CHECKING:
-    from ._arrays import Floats
-    from ._surface import Surface
+from ._arrays import ArrayLike, Floats, as_plane
+from ._declared import Table
+from ._surface import Surface, per_cell
 
 
 @dataclass(frozen=True, repr=False)
-class Wear:
+class Wear(Table):
     """Wear by Archard's law, an argument of :func:`asperity.solve`, :func:`asperity.march` and :func:`asperity.slide` (docs/wear.md).
 
     `coefficient` [m2/N]: worn volume over load and sliding distance, of the body that carries the moving surfaces, or a pair, of that body
@@ -39,36 +34,17 @@ class Wear:
     _: KW_ONLY
     velocity: Any = None
     threshold: float = 0.0
-    map: npt.ArrayLike | None = None
+    map: ArrayLike | None = None
     cycles_per_step: float = 1.0
     cycles_tolerance: float | None = None
     depth_limit: float | None = None
 
-    def __repr__(self) -> str:
-        others = {"velocity": None, "threshold": 0.0, "map": None, "cycles_per_step": 1.0, "cycles_tolerance": None, "depth_limit": None}
-        given = {name: getattr(self, name) for name in others}
-        shown = {name: f"<array of {np.shape(value)}>" if name == "map" else repr(value) for name, value in given.items() if value is not None and (name == "map" or value != others[name])}
-        return f"Wear({', '.join([repr(self.coefficient), *(f'{name}={value}' for name, value in shown.items())])})"
-
     def _parts(self, shape: Surface, history: Callable[[str, Any], dict[str, Any]]) -> tuple[dict[str, Any], dict[str, Floats]]:
         """The keys of `[wear]`, and the arrays that they name; `history` gives the keys of one."""
-        pair = isinstance(self.coefficient, (tuple, list, np.ndarray))
-        if pair and np.shape(self.coefficient) != (2,):
-            raise CaseError(f"wear coefficient is {self.coefficient!r}, but must be a number [m2/N], or a pair of them, of the body and of the counterbody")
-        keys: dict[str, Any] = {"coefficient": [number("wear coefficient", k) for k in self.coefficient] if pair else number("wear coefficient", self.coefficient)}  # type: ignore[union-attr]
+        keys = self._keys
         if self.velocity is not None:
             keys["velocity"] = history("velocity", self.velocity)
-        if self.threshold != 0.0:
-            keys["threshold"] = number("threshold", self.threshold)
-        if self.cycles_per_step != 1.0:
-            keys["cycles_per_step"] = number("cycles_per_step", self.cycles_per_step)
-        if self.cycles_tolerance is not None:
-            keys["cycles_tolerance"] = number("cycles_tolerance", self.cycles_tolerance)
-        if self.depth_limit is not None:
-            keys["depth_limit"] = number("depth_limit", self.depth_limit)
         if self.map is None:
             return keys, {}
-        cells = field_of("wear map", self.map, line=True, size=shape.size)
-        if cells.shape != shape.cells:
-            raise CaseError(f"the map of wear has shape {cells.shape}, but must have {shape.cells}: one factor for each cell")
-        return {**keys, "array": "wear"}, {"wear": as_plane(cells)}
+        keys["array"] = "wear"
+        return keys, {"wear": as_plane(per_cell("wear map", keys.pop("map"), shape, ""))}

@@ -186,6 +186,34 @@ fn the_course_converges_with_the_steps() {
 /// Below the threshold nothing wears; on a body that hardly yields each cell presses by its own overlap: p = p_0 + (w - h)/κ where it
 /// wears.
 #[test]
+fn the_load_works_on_what_wears() {
+    let grid = Grid::new([24, 24], [1.0, 1.0]).unwrap();
+    for creep in [Creep::elastic(1e-3), Creep { terms: vec![CreepTerm::new(1e-3, 0.3)], ..Creep::elastic(1e-3) }] {
+        let history = History::Ramp { value: 2.0, duration: 1.0 };
+        let simulation = Simulation {
+            boundary: Boundary::Periodic,
+            creep,
+            loading: Loading { control: Control::Load, history }.into(),
+            quantities: Quantities::of([Quantity::ExternalWork, Quantity::ElasticEnergy]),
+            ..sliding(grid, rough(&grid), 1.0, [2e-3, 0.0], 2.0, 40)
+        };
+        let mut march = March::new(simulation).unwrap();
+        let (mut work, mut told, mut before): (f64, f64, Option<[f64; 2]>) = (0.0, 0.0, None);
+        while let Some(step) = march.advance().unwrap() {
+            let row = step.row();
+            if let Some([load, approach]) = before {
+                work += 0.5 * (load + row.load) * (row.approach - approach);
+            }
+            before = Some([row.load, row.approach]);
+            told = step.quantity(Quantity::ExternalWork).unwrap()[0];
+            assert!(told >= step.quantity(Quantity::ElasticEnergy).unwrap()[0] * (1.0 - 1e-9));
+        }
+        // ∫ W dw by the trapezoidal rule, which has an error of second order in the 40 steps.
+        assert!((told / work - 1.0).abs() < 0.02, "{told} {work}");
+    }
+}
+
+#[test]
 fn a_threshold_keeps_cells_from_wearing() {
     let grid = Grid::new([32, 32], [1.0, 1.0]).unwrap();
     let gap = undeformed_gap(&grid, &[sphere(1.0)]).unwrap();

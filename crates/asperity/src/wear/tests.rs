@@ -188,7 +188,10 @@ fn the_course_converges_with_the_steps() {
 #[test]
 fn the_load_works_on_what_wears() {
     let grid = Grid::new([24, 24], [1.0, 1.0]).unwrap();
-    for creep in [Creep::elastic(1e-3), Creep { terms: vec![CreepTerm::new(1e-3, 0.3)], ..Creep::elastic(1e-3) }] {
+    for creep in [
+        Creep::elastic(1e-3),
+        Creep { terms: vec![CreepTerm { compliance: 1e-3, retardation_time: 0.3 }], ..Creep::elastic(1e-3) },
+    ] {
         let history = History::Ramp { value: 2.0, duration: 1.0 };
         let simulation = Simulation {
             boundary: Boundary::Periodic,

@@ -24,8 +24,10 @@ impl ProjectedCg {
         self.working.fill(u8::MAX);
         self.working_old.fill(u8::MAX);
         match start {
-            Start::Displacement { feasible: true } => {}
-            Start::Displacement { feasible: false } if self.step_onto_bounds(search) => {}
+            // A contact that moves may take cells with it that cannot touch any more.
+            Start::Displacement { feasible }
+                if !presses_on_nothing(search.problem, search.state)
+                    && (feasible || self.step_onto_bounds(search)) => {}
             _ => {
                 let cell_area = search.operator.grid().cell_area();
                 make_feasible(search.problem, cell_area, search.state, &mut self.working)?;
@@ -45,6 +47,13 @@ impl ProjectedCg {
         self.advance(search, step, 1.0);
         true
     }
+}
+
+/// Whether a cell has a pressure that cannot touch.
+fn presses_on_nothing(problem: &Problem, state: &ContactState) -> bool {
+    let of_cell = |p: f64, h: f64| f64::from(u8::from(p != 0.0 && h == f64::INFINITY));
+    let [cells] = sums((&state.pressure[..], problem.gap), |(p, h)| [of_cell(p, h)]);
+    cells > 0.0
 }
 
 /// Makes `state.pressure` feasible: zero where nothing can touch, within \[0, H\], with the load W. A pressure of zero

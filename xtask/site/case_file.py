@@ -15,6 +15,8 @@ class Reference:
         #: Definitions with keys of their own that tables have named and that still need a section, in order.
         self.waiting = []
         self.done = set()
+        #: The keys of the tables whose sections are those of these definitions.
+        self.tables = {}
 
     def page(self, schema):
         lines = [
@@ -25,6 +27,7 @@ class Reference:
             "[gallery](../gallery.md) have whole cases.",
             "",
         ]
+        self.tables = {name: key for key, value in schema["properties"].items() if (name := self.target(value))}
         for key, value in schema["properties"].items():
             name = self.target(value)
             if name is None:
@@ -76,9 +79,9 @@ class Reference:
         if "$ref" in value:
             name, definition = self.target(value), self.resolved(value)
             if described(definition):
-                if name not in self.done and name not in self.waiting:
+                if name not in self.tables and name not in self.done and name not in self.waiting:
                     self.waiting.append(name)
-                return f"[{words(name)}](#{name.lower()})"
+                return f"[{words(name)}](#{self.tables.get(name, name.lower())})"
             if values := choices(definition):
                 return cell(" \\| ".join(f"`\"{v}\"`" for v in values))
             return words(name)

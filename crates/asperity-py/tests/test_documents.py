@@ -3,12 +3,14 @@
 import contextlib
 import io
 import re
+import runpy
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[3]
-DOCUMENTS = ["README.md", "crates/asperity-py/README.md", "docs/python.md", "docs/compare.md", "docs/stress.md", "docs/sliding.md"]
+#: docs/start.md goes on with results of the command.
+DOCUMENTS = ["README.md", "crates/asperity-py/README.md", *sorted(f"docs/{path.name}" for path in ROOT.glob("docs/*.md") if path.stem != "start")]
 #: Of the README only this: the rest shows results that take long.
 README = "In Python"
 
@@ -58,3 +60,11 @@ def there(module):
     except ImportError:
         return False
     return True
+
+
+def test_every_public_name_has_a_topic_on_the_site():
+    path = ROOT / "xtask/site/python_reference.py"
+    if not path.exists():
+        pytest.skip("no site here")
+    reference = runpy.run_path(str(path))
+    assert reference["pages"](ROOT, lambda place, text: None)

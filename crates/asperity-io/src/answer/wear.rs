@@ -102,9 +102,13 @@ fn reached(limit: f64, depth: &[f64], way: &[f64], from: Option<usize>) -> Optio
     };
     let grows = depth[end] - depth[first];
     let is_inside = depth[end] >= limit;
-    if is_inside && depth[first] > 0.0 && way[first] > 0.0 {
-        let power = (way[end] / way[first]).ln() / (depth[end] / depth[first]).ln();
-        return Some(way[first] * (limit / depth[first]).powf(power));
+    let after = if depth[first] > 0.0 && way[first] > 0.0 { end } else { end + 1 };
+    if let (true, Some(next), Some(to)) = (is_inside, depth.get(after), way.get(after)) {
+        // Before the first row that is worn as in the step after it.
+        let power = (to / way[after - 1]).ln() / (next / depth[after - 1]).ln();
+        if power.is_finite() && power > 0.0 {
+            return Some(way[after - 1] * (limit / depth[after - 1]).powf(power));
+        }
     }
     (grows > 0.0).then(|| way[first] + (limit - depth[first]) / grows * (way[end] - way[first]))
 }
@@ -119,7 +123,8 @@ mod tests {
         let between = reached(1.5, &depth, &way, None).unwrap();
         // ln 1.5/ln 2 of the way from 1 to 3 on a logarithmic scale.
         assert!((between - libm::pow(3.0, 1.5f64.ln() / 2f64.ln())).abs() < 1e-12);
-        assert_eq!(reached(0.5, &depth, &way, None), Some(0.5));
+        // Before the first one likewise: ln 3/ln 2 powers of a half.
+        assert!((reached(0.5, &depth, &way, None).unwrap() - 1.0 / 3.0).abs() < 1e-12);
         assert_eq!(reached(3.0, &depth, &way, None), Some(7.0));
         // At the mean rate since the second row.
         assert_eq!(reached(4.0, &depth, &way, Some(1)), Some(9.0));

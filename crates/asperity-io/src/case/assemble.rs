@@ -244,6 +244,9 @@ impl Document {
             for error in conditions.faults() {
                 checks.root().core::<()>(Err(error));
             }
+            if self.motion.is_none() {
+                checks.root().core(conditions.awaited());
+            }
             // A faulty fluid, or a faulty load along the surfaces, is reported already.
             let slips = self.tangential.is_some() || self.friction.is_some();
             let wears = conditions.wear.is_some() || self.wear.is_none();

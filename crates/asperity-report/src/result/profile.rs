@@ -22,11 +22,16 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
     let row = ((at / length * cells as f64) as usize).min(cells - 1);
     let place: Vec<f64> =
         (0..grid.cells()[along]).map(|i| (i as f64 + 0.5) * grid.spacing()[along]).collect();
+    let end = grid.size()[along];
     let kept = &reader.header().fields;
     let mut figure = Figure::new("").columns(1).panel_size(super::line::PANEL);
     let title = no_contact(reader, index)?;
     let panel = |quantity: &str, unit: &str| {
-        Curves::new(title.as_str(), Axis::linear(name[0].to_string(), "m"), Axis::linear(quantity, unit))
+        Curves::new(
+            title.as_str(),
+            Axis::linear(name[0].to_string(), "m").between(0.0, end),
+            Axis::linear(quantity, unit),
+        )
     };
     let of = |values: &Array2<f64>| values.index_axis(Side(1 - along), row).to_vec();
     if kept.contains(&FieldKind::Pressure) {

@@ -92,10 +92,15 @@ pub(super) struct Rows {
     early: Option<[usize; 2]>,
     uneven: Option<[usize; 2]>,
     length: f64,
+    /// Time \[s\] and heat \[W\] of each row.
+    powers: Vec<[f64; 2]>,
 }
 
-/// How far the velocity may be from that of the last contact length, as a factor.
-const EVEN: f64 = 2.0;
+/// How far velocity and heat may be from those before that the temperatures remember, as a factor.
+const EVEN: f64 = 1.25;
+/// The track remembers so many contact lengths, and the slider so many times that heat takes over the contact.
+const LENGTHS: f64 = 4.0;
+const TIMES: f64 = 10.0;
 
 impl Rows {
     pub(super) fn see(&mut self, step: &Step<'_>, row: &Row) {
@@ -111,6 +116,7 @@ impl Rows {
             return;
         };
         let (path, time) = (&motion.path, row.coordinate.value());
+        self.powers.push([time, found.power]);
         let moved = path.travel(0.0, time);
         if moved == 0.0 {
             return;
@@ -128,12 +134,17 @@ impl Rows {
                 (width, slow)
             }
         };
-        if moved < way || time - path.start() < duration {
-            self.length = way;
-            extend(&mut self.early, step.index());
-        } else if way > 0.0 && !is_even(path, time, way, speed) || speed == 0.0 {
+        let [lengths, times] = if flash.heated_for.is_some() { [1.0; 2] } else { [LENGTHS, TIMES] };
+        let remembered = (lengths * way).min(moved);
+        let since = start_of(path, time, remembered).min(time - times * duration);
+        let hottest =
+            self.powers.iter().filter(|row| row[0] >= since).fold(0.0, |most: f64, row| most.max(row[1]));
+        if hottest > EVEN * found.power || !goes_one_way(path, time, remembered) {
             self.length = way;
             extend(&mut self.uneven, step.index());
+        } else if moved < way || time - path.start() < duration {
+            self.length = way;
+            extend(&mut self.early, step.index());
         }
     }
 
@@ -170,7 +181,8 @@ impl Rows {
             Finding::warning(FLASH_STEADY, self.length, f64::NAN, words(at, why)).at(at).as_note()
         });
         let uneven = self.uneven.map(|at| {
-            let why = "they may be too low: the bodies have slowed down or turned back within the last contact length";
+            let why = "they may be too low: there was more heat within the last few contact lengths, or before in the slider, or the bodies \
+                       have turned back";
             Finding::warning(FLASH_STEADY, self.length, f64::NAN, words(at, why)).at(at)
         });
         hot.into_iter().chain(several).chain(early).chain(uneven).collect()
@@ -189,16 +201,19 @@ impl Rows {
     }
 }
 
-/// Whether the last `way` before a time was one way, at about this speed.
-fn is_even(path: &Path, time: f64, way: f64, speed: f64) -> bool {
+/// When the last `way` before a time began \[s\].
+fn start_of(path: &Path, time: f64, way: f64) -> f64 {
     let [mut before, mut after] = [0.0, time];
     for _ in 0..40 {
         let middle = 0.5 * (before + after);
         if path.travel(middle, time) > way { before = middle } else { after = middle }
     }
-    let gone = (path.position(time) - path.position(before)).abs();
-    let mean = way / (time - before);
-    gone > (1.0 - 1e-6) * way && speed < EVEN * mean && mean < EVEN * speed
+    before
+}
+
+/// Whether the last `way` before a time was one way.
+fn goes_one_way(path: &Path, time: f64, way: f64) -> bool {
+    (path.position(time) - path.position(start_of(path, time, way))).abs() > (1.0 - 1e-6) * way
 }
 
 #[cfg(test)]
@@ -207,12 +222,15 @@ mod tests {
     use crate::load::History;
 
     #[test]
-    fn a_stroke_is_even_while_it_goes_one_way_at_one_speed() {
+    fn a_stroke_goes_one_way_until_it_turns() {
         let sine =
             Path::of_velocity(History::Sine { mean: 0.0, amplitude: 1.0, frequency: 0.25 }, 0.0).unwrap();
         // The stroke is 4/π long and turns at 2 s.
-        assert!(is_even(&sine, 1.0, 0.5, 1.0) && !is_even(&sine, 1.95, 0.5, sine.velocity(1.95).abs()));
-        assert!(!is_even(&sine, 2.3, 0.5, sine.velocity(2.3).abs()) && is_even(&sine, 3.0, 0.5, 1.0));
-        assert!(!is_even(&sine, 3.0, 2.0, 1.0));
+        assert!(goes_one_way(&sine, 1.0, 0.5) && goes_one_way(&sine, 1.95, 0.5));
+        assert!(
+            !goes_one_way(&sine, 2.3, 0.5) && goes_one_way(&sine, 3.0, 0.5) && !goes_one_way(&sine, 3.0, 2.0)
+        );
+        // The last quarter of a unit before the middle of the stroke takes its way at about unit speed.
+        assert!((start_of(&sine, 1.0, 0.25) - 0.75).abs() < 0.01);
     }
 }

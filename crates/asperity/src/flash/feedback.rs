@@ -57,8 +57,8 @@ pub(crate) fn settle(velocity: f64, start: f64, mut rise_at: impl FnMut(f64) -> 
 /// Another rise than `x` at which the surfaces may be steady, as far as the heat tells: T in proportion to `heat`, which is 1 at x. The
 /// largest of several.
 pub(crate) fn another(x: f64, heat: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-    // Rises over four decades around x; each ten per cent beyond the one before.
-    const STEPS: i32 = 48;
+    // Rises over four decades to both sides of x, each ten per cent beyond the one before.
+    const STEPS: i32 = 96;
     let at = |n: i32| x * libm::pow(1.1, f64::from(n));
     let is_warming = |n: i32| heat(at(n)).map(|heat| heat * x > at(n));
     // A steady state lies where less warming follows more; that of x itself is not one of these.

@@ -270,6 +270,26 @@ impl Process for Wearing {
         (!recession.is_none() && yields > 0.0).then(|| misplaced / (yields + wears))
     }
 
+    fn preview(&mut self, quantity: Quantity, row: &mut Solved<'_>) -> Result<Option<f64>> {
+        if self.sliding == Sliding::Slip {
+            return Ok(None);
+        }
+        let share = match quantity {
+            Quantity::WearDistance => {
+                let way = self.law.distance(&self.simulation, row.step.start, row.step.instant.time);
+                return Ok(Some(self.numbers.distance + way));
+            }
+            Quantity::WearVolume => 1.0,
+            Quantity::CounterbodyWearVolume => self.law.shares()[1],
+            _ => return Ok(None),
+        };
+        let recession = &row.undeformed.recession;
+        let cells = (row.contact, recession.per_pressure());
+        let [depths] = sums(cells, |(p, k)| [crate::wear::depth(p, k, recession.threshold)]);
+        let before = if share == 1.0 { self.numbers.volume } else { self.numbers.counterbody };
+        Ok(Some(before + share * depths * self.simulation.grid.cell_area()))
+    }
+
     fn quantity(&self, quantity: Quantity) -> Option<f64> {
         let numbers = &self.numbers;
         Some(match quantity {
@@ -279,6 +299,7 @@ impl Process for Wearing {
             Quantity::WearDistance => numbers.distance,
             Quantity::WearCycles => self.cycles.total(),
             Quantity::WearDepthMax => numbers.deepest,
+            Quantity::WearError if numbers.volume > 0.0 && self.cycles.are_alone() => 1.0,
             Quantity::WearError if numbers.volume > 0.0 => {
                 ((numbers.uncertain + numbers.of_load) / numbers.volume).min(1.0)
             }

@@ -30,10 +30,20 @@ impl Simulation {
             .try_for_each(|motion| motion.validate(self).map_err(|error| error.of("motion")))?;
         self.wear.iter().try_for_each(|wear| wear.validate_sliding(self))?;
         self.quantities.list.iter().try_for_each(|quantity| self.allows(*quantity))?;
+        self.awaited()?;
         self.faults().into_iter().next().map_or(Ok(()), Err)
     }
 
-    /// Everything that is wrong apart from the gap and what depends on it; the gap may still be empty. The parameters of the errors
+    /// Whether rows have what the stages wait for, as far as the motion tells.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with what stands against it.
+    pub fn awaited(&self) -> Result<()> {
+        let mut stages = self.loading.stages.iter().enumerate();
+        stages.try_for_each(|(n, stage)| self.of_stage(n, self.validate_awaited(stage)))
+    }
+
+    /// Everything that is wrong apart from the gap and what depends on it, the motion for one; the gap may still be empty. The parameters of the errors
     /// are keys of case files ("time.scheme", "load.stages\[1\].history").
     pub fn faults(&self) -> Vec<Error> {
         // The other checks rely on numbers that are valid by themselves.
@@ -286,9 +296,8 @@ impl Simulation {
         checked.map_err(|error| named(error).of(&format!("load.stages[{n}]")))
     }
 
-    /// Rows must have what a stage waits for, and can reach it.
+    /// Rows can reach what a stage waits for.
     fn validate_event(&self, stage: &Stage) -> Result<()> {
-        self.validate_awaited(stage)?;
         let (key, number, value) = match stage.until {
             None | Some(Event::ContactLost | Event::Approach(_)) => return Ok(()),
             Some(Event::Load(value)) => ("load", "load", value),

@@ -49,6 +49,11 @@ impl Cycles {
         }
     }
 
+    /// Whether no cycle can be compared with another one yet, although they stand for more.
+    pub(crate) fn are_alone(&self) -> bool {
+        self.period.is_some() && self.tolerance.is_none() && self.over < 2.0 && self.factor > 1.0
+    }
+
     /// For how many the present one stands.
     pub(crate) fn factor(&self) -> f64 {
         self.factor

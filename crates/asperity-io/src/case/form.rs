@@ -50,7 +50,7 @@ impl<W: Copy> Form<W, Vec<W>> {
             Form::Word(one) => Some((*one, None)),
             Form::List(list) => match list[..] {
                 [first, second] => Some((first, Some(second))),
-                _ => at.wrong(&format!("one value, or a list of two, of {bodies}"), ""),
+                _ => at.wrong(format!("one value, or a list of two, of {bodies}"), ""),
             },
             Form::Table(never) => match *never {},
         }

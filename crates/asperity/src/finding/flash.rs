@@ -137,8 +137,8 @@ impl Rows {
         let [lengths, times] = if flash.heated_for.is_some() { [1.0; 2] } else { [LENGTHS, TIMES] };
         let remembered = (lengths * way).min(moved);
         let since = start_of(path, time, remembered).min(time - times * duration);
-        let hottest =
-            self.powers.iter().filter(|row| row[0] >= since).fold(0.0, |most: f64, row| most.max(row[1]));
+        let remembers = self.powers.iter().rev().take_while(|row| row[0] >= since);
+        let hottest = remembers.fold(0.0, |most: f64, row| most.max(row[1]));
         if hottest > EVEN * found.power || !goes_one_way(path, time, remembered) {
             self.length = way;
             extend(&mut self.uneven, step.index());

@@ -49,7 +49,7 @@ impl ProjectedCg {
     }
 }
 
-/// Whether a cell has a pressure that cannot touch.
+/// Whether a cell that cannot touch has a pressure.
 fn presses_on_nothing(problem: &Problem, state: &ContactState) -> bool {
     let of_cell = |p: f64, h: f64| f64::from(u8::from(p != 0.0 && h == f64::INFINITY));
     let [cells] = sums((&state.pressure[..], problem.gap), |(p, h)| [of_cell(p, h)]);

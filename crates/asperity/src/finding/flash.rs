@@ -88,7 +88,8 @@ pub(super) struct Rows {
     hot: Worst,
     /// Rise of a row and another one with which the same velocity would be steady \[K\], and such rows.
     several: Option<([f64; 2], [usize; 2])>,
-    /// Rows before which the bodies have not slid long enough, or not evenly, and the contact length \[m\] of one of them.
+    /// Rows before which the bodies have not slid long enough; rows that remember more heat, or a turn; and the contact length \[m\] of
+    /// the last one of them.
     early: Option<[usize; 2]>,
     uneven: Option<[usize; 2]>,
     length: f64,
@@ -96,7 +97,7 @@ pub(super) struct Rows {
     powers: Vec<[f64; 2]>,
 }
 
-/// How far velocity and heat may be from those before that the temperatures remember, as a factor.
+/// Heat of earlier rows over that of a row, from which on its temperatures are higher than steady ones.
 const EVEN: f64 = 1.25;
 /// The track remembers so many contact lengths, and the slider so many times that heat takes over the contact.
 const LENGTHS: f64 = 4.0;
@@ -123,29 +124,26 @@ impl Rows {
         }
         let width = if simulation.grid.is_line() { row.contact_area } else { row.contact_area.sqrt() };
         let speed = path.velocity(time).abs();
-        let (way, duration) = match flash.heated_for {
-            Some(heated) => (speed * heated, heated),
-            None => {
-                let slow = if flash.partition == Partition::Track {
-                    0.0
-                } else {
-                    width * width / flash.bodies[0].diffusivity
-                };
-                (width, slow)
-            }
+        let slider_stays_cold = flash.partition == Partition::Track;
+        let (way, duration, [lengths, times]) = match flash.heated_for {
+            Some(heated) => (speed * heated, heated, [1.0; 2]),
+            None if slider_stays_cold => (width, 0.0, [LENGTHS, TIMES]),
+            None => (width, width * width / flash.bodies[0].diffusivity, [LENGTHS, TIMES]),
         };
-        let [lengths, times] = if flash.heated_for.is_some() { [1.0; 2] } else { [LENGTHS, TIMES] };
         let remembered = (lengths * way).min(moved);
-        let since = start_of(path, time, remembered).min(time - times * duration);
+        let begin = start_of(path, time, remembered);
+        let since = begin.min(time - times * duration);
         let remembers = self.powers.iter().rev().take_while(|row| row[0] >= since);
         let hottest = remembers.fold(0.0, |most: f64, row| most.max(row[1]));
-        if hottest > EVEN * found.power || !goes_one_way(path, time, remembered) {
-            self.length = way;
-            extend(&mut self.uneven, step.index());
+        let rows = if hottest > EVEN * found.power || !goes_one_way(path, [begin, time], remembered) {
+            &mut self.uneven
         } else if moved < way || time - path.start() < duration {
-            self.length = way;
-            extend(&mut self.early, step.index());
-        }
+            &mut self.early
+        } else {
+            return;
+        };
+        extend(rows, step.index());
+        self.length = way;
     }
 
     pub(super) fn findings(&self) -> Vec<Finding> {
@@ -211,9 +209,9 @@ fn start_of(path: &Path, time: f64, way: f64) -> f64 {
     before
 }
 
-/// Whether the last `way` before a time was one way.
-fn goes_one_way(path: &Path, time: f64, way: f64) -> bool {
-    (path.position(time) - path.position(start_of(path, time, way))).abs() > (1.0 - 1e-6) * way
+/// Whether the path of length `way` between two times goes one way.
+fn goes_one_way(path: &Path, [begin, end]: [f64; 2], way: f64) -> bool {
+    (path.position(end) - path.position(begin)).abs() > (1.0 - 1e-6) * way
 }
 
 #[cfg(test)]
@@ -226,10 +224,9 @@ mod tests {
         let sine =
             Path::of_velocity(History::Sine { mean: 0.0, amplitude: 1.0, frequency: 0.25 }, 0.0).unwrap();
         // The stroke is 4/π long and turns at 2 s.
-        assert!(goes_one_way(&sine, 1.0, 0.5) && goes_one_way(&sine, 1.95, 0.5));
-        assert!(
-            !goes_one_way(&sine, 2.3, 0.5) && goes_one_way(&sine, 3.0, 0.5) && !goes_one_way(&sine, 3.0, 2.0)
-        );
+        let is_one = |time, way| goes_one_way(&sine, [start_of(&sine, time, way), time], way);
+        assert!(is_one(1.0, 0.5) && is_one(1.95, 0.5));
+        assert!(!is_one(2.3, 0.5) && is_one(3.0, 0.5) && !is_one(3.0, 2.0));
         // The last quarter of a unit before the middle of the stroke takes its way at about unit speed.
         assert!((start_of(&sine, 1.0, 0.25) - 0.75).abs() < 0.01);
     }

@@ -219,6 +219,18 @@ impl Error {
     }
 }
 
+/// Names the argument that an error concerns: see [`Error::of`].
+pub(crate) trait Of {
+    /// The same, with an error for the argument `outer` or one inside it.
+    fn of(self, outer: &str) -> Self;
+}
+
+impl<T> Of for Result<T> {
+    fn of(self, outer: &str) -> Self {
+        self.map_err(|error| error.of(outer))
+    }
+}
+
 /// The error that `what` is `value`, but must be `expected`, unless `holds` is true.
 pub(crate) fn require(
     holds: bool,

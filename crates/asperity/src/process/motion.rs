@@ -7,7 +7,7 @@
 use ndarray::{Array2, ArrayView2};
 
 use super::{Process, Solved};
-use crate::error::{Result, require, significant};
+use crate::error::{Of, Result, require, significant};
 use crate::flash::{FlashSolver, Rise, Rubbing};
 use crate::grid::Boundary;
 use crate::material::Creep;
@@ -38,8 +38,7 @@ impl Motion {
     /// [`Error::Invalid`](crate::Error::Invalid) where it is not above 0 and at most 8.
     pub fn check_cells_per_step(cells: f64) -> Result<()> {
         let fine = cells > 0.0 && cells <= 8.0;
-        require(fine, "cells_per_step", cells, "greater than 0 and at most 8")
-            .map_err(|error| error.of("cells_per_step"))
+        require(fine, "cells_per_step", cells, "greater than 0 and at most 8").of("cells_per_step")
     }
 
     /// Length of a step along the path, at most \[m\].
@@ -65,7 +64,7 @@ impl Motion {
             self.cells_per_step,
             "at most 1: longer steps wear stripes",
         )
-        .map_err(|error| error.of("cells_per_step"))?;
+        .of("cells_per_step")?;
         let stops = self.stops(simulation)?;
         require(
             simulation.scheme == Scheme::Linear,
@@ -77,10 +76,7 @@ impl Motion {
         let cap = simulation.plasticity == Plasticity::Cap;
         require(cap, "plasticity of a contact in motion", "accumulate", expected)?;
         self.direction.validate(simulation)?;
-        self.shear_stress
-            .iter()
-            .try_for_each(ShearStress::validate)
-            .map_err(|error| error.of("shear_stress"))?;
+        self.shear_stress.iter().try_for_each(ShearStress::validate).of("shear_stress")?;
         if simulation.boundary == Boundary::Free {
             let axis = self.direction.axis();
             let (length, start) = (simulation.grid.size()[axis], self.gap.centre()[axis]);

@@ -55,7 +55,7 @@ mod stiffness;
 
 use ndarray::Array2;
 
-use crate::error::{Result, positive, require};
+use crate::error::{Of, Result, positive, require};
 use crate::grid::Grid;
 
 pub(crate) use eccentricity::eccentricity;
@@ -590,7 +590,7 @@ impl Quantities {
         }
         let possible = (1..=MOST_BINS).contains(&self.bins);
         require(possible, "bins of the histograms", self.bins, format!("between 1 and {MOST_BINS}"))
-            .map_err(|error| error.of("histogram.bins"))?;
+            .of("histogram.bins")?;
         if let (true, Some(top)) = (self.has(Quantity::PressureHistogram), self.largest_pressure) {
             positive(PRESSURE_END, top, "Pa")?;
         }
@@ -600,7 +600,7 @@ impl Quantities {
         let is_bounded = !self.has(Quantity::PressureHistogram) || self.largest_pressure.is_some() || capped;
         let expected =
             "a pressure, as the bodies have no hardness that bounds it: histogram = { pressure = \"...\" }";
-        require(is_bounded, PRESSURE_END, "not given", expected).map_err(|error| error.of("quantities"))
+        require(is_bounded, PRESSURE_END, "not given", expected).of("quantities")
     }
 
     /// The quantities with their bins, for an undeformed gap \[m\] and a largest hardness \[Pa\] (infinite if there is none).

@@ -22,7 +22,7 @@
 //! (2017) 69 (exponential).
 
 use super::{SurfaceTraction, TractionLaw};
-use crate::error::{Error, Result, positive, require};
+use crate::error::{Error, Of, Result, positive, require};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
 use crate::operator::plan;
@@ -129,8 +129,8 @@ impl Adhesion {
             format!("{work} J/m2"),
             "0 J/m2 or more",
         )
-        .map_err(|error| error.of("work"))?;
-        positive("range of the adhesion", self.range, "m").map_err(|error| error.of("range"))?;
+        .of("work")?;
+        positive("range of the adhesion", self.range, "m").of("range")?;
         let strength = self.strength();
         require(
             strength.is_finite(),
@@ -138,7 +138,7 @@ impl Adhesion {
             format!("{strength} Pa"),
             "finite; enlarge the range",
         )
-        .map_err(|error| error.of("range"))?;
+        .of("range")?;
         let tolerance = self.tolerance;
         require(
             (1e-14..=0.1).contains(&tolerance),
@@ -146,7 +146,7 @@ impl Adhesion {
             tolerance,
             "from 1e-14 to 0.1",
         )
-        .map_err(|error| error.of("tolerance"))
+        .of("tolerance")
     }
 }
 
@@ -197,7 +197,7 @@ impl TractionLaw for Adhesion {
     }
 
     fn check(&self, simulation: &Simulation) -> Result<()> {
-        self.validate().map_err(|error| error.of("adhesion"))?;
+        self.validate().of("adhesion")?;
         if simulation.motion.is_some() {
             let expected = "none: adhesion acts between surfaces that do not slide";
             return Err(Error::invalid("motion of an adhesive contact", "given", expected).of("motion"));

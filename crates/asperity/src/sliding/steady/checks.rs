@@ -1,7 +1,7 @@
 //! What can be known of a sweep before its first velocity.
 
 use super::SteadyMotion;
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Of, Result, require};
 use crate::grid::Boundary;
 use crate::load::{Control, Course, History, Stage};
 use crate::simulation::Simulation;
@@ -29,11 +29,7 @@ fn validate(simulation: &Simulation, motion: &SteadyMotion) -> Result<()> {
     let shape = format!("{:?}", motion.slopes.x.dim());
     require(fits, "shape of the slopes", shape, format!("{:?}, that of the grid", grid.shape()))?;
     motion.direction.validate(simulation)?;
-    motion
-        .shear_stress
-        .iter()
-        .try_for_each(ShearStress::validate)
-        .map_err(|error| error.of("shear_stress"))?;
+    motion.shear_stress.iter().try_for_each(ShearStress::validate).of("shear_stress")?;
     require(
         simulation.layers.is_none(),
         "body of a steady state of motion",

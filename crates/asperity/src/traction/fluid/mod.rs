@@ -39,7 +39,7 @@ pub use opening::OpeningPressure;
 pub use pockets::Pockets;
 
 use super::{SurfaceTraction, TractionLaw};
-use crate::error::{Error, Result, non_negative, require};
+use crate::error::{Error, Of, Result, non_negative, require};
 use crate::grid::Grid;
 use crate::leakage::{
     CellKind, Direction, FlowOptions, Gas, Opening, Passages, Previous, Rarefaction, Sides, factor_bytes,
@@ -102,24 +102,22 @@ impl FluidPressure {
     /// # Errors
     /// [`Error::Invalid`] that names the argument.
     fn validate(&self, end: f64) -> Result<()> {
-        let of = |key: &'static str| move |error: Error| error.of(key);
-        let outlet = non_negative("pressure of the outlet", self.outlet, "Pa").map_err(of("outlet"))?;
+        let outlet = non_negative("pressure of the outlet", self.outlet, "Pa").of("outlet")?;
         let [least, most] = self.inlet.range(end);
         let holds = least.is_finite() && most.is_finite() && least >= outlet;
         let expected = format!(
             "not below that of the outlet, {outlet} Pa, at all times; exchange them for a flow in the other direction"
         );
-        require(holds, "pressure of the inlet", format!("{least} Pa"), expected).map_err(of("inlet"))?;
+        require(holds, "pressure of the inlet", format!("{least} Pa"), expected).of("inlet")?;
         let jump = self.inlet.breaks(end).into_iter().find(|t| self.inlet.before(*t) != self.inlet.after(*t));
         let expected = "none: give the change a time, as a ramp";
         require(jump.is_none(), "jump of the pressure of the inlet", jump.map_or(0.0, |t| t), expected)
-            .map_err(of("inlet"))?;
+            .of("inlet")?;
         let lowest = format!("{} Pa", self.reference);
         let expected = "0 (vacuum) up to the pressure of the outlet";
         require((0.0..=outlet).contains(&self.reference), "reference of the pressure", lowest, expected)
-            .map_err(of("reference"))?;
-        non_negative("smallest gap that lets the fluid pass", self.smallest_gap, "m")
-            .map_err(of("smallest_gap"))?;
+            .of("reference")?;
+        non_negative("smallest gap that lets the fluid pass", self.smallest_gap, "m").of("smallest_gap")?;
         if let Action::Gaps(pockets) = self.action {
             pockets.validate(self.smallest_gap)?;
         }
@@ -131,7 +129,7 @@ impl FluidPressure {
         };
         let given = modulus.map_or("none".to_owned(), |modulus| format!("{modulus} Pa"));
         let expected = "positive and finite for a liquid in sealed pockets, and none else";
-        require(sound, "bulk modulus", given, expected).map_err(of("bulk_modulus"))
+        require(sound, "bulk modulus", given, expected).of("bulk_modulus")
     }
 
     /// The pressure of the inlet \[Pa, absolute\] from which on a film without contact on a periodic domain does not hold a mean pressure
@@ -190,7 +188,7 @@ impl TractionLaw for FluidPressure {
 
     fn check(&self, simulation: &Simulation) -> Result<()> {
         let end = simulation.times.end();
-        self.validate(end).map_err(|error| error.of("leakage"))?;
+        self.validate(end).of("leakage")?;
         if simulation.motion.is_some() {
             let expected = "none: the flow that a sliding surface drags along is not solved";
             return Err(
@@ -200,18 +198,16 @@ impl TractionLaw for FluidPressure {
         let untouchable = simulation.gap.iter().any(|h| !h.is_finite());
         let expected = "finite: fluid acts on all of the domain. Cut the surface, or fill its holes";
         require(!untouchable, "gap of cells that a fluid acts on", "infinite in places", expected)
-            .map_err(|error| error.of("leakage.coupling"))?;
+            .of("leakage.coupling")?;
         let is_limited = simulation.hardness.is_finite() || simulation.hardness_of_cells().is_some();
         let expected =
             "\"kept\" or \"drained\" where the hardness limits the pressure: a sealed pocket may exceed it";
         let sealed = self.action == Action::Gaps(Pockets::Sealed);
-        require(!(sealed && is_limited), "pockets", "\"sealed\"", expected)
-            .map_err(|error| error.of("leakage.pockets"))?;
+        require(!(sealed && is_limited), "pockets", "\"sealed\"", expected).of("leakage.pockets")?;
         let most = self.inlet.range(end)[1] - self.reference;
         let hardness = simulation.hardness_of_cells().map_or(simulation.hardness, |cells| minimum(&cells));
         let expected = format!("more than the pressure of the fluid, {most} Pa: no contact could hold it");
-        require(hardness > most, "hardness", format!("{hardness} Pa"), expected)
-            .map_err(|error| error.of("leakage.inlet"))
+        require(hardness > most, "hardness", format!("{hardness} Pa"), expected).of("leakage.inlet")
     }
 }
 

@@ -163,10 +163,9 @@ pub struct NotConverged {
 
 impl NotConverged {
     /// A solve other than that of the contact, which has no certificate.
-    pub(crate) fn of(method: &'static str, iterations: usize, residual: f64, tolerance: f64) -> Error {
+    pub(crate) fn of(method: &'static str, iterations: usize, residual: f64, tolerance: f64) -> Self {
         let certificate = f64::NAN;
         NotConverged { method, iterations, residual, tolerance, certificate, time: None, velocity: None }
-            .into()
     }
 }
 
@@ -191,6 +190,17 @@ impl Error {
         if let Error::Invalid { parameter, .. } | Error::Infeasible { parameter, .. } = &mut error {
             let dot = if parameter.is_empty() { "" } else { "." };
             *parameter = format!("{outer}{dot}{parameter}");
+        }
+        error
+    }
+
+    /// The same error, of a solve at this time \[s\].
+    pub(crate) fn at(self, now: f64) -> Self {
+        let mut error = self;
+        match &mut error {
+            Error::NotConverged(report) => report.time = Some(now),
+            Error::PulledOff { time, .. } | Error::LiftedOff { time, .. } => *time = now,
+            _ => {}
         }
         error
     }

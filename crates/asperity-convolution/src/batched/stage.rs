@@ -70,25 +70,14 @@ impl<T: Scalar> Stage<T> {
         }
     }
 
-    /// An inner pass on the way down, in place.
+    /// An inner pass in place: by decimation in frequency on the way down, in time on the way up (`UP`).
     #[inline(always)]
-    pub fn decimate_in_frequency<V: Vector<Scalar = T>>(&self, block: &mut [Complex<V>]) {
+    pub fn inner_pass<V: Vector<Scalar = T>, const UP: bool>(&self, block: &mut [Complex<V>]) {
         match self.radix {
-            8 => self.down::<V, 8>(block),
-            5 => self.down::<V, 5>(block),
-            4 => self.down::<V, 4>(block),
-            _ => self.down::<V, 3>(block),
-        }
-    }
-
-    /// An inner pass on the way up, in place.
-    #[inline(always)]
-    pub fn decimate_in_time<V: Vector<Scalar = T>>(&self, block: &mut [Complex<V>]) {
-        match self.radix {
-            8 => self.up::<V, 8>(block),
-            5 => self.up::<V, 5>(block),
-            4 => self.up::<V, 4>(block),
-            _ => self.up::<V, 3>(block),
+            8 => self.inner_pass_of::<V, UP, 8>(block),
+            5 => self.inner_pass_of::<V, UP, 5>(block),
+            4 => self.inner_pass_of::<V, UP, 4>(block),
+            _ => self.inner_pass_of::<V, UP, 3>(block),
         }
     }
 
@@ -127,24 +116,17 @@ impl<T: Scalar> Stage<T> {
     }
 
     #[inline(always)]
-    fn down<V: Vector<Scalar = T>, const R: usize>(&self, block: &mut [Complex<V>])
+    fn inner_pass_of<V: Vector<Scalar = T>, const UP: bool, const R: usize>(&self, block: &mut [Complex<V>])
     where
         Whole<R>: Butterfly<V, R, R>,
     {
         let mut parts = Parts::<V, R>::of(block);
         for (j, w) in (0..parts.length()).zip(self.roots.chunks_exact(R - 1)) {
-            parts.store(j, rotated(Whole::<R>::transform(parts.load(j)), w));
-        }
-    }
-
-    #[inline(always)]
-    fn up<V: Vector<Scalar = T>, const R: usize>(&self, block: &mut [Complex<V>])
-    where
-        Whole<R>: Butterfly<V, R, R>,
-    {
-        let mut parts = Parts::<V, R>::of(block);
-        for (j, w) in (0..parts.length()).zip(self.roots.chunks_exact(R - 1)) {
-            parts.store(j, Whole::<R>::transform(rotated(parts.load(j), w)));
+            let x = parts.load(j);
+            parts.store(j, match UP {
+                true => Whole::<R>::transform(rotated(x, w)),
+                false => rotated(Whole::<R>::transform(x), w),
+            });
         }
     }
 }

@@ -161,7 +161,7 @@ impl<T: Scalar> Transform<T> {
             ahead.advance();
             if DOWN {
                 for stage in self.inner.iter().filter(|stage| start.is_multiple_of(stage.span)) {
-                    stage.decimate_in_frequency(&mut part[start..start + stage.span]);
+                    stage.inner_pass::<V, false>(&mut part[start..start + stage.span]);
                 }
             }
             let leaves = &mut part[start..end];
@@ -175,7 +175,7 @@ impl<T: Scalar> Transform<T> {
             }
             if UP {
                 for stage in self.inner.iter().rev().filter(|stage| end.is_multiple_of(stage.span)) {
-                    stage.decimate_in_time(&mut part[end - stage.span..end]);
+                    stage.inner_pass::<V, true>(&mut part[end - stage.span..end]);
                 }
             }
             start = end;

@@ -68,7 +68,7 @@ impl PolonskyKeer {
                 return Ok(outcome);
             }
             if iteration == options.max_iterations {
-                return Err(not_converged("polonsky-keer", options, &outcome));
+                return Err(not_converged("polonsky-keer", options, &outcome).into());
             }
             stop_at(interrupt)?;
             iteration += 1;
@@ -84,7 +84,7 @@ impl PolonskyKeer {
             if stalled {
                 if !self.gradient_step(operator, problem, state, &mut gradient_length) {
                     // Nothing descends: rounding is all that is left.
-                    return Err(not_converged("polonsky-keer", options, &outcome));
+                    return Err(not_converged("polonsky-keer", options, &outcome).into());
                 }
                 convolutions += 1;
                 memory = 0.0;
@@ -101,7 +101,7 @@ impl PolonskyKeer {
                 if let Some(target) = problem.sum(grid.cell_area()) {
                     let p = &mut state.pressure;
                     if set_sum(p, &self.touchable, problem.hardness, target).is_none() {
-                        return Err(not_converged("polonsky-keer", options, &outcome));
+                        return Err(not_converged("polonsky-keer", options, &outcome).into());
                     }
                 }
                 operator.apply_into(&state.pressure, &mut state.unit_displacement);

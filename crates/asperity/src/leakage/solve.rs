@@ -170,5 +170,6 @@ pub(super) fn solve(
         options.max_iterations,
         (dot(&r, &r) / dot(b, b)).sqrt(),
         share,
-    ))
+    )
+    .into())
 }

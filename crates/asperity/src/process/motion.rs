@@ -14,7 +14,7 @@ use crate::material::Creep;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Scheme, Simulation};
 use crate::sliding::{ContactForces, Direction, Friction, MovingGap, Path, ShearStress, Slopes};
-use crate::step::{Interval, Loader, Saver, UndeformedGap};
+use crate::step::{Interval, Loader, Saver, UndeformedGap, saved};
 
 /// How a contact moves.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,6 +141,15 @@ impl Swing {
     }
 }
 
+saved! {
+    Moving {
+        "distance": before;
+        "force": friction.force;
+        "time_error": time_error;
+        "swing": swing.start, swing.errors;
+    }
+}
+
 impl Moving {
     pub(super) fn new(simulation: &Simulation, motion: &Motion) -> Self {
         let (_, slopes) = motion.gap.at(0.0, motion.direction);
@@ -257,19 +266,13 @@ impl Process for Moving {
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
-        to.value("distance", &self.before);
-        to.value("force", &self.friction.force);
-        to.value("time_error", &self.time_error);
-        to.values("swing", &[&self.swing.start, &self.swing.errors[0], &self.swing.errors[1]]);
+        self.save_own(to);
     }
 
     fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
-        self.move_to(from.get("distance")?, gap);
-        self.before = self.distance;
-        self.friction.force = from.get("force")?;
-        self.time_error = from.get("time_error")?;
-        let Swing { start, errors: [now, before] } = &mut self.swing;
-        from.values_into("swing", &mut [start, now, before])
+        self.load_own(from)?;
+        self.move_to(self.before, gap);
+        Ok(())
     }
 }
 
@@ -289,18 +292,9 @@ pub fn in_contact_frame<T: Copy>(
 ) -> Array2<T> {
     let (nx, ny) = field.dim();
     Array2::from_shape_fn((nx, ny), |(i, j)| {
-        let (a, b) = (source(i, -shift[0], nx, boundary), source(j, -shift[1], ny, boundary));
-        a.zip(b).map_or(beyond, |at| field[at])
+        let at = boundary.beside(i, shift[0], nx).zip(boundary.beside(j, shift[1], ny));
+        at.map_or(beyond, |at| field[at])
     })
-}
-
-/// The cell that cell n of a field moved by `shift` cells had been.
-fn source(n: usize, shift: isize, count: usize, boundary: Boundary) -> Option<usize> {
-    let m = n as isize - shift;
-    match boundary {
-        Boundary::Periodic => Some(m.rem_euclid(count as isize) as usize),
-        Boundary::Free => (0..count as isize).contains(&m).then_some(m as usize),
-    }
 }
 
 /// `to` = `from` moved by `shift` cells; beyond the ends of a free domain there is 0.
@@ -312,12 +306,12 @@ pub(crate) fn roll(
     to: &mut [f64],
 ) {
     for (i, row) in to.chunks_mut(ny).enumerate() {
-        let Some(a) = source(i, shift[0], nx, boundary) else {
+        let Some(a) = boundary.beside(i, -shift[0], nx) else {
             row.fill(0.0);
             continue;
         };
         for (j, to) in row.iter_mut().enumerate() {
-            *to = source(j, shift[1], ny, boundary).map_or(0.0, |b| from[a * ny + b]);
+            *to = boundary.beside(j, -shift[1], ny).map_or(0.0, |b| from[a * ny + b]);
         }
     }
 }

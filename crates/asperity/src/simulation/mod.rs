@@ -133,10 +133,14 @@ impl Simulation {
     /// The rows as far as they are known beforehand: t = 0+, the steps, the breaks and jumps of the histories, those
     /// of the temperature, the ends of the stages.
     pub fn plan(&self) -> Plan {
-        let mut include = self.stops();
-        include.extend(self.motion.iter().flat_map(|motion| motion.path.breaks(self.times.end())));
-        include.extend(self.thermal.iter().flat_map(|body| body.clock.breaks(self.times.end())));
-        self.loading.plan(&self.times, &include)
+        self.loading.plan(&self.times, &[self.stops(), self.kinks()].concat())
+    }
+
+    /// The instants at which the temperature or the path of the motion has a kink.
+    pub(crate) fn kinks(&self) -> Vec<f64> {
+        let end = self.times.end();
+        let of_temperature = self.thermal.iter().flat_map(|body| body.clock.breaks(end));
+        of_temperature.chain(self.motion.iter().flat_map(|motion| motion.path.breaks(end))).collect()
     }
 
     /// The instants at which steps end in addition to those of the grid.

@@ -413,7 +413,7 @@ impl Stepper {
             recalled: Some(&*self.history),
             undeformed: Some(undeformed),
             processes: &self.processes,
-            traction: self.contact.traction(),
+            traction: self.contact.traction.as_ref(),
             ..Step::of(&self.simulation, self.contact.hardness(), (now, self.outcome), (gap, *compliance))
         }
     }

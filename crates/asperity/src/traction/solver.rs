@@ -50,24 +50,21 @@ pub(crate) struct TractionSolver {
 }
 
 /// The parts of a total traction.
-struct Tractions {
+pub(super) struct Tractions {
     /// b \[Pa\].
-    bound: Vec<f64>,
+    pub(super) bound: Vec<f64>,
     /// The contact pressure q with K q.
-    contact: ContactState,
+    pub(super) contact: ContactState,
 }
 
 impl Tractions {
-    fn none(cells: usize) -> Self {
+    pub(super) fn none(cells: usize) -> Self {
         Tractions { bound: zeros(cells), contact: ContactState::new(cells) }
     }
 
-    fn copy_from(&mut self, other: &Self) {
+    pub(super) fn copy_from(&mut self, other: &Self) {
         self.bound.copy_from_slice(&other.bound);
-        let (to, from) = (&mut self.contact, &other.contact);
-        to.pressure.copy_from_slice(&from.pressure);
-        to.unit_displacement.copy_from_slice(&from.unit_displacement);
-        (to.approach, to.rounding) = (from.approach, from.rounding);
+        self.contact.copy_from(&other.contact);
     }
 }
 
@@ -323,7 +320,7 @@ impl Run<'_> {
         }
         let options = SolverOptions { tolerance: self.tolerance, ..*self.options };
         let method = if self.own.law.is_attraction() { "adhesion" } else { "surface traction" };
-        Err(not_converged(method, &options, &self.total))
+        Err(not_converged(method, &options, &self.total).into())
     }
 
     fn pass(&mut self, problem: &Problem) -> Result<Pass> {

@@ -214,11 +214,7 @@ impl<'a> SteadyContact<'a> {
     }
 
     fn not_converged(&self) -> Error {
-        match contact::not_converged("steady motion", &self.options, &self.spent) {
-            Error::NotConverged(report) => {
-                Error::NotConverged(NotConverged { velocity: Some(self.stream.velocity), ..report })
-            }
-            other => other,
-        }
+        let report = contact::not_converged("steady motion", &self.options, &self.spent);
+        NotConverged { velocity: Some(self.stream.velocity), ..report }.into()
     }
 }

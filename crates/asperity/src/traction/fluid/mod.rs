@@ -376,7 +376,7 @@ impl SurfaceTraction for InGap {
     }
 
     fn begin_loop(&mut self) {
-        self.contents.begin_loop();
+        self.contents.sealed.iter_mut().for_each(Sealed::begin_loop);
         self.latch.clear();
         self.conductances.clear();
     }
@@ -411,7 +411,7 @@ impl SurfaceTraction for InGap {
     }
 
     fn is_settled(&self) -> bool {
-        self.latch.held() > 0 || self.contents.of_sealed().is_none_or(|sealed| sealed.is_settled())
+        self.latch.held > 0 || self.contents.sealed.as_ref().is_none_or(|sealed| sealed.is_settled())
     }
 
     fn is_displaced(&self) -> bool {
@@ -422,16 +422,16 @@ impl SurfaceTraction for InGap {
         Some(match quantity {
             Quantity::InletPressure => self.inlet,
             Quantity::Connected => f64::from(u8::from(self.percolates)),
-            Quantity::PocketArea => self.contents.cells() as f64 * self.grid.cell_area(),
-            Quantity::PocketPressureMax => self.contents.largest(),
-            Quantity::PocketVapour => self.contents.of_sealed().map_or(0.0, Sealed::vapour),
-            Quantity::LatchedCells => self.latch.held() as f64,
+            Quantity::PocketArea => self.contents.cells as f64 * self.grid.cell_area(),
+            Quantity::PocketPressureMax => self.contents.largest,
+            Quantity::PocketVapour => self.contents.sealed.as_ref().map_or(0.0, |sealed| sealed.vapour),
+            Quantity::LatchedCells => self.latch.held as f64,
             Quantity::LeakSpread => {
                 let [least, most] = self
                     .conductances
                     .iter()
                     .fold([f64::INFINITY, 0.0_f64], |[least, most], t| [least.min(*t), most.max(*t)]);
-                if self.latch.held() > 0 && most > 0.0 { (most - least) / most } else { 0.0 }
+                if self.latch.held > 0 && most > 0.0 { (most - least) / most } else { 0.0 }
             }
             _ => return None,
         })

@@ -20,7 +20,7 @@ use crate::contact::{ContactState, Hardness, Prescribed, Problem, Solver, Solver
 use crate::error::{Error, NotConverged, Result, require};
 use crate::operator::{Operator, plan};
 use crate::simulation::{Plasticity, Simulation};
-use crate::traction::SurfaceTraction;
+use crate::traction::{SurfaceTraction, Tractions};
 use asperity_sweep::{each, minimum, sum, zeros};
 
 /// The pressure is known to this share of itself above that of the outlet.
@@ -45,25 +45,8 @@ pub struct OpeningPressure {
     next: Vec<f64>,
     cap: Vec<f64>,
     /// The state of the largest pressure that holds, and that of the trial.
-    held: Wet,
-    trial: Wet,
-}
-
-/// The traction b \[Pa\] of the fluid, and the contact under it.
-struct Wet {
-    bound: Vec<f64>,
-    contact: ContactState,
-}
-
-impl Wet {
-    fn dry(cells: usize) -> Self {
-        Wet { bound: zeros(cells), contact: ContactState::new(cells) }
-    }
-
-    fn copy_from(&mut self, other: &Wet) {
-        self.bound.copy_from_slice(&other.bound);
-        self.contact.clone_from(&other.contact);
-    }
+    held: Tractions,
+    trial: Tractions,
 }
 
 impl OpeningPressure {
@@ -95,8 +78,8 @@ impl OpeningPressure {
             gap: field(),
             next: field(),
             cap: field(),
-            held: Wet::dry(grid.len()),
-            trial: Wet::dry(grid.len()),
+            held: Tractions::none(grid.len()),
+            trial: Tractions::none(grid.len()),
         })
     }
 
@@ -215,12 +198,12 @@ impl OpeningPressure {
                 return Ok(false);
             }
         }
-        Err(NotConverged::of("opening pressure", passes, f64::NAN, SMALL))
+        Err(NotConverged::of("opening pressure", passes, f64::NAN, SMALL).into())
     }
 
     /// The contact under the traction of the trial, and its gap; `false` where the fluid leaves no load to it.
     fn touch(&mut self, load: f64, interrupt: Option<&AtomicBool>) -> Result<bool> {
-        let (c, Wet { bound, contact }) = (self.compliance, &mut self.trial);
+        let (c, Tractions { bound, contact }) = (self.compliance, &mut self.trial);
         let carried = load - self.operator.grid().cell_area() * sum(bound);
         if carried <= 0.0 {
             return Ok(false);

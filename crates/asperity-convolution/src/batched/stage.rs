@@ -123,10 +123,13 @@ impl<T: Scalar> Stage<T> {
         let mut parts = Parts::<V, R>::of(block);
         for (j, w) in (0..parts.length()).zip(self.roots.chunks_exact(R - 1)) {
             let x = parts.load(j);
-            parts.store(j, match UP {
-                true => Whole::<R>::transform(rotated(x, w)),
-                false => rotated(Whole::<R>::transform(x), w),
-            });
+            parts.store(
+                j,
+                match UP {
+                    true => Whole::<R>::transform(rotated(x, w)),
+                    false => rotated(Whole::<R>::transform(x), w),
+                },
+            );
         }
     }
 }

@@ -291,29 +291,21 @@ pub(crate) fn times_with_jumps(table: &str, times: &[f64]) -> Result<()> {
 
 /// `Ok(value)` if it is finite and > 0.
 pub(crate) fn positive(what: &str, value: f64, unit: &str) -> Result<f64> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err(Error::invalid(what, value, format!("finite and greater than 0 {unit}").trim_end()))
-    }
+    let expected = format!("finite and greater than 0 {unit}");
+    require(value.is_finite() && value > 0.0, what, value, expected.trim_end()).map(|()| value)
 }
 
 /// `Ok(value)` for a valid length of a body: products of four such lengths do not overflow or underflow.
 pub(crate) fn length(what: &str, value: f64) -> Result<f64> {
     const LENGTHS: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
-    match LENGTHS.contains(&value) {
-        true => Ok(value),
-        false => Err(Error::invalid(what, value, "greater than 0 m: from 1e-60 m to 1e60 m")),
-    }
+    let expected = "greater than 0 m: from 1e-60 m to 1e60 m";
+    require(LENGTHS.contains(&value), what, value, expected).map(|()| value)
 }
 
 /// `Ok(value)` if it is finite and >= 0.
 pub(crate) fn non_negative(what: &str, value: f64, unit: &str) -> Result<f64> {
-    if value.is_finite() && value >= 0.0 {
-        Ok(value)
-    } else {
-        Err(Error::invalid(what, value, format!("finite and not less than 0 {unit}").trim_end()))
-    }
+    let expected = format!("finite and not less than 0 {unit}");
+    require(value.is_finite() && value >= 0.0, what, value, expected.trim_end()).map(|()| value)
 }
 
 /// A temperature \[K\] to a hundredth: "293.15 K".

@@ -16,7 +16,7 @@ use super::start::{make_feasible, set_sum};
 use super::{ContactState, Outcome, Prescribed, Problem, Task, not_converged, stop_at};
 use crate::error::Result;
 use crate::grid::Grid;
-use asperity_sweep::{each, each_with_sums, sums};
+use asperity_sweep::{add, each, each_with_sums, sums};
 
 /// The method's working memory: 24 bytes per cell and a set of cells.
 pub struct PolonskyKeer {
@@ -161,11 +161,6 @@ impl PolonskyKeer {
         });
         changes > 0.0
     }
-}
-
-/// u <- u + t k
-fn add(u: &mut [f64], t: f64, k: &[f64]) {
-    each(u, k, |u, k| *u += t * k);
 }
 
 /// True in D.

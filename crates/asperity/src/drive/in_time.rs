@@ -107,7 +107,7 @@ impl March {
     /// Tells the schedule the number that it waits for, of the last row or of the bodies before t = 0.
     fn note(&mut self) {
         if let Some(number) = self.schedule.awaited() {
-            self.schedule.note(self.gauge.read(number, &self.stepper.row()));
+            self.schedule.number = self.gauge.read(number, &self.stepper.row());
         }
     }
 }

@@ -172,7 +172,6 @@ impl Moving {
     /// The forces at the end of a step; `held` is the error that they state for one that is known of them.
     fn forces(&self, row: &Solved<'_>, time_error: f64, held: impl FnOnce(f64) -> f64) -> Friction {
         let velocity = self.motion.path.velocity(row.step.instant.time);
-        let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
         let worn = row.undeformed.worn_slopes.as_ref().map(|worn| self.slopes.and(worn));
         let contact = ContactForces {
             simulation: row.simulation,
@@ -181,7 +180,7 @@ impl Moving {
             state: row.now,
             gap: row.gap(),
             compliance: row.compliance,
-            remembers: row.simulation.parts().any(remembers),
+            remembers: row.simulation.parts().any(Creep::remembers),
             velocity,
             sense: self.motion.path.sense(row.step.instant.time),
             distance: self.distance,
@@ -238,12 +237,12 @@ impl Process for Moving {
 
     fn preview(&mut self, quantity: Quantity, row: &mut Solved<'_>) -> Result<Option<f64>> {
         if quantity.is_of_flash() {
-            let (friction, rise) = (self.friction, self.flash.as_ref().map(|flash| flash.rise().clone()));
+            let (friction, rise) = (self.friction, self.flash.as_ref().map(|flash| flash.rise.clone()));
             self.friction = self.forces(row, 0.0, |error| error);
             self.warm(row)?;
             let found = self.rise().and_then(|rise| rise.row.quantity(quantity));
             self.friction = friction;
-            self.flash.iter_mut().zip(rise).for_each(|(flash, rise)| flash.restore(rise));
+            self.flash.iter_mut().zip(rise).for_each(|(flash, rise)| flash.rise = rise);
             return Ok(found);
         }
         let is_own = quantity.is_of_motion() && quantity != Quantity::DissipatedPower;
@@ -258,7 +257,7 @@ impl Process for Moving {
     }
 
     fn rise(&self) -> Option<&Rise> {
-        self.flash.as_ref().map(FlashSolver::rise)
+        self.flash.as_ref().map(|flash| &flash.rise)
     }
 
     fn name(&self) -> &'static str {

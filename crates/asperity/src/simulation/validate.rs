@@ -55,10 +55,10 @@ impl Simulation {
             self.validate_plasticity(),
             self.validate_scheme(),
             self.validate_layers(),
-            self.flash.as_ref().map_or(Ok(()), |flash| flash.validate(self)).of("flash"),
+            self.flash.iter().try_for_each(|flash| flash.validate(self)).of("flash"),
             self.validate_traction(),
-            self.tangential.as_ref().map_or(Ok(()), |tangential| tangential.validate(self)),
-            self.wear.as_ref().map_or(Ok(()), |wear| wear.validate(self)),
+            self.tangential.iter().try_for_each(|tangential| tangential.validate(self)),
+            self.wear.iter().try_for_each(|wear| wear.validate(self)),
             self.validate_jumps(&instants),
         ];
         let stages = 0..self.loading.stages.len();
@@ -158,7 +158,7 @@ impl Simulation {
     }
 
     /// Whether a hardness limits the pressure.
-    fn is_capped(&self) -> bool {
+    pub(crate) fn is_capped(&self) -> bool {
         self.hardness.is_finite() || self.hardness_map.is_some()
     }
 
@@ -300,10 +300,7 @@ impl Simulation {
         };
         let Some(number) = RowNumber::from_name(number) else { return Ok(()) };
         let heaviest = self.most() * self.grid.cell_area();
-        let hardest = match &self.hardness_map {
-            Some(map) => map.iter().copied().fold(0.0, f64::max),
-            None => self.hardness,
-        };
+        let [_, hardest] = self.hardness_range();
         let [least, most] = number.range(&self.grid, heaviest, hardest, self.traction.is_some());
         let unit = match number.units_on(&self.grid) {
             "1" => String::new(),
@@ -413,7 +410,7 @@ impl Simulation {
 
     /// Sum of the cut-off over the cells that can touch \[Pa\]; over all cells as long as there is no gap.
     fn most(&self) -> f64 {
-        let gap = self.gap.as_slice().unwrap_or_default();
+        let gap = self.gap_cells();
         let cells = (0..self.grid.len()).filter(|cell| gap.get(*cell).is_none_or(|h| h.is_finite()));
         match self.hardness_of_cells() {
             Some(hardness) => cells.map(|cell| hardness[cell]).sum(),

@@ -114,8 +114,9 @@ pub(crate) struct Schedule {
     reached: Response,
     touched: bool,
     is_smooth: bool,
-    /// The number that the stage under way waits for, in the last row; NaN where it waits for none.
-    number: f64,
+    /// The number that the stage under way waits for, in the last row, before the first one of the bodies at first touch; NaN where it waits
+    /// for none.
+    pub(crate) number: f64,
     /// Which side of its value the event is waited for from: -1 below, 1 above, 0 not yet known.
     side: f64,
     /// The largest approach and load so far.
@@ -131,7 +132,7 @@ impl Schedule {
             simulation: simulation.clone(),
             kinks: simulation.kinks(),
             include: simulation.stops(),
-            remember: simulation.parts().filter(|c| !c.terms.is_empty() || c.fluidity > 0.0).count(),
+            remember: simulation.parts().filter(|creep| creep.remembers()).count(),
             stage: 0,
             steered: None,
             started_from: 0.0,
@@ -169,11 +170,6 @@ impl Schedule {
             Some(Event::Number(number, _)) => Some(number),
             _ => None,
         }
-    }
-
-    /// Takes the awaited number of the last row; before the first one, of the bodies at first touch.
-    pub(crate) fn note(&mut self, number: f64) {
-        self.number = number;
     }
 
     /// Whether a stage was prescribed between two rows.

@@ -28,7 +28,7 @@ use crate::kernel::Kernel;
 use crate::operator::plan;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
-use asperity_sweep::{each, minimum, sums};
+use asperity_sweep::{each, sums};
 use std::sync::Arc;
 
 /// A cell snaps on its own above a trap number of 1; below this one the answer does not depend on the grid.
@@ -181,7 +181,7 @@ pub(super) fn cells_needed(grid: &Grid, trap: f64) -> [usize; 2] {
 
 impl TractionLaw for Adhesion {
     fn start(&self, _grid: &Grid) -> Box<dyn SurfaceTraction> {
-        Box::new(Attraction { law: *self })
+        Box::new(*self)
     }
 
     fn tolerances(&self, _contact: f64) -> [f64; 2] {
@@ -202,7 +202,7 @@ impl TractionLaw for Adhesion {
             let expected = "none: adhesion acts between surfaces that do not slide";
             return Err(Error::invalid("motion of an adhesive contact", "given", expected).of("motion"));
         }
-        let hardness = simulation.hardness_of_cells().map_or(simulation.hardness, |cells| minimum(&cells));
+        let [hardness, _] = simulation.hardness_range();
         if self.work > 0.0 && hardness <= self.strength() {
             let expected = format!(
                 "more than the strength of the adhesion, {:e} Pa: where the attraction exceeds it, cells in contact only pull. Raise \
@@ -232,25 +232,20 @@ impl TractionLaw for Adhesion {
     }
 }
 
-/// The attraction of a run.
-struct Attraction {
-    law: Adhesion,
-}
-
-impl SurfaceTraction for Attraction {
+impl SurfaceTraction for Adhesion {
     fn bound(&mut self, gap: &[f64], _contact: &[f64], out: &mut [f64]) -> Result<()> {
-        let law = self.law;
+        let law = *self;
         each(out, gap, |b, g| *b = -law.at(g)[0]);
         Ok(())
     }
 
     fn energy(&self, gap: &[f64]) -> Option<f64> {
-        let law = self.law;
+        let law = *self;
         Some(sums(gap, |g| [law.at(g)[1]])[0])
     }
 
     fn limits(&self) -> [f64; 2] {
-        [-self.law.strength(), 0.0]
+        [-self.strength(), 0.0]
     }
 
     fn is_attraction(&self) -> bool {

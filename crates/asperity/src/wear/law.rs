@@ -183,9 +183,7 @@ impl Wear {
         let sound = self.threshold.is_finite() && self.threshold >= 0.0;
         require(sound, "threshold of wear", format!("{} Pa", self.threshold), "finite and not negative")
             .of("wear.threshold")?;
-        let hardest = simulation
-            .hardness_of_cells()
-            .map_or(simulation.hardness, |cells| cells.into_iter().fold(0.0, f64::max));
+        let [_, hardest] = simulation.hardness_range();
         let expected =
             format!("less than the hardness, {hardest} Pa: above it there is no pressure, and nothing wears");
         require(self.threshold < hardest, "threshold of wear", format!("{} Pa", self.threshold), expected)

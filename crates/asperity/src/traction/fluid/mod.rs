@@ -33,7 +33,7 @@ mod tests;
 
 use std::collections::VecDeque;
 
-use ndarray::{Array2, ArrayView2};
+use ndarray::Array2;
 
 pub use opening::OpeningPressure;
 pub use pockets::Pockets;
@@ -49,7 +49,6 @@ use crate::load::History;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::time::Instant;
-use asperity_sweep::minimum;
 use beside::Beside;
 use latch::Latch;
 use pockets::Contents;
@@ -199,13 +198,13 @@ impl TractionLaw for FluidPressure {
         let expected = "finite: fluid acts on all of the domain. Cut the surface, or fill its holes";
         require(!untouchable, "gap of cells that a fluid acts on", "infinite in places", expected)
             .of("leakage.coupling")?;
-        let is_limited = simulation.hardness.is_finite() || simulation.hardness_of_cells().is_some();
         let expected =
             "\"kept\" or \"drained\" where the hardness limits the pressure: a sealed pocket may exceed it";
         let sealed = self.action == Action::Gaps(Pockets::Sealed);
-        require(!(sealed && is_limited), "pockets", "\"sealed\"", expected).of("leakage.pockets")?;
+        require(!(sealed && simulation.is_capped()), "pockets", "\"sealed\"", expected)
+            .of("leakage.pockets")?;
         let most = self.inlet.range(end)[1] - self.reference;
-        let hardness = simulation.hardness_of_cells().map_or(simulation.hardness, |cells| minimum(&cells));
+        let [hardness, _] = simulation.hardness_range();
         let expected = format!("more than the pressure of the fluid, {most} Pa: no contact could hold it");
         require(hardness > most, "hardness", format!("{hardness} Pa"), expected).of("leakage.inlet")
     }
@@ -281,37 +280,26 @@ impl InGap {
         }
     }
 
-    /// The open cells and what they are connected to.
-    fn passages(&self, gap: &[f64], contact: &[f64]) -> Result<(Opening, Passages)> {
-        let shape = self.grid.shape();
-        let touches = Array2::from_shape_fn(shape, |(i, j)| u8::from(contact[i * shape.1 + j] > 0.0));
-        let gap = ArrayView2::from_shape(shape, gap)
-            .map_err(|error| Error::invalid("gap", error, "one per cell"))?;
-        let FluidPressure { direction, sides, smallest_gap, .. } = self.law;
-        let opening = Opening::new(&self.grid, gap, Some(touches.view()), direction, sides, smallest_gap)?;
-        let passages = Passages::of(&opening);
-        Ok((opening, passages))
-    }
-
-    /// The same where all cells, those in contact too, have the gap `floor` at least.
-    fn passages_above(&self, floor: f64, gap: &[f64], contact: &[f64]) -> Result<(Opening, Passages)> {
+    /// The open cells and what they are connected to; with a `floor` all cells, those in contact too, have that gap at least.
+    fn passages(&self, floor: Option<f64>, gap: &[f64], contact: &[f64]) -> Result<(Opening, Passages)> {
         let (shape, FluidPressure { direction, sides, .. }) = (self.grid.shape(), &self.law);
-        let floored = Array2::from_shape_fn(shape, |(i, j)| {
+        let (least, smallest_gap) = (floor.unwrap_or(0.0), floor.map_or(self.law.smallest_gap, |_| 0.0));
+        let gap = Array2::from_shape_fn(shape, |(i, j)| {
             let cell = i * shape.1 + j;
-            if contact[cell] > 0.0 { floor } else { gap[cell].max(floor) }
+            if contact[cell] > 0.0 { least } else { gap[cell].max(least) }
         });
-        let opening = Opening::new(&self.grid, floored.view(), None, *direction, *sides, 0.0)?;
+        let opening = Opening::new(&self.grid, gap.view(), None, *direction, *sides, smallest_gap)?;
         let passages = Passages::of(&opening);
         Ok((opening, passages))
     }
 
     /// Sets `pressure` and `reached` from the gap, the contact pressure and the traction of the pass.
     fn find_pressures(&mut self, gap: &[f64], contact: &[f64], traction: &[f64]) -> Result<()> {
-        let (opening, passages) = self.passages(gap, contact)?;
+        let (opening, passages) = self.passages(None, gap, contact)?;
         self.percolates = passages.percolates();
         let (opening, passages) = match self.contents.floor() {
             None => (opening, passages),
-            Some(floor) => self.passages_above(floor, gap, contact)?,
+            floor => self.passages(floor, gap, contact)?,
         };
         let (flowing, conductance) = self.flow(&opening, &passages)?;
         if self.conductances.len() == RECENT {

@@ -21,7 +21,7 @@ use crate::error::{Error, NotConverged, Result, require};
 use crate::operator::{Operator, plan};
 use crate::simulation::{Plasticity, Simulation};
 use crate::traction::{SurfaceTraction, Tractions};
-use asperity_sweep::{each, minimum, sum, zeros};
+use asperity_sweep::{each, sum, zeros};
 
 /// The pressure is known to this share of itself above that of the outlet.
 const SHARE: f64 = 1e-3;
@@ -58,8 +58,7 @@ impl OpeningPressure {
         Self::check(simulation)?;
         let grid = simulation.grid;
         let operator = plan(grid, simulation.boundary, simulation.kernel.clone())?;
-        let of_cells = simulation.hardness_of_cells();
-        let hardness = of_cells.as_ref().map_or(simulation.hardness, |cells| minimum(cells));
+        let [hardness, _] = simulation.hardness_range();
         let field = || zeros(grid.len());
         let tolerance = (TOLERANCES[1] * simulation.solver.tolerance).max(1e-14);
         Ok(OpeningPressure {
@@ -70,7 +69,7 @@ impl OpeningPressure {
             compliance: simulation.instantaneous(),
             hardness_of_cells: hardness
                 .is_finite()
-                .then(|| of_cells.unwrap_or_else(|| vec![hardness; grid.len()])),
+                .then(|| simulation.hardness_of_cells().unwrap_or_else(|| vec![hardness; grid.len()])),
             hardness,
             undeformed: field(),
             shifted: field(),
@@ -183,7 +182,7 @@ impl OpeningPressure {
                 return Ok(true);
             }
             let contact = &self.trial.contact.pressure;
-            if self.fluid.passages(&self.gap, contact)?.1.percolates() {
+            if self.fluid.passages(None, &self.gap, contact)?.1.percolates() {
                 return Ok(true);
             }
             self.fluid.bound(&self.gap, contact, &mut self.next)?;

@@ -59,15 +59,21 @@ impl Torus {
         self.lengths()[0] * self.plane.waves_along_y()
     }
 
-    /// The spectrum with these numbers S(kx, ky), -mx/2 < kx <= mx/2. Where a wave is its own opposite, only the real part counts.
+    /// kx and ky of the number n of a [`Spectrum`], -mx/2 < kx <= mx/2.
+    pub fn wave(&self, n: usize) -> [i64; 2] {
+        let mx = self.lengths()[0];
+        let (kx, ky) = ((n % mx) as i64, (n / mx) as i64);
+        [if 2 * (n % mx) > mx { kx - mx as i64 } else { kx }, ky]
+    }
+
+    /// The spectrum with these numbers S(kx, ky). Where a wave is its own opposite, only the real part counts.
     pub fn spectrum(&self, of: impl Fn(i64, i64) -> Complex64 + Sync) -> Spectrum {
-        let [mx, my] = self.lengths();
-        let own = |k: usize, m: usize| k == 0 || 2 * k == m;
+        let lengths = self.lengths().map(|m| m as i64);
         let number = |n: usize| {
-            let (kx, ky) = (n % mx, n / mx);
-            let signed = if 2 * kx > mx { kx as i64 - mx as i64 } else { kx as i64 };
-            let value = of(signed, ky as i64);
-            if own(kx, mx) && own(ky, my) { Complex64::new(value.re, 0.0) } else { value }
+            let wave = self.wave(n);
+            let value = of(wave[0], wave[1]);
+            let is_own = wave.iter().zip(lengths).all(|(k, m)| *k == 0 || 2 * k == m);
+            if is_own { Complex64::new(value.re, 0.0) } else { value }
         };
         Spectrum((0..self.spectrum_len()).into_par_iter().map(number).collect())
     }

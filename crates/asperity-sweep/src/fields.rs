@@ -73,7 +73,12 @@ pub fn each<T: Send, F: Fields>(to: &mut [T], fields: F, change: impl Fn(&mut T,
     });
 }
 
-/// The same, with sums over the cells.
+/// y += factor x.
+pub fn add(y: &mut [f64], factor: f64, x: &[f64]) {
+    each(y, x, |y, x| *y += factor * x);
+}
+
+/// The same as [`each`], with sums over the cells.
 pub fn each_with_sums<F: Fields, const K: usize>(
     to: &mut [f64],
     fields: F,

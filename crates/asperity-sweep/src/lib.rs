@@ -16,7 +16,7 @@ pub mod simd;
 mod sweep;
 
 pub use cells::{Cells, Set, SetMut};
-pub use fields::{Fields, each, each_with_sums, sums};
+pub use fields::{Fields, add, each, each_with_sums, sums};
 pub use instructions::Instructions;
 pub use merge::{Max, Merge, Min, larger, smaller};
 pub use reductions::{count_finite, count_positive, dot, is_zero, maximum, minimum, sum};

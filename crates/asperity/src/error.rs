@@ -163,10 +163,9 @@ pub struct NotConverged {
 
 impl NotConverged {
     /// A solve other than that of the contact, which has no certificate.
-    pub(crate) fn of(method: &'static str, iterations: usize, residual: f64, tolerance: f64) -> Error {
+    pub(crate) fn of(method: &'static str, iterations: usize, residual: f64, tolerance: f64) -> Self {
         let certificate = f64::NAN;
         NotConverged { method, iterations, residual, tolerance, certificate, time: None, velocity: None }
-            .into()
     }
 }
 
@@ -195,6 +194,17 @@ impl Error {
         error
     }
 
+    /// The same error, of a solve at this time \[s\].
+    pub(crate) fn at(self, now: f64) -> Self {
+        let mut error = self;
+        match &mut error {
+            Error::NotConverged(report) => report.time = Some(now),
+            Error::PulledOff { time, .. } | Error::LiftedOff { time, .. } => *time = now,
+            _ => {}
+        }
+        error
+    }
+
     /// Path of the argument that is wrong, as far as it is known: see [`Error::Invalid`].
     pub fn parameter(&self) -> &str {
         match self {
@@ -216,6 +226,18 @@ impl Error {
             Error::Sliding { .. } => "gross-sliding",
             Error::Interrupted => "interrupted",
         }
+    }
+}
+
+/// Names the argument that an error concerns: see [`Error::of`].
+pub(crate) trait Of {
+    /// The same, with an error for the argument `outer` or one inside it.
+    fn of(self, outer: &str) -> Self;
+}
+
+impl<T> Of for Result<T> {
+    fn of(self, outer: &str) -> Self {
+        self.map_err(|error| error.of(outer))
     }
 }
 
@@ -269,29 +291,21 @@ pub(crate) fn times_with_jumps(table: &str, times: &[f64]) -> Result<()> {
 
 /// `Ok(value)` if it is finite and > 0.
 pub(crate) fn positive(what: &str, value: f64, unit: &str) -> Result<f64> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err(Error::invalid(what, value, format!("finite and greater than 0 {unit}").trim_end()))
-    }
+    let expected = format!("finite and greater than 0 {unit}");
+    require(value.is_finite() && value > 0.0, what, value, expected.trim_end()).map(|()| value)
 }
 
 /// `Ok(value)` for a valid length of a body: products of four such lengths do not overflow or underflow.
 pub(crate) fn length(what: &str, value: f64) -> Result<f64> {
     const LENGTHS: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
-    match LENGTHS.contains(&value) {
-        true => Ok(value),
-        false => Err(Error::invalid(what, value, "greater than 0 m: from 1e-60 m to 1e60 m")),
-    }
+    let expected = "greater than 0 m: from 1e-60 m to 1e60 m";
+    require(LENGTHS.contains(&value), what, value, expected).map(|()| value)
 }
 
 /// `Ok(value)` if it is finite and >= 0.
 pub(crate) fn non_negative(what: &str, value: f64, unit: &str) -> Result<f64> {
-    if value.is_finite() && value >= 0.0 {
-        Ok(value)
-    } else {
-        Err(Error::invalid(what, value, format!("finite and not less than 0 {unit}").trim_end()))
-    }
+    let expected = format!("finite and not less than 0 {unit}");
+    require(value.is_finite() && value >= 0.0, what, value, expected.trim_end()).map(|()| value)
 }
 
 /// A temperature \[K\] to a hundredth: "293.15 K".

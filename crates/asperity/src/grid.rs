@@ -32,6 +32,17 @@ pub enum Boundary {
     Periodic,
 }
 
+impl Boundary {
+    /// The cell that is `step` cells from cell n of `count` along an axis; `None` beyond the ends of a free domain.
+    pub(crate) fn beside(self, n: usize, step: isize, count: usize) -> Option<usize> {
+        let at = n as isize + step;
+        match self {
+            Boundary::Periodic => Some(at.rem_euclid(count as isize) as usize),
+            Boundary::Free => (0..count as isize).contains(&at).then_some(at as usize),
+        }
+    }
+}
+
 impl Grid {
     /// A grid of `cells` = \[nx, ny\] over `size` = \[Lx, Ly\] in metres.
     ///

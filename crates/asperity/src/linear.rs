@@ -1,7 +1,7 @@
 //! Linear systems: small ones by Gaussian elimination with partial pivoting, operators by right-preconditioned GMRES
 //! (Saad & Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856).
 
-use asperity_sweep::{dot, each, sweep};
+use asperity_sweep::{add, dot, sweep};
 
 use crate::error::Result;
 
@@ -60,7 +60,7 @@ pub(crate) fn gmres(
         let mut column = Vec::with_capacity(k + 2);
         for v in &basis {
             let product = dot(v, &y);
-            add(-product, v, &mut y);
+            add(&mut y, -product, v);
             column.push(product);
         }
         let length = norm(&y);
@@ -95,18 +95,13 @@ pub(crate) fn gmres(
     }
     let mut x = vec![0.0; right.len()];
     for (z, weight) in preconditioned.iter().zip(&weights) {
-        add(*weight, z, &mut x);
+        add(&mut x, *weight, z);
     }
     Ok((x, rotated[triangle.len()].abs() / size))
 }
 
 fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
-}
-
-/// y += factor x.
-fn add(factor: f64, x: &[f64], y: &mut [f64]) {
-    each(y, x, |y, x| *y += factor * x);
 }
 
 fn scale(a: &mut [f64], factor: f64) {

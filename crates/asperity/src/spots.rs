@@ -92,11 +92,7 @@ fn roots<T>(
     let (nx, ny) = cells.dim();
     let at = |i: usize, j: usize| i * ny + j;
     let on = |i: usize, j: usize| touches(&cells[[i, j]]);
-    let mut forest = Forest::of(nx, ny, on);
-    if boundary == Boundary::Periodic && nx > 0 && ny > 0 {
-        (0..ny).filter(|j| on(0, *j) && on(nx - 1, *j)).for_each(|j| forest.join(at(0, j), at(nx - 1, j)));
-        (0..nx).filter(|i| on(*i, 0) && on(*i, ny - 1)).for_each(|i| forest.join(at(i, 0), at(i, ny - 1)));
-    }
+    let mut forest = Forest::of([nx, ny], [boundary == Boundary::Periodic; 2], on);
     let mut counts = vec![0usize; nx * ny];
     let mut roots = vec![None; nx * ny];
     for i in 0..nx {
@@ -126,10 +122,7 @@ fn spans_x<T>(boundary: Boundary, cells: ArrayView2<T>, on: impl Fn(&T) -> bool)
     let (nx, ny) = cells.dim();
     let at = |i: usize, j: usize| i * ny + j;
     let on = |i: usize, j: usize| on(&cells[[i, j]]);
-    let mut forest = Forest::of(nx, ny, on);
-    if boundary == Boundary::Periodic && ny > 0 {
-        (0..nx).filter(|i| on(*i, 0) && on(*i, ny - 1)).for_each(|i| forest.join(at(i, 0), at(i, ny - 1)));
-    }
+    let mut forest = Forest::of([nx, ny], [false, boundary == Boundary::Periodic], on);
     let mut reached = vec![false; nx * ny];
     for j in (0..ny).filter(|j| nx > 0 && on(0, *j)) {
         reached[forest.root(at(0, j))] = true;
@@ -146,16 +139,19 @@ impl Forest {
         Forest((0..cells).collect())
     }
 
-    /// The cells of an nx x ny grid that are `on`, joined with their neighbours.
-    fn of(nx: usize, ny: usize, on: impl Fn(usize, usize) -> bool) -> Self {
+    /// The cells of an nx x ny grid that are `on`, joined with their neighbours, also across the borders of the axes that wrap around.
+    pub(crate) fn of([nx, ny]: [usize; 2], wraps: [bool; 2], on: impl Fn(usize, usize) -> bool) -> Self {
         let mut forest = Forest::new(nx * ny);
         for i in 0..nx {
             for j in (0..ny).filter(|j| on(i, *j)) {
-                if i > 0 && on(i - 1, j) {
-                    forest.join((i - 1) * ny + j, i * ny + j);
-                }
-                if j > 0 && on(i, j - 1) {
-                    forest.join(i * ny + j - 1, i * ny + j);
+                let neighbours = [
+                    (i > 0).then(|| (i - 1, j)),
+                    (j > 0).then(|| (i, j - 1)),
+                    (wraps[0] && i + 1 == nx).then_some((0, j)),
+                    (wraps[1] && j + 1 == ny).then_some((i, 0)),
+                ];
+                for (k, l) in neighbours.into_iter().flatten().filter(|(k, l)| on(*k, *l)) {
+                    forest.join(k * ny + l, i * ny + j);
                 }
             }
         }

@@ -26,10 +26,11 @@ impl<T: Scalar> Stage<T> {
         self.span / self.radix
     }
 
-    /// The first pass: it reads the signal (and its missing parts from the margin) and writes the buffer. With `half`, the second
-    /// half of the signal is zero.
+    /// The first pass reads the signal (and its missing parts from the margin) and writes the buffer; the last one (`BACK`) reads the
+    /// buffer and writes the signal (and its missing parts into the margin). With `half`, the second half of the signal is zero, or
+    /// not needed.
     #[inline(always)]
-    pub fn open<V: Vector<Scalar = T>>(
+    pub fn outer_pass<V: Vector<Scalar = T>, const BACK: bool>(
         &self,
         half: bool,
         signal: &mut [Complex<V>],
@@ -37,114 +38,71 @@ impl<T: Scalar> Stage<T> {
         buffer: &mut [Complex<V>],
     ) {
         match (self.radix, half) {
-            (8, true) => self.first_pass::<V, OfHalf<8>, 4, 8>(signal, margin, buffer),
-            (8, false) => self.first_pass::<V, Whole<8>, 8, 8>(signal, margin, buffer),
-            (5, _) => self.first_pass::<V, Whole<5>, 5, 5>(signal, margin, buffer),
-            (4, true) => self.first_pass::<V, OfHalf<4>, 2, 4>(signal, margin, buffer),
-            (4, false) => self.first_pass::<V, Whole<4>, 4, 4>(signal, margin, buffer),
-            (3, _) => self.first_pass::<V, Whole<3>, 3, 3>(signal, margin, buffer),
-            (_, true) => self.first_pass::<V, OfHalf<2>, 1, 2>(signal, margin, buffer),
-            (_, false) => self.first_pass::<V, Whole<2>, 2, 2>(signal, margin, buffer),
+            (8, true) => self.outer_pass_of::<V, OfHalf<8>, HalfOf<8>, BACK, 4, 8>(signal, margin, buffer),
+            (8, false) => self.outer_pass_of::<V, Whole<8>, Whole<8>, BACK, 8, 8>(signal, margin, buffer),
+            (5, _) => self.outer_pass_of::<V, Whole<5>, Whole<5>, BACK, 5, 5>(signal, margin, buffer),
+            (4, true) => self.outer_pass_of::<V, OfHalf<4>, HalfOf<4>, BACK, 2, 4>(signal, margin, buffer),
+            (4, false) => self.outer_pass_of::<V, Whole<4>, Whole<4>, BACK, 4, 4>(signal, margin, buffer),
+            (3, _) => self.outer_pass_of::<V, Whole<3>, Whole<3>, BACK, 3, 3>(signal, margin, buffer),
+            (_, true) => self.outer_pass_of::<V, OfHalf<2>, HalfOf<2>, BACK, 1, 2>(signal, margin, buffer),
+            (_, false) => self.outer_pass_of::<V, Whole<2>, Whole<2>, BACK, 2, 2>(signal, margin, buffer),
         }
     }
 
-    /// The last pass: it reads the buffer and writes the signal (and its missing parts into the margin). With `half`, only the
-    /// first half of the signal is needed.
+    /// An inner pass in place: by decimation in frequency on the way down, in time on the way up (`UP`).
     #[inline(always)]
-    pub fn close<V: Vector<Scalar = T>>(
-        &self,
-        half: bool,
-        signal: &mut [Complex<V>],
-        margin: &mut [Complex<V>],
-        buffer: &mut [Complex<V>],
-    ) {
-        match (self.radix, half) {
-            (8, true) => self.last_pass::<V, HalfOf<8>, 4, 8>(signal, margin, buffer),
-            (8, false) => self.last_pass::<V, Whole<8>, 8, 8>(signal, margin, buffer),
-            (5, _) => self.last_pass::<V, Whole<5>, 5, 5>(signal, margin, buffer),
-            (4, true) => self.last_pass::<V, HalfOf<4>, 2, 4>(signal, margin, buffer),
-            (4, false) => self.last_pass::<V, Whole<4>, 4, 4>(signal, margin, buffer),
-            (3, _) => self.last_pass::<V, Whole<3>, 3, 3>(signal, margin, buffer),
-            (_, true) => self.last_pass::<V, HalfOf<2>, 1, 2>(signal, margin, buffer),
-            (_, false) => self.last_pass::<V, Whole<2>, 2, 2>(signal, margin, buffer),
-        }
-    }
-
-    /// An inner pass on the way down, in place.
-    #[inline(always)]
-    pub fn decimate_in_frequency<V: Vector<Scalar = T>>(&self, block: &mut [Complex<V>]) {
+    pub fn inner_pass<V: Vector<Scalar = T>, const UP: bool>(&self, block: &mut [Complex<V>]) {
         match self.radix {
-            8 => self.down::<V, 8>(block),
-            5 => self.down::<V, 5>(block),
-            4 => self.down::<V, 4>(block),
-            _ => self.down::<V, 3>(block),
+            8 => self.inner_pass_of::<V, UP, 8>(block),
+            5 => self.inner_pass_of::<V, UP, 5>(block),
+            4 => self.inner_pass_of::<V, UP, 4>(block),
+            _ => self.inner_pass_of::<V, UP, 3>(block),
         }
     }
 
-    /// An inner pass on the way up, in place.
+    /// y(j, r) = exp(-2 pi i j r / m) times the transform of x(j + q m/R) over q; `BACK` is the inverse, which exchanges real and imaginary
+    /// parts finally.
     #[inline(always)]
-    pub fn decimate_in_time<V: Vector<Scalar = T>>(&self, block: &mut [Complex<V>]) {
-        match self.radix {
-            8 => self.up::<V, 8>(block),
-            5 => self.up::<V, 5>(block),
-            4 => self.up::<V, 4>(block),
-            _ => self.up::<V, 3>(block),
-        }
-    }
-
-    /// y(j, r) = exp(-2 pi i j r / m) times the transform of x(j + q m/R) over q.
-    #[inline(always)]
-    fn first_pass<V: Vector<Scalar = T>, B: Butterfly<V, P, R>, const P: usize, const R: usize>(
+    fn outer_pass_of<V, First, Last, const BACK: bool, const P: usize, const R: usize>(
         &self,
         signal: &mut [Complex<V>],
         margin: &mut [Complex<V>],
         buffer: &mut [Complex<V>],
-    ) {
-        let signal = Parts::<V, P>::of_signal(signal, margin, self.part());
+    ) where
+        V: Vector<Scalar = T>,
+        First: Butterfly<V, P, R>,
+        Last: Butterfly<V, R, P>,
+    {
+        let mut signal = Parts::<V, P>::of_signal(signal, margin, self.part());
         let mut buffer = Parts::<V, R>::of(buffer);
         for (j, w) in (0..buffer.length()).zip(self.roots.chunks_exact(R - 1)) {
-            buffer.store(j, rotated(B::transform(signal.load(j)), w));
-        }
-    }
-
-    /// The inverse of the first pass; it exchanges real and imaginary parts finally.
-    #[inline(always)]
-    fn last_pass<V: Vector<Scalar = T>, B: Butterfly<V, R, P>, const P: usize, const R: usize>(
-        &self,
-        signal: &mut [Complex<V>],
-        margin: &mut [Complex<V>],
-        buffer: &mut [Complex<V>],
-    ) {
-        let mut signal = Parts::<V, P>::of_signal(signal, margin, self.part());
-        let buffer = Parts::<V, R>::of(buffer);
-        for (j, w) in (0..buffer.length()).zip(self.roots.chunks_exact(R - 1)) {
-            let mut x = B::transform(rotated(buffer.load(j), w));
-            for q in 0..P {
-                x[q] = x[q].swapped();
+            if BACK {
+                let mut x = Last::transform(rotated(buffer.load(j), w));
+                for q in 0..P {
+                    x[q] = x[q].swapped();
+                }
+                signal.store(j, x);
+            } else {
+                buffer.store(j, rotated(First::transform(signal.load(j)), w));
             }
-            signal.store(j, x);
         }
     }
 
     #[inline(always)]
-    fn down<V: Vector<Scalar = T>, const R: usize>(&self, block: &mut [Complex<V>])
+    fn inner_pass_of<V: Vector<Scalar = T>, const UP: bool, const R: usize>(&self, block: &mut [Complex<V>])
     where
         Whole<R>: Butterfly<V, R, R>,
     {
         let mut parts = Parts::<V, R>::of(block);
         for (j, w) in (0..parts.length()).zip(self.roots.chunks_exact(R - 1)) {
-            parts.store(j, rotated(Whole::<R>::transform(parts.load(j)), w));
-        }
-    }
-
-    #[inline(always)]
-    fn up<V: Vector<Scalar = T>, const R: usize>(&self, block: &mut [Complex<V>])
-    where
-        Whole<R>: Butterfly<V, R, R>,
-    {
-        let mut parts = Parts::<V, R>::of(block);
-        for (j, w) in (0..parts.length()).zip(self.roots.chunks_exact(R - 1)) {
-            parts.store(j, Whole::<R>::transform(rotated(parts.load(j), w)));
+            let x = parts.load(j);
+            parts.store(
+                j,
+                match UP {
+                    true => Whole::<R>::transform(rotated(x, w)),
+                    false => rotated(Whole::<R>::transform(x), w),
+                },
+            );
         }
     }
 }

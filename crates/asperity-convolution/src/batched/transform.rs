@@ -86,7 +86,7 @@ impl<T: Scalar> Transform<T> {
     /// buffer = the spectrum of `signal` (`signal_length` numbers), digit-reversed.
     #[inline(always)]
     pub fn forward<V: Vector<Scalar = T>>(&self, signal: &mut [Complex<V>], buffer: &mut [Complex<V>]) {
-        self.first.open(self.half, signal, &mut [], buffer);
+        self.first.outer_pass::<V, false>(self.half, signal, &mut [], buffer);
         for part in buffer.chunks_exact_mut(self.first.part()) {
             self.descend::<V, true, false>(part, &mut Plain, &mut PrefetchAhead::nothing());
         }
@@ -99,7 +99,7 @@ impl<T: Scalar> Transform<T> {
         for part in buffer.chunks_exact_mut(self.first.part()) {
             self.descend::<V, false, true>(part, &mut Plain, &mut PrefetchAhead::nothing());
         }
-        self.first.close(self.half, signal, &mut [], buffer);
+        self.first.outer_pass::<V, true>(self.half, signal, &mut [], buffer);
     }
 
     /// signal = m times the inverse of (spectrum times transform of signal), in place.
@@ -125,7 +125,7 @@ impl<T: Scalar> Transform<T> {
             margin[whole..][..rest].copy_from_slice(&signal[whole..]);
             margin[whole + rest..].fill(Complex::zero());
         }
-        self.first.open(self.half, signal, margin, buffer);
+        self.first.outer_pass::<V, false>(self.half, signal, margin, buffer);
         for (r, part) in buffer.chunks_exact_mut(part_length).enumerate() {
             let stored = r.min(radix - r);
             let spectrum = &spectrum[stored * part_length..][..part_length];
@@ -135,7 +135,7 @@ impl<T: Scalar> Transform<T> {
                 self.descend::<V, true, true>(part, &mut Product::<V, true>(spectrum, energy), ahead);
             }
         }
-        self.first.close(self.half, signal, margin, buffer);
+        self.first.outer_pass::<V, true>(self.half, signal, margin, buffer);
         if whole < signal.len() {
             let rest = signal.len() - whole;
             signal[whole..].copy_from_slice(&margin[whole..][..rest]);
@@ -161,7 +161,7 @@ impl<T: Scalar> Transform<T> {
             ahead.advance();
             if DOWN {
                 for stage in self.inner.iter().filter(|stage| start.is_multiple_of(stage.span)) {
-                    stage.decimate_in_frequency(&mut part[start..start + stage.span]);
+                    stage.inner_pass::<V, false>(&mut part[start..start + stage.span]);
                 }
             }
             let leaves = &mut part[start..end];
@@ -175,7 +175,7 @@ impl<T: Scalar> Transform<T> {
             }
             if UP {
                 for stage in self.inner.iter().rev().filter(|stage| end.is_multiple_of(stage.span)) {
-                    stage.decimate_in_time(&mut part[end - stage.span..end]);
+                    stage.inner_pass::<V, true>(&mut part[end - stage.span..end]);
                 }
             }
             start = end;

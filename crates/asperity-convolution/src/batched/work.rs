@@ -59,12 +59,9 @@ unsafe impl<V: Send> Sync for SharedTiles<'_, V> {}
 
 /// The tiles of one block of rows, one in every block of columns.
 pub struct Tiles<'a, V> {
-    start: *mut Complex<V>,
-    length: usize,
-    stride: usize,
+    all: SharedTiles<'a, V>,
     first: usize,
     count: usize,
-    work: PhantomData<&'a mut [Complex<V>]>,
 }
 
 impl<'a, V> SharedTiles<'a, V> {
@@ -78,7 +75,7 @@ impl<'a, V> SharedTiles<'a, V> {
     /// No row may belong to two values that are alive at the same time.
     pub unsafe fn of_rows(&self, first: usize, count: usize) -> Tiles<'a, V> {
         assert!(first + count <= self.stride);
-        Tiles { start: self.start, length: self.length, stride: self.stride, first, count, work: PhantomData }
+        Tiles { all: SharedTiles { ..*self }, first, count }
     }
 }
 
@@ -86,16 +83,16 @@ impl<V> Tiles<'_, V> {
     /// The rows of a block of columns.
     #[inline(always)]
     pub fn tile(&mut self, block: usize) -> &mut [Complex<V>] {
-        let offset = block * self.stride + self.first;
-        assert!(offset + self.count <= self.length);
+        let offset = block * self.all.stride + self.first;
+        assert!(offset + self.count <= self.all.length);
         // SAFETY: inside the borrowed work array; these rows belong only to this value.
-        unsafe { std::slice::from_raw_parts_mut(self.start.add(offset), self.count) }
+        unsafe { std::slice::from_raw_parts_mut(self.all.start.add(offset), self.count) }
     }
 
     /// Prefetches a tile that will be needed soon.
     #[inline(always)]
     pub fn prefetch(&self, what: Purpose, block: usize) {
-        let offset = block * self.stride + self.first;
-        prefetch(what, self.start.wrapping_add(offset), self.count);
+        let offset = block * self.all.stride + self.first;
+        prefetch(what, self.all.start.wrapping_add(offset), self.count);
     }
 }

@@ -109,21 +109,18 @@ impl Mask for Avx512Mask {
     }
 }
 
-impl BitAnd for Avx512Mask {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        Avx512Mask(self.0 & other.0)
-    }
+macro_rules! bits {
+    ($($trait:ident $method:ident),+) => {$(
+        impl $trait for Avx512Mask {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Avx512Mask(self.0.$method(other.0))
+            }
+        }
+    )+};
 }
-
-impl BitOr for Avx512Mask {
-    type Output = Self;
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        Avx512Mask(self.0 | other.0)
-    }
-}
+bits!(BitAnd bitand, BitOr bitor);
 
 impl Not for Avx512Mask {
     type Output = Self;

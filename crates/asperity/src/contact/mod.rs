@@ -204,16 +204,13 @@ pub(crate) fn make_feasible(problem: &Problem, grid: &Grid, state: &mut ContactS
 }
 
 /// The error of a solve that stopped early.
-pub(crate) fn not_converged(method: &'static str, options: &SolverOptions, outcome: &Outcome) -> Error {
-    Error::NotConverged(NotConverged {
-        method,
-        iterations: outcome.iterations,
-        residual: outcome.residual,
-        tolerance: options.tolerance,
-        certificate: outcome.certificate,
-        time: None,
-        velocity: None,
-    })
+pub(crate) fn not_converged(
+    method: &'static str,
+    options: &SolverOptions,
+    outcome: &Outcome,
+) -> NotConverged {
+    let Outcome { iterations, residual, certificate, .. } = *outcome;
+    NotConverged { certificate, ..NotConverged::of(method, iterations, residual, options.tolerance) }
 }
 
 /// [`Error::Interrupted`] where somebody asked to stop.

@@ -16,7 +16,7 @@ use super::start::{make_feasible, set_sum};
 use super::{ContactState, Outcome, Prescribed, Problem, Task, not_converged, stop_at};
 use crate::error::Result;
 use crate::grid::Grid;
-use asperity_sweep::{each, each_with_sums, sums};
+use asperity_sweep::{add, each, each_with_sums, sums};
 
 /// The method's working memory: 24 bytes per cell and a set of cells.
 pub struct PolonskyKeer {
@@ -68,7 +68,7 @@ impl PolonskyKeer {
                 return Ok(outcome);
             }
             if iteration == options.max_iterations {
-                return Err(not_converged("polonsky-keer", options, &outcome));
+                return Err(not_converged("polonsky-keer", options, &outcome).into());
             }
             stop_at(interrupt)?;
             iteration += 1;
@@ -84,7 +84,7 @@ impl PolonskyKeer {
             if stalled {
                 if !self.gradient_step(operator, problem, state, &mut gradient_length) {
                     // Nothing descends: rounding is all that is left.
-                    return Err(not_converged("polonsky-keer", options, &outcome));
+                    return Err(not_converged("polonsky-keer", options, &outcome).into());
                 }
                 convolutions += 1;
                 memory = 0.0;
@@ -101,7 +101,7 @@ impl PolonskyKeer {
                 if let Some(target) = problem.sum(grid.cell_area()) {
                     let p = &mut state.pressure;
                     if set_sum(p, &self.touchable, problem.hardness, target).is_none() {
-                        return Err(not_converged("polonsky-keer", options, &outcome));
+                        return Err(not_converged("polonsky-keer", options, &outcome).into());
                     }
                 }
                 operator.apply_into(&state.pressure, &mut state.unit_displacement);
@@ -161,11 +161,6 @@ impl PolonskyKeer {
         });
         changes > 0.0
     }
-}
-
-/// u <- u + t k
-fn add(u: &mut [f64], t: f64, k: &[f64]) {
-    each(u, k, |u, k| *u += t * k);
 }
 
 /// True in D.

@@ -39,7 +39,7 @@ impl ProjectedCg {
                 return Ok(outcome);
             }
             if iterations == options.max_iterations {
-                return Err(not_converged("projected-cg", options, &outcome));
+                return Err(not_converged("projected-cg", options, &outcome).into());
             }
             stop_at(interrupt)?;
             if converged {
@@ -60,7 +60,7 @@ impl ProjectedCg {
                 ),
                 // Rounding errors of U may hide the way down.
                 None if search.state.rounding > 1.0 => search.convolve(),
-                None => return Err(not_converged("projected-cg", options, &outcome)),
+                None => return Err(not_converged("projected-cg", options, &outcome).into()),
             }
         }
     }

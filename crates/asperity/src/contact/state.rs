@@ -30,6 +30,13 @@ impl ContactState {
         f64::EPSILON * self.rounding <= ROUNDING_SHARE * tolerance
     }
 
+    /// Takes over another state, without new memory.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.pressure.copy_from_slice(&other.pressure);
+        self.unit_displacement.copy_from_slice(&other.unit_displacement);
+        (self.approach, self.rounding) = (other.approach, other.rounding);
+    }
+
     /// Whether any cell is under pressure.
     pub fn touches(&self) -> bool {
         self.pressure.iter().any(|p| *p != 0.0)

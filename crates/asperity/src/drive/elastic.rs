@@ -80,7 +80,7 @@ impl Elastic {
 
     /// The last state as a row.
     fn row(&self) -> Step<'_> {
-        let bodies = (self.simulation.gap.as_slice().unwrap_or_default(), self.simulation.instantaneous());
+        let bodies = (self.simulation.gap_cells(), self.simulation.instantaneous());
         Step {
             index: self.done.saturating_sub(1),
             control: self.control,
@@ -95,8 +95,7 @@ impl Drive for Elastic {
         let Some((control, value)) = self.asked.pop_front() else { return Ok(None) };
         self.control = control;
         self.simulation.loading = Loading { control, history: History::Step { value } }.into();
-        let (gap, compliance) =
-            (self.simulation.gap.as_slice().unwrap_or_default(), self.simulation.instantaneous());
+        let (gap, compliance) = (self.simulation.gap_cells(), self.simulation.instantaneous());
         let prescribed = prescribed(control, value, self.simulation.grid.area());
         let solved =
             in_pool(|| self.contact.solve(Start::Pressure, gap, compliance, prescribed, &mut self.state));

@@ -10,7 +10,7 @@ use crate::error::{Error, Result, require};
 use crate::load::{Control, Course, Stage};
 use crate::quantities::{Column, RowNumber};
 use crate::simulation::Simulation;
-use crate::step::{Checkpoint, Loader, Proposal, Recorder, Saver, Schedule, Step, Stepper, Summary, Verdict};
+use crate::step::{Checkpoint, Loader, Proposal, Recorder, Saver, Schedule, Step, Stepper, Summary};
 use crate::time::Instant;
 
 /// A simulation on its way through time.
@@ -107,7 +107,7 @@ impl March {
     /// Tells the schedule the number that it waits for, of the last row or of the bodies before t = 0.
     fn note(&mut self) {
         if let Some(number) = self.schedule.awaited() {
-            self.schedule.note(self.gauge.read(number, &self.stepper.row()));
+            self.schedule.number = self.gauge.read(number, &self.stepper.row());
         }
     }
 }
@@ -142,8 +142,8 @@ impl Drive for March {
                 attempt.number = self.gauge.preview(number, &mut self.stepper)?;
             }
             match self.schedule.assess(&step, &attempt) {
-                Verdict::Try(next) => step = next,
-                Verdict::Accept => break attempt,
+                Some(next) => step = next,
+                None => break attempt,
             }
         };
         in_pool(|| self.accept(&attempt))?;

@@ -1,6 +1,7 @@
 //! The temperature at which a material sees its own friction: a fixed point x = T(x).
 
 use crate::error::{Error, Result};
+use crate::roots::bisected;
 
 /// Rounds, at most: two to halve the distance between too cold and too warm. Smooth friction needs two to ten.
 const ROUNDS: usize = 40;
@@ -43,7 +44,10 @@ pub(crate) fn settle(velocity: f64, start: f64, mut rise_at: impl FnMut(f64) -> 
         width = warm - cold;
         x = match width.is_finite() && is_slow {
             true => 0.5 * (cold + warm),
-            false => meeting(|y| rise * libm::exp(slope * (y - x)) - y, cold, warm.min(2.0 * x.max(rise))),
+            false => {
+                let most = warm.min(2.0 * x.max(rise));
+                bisected([cold, most], 60, |y| rise * libm::exp(slope * (y - x)) - y > 0.0)[1]
+            }
         };
     }
     Err(Error::invalid(
@@ -64,13 +68,4 @@ pub(crate) fn another(x: f64, heat: impl Fn(f64) -> Option<f64>) -> Option<f64> 
     // A steady state lies where less warming follows more; that of x itself is not one of these.
     let falls = |n: i32| is_warming(n) == Some(true) && is_warming(n + 1) == Some(false);
     (-STEPS..STEPS).rev().filter(|n| !(-2..=1).contains(n)).find(|n| x > 0.0 && falls(*n)).map(at)
-}
-
-/// Where a function falls below 0 between two places, or the second one where it does not.
-fn meeting(of: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
-    for _ in 0..60 {
-        let middle = 0.5 * (from + to);
-        if of(middle) > 0.0 { from = middle } else { to = middle }
-    }
-    to
 }

@@ -27,7 +27,7 @@ pub(crate) use feedback::{another, settle};
 pub use solver::FlashRow;
 pub(crate) use solver::{FlashSolver, Rise, Rubbing, bytes};
 
-use crate::error::{Result, positive, require};
+use crate::error::{Of, Result, positive, require};
 use crate::grid::Boundary;
 use crate::material::Shift;
 use crate::process;
@@ -103,22 +103,20 @@ impl Flash {
     /// [`Error::Invalid`](crate::Error::Invalid) naming the key of the table `flash`.
     pub fn validate(&self, simulation: &Simulation) -> Result<()> {
         for Conductor { conductivity, diffusivity } in self.bodies {
-            positive("thermal conductivity", conductivity, "W/(m K)")
-                .map_err(|error| error.of("conductivity"))?;
-            positive("thermal diffusivity", diffusivity, "m2/s").map_err(|error| error.of("diffusivity"))?;
+            positive("thermal conductivity", conductivity, "W/(m K)").of("conductivity")?;
+            positive("thermal diffusivity", diffusivity, "m2/s").of("diffusivity")?;
         }
         let sound = self.friction >= 0.0 && self.friction.is_finite();
-        require(sound, "friction coefficient", self.friction, "finite and not negative")
-            .map_err(|error| error.of("friction"))?;
+        require(sound, "friction coefficient", self.friction, "finite and not negative").of("friction")?;
         if let Some(time) = self.heated_for {
-            positive("time of heating", time, "s").map_err(|error| error.of("heated_for"))?;
+            positive("time of heating", time, "s").of("heated_for")?;
             require(
                 simulation.boundary == Boundary::Periodic,
                 "`heated_for` on a free domain",
                 format!("{time} s"),
                 "left out: around a contact on a free domain the temperature becomes steady",
             )
-            .map_err(|error| error.of("heated_for"))?;
+            .of("heated_for")?;
         }
         let is_open = simulation.boundary == Boundary::Free;
         let still = Flash::still(simulation);
@@ -129,7 +127,7 @@ impl Flash {
             format!("\"{}\"", self.partition.name()),
             format!("\"{other}\": a {body} with a source that is endless across the motion and stands still has no steady temperature"),
         )
-        .map_err(|error| error.of("partition"))?;
+        .of("partition")?;
         require(
             is_open || self.heated_for.is_some(),
             "`heated_for` on a periodic domain",
@@ -137,14 +135,14 @@ impl Flash {
             "the time for which the surfaces have been heated, such as heated_for = \"10 ms\": the mean of a periodic surface, and its streaks along \
              the motion, never stop warming",
         )
-        .map_err(|error| error.of("heated_for"))?;
+        .of("heated_for")?;
         require(
             self.feedback.is_none() || simulation.motion.is_none(),
             "feedback of the flash temperature in time",
             "\"mean\"",
             "\"none\". Take steady states ([motion.steady]), which have it, or give the warmer material its own `temperature`",
         )
-        .map_err(|error| error.of("feedback"))
+        .of("feedback")
     }
 
     /// Whether slider and track are heated.

@@ -77,7 +77,7 @@ pub(crate) struct FlashSolver {
     still: usize,
     /// Of slider and track, with the velocity of the source over it; `None` of one that takes no heat.
     spectra: [Option<(f64, Spectrum)>; 2],
-    rise: Rise,
+    pub(crate) rise: Rise,
 }
 
 impl FlashSolver {
@@ -94,10 +94,6 @@ impl FlashSolver {
             rise: Rise { slider: cold(), track: cold(), row: FlashRow::default() },
             flash,
         })
-    }
-
-    pub(crate) fn rise(&self) -> &Rise {
-        &self.rise
     }
 
     /// Finds the temperatures under this rubbing; the surfaces are cold without.
@@ -143,16 +139,5 @@ impl FlashSolver {
         };
         self.rise = Rise { slider, track, row };
         Ok(())
-    }
-
-    /// Takes back the temperatures of the last row.
-    pub(crate) fn restore(&mut self, rise: Rise) {
-        self.rise = rise;
-    }
-
-    /// Notes the temperature at which the material was taken, and another mean rise with which the row would be steady \[K\].
-    pub(crate) fn note_material(&mut self, temperature: f64, other: Option<f64>) {
-        self.rise.row.material = temperature;
-        self.rise.row.other = other.unwrap_or(f64::NAN);
     }
 }

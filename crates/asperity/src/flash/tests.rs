@@ -211,14 +211,14 @@ fn both_faces_are_equally_warm_in_the_mean_or_in_each_cell() {
     let mean = |t: &[f64]| partition::mean(t, &contact);
     for (boundary, heated_for) in [(Boundary::Free, None), (Boundary::Periodic, Some(3.0))] {
         let solver = warmed(flash(Partition::Mean, heated_for), boundary, 0.7);
-        let Rise { slider, track, row } = solver.rise();
+        let Rise { slider, track, row } = &solver.rise;
         assert!((mean(slider) / mean(track) - 1.0).abs() < 1e-12);
         let heat: f64 = pressure.iter().filter(|p| **p > 0.0).map(|p| 0.7 * (0.4 * p + 0.5)).sum();
         assert!((row.power / heat - 1.0).abs() < 1e-12 && row.share > 0.0 && row.share < 1.0);
         let of_means = row.share;
 
         let solver = warmed(flash(Partition::Local, heated_for), boundary, 0.7);
-        let Rise { slider, track, row } = solver.rise();
+        let Rise { slider, track, row } = &solver.rise;
         let apart = contact.iter().map(|n| (slider[*n] - track[*n]).abs()).fold(0.0, f64::max);
         // The tolerance of the partition is that of the root of the sum of squares.
         assert!(apart < 1e-7 * row.max, "{apart} of {}", row.max);
@@ -227,14 +227,14 @@ fn both_faces_are_equally_warm_in_the_mean_or_in_each_cell() {
     }
     // The whole and the parts: with one body alone the other stays cold.
     let all = warmed(flash(Partition::Track, None), Boundary::Free, 0.7);
-    assert!(all.rise().row.share == 0.0 && all.rise().slider.iter().all(|t| *t == 0.0));
+    assert!(all.rise.row.share == 0.0 && all.rise.slider.iter().all(|t| *t == 0.0));
 }
 
 #[test]
 fn nothing_is_warm_at_rest_and_the_motion_mirrors() {
     for partition in [Partition::Mean, Partition::Track] {
         let still = warmed(flash(partition, None), Boundary::Free, 0.0);
-        assert!(still.rise().row.max == 0.0 && still.rise().row.power == 0.0);
+        assert!(still.rise.row.max == 0.0 && still.rise.row.power == 0.0);
     }
     let (grid, pressure) = patch();
     let [there, back] = [0.7, -0.7].map(|v| rise(&grid, Boundary::Free, Direction::X, v, &pressure));
@@ -285,7 +285,7 @@ fn an_even_flux_on_a_periodic_domain_divides_as_the_effusivities() {
     };
     let mut solver = FlashSolver::of(&simulation, Direction::Angle(0.4)).unwrap();
     solver.warm(Rubbing { velocity: 2.0, pressure: &[1.0; 64], shear: 0.0, loss: 0.0 }).unwrap();
-    let row = solver.rise().row;
+    let row = solver.rise.row;
     assert!((row.share / (slider / (slider + track)) - 1.0).abs() < 1e-7);
     // T = 2 q √(t/π)/(e1 + e2)
     let exact = 2.0 * 0.4 * 2.0 * (5.0 / PI).sqrt() / (slider + track);

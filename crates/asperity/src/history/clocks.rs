@@ -7,7 +7,7 @@ use crate::step::Interval;
 pub(super) struct Clocks {
     bodies: Vec<ReducedTime>,
     /// Of the step measured last.
-    lengths: Vec<f64>,
+    pub(super) lengths: Vec<f64>,
 }
 
 impl Clocks {
@@ -21,11 +21,6 @@ impl Clocks {
         let clocked = self.bodies.iter().map(|clock| clock.elapsed(step.start, step.instant.time));
         let all = std::iter::once(step.length()).chain(clocked);
         self.lengths.iter_mut().zip(all).for_each(|(length, x)| *length = x);
-    }
-
-    /// The lengths measured last.
-    pub(super) fn lengths(&self) -> &[f64] {
-        &self.lengths
     }
 
     /// Rate of the fastest clock of a body over a time `dt` from `start` on, not less than `laboratory`.

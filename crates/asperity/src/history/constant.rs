@@ -77,7 +77,7 @@ impl ConstantPressure {
 
     fn plan(&mut self, step: &Interval) -> f64 {
         self.clocks.measure(step);
-        let lengths = self.clocks.lengths();
+        let lengths = &self.clocks.lengths;
         for ((element, update), kept) in self.elements.iter().zip(&mut self.updates).zip(&mut self.kept) {
             let x = lengths[element.clock];
             *update = match element.kind {

@@ -136,7 +136,26 @@ pub(crate) struct Ends<'a> {
     pub(crate) hardness: Hardness<'a>,
 }
 
-impl Ends<'_> {
+impl<'a> Ends<'a> {
+    /// Of pressures that no surface and no hardness limits: the past leaves `gap`, and `rest` is 0 everywhere.
+    pub(crate) fn unlimited(
+        [before, now]: [&'a ContactState; 2],
+        loads: [f64; 2],
+        gap: &'a [f64],
+        rest: &'a [f64],
+    ) -> Self {
+        Ends {
+            before,
+            now,
+            pressures: [&before.pressure, &now.pressure],
+            loads,
+            gap,
+            rigid: rest,
+            rigid_before: rest,
+            hardness: Hardness::Uniform(f64::INFINITY),
+        }
+    }
+
     /// w of both \[m\].
     pub(crate) fn approaches(&self) -> [f64; 2] {
         [self.before.approach, self.now.approach]

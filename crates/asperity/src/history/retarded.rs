@@ -18,7 +18,7 @@ use ndarray::Array2;
 
 use super::relaxation::Relaxation;
 use super::{Ends, History};
-use crate::contact::{ContactState, Hardness};
+use crate::contact::ContactState;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::load::{self, Control};
@@ -107,16 +107,8 @@ impl Retarded {
             load,
         };
         self.memory.open(&step, &self.before, &self.rest, &mut self.recalled)?;
-        self.memory.close(&Ends {
-            before: &self.before,
-            now: &self.now,
-            pressures: [&self.before, &self.now].map(|state| &state.pressure[..]),
-            loads,
-            gap: &self.recalled,
-            rigid: &self.rest,
-            rigid_before: &self.rest,
-            hardness: Hardness::Uniform(f64::INFINITY),
-        })
+        let ends = [&self.before, &self.now];
+        self.memory.close(&Ends::unlimited(ends, loads, &self.recalled, &self.rest))
     }
 
     /// The pressure at the last row.

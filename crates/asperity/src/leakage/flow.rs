@@ -94,13 +94,9 @@ pub(super) fn mobility(opening: &Opening, passages: &Passages, critical: f64) ->
         }
         _ => 0.0,
     };
-    let all: Vec<f64> = opening.gap.iter().zip(&passages.kinds).map(relative).collect();
-    if opening
-        .gap
-        .iter()
-        .zip(&passages.kinds)
-        .all(|(h, kind)| *kind != CellKind::Through || h / critical >= SMALLEST_GAP)
-    {
+    let cells = || opening.gap.iter().zip(&passages.kinds);
+    let all: Vec<f64> = cells().map(relative).collect();
+    if cells().all(|(h, kind)| *kind != CellKind::Through || h / critical >= SMALLEST_GAP) {
         return all;
     }
     // Without the narrowest cells some parts may no longer be connected to inlet or outlet.

@@ -154,5 +154,5 @@ pub(crate) fn gas_flow_after(
         conductance = now;
         channel = Channel::new(opening, &mobility_at(&pressure));
     }
-    Err(NotConverged::of("the flow of the gas through the gap", PASSES, f64::NAN, SETTLED))
+    Err(NotConverged::of("the flow of the gas through the gap", PASSES, f64::NAN, SETTLED).into())
 }

@@ -7,8 +7,7 @@
 
 use super::cholesky::Cholesky;
 use super::network::Network;
-use super::solve::add;
-use asperity_sweep::dot;
+use asperity_sweep::{add, dot};
 
 /// Largest number of cells that are factorised: 150 MB. Tests use a small number to have several levels.
 const FACTORISED: usize = if cfg!(test) { 1 << 7 } else { 1 << 18 };

@@ -79,33 +79,24 @@ impl Passages {
     }
 }
 
-/// The neighbours of a cell that come before it in C-order, or across the sides.
-fn earlier(opening: &Opening, cell: usize) -> impl Iterator<Item = usize> {
-    let m = opening.cells[1];
-    let (i, j) = (cell / m, cell % m);
-    let above = (i > 0).then(|| cell - m);
-    let before = (j > 0).then(|| cell - 1);
-    let around = (opening.sides == Sides::Periodic && j + 1 == m && m > 1).then(|| cell + 1 - m);
-    [above, before, around].into_iter().flatten()
-}
-
-fn later(opening: &Opening, cell: usize) -> impl Iterator<Item = usize> {
+/// The neighbours of a cell, also across the sides.
+fn neighbours(opening: &Opening, cell: usize) -> impl Iterator<Item = usize> {
     let [n, m] = opening.cells;
     let (i, j) = (cell / m, cell % m);
+    let wraps = opening.sides == Sides::Periodic && m > 1;
+    let above = (i > 0).then(|| cell - m);
     let below = (i + 1 < n).then(|| cell + m);
-    let after = (j + 1 < m).then(|| cell + 1);
-    let around = (opening.sides == Sides::Periodic && j == 0 && m > 1).then(|| cell + m - 1);
-    [below, after, around].into_iter().flatten()
+    let before = if j > 0 { Some(cell - 1) } else { wraps.then(|| cell + m - 1) };
+    let after = if j + 1 < m { Some(cell + 1) } else { wraps.then(|| cell + 1 - m) };
+    [above, below, before, after].into_iter().flatten()
 }
 
 /// Kind of each cell, from the connected parts and the borders that they reach.
 pub(super) fn kinds(opening: &Opening) -> Vec<CellKind> {
     let [n, m] = opening.cells;
     let open = |cell: usize| opening.gap[cell] > 0.0;
-    let mut forest = Forest::new(n * m);
-    for cell in (0..n * m).filter(|cell| open(*cell)) {
-        earlier(opening, cell).filter(|other| open(*other)).for_each(|other| forest.join(other, cell));
-    }
+    let wraps = [false, opening.sides == Sides::Periodic];
+    let mut forest = Forest::of([n, m], wraps, |i, j| open(i * m + j));
     let mut reaches = vec![0u8; n * m];
     for j in 0..m {
         let (first, last) = (j, (n - 1) * m + j);
@@ -141,8 +132,7 @@ fn constriction(opening: &Opening, kinds: &[CellKind]) -> Option<Constriction> {
     let mut opened = vec![false; n * m];
     for (_, cell) in order {
         opened[cell] = true;
-        let neighbours = earlier(opening, cell).chain(later(opening, cell));
-        neighbours.filter(|other| opened[*other]).for_each(|other| forest.join(other, cell));
+        neighbours(opening, cell).filter(|other| opened[*other]).for_each(|other| forest.join(other, cell));
         if cell < m {
             forest.join(cell, inlet);
         }

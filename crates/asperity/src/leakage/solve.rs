@@ -9,7 +9,7 @@ use super::cholesky::{Cholesky, factor_bytes};
 use super::multigrid::Multigrid;
 use super::network::Network;
 use crate::error::{Error, NotConverged, Result};
-use asperity_sweep::{dot, each};
+use asperity_sweep::{add, dot, each};
 
 /// Options of the flow solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,11 +112,6 @@ impl Previous {
     }
 }
 
-/// x += s y.
-pub(super) fn add(x: &mut [f64], s: f64, y: &[f64]) {
-    each(x, y, |x, y| *x += s * y);
-}
-
 /// Solves A x = b, starting from the given x. `power` computes the dissipation of the flow of an x, in any unit. Returns the
 /// power and the number of iterations.
 ///
@@ -170,5 +165,6 @@ pub(super) fn solve(
         options.max_iterations,
         (dot(&r, &r) / dot(b, b)).sqrt(),
         share,
-    ))
+    )
+    .into())
 }

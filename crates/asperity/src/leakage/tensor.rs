@@ -9,8 +9,9 @@
 
 use super::network::Network;
 use super::opening::Opening;
-use super::solve::{FlowOptions, Inverse, add, solve};
+use super::solve::{FlowOptions, Inverse, solve};
 use crate::error::Result;
+use asperity_sweep::add;
 
 /// K \[m^3\], rows and columns x, y.
 ///
@@ -48,11 +49,9 @@ pub(super) fn network_conductance(mut network: Network, options: &FlowOptions) -
     let mut corrector = |drop: [f64; 2]| -> Result<(Vec<f64>, f64)> {
         // The inflow of each cell due to the prescribed drop.
         let mut b = vec![0.0; n * m];
-        network.each(&mut b, |i, j, here| {
-            let above = (if i > 0 { i - 1 } else { n - 1 }) * m + j;
-            let before = i * m + if j > 0 { j - 1 } else { m - 1 };
-            drop[0] * (network.along[above] - network.along[here])
-                + drop[1] * (network.across[before] - network.across[here])
+        network.each(&mut b, |i, j, _| {
+            let [(above, _), (before, _), (after, _), (below, _)] = network.faces(i, j);
+            drop[0] * (above - below) + drop[1] * (before - after)
         });
         let mut chi = vec![0.0; n * m];
         let power = |chi: &[f64]| network.power(chi, drop);

@@ -6,7 +6,7 @@ use ndarray::{Array1, Array2};
 use crate::convolution::Convolution;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::kernel::{HalfSpace, Kernel, strip};
+use crate::kernel::Kernel;
 
 /// The influence coefficients on the quadrant of the padded torus.
 pub(super) fn influence(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
@@ -17,14 +17,6 @@ pub(super) fn influence(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>>
     };
     plausible(&influence)?;
     Ok(influence)
-}
-
-/// The same of the elastic half-space.
-pub(super) fn influence_of_half_space(grid: &Grid) -> Array2<f64> {
-    match grid.is_line() {
-        true => of_strips(strip(grid.spacing()[0], computed(grid)[0]), padded(grid)[1]),
-        false => HalfSpace.coefficients(grid.spacing(), computed(grid)),
-    }
 }
 
 /// The coefficients of a line as those of a grid with one cell along y, on a torus that is so long along y.
@@ -67,6 +59,7 @@ pub(super) fn plausible(influence: &Array2<f64>) -> Result<()> {
 mod tests {
     use super::*;
     use crate::convolution::even_spectrum;
+    use crate::kernel::HalfSpace;
 
     #[test]
     fn the_spectrum_is_positive_for_any_shape() {
@@ -78,12 +71,12 @@ mod tests {
             ([65, 129], [3.0, 2.0]),
         ] {
             let grid = Grid::new(cells, size).unwrap();
-            let spectrum = even_spectrum(&influence_of_half_space(&grid), padded(&grid));
+            let spectrum = even_spectrum(&influence(&grid, &HalfSpace).unwrap(), padded(&grid));
             assert!(spectrum.iter().all(|s| *s > 0.0), "{cells:?} {size:?}");
         }
         for cells in [2, 3, 17, 64, 1000] {
             let grid = Grid::line(cells, 1e-3).unwrap();
-            let spectrum = even_spectrum(&influence_of_half_space(&grid), padded(&grid));
+            let spectrum = even_spectrum(&influence(&grid, &HalfSpace).unwrap(), padded(&grid));
             assert!(spectrum.iter().all(|s| *s > 0.0), "a line of {cells}");
         }
     }

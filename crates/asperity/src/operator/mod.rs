@@ -100,12 +100,7 @@ pub fn plan_on(
 
 /// The operator of the elastic half-space.
 pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
-    let eigenvalues = match boundary {
-        Boundary::Free => even_spectrum(&free::influence_of_half_space(&grid), free::padded(&grid)),
-        Boundary::Periodic => periodic_eigenvalues(&grid, &HalfSpace),
-    };
-    let (backend, kernel) = (default_backend(), Arc::new(HalfSpace));
-    of_eigenvalues(Body { grid, boundary, backend, kernel, has_coarser: true }, &eigenvalues)
+    plan(grid, boundary, Arc::new(HalfSpace)).expect("any grid resolves a half-space")
 }
 
 /// The eigenvalues of K on the torus that its convolution works on, those of a quarter of the waves, \[kx\]\[ky\] \[m\].
@@ -115,14 +110,12 @@ pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
 pub(crate) fn eigenvalues(grid: &Grid, boundary: Boundary, kernel: &dyn Kernel) -> Result<Array2<f64>> {
     match boundary {
         Boundary::Free => Ok(even_spectrum(&free::influence(grid, kernel)?, free::padded(grid))),
-        Boundary::Periodic => Ok(periodic_eigenvalues(grid, kernel)),
+        // The symbol of the kernel on the waves of the domain (Stanley & Kato, J. Tribol. 119, 1997).
+        Boundary::Periodic => {
+            let uniform = kernel.uniform().unwrap_or(0.0);
+            Ok(wave_spectrum(grid.cells(), grid.size(), uniform, |qx, qy| kernel.symbol(qx, qy)))
+        }
     }
-}
-
-/// The symbol of the kernel on the waves of a periodic domain (Stanley & Kato, J. Tribol. 119, 1997).
-fn periodic_eigenvalues(grid: &Grid, kernel: &dyn Kernel) -> Array2<f64> {
-    let symbol = |qx, qy| kernel.symbol(qx, qy);
-    wave_spectrum(grid.cells(), grid.size(), kernel.uniform().unwrap_or(0.0), symbol)
 }
 
 /// Lengths of the torus of [`eigenvalues`].

@@ -46,9 +46,8 @@ impl Energy {
     pub(super) fn of(simulation: &Simulation, history: &mut dyn History) -> Option<Self> {
         let is_wanted = |q: &Quantity| q.is_energy() || *q == Quantity::DissipatedPower;
         let wanted = simulation.quantities.list.iter().any(is_wanted);
-        let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
         let other_work = simulation.motion.is_some() || simulation.traction.is_some();
-        let is_conservative = !other_work && !simulation.parts().any(remembers);
+        let is_conservative = !other_work && !simulation.parts().any(Creep::remembers);
         (wanted && history.track_energy()).then_some(Energy { is_conservative, ..Energy::default() })
     }
 }

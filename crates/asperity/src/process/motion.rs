@@ -7,14 +7,14 @@
 use ndarray::{Array2, ArrayView2};
 
 use super::{Process, Solved};
-use crate::error::{Result, require, significant};
+use crate::error::{Of, Result, require, significant};
 use crate::flash::{FlashSolver, Rise, Rubbing};
 use crate::grid::Boundary;
 use crate::material::Creep;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Scheme, Simulation};
 use crate::sliding::{ContactForces, Direction, Friction, MovingGap, Path, ShearStress, Slopes};
-use crate::step::{Interval, Loader, Saver, UndeformedGap};
+use crate::step::{Interval, Loader, Saver, UndeformedGap, saved};
 
 /// How a contact moves.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,8 +38,7 @@ impl Motion {
     /// [`Error::Invalid`](crate::Error::Invalid) where it is not above 0 and at most 8.
     pub fn check_cells_per_step(cells: f64) -> Result<()> {
         let fine = cells > 0.0 && cells <= 8.0;
-        require(fine, "cells_per_step", cells, "greater than 0 and at most 8")
-            .map_err(|error| error.of("cells_per_step"))
+        require(fine, "cells_per_step", cells, "greater than 0 and at most 8").of("cells_per_step")
     }
 
     /// Length of a step along the path, at most \[m\].
@@ -65,7 +64,7 @@ impl Motion {
             self.cells_per_step,
             "at most 1: longer steps wear stripes",
         )
-        .map_err(|error| error.of("cells_per_step"))?;
+        .of("cells_per_step")?;
         let stops = self.stops(simulation)?;
         require(
             simulation.scheme == Scheme::Linear,
@@ -77,10 +76,7 @@ impl Motion {
         let cap = simulation.plasticity == Plasticity::Cap;
         require(cap, "plasticity of a contact in motion", "accumulate", expected)?;
         self.direction.validate(simulation)?;
-        self.shear_stress
-            .iter()
-            .try_for_each(ShearStress::validate)
-            .map_err(|error| error.of("shear_stress"))?;
+        self.shear_stress.iter().try_for_each(ShearStress::validate).of("shear_stress")?;
         if simulation.boundary == Boundary::Free {
             let axis = self.direction.axis();
             let (length, start) = (simulation.grid.size()[axis], self.gap.centre()[axis]);
@@ -145,6 +141,15 @@ impl Swing {
     }
 }
 
+saved! {
+    Moving {
+        "distance": before;
+        "force": friction.force;
+        "time_error": time_error;
+        "swing": swing.start, swing.errors;
+    }
+}
+
 impl Moving {
     pub(super) fn new(simulation: &Simulation, motion: &Motion) -> Self {
         let (_, slopes) = motion.gap.at(0.0, motion.direction);
@@ -167,7 +172,6 @@ impl Moving {
     /// The forces at the end of a step; `held` is the error that they state for one that is known of them.
     fn forces(&self, row: &Solved<'_>, time_error: f64, held: impl FnOnce(f64) -> f64) -> Friction {
         let velocity = self.motion.path.velocity(row.step.instant.time);
-        let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
         let worn = row.undeformed.worn_slopes.as_ref().map(|worn| self.slopes.and(worn));
         let contact = ContactForces {
             simulation: row.simulation,
@@ -176,7 +180,7 @@ impl Moving {
             state: row.now,
             gap: row.gap(),
             compliance: row.compliance,
-            remembers: row.simulation.parts().any(remembers),
+            remembers: row.simulation.parts().any(Creep::remembers),
             velocity,
             sense: self.motion.path.sense(row.step.instant.time),
             distance: self.distance,
@@ -233,12 +237,12 @@ impl Process for Moving {
 
     fn preview(&mut self, quantity: Quantity, row: &mut Solved<'_>) -> Result<Option<f64>> {
         if quantity.is_of_flash() {
-            let (friction, rise) = (self.friction, self.flash.as_ref().map(|flash| flash.rise().clone()));
+            let (friction, rise) = (self.friction, self.flash.as_ref().map(|flash| flash.rise.clone()));
             self.friction = self.forces(row, 0.0, |error| error);
             self.warm(row)?;
             let found = self.rise().and_then(|rise| rise.row.quantity(quantity));
             self.friction = friction;
-            self.flash.iter_mut().zip(rise).for_each(|(flash, rise)| flash.restore(rise));
+            self.flash.iter_mut().zip(rise).for_each(|(flash, rise)| flash.rise = rise);
             return Ok(found);
         }
         let is_own = quantity.is_of_motion() && quantity != Quantity::DissipatedPower;
@@ -253,7 +257,7 @@ impl Process for Moving {
     }
 
     fn rise(&self) -> Option<&Rise> {
-        self.flash.as_ref().map(FlashSolver::rise)
+        self.flash.as_ref().map(|flash| &flash.rise)
     }
 
     fn name(&self) -> &'static str {
@@ -261,19 +265,13 @@ impl Process for Moving {
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
-        to.value("distance", &self.before);
-        to.value("force", &self.friction.force);
-        to.value("time_error", &self.time_error);
-        to.values("swing", &[&self.swing.start, &self.swing.errors[0], &self.swing.errors[1]]);
+        self.save_own(to);
     }
 
     fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
-        self.move_to(from.get("distance")?, gap);
-        self.before = self.distance;
-        self.friction.force = from.get("force")?;
-        self.time_error = from.get("time_error")?;
-        let Swing { start, errors: [now, before] } = &mut self.swing;
-        from.values_into("swing", &mut [start, now, before])
+        self.load_own(from)?;
+        self.move_to(self.before, gap);
+        Ok(())
     }
 }
 
@@ -293,18 +291,9 @@ pub fn in_contact_frame<T: Copy>(
 ) -> Array2<T> {
     let (nx, ny) = field.dim();
     Array2::from_shape_fn((nx, ny), |(i, j)| {
-        let (a, b) = (source(i, -shift[0], nx, boundary), source(j, -shift[1], ny, boundary));
-        a.zip(b).map_or(beyond, |at| field[at])
+        let at = boundary.beside(i, shift[0], nx).zip(boundary.beside(j, shift[1], ny));
+        at.map_or(beyond, |at| field[at])
     })
-}
-
-/// The cell that cell n of a field moved by `shift` cells had been.
-fn source(n: usize, shift: isize, count: usize, boundary: Boundary) -> Option<usize> {
-    let m = n as isize - shift;
-    match boundary {
-        Boundary::Periodic => Some(m.rem_euclid(count as isize) as usize),
-        Boundary::Free => (0..count as isize).contains(&m).then_some(m as usize),
-    }
 }
 
 /// `to` = `from` moved by `shift` cells; beyond the ends of a free domain there is 0.
@@ -316,12 +305,12 @@ pub(crate) fn roll(
     to: &mut [f64],
 ) {
     for (i, row) in to.chunks_mut(ny).enumerate() {
-        let Some(a) = source(i, shift[0], nx, boundary) else {
+        let Some(a) = boundary.beside(i, -shift[0], nx) else {
             row.fill(0.0);
             continue;
         };
         for (j, to) in row.iter_mut().enumerate() {
-            *to = source(j, shift[1], ny, boundary).map_or(0.0, |b| from[a * ny + b]);
+            *to = boundary.beside(j, -shift[1], ny).map_or(0.0, |b| from[a * ny + b]);
         }
     }
 }

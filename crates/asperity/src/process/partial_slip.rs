@@ -19,12 +19,12 @@ use std::sync::Arc;
 use asperity_sweep::{each, is_zero, sums, zeros};
 
 use super::{Process, Solved};
-use crate::contact::{ContactState, Hardness, SAME_LOAD};
+use crate::contact::{ContactState, SAME_LOAD};
 use crate::error::{Error, Result};
 use crate::history::{self, Ends, History};
 use crate::kernel::Cerruti;
 use crate::simulation::Simulation;
-use crate::step::{Interval, Load, Loader, Saver, UndeformedGap};
+use crate::step::{Interval, Load, Loader, Saver, UndeformedGap, saved};
 use crate::tangential::{
     EDGE, Given, Lateral, Slip, SlipOutcome, SlipProblem, SlipRow, SlipSolver, Tangential, TangentialControl,
     Vector, inner, length, minus, plus, times,
@@ -85,6 +85,17 @@ struct Found {
     outcome: SlipOutcome,
     /// Whether the histories have the step open.
     is_open: bool,
+}
+
+saved! {
+    PartialSlip {
+        "course": course;
+        "numbers": numbers.force, numbers.displacement, numbers.work, load, energy;
+    }
+    fields {
+        "path": path;
+        "heat": heat;
+    }
 }
 
 impl PartialSlip {
@@ -254,14 +265,11 @@ impl PartialSlip {
         let (offset, radius, scale) = (&self.offset[..], &self.radius[..], SMALLEST_SCALE * scale);
         let problem = SlipProblem { compliance, offset, radius, given, scale, energy: self.energy };
         let limits = (tolerance, row.simulation.solver.max_iterations);
-        let outcome =
-            self.solver.solve(&problem, &mut self.slip, limits, row.interrupt).map_err(|error| {
-                let time = row.step.instant.time;
-                match error {
-                    Error::NotConverged(report) => crate::NotConverged { time: Some(time), ..report }.into(),
-                    other => other,
-                }
-            })?;
+        let time = row.step.instant.time;
+        let outcome = self
+            .solver
+            .solve(&problem, &mut self.slip, limits, row.interrupt)
+            .map_err(|error| error.at(time))?;
         row.convolutions += outcome.convolutions;
         self.found.outcome = self.found.outcome.then(outcome);
         Ok(())
@@ -301,16 +309,7 @@ impl Process for PartialSlip {
                 each(&mut now.unit_displacement, &under_pressure[..], |to, u| *to += u[axis]);
             }
             let ends = [&self.before[axis], &self.now[axis]];
-            self.memories[axis].close(&Ends {
-                before: ends[0],
-                now: ends[1],
-                pressures: ends.map(|state| &state.pressure[..]),
-                loads,
-                gap: &self.recalled,
-                rigid: &self.rest,
-                rigid_before: &self.rest,
-                hardness: Hardness::Uniform(f64::INFINITY),
-            })?;
+            self.memories[axis].close(&Ends::unlimited(ends, loads, &self.recalled, &self.rest))?;
         }
         Ok(())
     }
@@ -331,15 +330,7 @@ impl Process for PartialSlip {
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
-        let SlipRow { force, displacement, work, .. } = &self.numbers;
-        let [[ax, ay], [bx, by]] = &self.course;
-        to.values("course", &[ax, ay, bx, by]);
-        to.values(
-            "numbers",
-            &[&force[0], &force[1], &displacement[0], &displacement[1], work, &self.load, &self.energy],
-        );
-        to.field("path", &self.path);
-        to.field("heat", &self.heat);
+        self.save_own(to);
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let component = |field: &[Vector]| field.iter().map(|v| v[axis]).collect();
             to.within(name, |to| {
@@ -354,12 +345,7 @@ impl Process for PartialSlip {
     }
 
     fn load(&mut self, from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
-        let SlipRow { force: [fx, fy], displacement: [dx, dy], work, .. } = &mut self.numbers;
-        from.values_into("numbers", &mut [fx, fy, dx, dy, work, &mut self.load, &mut self.energy])?;
-        let [[ax, ay], [bx, by]] = &mut self.course;
-        from.values_into("course", &mut [ax, ay, bx, by])?;
-        from.field_into("path", &mut self.path)?;
-        from.field_into("heat", &mut self.heat)?;
+        self.load_own(from)?;
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let set = |field: &mut [Vector], from: &[f64]| each(field, from, |v, part| v[axis] = part);
             from.within(name, |from| {

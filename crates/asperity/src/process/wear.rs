@@ -116,7 +116,7 @@ impl Wearing {
     /// What the surfaces of a row recede by after it because of its slip, and the pressure that takes it off.
     fn wear_by_slip(&mut self, row: &mut Solved<'_>) -> Result<Recession> {
         let Some(After { solver, state }) = &mut self.after else { return Ok(Recession::default()) };
-        let factor = self.law.total() * self.cycles.factor();
+        let factor = self.law.total() * self.cycles.factor;
         let mut cells = std::mem::take(&mut row.slipped);
         each(&mut cells, factors(&self.law), |slip, map| *slip *= factor * map);
         let is_none = asperity_sweep::is_zero(&cells);

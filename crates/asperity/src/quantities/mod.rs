@@ -55,7 +55,7 @@ mod stiffness;
 
 use ndarray::Array2;
 
-use crate::error::{Result, positive, require};
+use crate::error::{Of, Result, positive, require};
 use crate::grid::Grid;
 
 pub(crate) use eccentricity::eccentricity;
@@ -82,36 +82,27 @@ macro_rules! quantities {
         }
 
         impl Quantity {
-            const fn along_axes(self) -> [[&'static str; 2]; 2] {
-                match self {
-                    $(Quantity::$variant => [
-                        [concat!($name, "_x"), concat!($long_name, " along x")],
-                        [concat!($name, "_y"), concat!($long_name, " along y")],
-                    ],)*
-                }
-            }
-
             /// Every quantity.
             pub const ALL: [Quantity; [$(Quantity::$variant),*].len()] = [$(Quantity::$variant),*];
-
-            const fn declaration(self) -> Declaration {
-                match self {
-                    $(Quantity::$variant => Declaration {
-                        name: $name,
-                        units: $units,
-                        long_name: $long_name,
-                        kind: Kind::$kind,
-                        panel: Panel { title: $title, label: $label, legend: $legend },
-                        line: [$(Line {
-                            units: $line_units,
-                            long_name: $line_name,
-                            title: $line_title,
-                            label: $line_label,
-                        })?].first().copied(),
-                    },)*
-                }
-            }
         }
+
+        static DECLARATIONS: [Declaration; Quantity::ALL.len()] = [$(Declaration {
+            name: $name,
+            units: $units,
+            long_name: $long_name,
+            kind: Kind::$kind,
+            along_axes: [
+                [concat!($name, "_x"), concat!($long_name, " along x")],
+                [concat!($name, "_y"), concat!($long_name, " along y")],
+            ],
+            panel: Panel { title: $title, label: $label, legend: $legend },
+            line: [$(Line {
+                units: $line_units,
+                long_name: $line_name,
+                title: $line_title,
+                label: $line_label,
+            })?].first().copied(),
+        }),*];
     };
 }
 
@@ -284,6 +275,8 @@ struct Declaration {
     units: &'static str,
     long_name: &'static str,
     kind: Kind,
+    /// Names and descriptions of components along x and y.
+    along_axes: [[&'static str; 2]; 2],
     panel: Panel,
     line: Option<Line>,
 }
@@ -340,6 +333,10 @@ pub struct Panel {
 }
 
 impl Quantity {
+    fn declaration(self) -> &'static Declaration {
+        &DECLARATIONS[self as usize]
+    }
+
     /// The quantities of every contact, moving or not, with other tractions or without.
     pub fn at_rest() -> impl Iterator<Item = Quantity> {
         let is_special = |quantity: &Quantity| {
@@ -421,12 +418,12 @@ impl Quantity {
 
     /// Names and descriptions of its components along x and y; none if its value is a number or a histogram.
     pub fn components(self) -> Option<[[&'static str; 2]; 2]> {
-        (self.declaration().kind == Kind::TangentialVector).then(|| self.along_axes())
+        (self.declaration().kind == Kind::TangentialVector).then_some(self.declaration().along_axes)
     }
 
     /// The panel that shows it on this grid; `None` for a histogram.
     pub fn panel_on(self, grid: &Grid) -> Option<Panel> {
-        let Declaration { panel, line, .. } = self.declaration();
+        let Declaration { panel, line, .. } = *self.declaration();
         let panel = match line.filter(|_| grid.is_line()) {
             Some(Line { title, label, .. }) => Panel { title, label, ..panel },
             None => panel,
@@ -590,7 +587,7 @@ impl Quantities {
         }
         let possible = (1..=MOST_BINS).contains(&self.bins);
         require(possible, "bins of the histograms", self.bins, format!("between 1 and {MOST_BINS}"))
-            .map_err(|error| error.of("histogram.bins"))?;
+            .of("histogram.bins")?;
         if let (true, Some(top)) = (self.has(Quantity::PressureHistogram), self.largest_pressure) {
             positive(PRESSURE_END, top, "Pa")?;
         }
@@ -600,7 +597,7 @@ impl Quantities {
         let is_bounded = !self.has(Quantity::PressureHistogram) || self.largest_pressure.is_some() || capped;
         let expected =
             "a pressure, as the bodies have no hardness that bounds it: histogram = { pressure = \"...\" }";
-        require(is_bounded, PRESSURE_END, "not given", expected).map_err(|error| error.of("quantities"))
+        require(is_bounded, PRESSURE_END, "not given", expected).of("quantities")
     }
 
     /// The quantities with their bins, for an undeformed gap \[m\] and a largest hardness \[Pa\] (infinite if there is none).

@@ -118,7 +118,7 @@ impl ContactStiffness {
                 *r -= if on { length * moved } else { 0.0 };
             });
         }
-        Err(NotConverged::of("contact stiffness", MOST_ITERATIONS, f64::NAN, SMALLEST_SHARE))
+        Err(NotConverged::of("contact stiffness", MOST_ITERATIONS, f64::NAN, SMALLEST_SHARE).into())
     }
 
     /// d = z + beta d on S.

@@ -69,12 +69,12 @@ impl Conductance {
 
     /// The last pressure that leaks \[Pa\]; `None` where none does.
     pub fn last_leaking(&self) -> Option<f64> {
-        self.sigma.pressures().last().copied()
+        self.sigma.pressures.last().copied()
     }
 
     /// The pressures between which sigma is known: first and last of the sweep, or no end where it is tight.
     pub fn ends(&self) -> [f64; 2] {
-        let first = self.sigma.pressures().first().copied().or(self.tight).unwrap_or(f64::INFINITY);
+        let first = self.sigma.pressures.first().copied().or(self.tight).unwrap_or(f64::INFINITY);
         let last = if self.tight.is_some() { f64::INFINITY } else { self.last_leaking().unwrap_or(0.0) };
         [first, last]
     }
@@ -113,7 +113,7 @@ impl Conductance {
 
     /// Pressures between which sigma is smooth, falling.
     pub(super) fn breaks(&self) -> impl Iterator<Item = f64> + '_ {
-        self.tight.into_iter().chain(self.sigma.pressures().iter().rev().copied())
+        self.tight.into_iter().chain(self.sigma.pressures.iter().rev().copied())
     }
 }
 

@@ -4,7 +4,8 @@
 /// The number at increasing pressures.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curve {
-    pressures: Vec<f64>,
+    /// Where the points are.
+    pub(super) pressures: Vec<f64>,
     log: Vec<f64>,
     /// d ln/dp.
     slopes: Vec<f64>,
@@ -17,11 +18,6 @@ impl Curve {
         let log: Vec<f64> = points.iter().map(|point| point.1.ln()).collect();
         let slopes = slopes(&pressures, &log);
         Curve { pressures, log, slopes }
-    }
-
-    /// Where the points are.
-    pub(super) fn pressures(&self) -> &[f64] {
-        &self.pressures
     }
 
     /// The number at a pressure; 0 without points.

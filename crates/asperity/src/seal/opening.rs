@@ -5,6 +5,7 @@
 //! ```
 
 use super::{Conductance, Profile};
+use crate::roots::bisected;
 
 /// When a seal opens.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,18 +59,11 @@ fn falls(profile: &Profile, start: f64, level: f64) -> Option<f64> {
     let mut low = start;
     for inlet in inlets.windows(2).flat_map(between) {
         if excess(inlet)? <= 0.0 {
-            return bisected(low, inlet, excess);
+            let [opens, _] =
+                bisected([low, inlet], 60, |inlet| excess(inlet).is_some_and(|excess| excess > 0.0));
+            return Some(opens);
         }
         low = inlet;
     }
     None
-}
-
-/// Where a number falls below 0, on its positive side.
-fn bisected(mut low: f64, mut high: f64, excess: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if excess(middle)? > 0.0 { low = middle } else { high = middle }
-    }
-    Some(low)
 }

@@ -23,6 +23,7 @@ use crate::tangential::{self, Tangential};
 use crate::time::{Plan, TimeGrid};
 use crate::traction::{TractionLaw, TractionSolver};
 use crate::wear::Wear;
+use asperity_sweep::{maximum, minimum};
 
 /// How the pressure varies over a time step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -133,10 +134,14 @@ impl Simulation {
     /// The rows as far as they are known beforehand: t = 0+, the steps, the breaks and jumps of the histories, those
     /// of the temperature, the ends of the stages.
     pub fn plan(&self) -> Plan {
-        let mut include = self.stops();
-        include.extend(self.motion.iter().flat_map(|motion| motion.path.breaks(self.times.end())));
-        include.extend(self.thermal.iter().flat_map(|body| body.clock.breaks(self.times.end())));
-        self.loading.plan(&self.times, &include)
+        self.loading.plan(&self.times, &[self.stops(), self.kinks()].concat())
+    }
+
+    /// The instants at which the temperature or the path of the motion has a kink.
+    pub(crate) fn kinks(&self) -> Vec<f64> {
+        let end = self.times.end();
+        let of_temperature = self.thermal.iter().flat_map(|body| body.clock.breaks(end));
+        of_temperature.chain(self.motion.iter().flat_map(|motion| motion.path.breaks(end))).collect()
     }
 
     /// The instants at which steps end in addition to those of the grid.
@@ -169,9 +174,7 @@ impl Simulation {
     /// Compliance of the pair after a long time \[1/Pa\]; where it flows, at the end of the run.
     pub fn relaxed(&self) -> f64 {
         let flows = self.parts().any(|creep| creep.fluidity > 0.0);
-        let long =
-            |creep: &Creep| creep.instantaneous + creep.terms.iter().map(|t| t.compliance).sum::<f64>();
-        if flows { self.compliance(self.times.end()) } else { self.parts().map(long).sum() }
+        if flows { self.compliance(self.times.end()) } else { self.parts().map(Creep::long_time).sum() }
     }
 
     /// Compliance of the pair at time t under a pressure held since 0 \[1/Pa\].
@@ -224,17 +227,27 @@ impl Simulation {
     /// # Errors
     /// [`Error::Invalid`](crate::Error::Invalid) as [`Quantities::columns`].
     pub fn columns_of(&self, quantities: &Quantities) -> Result<Vec<Column>> {
-        let hardness = match self.hardness_of_cells() {
-            Some(cells) => cells.into_iter().fold(0.0, f64::max),
-            None => self.hardness,
-        };
-        quantities.columns(&self.grid, &self.gap, hardness)
+        let [_, hardest] = self.hardness_range();
+        quantities.columns(&self.grid, &self.gap, hardest)
     }
 
     /// Whether displacements are known up to a constant, which the approach then has too: in a line contact on a free domain, unless
     /// all bodies lie on a rigid base.
     pub fn is_up_to_a_constant(&self) -> bool {
         self.grid.is_line() && self.boundary == Boundary::Free && self.kernel.depth().is_none()
+    }
+
+    /// The least and the largest cut-off of a cell \[Pa\].
+    pub(crate) fn hardness_range(&self) -> [f64; 2] {
+        match self.hardness_of_cells() {
+            Some(cells) => [minimum(&cells), maximum(&cells)],
+            None => [self.hardness; 2],
+        }
+    }
+
+    /// The undeformed gap, cell by cell: that of a valid simulation is in C-order.
+    pub(crate) fn gap_cells(&self) -> &[f64] {
+        self.gap.as_slice().unwrap_or_default()
     }
 
     /// The cut-off that holds in each cell, where it is not the same everywhere.

@@ -1,7 +1,7 @@
 //! What can be known of a simulation to be wrong before its first solve.
 
 use super::{Plasticity, Scheme, Simulation};
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Of, Result, require};
 use crate::grid::Boundary;
 use crate::load::{Control, Course, Event, History, Programme, Stage, of_stage};
 use crate::material::Creep;
@@ -23,11 +23,9 @@ impl Simulation {
     pub fn validate(&self) -> Result<()> {
         self.validate_gap()?;
         self.validate_numbers()?;
-        self.columns().map_err(|error| error.of("output"))?;
+        self.columns().of("output")?;
         self.validate_kernel()?;
-        self.motion
-            .iter()
-            .try_for_each(|motion| motion.validate(self).map_err(|error| error.of("motion")))?;
+        self.motion.iter().try_for_each(|motion| motion.validate(self).of("motion"))?;
         self.wear.iter().try_for_each(|wear| wear.validate_sliding(self))?;
         self.quantities.list.iter().try_for_each(|quantity| self.allows(*quantity))?;
         self.awaited()?;
@@ -53,17 +51,14 @@ impl Simulation {
         let instants = self.plan().instants;
         let mut checks = vec![
             self.validate_line(),
-            self.quantities.validate(self.is_capped()).map_err(|error| error.of("output")),
+            self.quantities.validate(self.is_capped()).of("output"),
             self.validate_plasticity(),
             self.validate_scheme(),
             self.validate_layers(),
-            self.flash
-                .as_ref()
-                .map_or(Ok(()), |flash| flash.validate(self))
-                .map_err(|error| error.of("flash")),
+            self.flash.iter().try_for_each(|flash| flash.validate(self)).of("flash"),
             self.validate_traction(),
-            self.tangential.as_ref().map_or(Ok(()), |tangential| tangential.validate(self)),
-            self.wear.as_ref().map_or(Ok(()), |wear| wear.validate(self)),
+            self.tangential.iter().try_for_each(|tangential| tangential.validate(self)),
+            self.wear.iter().try_for_each(|wear| wear.validate(self)),
             self.validate_jumps(&instants),
         ];
         let stages = 0..self.loading.stages.len();
@@ -163,7 +158,7 @@ impl Simulation {
     }
 
     /// Whether a hardness limits the pressure.
-    fn is_capped(&self) -> bool {
+    pub(crate) fn is_capped(&self) -> bool {
         self.hardness.is_finite() || self.hardness_map.is_some()
     }
 
@@ -174,7 +169,7 @@ impl Simulation {
             "infinite",
             "finite where flattening stays (plasticity \"accumulate\"). No body has one; give a body its `hardness`",
         )
-        .map_err(|error| error.of("solver.plasticity"))
+        .of("solver.plasticity")
     }
 
     fn validate_scheme(&self) -> Result<()> {
@@ -184,7 +179,7 @@ impl Simulation {
             format!("{:?}", self.scheme).to_lowercase(),
             "linear. The error estimate of adaptive steps is derived for it; omit `scheme`, or use spacing = \"log\" with `steps`",
         )
-        .map_err(|error| error.of("time.scheme"))
+        .of("time.scheme")
     }
 
     fn validate_gap(&self) -> Result<()> {
@@ -238,7 +233,7 @@ impl Simulation {
         }
         let require = |holds: bool, parameter: &str, what: &str, value: String, expected: &str| {
             let what = format!("{what} of layers that creep differently");
-            require(holds, what, value, expected).map_err(|error| error.of(parameter))
+            require(holds, what, value, expected).of(parameter)
         };
         let scheme = format!("{:?}", self.scheme).to_lowercase();
         require(self.scheme == Scheme::Linear, "time.scheme", "scheme", scheme, "linear")?;
@@ -257,7 +252,7 @@ impl Simulation {
         let Some(traction) = &self.traction else { return Ok(()) };
         let expected = "\"cap\" where other tractions act on the surfaces";
         require(self.plasticity == Plasticity::Cap, "plasticity", "\"accumulate\"", expected)
-            .map_err(|error| error.of("solver.plasticity"))?;
+            .of("solver.plasticity")?;
         traction.check(self)
     }
 
@@ -267,7 +262,7 @@ impl Simulation {
             return Ok(());
         }
         require(self.grid.len() > 1, "number of cells of a free line contact", 1, "2 at least")
-            .map_err(|error| error.of("domain.cells"))?;
+            .of("domain.cells")?;
         (0..self.loading.stages.len())
             .try_for_each(|n| self.of_stage(n, self.validate_control(&self.loading.stages[n])))
     }
@@ -285,8 +280,7 @@ impl Simulation {
             ("control", "control", stage.control == Control::Approach),
         ];
         of_approach.into_iter().try_for_each(|(key, what, found)| {
-            require(!found, format!("{what} of a free line contact"), "approach", expected)
-                .map_err(|error| error.of(key))
+            require(!found, format!("{what} of a free line contact"), "approach", expected).of(key)
         })
     }
 
@@ -306,10 +300,7 @@ impl Simulation {
         };
         let Some(number) = RowNumber::from_name(number) else { return Ok(()) };
         let heaviest = self.most() * self.grid.cell_area();
-        let hardest = match &self.hardness_map {
-            Some(map) => map.iter().copied().fold(0.0, f64::max),
-            None => self.hardness,
-        };
+        let [_, hardest] = self.hardness_range();
         let [least, most] = number.range(&self.grid, heaviest, hardest, self.traction.is_some());
         let unit = match number.units_on(&self.grid) {
             "1" => String::new(),
@@ -323,7 +314,7 @@ impl Simulation {
         // Equality within rounding is the limit itself, which can be reached.
         let reaches = value >= least && value <= most * (1.0 + 1e-12);
         require(reaches, format!("{key} of the event"), format!("{value}{unit}"), expected)
-            .map_err(|error| error.of(&format!("until.{key}")))
+            .of(&format!("until.{key}"))
     }
 
     /// Rows must have what a stage waits for.
@@ -379,8 +370,7 @@ impl Simulation {
             1.0 / (LEAST_PER_PERIOD * frequency),
             (LEAST_PER_PERIOD * frequency * lasts).ceil(),
         );
-        require(follows, "longest time step under a sine", format!("{longest} s"), expected)
-            .map_err(|error| error.of("history"))
+        require(follows, "longest time step under a sine", format!("{longest} s"), expected).of("history")
     }
 
     fn validate_load(&self, stage: &Stage) -> Result<()> {
@@ -408,7 +398,7 @@ impl Simulation {
             least,
             "not negative. Bodies only press; prescribe the approach to pull them apart",
         )
-        .map_err(|error| error.of(low))?;
+        .of(low)?;
         let max = self.most() * self.grid.cell_area();
         // Equality within rounding is the limit itself, which has a solution.
         if most * factor > max * (1.0 + 1e-12) {
@@ -420,7 +410,7 @@ impl Simulation {
 
     /// Sum of the cut-off over the cells that can touch \[Pa\]; over all cells as long as there is no gap.
     fn most(&self) -> f64 {
-        let gap = self.gap.as_slice().unwrap_or_default();
+        let gap = self.gap_cells();
         let cells = (0..self.grid.len()).filter(|cell| gap.get(*cell).is_none_or(|h| h.is_finite()));
         match self.hardness_of_cells() {
             Some(hardness) => cells.map(|cell| hardness[cell]).sum(),
@@ -443,7 +433,7 @@ impl Simulation {
                 "a ramp. The bodies have no instantaneous compliance (Kelvin-Voigt), so no contact follows a jump; use a ramp, or a \
                  material with an instantaneous modulus (zener, prony)",
             );
-            self.of_stage(instant.stage, checked.map_err(|error| error.of("history")))?;
+            self.of_stage(instant.stage, checked.of("history"))?;
             (last, stage) = (instant.value, instant.stage);
         }
         Ok(())

@@ -158,7 +158,7 @@ impl MovingGap {
     fn shifted(&self, field: &Array2<f64>, cells: [f64; 2]) -> Array2<f64> {
         let mut field = field.clone();
         for (axis, moved) in cells.into_iter().enumerate().take(self.grid.dimensions()) {
-            let count = self.grid.cells()[axis] as i64;
+            let count = self.grid.cells()[axis];
             let whole = (moved + WHOLE).floor();
             let part = (moved - whole).max(0.0);
             let part = if part < 2.0 * WHOLE { 0.0 } else { part };
@@ -166,17 +166,13 @@ impl MovingGap {
                 continue;
             }
             let from = field.clone();
-            let at = |n: i64, other: usize| {
-                let n = match self.boundary {
-                    Boundary::Periodic => n.rem_euclid(count),
-                    Boundary::Free if (0..count).contains(&n) => n,
-                    Boundary::Free => return f64::NAN,
-                };
-                if axis == 0 { from[(n as usize, other)] } else { from[(other, n as usize)] }
+            let at = |n: isize, other: usize| {
+                let Some(n) = self.boundary.beside(0, n, count) else { return f64::NAN };
+                if axis == 0 { from[(n, other)] } else { from[(other, n)] }
             };
             for ((i, j), to) in field.indexed_iter_mut() {
-                let (n, other) = if axis == 0 { (i as i64, j) } else { (j as i64, i) };
-                let n = n - whole as i64;
+                let (n, other) = if axis == 0 { (i, j) } else { (j, i) };
+                let n = n as isize - whole as isize;
                 *to = if part == 0.0 {
                     at(n, other)
                 } else {

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result, require};
 use crate::load::History;
+use crate::roots::bisected;
 
 /// Where the contact is over time.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,6 +92,11 @@ impl Path {
                 return periods * one + self.travel(from + periods * period, to.max(from + periods * period));
             }
         }
+        self.ways(&self.turning_points(from, to)).sum()
+    }
+
+    /// The times from `from` to `to` between which the motion goes one way, smoothly.
+    fn turning_points(&self, from: f64, to: f64) -> Vec<f64> {
         let bends = self.breaks(to).into_iter().filter(|t| *t > from);
         let ends: Vec<f64> = std::iter::once(from).chain(bends).chain([to]).collect();
         let mut turns = vec![from];
@@ -98,7 +104,12 @@ impl Path {
             turns.extend(self.turns(pair[0], pair[1]));
             turns.push(pair[1]);
         }
-        turns.windows(2).map(|t| (self.position(t[1]) - self.position(t[0])).abs()).sum()
+        turns
+    }
+
+    /// Lengths of the ways between these times \[m\].
+    fn ways(&self, times: &[f64]) -> impl Iterator<Item = f64> {
+        times.windows(2).map(|t| (self.position(t[1]) - self.position(t[0])).abs())
     }
 
     /// Velocity at time t \[m/s\], from before it.
@@ -144,15 +155,8 @@ impl Path {
     /// # Errors
     /// [`Error::Invalid`] where they are more than ten millions.
     pub fn crossings(&self, step: f64, end: f64) -> Result<Vec<f64>> {
-        let mut ends = vec![self.start.min(end)];
-        ends.extend(self.breaks(end).into_iter().filter(|t| *t > self.start));
-        ends.push(end);
-        let mut turns = vec![ends[0]];
-        for pair in ends.windows(2) {
-            turns.extend(self.turns(pair[0], pair[1]));
-            turns.push(pair[1]);
-        }
-        let travel: f64 = turns.windows(2).map(|t| (self.position(t[1]) - self.position(t[0])).abs()).sum();
+        let turns = self.turning_points(self.start.min(end), end);
+        let travel: f64 = self.ways(&turns).sum();
         let expected = format!("at most {MOST:e}; a steady state ([motion.steady]) needs no travel");
         let cells = travel / step;
         require(cells <= MOST, "travel in cells", format!("{cells:e}"), expected)?;
@@ -191,17 +195,14 @@ impl Path {
         let just = |t: f64, side: f64, piece: f64| self.velocity(t + side * 1e-9 * piece);
         let mut turns = vec![];
         for (k, pair) in ends.windows(2).enumerate() {
-            let (mut a, mut b) = (pair[0], pair[1]);
+            let (a, b) = (pair[0], pair[1]);
             let piece = b - a;
             let sign = just(a, 1.0, piece);
             if k > 0 && just(a, -1.0, piece) * sign < 0.0 {
                 turns.push(a);
             }
             if sign * just(b, -1.0, piece) < 0.0 {
-                for _ in 0..80 {
-                    let middle = 0.5 * (a + b);
-                    if self.velocity(middle) * sign > 0.0 { a = middle } else { b = middle }
-                }
+                let [a, b] = bisected([a, b], 80, |t| self.velocity(t) * sign > 0.0);
                 turns.push(0.5 * (a + b));
             }
         }
@@ -209,12 +210,9 @@ impl Path {
     }
 
     /// The instant in a piece without turns at which the position is `x`.
-    fn reaches(&self, x: f64, mut from: f64, mut to: f64) -> f64 {
+    fn reaches(&self, x: f64, from: f64, to: f64) -> f64 {
         let rising = self.position(to) > self.position(from);
-        for _ in 0..80 {
-            let middle = 0.5 * (from + to);
-            if (self.position(middle) < x) == rising { from = middle } else { to = middle }
-        }
+        let [from, to] = bisected([from, to], 80, |t| (self.position(t) < x) == rising);
         0.5 * (from + to)
     }
 }

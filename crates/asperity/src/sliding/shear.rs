@@ -1,6 +1,6 @@
 //! The shear stress on the area in contact, which adds the adhesive share of friction.
 
-use crate::error::{Result, positive, require};
+use crate::error::{Of, Result, positive, require};
 
 /// A shear stress over the velocity.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,11 +47,8 @@ impl ShearStress {
                     format!("{} in number", points.len()),
                     "two at least",
                 )
-                .map_err(|error| error.of("points"))?;
-                points
-                    .iter()
-                    .try_for_each(|(_, stress)| sound(*stress))
-                    .map_err(|error| error.of("points"))?;
+                .of("points")?;
+                points.iter().try_for_each(|(_, stress)| sound(*stress)).of("points")?;
                 let rising = points[0].0 > 0.0 && points.windows(2).all(|pair| pair[0].0 < pair[1].0);
                 require(
                     rising,
@@ -59,14 +56,12 @@ impl ShearStress {
                     "not that of their velocities",
                     "by rising velocities above 0, each once",
                 )
-                .map_err(|error| error.of("points"))
+                .of("points")
             }
             ShearStress::Gaussian { peak, velocity, width } => {
-                sound(*peak).map_err(|error| error.of("peak"))?;
-                positive("velocity of the largest shear stress", *velocity, "m/s")
-                    .map_err(|error| error.of("velocity"))?;
-                positive("width of the shear stress", *width, "decades")
-                    .map_err(|error| error.of("width"))?;
+                sound(*peak).of("peak")?;
+                positive("velocity of the largest shear stress", *velocity, "m/s").of("velocity")?;
+                positive("width of the shear stress", *width, "decades").of("width")?;
                 Ok(())
             }
         }

@@ -73,9 +73,7 @@ impl Streaming {
 
     /// C(∞) \[1/Pa\].
     pub fn relaxed(&self) -> f64 {
-        let own =
-            |creep: &Creep| creep.instantaneous + creep.terms.iter().map(|term| term.compliance).sum::<f64>();
-        self.parts.iter().map(|(creep, _)| own(creep)).sum()
+        self.parts.iter().map(|(creep, _)| creep.long_time()).sum()
     }
 
     /// C~(ω) \[1/Pa\] at the angular frequency ω \[rad/s\].

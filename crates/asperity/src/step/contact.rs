@@ -16,30 +16,22 @@ pub(crate) struct StepContact {
     /// Whether the operator is that of one step alone.
     changes: bool,
     solver: RecedingSolver,
-    options: SolverOptions,
-    hardness: CutOff,
-    traction: Option<TractionSolver>,
+    pub(super) options: SolverOptions,
+    pub(super) hardness: CutOff,
+    pub(super) traction: Option<TractionSolver>,
     pub(crate) interrupt: Option<Arc<AtomicBool>>,
 }
 
 /// The cut-off of the pressure: of all cells, or of each, where it is not the same everywhere.
-struct CutOff {
+pub(super) struct CutOff {
     all: f64,
     of_cells: Option<Vec<f64>>,
 }
 
 impl CutOff {
-    fn lent(&self) -> Hardness<'_> {
+    pub(super) fn lent(&self) -> Hardness<'_> {
         self.of_cells.as_deref().map_or(Hardness::Uniform(self.all), Hardness::Cells)
     }
-}
-
-/// What processes may use after a row.
-pub(super) struct Parts<'a> {
-    pub(super) operator: &'a mut dyn Operator,
-    pub(super) hardness: Hardness<'a>,
-    pub(super) traction: Option<&'a TractionSolver>,
-    pub(super) interrupt: Option<&'a AtomicBool>,
 }
 
 impl StepContact {
@@ -60,25 +52,7 @@ impl StepContact {
         self.hardness.lent()
     }
 
-    pub(super) fn tolerance(&self) -> f64 {
-        self.options.tolerance
-    }
-
-    /// The contact is solved to this tolerance from now on.
-    pub(super) fn set_tolerance(&mut self, tolerance: f64) {
-        self.options.tolerance = tolerance;
-    }
-
-    /// The traction besides the contact that acts on the surfaces.
-    pub(super) fn traction(&self) -> Option<&TractionSolver> {
-        self.traction.as_ref()
-    }
-
-    pub(super) fn traction_mut(&mut self) -> Option<&mut TractionSolver> {
-        self.traction.as_mut()
-    }
-
-    /// Whether there is one.
+    /// Whether other tractions act on the surfaces.
     pub(super) fn pulls(&self) -> bool {
         self.traction.is_some()
     }
@@ -143,15 +117,5 @@ impl StepContact {
     /// The step stands.
     pub(super) fn commit(&mut self) {
         self.traction.iter_mut().for_each(TractionSolver::commit);
-    }
-
-    /// What processes may use after a row.
-    pub(super) fn parts(&mut self) -> Parts<'_> {
-        Parts {
-            operator: &mut *self.operator,
-            hardness: self.hardness.lent(),
-            traction: self.traction.as_ref(),
-            interrupt: self.interrupt.as_deref(),
-        }
     }
 }

@@ -76,7 +76,7 @@ impl Stepper {
         };
         let options = self.simulation.solver;
         let outcome = self.agree(&mut coupled, prescribed, options.tolerance);
-        self.contact.set_tolerance(options.tolerance);
+        self.contact.options.tolerance = options.tolerance;
         self.coupled = Some(coupled);
         outcome
     }
@@ -91,7 +91,7 @@ impl Stepper {
             let (state, step) = (&mut self.state, self.step.as_ref());
             let c = state.compliance;
             each(gap, (state.undeformed.or(&state.own_gap), &added[..]), |to, (h, a)| *to = h + c * a);
-            self.contact.set_tolerance(precision);
+            self.contact.options.tolerance = precision;
             let outcome = self.contact.solve(Start::Pressure, gap, c, prescribed, &mut state.now)?;
             each(&mut state.now.unit_displacement, &added[..], |u, a| *u += a);
             state.meet(prescribed);
@@ -114,7 +114,7 @@ impl Stepper {
             }
         }
         total.iterations = MOST_ROUNDS;
-        Err(not_converged(COUPLING, &self.simulation.solver, &total))
+        Err(not_converged(COUPLING, &self.simulation.solver, &total).into())
     }
 
     /// The largest |A - a| in a cell in contact, over the displacement under the pressure for unit compliance, weighted by it.

@@ -10,7 +10,7 @@ pub(super) const MET: f64 = 1e-6;
 const NARROWEST: f64 = 1e-9;
 
 /// An enclosed event.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Enclosure {
     /// A length at which the event has not happened yet, and one at which it has.
     pub(super) near: f64,

@@ -30,13 +30,12 @@ mod warm_start;
 pub use row::{Row, Step};
 pub use snapshot::Checkpoint;
 
-use contact::Parts;
 pub(crate) use contact::StepContact;
 use coupled::Coupled;
 pub(crate) use interval::{Course, Interval, Load, Piece, prescribed};
 pub(crate) use quantities::Recorder;
 pub(crate) use row::PERIMETER_SHARE;
-pub(crate) use schedule::{Proposal, Response, Schedule, Summary, Verdict};
+pub(crate) use schedule::{Proposal, Response, Schedule, Summary};
 pub(crate) use snapshot::{Loader, Saved, Saver, saved};
 pub(crate) use step_size::SHARE;
 pub(crate) use undeformed::UndeformedGap;
@@ -140,25 +139,9 @@ impl Stepper {
         let start = self.guess(&step, prescribed);
         self.step = Some(step.clone());
         self.contact.begin(&step.instant);
-        match self.solve_contact(start, prescribed) {
-            Ok(outcome) => self.outcome = self.outcome.then(outcome),
-            Err(Error::NotConverged(mut report)) => {
-                report.time = Some(step.instant.time);
-                self.outcome = report.outcome();
-                return Err(Error::NotConverged(report));
-            }
-            Err(Error::PulledOff { load, unit, .. }) => {
-                let StepState { before, now, loads, .. } = &mut self.state;
-                let last = (!is_zero(&before.pressure)).then_some([loads[0], before.approach]);
-                // The best state is that of the last row.
-                now.clone_from(before);
-                return Err(Error::PulledOff { load, unit, time: step.instant.time, last });
-            }
-            Err(Error::LiftedOff { load, unit, excess, .. }) => {
-                return Err(Error::LiftedOff { load, unit, excess, time: step.instant.time });
-            }
-            Err(error) => return Err(error),
-        }
+        let solved = self.solve_contact(start, prescribed);
+        let outcome = solved.map_err(|error| self.failed(error.at(step.instant.time)))?;
+        self.outcome = self.outcome.then(outcome);
         let StepState { undeformed, now, own_gap, .. } = &mut self.state;
         undeformed.recede(&now.pressure, own_gap);
         let carried = self.state.meet(prescribed);
@@ -173,6 +156,21 @@ impl Stepper {
             number: f64::NAN,
             first_touch: self.state.first_touch(),
         })
+    }
+
+    /// Keeps what is known of an attempt that failed.
+    fn failed(&mut self, mut error: Error) -> Error {
+        match &mut error {
+            Error::NotConverged(report) => self.outcome = report.outcome(),
+            Error::PulledOff { last, .. } => {
+                let StepState { before, now, loads, .. } = &mut self.state;
+                *last = (!is_zero(&before.pressure)).then_some([loads[0], before.approach]);
+                // The best state is that of the last row.
+                now.clone_from(before);
+            }
+            _ => {}
+        }
+        error
     }
 
     /// Estimated error of the stress that the step adds, relative: the largest that history and processes know.
@@ -272,8 +270,9 @@ fn solved<'a>(
     state: &'a mut StepState,
     contact: &'a mut StepContact,
 ) -> Solved<'a> {
-    let Parts { operator, hardness, traction, interrupt } = contact.parts();
+    let StepContact { operator, hardness, traction, interrupt, .. } = contact;
     let StepState { now, before, loads, own_gap, undeformed, compliance, .. } = state;
+    let traction = traction.as_ref();
     let potential = traction
         .and_then(|traction| traction.quantity(Quantity::AdhesionEnergy, simulation.grid.cell_area()));
     Solved {
@@ -287,9 +286,9 @@ fn solved<'a>(
         own_gap,
         undeformed,
         compliance: *compliance,
-        hardness,
-        operator,
-        interrupt,
+        hardness: hardness.lent(),
+        operator: &mut **operator,
+        interrupt: interrupt.as_deref(),
         time_error: None,
         exchange: None,
         other_work: 0.0,

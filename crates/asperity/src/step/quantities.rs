@@ -9,22 +9,14 @@ use asperity_sweep::sums;
 /// The quantities of the last row.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recorder {
-    columns: Vec<Column>,
+    pub(super) columns: Vec<Column>,
     /// The numbers of all columns, one after the other.
-    values: Vec<f64>,
+    pub(super) values: Vec<f64>,
 }
 
 impl Recorder {
     pub(crate) fn new(columns: Vec<Column>) -> Self {
         Recorder { values: vec![f64::NAN; columns.iter().map(Column::width).sum()], columns }
-    }
-
-    pub(super) fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
-    pub(super) fn values(&self) -> &[f64] {
-        &self.values
     }
 
     /// The numbers of a quantity.

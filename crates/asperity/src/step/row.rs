@@ -390,12 +390,12 @@ impl<'a> Step<'a> {
 
     /// The quantities asked for, with the ends of their bins; none of a state between rows.
     pub fn columns(&self) -> &'a [Column] {
-        self.recorder.map_or(&[], Recorder::columns)
+        self.recorder.map_or(&[], |recorder| &recorder.columns)
     }
 
     /// The numbers of all [`columns`](Self::columns), one after the other. NaN after a solve that failed.
     pub fn quantities(&self) -> &'a [f64] {
-        self.recorder.map_or(&[], Recorder::values)
+        self.recorder.map_or(&[], |recorder| &recorder.values)
     }
 
     /// A quantity of this row: one number, or one per bin; `None` where it was not asked for.
@@ -413,7 +413,7 @@ impl Stepper {
             recalled: Some(&*self.history),
             undeformed: Some(undeformed),
             processes: &self.processes,
-            traction: self.contact.traction(),
+            traction: self.contact.traction.as_ref(),
             ..Step::of(&self.simulation, self.contact.hardness(), (now, self.outcome), (gap, *compliance))
         }
     }

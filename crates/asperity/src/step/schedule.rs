@@ -5,7 +5,8 @@
 //!
 //! ```text
 //! while let Proposal::Try(interval) = schedule.propose()? {
-//!     loop { match schedule.assess(&attempt(interval)) { Try(next) => interval = next, Accept => break } }
+//!     while let Some(next) = schedule.assess(&attempt(interval)) { interval = next }
+//!     schedule.accept(..);
 //! }
 //! ```
 //!
@@ -22,8 +23,8 @@ use super::snapshot::{Loader, Saver, saved};
 use super::step_size::StepSizeControl;
 use crate::error::{Error, Result};
 use crate::load::{Control, Event, History, Stage};
-use crate::material::ReducedTime;
 use crate::quantities::RowNumber;
+use crate::roots::bisected;
 use crate::simulation::Simulation;
 use crate::time::{Instant, SAME, SHORTEST, Span, Stop, TimeGrid, agree, stops};
 
@@ -58,15 +59,6 @@ pub(crate) struct Response {
     pub(crate) load: f64,
 }
 
-/// The answer to an attempt.
-#[derive(Debug)]
-pub(crate) enum Verdict {
-    /// Not yet: try this interval.
-    Try(Interval),
-    /// It stands.
-    Accept,
-}
-
 /// The next row.
 #[derive(Debug)]
 pub(crate) enum Proposal {
@@ -98,24 +90,13 @@ enum Search {
     Last,
 }
 
-/// What is planned of a run.
-struct Plan {
-    stages: Vec<Stage>,
-    times: TimeGrid,
-    /// Area of the domain \[m²\].
-    area: f64,
-    /// Whether a contact can follow a jump.
-    can_jump: bool,
-    /// The clocks of bodies whose temperature changes, and the number of parts that remember.
-    clocks: Vec<ReducedTime>,
-    remember: usize,
-    kinks: Vec<f64>,
-    /// Instants besides those of the grid at which steps end.
-    include: Vec<f64>,
-}
-
 pub(crate) struct Schedule {
-    plan: Plan,
+    simulation: Arc<Simulation>,
+    /// Instants at which the temperature or the path of a motion has a kink, and those besides the grid at which steps end.
+    kinks: Vec<f64>,
+    include: Vec<f64>,
+    /// Parts of the compliance that remember.
+    remember: usize,
     /// The number of the stage under way, and the value that its quantity had when it began.
     stage: usize,
     /// The stage under way, where it was prescribed between two rows: it lasts to the end of the run.
@@ -133,8 +114,9 @@ pub(crate) struct Schedule {
     reached: Response,
     touched: bool,
     is_smooth: bool,
-    /// The number that the stage under way waits for, in the last row; NaN where it waits for none.
-    number: f64,
+    /// The number that the stage under way waits for, in the last row, before the first one of the bodies at first touch; NaN where it waits
+    /// for none.
+    pub(crate) number: f64,
     /// Which side of its value the event is waited for from: -1 below, 1 above, 0 not yet known.
     side: f64,
     /// The largest approach and load so far.
@@ -144,28 +126,13 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
-    pub(crate) fn new(simulation: &Simulation) -> Self {
-        let end = simulation.times.end();
-        let thermal = &simulation.thermal;
-        let plan = Plan {
-            stages: simulation.loading.stages.clone(),
-            times: simulation.times.clone(),
-            area: simulation.grid.area(),
-            can_jump: simulation.instantaneous() > 0.0,
-            clocks: thermal.iter().map(|body| body.clock.clone()).collect(),
-            remember: simulation.parts().filter(|c| !c.terms.is_empty() || c.fluidity > 0.0).count(),
-            kinks: (thermal.iter().flat_map(|body| body.clock.breaks(end)))
-                .chain(simulation.motion.iter().flat_map(|motion| motion.path.breaks(end)))
-                .collect(),
-            include: simulation.stops(),
-        };
-        Schedule::of(plan)
-    }
-
-    fn of(plan: Plan) -> Self {
+    pub(crate) fn new(simulation: &Arc<Simulation>) -> Self {
         let course = Course { history: Arc::new(History::Step { value: 0.0 }), start: 0.0, scale: 0.0 };
         let mut schedule = Schedule {
-            plan,
+            simulation: simulation.clone(),
+            kinks: simulation.kinks(),
+            include: simulation.stops(),
+            remember: simulation.parts().filter(|creep| creep.remembers()).count(),
             stage: 0,
             steered: None,
             started_from: 0.0,
@@ -193,7 +160,8 @@ impl Schedule {
     }
 
     fn stage(&self) -> &Stage {
-        self.steered.as_ref().unwrap_or(&self.plan.stages[self.stage.min(self.plan.stages.len() - 1)])
+        let stages = &self.simulation.loading.stages;
+        self.steered.as_ref().unwrap_or(&stages[self.stage.min(stages.len() - 1)])
     }
 
     /// The number of a row that the stage under way waits for.
@@ -204,11 +172,6 @@ impl Schedule {
         }
     }
 
-    /// Takes the awaited number of the last row; before the first one, of the bodies at first touch.
-    pub(crate) fn note(&mut self, number: f64) {
-        self.number = number;
-    }
-
     /// Whether a stage was prescribed between two rows.
     pub(crate) fn is_steered(&self) -> bool {
         self.steered.is_some()
@@ -217,7 +180,7 @@ impl Schedule {
     /// Ends the stage under way with the last row, in place of it and of all stages after it begins this one. `false` where there is
     /// no row yet, or none to come.
     pub(crate) fn prescribe(&mut self, stage: Stage) -> bool {
-        let end = self.plan.times.end() * (1.0 - SAME);
+        let end = self.simulation.times.end() * (1.0 - SAME);
         let Some(last) = self.last.filter(|last| self.stopped.is_none() && last.time < end) else {
             return false;
         };
@@ -237,7 +200,7 @@ impl Schedule {
             length: self.stops.get(self.next)?.time - last.time,
             is_after_jump: last.jump,
             control: self.stage().control,
-            area: self.plan.area,
+            area: self.simulation.grid.area(),
             course: self.course.clone(),
         })
     }
@@ -258,7 +221,7 @@ impl Schedule {
         self.search = Search::Length;
         let time = self.last.map_or(0.0, |last| last.time);
         if let Some(value) = self.jump {
-            if self.stage > 0 && !self.plan.can_jump {
+            if self.stage > 0 && self.simulation.instantaneous() <= 0.0 {
                 return Err(Error::invalid(
                     format!("jump in stage {} at t = {time} s", self.stage + 1),
                     format!("to {value:e}"),
@@ -301,21 +264,17 @@ impl Schedule {
         let rest = stop.time - time;
         let Course { history, start, scale } = &self.course;
         let held = (stop.before - history.after(time - start)).abs() <= 1e-12 * scale;
-        if held && self.plan.remember < 2 {
+        if held && self.remember < 2 {
             return rest;
         }
-        let most =
-            |dt: f64| self.plan.clocks.iter().map(|clock| clock.drift(time, time + dt)).fold(0.0, f64::max);
+        let drifts =
+            |dt: f64| self.simulation.thermal.iter().map(move |body| body.clock.drift(time, time + dt));
+        let most = |dt: f64| drifts(dt).fold(0.0, f64::max);
         if most(rest) <= drift {
             return rest;
         }
         // The temperature goes one way between two stops.
-        let [mut least, mut longest] = [0.0, rest];
-        for _ in 0..40 {
-            let middle = 0.5 * (least + longest);
-            if most(middle) <= drift { least = middle } else { longest = middle }
-        }
-        longest
+        bisected([0.0, rest], 40, |dt| most(dt) <= drift)[1]
     }
 
     /// What to try after an attempt that found no equilibrium: the longest step with one is found to a thousandth. `None` where steps
@@ -330,7 +289,7 @@ impl Schedule {
             _ => return None,
         };
         self.search = Search::Equilibrium { with, without };
-        if without <= SHORTEST * self.plan.times.end() {
+        if without <= SHORTEST * self.simulation.times.end() {
             return None;
         }
         Some(tried.of_length(self.between().unwrap_or(with)))
@@ -350,48 +309,50 @@ impl Schedule {
         self.stage().until == Some(Event::ContactLost)
     }
 
-    /// Whether the attempt at an interval stands, or what to try instead.
-    pub(crate) fn assess(&mut self, tried: &Interval, attempt: &Summary) -> Verdict {
+    /// What to try instead of an attempt at an interval; `None` where it stands.
+    pub(crate) fn assess(&mut self, tried: &Interval, attempt: &Summary) -> Option<Interval> {
         let dt = attempt.instant.dt;
-        match &mut self.search {
-            Search::End | Search::Last => return Verdict::Accept,
+        let next = match &mut self.search {
+            Search::End | Search::Last => None,
             Search::Equilibrium { with, .. } => {
                 *with = dt;
-                return self.between().map_or(Verdict::Accept, |dt| Verdict::Try(tried.of_length(dt)));
+                self.between()
             }
             Search::Length => {
                 let size = self.size.as_ref().filter(|_| !attempt.instant.jump);
-                if let Some(dt) = size.and_then(|size| size.rejects(dt, attempt.error?)) {
-                    return Verdict::Try(tried.of_length(dt));
-                }
-                match self.find_event(attempt) {
-                    Some(search) => self.search = search,
-                    None => return Verdict::Accept,
-                }
+                let shorter = size.and_then(|size| size.rejects(dt, attempt.error?));
+                shorter.or_else(|| self.find_event(attempt))
             }
-            Search::Event { event, .. } => {
-                let event = *event;
+            Search::Event { event, enclosure } => {
+                let (event, mut enclosure) = (*event, *enclosure);
                 let (signal, tolerance) = self.signal(event, attempt);
-                let signal_before = self.side * signal;
-                match &mut self.search {
-                    Search::Event { enclosure, .. } if !met(event, signal, tolerance) => {
-                        enclosure.narrow(dt, signal_before);
+                match met(event, signal, tolerance) {
+                    true => self.end_here(),
+                    false => {
+                        enclosure.narrow(dt, self.side * signal);
+                        self.close_in(event, enclosure, dt)
                     }
-                    search => *search = Search::End,
                 }
             }
-        }
-        let Search::Event { enclosure, .. } = &mut self.search else { return Verdict::Accept };
-        if let Some(dt) = enclosure.guess() {
-            return Verdict::Try(tried.of_length(dt));
-        }
-        let far = enclosure.far;
-        self.search = Search::End;
-        if dt == far { Verdict::Accept } else { Verdict::Try(tried.of_length(far)) }
+        };
+        next.map(|dt| tried.of_length(dt))
     }
 
-    /// The event that happens in a step whose error is small enough; `None` where there is none.
-    fn find_event(&mut self, attempt: &Summary) -> Option<Search> {
+    /// The row ends with this attempt, where the event has just happened.
+    fn end_here(&mut self) -> Option<f64> {
+        self.search = Search::End;
+        None
+    }
+
+    /// The next length to try for an event; `None` where it has just happened in the attempt of length `dt`.
+    fn close_in(&mut self, event: Event, mut enclosure: Enclosure, dt: f64) -> Option<f64> {
+        let next = enclosure.guess();
+        self.search = if next.is_some() { Search::Event { event, enclosure } } else { Search::End };
+        next.or(Some(enclosure.far).filter(|far| *far != dt))
+    }
+
+    /// The length to try next for an event that happens in a step whose error is small enough; `None` where the step stands.
+    fn find_event(&mut self, attempt: &Summary) -> Option<f64> {
         let stage = self.stage();
         let event = match stage.until? {
             // No load is no contact, where nothing pulls.
@@ -421,14 +382,14 @@ impl Schedule {
             return None;
         }
         if jump || met(event, signal, tolerance) {
-            return Some(Search::End);
+            return self.end_here();
         }
         let before = match (event, control) {
             // The distance between the bodies is known only of open ones.
             (Event::ContactLost, Control::Approach) if !attempt.pulls => f64::NAN,
             _ => side * start,
         };
-        Some(Search::Event { event, enclosure: Enclosure::new(dt, before, side * signal) })
+        self.close_in(event, Enclosure::new(dt, before, side * signal), dt)
     }
 
     /// The quantity of an event less its value, and what counts as none.
@@ -436,7 +397,7 @@ impl Schedule {
         let Response { approach, load } = attempt.reached;
         let deepest = self.largest.approach.max(approach.abs());
         let heaviest = self.largest.load.max(load.abs());
-        let area = self.plan.area;
+        let area = self.simulation.grid.area();
         match event {
             Event::Approach(value) => (approach - value, MET * deepest.max(value.abs())),
             Event::Load(value) => (load - value, MET * heaviest.max(value.abs())),
@@ -497,8 +458,8 @@ impl Schedule {
 
     /// Begins a stage where the quantities have the values `reached`.
     fn enter(&mut self, stage: usize, time: f64, reached: Response) {
-        let end = self.plan.times.end();
-        if self.is_steered() || stage >= self.plan.stages.len() || time >= end * (1.0 - SAME) {
+        let end = self.simulation.times.end();
+        if self.is_steered() || stage >= self.simulation.loading.stages.len() || time >= end * (1.0 - SAME) {
             self.stopped = Some(StopReason::Complete);
             return;
         }
@@ -511,7 +472,7 @@ impl Schedule {
         self.stage = stage;
         let reached = match self.stage().control {
             Control::Load => reached.load,
-            Control::Pressure => reached.load / self.plan.area,
+            Control::Pressure => reached.load / self.simulation.grid.area(),
             Control::Approach => reached.approach,
         };
         self.arrive(time, reached);
@@ -522,20 +483,19 @@ impl Schedule {
 
     /// The stops of the stage under way, that started at `start`.
     fn arrive(&mut self, start: f64, reached: f64) {
-        let Plan { stages, times, include, kinks, .. } = &self.plan;
-        let next = self.steered.as_ref().unwrap_or_else(|| &stages[self.stage]);
+        let (next, times) = (self.stage(), &self.simulation.times);
         let run_end = times.end();
         let end = next.duration.map_or(run_end, |duration| (start + duration).min(run_end));
         let history = next.course.resolve(reached);
+        let (include, kinks) = (&self.include[..], &self.kinks[..]);
         let span =
             Span { history: &history, start, end, run_end, include, kinks, turns: next.until.is_some() };
-        self.stops = stops(&span, next.times.as_ref(), times);
-        self.next = 0;
+        let stops = stops(&span, next.times.as_ref(), times);
         let longest = match &history {
             History::Sine { frequency, .. } => 1.0 / (STEPS_PER_PERIOD * frequency),
             _ => f64::INFINITY,
         };
-        self.size = match next.times.as_ref().unwrap_or(times) {
+        let size = match next.times.as_ref().unwrap_or(times) {
             TimeGrid::Adaptive { end, tolerance, first } => {
                 Some(StepSizeControl::new(*tolerance, *first, *end, longest))
             }
@@ -543,7 +503,7 @@ impl Schedule {
         };
         let [least, most] = history.range(end - start);
         self.course = Course { history: Arc::new(history), start, scale: least.abs().max(most.abs()) };
-        self.started_from = reached;
+        (self.stops, self.next, self.size, self.started_from) = (stops, 0, size, reached);
     }
 
     pub(crate) fn save<'a>(&'a self, to: &mut Saver<'a>) {
@@ -576,7 +536,7 @@ impl Schedule {
             let known = steered::stage(numbers).filter(|stage| stage.validate(true).is_ok());
             self.steered = Some(known.ok_or_else(|| from.foreign("another prescribed stage"))?);
         }
-        if !self.is_steered() && stage >= self.plan.stages.len()
+        if !self.is_steered() && stage >= self.simulation.loading.stages.len()
             || !(start.is_finite() && start >= 0.0 && reached.is_finite())
         {
             return Err(from.foreign("stages of another programme"));

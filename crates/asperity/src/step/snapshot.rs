@@ -63,6 +63,16 @@ impl Saved for usize {
     }
 }
 
+impl<T: Saved, const N: usize> Saved for [T; N] {
+    fn save(&self, to: &mut Vec<f64>) {
+        self.iter().for_each(|value| value.save(to));
+    }
+
+    fn load(&mut self, from: &mut Iter<'_, f64>) -> Option<()> {
+        self.iter_mut().try_for_each(|value| value.load(from))
+    }
+}
+
 /// As many as there are.
 impl<T: Saved> Saved for Vec<T> {
     fn save(&self, to: &mut Vec<f64>) {

@@ -102,7 +102,7 @@ impl Stepper {
     pub(crate) fn save<'a>(&'a self, to: &mut Saver<'a>) {
         self.state.save_own(to);
         to.within("history", |to| self.history.save(to));
-        if let Some(traction) = self.contact.traction() {
+        if let Some(traction) = &self.contact.traction {
             to.within("traction", |to| traction.save(to));
         }
         if let Some(coupled) = &self.coupled {
@@ -123,7 +123,7 @@ impl Stepper {
     /// [`Error::Invalid`](crate::Error::Invalid) where it belongs to another simulation.
     pub(crate) fn load(&mut self, from: &mut Loader<'_>) -> Result<()> {
         self.state.load_own(from)?;
-        if let Some(traction) = self.contact.traction_mut() {
+        if let Some(traction) = &mut self.contact.traction {
             from.within("traction", |from| traction.load(from))?;
         }
         if let Some(coupled) = &mut self.coupled {

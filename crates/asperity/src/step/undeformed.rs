@@ -45,7 +45,7 @@ impl UndeformedGap {
 
     /// At the start of the run.
     pub(crate) fn at_start(&self) -> &[f64] {
-        self.simulation.gap.as_slice().unwrap_or_default()
+        self.simulation.gap_cells()
     }
 
     /// A step begins; `moves` if a process moves the gap in it.

@@ -176,7 +176,8 @@ impl Stepper {
             Prescribed::Load(load) => (sum(&to.pressure) * grid.cell_area() / load - 1.0).abs() <= SAME_LOAD,
             Prescribed::Approach(_) => true,
         };
-        let is_known = boundary == Boundary::Periodic && has_load && to.is_precise(self.contact.tolerance());
+        let is_known =
+            boundary == Boundary::Periodic && has_load && to.is_precise(self.contact.options.tolerance);
         Some(if is_known { Start::Displacement { feasible: true } } else { Start::Pressure })
     }
 
@@ -186,7 +187,7 @@ impl Stepper {
             self.outcome.convolutions += self.contact.refresh(known);
         }
         let cell_area = self.simulation.grid.cell_area();
-        let (hardness, tolerance) = (self.contact.hardness(), self.contact.tolerance());
+        let (hardness, tolerance) = (self.contact.hardness(), self.contact.options.tolerance);
         let StepState { now, before, own_gap, undeformed, compliance, .. } = &mut self.state;
         let ContactState { pressure: p, unit_displacement: u, .. } = now;
         let ContactState { pressure: p_last, unit_displacement: u_last, .. } = &*before;

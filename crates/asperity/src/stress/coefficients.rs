@@ -1,5 +1,7 @@
 //! The stress under a uniformly loaded rectangle or strip, and under a wave of pressure: closed forms.
 
+use std::f64::consts::FRAC_1_PI;
+
 use super::Component;
 
 /// Stress at (x, y, `depth`) under unit pressure on the rectangle |x'| <= a, |y'| <= b, `half` = \[a, b\].
@@ -73,21 +75,41 @@ pub(super) fn corner(component: Component, x: f64, y: f64, z: f64, poisson: f64,
 /// assert!((zz + 0.5 + 1.0 / std::f64::consts::PI).abs() < 1e-15);
 /// ```
 pub fn strip(component: Component, x: f64, depth: f64, half: f64, poisson: f64) -> f64 {
-    let (right, left, z2) = (x + half, x - half, depth * depth);
-    let product = right * left;
-    let theta = libm::atan2(2.0 * half * depth, z2 + product);
-    // 1/(r1^2 r2^2), in steps that neither overflow nor underflow.
-    let over = |numerator: f64, factor: f64| {
-        numerator / (right * right + z2) * (factor / (left * left + z2)) * std::f64::consts::FRAC_1_PI
-    };
-    let theta = theta * std::f64::consts::FRAC_1_PI;
-    let difference = || over(2.0 * half * depth, z2 - product);
+    let Strip { theta, shear, difference, .. } = Strip::of(x, depth, half);
     match component {
-        Component::Zz => -theta - difference(),
-        Component::Xx => -theta + difference(),
+        Component::Zz => -theta - difference,
+        Component::Xx => -theta + difference,
         Component::Yy => -2.0 * poisson * theta,
-        Component::Xz => over(-4.0 * half * x, z2),
+        Component::Xz => shear,
         Component::Xy | Component::Yz => 0.0,
+    }
+}
+
+/// The angle under which the strip is seen, ln(r1^2/r2^2), [z^2/r^2] and [z u/r^2] between its edges, all over pi; in steps that neither
+/// overflow nor underflow.
+pub(super) struct Strip {
+    pub(super) theta: f64,
+    pub(super) log: f64,
+    pub(super) shear: f64,
+    pub(super) difference: f64,
+}
+
+impl Strip {
+    pub(super) fn of(x: f64, depth: f64, half: f64) -> Strip {
+        let (right, left, z2) = (x + half, x - half, depth * depth);
+        let (far, near) = (right * right + z2, left * left + z2);
+        let product = right * left;
+        // Free of cancellation far from the strip.
+        let log = match x < 0.0 {
+            true => -libm::log1p(-4.0 * half * x / far),
+            false => libm::log1p(4.0 * half * x / near),
+        };
+        Strip {
+            theta: libm::atan2(2.0 * half * depth, z2 + product) * FRAC_1_PI,
+            log: FRAC_1_PI * log,
+            shear: -4.0 * half * x / far * (z2 / near) * FRAC_1_PI,
+            difference: 2.0 * half * depth / far * ((z2 - product) / near) * FRAC_1_PI,
+        }
     }
 }
 

@@ -9,10 +9,8 @@
 //! 2 pi s_zz = -z V_xz                                 2 pi s_yz = -z V_xy
 //! ```
 
-use std::f64::consts::FRAC_1_PI;
-
 use super::Component;
-use super::coefficients;
+use super::coefficients::{self, Strip};
 
 /// What acts on the surface.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -116,34 +114,6 @@ fn strip_along_y(component: Component, x: f64, depth: f64, half: f64) -> f64 {
         Component::Yz => -theta,
         Component::Xy => -0.5 * log,
         Component::Xx | Component::Yy | Component::Zz | Component::Xz => 0.0,
-    }
-}
-
-/// The angle under which the strip is seen, ln(r1^2/r2^2), [z^2/r^2] and [z u/r^2] between its edges, all over pi.
-struct Strip {
-    theta: f64,
-    log: f64,
-    shear: f64,
-    difference: f64,
-}
-
-impl Strip {
-    fn of(x: f64, depth: f64, half: f64) -> Strip {
-        let (right, left, z2) = (x + half, x - half, depth * depth);
-        let (far, near) = (right * right + z2, left * left + z2);
-        let product = right * left;
-        Strip {
-            theta: libm::atan2(2.0 * half * depth, z2 + product) * FRAC_1_PI,
-            // Free of cancellation far from the strip.
-            log: FRAC_1_PI
-                * if x < 0.0 {
-                    -libm::log1p(-4.0 * half * x / far)
-                } else {
-                    libm::log1p(4.0 * half * x / near)
-                },
-            shear: -4.0 * half * x / far * (z2 / near) * FRAC_1_PI,
-            difference: 2.0 * half * depth / far * ((z2 - product) / near) * FRAC_1_PI,
-        }
     }
 }
 

@@ -121,7 +121,7 @@ impl Membrane {
                 direction[k] = scaled[k] + beta * direction[k];
             }
         }
-        Err(NotConverged::of("harmonic fill", MOST, missed(&residual), TOLERANCE))
+        Err(NotConverged::of("harmonic fill", MOST, missed(&residual), TOLERANCE).into())
     }
 
     /// One V-cycle from zero: sweep down, correct by blocks, sweep up; symmetric, as conjugate gradients

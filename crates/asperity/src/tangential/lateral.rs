@@ -23,11 +23,11 @@ impl Lateral {
     /// Of a pair with this β, of which a free one is no line of cells.
     pub(crate) fn new(grid: &Grid, boundary: Boundary, beta: f64) -> Self {
         let lengths = lengths(grid, boundary);
+        let torus = Torus::new(grid.cells(), lengths);
         let spectrum = match boundary {
             Boundary::Free => Self::of_coefficients(grid, lengths),
-            Boundary::Periodic => Self::of_waves(grid, lengths),
+            Boundary::Periodic => Self::of_waves(grid, &torus),
         };
-        let torus = Torus::new(grid.cells(), lengths);
         let waves = [0; 2].map(|_| Spectrum(vec![Complex64::ZERO; torus.spectrum_len()]));
         let spectrum = spectrum.into_iter().map(|[x, y]| [beta * x, beta * y]).collect();
         Lateral { torus, spectrum, waves, part: vec![0.0; grid.len()] }
@@ -38,17 +38,16 @@ impl Lateral {
         mx * (my / 2 + 1) * (2 * 8 + 2 * 16)
     }
 
-    fn of_waves(grid: &Grid, [mx, my]: [usize; 2]) -> Vec<Vector> {
+    fn of_waves(grid: &Grid, torus: &Torus) -> Vec<Vector> {
         let tau = std::f64::consts::TAU;
-        let [lx, ly] = grid.size();
+        let ([lx, ly], lengths) = (grid.size(), torus.lengths().map(|m| m as i64));
         let number = |n: usize| {
-            let (kx, ky) = (n % mx, n / mx);
-            let signed = if 2 * kx > mx { kx as f64 - mx as f64 } else { kx as f64 };
-            let [x, y] = lateral_symbol(tau * signed / lx, tau * ky as f64 / ly);
+            let k = torus.wave(n);
+            let along = lateral_symbol(tau * k[0] as f64 / lx, tau * k[1] as f64 / ly);
             // The shortest wave of an even number of cells has either sign.
-            [if 2 * kx == mx { 0.0 } else { x }, if 2 * ky == my { 0.0 } else { y }]
+            [0, 1].map(|axis| if 2 * k[axis] == lengths[axis] { 0.0 } else { along[axis] })
         };
-        (0..mx * (my / 2 + 1)).map(number).collect()
+        (0..torus.spectrum_len()).map(number).collect()
     }
 
     fn of_coefficients(grid: &Grid, [mx, my]: [usize; 2]) -> Vec<Vector> {

@@ -35,7 +35,7 @@ pub(crate) use vector::{Vector, inner, length, minus, plus, times};
 use ndarray::Array2;
 
 use crate::contact::SAME_LOAD;
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Of, Result, require};
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, Course, History, Stage};
 use crate::simulation::Simulation;
@@ -218,7 +218,7 @@ impl Tangential {
         self.validate_numbers(simulation)?;
         self.validate_histories(simulation)?;
         let excludes = |holds: bool, what: &str, expected: &str| {
-            require(holds, what, "given", expected).map_err(|error| error.of("tangential"))
+            require(holds, what, "given", expected).of("tangential")
         };
         let is_half_space = simulation.layers.is_none() && simulation.kernel.is_half_space();
         excludes(
@@ -239,16 +239,16 @@ impl Tangential {
         let is_free_line = simulation.grid.is_line() && simulation.boundary == Boundary::Free;
         let expected = "periodic: on a free line the displacement is only known up to a constant";
         require(!is_free_line, "boundary of a line contact under a tangential load", "free", expected)
-            .map_err(|error| error.of("domain.boundary"))?;
+            .of("domain.boundary")?;
         let expected = "uniform, logarithmic or listed: the error of slip, by which they would be chosen, is not estimated";
         require(!simulation.is_adaptive(), "time steps under a tangential load", "adaptive", expected)
-            .map_err(|error| error.of("time"))
+            .of("time")
     }
 
     fn validate_numbers(&self, simulation: &Simulation) -> Result<()> {
         let coefficient = |key: &str, what: String, value: f64| {
             let expected = format!("from 0 to {STICKS:e}, with which nothing slips");
-            require((0.0..=STICKS).contains(&value), what, value, expected).map_err(|error| error.of(key))
+            require((0.0..=STICKS).contains(&value), what, value, expected).of(key)
         };
         coefficient("friction.coefficient", "friction coefficient".into(), self.coefficient)?;
         if let Some(map) = &self.coefficients {
@@ -260,13 +260,13 @@ impl Tangential {
                 shape,
                 expected,
             )
-            .map_err(|error| error.of("friction.field"))?;
+            .of("friction.field")?;
             map.indexed_iter().try_for_each(|((i, j), value)| {
                 coefficient("friction.field", format!("friction coefficient of cell ({i}, {j})"), *value)
             })?;
         }
         require(self.shear_limit > 0.0, "shear limit", format!("{} Pa", self.shear_limit), "greater than 0")
-            .map_err(|error| error.of("friction.shear_limit"))?;
+            .of("friction.shear_limit")?;
         let sound = self.poisson > -1.0 && self.poisson <= 0.5;
         require(sound, "Poisson's ratio of the pair", self.poisson, "greater than -1 and at most 0.5")?;
         require((-1.0..=1.0).contains(&self.beta), "Dundurs' beta", self.beta, "between -1 and 1")
@@ -283,7 +283,7 @@ impl Tangential {
                     Err(Error::invalid("jump of the tangential load", value, expected))
                 })
             });
-            checked.map_err(|error| error.of(&format!("tangential.{axis}")))?;
+            checked.of(&format!("tangential.{axis}"))?;
         }
         Ok(())
     }

@@ -70,11 +70,10 @@ impl VectorConvolution {
         let torus = Torus::new([mx, my], [mx, my]);
         let tau = std::f64::consts::TAU;
         let number = |n: usize| {
-            let (kx, ky) = (n % mx, n / mx);
-            let signed = if 2 * kx > mx { kx as f64 - mx as f64 } else { kx as f64 };
-            let [xx, xy, yy] = symbol(tau * signed / lx, tau * ky as f64 / ly);
+            let [kx, ky] = torus.wave(n);
+            let [xx, xy, yy] = symbol(tau * kx as f64 / lx, tau * ky as f64 / ly);
             // The shortest wave of an even number of cells has either sign: what is odd in it is 0.
-            let own = 2 * kx == mx || 2 * ky == my;
+            let own = 2 * kx == mx as i64 || 2 * ky == my as i64;
             [xx, if own { 0.0 } else { xy }, yy]
         };
         let spectrum = (0..torus.spectrum_len()).map(number).collect();

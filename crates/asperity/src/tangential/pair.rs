@@ -60,7 +60,7 @@ impl PairRatio {
                 *difference += sign * (1.0 - 2.0 * nu) * 2.0 * c / (1.0 - nu);
                 *sum += 4.0 * c;
             }
-            ratios.push((nu, own.terms.is_empty() && own.fluidity == 0.0));
+            ratios.push((nu, !own.remembers()));
             creeps.push(own);
         }
         let are_alike = ratios.windows(2).all(|pair| (pair[0].0 - pair[1].0).abs() <= 1e-12);

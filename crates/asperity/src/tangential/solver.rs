@@ -176,17 +176,8 @@ impl SlipSolver {
             }
             if outcome.iterations == most {
                 let SlipOutcome { iterations, residual, certificate, .. } = outcome;
-                let method = "friction";
-                let report = NotConverged {
-                    method,
-                    iterations,
-                    residual,
-                    tolerance,
-                    certificate,
-                    time: None,
-                    velocity: None,
-                };
-                return Err(report.into());
+                let report = NotConverged::of("friction", iterations, residual, tolerance);
+                return Err(NotConverged { certificate, ..report }.into());
             }
             stop_at(interrupt)?;
             if converged || search.rounding == REFRESH {

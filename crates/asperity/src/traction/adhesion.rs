@@ -22,13 +22,13 @@
 //! (2017) 69 (exponential).
 
 use super::{SurfaceTraction, TractionLaw};
-use crate::error::{Error, Result, positive, require};
+use crate::error::{Error, Of, Result, positive, require};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
 use crate::operator::plan;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
-use asperity_sweep::{each, minimum, sums};
+use asperity_sweep::{each, sums};
 use std::sync::Arc;
 
 /// A cell snaps on its own above a trap number of 1; below this one the answer does not depend on the grid.
@@ -129,8 +129,8 @@ impl Adhesion {
             format!("{work} J/m2"),
             "0 J/m2 or more",
         )
-        .map_err(|error| error.of("work"))?;
-        positive("range of the adhesion", self.range, "m").map_err(|error| error.of("range"))?;
+        .of("work")?;
+        positive("range of the adhesion", self.range, "m").of("range")?;
         let strength = self.strength();
         require(
             strength.is_finite(),
@@ -138,7 +138,7 @@ impl Adhesion {
             format!("{strength} Pa"),
             "finite; enlarge the range",
         )
-        .map_err(|error| error.of("range"))?;
+        .of("range")?;
         let tolerance = self.tolerance;
         require(
             (1e-14..=0.1).contains(&tolerance),
@@ -146,7 +146,7 @@ impl Adhesion {
             tolerance,
             "from 1e-14 to 0.1",
         )
-        .map_err(|error| error.of("tolerance"))
+        .of("tolerance")
     }
 }
 
@@ -181,7 +181,7 @@ pub(super) fn cells_needed(grid: &Grid, trap: f64) -> [usize; 2] {
 
 impl TractionLaw for Adhesion {
     fn start(&self, _grid: &Grid) -> Box<dyn SurfaceTraction> {
-        Box::new(Attraction { law: *self })
+        Box::new(*self)
     }
 
     fn tolerances(&self, _contact: f64) -> [f64; 2] {
@@ -197,12 +197,12 @@ impl TractionLaw for Adhesion {
     }
 
     fn check(&self, simulation: &Simulation) -> Result<()> {
-        self.validate().map_err(|error| error.of("adhesion"))?;
+        self.validate().of("adhesion")?;
         if simulation.motion.is_some() {
             let expected = "none: adhesion acts between surfaces that do not slide";
             return Err(Error::invalid("motion of an adhesive contact", "given", expected).of("motion"));
         }
-        let hardness = simulation.hardness_of_cells().map_or(simulation.hardness, |cells| minimum(&cells));
+        let [hardness, _] = simulation.hardness_range();
         if self.work > 0.0 && hardness <= self.strength() {
             let expected = format!(
                 "more than the strength of the adhesion, {:e} Pa: where the attraction exceeds it, cells in contact only pull. Raise \
@@ -232,25 +232,20 @@ impl TractionLaw for Adhesion {
     }
 }
 
-/// The attraction of a run.
-struct Attraction {
-    law: Adhesion,
-}
-
-impl SurfaceTraction for Attraction {
+impl SurfaceTraction for Adhesion {
     fn bound(&mut self, gap: &[f64], _contact: &[f64], out: &mut [f64]) -> Result<()> {
-        let law = self.law;
+        let law = *self;
         each(out, gap, |b, g| *b = -law.at(g)[0]);
         Ok(())
     }
 
     fn energy(&self, gap: &[f64]) -> Option<f64> {
-        let law = self.law;
+        let law = *self;
         Some(sums(gap, |g| [law.at(g)[1]])[0])
     }
 
     fn limits(&self) -> [f64; 2] {
-        [-self.law.strength(), 0.0]
+        [-self.strength(), 0.0]
     }
 
     fn is_attraction(&self) -> bool {

@@ -39,6 +39,7 @@ pub use adhesion::{Adhesion, AdhesionLaw, FINE_TRAP, LARGEST_TRAP, own_response}
 pub use fluid::{Action, FluidPressure, OpeningPressure, Pockets};
 pub use scale::AdhesionScale;
 pub(crate) use solver::TractionSolver;
+use solver::Tractions;
 
 use crate::error::Result;
 use crate::grid::Grid;

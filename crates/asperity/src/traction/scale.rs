@@ -77,14 +77,10 @@ impl AdhesionScale {
 fn curvatures(grid: &Grid, boundary: Boundary, gap: &Array2<f64>) -> [f64; 2] {
     let [dx, dy] = grid.spacing();
     let (nx, ny) = gap.dim();
-    let beside = |n: usize, step: isize, count: usize| match boundary {
-        Boundary::Periodic => Some((n as isize + step).rem_euclid(count as isize) as usize),
-        Boundary::Free => n.checked_add_signed(step).filter(|n| *n < count),
-    };
     let second = |(i, j): (usize, usize), along_x: bool| {
         let at = |step: isize| match along_x {
-            true => beside(i, step, nx).map(|i| gap[(i, j)]),
-            false => beside(j, step, ny).map(|j| gap[(i, j)]),
+            true => boundary.beside(i, step, nx).map(|i| gap[(i, j)]),
+            false => boundary.beside(j, step, ny).map(|j| gap[(i, j)]),
         };
         let d = if along_x { dx } else { dy };
         Some((at(-1)? - 2.0 * gap[(i, j)] + at(1)?) / (d * d)).filter(|curvature| curvature.is_finite())

@@ -16,7 +16,7 @@ impl Run<'_> {
     /// # Errors
     /// [`Error::LiftedOff`] where they carry more at any distance; those of the loop.
     pub(super) fn search_approach(&mut self, problem: &Problem, load: f64, start: f64) -> Result<()> {
-        let cell_area = self.grid().cell_area();
+        let cell_area = self.operator.grid().cell_area();
         let scale = problem.gap.iter().filter(|h| h.is_finite()).fold(0.0_f64, |most, h| most.max(h.abs()));
         let scale = scale.max(start.abs()).max(1e-12);
         // Infinite where the gap would close altogether.
@@ -39,7 +39,7 @@ impl Run<'_> {
                 break;
             }
             if (b - start).abs() > FARTHEST * scale {
-                let unit = self.grid().units("N");
+                let unit = self.operator.grid().units("N");
                 return Err(Error::LiftedOff { load, unit, excess: fb, time: f64::NAN });
             }
             (a, fa) = (b, fb);

@@ -50,24 +50,21 @@ pub(crate) struct TractionSolver {
 }
 
 /// The parts of a total traction.
-struct Tractions {
+pub(super) struct Tractions {
     /// b \[Pa\].
-    bound: Vec<f64>,
+    pub(super) bound: Vec<f64>,
     /// The contact pressure q with K q.
-    contact: ContactState,
+    pub(super) contact: ContactState,
 }
 
 impl Tractions {
-    fn none(cells: usize) -> Self {
+    pub(super) fn none(cells: usize) -> Self {
         Tractions { bound: zeros(cells), contact: ContactState::new(cells) }
     }
 
-    fn copy_from(&mut self, other: &Self) {
+    pub(super) fn copy_from(&mut self, other: &Self) {
         self.bound.copy_from_slice(&other.bound);
-        let (to, from) = (&mut self.contact, &other.contact);
-        to.pressure.copy_from_slice(&from.pressure);
-        to.unit_displacement.copy_from_slice(&from.unit_displacement);
-        (to.approach, to.rounding) = (from.approach, from.rounding);
+        self.contact.copy_from(&other.contact);
     }
 }
 
@@ -219,9 +216,8 @@ impl TractionSolver {
             Prescribed::Approach(_) => 0.0,
         };
         self.law.begin_solve(problem.compliance, rise, &mut self.now.bound);
-        let [tolerance, inner] = self.tolerances;
         let total = Outcome::default();
-        let mut run = Run { own: self, solver, operator, options, tolerance, inner, interrupt, total };
+        let mut run = Run { own: self, solver, operator, options, interrupt, total };
         let solved = match problem.prescribed {
             Prescribed::Approach(_) => run.solve(problem),
             Prescribed::Load(load) => match run.solve_under(problem, load) {
@@ -254,11 +250,8 @@ impl TractionSolver {
 pub(super) struct Run<'a> {
     own: &'a mut TractionSolver,
     solver: &'a mut Solver,
-    operator: &'a mut dyn Operator,
+    pub(super) operator: &'a mut dyn Operator,
     options: &'a SolverOptions,
-    tolerance: f64,
-    /// Of the contact of a pass.
-    inner: f64,
     interrupt: Option<&'a AtomicBool>,
     total: Outcome,
 }
@@ -295,7 +288,7 @@ impl Run<'_> {
             self.total = self.total.then(pass.outcome);
             self.total.convolutions += 1;
             self.total.residual = pass.residual.max(pass.outcome.residual);
-            if pass.residual <= self.tolerance && self.own.law.is_settled() {
+            if pass.residual <= self.tolerance() && self.own.law.is_settled() {
                 return Ok(());
             }
             let rises = pass.energy.is_some_and(|now| now > energy + 1e-6 * now.abs());
@@ -321,9 +314,9 @@ impl Run<'_> {
             }
             energy = pass.energy.map_or(energy, |now| now.min(energy));
         }
-        let options = SolverOptions { tolerance: self.tolerance, ..*self.options };
+        let options = SolverOptions { tolerance: self.tolerance(), ..*self.options };
         let method = if self.own.law.is_attraction() { "adhesion" } else { "surface traction" };
-        Err(not_converged(method, &options, &self.total))
+        Err(not_converged(method, &options, &self.total).into())
     }
 
     fn pass(&mut self, problem: &Problem) -> Result<Pass> {
@@ -348,7 +341,7 @@ impl Run<'_> {
             each(&mut own.cap, (problem.hardness, bound), |cap, (hardness, b)| *cap = hardness - b);
             inner.hardness = Hardness::Cells(&own.cap);
         }
-        let options = SolverOptions { tolerance: self.inner, ..*self.options };
+        let options = SolverOptions { tolerance: own.tolerances[1], ..*self.options };
         let (solver, contact) = (&mut *self.solver, &mut own.now.contact);
         let outcome = solver.solve(self.operator, &inner, &options, contact, self.interrupt)?;
         let w = contact.approach;
@@ -382,14 +375,10 @@ impl Run<'_> {
 
     /// Force that counts as none \[Pa\]: the passes are known to their tolerance.
     pub(super) fn small(&self) -> f64 {
-        3.0 * self.tolerance * self.own.scale
+        3.0 * self.tolerance() * self.own.scale
     }
 
     pub(super) fn tolerance(&self) -> f64 {
-        self.tolerance
-    }
-
-    pub(super) fn grid(&self) -> &Grid {
-        self.operator.grid()
+        self.own.tolerances[0]
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn band() -> Result<Vec<Check>> {
             Simulation { flash: Some(Arc::new(flash)), ..Simulation::new(grid, Array2::zeros((cells, 1))) };
         let Some(mut solver) = FlashSolver::of(&simulation, Direction::X) else { continue };
         solver.warm(Rubbing { velocity, pressure: &pressure, shear: 0.0, loss: 0.0 })?;
-        let t = &solver.rise().track;
+        let t = &solver.rise.track;
         let hottest = (0..cells).fold(0, |a, i| if t[i] > t[a] { i } else { a });
         checks.relative(
             format!("largest temperature, v b/2χ = {peclet}"),

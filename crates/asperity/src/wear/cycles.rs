@@ -15,7 +15,8 @@ pub(crate) struct Cycles {
     tolerance: Option<f64>,
     /// Of the load along the surfaces \[s\]; `None` where it has none.
     period: Option<f64>,
-    factor: f64,
+    /// For how many the present one stands.
+    pub(crate) factor: f64,
     /// Cycles so far, and computed ones that are over.
     total: f64,
     over: f64,
@@ -52,11 +53,6 @@ impl Cycles {
     /// Whether no cycle can be compared with another one yet, although they stand for more.
     pub(crate) fn are_alone(&self) -> bool {
         self.period.is_some() && self.tolerance.is_none() && self.over < 2.0 && self.factor > 1.0
-    }
-
-    /// For how many the present one stands.
-    pub(crate) fn factor(&self) -> f64 {
-        self.factor
     }
 
     /// Cycles so far; NaN where the load has no period.

@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Of, Result, require};
 use crate::grid::Grid;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
@@ -137,12 +137,11 @@ impl Wear {
         self.validate_numbers(simulation)?;
         let expected = "none: wear is not solved together with them";
         let holds = simulation.traction.is_none();
-        require(holds, "traction of adhesion or of a fluid beside wear", "given", expected)
-            .map_err(|error| error.of("wear"))?;
+        require(holds, "traction of adhesion or of a fluid beside wear", "given", expected).of("wear")?;
         let is_coupled = simulation.tangential.as_ref().is_some_and(|law| law.is_coupled());
         let expected = "\"neglect\" where the surfaces wear";
         require(!is_coupled, "coupling of pressure and traction", "\"full\"", expected)
-            .map_err(|error| error.of("friction.coupling"))
+            .of("friction.coupling")
     }
 
     /// Checks what slides.
@@ -153,50 +152,45 @@ impl Wear {
         let sliding = self.sliding(simulation);
         let expected = "a velocity, or a motion of the contact, or a load along the surfaces";
         let known = self.path.is_some() || sliding != Sliding::Path;
-        require(known, "sliding distance of wear", "not given", expected)
-            .map_err(|error| error.of("wear"))?;
+        require(known, "sliding distance of wear", "not given", expected).of("wear")?;
         let expected = "left out: the sliding distance is that of [motion], or the slip under [tangential]";
         let alone = self.path.is_none() || sliding == Sliding::Path;
-        require(alone, "velocity of wear", "given", expected).map_err(|error| error.of("wear.velocity"))?;
+        require(alone, "velocity of wear", "given", expected).of("wear.velocity")?;
         let expected = "left out: it belongs to places of bodies that do not move";
         let in_place = self.map.is_none() || sliding != Sliding::Motion;
-        require(in_place, "map of wear beside [motion]", "given", expected)
-            .map_err(|error| error.of("wear.map"))?;
+        require(in_place, "map of wear beside [motion]", "given", expected).of("wear.map")?;
         let expected = "1 where no slip repeats; without [tangential] a longer time step or a larger velocity does the same";
         require(self.cycles == 1.0 || sliding == Sliding::Slip, "cycles per step", self.cycles, expected)
-            .map_err(|error| error.of("wear.cycles_per_step"))?;
+            .of("wear.cycles_per_step")?;
         let period = simulation.tangential.as_ref().and_then(|tangential| tangential.period());
         let expected = "left out, or a load along the surfaces that is a sine with a period";
         require(self.cycles_tolerance.is_none() || period.is_some(), "cycles_tolerance", "given", expected)
-            .map_err(|error| error.of("wear.cycles_tolerance"))?;
+            .of("wear.cycles_tolerance")?;
         let expected =
             "left out, or cycles_per_step, the largest number of cycles that a computed one stands for";
         require(self.cycles_tolerance.is_none() || self.cycles > 1.0, "cycles_tolerance", "given", expected)
-            .map_err(|error| error.of("wear.cycles_tolerance"))
+            .of("wear.cycles_tolerance")
     }
 
     fn validate_numbers(&self, simulation: &Simulation) -> Result<()> {
-        let of = |key: &'static str| move |error: Error| error.of(key);
         for k in self.coefficients {
             let sound = k.is_finite() && k >= 0.0;
             require(sound, "wear coefficient", format!("{k} m2/N"), "finite and not negative")
-                .map_err(of("wear.coefficient"))?;
+                .of("wear.coefficient")?;
         }
         require(self.total() > 0.0, "wear coefficient", "0 of both bodies", "greater than 0 of one of them")
-            .map_err(of("wear.coefficient"))?;
+            .of("wear.coefficient")?;
         let sound = self.threshold.is_finite() && self.threshold >= 0.0;
         require(sound, "threshold of wear", format!("{} Pa", self.threshold), "finite and not negative")
-            .map_err(of("wear.threshold"))?;
-        let hardest = simulation
-            .hardness_of_cells()
-            .map_or(simulation.hardness, |cells| cells.into_iter().fold(0.0, f64::max));
+            .of("wear.threshold")?;
+        let [_, hardest] = simulation.hardness_range();
         let expected =
             format!("less than the hardness, {hardest} Pa: above it there is no pressure, and nothing wears");
         require(self.threshold < hardest, "threshold of wear", format!("{} Pa", self.threshold), expected)
-            .map_err(of("wear.threshold"))?;
+            .of("wear.threshold")?;
         let sound = (1.0..=MOST_CYCLES).contains(&self.cycles);
         require(sound, "cycles per step", self.cycles, format!("between 1 and {MOST_CYCLES:e}"))
-            .map_err(of("wear.cycles_per_step"))?;
+            .of("wear.cycles_per_step")?;
         let sound = self.cycles_tolerance.is_none_or(|share| share > 0.0 && share <= 1.0);
         require(
             sound,
@@ -204,7 +198,7 @@ impl Wear {
             self.cycles_tolerance.unwrap_or_default(),
             "greater than 0 and at most 1",
         )
-        .map_err(of("wear.cycles_tolerance"))?;
+        .of("wear.cycles_tolerance")?;
         let sound = self.depth_limit.is_none_or(|depth| depth.is_finite() && depth > 0.0);
         require(
             sound,
@@ -212,7 +206,7 @@ impl Wear {
             format!("{:?} m", self.depth_limit),
             "finite and greater than 0",
         )
-        .map_err(of("wear.depth_limit"))?;
+        .of("wear.depth_limit")?;
         let Some(map) = &self.map else { return Ok(()) };
         let shape = simulation.grid.shape();
         require(
@@ -221,7 +215,7 @@ impl Wear {
             format!("{:?}", map.dim()),
             format!("{shape:?}, one for each cell"),
         )
-        .map_err(of("wear.map"))?;
+        .of("wear.map")?;
         match map.indexed_iter().find(|(_, factor)| !(factor.is_finite() && **factor >= 0.0)) {
             Some(((i, j), factor)) => {
                 let what = format!("factor of wear of cell ({i}, {j})");

@@ -107,7 +107,7 @@ impl RecedingSolver {
             }
         }
         (self.active, self.gap) = (active, gap);
-        solved.unwrap_or_else(|| Err(not_converged(WEAR_THRESHOLD, options, &total)))
+        solved.unwrap_or_else(|| Err(not_converged(WEAR_THRESHOLD, options, &total).into()))
     }
 }
 

@@ -7,9 +7,9 @@
 
 use super::super::projection::{Shift, Trial};
 use super::super::{ContactState, Problem};
-use super::{PolonskyKeer, add};
+use super::PolonskyKeer;
 use crate::operator::Operator;
-use asperity_sweep::{Set, each, each_with_sums};
+use asperity_sweep::{Set, add, each, each_with_sums};
 
 /// Iterations without a halving of the residual that are the first stall.
 const PATIENCE: usize = 20;

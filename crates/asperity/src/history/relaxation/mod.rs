@@ -138,7 +138,7 @@ impl Relaxation {
 
     /// Sets the rules of the step measured last, which starts from the states.
     fn plan(&mut self, load: Load) {
-        let lengths = self.clocks.lengths();
+        let lengths = &self.clocks.lengths;
         let x = self.pair.length(lengths);
         self.elapsed.iter_mut().zip(self.pair.own(lengths)).for_each(|(e, x)| *e = x);
         if load == Load::Apart {
@@ -247,7 +247,7 @@ impl History for Relaxation {
             self.gone.iter_mut().zip(&self.elapsed).for_each(|(gone, x)| *gone += x);
         }
         self.under_way = UnderWay::Nothing;
-        let new_rates = self.pair.set_rates(self.clocks.lengths(), &mut self.rates);
+        let new_rates = self.pair.set_rates(&self.clocks.lengths, &mut self.rates);
         if new_rates {
             if ends {
                 self.end(last, None);
@@ -266,7 +266,7 @@ impl History for Relaxation {
 
     fn reopen(&mut self, step: &Interval, rigid: &[f64], gap: &mut [f64]) -> Result<Law> {
         self.clocks.measure(step);
-        if self.pair.set_rates(self.clocks.lengths(), &mut self.rates) {
+        if self.pair.set_rates(&self.clocks.lengths, &mut self.rates) {
             self.recast(Some(Dual::of(self.pair.creep(&self.rates))?));
         }
         self.plan(step.load);

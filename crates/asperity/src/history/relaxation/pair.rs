@@ -32,7 +32,7 @@ impl Pair {
         let mut parts: Vec<Part> = vec![];
         let thermal = &simulation.thermal;
         for (clock, creep) in simulation.parts().enumerate() {
-            if creep.terms.is_empty() && creep.fluidity == 0.0 {
+            if !creep.remembers() {
                 continue;
             }
             // The clocks of the bodies begin with the second length.

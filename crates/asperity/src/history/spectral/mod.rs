@@ -79,7 +79,7 @@ impl Spectral {
                 has_coarser: true,
             },
             layers: layers.clone(),
-            torus: Torus::new(simulation.grid.cells(), waves.lengths()),
+            torus: Torus::new(simulation.grid.cells(), waves.lengths),
             own,
             states: vec![Complex64::ZERO; count * waves.terms],
             displacement: vec![Complex64::ZERO; count],
@@ -133,13 +133,13 @@ impl Spectral {
     }
 
     fn scale(&self) -> f64 {
-        operator::mean(self.waves.lengths(), self.compliance.view()) / self.own
+        operator::mean(self.waves.lengths, self.compliance.view()) / self.own
     }
 
     /// The operator of the step under way, over the scalar compliance.
     fn operator(&self) -> Box<dyn Operator> {
         let unit = &self.compliance / self.scale();
-        let unit = match self.waves.width() {
+        let unit = match self.waves.width {
             Width::Narrow => unit,
             Width::Wide => wide::narrowed(&self.body.grid, &unit),
         };

@@ -51,8 +51,8 @@ pub(super) enum Width {
 /// The relaxation functions of the waves of a torus.
 pub(super) struct Waves {
     /// mx, my.
-    lengths: [usize; 2],
-    width: Width,
+    pub(super) lengths: [usize; 2],
+    pub(super) width: Width,
     /// ln τ of the first node of the tables, and their nodes.
     first: f64,
     nodes: usize,
@@ -189,16 +189,6 @@ impl Waves {
         let waves =
             Waves { lengths, width, first: shortest - BEFORE * SPACING, nodes, terms, equilibrium, relaxing };
         Ok(Some((waves, own)))
-    }
-
-    /// The torus of the convolution, or a wider one.
-    pub(super) fn width(&self) -> Width {
-        self.width
-    }
-
-    /// mx, my.
-    pub(super) fn lengths(&self) -> [usize; 2] {
-        self.lengths
     }
 
     /// Waves of a transform of the torus.

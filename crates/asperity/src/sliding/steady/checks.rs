@@ -1,7 +1,7 @@
 //! What can be known of a sweep before its first velocity.
 
 use super::SteadyMotion;
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Of, Result, require};
 use crate::grid::Boundary;
 use crate::load::{Control, Course, History, Stage};
 use crate::simulation::Simulation;
@@ -15,50 +15,42 @@ impl SteadyMotion {
     pub fn validate(&self, simulation: &Simulation) -> Result<()> {
         Streaming::new(simulation)?;
         held_load(simulation)?;
-        validate(simulation, self)
+        let Simulation { grid, boundary, kernel, .. } = simulation;
+        require(!self.velocities.is_empty(), "velocities", "none", "one at least")?;
+        if let Some(v) = self.velocities.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
+            return Err(Error::invalid("velocity", format!("{v} m/s"), "finite and not negative"));
+        }
+        let fits = self.slopes.x.dim() == grid.shape() && self.slopes.y.dim() == grid.shape();
+        let shape = format!("{:?}", self.slopes.x.dim());
+        require(fits, "shape of the slopes", shape, format!("{:?}, that of the grid", grid.shape()))?;
+        self.direction.validate(simulation)?;
+        self.shear_stress.iter().try_for_each(ShearStress::validate).of("shear_stress")?;
+        require(
+            simulation.layers.is_none(),
+            "body of a steady state of motion",
+            "layers that creep differently",
+            "layers and bodies of one relative creep",
+        )?;
+        require(
+            *boundary == Boundary::Periodic || kernel.is_half_space(),
+            "body of a steady state of motion on a free domain",
+            "layers",
+            "a half-space, or boundary = \"periodic\"",
+        )?;
+        require(
+            simulation.hardness_map.is_none(),
+            "hardness of a steady state of motion",
+            "different from cell to cell",
+            "one number: the material streams by",
+        )?;
+        let refused = simulation.quantities.list.iter().find(|quantity| quantity.is_of_time());
+        require(
+            refused.is_none(),
+            "quantity of a steady state of motion",
+            refused.map_or("", |quantity| quantity.name()),
+            "one of the state of a contact; energies and stiffness belong to a run in time",
+        )
     }
-}
-
-fn validate(simulation: &Simulation, motion: &SteadyMotion) -> Result<()> {
-    let Simulation { grid, boundary, kernel, .. } = simulation;
-    require(!motion.velocities.is_empty(), "velocities", "none", "one at least")?;
-    if let Some(v) = motion.velocities.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
-        return Err(Error::invalid("velocity", format!("{v} m/s"), "finite and not negative"));
-    }
-    let fits = motion.slopes.x.dim() == grid.shape() && motion.slopes.y.dim() == grid.shape();
-    let shape = format!("{:?}", motion.slopes.x.dim());
-    require(fits, "shape of the slopes", shape, format!("{:?}, that of the grid", grid.shape()))?;
-    motion.direction.validate(simulation)?;
-    motion
-        .shear_stress
-        .iter()
-        .try_for_each(ShearStress::validate)
-        .map_err(|error| error.of("shear_stress"))?;
-    require(
-        simulation.layers.is_none(),
-        "body of a steady state of motion",
-        "layers that creep differently",
-        "layers and bodies of one relative creep",
-    )?;
-    require(
-        *boundary == Boundary::Periodic || kernel.is_half_space(),
-        "body of a steady state of motion on a free domain",
-        "layers",
-        "a half-space, or boundary = \"periodic\"",
-    )?;
-    require(
-        simulation.hardness_map.is_none(),
-        "hardness of a steady state of motion",
-        "different from cell to cell",
-        "one number: the material streams by",
-    )?;
-    let refused = simulation.quantities.list.iter().find(|quantity| quantity.is_of_time());
-    require(
-        refused.is_none(),
-        "quantity of a steady state of motion",
-        refused.map_or("", |quantity| quantity.name()),
-        "one of the state of a contact; energies and stiffness belong to a run in time",
-    )
 }
 
 /// The load that is held \[N\].

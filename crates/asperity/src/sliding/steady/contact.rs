@@ -53,9 +53,9 @@ pub(super) struct Workspace {
 impl Workspace {
     fn plan(stream: &Stream, long: bool, interrupt: Option<&AtomicBool>) -> Result<Self> {
         let Simulation { grid, solver, .. } = stream.simulation;
-        let mut operators = Operators::plan(stream, long, interrupt)?;
+        let operators = Operators::plan(stream, long, interrupt)?;
         Ok(Workspace {
-            solver: Solver::new(solver.method, operators.metric()),
+            solver: Solver::new(solver.method, &*operators.metric),
             operators,
             trial: ContactState::new(grid.len()),
             best: ContactState::new(grid.len()),
@@ -86,7 +86,7 @@ impl<'a> SteadyContact<'a> {
     /// [`Error::NotConverged`], [`Error::Infeasible`], [`Error::Interrupted`].
     pub(super) fn solve(&mut self, state: &mut ContactState) -> Result<()> {
         let mut on = Workspace::plan(&self.stream, false, self.interrupt)?;
-        self.loss = on.operators.loss();
+        self.loss = on.operators.loss.take();
         if self.iterate(&mut on, state)? {
             return Ok(());
         }
@@ -171,7 +171,7 @@ impl<'a> SteadyContact<'a> {
     /// p = the contact of M and the gap h + u - M p.
     fn metric_step(&mut self, on: &mut Workspace, residual: f64, state: &mut ContactState) -> Result<()> {
         let Workspace { operators, solver, work: [gap, image], .. } = on;
-        operators.metric().apply_into(&state.pressure, image);
+        operators.metric.apply_into(&state.pressure, image);
         let displacements = state.unit_displacement.iter().zip(&*image);
         for ((to, h), (u, mp)) in gap.iter_mut().zip(self.problem.gap).zip(displacements) {
             *to = h + self.problem.compliance * (u - mp);
@@ -182,7 +182,7 @@ impl<'a> SteadyContact<'a> {
         };
         let problem = Problem { gap: &gap[..], ..self.problem };
         let (iterations, convolutions) =
-            match solver.solve(operators.metric(), &problem, &options, state, self.interrupt) {
+            match solver.solve(&mut *operators.metric, &problem, &options, state, self.interrupt) {
                 Ok(done) => (done.iterations, done.convolutions),
                 Err(Error::NotConverged(report)) => (report.iterations, report.iterations),
                 Err(error) => return Err(error),
@@ -198,7 +198,7 @@ impl<'a> SteadyContact<'a> {
             return contact::make_feasible(&self.problem, self.grid, state);
         }
         let rough = SolverOptions { tolerance: self.options.tolerance.max(1e-3), ..self.options };
-        let metric = on.operators.metric();
+        let metric = &mut *on.operators.metric;
         let outcome = on.solver.solve(metric, &self.problem, &rough, state, self.interrupt)?;
         self.spent.iterations += outcome.iterations;
         self.spent.convolutions += outcome.convolutions;
@@ -214,11 +214,7 @@ impl<'a> SteadyContact<'a> {
     }
 
     fn not_converged(&self) -> Error {
-        match contact::not_converged("steady motion", &self.options, &self.spent) {
-            Error::NotConverged(report) => {
-                Error::NotConverged(NotConverged { velocity: Some(self.stream.velocity), ..report })
-            }
-            other => other,
-        }
+        let report = contact::not_converged("steady motion", &self.options, &self.spent);
+        NotConverged { velocity: Some(self.stream.velocity), ..report }.into()
     }
 }

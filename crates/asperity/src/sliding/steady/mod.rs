@@ -191,7 +191,10 @@ impl Steady {
         self.outcome =
             Outcome { iterations: outcome.iterations, convolutions: outcome.convolutions, ..self.outcome };
         let other = self.another(velocity, rise, feedback);
-        self.flash.iter_mut().for_each(|flash| flash.note_material(feedback.temperature + rise, other));
+        if let Some(flash) = &mut self.flash {
+            let row = &mut flash.rise.row;
+            (row.material, row.other) = (feedback.temperature + rise, other.unwrap_or(f64::NAN));
+        }
         Ok(rise)
     }
 
@@ -216,7 +219,7 @@ impl Steady {
             shear: self.motion.shear_stress.as_ref().map_or(0.0, |law| law.at(velocity, slowing)),
             loss: self.friction.coefficient,
         })?;
-        Ok(flash.rise().row.mean)
+        Ok(flash.rise.row.mean)
     }
 
     /// Solves for one velocity, which the material sees `slowing` times.
@@ -228,7 +231,7 @@ impl Steady {
             velocity: velocity * slowing,
         };
         let problem = Problem {
-            gap: gap(&self.simulation),
+            gap: self.simulation.gap_cells(),
             compliance: self.streaming.relaxed(),
             hardness: Hardness::Uniform(self.simulation.hardness),
             prescribed: Prescribed::Load(self.load),
@@ -256,13 +259,13 @@ impl Steady {
 
     fn row(&self) -> Step<'_> {
         let hardness = Hardness::Uniform(self.simulation.hardness);
-        let bodies = (gap(&self.simulation), self.streaming.relaxed());
+        let bodies = (self.simulation.gap_cells(), self.streaming.relaxed());
         Step {
             index: self.index,
             coordinate: Coordinate::Velocity(self.motion.velocities[self.index]),
             recorder: Some(&self.recorder),
             friction: Some(self.friction),
-            rise: self.flash.as_ref().map(FlashSolver::rise),
+            rise: self.flash.as_ref().map(|flash| &flash.rise),
             ..Step::of(&self.simulation, hardness, (&self.state, self.outcome), bodies)
         }
     }
@@ -324,9 +327,4 @@ impl Drive for Steady {
     fn streaming(&self) -> Option<&Streaming> {
         Some(&self.streaming)
     }
-}
-
-/// The undeformed gap, cell by cell: that of a valid simulation is in C-order.
-fn gap(simulation: &Simulation) -> &[f64] {
-    simulation.gap.as_slice().unwrap_or_default()
 }

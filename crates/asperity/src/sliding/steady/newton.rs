@@ -31,7 +31,7 @@ impl SteadyContact<'_> {
         before: f64,
         state: &mut ContactState,
     ) -> Result<bool> {
-        copy(state, &mut on.trial);
+        on.trial.copy_from(state);
         let (mut least, mut stalled) = (f64::INFINITY, 0);
         for _ in 0..=STEPS {
             on.operators.apply_into(&on.trial.pressure, &mut on.trial.unit_displacement);
@@ -40,7 +40,7 @@ impl SteadyContact<'_> {
             stalled = if residual < PROGRESS * least { 0 } else { stalled + 1 };
             if residual < least {
                 least = residual;
-                copy(&on.trial, &mut on.best);
+                on.best.copy_from(&on.trial);
             }
             if residual <= self.tolerance || stalled > PATIENCE {
                 break;
@@ -77,10 +77,4 @@ impl SteadyContact<'_> {
         }
         (cells, violations)
     }
-}
-
-pub(super) fn copy(from: &ContactState, to: &mut ContactState) {
-    to.pressure.copy_from_slice(&from.pressure);
-    to.unit_displacement.copy_from_slice(&from.unit_displacement);
-    to.approach = from.approach;
 }

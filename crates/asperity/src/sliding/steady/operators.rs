@@ -47,9 +47,10 @@ pub(super) struct Operators {
     torus: Torus,
     steady: Spectrum,
     inverse: Spectrum,
-    metric: Box<Convolved>,
-    /// Of a free domain.
-    loss: Option<Array2<f64>>,
+    /// M.
+    pub(super) metric: Box<Convolved>,
+    /// The kernel of the loss of a free domain, for [`Stream::loss`].
+    pub(super) loss: Option<Array2<f64>>,
 }
 
 impl Operators {
@@ -88,11 +89,6 @@ impl Operators {
         })
     }
 
-    /// The kernel of the loss of a free domain, for [`Stream::loss`].
-    pub(super) fn loss(&mut self) -> Option<Array2<f64>> {
-        self.loss.take()
-    }
-
     /// u = A p.
     pub(super) fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
         self.torus.apply_into(&self.steady, p, u);
@@ -101,11 +97,6 @@ impl Operators {
     /// p, roughly the pressure with A p = u.
     pub(super) fn invert_into(&mut self, u: &[f64], p: &mut [f64]) {
         self.torus.apply_into(&self.inverse, u, p);
-    }
-
-    /// M.
-    pub(super) fn metric(&mut self) -> &mut Convolved {
-        &mut self.metric
     }
 
     /// Bytes that the operators and a solver of M take at most.

@@ -8,7 +8,6 @@
 //! where GMRES does not do that, elimination does.
 
 use super::contact::{SteadyContact, Workspace};
-use super::newton::copy;
 use crate::contact::{self, ContactState, stop_at};
 use crate::error::Result;
 use crate::linear;
@@ -53,11 +52,11 @@ impl SteadyContact<'_> {
             let wrong: Vec<usize> = (0..cells).filter(is_wrong).collect();
             tracing::debug!(wrong = wrong.len(), set = set.len(), "pivots");
             let trial = &mut on.trial;
-            copy(state, trial);
+            trial.copy_from(state);
             contact::make_feasible(&self.problem, self.grid, trial)?;
             on.operators.apply_into(&trial.pressure, &mut trial.unit_displacement);
             if self.rate(trial).residual <= self.tolerance {
-                copy(trial, state);
+                state.copy_from(trial);
                 return Ok(true);
             }
             if wrong.len() < fewest {

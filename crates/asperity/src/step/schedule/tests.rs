@@ -1,19 +1,14 @@
 //! The schedule alone: attempts are answered by functions of time, without a contact.
 
 use super::*;
-use crate::load::Course as Prescribed;
+use crate::grid::Grid;
+use crate::load::{Course as Prescribed, Programme};
+use ndarray::Array2;
 
 fn plan(stages: Vec<Stage>, times: TimeGrid) -> Schedule {
-    Schedule::of(Plan {
-        stages,
-        times,
-        area: 2.0,
-        can_jump: true,
-        clocks: vec![],
-        remember: 1,
-        kinks: vec![],
-        include: vec![],
-    })
+    let grid = Grid::new([1, 1], [2.0, 1.0]).unwrap();
+    let loading = Programme::new(stages);
+    Schedule::new(&Arc::new(Simulation { loading, times, ..Simulation::new(grid, Array2::zeros((1, 1))) }))
 }
 
 /// Rows and attempts of a schedule whose attempts end as `answer` says.
@@ -28,8 +23,8 @@ fn run(mut schedule: Schedule, answer: impl Fn(&Interval) -> Summary) -> (Vec<In
             attempts += 1;
             let attempt = answer(&step);
             match schedule.assess(&step, &attempt) {
-                Verdict::Try(next) => step = next,
-                Verdict::Accept => {
+                Some(next) => step = next,
+                None => {
                     schedule.accept(&attempt);
                     rows.push(attempt.instant);
                     break;

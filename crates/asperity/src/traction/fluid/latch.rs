@@ -22,7 +22,7 @@ pub(super) struct Latch {
     cells: Vec<Cell>,
     /// Held against what they are: in this pass so far, and in the last one.
     counting: usize,
-    held: usize,
+    pub(super) held: usize,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -100,11 +100,6 @@ impl Latch {
     pub(super) fn may_hold(&self) -> bool {
         self.passes >= FIRST
     }
-
-    /// Cells that were held in the last pass against what they are.
-    pub(super) fn held(&self) -> usize {
-        self.held
-    }
 }
 
 #[cfg(test)]
@@ -127,7 +122,7 @@ mod tests {
             assert_eq!(latch.vented(0), (pass >= 6).then_some(0.5), "{pass}");
             assert_eq!(latch.vented(1), None);
             if pass == 50 {
-                assert_eq!((last[0], last[1], latch.held()), (0.5, 0.0, 1));
+                assert_eq!((last[0], last[1], latch.held), (0.5, 0.0, 1));
             }
         }
         // After the last pass, an odd one.

@@ -33,13 +33,13 @@ mod tests;
 
 use std::collections::VecDeque;
 
-use ndarray::{Array2, ArrayView2};
+use ndarray::Array2;
 
 pub use opening::OpeningPressure;
 pub use pockets::Pockets;
 
 use super::{SurfaceTraction, TractionLaw};
-use crate::error::{Error, Result, non_negative, require};
+use crate::error::{Error, Of, Result, non_negative, require};
 use crate::grid::Grid;
 use crate::leakage::{
     CellKind, Direction, FlowOptions, Gas, Opening, Passages, Previous, Rarefaction, Sides, factor_bytes,
@@ -49,7 +49,6 @@ use crate::load::History;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::time::Instant;
-use asperity_sweep::minimum;
 use beside::Beside;
 use latch::Latch;
 use pockets::Contents;
@@ -102,24 +101,22 @@ impl FluidPressure {
     /// # Errors
     /// [`Error::Invalid`] that names the argument.
     fn validate(&self, end: f64) -> Result<()> {
-        let of = |key: &'static str| move |error: Error| error.of(key);
-        let outlet = non_negative("pressure of the outlet", self.outlet, "Pa").map_err(of("outlet"))?;
+        let outlet = non_negative("pressure of the outlet", self.outlet, "Pa").of("outlet")?;
         let [least, most] = self.inlet.range(end);
         let holds = least.is_finite() && most.is_finite() && least >= outlet;
         let expected = format!(
             "not below that of the outlet, {outlet} Pa, at all times; exchange them for a flow in the other direction"
         );
-        require(holds, "pressure of the inlet", format!("{least} Pa"), expected).map_err(of("inlet"))?;
+        require(holds, "pressure of the inlet", format!("{least} Pa"), expected).of("inlet")?;
         let jump = self.inlet.breaks(end).into_iter().find(|t| self.inlet.before(*t) != self.inlet.after(*t));
         let expected = "none: give the change a time, as a ramp";
         require(jump.is_none(), "jump of the pressure of the inlet", jump.map_or(0.0, |t| t), expected)
-            .map_err(of("inlet"))?;
+            .of("inlet")?;
         let lowest = format!("{} Pa", self.reference);
         let expected = "0 (vacuum) up to the pressure of the outlet";
         require((0.0..=outlet).contains(&self.reference), "reference of the pressure", lowest, expected)
-            .map_err(of("reference"))?;
-        non_negative("smallest gap that lets the fluid pass", self.smallest_gap, "m")
-            .map_err(of("smallest_gap"))?;
+            .of("reference")?;
+        non_negative("smallest gap that lets the fluid pass", self.smallest_gap, "m").of("smallest_gap")?;
         if let Action::Gaps(pockets) = self.action {
             pockets.validate(self.smallest_gap)?;
         }
@@ -131,7 +128,7 @@ impl FluidPressure {
         };
         let given = modulus.map_or("none".to_owned(), |modulus| format!("{modulus} Pa"));
         let expected = "positive and finite for a liquid in sealed pockets, and none else";
-        require(sound, "bulk modulus", given, expected).map_err(of("bulk_modulus"))
+        require(sound, "bulk modulus", given, expected).of("bulk_modulus")
     }
 
     /// The pressure of the inlet \[Pa, absolute\] from which on a film without contact on a periodic domain does not hold a mean pressure
@@ -190,7 +187,7 @@ impl TractionLaw for FluidPressure {
 
     fn check(&self, simulation: &Simulation) -> Result<()> {
         let end = simulation.times.end();
-        self.validate(end).map_err(|error| error.of("leakage"))?;
+        self.validate(end).of("leakage")?;
         if simulation.motion.is_some() {
             let expected = "none: the flow that a sliding surface drags along is not solved";
             return Err(
@@ -200,18 +197,16 @@ impl TractionLaw for FluidPressure {
         let untouchable = simulation.gap.iter().any(|h| !h.is_finite());
         let expected = "finite: fluid acts on all of the domain. Cut the surface, or fill its holes";
         require(!untouchable, "gap of cells that a fluid acts on", "infinite in places", expected)
-            .map_err(|error| error.of("leakage.coupling"))?;
-        let is_limited = simulation.hardness.is_finite() || simulation.hardness_of_cells().is_some();
+            .of("leakage.coupling")?;
         let expected =
             "\"kept\" or \"drained\" where the hardness limits the pressure: a sealed pocket may exceed it";
         let sealed = self.action == Action::Gaps(Pockets::Sealed);
-        require(!(sealed && is_limited), "pockets", "\"sealed\"", expected)
-            .map_err(|error| error.of("leakage.pockets"))?;
+        require(!(sealed && simulation.is_capped()), "pockets", "\"sealed\"", expected)
+            .of("leakage.pockets")?;
         let most = self.inlet.range(end)[1] - self.reference;
-        let hardness = simulation.hardness_of_cells().map_or(simulation.hardness, |cells| minimum(&cells));
+        let [hardness, _] = simulation.hardness_range();
         let expected = format!("more than the pressure of the fluid, {most} Pa: no contact could hold it");
-        require(hardness > most, "hardness", format!("{hardness} Pa"), expected)
-            .map_err(|error| error.of("leakage.inlet"))
+        require(hardness > most, "hardness", format!("{hardness} Pa"), expected).of("leakage.inlet")
     }
 }
 
@@ -285,37 +280,26 @@ impl InGap {
         }
     }
 
-    /// The open cells and what they are connected to.
-    fn passages(&self, gap: &[f64], contact: &[f64]) -> Result<(Opening, Passages)> {
-        let shape = self.grid.shape();
-        let touches = Array2::from_shape_fn(shape, |(i, j)| u8::from(contact[i * shape.1 + j] > 0.0));
-        let gap = ArrayView2::from_shape(shape, gap)
-            .map_err(|error| Error::invalid("gap", error, "one per cell"))?;
-        let FluidPressure { direction, sides, smallest_gap, .. } = self.law;
-        let opening = Opening::new(&self.grid, gap, Some(touches.view()), direction, sides, smallest_gap)?;
-        let passages = Passages::of(&opening);
-        Ok((opening, passages))
-    }
-
-    /// The same where all cells, those in contact too, have the gap `floor` at least.
-    fn passages_above(&self, floor: f64, gap: &[f64], contact: &[f64]) -> Result<(Opening, Passages)> {
+    /// The open cells and what they are connected to; with a `floor` all cells, those in contact too, have that gap at least.
+    fn passages(&self, floor: Option<f64>, gap: &[f64], contact: &[f64]) -> Result<(Opening, Passages)> {
         let (shape, FluidPressure { direction, sides, .. }) = (self.grid.shape(), &self.law);
-        let floored = Array2::from_shape_fn(shape, |(i, j)| {
+        let (least, smallest_gap) = (floor.unwrap_or(0.0), floor.map_or(self.law.smallest_gap, |_| 0.0));
+        let gap = Array2::from_shape_fn(shape, |(i, j)| {
             let cell = i * shape.1 + j;
-            if contact[cell] > 0.0 { floor } else { gap[cell].max(floor) }
+            if contact[cell] > 0.0 { least } else { gap[cell].max(least) }
         });
-        let opening = Opening::new(&self.grid, floored.view(), None, *direction, *sides, 0.0)?;
+        let opening = Opening::new(&self.grid, gap.view(), None, *direction, *sides, smallest_gap)?;
         let passages = Passages::of(&opening);
         Ok((opening, passages))
     }
 
     /// Sets `pressure` and `reached` from the gap, the contact pressure and the traction of the pass.
     fn find_pressures(&mut self, gap: &[f64], contact: &[f64], traction: &[f64]) -> Result<()> {
-        let (opening, passages) = self.passages(gap, contact)?;
+        let (opening, passages) = self.passages(None, gap, contact)?;
         self.percolates = passages.percolates();
         let (opening, passages) = match self.contents.floor() {
             None => (opening, passages),
-            Some(floor) => self.passages_above(floor, gap, contact)?,
+            floor => self.passages(floor, gap, contact)?,
         };
         let (flowing, conductance) = self.flow(&opening, &passages)?;
         if self.conductances.len() == RECENT {
@@ -380,7 +364,7 @@ impl SurfaceTraction for InGap {
     }
 
     fn begin_loop(&mut self) {
-        self.contents.begin_loop();
+        self.contents.sealed.iter_mut().for_each(Sealed::begin_loop);
         self.latch.clear();
         self.conductances.clear();
     }
@@ -415,7 +399,7 @@ impl SurfaceTraction for InGap {
     }
 
     fn is_settled(&self) -> bool {
-        self.latch.held() > 0 || self.contents.of_sealed().is_none_or(|sealed| sealed.is_settled())
+        self.latch.held > 0 || self.contents.sealed.as_ref().is_none_or(|sealed| sealed.is_settled())
     }
 
     fn is_displaced(&self) -> bool {
@@ -426,16 +410,16 @@ impl SurfaceTraction for InGap {
         Some(match quantity {
             Quantity::InletPressure => self.inlet,
             Quantity::Connected => f64::from(u8::from(self.percolates)),
-            Quantity::PocketArea => self.contents.cells() as f64 * self.grid.cell_area(),
-            Quantity::PocketPressureMax => self.contents.largest(),
-            Quantity::PocketVapour => self.contents.of_sealed().map_or(0.0, Sealed::vapour),
-            Quantity::LatchedCells => self.latch.held() as f64,
+            Quantity::PocketArea => self.contents.cells as f64 * self.grid.cell_area(),
+            Quantity::PocketPressureMax => self.contents.largest,
+            Quantity::PocketVapour => self.contents.sealed.as_ref().map_or(0.0, |sealed| sealed.vapour),
+            Quantity::LatchedCells => self.latch.held as f64,
             Quantity::LeakSpread => {
                 let [least, most] = self
                     .conductances
                     .iter()
                     .fold([f64::INFINITY, 0.0_f64], |[least, most], t| [least.min(*t), most.max(*t)]);
-                if self.latch.held() > 0 && most > 0.0 { (most - least) / most } else { 0.0 }
+                if self.latch.held > 0 && most > 0.0 { (most - least) / most } else { 0.0 }
             }
             _ => return None,
         })

@@ -20,8 +20,8 @@ use crate::contact::{ContactState, Hardness, Prescribed, Problem, Solver, Solver
 use crate::error::{Error, NotConverged, Result, require};
 use crate::operator::{Operator, plan};
 use crate::simulation::{Plasticity, Simulation};
-use crate::traction::SurfaceTraction;
-use asperity_sweep::{each, minimum, sum, zeros};
+use crate::traction::{SurfaceTraction, Tractions};
+use asperity_sweep::{each, sum, zeros};
 
 /// The pressure is known to this share of itself above that of the outlet.
 const SHARE: f64 = 1e-3;
@@ -45,25 +45,8 @@ pub struct OpeningPressure {
     next: Vec<f64>,
     cap: Vec<f64>,
     /// The state of the largest pressure that holds, and that of the trial.
-    held: Wet,
-    trial: Wet,
-}
-
-/// The traction b \[Pa\] of the fluid, and the contact under it.
-struct Wet {
-    bound: Vec<f64>,
-    contact: ContactState,
-}
-
-impl Wet {
-    fn dry(cells: usize) -> Self {
-        Wet { bound: zeros(cells), contact: ContactState::new(cells) }
-    }
-
-    fn copy_from(&mut self, other: &Wet) {
-        self.bound.copy_from_slice(&other.bound);
-        self.contact.clone_from(&other.contact);
-    }
+    held: Tractions,
+    trial: Tractions,
 }
 
 impl OpeningPressure {
@@ -75,8 +58,7 @@ impl OpeningPressure {
         Self::check(simulation)?;
         let grid = simulation.grid;
         let operator = plan(grid, simulation.boundary, simulation.kernel.clone())?;
-        let of_cells = simulation.hardness_of_cells();
-        let hardness = of_cells.as_ref().map_or(simulation.hardness, |cells| minimum(cells));
+        let [hardness, _] = simulation.hardness_range();
         let field = || zeros(grid.len());
         let tolerance = (TOLERANCES[1] * simulation.solver.tolerance).max(1e-14);
         Ok(OpeningPressure {
@@ -87,7 +69,7 @@ impl OpeningPressure {
             compliance: simulation.instantaneous(),
             hardness_of_cells: hardness
                 .is_finite()
-                .then(|| of_cells.unwrap_or_else(|| vec![hardness; grid.len()])),
+                .then(|| simulation.hardness_of_cells().unwrap_or_else(|| vec![hardness; grid.len()])),
             hardness,
             undeformed: field(),
             shifted: field(),
@@ -95,8 +77,8 @@ impl OpeningPressure {
             gap: field(),
             next: field(),
             cap: field(),
-            held: Wet::dry(grid.len()),
-            trial: Wet::dry(grid.len()),
+            held: Tractions::none(grid.len()),
+            trial: Tractions::none(grid.len()),
         })
     }
 
@@ -200,7 +182,7 @@ impl OpeningPressure {
                 return Ok(true);
             }
             let contact = &self.trial.contact.pressure;
-            if self.fluid.passages(&self.gap, contact)?.1.percolates() {
+            if self.fluid.passages(None, &self.gap, contact)?.1.percolates() {
                 return Ok(true);
             }
             self.fluid.bound(&self.gap, contact, &mut self.next)?;
@@ -215,12 +197,12 @@ impl OpeningPressure {
                 return Ok(false);
             }
         }
-        Err(NotConverged::of("opening pressure", passes, f64::NAN, SMALL))
+        Err(NotConverged::of("opening pressure", passes, f64::NAN, SMALL).into())
     }
 
     /// The contact under the traction of the trial, and its gap; `false` where the fluid leaves no load to it.
     fn touch(&mut self, load: f64, interrupt: Option<&AtomicBool>) -> Result<bool> {
-        let (c, Wet { bound, contact }) = (self.compliance, &mut self.trial);
+        let (c, Tractions { bound, contact }) = (self.compliance, &mut self.trial);
         let carried = load - self.operator.grid().cell_area() * sum(bound);
         if carried <= 0.0 {
             return Ok(false);

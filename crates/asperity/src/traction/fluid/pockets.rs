@@ -54,10 +54,10 @@ pub(super) struct Contents {
     reference: f64,
     /// Absolute pressure of the cells in the last row \[Pa\]; [`NONE`] where there was no fluid.
     last: Vec<f64>,
-    sealed: Option<Sealed>,
+    pub(super) sealed: Option<Sealed>,
     /// Number of cells in pockets, and their largest pressure.
-    cells: usize,
-    largest: f64,
+    pub(super) cells: usize,
+    pub(super) largest: f64,
 }
 
 impl Contents {
@@ -73,21 +73,10 @@ impl Contents {
         Contents { last, sealed: Some(sealed), ..Contents::new(Pockets::Sealed, reference, 0.0, 0) }
     }
 
-    /// What the sealed pockets hold.
-    pub(super) fn of_sealed(&self) -> Option<&Sealed> {
-        self.sealed.as_ref()
-    }
-
     /// A solve begins, as of [`Sealed::begin`].
     pub(super) fn begin(&mut self, beside: &Beside, compliance: f64, rise: f64, traction: &mut [f64]) {
         if let Some(sealed) = &mut self.sealed {
             sealed.begin(beside, &self.last, compliance, rise, traction);
-        }
-    }
-
-    pub(super) fn begin_loop(&mut self) {
-        if let Some(sealed) = &mut self.sealed {
-            sealed.begin_loop();
         }
     }
 
@@ -129,14 +118,6 @@ impl Contents {
         }
     }
 
-    pub(super) fn cells(&self) -> usize {
-        self.cells
-    }
-
-    pub(super) fn largest(&self) -> f64 {
-        self.largest
-    }
-
     /// The step stands.
     pub(super) fn commit(&mut self, pressure: &[f64]) {
         let cells = self.last.iter_mut().zip(pressure);
@@ -147,10 +128,14 @@ impl Contents {
     }
 
     pub(super) fn memory(&self) -> Vec<&[f64]> {
-        std::iter::once(&self.last[..]).chain(self.sealed.as_ref().map(Sealed::contents)).collect()
+        std::iter::once(&self.last[..])
+            .chain(self.sealed.as_ref().map(|sealed| &sealed.contents[..]))
+            .collect()
     }
 
     pub(super) fn memory_mut(&mut self) -> Vec<&mut [f64]> {
-        std::iter::once(&mut self.last[..]).chain(self.sealed.as_mut().map(Sealed::contents_mut)).collect()
+        std::iter::once(&mut self.last[..])
+            .chain(self.sealed.as_mut().map(|sealed| &mut sealed.contents[..]))
+            .collect()
     }
 }

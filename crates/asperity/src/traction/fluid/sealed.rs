@@ -165,7 +165,7 @@ pub(super) struct Sealed {
     reference: f64,
     cell_area: f64,
     /// Of the last row: gap that the fluid of a cell fills at its pressure \[m\], or [`REACHED`] or [`DRY`].
-    contents: Vec<f64>,
+    pub(super) contents: Vec<f64>,
     /// Number of the former pocket of each cell.
     numbers: Vec<Option<usize>>,
     formers: Vec<Former>,
@@ -179,7 +179,7 @@ pub(super) struct Sealed {
     /// Volumes of all pockets, what they miss, and their vapour \[m³\].
     volume: f64,
     missing: f64,
-    vapour: f64,
+    pub(super) vapour: f64,
 }
 
 impl Sealed {
@@ -200,19 +200,6 @@ impl Sealed {
             missing: 0.0,
             vapour: 0.0,
         }
-    }
-
-    pub(super) fn contents(&self) -> &[f64] {
-        &self.contents
-    }
-
-    pub(super) fn contents_mut(&mut self) -> &mut [f64] {
-        &mut self.contents
-    }
-
-    /// Volume of the pockets that their liquid does not fill.
-    pub(super) fn vapour(&self) -> f64 {
-        self.vapour
     }
 
     pub(super) fn is_settled(&self) -> bool {

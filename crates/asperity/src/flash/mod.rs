@@ -23,8 +23,8 @@ mod solver;
 mod tests;
 
 pub(crate) use feedback::{another, settle};
-pub use solver::FlashRow;
-pub(crate) use solver::{FlashSolver, Rise, Rubbing, bytes};
+pub(crate) use solver::bytes;
+pub use solver::{FlashRow, FlashSolver, Rise, Rubbing};
 
 use crate::error::{Result, positive, require};
 use crate::grid::Boundary;

@@ -1,16 +1,16 @@
 //! Energy, stiffness and permanent flattening, compared with closed forms and consequences of the contact conditions.
 
 use super::{Check, Checks, shape_on, step_load, under, zener};
-use crate::contact::SolverOptions;
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::load::{Control, History};
-use crate::material::Creep;
-use crate::quantities::{Quantities, Quantity};
-use crate::simulation::{Plasticity, Simulation};
-use crate::step::Row;
-use crate::surface::{Punch, Shape};
-use crate::time::TimeGrid;
+use asperity::contact::SolverOptions;
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::load::{Control, History};
+use asperity::material::Creep;
+use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::{Plasticity, Simulation};
+use asperity::step::Row;
+use asperity::surface::{Punch, Shape};
+use asperity::time::TimeGrid;
 
 const ENERGIES: [Quantity; 4] =
     [Quantity::ElasticEnergy, Quantity::DissipatedEnergy, Quantity::ExternalWork, Quantity::ContactStiffness];

@@ -19,14 +19,14 @@ mod temperature;
 mod viscoelastic;
 mod wear;
 
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::Grid;
-use crate::load::{Control, History, Loading, Programme};
-use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::{Part, Shape, undeformed_gap};
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::grid::Grid;
+use asperity::load::{Control, History, Loading, Programme};
+use asperity::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::surface::{Part, Shape, undeformed_gap};
 
 /// One compared quantity.
 #[derive(Clone, Debug, PartialEq)]

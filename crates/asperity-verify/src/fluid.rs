@@ -6,16 +6,16 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use super::{Check, Checks};
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::leakage::{Direction, FlowOptions, Opening, Passages, Sides, liquid};
-use crate::load::{Control, History, Loading};
-use crate::quantities::{Quantities, Quantity};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::time::TimeGrid;
-use crate::traction::{Action, FluidPressure, Pockets, TractionLaw};
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::leakage::{Direction, FlowOptions, Opening, Passages, Sides, liquid};
+use asperity::load::{Control, History, Loading};
+use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::time::TimeGrid;
+use asperity::traction::{Action, FluidPressure, Pockets, TractionLaw};
 
 /// A contact of unit compliance with this undeformed gap, and a fluid that flows along x.
 fn wetted(

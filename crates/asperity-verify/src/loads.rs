@@ -1,14 +1,14 @@
 //! Loading programmes: stages, adaptive steps, cycles, pull-off.
 
 use super::{Check, Checks, rows, shape_on, step_load, under, zener};
-use crate::cycles::cycles;
-use crate::error::Result;
-use crate::load::{Control, Course, Event, History, Loading, Programme, Stage};
-use crate::material::{Creep, CreepTerm};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::{Punch, Shape};
-use crate::time::TimeGrid;
+use asperity::cycles::cycles;
+use asperity::error::Result;
+use asperity::load::{Control, Course, Event, History, Loading, Programme, Stage};
+use asperity::material::{Creep, CreepTerm};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::surface::{Punch, Shape};
+use asperity::time::TimeGrid;
 
 fn sphere() -> Result<Simulation> {
     Ok(Simulation { creep: zener(), ..shape_on(64, 1.8, Shape::Sphere { radius: 1.0 })? })

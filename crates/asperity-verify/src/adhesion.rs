@@ -6,18 +6,18 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use super::{Check, Checks, rows, shape_on};
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::kernel::{HalfSpace, Kernel};
-use crate::load::{Control, Course, History, Loading, Programme, Stage};
-use crate::material::{Creep, CreepTerm};
-use crate::quantities::{Quantities, Quantity};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::Shape;
-use crate::time::TimeGrid;
-use crate::traction::{Adhesion, AdhesionLaw, own_response};
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::kernel::{HalfSpace, Kernel};
+use asperity::load::{Control, Course, History, Loading, Programme, Stage};
+use asperity::material::{Creep, CreepTerm};
+use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::surface::Shape;
+use asperity::time::TimeGrid;
+use asperity::traction::{Adhesion, AdhesionLaw, own_response};
 
 /// Work of adhesion of the spheres \[J/m²\]; their radius is 1 m, E* = 1 Pa.
 const WORK: f64 = 1e-4;

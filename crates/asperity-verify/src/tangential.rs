@@ -6,16 +6,16 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use super::{Check, Checks, shape_on, step_load};
-use crate::contact::SolverOptions;
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Loading};
-use crate::material::{Creep, CreepTerm};
-use crate::simulation::Simulation;
-use crate::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
-use crate::tangential::{Coupling, SlipRow, Tangential, TangentialControl};
-use crate::time::TimeGrid;
+use asperity::contact::SolverOptions;
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::load::{Control, History, Loading};
+use asperity::material::{Creep, CreepTerm};
+use asperity::simulation::Simulation;
+use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
+use asperity::tangential::{Coupling, SlipRow, Tangential, TangentialControl};
+use asperity::time::TimeGrid;
 
 const MU: f64 = 0.3;
 

@@ -1,16 +1,16 @@
 //! Facts that hold to the solver's tolerance on any grid, for any surface.
 
 use super::{Check, Checks, first, rows, step_load, under, zener};
-use crate::contact::SolverOptions;
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Programme};
-use crate::material::Creep;
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
-use crate::time::TimeGrid;
+use asperity::contact::SolverOptions;
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::load::{Control, History, Programme};
+use asperity::material::Creep;
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
+use asperity::time::TimeGrid;
 
 /// Solver tolerance of this file; the checks allow for its amplification by a hundred.
 const TOLERANCE: f64 = 1e-9;

@@ -4,15 +4,15 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::{Check, Checks, shape_on, step_load};
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::load::History;
-use crate::quantities::{Quantities, Quantity};
-use crate::simulation::Simulation;
-use crate::sliding::Path;
-use crate::surface::{Punch, Shape};
-use crate::time::TimeGrid;
-use crate::wear::Wear;
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::load::History;
+use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::Simulation;
+use asperity::sliding::Path;
+use asperity::surface::{Punch, Shape};
+use asperity::time::TimeGrid;
+use asperity::wear::Wear;
 
 pub(super) fn archard() -> Result<Vec<Check>> {
     let mut checks = Checks::new("wear", "Archard, J. Appl. Phys. 24 (1953) 981");

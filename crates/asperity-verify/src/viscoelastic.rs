@@ -1,17 +1,17 @@
 //! Viscoelastic contacts compared with solutions in time.
 
 use super::{Check, Checks, on_grid, rows, shape_on, under, zener, zener_relaxation};
-use crate::contact::SolverOptions;
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History};
-use crate::material::Relaxation;
-use crate::reference::{CircularPunch, Ting, WestergaardStep};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::{Punch, Shape};
-use crate::time::TimeGrid;
+use asperity::contact::SolverOptions;
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::load::{Control, History};
+use asperity::material::Relaxation;
+use asperity::reference::{CircularPunch, Ting, WestergaardStep};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::surface::{Punch, Shape};
+use asperity::time::TimeGrid;
 
 fn tight() -> SolverOptions {
     SolverOptions { tolerance: 1e-8, ..SolverOptions::default() }

@@ -1,6 +1,6 @@
 //! `asperity verify`: the solver against independent facts.
 
-use asperity::verification::{CASES, Check};
+use asperity_verify::{CASES, Check};
 use serde_json::json;
 
 use crate::args::Verify;

@@ -1,14 +1,14 @@
 //! Loading programmes: stages, adaptive steps, cycles, pull-off.
 
-use super::{Check, Checks, rows, shape_on, step_load, under, zener};
-use crate::cycles::cycles;
-use crate::error::Result;
-use crate::load::{Control, Course, Event, History, Loading, Programme, Stage};
-use crate::material::{Creep, CreepTerm};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::{Punch, Shape};
-use crate::time::TimeGrid;
+use super::{Check, Checks, along, held, rows, shape_on, step_load, under, zener};
+use asperity::cycles::cycles;
+use asperity::error::Result;
+use asperity::load::{Control, Course, Event, History, Programme, Stage};
+use asperity::material::{Creep, CreepTerm};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::surface::{Punch, Shape};
+use asperity::time::TimeGrid;
 
 fn sphere() -> Result<Simulation> {
     Ok(Simulation { creep: zener(), ..shape_on(64, 1.8, Shape::Sphere { radius: 1.0 })? })
@@ -51,9 +51,8 @@ pub(super) fn event() -> Result<Vec<Check>> {
     let found = rows(Simulation { loading, times, ..sphere()? })?;
     let time = found.last().map_or(0.0, |row| row.time());
     // The load that an elastic contact of compliance C(0) needs for the target gives C(t) at the event.
-    let history = History::Step { value: target };
     let elastic = rows(Simulation {
-        loading: under(Control::Approach, history),
+        loading: held(Control::Approach, target),
         creep: Creep::elastic(0.25),
         times: TimeGrid::Uniform { end: 1.0, steps: 1 },
         ..sphere()?
@@ -67,10 +66,9 @@ pub(super) fn event() -> Result<Vec<Check>> {
 pub(super) fn pull_off() -> Result<Vec<Check>> {
     let mut checks =
         Checks::new("pull-off", "free recovery: u falls as exp(-t/lambda) where no pressure acts");
-    let points = vec![(0.0, 0.0), (0.5, 0.3), (1.0, 0.0)];
-    let loading = Loading { control: Control::Load, history: History::Table { points } };
+    let loading = along(Control::Load, &[(0.0, 0.0), (0.5, 0.3), (1.0, 0.0)]);
     let times = TimeGrid::Uniform { end: 3.0, steps: 30 };
-    let rows = rows(Simulation { loading: loading.into(), times, ..sphere()? })?;
+    let rows = rows(Simulation { loading, times, ..sphere()? })?;
     let open: Vec<&Row> = rows.iter().filter(|row| row.time() >= 1.0).collect();
     let left = open.iter().map(|row| row.contact_area + row.load + row.max_pressure).fold(0.0, f64::max);
     checks.absolute("area, load and pressure left", left, 0.0);
@@ -97,13 +95,16 @@ pub(super) fn adaptive() -> Result<Vec<Check>> {
         times: TimeGrid::Adaptive { end: 1e5, tolerance, first: 1e-3 },
         ..shape_on(32, 1.0, Shape::Sphere { radius: 1.0 })?
     };
-    let history = History::Step { value: 0.03 };
-    let held = rows(Simulation { loading: under(Control::Approach, history), ..base.clone() })?;
+    let relaxed = rows(Simulation { loading: held(Control::Approach, 0.03), ..base.clone() })?;
     let relaxation = creep.to_relaxation()?;
-    let first = held.first().map_or(0.0, |row| row.load);
+    let first = relaxed.first().map_or(0.0, |row| row.load);
     let exact = |t: f64| first * relaxation.value(t) / relaxation.value(0.0);
-    let error = held.iter().map(|row| (row.load / exact(row.time()) - 1.0).abs()).fold(0.0, f64::max);
-    checks.absolute(format!("load, {} steps, largest relative difference", held.len() - 1), error, tolerance);
+    let error = relaxed.iter().map(|row| (row.load / exact(row.time()) - 1.0).abs()).fold(0.0, f64::max);
+    checks.absolute(
+        format!("load, {} steps, largest relative difference", relaxed.len() - 1),
+        error,
+        tolerance,
+    );
     let crept = rows(Simulation { loading: step_load(0.01), ..base })?;
     checks.absolute("number of steps under a held load, over 80", (crept.len() - 1) as f64 / 80.0, 1.0);
     Ok(checks.list)

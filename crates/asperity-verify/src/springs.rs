@@ -2,13 +2,13 @@
 //! reloading, for which there is no closed form.
 
 use super::{Check, Checks, rows, shape_on, zener, zener_relaxation};
-use crate::error::Result;
-use crate::load::{Control, History, Loading};
-use crate::reference::{Mdr, MdrOptions, MdrProfile, MdrState};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::Shape;
-use crate::time::TimeGrid;
+use asperity::error::Result;
+use asperity::load::{Control, History, Loading};
+use asperity::reference::{Mdr, MdrOptions, MdrProfile, MdrState};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::surface::Shape;
+use asperity::time::TimeGrid;
 
 /// Cells per side, and steps.
 const CELLS: usize = 97;

@@ -1,17 +1,17 @@
 //! Viscoelastic contacts compared with solutions in time.
 
-use super::{Check, Checks, on_grid, rows, shape_on, under, zener, zener_relaxation};
-use crate::contact::SolverOptions;
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History};
-use crate::material::Relaxation;
-use crate::reference::{CircularPunch, Ting, WestergaardStep};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::{Punch, Shape};
-use crate::time::TimeGrid;
+use super::{Check, Checks, held, on_grid, rows, shape_on, under, zener, zener_relaxation};
+use asperity::contact::SolverOptions;
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::load::{Control, History};
+use asperity::material::Relaxation;
+use asperity::reference::{CircularPunch, Ting, WestergaardStep};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::surface::{Punch, Shape};
+use asperity::time::TimeGrid;
 
 fn tight() -> SolverOptions {
     SolverOptions { tolerance: 1e-8, ..SolverOptions::default() }
@@ -19,43 +19,27 @@ fn tight() -> SolverOptions {
 
 pub(super) fn ting_step() -> Result<Vec<Check>> {
     let mut checks = Checks::new("ting-step", "Lee & Radok 1960, Ting 1966 (SC17 eq. 21, corrected)");
-    let history = History::Step { value: 1.0 };
-    sphere_follows(
-        &mut checks,
-        &history,
-        1.0,
-        129,
-        TimeGrid::Uniform { end: 4.0, steps: 80 },
-        &[0.0, 0.5, 1.0, 4.0],
-    )?;
+    sphere_follows(&mut checks, &History::Step { value: 1.0 }, 4.0, &[0.0, 0.5, 1.0, 4.0])?;
     Ok(checks.list)
 }
 
 pub(super) fn ting_triangle() -> Result<Vec<Check>> {
     let mut checks = Checks::new("ting-triangle", "Ting 1966: the contact grows, then shrinks");
     let history = History::Triangle { peak: 1.0, rise: 1.0, fall: 1.0 };
-    let times = TimeGrid::Uniform { end: 2.0, steps: 80 };
-    sphere_follows(&mut checks, &history, 1.0, 129, times, &[0.5, 1.0, 1.25, 1.5, 1.75])?;
+    sphere_follows(&mut checks, &history, 2.0, &[0.5, 1.0, 1.25, 1.5, 1.75])?;
     Ok(checks.list)
 }
 
-/// A unit sphere under a load history, compared with Ting's solution at some times.
-fn sphere_follows(
-    checks: &mut Checks,
-    history: &History,
-    radius: f64,
-    n: usize,
-    times: TimeGrid,
-    instants: &[f64],
-) -> Result<()> {
-    let size = 1.8;
+/// A unit sphere under a load history to `end`, compared with Ting's solution at some times.
+fn sphere_follows(checks: &mut Checks, history: &History, end: f64, instants: &[f64]) -> Result<()> {
+    let (n, size) = (129, 1.8);
     let dx = size / n as f64;
-    let exact = Ting::new(radius, &zener(), history, times.end())?;
+    let exact = Ting::new(1.0, &zener(), history, end)?;
     let simulation = Simulation {
         creep: zener(),
         loading: under(Control::Load, history.clone()),
-        times,
-        ..shape_on(n, size, Shape::Sphere { radius })?
+        times: TimeGrid::Uniform { end, steps: 80 },
+        ..shape_on(n, size, Shape::Sphere { radius: 1.0 })?
     };
     let mut march = March::new(simulation)?;
     while let Some(step) = march.advance()? {
@@ -92,7 +76,7 @@ pub(super) fn westergaard_creep() -> Result<Vec<Check>> {
     let simulation = Simulation {
         boundary: Boundary::Periodic,
         creep: zener(),
-        loading: under(Control::Pressure, History::Step { value: pressure }),
+        loading: held(Control::Pressure, pressure),
         times: TimeGrid::Uniform { end: 4.0, steps: 80 },
         ..on_grid(grid, shape)?
     };
@@ -137,10 +121,9 @@ pub(super) fn stiff_held_approach() -> Result<Vec<Check>> {
             ("25 steps by decades", TimeGrid::Logarithmic { end: 1e4, steps: 25, first: 1e-6 }),
             ("adaptive steps", TimeGrid::Adaptive { end: 1e3, tolerance: 1e-2, first: 1.0 }),
         ] {
-            let history = History::Step { value: 0.04 };
             let rows = rows(Simulation {
                 creep: modulus.to_creep()?,
-                loading: under(Control::Approach, history),
+                loading: held(Control::Approach, 0.04),
                 times,
                 solver: tight(),
                 ..shape_on(33, 0.6, Shape::Sphere { radius: 1.0 })?
@@ -162,7 +145,7 @@ pub(super) fn held_approach() -> Result<Vec<Check>> {
     let depth = 0.04;
     let simulation = Simulation {
         creep: zener(),
-        loading: under(Control::Approach, History::Step { value: depth }),
+        loading: held(Control::Approach, depth),
         times: TimeGrid::Uniform { end: 2.0, steps: 80 },
         solver: tight(),
         ..shape_on(n, size, Shape::Sphere { radius: 1.0 })?

@@ -5,19 +5,21 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 
-use super::{Check, Checks, shape_on, step_load};
-use crate::contact::SolverOptions;
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Loading};
-use crate::material::{Creep, CreepTerm};
-use crate::simulation::Simulation;
-use crate::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
-use crate::tangential::{Coupling, SlipRow, Tangential, TangentialControl};
-use crate::time::TimeGrid;
+use super::{Check, Checks, first, held, shape_on, step_load, with_one_time};
+use asperity::contact::SolverOptions;
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::load::{Control, History};
+use asperity::material::Creep;
+use asperity::simulation::Simulation;
+use asperity::surface::{Part, Punch, Roughness, SelfAffine, Shape, undeformed_gap};
+use asperity::tangential::{Coupling, SlipRow, Tangential, TangentialControl};
+use asperity::time::TimeGrid;
 
 const MU: f64 = 0.3;
+
+const PUNCH: Shape = Shape::FlatPunch(Punch::Circle { radius: 1.0 });
 
 /// A force along x.
 fn pulled(nu: f64, points: Vec<(f64, f64)>) -> Tangential {
@@ -94,7 +96,7 @@ pub(super) fn rough() -> Result<Vec<Check>> {
     let q = 0.5 * MU;
     let under = |load: f64, law: Option<Arc<Tangential>>| Simulation {
         creep: Creep::elastic(0.5),
-        loading: Loading { control: Control::Load, history: History::Step { value: load } }.into(),
+        loading: step_load(load),
         times: TimeGrid::Uniform { end: 1.0, steps: 2 },
         tangential: law,
         solver: SolverOptions { tolerance: 1e-9, ..SolverOptions::default() },
@@ -118,22 +120,16 @@ pub(super) fn rough() -> Result<Vec<Check>> {
 pub(super) fn punch() -> Result<Vec<Check>> {
     let mut checks = Checks::new("glued-punch", "Q (2 - ν) J(t)/(8 a), J(t) = (1 + 3 (1 - exp(-t)))/4");
     let (nu, q, end) = (0.3, 0.5, 2.0);
-    let grid = Grid::new([96, 96], [2.4, 2.4])?;
-    let cells = |(i, j): (usize, usize)| f64::hypot(grid.x(i) - 1.2, grid.y(j) - 1.2) < 1.0;
-    let punch = Array2::from_shape_fn(grid.shape(), |cell| if cells(cell) { 0.0 } else { f64::INFINITY });
+    let punch = shape_on(96, 2.4, PUNCH)?;
     // The counted cells are a punch of this radius, but for half a cell at its edge, where the traction is singular.
-    let radius = (punch.iter().filter(|gap| **gap == 0.0).count() as f64 * grid.cell_area() / PI).sqrt();
-    let share = 0.5 * (1.0 - nu);
+    let cells = punch.gap.iter().filter(|gap| **gap == 0.0).count();
+    let radius = (cells as f64 * punch.grid.cell_area() / PI).sqrt();
     let (rows, _) = states(Simulation {
-        creep: Creep {
-            instantaneous: 0.25 * share,
-            terms: vec![CreepTerm { compliance: 0.75 * share, retardation_time: 1.0 }],
-            fluidity: 0.0,
-        },
+        creep: with_one_time(0.25, 0.75).scaled(0.5 * (1.0 - nu)),
         loading: step_load(1.0),
         times: TimeGrid::Uniform { end, steps: 4 },
         tangential: Some(Arc::new(Tangential { coefficient: 1e6, ..pulled(nu, vec![(0.0, q), (end, q)]) })),
-        ..Simulation::new(grid, punch)
+        ..punch
     })?;
     for row in [0, 4] {
         let time = end * row as f64 / 4.0;
@@ -166,11 +162,7 @@ pub(super) fn bonded() -> Result<Vec<Check>> {
     let expected = 0.5 * f64::hypot(qx, qy) * amplitude / (1.0 - law.beta * law.beta);
     let simulation = |end: f64| Simulation {
         boundary: Boundary::Periodic,
-        creep: Creep {
-            instantaneous: 1.0,
-            terms: vec![CreepTerm { compliance: 3.0, retardation_time: 1.0 }],
-            fluidity: 0.0,
-        },
+        creep: with_one_time(1.0, 3.0),
         loading: step_load(0.02),
         times: TimeGrid::Uniform { end, steps: 100 },
         tangential: Some(Arc::new(law.clone())),
@@ -190,21 +182,17 @@ pub(super) fn bonded() -> Result<Vec<Check>> {
         );
     }
     // A flat punch of radius 1 on a half-space of shear modulus 1: 4 ln(3 - 4 ν)/(1 - 2 ν) times its depth, and 4/(1 - ν) without friction.
-    let grid = Grid::new([96, 96], [2.4, 2.4])?;
-    let punch = Array2::from_shape_fn(grid.shape(), |(i, j)| {
-        if f64::hypot(grid.x(i) - 1.2, grid.y(j) - 1.2) < 1.0 { 0.0 } else { f64::INFINITY }
-    });
+    let punch = shape_on(96, 2.4, PUNCH)?;
     for nu in [0.0, 0.3] {
         let load = |law: Option<Arc<Tangential>>| -> Result<f64> {
-            let mut march = March::new(Simulation {
+            let (row, ..) = first(Simulation {
                 creep: Creep::elastic(0.5 * (1.0 - nu)),
-                loading: Loading { control: Control::Approach, history: History::Step { value: 0.01 } }
-                    .into(),
+                loading: held(Control::Approach, 0.01),
                 tangential: law,
                 solver: tolerance,
-                ..Simulation::new(grid, punch.clone())
+                ..punch.clone()
             })?;
-            Ok(march.advance()?.map_or(f64::NAN, |step| step.row().load))
+            Ok(row.load)
         };
         let found = load(Some(Arc::new(glue(nu))))? / load(None)?;
         let exact = (1.0 - nu) * libm::log(3.0 - 4.0 * nu) / (1.0 - 2.0 * nu);

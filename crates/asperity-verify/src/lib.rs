@@ -19,14 +19,15 @@ mod temperature;
 mod viscoelastic;
 mod wear;
 
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::Grid;
-use crate::load::{Control, History, Loading, Programme};
-use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::{Part, Shape, undeformed_gap};
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::grid::Grid;
+use asperity::load::{Control, History, Loading, Programme};
+use asperity::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
+use asperity::quantities::Quantity;
+use asperity::simulation::Simulation;
+use asperity::step::{Row, Step};
+use asperity::surface::{Part, Shape, undeformed_gap};
 
 /// One compared quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,8 +129,13 @@ impl Checks {
 
 /// E*(t) = 2 + 2 exp(-t/0.5), so C(t) = 1/4 + (1 - exp(-t))/4: a Zener solid with G = G_K = tau = 1.
 fn zener() -> Creep {
-    let terms = vec![CreepTerm { compliance: 0.25, retardation_time: 1.0 }];
-    Creep { instantaneous: 0.25, terms, fluidity: 0.0 }
+    with_one_time(0.25, 0.25)
+}
+
+/// A body with one retarded term, of a retardation time of 1 s.
+fn with_one_time(instantaneous: f64, compliance: f64) -> Creep {
+    let terms = vec![CreepTerm { compliance, retardation_time: 1.0 }];
+    Creep { instantaneous, terms, fluidity: 0.0 }
 }
 
 /// The relaxation modulus of [`zener`].
@@ -149,7 +155,16 @@ fn on_grid(grid: Grid, shape: Shape) -> Result<Simulation> {
 }
 
 fn step_load(value: f64) -> Programme {
-    under(Control::Load, History::Step { value })
+    held(Control::Load, value)
+}
+
+fn held(control: Control, value: f64) -> Programme {
+    under(control, History::Step { value })
+}
+
+/// Straight between these points of time and value.
+fn along(control: Control, points: &[(f64, f64)]) -> Programme {
+    under(control, History::Table { points: points.to_vec() })
 }
 
 fn under(control: Control, history: History) -> Programme {
@@ -164,6 +179,18 @@ fn rows(simulation: Simulation) -> Result<Vec<Row>> {
         rows.push(step.row());
     }
     Ok(rows)
+}
+
+/// What `of` says of the last row of a simulation.
+fn last<T>(simulation: Simulation, of: impl FnOnce(&Step<'_>) -> Result<T>) -> Result<Option<T>> {
+    let mut march = March::new(simulation)?;
+    while march.advance()?.is_some() {}
+    march.last().as_ref().map(of).transpose()
+}
+
+/// A quantity that is one number, of a row.
+fn number(step: &Step<'_>, quantity: Quantity) -> f64 {
+    step.quantity(quantity).and_then(|values| values.first().copied()).unwrap_or(f64::NAN)
 }
 
 /// The first row of a simulation, its pressure and its displacement, cell by cell.

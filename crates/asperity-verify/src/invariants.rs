@@ -1,16 +1,15 @@
 //! Facts that hold to the solver's tolerance on any grid, for any surface.
 
-use super::{Check, Checks, first, rows, step_load, under, zener};
-use crate::contact::SolverOptions;
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Programme};
-use crate::material::Creep;
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
-use crate::time::TimeGrid;
+use super::{Check, Checks, first, held, last, rows, step_load, under, zener};
+use asperity::contact::SolverOptions;
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::load::{Control, History, Programme};
+use asperity::material::Creep;
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
+use asperity::time::TimeGrid;
 
 /// Solver tolerance of this file; the checks allow for its amplification by a hundred.
 const TOLERANCE: f64 = 1e-9;
@@ -84,20 +83,19 @@ pub(super) fn long_time_limit() -> Result<Vec<Check>> {
         for hardness in [f64::INFINITY, HARDNESS] {
             let base = Simulation { hardness, ..rough(boundary)? };
             let (_, relaxed) = elastic(&base, zener().long_time(), step_load(0.2))?;
-            let mut march = March::new(Simulation {
+            let crept = Simulation {
                 creep: zener(),
                 loading: step_load(0.2),
                 times: TimeGrid::Logarithmic { end: 200.0, steps: 40, first: 0.01 },
                 ..base
-            })?;
-            while march.advance()?.is_some() {}
-            let last: Vec<f64> =
-                march.last().map(|s| s.pressure().iter().copied().collect()).unwrap_or_default();
+            };
+            let pressure = last(crept, |step| Ok(step.pressure().iter().copied().collect::<Vec<f64>>()))?;
+            let pressure = pressure.unwrap_or_default();
             let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
-            let difference = norm(&mut last.iter().zip(&relaxed).map(|(a, b)| a - b));
+            let difference = norm(&mut pressure.iter().zip(&relaxed).map(|(a, b)| a - b));
             let error = difference / norm(&mut relaxed.iter().copied());
             let cap = if hardness.is_finite() { "capped" } else { "uncapped" };
-            let at_cap = last.iter().filter(|p| **p >= hardness).count();
+            let at_cap = pressure.iter().filter(|p| **p >= hardness).count();
             debug_assert!(hardness.is_infinite() || at_cap > 0, "the cap is not reached");
             // The remaining history decays within the last, longest step: exp(-dt/tau), squared in the norm.
             checks.absolute(format!("|dp|/|p|, {}, {cap}", name(boundary)), error, 1e-5);
@@ -112,8 +110,7 @@ pub(super) fn duality() -> Result<Vec<Check>> {
         for hardness in [f64::INFINITY, HARDNESS] {
             let base = Simulation { hardness, ..rough(boundary)? };
             let (loaded, _) = elastic(&base, 0.25, step_load(0.2))?;
-            let history = History::Step { value: loaded.approach };
-            let (pressed, _) = elastic(&base, 0.25, under(Control::Approach, history))?;
+            let (pressed, _) = elastic(&base, 0.25, held(Control::Approach, loaded.approach))?;
             let cap = if hardness.is_finite() { "capped" } else { "uncapped" };
             checks.relative(
                 format!("load, {}, {cap}", name(boundary)),

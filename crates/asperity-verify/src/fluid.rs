@@ -5,17 +5,16 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 
-use super::{Check, Checks};
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::leakage::{Direction, FlowOptions, Opening, Passages, Sides, liquid};
-use crate::load::{Control, History, Loading};
-use crate::quantities::{Quantities, Quantity};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::time::TimeGrid;
-use crate::traction::{Action, FluidPressure, Pockets, TractionLaw};
+use super::{Check, Checks, along, held, last, number};
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::leakage::{Direction, FlowOptions, Opening, Passages, Sides, liquid};
+use asperity::load::{Control, History};
+use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::time::TimeGrid;
+use asperity::traction::{Action, FluidPressure, Pockets, TractionLaw};
 
 /// A contact of unit compliance with this undeformed gap, and a fluid that flows along x.
 fn wetted(
@@ -39,7 +38,7 @@ fn wetted(
     };
     Simulation {
         boundary: Boundary::Periodic,
-        loading: Loading { control, history: History::Step { value } }.into(),
+        loading: held(control, value),
         quantities: Quantities::of(Quantity::of_fluid()),
         traction: Some(Arc::new(fluid)),
         ..Simulation::new(grid, gap)
@@ -55,19 +54,17 @@ fn wave_on(cells: [usize; 2], length: f64, pressures: [f64; 2], mean: f64) -> Re
 
 /// The last row, its fluid load, and the transmissivity T of its gap.
 fn solved(simulation: Simulation) -> Result<(Row, f64, f64)> {
-    let mut march = March::new(simulation)?;
-    let (mut found, grid) = ((Row::default(), f64::NAN, f64::NAN), march.simulation().grid);
+    let grid = simulation.grid;
     let (mut gap, mut touches) = (Array2::zeros(grid.shape()), Array2::zeros(grid.shape()));
-    while let Some(step) = march.advance()? {
+    let found = last(simulation, |step| {
         step.gap_into(&mut gap);
         step.contact_into(&mut touches);
         let opening =
             Opening::new(&grid, gap.view(), Some(touches.view()), Direction::X, Sides::Periodic, 0.0)?;
         let flow = liquid(&opening, &Passages::of(&opening), &FlowOptions::default())?;
-        let load = step.quantity(Quantity::FluidLoad).map_or(f64::NAN, |load| load[0]);
-        found = (step.row(), load, flow.transmissivity);
-    }
-    Ok(found)
+        Ok((step.row(), number(step, Quantity::FluidLoad), flow.transmissivity))
+    })?;
+    Ok(found.unwrap_or((Row::default(), f64::NAN, f64::NAN)))
 }
 
 pub(super) fn wave() -> Result<Vec<Check>> {
@@ -132,18 +129,14 @@ pub(super) fn sealed() -> Result<Vec<Check>> {
         bulk_modulus: Some(modulus),
         ..law
     });
-    let history = History::Table { points: vec![(0.0, 0.2), (1.0, mean)] };
-    let mut march = March::new(Simulation {
-        loading: Loading { control: Control::Pressure, history }.into(),
+    let simulation = Simulation {
+        loading: along(Control::Pressure, &[(0.0, 0.2), (1.0, mean)]),
         times: TimeGrid::Uniform { end: 1.0, steps: 1 },
         traction: fluid.map(|fluid| Arc::new(fluid) as Arc<dyn TractionLaw>),
         ..base
-    })?;
-    let (mut row, mut pressure) = (Row::default(), f64::NAN);
-    while let Some(step) = march.advance()? {
-        row = step.row();
-        pressure = step.quantity(Quantity::PocketPressureMax).map_or(f64::NAN, |p| p[0]);
-    }
+    };
+    let found = last(simulation, |step| Ok((step.row(), number(step, Quantity::PocketPressureMax))))?;
+    let (row, pressure) = found.unwrap_or_default();
     // The loop ends at 1e-5 of the forces; each edge is known to a cell.
     checks.relative("pressure of the liquid", pressure, 81.59174898459568, 2e-5);
     checks.relative("mean gap", row.mean_gap * PI, 0.09350462574040559, 1e-4);

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use super::{Check, Checks};
-use crate::error::Result;
-use crate::flash::{Conductor, Flash, FlashSolver, Partition, Rubbing};
-use crate::grid::Grid;
-use crate::simulation::Simulation;
-use crate::sliding::Direction;
+use asperity::error::Result;
+use asperity::flash::{Conductor, Flash, FlashSolver, Partition, Rubbing};
+use asperity::grid::Grid;
+use asperity::simulation::Simulation;
+use asperity::sliding::Direction;
 
 /// Péclet number v b/2χ; largest temperature over q b/k, and where, over b behind the middle (Jaeger's integral, by quadrature).
 const BAND: [[f64; 3]; 3] = [

@@ -1,13 +1,13 @@
 //! Bodies whose temperature changes: reduced time compared with closed forms and the row of springs.
 
 use super::{Check, Checks, rows, shape_on, step_load, under, zener, zener_relaxation};
-use crate::error::Result;
-use crate::load::{Control, History};
-use crate::material::{Creep, ReducedTime, Shift, ThermalCreep};
-use crate::reference::{HertzSphere, Mdr, MdrProfile, MdrTarget};
-use crate::simulation::Simulation;
-use crate::surface::Shape;
-use crate::time::TimeGrid;
+use asperity::error::Result;
+use asperity::load::{Control, History};
+use asperity::material::{Creep, ReducedTime, Shift, ThermalCreep};
+use asperity::reference::{HertzSphere, Mdr, MdrProfile, MdrTarget};
+use asperity::simulation::Simulation;
+use asperity::surface::Shape;
+use asperity::time::TimeGrid;
 
 /// ln a_T = -ln 8 (T - 300 K) / 10 K: eight times as fast for every ten kelvin.
 fn shift() -> Shift {

@@ -5,19 +5,19 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 
-use super::{Check, Checks, rows, shape_on};
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::kernel::{HalfSpace, Kernel};
-use crate::load::{Control, Course, History, Loading, Programme, Stage};
-use crate::material::{Creep, CreepTerm};
-use crate::quantities::{Quantities, Quantity};
-use crate::simulation::Simulation;
-use crate::step::Row;
-use crate::surface::Shape;
-use crate::time::TimeGrid;
-use crate::traction::{Adhesion, AdhesionLaw, own_response};
+use super::{Check, Checks, along, number, rows, shape_on, with_one_time};
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::kernel::{HalfSpace, Kernel};
+use asperity::load::{Control, Course, History, Programme, Stage};
+use asperity::material::Creep;
+use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
+use asperity::surface::Shape;
+use asperity::time::TimeGrid;
+use asperity::traction::{Adhesion, AdhesionLaw, own_response};
 
 /// Work of adhesion of the spheres \[J/m²\]; their radius is 1 m, E* = 1 Pa.
 const WORK: f64 = 1e-4;
@@ -37,9 +37,8 @@ fn exponential(tabor: f64) -> Adhesion {
 
 /// A sphere that is moved from one approach to another, in units of [`unit`].
 fn sphere(cells: usize, law: Adhesion, [from, to]: [f64; 2], steps: usize) -> Result<Simulation> {
-    let points = vec![(0.0, from * unit()), (1.0, to * unit())];
     Ok(Simulation {
-        loading: Loading { control: Control::Approach, history: History::Table { points } }.into(),
+        loading: along(Control::Approach, &[(0.0, from * unit()), (1.0, to * unit())]),
         times: TimeGrid::Uniform { end: 1.0, steps },
         traction: Some(Arc::new(law)),
         ..shape_on(cells, 0.5, Shape::Sphere { radius: 1.0 })?
@@ -64,10 +63,9 @@ pub(super) fn wave() -> Result<Vec<Check>> {
     let kernel: Arc<dyn Kernel> = Arc::new(HalfSpace);
     let own = own_response(&grid, Boundary::Periodic, &kernel)?;
     let range = (own * work / TRAP).sqrt();
-    let points = vec![(0.0, 0.0), (1.0, -0.006)];
     let found = rows(Simulation {
         boundary: Boundary::Periodic,
-        loading: Loading { control: Control::Approach, history: History::Table { points } }.into(),
+        loading: along(Control::Approach, &[(0.0, 0.0), (1.0, -0.006)]),
         times: TimeGrid::Uniform { end: 1.0, steps: 120 },
         traction: Some(Arc::new(Adhesion::new(work, range))),
         ..Simulation::new(grid, gap)
@@ -116,11 +114,7 @@ pub(super) fn retraction() -> Result<Vec<Check>> {
     let law = exponential(0.93);
     let relaxed = sphere(64, law, [0.5, -0.9], 28)?;
     // Ten times softer after a long time, E* = 1 Pa then, with a retardation time of 1 s: held for 40 s and then retracted.
-    let creep = Creep {
-        instantaneous: 0.1,
-        terms: vec![CreepTerm { compliance: 0.9, retardation_time: 1.0 }],
-        fluidity: 0.0,
-    };
+    let creep = with_one_time(0.1, 0.9);
     let retracted = |duration: f64| -> Result<(Vec<Row>, Held)> {
         let uniform = |end, steps| Some(TimeGrid::Uniform { end, steps });
         let at = |value: f64| Stage::new(Control::Approach, History::Step { value: value * unit() });
@@ -139,7 +133,7 @@ pub(super) fn retraction() -> Result<Vec<Check>> {
         while let Some(step) = march.advance()? {
             let row = step.row();
             if row.stage == 0 {
-                held.attraction = step.quantity(Quantity::AdhesiveLoad).map_or(f64::NAN, |of| of[0]);
+                held.attraction = number(&step, Quantity::AdhesiveLoad);
                 step.displacement_into(&mut held.displacement);
             } else {
                 rows.push(row);
@@ -153,7 +147,7 @@ pub(super) fn retraction() -> Result<Vec<Check>> {
     let (fast, held) = retracted(2.5e-3)?;
     // At once the body is elastic and keeps what it has crept, nine tenths of the displacement.
     let frozen = Simulation {
-        creep: Creep { instantaneous: 0.1, terms: vec![], fluidity: 0.0 },
+        creep: Creep::elastic(0.1),
         gap: &relaxed.gap + &(0.9 * &held.displacement),
         ..sphere(64, law, [1.0, -1.5], 50)?
     };

@@ -3,10 +3,10 @@
 use std::f64::consts::{FRAC_2_PI, PI};
 
 use super::{Check, Checks, first, on_grid, step_load};
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::simulation::Simulation;
-use crate::surface::{Punch, Shape};
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::simulation::Simulation;
+use asperity::surface::{Punch, Shape};
 
 pub(super) fn hertz() -> Result<Vec<Check>> {
     let mut checks = Checks::new("hertz-line", "Hertz 1881; Johnson 1985, section 4.2(c)");

@@ -1,13 +1,13 @@
 //! Elastic contacts compared with closed forms, for unit contact modulus.
 
-use super::{Check, Checks, elastic_contact, first, on_grid, shape_on, under};
-use crate::contact::SolverOptions;
-use crate::error::Result;
-use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History};
-use crate::reference::{CappedHertz, CircularPunch, HertzEllipse, HertzSphere, SneddonCone, Westergaard};
-use crate::simulation::Simulation;
-use crate::surface::{Punch, Shape};
+use super::{Check, Checks, elastic_contact, first, held, on_grid, shape_on};
+use asperity::contact::SolverOptions;
+use asperity::error::Result;
+use asperity::grid::{Boundary, Grid};
+use asperity::load::Control;
+use asperity::reference::{CappedHertz, CircularPunch, HertzEllipse, HertzSphere, SneddonCone, Westergaard};
+use asperity::simulation::Simulation;
+use asperity::surface::{Punch, Shape};
 
 /// (dx/a)^2 times `factor`: the discretisation error of approach and peak pressure.
 fn second_order(dx: f64, a: f64, factor: f64) -> f64 {
@@ -120,7 +120,7 @@ fn wave(case: &'static str, grid: Grid) -> Result<Vec<Check>> {
     for share in [0.1, 0.5, 0.9] {
         let simulation = Simulation {
             boundary: Boundary::Periodic,
-            loading: under(Control::Pressure, History::Step { value: share * full }),
+            loading: held(Control::Pressure, share * full),
             ..on_grid(grid, Shape::Wave { amplitude: 0.01, wavelength: [1.0, f64::INFINITY] })?
         };
         let exact = Westergaard::under_pressure(0.01, 1.0, 1.0, share * full)?;

@@ -1,16 +1,16 @@
 //! Energy, stiffness and permanent flattening, compared with closed forms and consequences of the contact conditions.
 
-use super::{Check, Checks, shape_on, step_load, under, zener};
-use crate::contact::SolverOptions;
-use crate::drive::{Drive, March};
-use crate::error::Result;
-use crate::load::{Control, History};
-use crate::material::Creep;
-use crate::quantities::{Quantities, Quantity};
-use crate::simulation::{Plasticity, Simulation};
-use crate::step::Row;
-use crate::surface::{Punch, Shape};
-use crate::time::TimeGrid;
+use super::{Check, Checks, along, number, shape_on, step_load, zener};
+use asperity::contact::SolverOptions;
+use asperity::drive::{Drive, March};
+use asperity::error::Result;
+use asperity::load::Control;
+use asperity::material::Creep;
+use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::{Plasticity, Simulation};
+use asperity::step::Row;
+use asperity::surface::{Punch, Shape};
+use asperity::time::TimeGrid;
 
 const ENERGIES: [Quantity; 4] =
     [Quantity::ElasticEnergy, Quantity::DissipatedEnergy, Quantity::ExternalWork, Quantity::ContactStiffness];
@@ -20,8 +20,7 @@ fn energies(simulation: Simulation) -> Result<Vec<(Row, [f64; 4])>> {
     let mut march = March::new(Simulation { quantities: Quantities::of(ENERGIES), ..simulation })?;
     let mut rows = vec![];
     while let Some(step) = march.advance()? {
-        let one = |quantity: Quantity| step.quantity(quantity).and_then(|q| q.first()).copied();
-        rows.push((step.row(), ENERGIES.map(|quantity| one(quantity).unwrap_or(f64::NAN))));
+        rows.push((step.row(), ENERGIES.map(|quantity| number(&step, quantity))));
     }
     Ok(rows)
 }
@@ -69,10 +68,9 @@ pub(super) fn balance() -> Result<Vec<Check>> {
     }
     // A sphere pressed suddenly and then further: second order.
     let imbalance = |steps: usize| -> Result<f64> {
-        let history = History::Table { points: vec![(0.0, 0.005), (2.0, 0.02)] };
         let sphere = Simulation {
             creep: zener(),
-            loading: under(Control::Load, history),
+            loading: along(Control::Load, &[(0.0, 0.005), (2.0, 0.02)]),
             times: TimeGrid::Uniform { end: 2.0, steps },
             ..shape_on(48, 0.5, Shape::Sphere { radius: 1.0 })?
         };
@@ -90,14 +88,13 @@ pub(super) fn balance() -> Result<Vec<Check>> {
 pub(super) fn dents() -> Result<Vec<Check>> {
     let mut checks = Checks::new("lasting-dents", "contact conditions of the flattened surface");
     let capped = |plasticity, points: &[(f64, f64)], steps| -> Result<Simulation> {
-        let history = History::Table { points: points.to_vec() };
         Ok(Simulation {
             creep: Creep::elastic(0.25),
             hardness: 0.15,
             // A small tolerance, so that equal sets are found to be equal.
             solver: SolverOptions { tolerance: 1e-9, ..SolverOptions::default() },
             plasticity,
-            loading: under(Control::Load, history),
+            loading: along(Control::Load, points),
             times: TimeGrid::Uniform { end: steps as f64, steps },
             ..shape_on(48, 0.5, Shape::Sphere { radius: 1.0 })?
         })

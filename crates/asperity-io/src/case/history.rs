@@ -2,7 +2,7 @@
 
 use asperity::Control;
 
-use super::history_file::{self, Origin};
+use super::history_file;
 use super::keys::*;
 
 /// A value over time.
@@ -94,22 +94,16 @@ pub fn of_velocity(
 ) -> Option<asperity::History> {
     match velocity {
         Form::Word(velocity) => Some(asperity::History::Step { value: velocity.get() }),
-        Form::Table(table) => table.read(at, Kind::Velocity, "").map(|(history, _)| history),
+        Form::Table(table) => table.read(at, Kind::Velocity, ""),
         Form::List(never) => match *never {},
     }
 }
 
 impl History {
-    /// The history in SI, and the file that holds it; a hold has none without an earlier value. `help` says what to do instead.
-    pub fn read(
-        &self,
-        at: &Place<'_>,
-        kind: Kind,
-        help: &str,
-    ) -> Option<(asperity::History, Option<Origin>)> {
+    /// The history in SI; a hold has none without an earlier value. `help` says what to do instead.
+    pub fn read(&self, at: &Place<'_>, kind: Kind, help: &str) -> Option<asperity::History> {
         let value = |key: &str, value: &Prescribed| at.key(key).quantity(kind.resolve(value));
-        let mut file = None;
-        let history = match self {
+        Some(match self {
             History::Hold {} => return at.fault("there is no earlier value to hold", "another kind", help),
             History::Step { value: step } => asperity::History::Step { value: value("value", step)? },
             History::Ramp { value: top, duration, .. } => {
@@ -130,12 +124,10 @@ impl History {
             History::Table { points } => table(&at.key("points"), points, kind)?,
             History::File { path } => {
                 let at = at.key("path");
-                let (points, read) = history_file::of_key(&at, path, "value", |value| kind.resolve(value))?;
-                file = Some(read);
+                let points = history_file::of_key(&at, path, "value", |value| kind.resolve(value))?;
                 asperity::History::Table { points }
             }
-        };
-        Some((history, file))
+        })
     }
 }
 

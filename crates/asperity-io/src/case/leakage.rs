@@ -159,7 +159,7 @@ impl LeakageKeys {
             Some(Form::Word(pressure)) => Some(held(pressure.get())),
             Some(Form::Table(table)) => {
                 let kind = Kind::Pressure(Sign::Press);
-                Some(table.read(&at.key("inlet"), kind, "give the pressure as a number or a table")?.0)
+                Some(table.read(&at.key("inlet"), kind, "give the pressure as a number or a table")?)
             }
             Some(Form::List(never)) => match *never {},
         };

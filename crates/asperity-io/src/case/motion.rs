@@ -184,7 +184,7 @@ impl Motion {
             (None, Some(path)) => {
                 let at = at.key("path");
                 // There is no earlier value in the history.
-                let (history, _) = path.read(&at, Kind::Position, "")?;
+                let history = path.read(&at, Kind::Position, "")?;
                 Travel::Path(at.core(Path::of_position(history, start))?)
             }
             (None, None) => {

@@ -65,7 +65,7 @@ impl<'r, 't> Reader<'r, 't> {
     }
 
     /// Refuses keys of the root that are not among these.
-    pub fn only(&mut self, known: &'static [&'static str]) {
+    pub fn only(&mut self, known: &[&'static str]) {
         for key in self.text.root.keys().take(MOST_ERRORS) {
             let name = key.get_ref();
             if !known.contains(&name.as_ref()) {
@@ -77,13 +77,8 @@ impl<'r, 't> Reader<'r, 't> {
 
     /// What was read, where nothing is wrong.
     pub fn finish<T>(mut self, read: Option<T>) -> Result<T, Vec<CaseError>> {
-        match read {
-            Some(read) if self.errors.is_empty() => Ok(read),
-            _ => {
-                in_order(&mut self.errors);
-                Err(self.errors)
-            }
-        }
+        in_order(&mut self.errors);
+        read.filter(|_| self.errors.is_empty()).ok_or(self.errors)
     }
 
     pub fn required<T: DeserializeOwned>(&mut self, key: &str) -> Option<T> {

@@ -10,7 +10,6 @@ use toml::de::DeValue;
 use super::keys::*;
 use super::text::Text;
 use super::{Case, CaseErrors, document, file_text, overridden};
-use crate::Code;
 
 /// Keys that a study varies: it runs the case once for each combination of their values. `asperity run` ignores the section.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
@@ -131,10 +130,7 @@ impl Base {
     /// # Errors
     /// [`CaseErrors`] where the file cannot be read or is no TOML, where an override cannot be applied, or where `[study]` is wrong.
     pub(crate) fn read(path: &Path, overrides: &[String]) -> Result<Base, CaseErrors> {
-        let name = path.display().to_string();
-        let source = file_text(path).map_err(|(reason, help)| {
-            CaseErrors::without_place(Code::File, &name, reason, "a case file", help)
-        })?;
+        let (name, source) = file_text(path, "a case file")?;
         Base::of(name, source, path.parent().unwrap_or(Path::new("")), overrides)
     }
 

@@ -6,7 +6,6 @@ use asperity::wear::Wear as Law;
 
 use super::hardness::numbers_of_cells;
 use super::history::{History, of_velocity};
-use super::history_file::Origin;
 use super::keys::*;
 use crate::quantity::WearCoefficient;
 
@@ -51,13 +50,8 @@ impl Word for WearCoefficient<NonNegative> {
 }
 
 impl Wear {
-    /// The law, with the files that it is from. `slides` tells whether `[motion]` or `[tangential]` gives the sliding distance.
-    pub fn law(
-        &self,
-        at: &Place<'_>,
-        grid: Option<&Grid>,
-        slides: Option<&str>,
-    ) -> Option<(Law, Vec<Origin>)> {
+    /// The law. `slides` tells whether `[motion]` or `[tangential]` gives the sliding distance.
+    pub fn law(&self, at: &Place<'_>, grid: Option<&Grid>, slides: Option<&str>) -> Option<Law> {
         let (body, counterbody) =
             self.coefficient.one_or_two(&at.key("coefficient"), "the body and the counterbody")?;
         let coefficients = [body.get(), counterbody.map_or(0.0, WearCoefficient::get)];
@@ -83,15 +77,12 @@ impl Wear {
             }
             (None, Some(_)) => None,
         };
-        let (map, file) = match (&self.array, &self.map) {
-            (Some(name), _) => (Some(at.key("array").array(name, grid?)?), None),
-            (None, Some(path)) => {
-                let (map, file) = numbers_of_cells(&at.key("map"), path, grid)?;
-                (Some(map), Some(file))
-            }
-            (None, None) => (None, None),
+        let map = match (&self.array, &self.map) {
+            (Some(name), _) => Some(at.key("array").array(name, grid?)?),
+            (None, Some(path)) => Some(numbers_of_cells(&at.key("map"), path, grid)?),
+            (None, None) => None,
         };
-        let law = Law {
+        Some(Law {
             coefficients,
             map,
             threshold: self.threshold.map_or(0.0, Pressure::get),
@@ -99,7 +90,6 @@ impl Wear {
             cycles: self.cycles_per_step.map_or(1.0, Number::get),
             cycles_tolerance: self.cycles_tolerance.map(Number::get),
             depth_limit: self.depth_limit.map(Length::get),
-        };
-        Some((law, file.into_iter().collect()))
+        })
     }
 }

@@ -119,8 +119,8 @@ pub enum Model {
     Known(Known),
     /// A fractional model, which becomes a Prony sum over the times of the run.
     Fractional { measure: Modulus, model: Fractional, time: f64, tolerance: f64 },
-    /// A fit of measured curves from a file, and its MD5.
-    Fitted { fitted: Box<Fitted>, file: String, digest: String },
+    /// A fit of measured curves from a file.
+    Fitted { fitted: Box<Fitted>, file: String },
 }
 
 impl Model {
@@ -154,14 +154,6 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The file that it was fitted to, and its MD5.
-    pub fn file(&self) -> Option<(String, String)> {
-        match &self.model {
-            Model::Fitted { file, digest, .. } => Some((file.clone(), digest.clone())),
-            _ => None,
-        }
-    }
-
     /// The shortest time that it shows in a run to `end` [s]: the shortest retardation time, at the warmest; for models that
     /// hold at all times, or were measured over any, a thousandth of the run. Infinite for elastic bodies.
     pub fn shortest(&self, temperatures: Option<&[(f64, f64)]>, end: f64) -> f64 {

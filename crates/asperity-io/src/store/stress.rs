@@ -11,11 +11,9 @@ use serde::{Deserialize, Serialize};
 use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::column::Column;
-use super::document::{Document, Pages};
 use super::error::{Result, corrupt};
 use super::layout::{ArraySpec, Series, Storage, cells};
 use super::reader::{At, Reader};
-use super::replace::Way;
 use super::writer::{Writer, lock, remove};
 use crate::stress::Ratio;
 
@@ -265,14 +263,6 @@ impl Writer {
 /// Removes all arrays of the stress. No reader sees an array that no document names.
 pub(super) fn clear(root: &Path) -> Result<()> {
     names().try_for_each(|name| remove(&root.join(name)))
-}
-
-/// Replaces the documents of a result.
-pub(super) fn publish(root: &Path, document: &Document) -> Result<Pages> {
-    let mut pages = Pages::new(document);
-    pages.write_arrays(root, Way::Safe)?;
-    pages.commit(root, &document.progress, Way::Safe)?;
-    Ok(pages)
 }
 
 impl Reader {

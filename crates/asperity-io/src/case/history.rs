@@ -4,6 +4,8 @@ use asperity::Control;
 
 use super::history_file;
 use super::keys::*;
+use crate::quantity::Quantity;
+use crate::quantity::range::Range;
 
 /// A value over time.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -87,15 +89,17 @@ pub enum From {
     Current,
 }
 
-/// The history of a velocity: a constant, or a table. There is no earlier value in it.
-pub fn of_velocity(
-    at: &Place<'_>,
-    velocity: &Form<Velocity, Never, Box<History>>,
-) -> Option<asperity::History> {
-    match velocity {
-        Form::Word(velocity) => Some(asperity::History::Step { value: velocity.get() }),
-        Form::Table(table) => table.read(at, Kind::Velocity, ""),
-        Form::List(never) => match *never {},
+/// A value that is constant, or has a history.
+pub type Course<W> = Form<W, Never, Box<History>>;
+
+impl<D: Dimension + Copy, R: Range + Copy> Course<Quantity<D, R>> {
+    /// The history in SI, as of [`History::read`].
+    pub fn history(&self, at: &Place<'_>, kind: Kind, help: &str) -> Option<asperity::History> {
+        match self {
+            Form::Word(value) => Some(asperity::History::Step { value: value.get() }),
+            Form::Table(history) => history.read(at, kind, help),
+            Form::List(never) => match *never {},
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use asperity::{Boundary, Grid, TimeGrid};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 
 use super::body::Body;
-use super::history::{History, Kind, of_velocity};
+use super::history::{Course, History, Kind};
 use super::keys::*;
 use super::pair::Pair;
 use super::plan::{Motion as Moving, Travel};
@@ -27,7 +27,7 @@ const MOST: usize = 10_000;
 pub struct Motion {
     /// Velocity of the contact over the body: a constant, or a history as in `[load]`. This, `path` or `steady`.
     #[schemars(example = "10 mm/s")]
-    velocity: Option<Form<Velocity, Never, Box<History>>>,
+    velocity: Option<Course<Velocity>>,
     /// Position of the contact over time, as a history that begins with 0. This, `velocity` or `steady`.
     #[schemars(example = serde_json::json!({ "kind": "table", "points": [["0 s", "0 mm"], ["2 s", "1 mm"]] }))]
     path: Option<History>,
@@ -179,7 +179,8 @@ impl Motion {
         let travel = match (&self.velocity, &self.path) {
             (Some(velocity), _) => {
                 let at = at.key("velocity");
-                Travel::Path(at.core(Path::of_velocity(of_velocity(&at, velocity)?, start))?)
+                let history = velocity.history(&at, Kind::Velocity, "")?;
+                Travel::Path(at.core(Path::of_velocity(history, start))?)
             }
             (None, Some(path)) => {
                 let at = at.key("path");

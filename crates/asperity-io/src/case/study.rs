@@ -19,7 +19,7 @@ pub struct Study {
     /// (whole numbers, both ends included).
     #[schemars(example = serde_json::json!({ "load.history.value": ["0.1 N", "1 N"], "surface.0.seed": "1..10" }))]
     #[serde(default)]
-    vary: BTreeMap<String, Form<Sweep, Vec<Varied>>>,
+    vary: BTreeMap<String, Values>,
     /// Whether the first values of all keys make the first run, the second ones the second, and so on; if false, which is the
     /// default, every combination is run.
     #[schemars(example = true)]
@@ -27,9 +27,12 @@ pub struct Study {
     pub zip: bool,
 }
 
+/// The values of a key: one text for all of them, or a list.
+pub(crate) type Values = Form<Sweep, Vec<Varied>>;
+
 /// Values as a text.
 #[derive(Clone, Debug)]
-struct Sweep(String);
+pub(crate) struct Sweep(pub(crate) String);
 
 impl Scalar for Sweep {
     fn expected() -> String {
@@ -64,7 +67,7 @@ impl JsonSchema for Sweep {
 /// A value of any key.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(transparent)]
-struct Varied(toml::Value);
+pub(crate) struct Varied(pub(crate) toml::Value);
 
 impl JsonSchema for Varied {
     fn inline_schema() -> bool {
@@ -80,18 +83,9 @@ impl JsonSchema for Varied {
     }
 }
 
-/// How the values of a key are written.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Written {
-    /// One text for all of them.
-    Text(String),
-    /// The TOML of each.
-    List(Vec<String>),
-}
-
 impl Study {
     /// The keys that vary, in the order of the text.
-    fn keys(&self, text: &Text<'_>) -> Vec<(String, Written)> {
+    fn keys(&self, text: &Text<'_>) -> Vec<(String, Values)> {
         let section = match text.root.get("study").map(|section| section.get_ref()) {
             Some(DeValue::Table(study)) => study.get("vary").map(|vary| vary.get_ref()),
             _ => None,
@@ -100,12 +94,7 @@ impl Study {
             Some(DeValue::Table(vary)) => vary.get_key_value(key).map_or(0, |(key, _)| key.span().start),
             _ => 0,
         };
-        let written = |values: &Form<Sweep, Vec<Varied>>| match values {
-            Form::Word(Sweep(text)) => Written::Text(text.clone()),
-            Form::List(list) => Written::List(list.iter().map(|value| value.0.to_string()).collect()),
-            Form::Table(never) => match *never {},
-        };
-        let mut keys: Vec<_> = self.vary.iter().map(|(key, values)| (key.clone(), written(values))).collect();
+        let mut keys = Vec::from_iter(self.vary.clone());
         keys.sort_by_key(|(key, _)| place(key));
         keys
     }
@@ -119,7 +108,7 @@ pub(crate) struct Base {
     source: String,
     overrides: Vec<String>,
     /// What its section `[study]` says, in the order of the text.
-    pub(crate) vary: Vec<(String, Written)>,
+    pub(crate) vary: Vec<(String, Values)>,
     /// Whether the values go together.
     pub(crate) zip: bool,
 }

@@ -5,7 +5,7 @@ use asperity::sliding::Path;
 use asperity::wear::Wear as Law;
 
 use super::hardness::numbers_of_cells;
-use super::history::{History, of_velocity};
+use super::history::{Course, Kind};
 use super::keys::*;
 use crate::quantity::WearCoefficient;
 
@@ -20,7 +20,7 @@ pub struct Wear {
     /// Sliding velocity where nothing moves on the grid, as of a pin on a disc: a constant, or a history as in `[load]`. With `[motion]` or
     /// `[tangential]` their sliding counts instead.
     #[schemars(example = "0.1 m/s")]
-    velocity: Option<Form<Velocity, Never, Box<History>>>,
+    velocity: Option<Course<Velocity>>,
     /// Pressure below which nothing wears: the depth per distance is coefficient x (pressure - threshold); 0 if not given.
     #[schemars(example = "10 MPa")]
     threshold: Option<Pressure<NonNegative>>,
@@ -73,7 +73,8 @@ impl Wear {
             }
             (Some(velocity), None) => {
                 let at = at.key("velocity");
-                Some(at.core(Path::of_velocity(of_velocity(&at, velocity)?, 0.0))?)
+                let history = velocity.history(&at, Kind::Velocity, "")?;
+                Some(at.core(Path::of_velocity(history, 0.0))?)
             }
             (None, Some(_)) => None,
         };

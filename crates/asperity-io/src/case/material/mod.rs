@@ -256,7 +256,7 @@ fn known(at: &Place<'_>, dependence: &Dependence) -> Option<(Option<ShiftLaw>, O
 }
 
 /// A law whose springs are given by Young's or by shear moduli: the keys of each spring with its place in the model and examples,
-/// then the other keys.
+/// then the other keys, and what the law makes of them.
 macro_rules! springs {
     (
         $(#[$attribute:meta])*
@@ -265,6 +265,7 @@ macro_rules! springs {
         ] {
             $($(#[$key_attribute:meta])* $key:ident: $type:ty,)*
         }
+        model |$keys:ident, $at:ident, $measure:ident, $moduli:pat_param| $model:expr
     ) => {
         $(#[$attribute])*
         #[derive(Debug, Deserialize, JsonSchema)]
@@ -281,14 +282,12 @@ macro_rules! springs {
             $($(#[$key_attribute])* $key: $type,)*
         }
 
-        impl $law {
-            /// What its moduli measure, and their values.
-            fn springs(
-                &self,
-                at: &Place<'_>,
-            ) -> Option<(asperity::material::Modulus, [f64; [$(stringify!($young)),+].len()])> {
-                let keys = [$([stringify!($young), stringify!($shear)]),+];
-                super::moduli(at, keys, [$([self.$young, self.$shear]),+])
+        impl super::Law for $law {
+            fn model(&self, $at: &Place<'_>, _: super::Dependence) -> Option<super::Model> {
+                let $keys = self;
+                let names = [$([stringify!($young), stringify!($shear)]),+];
+                let ($measure, $moduli) = super::moduli($at, names, [$([$keys.$young, $keys.$shear]),+])?;
+                $model
             }
         }
     };

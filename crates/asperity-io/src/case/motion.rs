@@ -304,19 +304,15 @@ impl Motion {
         }
         let of_number =
             || over.parse::<usize>().ok().filter(|n| (1..=bodies.len()).contains(n)).map(|n| n - 1);
-        match bodies.iter().position(is_named).or_else(of_number) {
-            Some(found) => Some(Some(found)),
-            None => {
-                let names: Vec<&str> = bodies.iter().filter_map(|body| body.name.as_deref()).collect();
-                at.wrong(
-                    match names.is_empty() {
-                        true => format!("the number of a body, 1 to {}", bodies.len()),
-                        false => format!("the name of a body: {}", names.join(", ")),
-                    },
-                    "",
-                )
-            }
+        if let Some(found) = bodies.iter().position(is_named).or_else(of_number) {
+            return Some(Some(found));
         }
+        let names: Vec<&str> = bodies.iter().filter_map(|body| body.name.as_deref()).collect();
+        let expected = match names.is_empty() {
+            true => format!("the number of a body, 1 to {}", bodies.len()),
+            false => format!("the name of a body: {}", names.join(", ")),
+        };
+        at.wrong(expected, "")
     }
 }
 
@@ -412,22 +408,18 @@ impl Moving {
         boundary: Boundary,
         pair: &Pair,
         rubs: bool,
-    ) -> Vec<Finding> {
-        let parts = || std::iter::once(&pair.creep).chain(pair.thermal.iter().map(|body| &body.creep));
-        let branches: Vec<(f64, f64)> = parts()
-            .flat_map(|creep| creep.terms.iter().map(|term| (term.compliance, term.retardation_time)))
-            .collect();
-        if branches.is_empty() && !parts().any(|creep| creep.fluidity > 0.0) {
-            return if self.shear_stress.is_some() || rubs { vec![] } else { vec![finding::friction_zero()] };
+    ) -> Option<Finding> {
+        let creeps = || std::iter::once(&pair.creep).chain(pair.thermal.iter().map(|body| &body.creep));
+        if !creeps().any(Creep::remembers) {
+            return (self.shear_stress.is_none() && !rubs).then(finding::friction_zero);
         }
-        let velocities = match &self.travel {
-            Travel::Steady(velocities) => velocities.clone(),
-            // Only what travels round meets its own track.
-            Travel::Path(_) => vec![],
-        };
-        let single = surfaces.iter().any(Surface::is_single);
-        let found = (single && boundary == Boundary::Periodic)
-            .then(|| finding::own_track(grid, self.direction, &velocities, &branches, pair.instantaneous()));
-        found.flatten().into_iter().collect()
+        // Only what travels round meets its own track.
+        let Travel::Steady(velocities) = &self.travel else { return None };
+        if boundary == Boundary::Free || !surfaces.iter().any(Surface::is_single) {
+            return None;
+        }
+        let terms = creeps().flat_map(|creep| &creep.terms);
+        let branches: Vec<(f64, f64)> = terms.map(|term| (term.compliance, term.retardation_time)).collect();
+        finding::own_track(grid, self.direction, velocities, &branches, pair.instantaneous())
     }
 }

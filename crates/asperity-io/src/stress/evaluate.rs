@@ -63,7 +63,7 @@ pub fn evaluate(
     let set = set(&reader, plan)?;
     Pressures::new(&reader, &set.body, &set.poisson)?;
     writer.remove_stress()?;
-    let mut store = StressWriter::new(writer.path(), &set, reader.field_times().len())?;
+    let mut store = StressWriter::new(writer, &set);
     let instants = compute(&reader, plan, &set, interrupt, &mut observe, Some(&mut store))?;
     writer.add_stress(store)?;
     below(&reader, set, instants)
@@ -126,14 +126,9 @@ fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StressError> {
     if line && plan.rolling == Some(Rolling::Y) {
         return Err(StressError::Refused { path: reader.path().to_owned(), why: ROLLS_ALONG_LINE });
     }
-    if !reader.header().fields.contains(&FieldKind::Pressure) {
-        return Err(reader.no_field(FieldKind::Pressure).into());
-    }
-    let slips = reader.header().slips();
-    let lacks = [FieldKind::TractionX, FieldKind::TractionY]
-        .into_iter()
-        .find(|kind| !reader.header().fields.contains(kind));
-    if let Some(kind) = lacks.filter(|_| slips) {
+    let needed = [FieldKind::Pressure, FieldKind::TractionX, FieldKind::TractionY];
+    let mut needed = needed.into_iter().take(if reader.header().slips() { 3 } else { 1 });
+    if let Some(kind) = needed.find(|kind| !reader.header().fields.contains(kind)) {
         return Err(reader.no_field(kind).into());
     }
     let instants = instants::stored(reader, plan.times.as_deref())?;

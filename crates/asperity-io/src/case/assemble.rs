@@ -27,6 +27,7 @@ use super::temperature::Temperature;
 use super::text::Text;
 use super::{Case, flash, motion, shear, time, warmth};
 use crate::Code;
+use crate::leakage::Leak;
 use crate::store::FieldKind;
 
 /// Most letters of a title.
@@ -119,9 +120,9 @@ impl Document {
         let times = match (&motion, &grid, &self.time) {
             (Some(motion), Some(grid), _) if swept.is_some() => motion.times(&at("motion"), grid),
             (.., Some(times)) => {
-                let course =
-                    programme.and_then(|programme| programme.stages.first()).map(|stage| &stage.course);
-                times.grid(&at("time"), self.load.has_own_steps(), |end| first_step(end, course))
+                let first = programme.and_then(|programme| programme.stages.first());
+                let first_step = |end| first_step(end, first.map(|stage| &stage.course));
+                times.grid(&at("time"), self.load.has_own_steps(), first_step)
             }
             (.., None) => None,
         };
@@ -225,9 +226,7 @@ impl Document {
                 self.output.possible(&at("output"), conditions, motion.is_some());
             }
         }
-        if let Some(conditions) =
-            conditions.as_ref().filter(|_| leakage.as_ref().is_some_and(|leak| leak.opening))
-        {
+        if let (Some(conditions), Some(Leak { opening: true, .. })) = (&conditions, &leakage) {
             checks.root().core::<()>(OpeningPressure::check(conditions));
         }
         if let (Some(pair), Some(grid)) = (&pair, &grid) {
@@ -300,20 +299,14 @@ impl Document {
             (Some(friction), Some(tangential)) => (friction, tangential),
             (None, None) => return None,
             (Some(_), None) => {
+                let help = "add [tangential], or delete [friction]";
                 let message = "[friction] does nothing without [tangential]";
-                return at("friction").fault(
-                    message,
-                    "both sections",
-                    "add [tangential], or delete [friction]",
-                );
+                return at("friction").fault(message, "both sections", help);
             }
             (None, Some(_)) => {
+                let help = "add [friction], or delete [tangential]";
                 let message = "nothing holds [tangential] without [friction]";
-                return at("tangential").fault(
-                    message,
-                    "both sections",
-                    "add [friction], or delete [tangential]",
-                );
+                return at("tangential").fault(message, "both sections", help);
             }
         };
         let others = [("motion", self.motion.is_some()), ("seal", self.seal.is_some())];

@@ -116,17 +116,14 @@ pub fn sweep(
     }
     let mut set = set.to_vec();
     // None of them changes the patch, so that another length, width, liquid or pressure of it takes the same runs.
-    set.push("seal.length=1 m".into());
-    let table = matches!(plan.profile.shape, Shape::Table(_));
-    if !table {
-        set.push("seal.width=1 m".into());
-    }
-    if !plan.is_gas() {
-        set.push("leakage.viscosity=1 Pa s".into());
-    }
-    if !table && !plan.is_gas() {
-        set.push("leakage.pressure_drop=1 Pa".into());
-    }
+    let (known, liquid) = (!matches!(plan.profile.shape, Shape::Table(_)), !plan.is_gas());
+    let keys = [
+        (true, "seal.length=1 m"),
+        (known, "seal.width=1 m"),
+        (liquid, "leakage.viscosity=1 Pa s"),
+        (known && liquid, "leakage.pressure_drop=1 Pa"),
+    ];
+    set.extend(keys.into_iter().filter(|(is_set, _)| *is_set).map(|(_, key)| key.to_owned()));
     let refined = plan.pressures / REFINED;
     let most = plan.largest();
     let values =

@@ -14,7 +14,7 @@ use super::column::Column;
 use super::document::Document;
 use super::error::{Result, corrupt};
 use super::layout::{ArraySpec, Series, Storage, cells};
-use super::reader::{At, Reader};
+use super::reader::{At, Reader, holds};
 use super::writer::{Writer, lock, remove};
 use crate::stress::Ratio;
 
@@ -278,12 +278,8 @@ impl Reader {
 
     fn stress_column(&self, name: &str, known: &[Series]) -> Result<Vec<f64>> {
         if !known.iter().any(|series| series.name == name) {
-            let names: Vec<_> = known.iter().map(|series| series.name).collect();
-            let instead = match &names[..] {
-                [] => COMPUTES.to_owned(),
-                names => format!("it holds {}", names.join(", ")),
-            };
-            return Err(self.missing(format!("`{name}`"), instead));
+            let names = known.iter().map(|series| series.name);
+            return Err(self.missing(format!("`{name}`"), holds(names, COMPUTES)));
         }
         self.numbers(name)
     }

@@ -19,6 +19,7 @@ use super::error::CaseError;
 use super::hardness;
 use super::history::Bodies;
 use super::material::Sample;
+use super::motion::MotionKind;
 use super::output::Usual;
 use super::pair::{self, Pair};
 use super::place::Checks;
@@ -199,9 +200,7 @@ impl Document {
         };
         let tangential = self.tangential(checks, grid.as_ref(), pair.as_ref());
         let wear = self.wear(checks, grid.as_ref(), swept.is_some());
-        let materials =
-            pair.as_ref().map(|pair| flash::Materials { parts: &parts, pair, temperatures: points });
-        let flash = self.flash(checks, motion.as_ref(), materials.as_ref());
+        let flash = self.flash(checks, motion.as_ref(), &parts, pair.as_ref(), points);
         let conditions =
             self.conditions(grid, pair.as_ref(), programme, times.as_ref(), hardness.as_ref(), include);
         let conditions = law.zip(conditions).map(|(traction, conditions)| Simulation {
@@ -323,7 +322,9 @@ impl Document {
         &self,
         checks: &Checks<'_>,
         motion: Option<&Motion>,
-        materials: Option<&flash::Materials<'_>>,
+        parts: &[body::Part<'_>],
+        pair: Option<&Pair>,
+        temperatures: Option<&[(f64, f64)]>,
     ) -> Option<Arc<Flash>> {
         let (section, at) = (self.flash.as_ref()?, checks.at("flash"));
         if self.motion.is_none() {
@@ -334,7 +335,7 @@ impl Document {
             };
             return at.fault(message, "a section [motion]", help);
         }
-        section.law(&at, motion?, materials?).map(Arc::new)
+        section.law(&at, motion?, parts, pair?, temperatures).map(Arc::new)
     }
 
     /// The wear of the surfaces; `steady` where the case asks for steady states of motion.
@@ -344,7 +345,7 @@ impl Document {
         if steady {
             let help = "give [motion] a velocity and the case a [time], or wear the contact in its own frame by [wear] velocity";
             refuse("a steady state does not wear: its surfaces stay as they are", "a motion in time", help);
-        } else if self.motion.as_ref().is_some_and(|motion| motion.rolls()) {
+        } else if self.motion.as_ref().is_some_and(|motion| motion.kind == MotionKind::Roll) {
             refuse("surfaces that roll do not slide, so they do not wear here", "kind = \"slide\"", "");
         } else if self.seal.is_some() {
             let message = "a [seal] is computed from patches that do not wear";

@@ -12,7 +12,7 @@ use super::until::{self, Until};
 #[serde(deny_unknown_fields)]
 pub struct Load {
     /// The prescribed quantity; with `history`. "approach" if not given in a case with [adhesion].
-    control: Option<Control>,
+    pub control: Option<Control>,
     /// Its value over time, 0 before t = 0; with `control`.
     #[schemars(example = serde_json::json!({ "kind": "step", "value": "0.5 N" }))]
     history: Option<History>,
@@ -65,11 +65,6 @@ pub struct Stage {
 }
 
 impl Load {
-    /// The control of a run without stages.
-    pub fn control(&self) -> Option<Control> {
-        self.control
-    }
-
     /// What is prescribed. `first_step` is the first step of
     /// logarithmic steps to a time under a course, where the case does not say it.
     pub fn programme(

@@ -36,7 +36,7 @@ pub struct Motion {
     pub steady: Option<Steady>,
     /// "slide" (the contact moves over the body `over`) or "roll" (over both bodies); "slide" if not given.
     #[serde(default)]
-    kind: MotionKind,
+    pub kind: MotionKind,
     /// Name of the body that the contact slides over, and that the grid is fixed to; the first viscoelastic one if not given.
     #[schemars(example = &"rubber")]
     over: Option<String>,
@@ -57,7 +57,7 @@ pub struct Motion {
 /// What the contact moves over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-enum MotionKind {
+pub enum MotionKind {
     /// One of the bodies.
     #[default]
     Slide,
@@ -167,11 +167,6 @@ pub fn nothing_moves(list: &Place<'_>, surfaces: &[Surface]) {
 }
 
 impl Motion {
-    /// Whether it rolls.
-    pub fn rolls(&self) -> bool {
-        self.kind == MotionKind::Roll
-    }
-
     /// What moves, and how; and whether each of the surfaces does.
     pub fn moving(&self, at: &Place<'_>, surfaces: &[Surface]) -> Option<Moving> {
         at.exactly_one(&["velocity", "path", "steady"])?;

@@ -72,7 +72,7 @@ impl SealKeys {
                 help,
             );
         };
-        if load.control() != Some(Control::Pressure) || !at.sibling("load").has("history.value") {
+        if load.control != Some(Control::Pressure) || !at.sibling("load").has("history.value") {
             let help = "set load.control = \"pressure\" and load.history = { kind = \"step\", value = \"...\" }; the value is that of a single run";
             return at.sibling("load").fault(
                 "a seal is computed from runs at several mean pressures",
@@ -154,8 +154,8 @@ impl Surface {
         match &self.kind {
             super::surface::Kind::SelfAffine(roughness) => Some(Rough {
                 key: format!("surface.{n}.seed"),
-                seed: roughness.seed(),
-                longest: roughness.longest_wave(),
+                seed: roughness.seed.get(),
+                longest: roughness.longest.map(Length::get),
             }),
             _ => None,
         }

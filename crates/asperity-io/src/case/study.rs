@@ -1,10 +1,10 @@
 //! `[study]`: keys of the case and the values that each takes in a study. A single run leaves the section out.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use schemars::{Schema, SchemaGenerator, json_schema};
+use serde_json::json;
 use toml::de::DeValue;
 
 use super::keys::*;
@@ -18,6 +18,7 @@ pub struct Study {
     /// Paths of keys with the values that each takes: a list, or a text such as "0.1 N:10 N:5:log" (from, to, how many) or "1..10"
     /// (whole numbers, both ends included).
     #[schemars(example = serde_json::json!({ "load.history.value": ["0.1 N", "1 N"], "surface.0.seed": "1..10" }))]
+    #[schemars(schema_with = "values")]
     #[serde(default)]
     vary: BTreeMap<String, Values>,
     /// Whether the first values of all keys make the first run, the second ones the second, and so on; if false, which is the
@@ -28,59 +29,15 @@ pub struct Study {
 }
 
 /// The values of a key: one text for all of them, or a list.
-pub(crate) type Values = Form<Sweep, Vec<Varied>>;
+pub(crate) type Values = Form<String, Vec<toml::Value>>;
 
-/// Values as a text.
-#[derive(Clone, Debug)]
-pub(crate) struct Sweep(pub(crate) String);
-
-impl Scalar for Sweep {
-    fn expected() -> String {
-        Self::FORMS.to_owned()
-    }
-
-    fn from_text(text: &str) -> Result<Self, QuantityError> {
-        Ok(Sweep(text.to_owned()))
-    }
-}
-
-deserialize!(Sweep);
-
-impl Word for Sweep {
+impl Word for String {
     const FORMS: &'static str = "a list of values, or a text such as \"1..10\" or \"0.1 N:10 N:5:log\" (write the path of the key in quotes)";
 }
 
-impl JsonSchema for Sweep {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "Sweep".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": "string" })
-    }
-}
-
-/// A value of any key.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(transparent)]
-pub(crate) struct Varied(pub(crate) toml::Value);
-
-impl JsonSchema for Varied {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "Varied".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({})
-    }
+fn values(_: &mut SchemaGenerator) -> Schema {
+    let list = json!({ "type": "array", "items": {}, "minItems": 1 });
+    json_schema!({ "type": "object", "additionalProperties": { "anyOf": [{ "type": "string" }, list] } })
 }
 
 impl Study {

@@ -48,8 +48,8 @@ impl Plan {
         let mut vary: Vec<Varied> = vec![];
         for (key, written) in &base.vary {
             let values = match written {
-                Form::Word(text) => values::read(&text.0).map_err(|reason| refused(key, reason))?,
-                Form::List(list) => list.iter().map(|value| Value::new(&value.0.to_string())).collect(),
+                Form::Word(text) => values::read(text).map_err(|reason| refused(key, reason))?,
+                Form::List(list) => list.iter().map(|value| Value::new(&value.to_string())).collect(),
                 Form::Table(never) => match *never {},
             };
             vary.push(Varied { key: key.clone(), values });

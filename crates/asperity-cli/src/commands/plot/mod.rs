@@ -13,7 +13,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::instant;
 use crate::args;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::format::counted;
 use crate::input::meant;
@@ -109,7 +109,7 @@ fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(),
 
 fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path) -> Result<(), Failure> {
     let [(_, reader)] = all else {
-        return Err(Failure::input("--animate shows one result; give one".to_owned()));
+        refuse!("--animate shows one result; give one");
     };
     Motion::of(path)?;
     let usual = Course::default();

@@ -3,10 +3,11 @@
 //! All frames have the axes and colours that hold every one of them, found in a first pass, so that colours can be compared
 //! from frame to frame. One field at a time is in memory. Of the stress below the surface, instants without contact are left out.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use asperity_io::output::WriteError;
+use asperity_io::output::{PartialFile, WriteError};
 use asperity_io::store::{At, Reader};
 use asperity_io::stress::StressError;
 
@@ -69,14 +70,9 @@ pub enum AnimationError {
         /// Where.
         stored: &'static str,
     },
-    /// The encoder refuses.
-    #[error("cannot write {}: {why}", path.display())]
-    Encoding {
-        /// The path.
-        path: PathBuf,
-        /// What it says.
-        why: String,
-    },
+    /// The encoder refuses, which says why.
+    #[error("cannot write the animation: {0}")]
+    Encoding(String),
 }
 
 /// Dots to an inch: a map is some 700 dots wide.
@@ -136,23 +132,15 @@ pub fn animation(
         common.apply(&mut figure);
         Ok(figure.dots(DOTS)?)
     });
-    let mut stopped = None;
-    let written = asperity_io::output::write(path, force, |file| {
-        let result = match form {
-            Motion::Apng => apng(file, chosen.len(), each, pictures),
-            Motion::Gif => gif(file, each, pictures),
-        };
-        result.map_err(|error| {
-            stopped = Some(error);
-            std::io::Error::other("stopped")
-        })
-    });
-    match (stopped, written) {
-        (Some(Stop::Frame(error)), _) => Err(error),
-        (Some(Stop::Encoder(why)), _) => Err(AnimationError::Encoding { path: path.to_owned(), why }),
-        (None, Err(source)) => Err(FigureError::from(WriteError::at(path, source)).into()),
-        (None, Ok(())) => Ok(Frames { shown: chosen.len(), without_contact }),
+    let failed = |source| AnimationError::from(FigureError::from(WriteError::at(path, source)));
+    let partial = PartialFile::new(path, force).map_err(failed)?;
+    let mut file = BufWriter::new(File::create(partial.place()).map_err(failed)?);
+    match form {
+        Motion::Apng => apng(&mut file, chosen.len(), each, pictures)?,
+        Motion::Gif => gif(&mut file, each, pictures)?,
     }
+    file.flush().and_then(|()| partial.finish()).map_err(failed)?;
+    Ok(Frames { shown: chosen.len(), without_contact })
 }
 
 /// Numbers of the stored instants to show: those in the window, the first and the last among them.
@@ -169,20 +157,8 @@ fn instants(reader: &Reader, options: &Options, most: usize) -> Result<Vec<usize
     Ok((0..most).map(|k| inside[(k * last + (most - 1) / 2) / (most - 1)]).collect())
 }
 
-/// Why frames end early.
-enum Stop {
-    Frame(AnimationError),
-    Encoder(String),
-}
-
-impl From<AnimationError> for Stop {
-    fn from(error: AnimationError) -> Self {
-        Stop::Frame(error)
-    }
-}
-
-fn refused(error: impl std::fmt::Display) -> Stop {
-    Stop::Encoder(error.to_string())
+fn refused(error: impl std::fmt::Display) -> AnimationError {
+    AnimationError::Encoding(error.to_string())
 }
 
 fn apng(
@@ -190,7 +166,7 @@ fn apng(
     count: usize,
     seconds: f64,
     mut frames: impl Iterator<Item = Result<Pixels, AnimationError>>,
-) -> Result<(), Stop> {
+) -> Result<(), AnimationError> {
     let Some(first) = frames.next() else { return Ok(()) };
     let first = first?;
     let [width, height] = first.size.map(|side| u32::try_from(side).unwrap_or(u32::MAX));
@@ -211,7 +187,7 @@ fn gif(
     file: &mut impl Write,
     seconds: f64,
     mut frames: impl Iterator<Item = Result<Pixels, AnimationError>>,
-) -> Result<(), Stop> {
+) -> Result<(), AnimationError> {
     let Some(first) = frames.next() else { return Ok(()) };
     let first = first?;
     let [width, height] = first.size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
@@ -274,6 +250,6 @@ mod tests {
     fn a_frame_that_fails_ends_the_file() {
         let failing = [Err(AnimationError::Few { found: 1, stored: "here" })];
         let first = frames().into_iter().take(1).chain(failing);
-        assert!(matches!(apng(&mut vec![], 3, 0.1, first), Err(Stop::Frame(AnimationError::Few { .. }))));
+        assert!(matches!(apng(&mut vec![], 3, 0.1, first), Err(AnimationError::Few { .. })));
     }
 }

@@ -130,7 +130,7 @@ fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path)
             }
             crate::print(&format!("{}: {shown} frames\n", path.display()))
         }
-        Err(AnimationError::Encoding { path, why }) => {
+        Err(AnimationError::Encoding(why)) => {
             Err(Failure::System(format!("cannot write {}: {why}", path.display())))
         }
         Err(error) => Err(error.into()),

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use asperity_io::quantity::Time;
 use asperity_io::store::{At, Reader};
-use asperity_report::animation::{AnimationError, Course, Frames, Motion, animation};
-use asperity_report::result::{Options, Plot, common_limits, figure, together};
+use asperity_report::animation::{Course, Frames, Motion, animation};
+use asperity_report::figure::FigureError;
+use asperity_report::result::{Options, Plot, PlotError, common_limits, figure, together};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::instant;
@@ -130,7 +131,7 @@ fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path)
             }
             crate::print(&format!("{}: {shown} frames\n", path.display()))
         }
-        Err(AnimationError::Encoding(why)) => {
+        Err(PlotError::Figure(FigureError::Drawing(why))) => {
             Err(Failure::System(format!("cannot write {}: {why}", path.display())))
         }
         Err(error) => Err(error.into()),

@@ -262,7 +262,7 @@ fn where_no_surface_moves_the_source_stands_still_in_the_track() {
             Simulation { flash, motion: Some(motion), ..Simulation::new(grid, Array2::zeros((32, 32))) };
         let mut solver = FlashSolver::of(&simulation, Direction::X).unwrap();
         solver.warm(Rubbing { velocity, pressure: &pressure, shear: 0.0, loss: 0.0 }).unwrap();
-        solver.rise().clone()
+        solver.rise.clone()
     };
     let [a, b] = flash(Partition::Mean, None).bodies;
     // The same rubbing, seen from the other body.

@@ -213,11 +213,9 @@ impl March {
                 )));
             }
             let mut field = ndarray::Array2::zeros(shape);
-            let (shift, boundary) = (step.frame_shift(), march.simulation().boundary);
             kind.of_step(&step, &mut field);
-            // Of a contact that moves, in its frame.
-            let beyond = if kind == FieldKind::Pressure { 0.0 } else { f64::NAN };
-            Some(Map::Real(process::in_contact_frame(field.view(), boundary, shift, beyond)))
+            let (shift, boundary) = (kind.shift(&step), march.simulation().boundary);
+            Some(Map::Real(process::in_contact_frame(field.view(), boundary, shift, kind.beyond())))
         })?;
         match found {
             Some(Map::Real(field)) => Ok(field.into_pyarray(py).into_any()),

@@ -1,6 +1,7 @@
 //! The largest stress below the surface, and the load at which the body yields.
 
 use super::Answer;
+use crate::readable::quantity;
 use crate::store::{Reader, Result};
 use crate::stress::{Below, FirstYield, first_yield};
 
@@ -10,8 +11,10 @@ pub(super) fn of(reader: &Reader) -> Result<Vec<Answer>> {
     let Some(worst) = below.worst() else { return Ok(vec![]) };
     let number = |name: &'static str, unit| Answer::new(name, below.number(worst, name), unit);
     let rows = reader.rows()?;
-    let note = format!("of {}", below.set.body);
     let at = rows.get(worst.row).map(|row| row.coordinate);
+    let when = at
+        .map_or(String::new(), |at| format!(", at {}", quantity(at.value(), reader.header().axis().unit())));
+    let note = format!("of {}, the largest of all computed times{when}", below.set.body);
     let mut answers: Vec<Answer> =
         [number("max_mises", "Pa").with_note(note), number("max_mises_depth", "m")]
             .map(|answer| Answer { at, ..answer })

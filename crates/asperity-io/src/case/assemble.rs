@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use asperity::finding;
 use asperity::flash::Flash;
 use asperity::load::Course;
 use asperity::sliding::ShearStress;
@@ -10,7 +11,7 @@ use asperity::tangential::Tangential;
 use asperity::time::Plan;
 use asperity::traction::{OpeningPressure, TractionLaw};
 use asperity::wear::Wear;
-use asperity::{Grid, Programme, Scheme, Simulation, TimeGrid};
+use asperity::{Boundary, Grid, Programme, Scheme, Simulation, TimeGrid};
 use ndarray::Array2;
 
 use super::body::{self, Body};
@@ -22,7 +23,7 @@ use super::material::Sample;
 use super::motion::MotionKind;
 use super::output::Usual;
 use super::pair::{self, Pair};
-use super::place::Checks;
+use super::place::{Checks, Place};
 use super::plan::{Motion, Rows, Surface};
 use super::temperature::Temperature;
 use super::text::Text;
@@ -184,6 +185,9 @@ impl Document {
             ),
             false => leakage.of_case(&at("leakage"), boundary, points, output, end),
         });
+        if let (Some(motion), Some(_), true) = (&motion, &leakage, swept.is_none()) {
+            self.leaks_in_motion(&at("leakage"), motion, boundary, &mut pair);
+        }
         let fluid = leakage.as_ref().and_then(|leak| at("leakage").core(leak.traction())).flatten();
         if fluid.is_some() && (self.adhesion.is_some() || self.seal.is_some()) {
             let help = "set coupling = \"one-way\", or delete the other section";
@@ -274,6 +278,27 @@ impl Document {
         };
         self.domain.fits(&at("domain"), case.conditions.grid.cells(), case.memory_of_run(), or)?;
         Some(case)
+    }
+
+    /// What is wrong or uncertain of a leak through a contact that moves.
+    fn leaks_in_motion(&self, at: &Place<'_>, motion: &Motion, boundary: Boundary, pair: &mut Option<Pair>) {
+        const WHY: &str = "the flow that a moving surface drags along is not solved";
+        if self.leakage.as_ref().is_some_and(|leakage| leakage.opening == Some(true)) {
+            at.key("opening").fault::<()>(
+                WHY,
+                "a contact that does not move",
+                "leave opening or [motion] out",
+            );
+        }
+        if boundary == Boundary::Free && motion.moves.contains(&true) {
+            let message = "the gap of a free domain in motion is not known beyond the ends of its track, so its leak is not either";
+            at.fault::<()>(
+                message,
+                "boundary = \"periodic\"",
+                "take a periodic domain, or delete one of the two sections",
+            );
+        }
+        pair.iter_mut().for_each(|pair| pair.findings.push(finding::leak_in_motion()));
     }
 
     /// The fields that are stored where the case names none; `acts` tells whether a fluid acts on the surfaces.

@@ -11,8 +11,11 @@ impl Leak {
     fn keys(&self) -> LeakageKeys {
         let mut keys = match self.fluid {
             None => json!({}),
-            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
+            Some(Fluid::Liquid { pressure_drop, viscosity, outlet: 0.0 }) => {
                 json!({ "pressure_drop": pressure_drop, "viscosity": viscosity })
+            }
+            Some(Fluid::Liquid { pressure_drop, viscosity, outlet }) => {
+                json!({ "inlet": outlet + pressure_drop, "outlet": outlet, "viscosity": viscosity })
             }
             Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
                 let mut keys = match kind {
@@ -51,12 +54,17 @@ impl Leak {
         }
         let mut keys = self.keys();
         let other_kind = match self.fluid {
-            Some(Fluid::Liquid { .. }) => given.of_gas().is_some() || given.inlet.is_some(),
+            Some(Fluid::Liquid { outlet, .. }) => {
+                given.of_gas().is_some() || given.inlet.is_some() && outlet == 0.0
+            }
             Some(Fluid::Gas { .. }) => given.pressure_drop.is_some(),
             None => false,
         };
         if other_kind {
             keys = Leak { fluid: None, ..self.clone() }.keys();
+        }
+        if given.pressure_drop.is_some() {
+            (keys.inlet, keys.outlet) = (None, None);
         }
         if given.gas.is_some() {
             (keys.viscosity, keys.molar_mass) = (None, None);
@@ -64,6 +72,7 @@ impl Leak {
         if given.viscosity.is_some() || given.molar_mass.is_some() {
             keys.gas = None;
         }
+        let says_fluid = drives || given.of_gas().is_some() || given.viscosity.is_some();
         // What acts on the surfaces, and what needs the bodies, belongs to the run: of the same flow it is kept.
         macro_rules! merged {
             ($($key:ident)*) => {
@@ -73,7 +82,10 @@ impl Leak {
         let merged = merged!(
             direction pressure_drop viscosity gas molar_mass temperature inlet outlet rarefaction sides smallest_gap field
         );
-        let leak = checked(&merged, boundary)?;
+        let mut leak = checked(&merged, boundary)?;
+        if !says_fluid {
+            leak.fluid = self.fluid;
+        }
         let (times, temperatures) = (self.times.clone(), self.temperatures.clone());
         let goes_on = |leak: &Leak| (leak.direction, leak.sides, leak.smallest_gap, leak.fluid);
         let same = goes_on(&leak) == goes_on(self);
@@ -124,8 +136,9 @@ mod tests {
             outlet: 1e5,
             rarefaction: Rarefaction::Boltzmann,
         };
-        let liquid = Fluid::Liquid { pressure_drop: 2e5, viscosity: 1e-3 };
-        for fluid in [None, Some(gas), Some(other), Some(liquid)] {
+        let liquid = Fluid::Liquid { pressure_drop: 2e5, viscosity: 1e-3, outlet: 0.0 };
+        let above = Fluid::Liquid { pressure_drop: 0.1e5, viscosity: 1e-3, outlet: 1.2e5 };
+        for fluid in [None, Some(gas), Some(other), Some(liquid), Some(above)] {
             let earlier = leak(fluid);
             assert_eq!(earlier.changed(LeakageKeys::default(), Boundary::Periodic).unwrap(), earlier);
             let open = earlier.changed(keys(r#"{"smallest_gap": 0}"#), Boundary::Periodic).unwrap();
@@ -138,13 +151,13 @@ mod tests {
 
     #[test]
     fn a_fluid_of_the_other_kind_replaces_the_earlier_one() {
-        let liquid = leak(Some(Fluid::Liquid { pressure_drop: 2e5, viscosity: 1e-3 }));
+        let liquid = leak(Some(Fluid::Liquid { pressure_drop: 2e5, viscosity: 1e-3, outlet: 0.0 }));
         let missing = liquid.changed(keys(r#"{"gas": "air"}"#), Boundary::Periodic).unwrap_err();
         assert!(missing.contains("inlet"), "{missing}");
         let gas = keys(r#"{"gas": "air", "inlet": "2 bar", "outlet": "1 bar"}"#);
         let gas = liquid.changed(gas, Boundary::Periodic).unwrap();
         assert!(matches!(gas.fluid, Some(Fluid::Gas { .. })) && gas.direction == LeakDirection::Y);
         let back = gas.changed(keys(r#"{"pressure_drop": 1, "viscosity": 2}"#), Boundary::Periodic).unwrap();
-        assert_eq!(back.fluid, Some(Fluid::Liquid { pressure_drop: 1.0, viscosity: 2.0 }));
+        assert_eq!(back.fluid, Some(Fluid::Liquid { pressure_drop: 1.0, viscosity: 2.0, outlet: 0.0 }));
     }
 }

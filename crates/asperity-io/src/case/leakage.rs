@@ -285,13 +285,13 @@ fn fluid(keys: &LeakageKeys, inlet: Option<&asperity::History>) -> Result<Option
             let help = "of a gas give `gas`, or viscosity and molar_mass; of a liquid the viscosity with its unit, \"1 mPa s\"";
             return Err(Fault::new(message, "a liquid, or what the gas is", help));
         }
-        return Ok(Some(Fluid::Liquid { pressure_drop: inlet - outlet, viscosity }));
+        return Ok(Some(Fluid::Liquid { pressure_drop: inlet - outlet, viscosity, outlet }));
     }
     let Some(of_gas) = of_gas.or(ends.map(|_| "inlet")) else {
         return match (keys.pressure_drop, keys.viscosity) {
             (None, None) => Ok(None),
             (Some(drop), Some(viscosity)) => {
-                Ok(Some(Fluid::Liquid { pressure_drop: drop.get(), viscosity: viscosity.get() }))
+                Ok(Some(Fluid::Liquid { pressure_drop: drop.get(), viscosity: viscosity.get(), outlet: 0.0 }))
             }
             (Some(_), None) => missing("viscosity", "pressure_drop", "water has viscosity = \"1 mPa s\""),
             (None, Some(_)) => {

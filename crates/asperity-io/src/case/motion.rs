@@ -248,6 +248,15 @@ impl Motion {
         let remembers: Vec<bool> = pair.creeps.iter().map(|(creep, _)| creep.remembers()).collect();
         let over = named.or(remembers.iter().position(|remembers| *remembers)).unwrap_or(0);
         let other = 1 - over;
+        if matches!(moving.travel, Travel::Path(_)) && bodies[other].hardness_file.is_some() {
+            let help = "give the file to the body that the contact slides over (`over`), or one hardness to this one";
+            let body = at.sibling("body").item(other).key("hardness_file");
+            return body.fault(
+                "the hardness of each cell of a body that slides would move with it",
+                "`hardness`",
+                help,
+            );
+        }
         if !remembers[other] {
             return Some(());
         }

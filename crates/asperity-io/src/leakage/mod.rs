@@ -95,6 +95,9 @@ pub enum Fluid {
         pressure_drop: f64,
         /// \[Pa s\].
         viscosity: f64,
+        /// Pressure of the outlet \[Pa\]; 0 where only the drop is given.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        outlet: f64,
     },
     /// Ideal and isothermal.
     Gas {
@@ -109,6 +112,10 @@ pub enum Fluid {
         /// The law of the flow.
         rarefaction: Rarefaction,
     },
+}
+
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
 }
 
 /// Properties of a gas.
@@ -221,7 +228,7 @@ impl Leak {
         let hydraulic_gap = flow.hydraulic_gap();
         let (pressure, rates) = match self.fluid_at(time) {
             None => (flow.pressure, [None; 5]),
-            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
+            Some(Fluid::Liquid { pressure_drop, viscosity, .. }) => {
                 // Without a drop nothing flows.
                 let of = |t: f64| match pressure_drop > 0.0 {
                     true => leak_rate(t, &opening, pressure_drop, viscosity).map(Some),
@@ -301,7 +308,7 @@ impl Leak {
         let now = self.coupling.as_ref().map(|coupling| (coupling.inlet.after(time), coupling.outlet));
         match (self.fluid?, now) {
             (Fluid::Liquid { viscosity, .. }, Some((inlet, outlet))) => {
-                Some(Fluid::Liquid { pressure_drop: inlet - outlet, viscosity })
+                Some(Fluid::Liquid { pressure_drop: inlet - outlet, viscosity, outlet })
             }
             (Fluid::Gas { kind, temperature, rarefaction, .. }, Some((inlet, outlet))) => {
                 Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction })
@@ -318,8 +325,8 @@ impl Leak {
     /// What would act on the surfaces, where the fluid does not: its pressure above that of the outlet.
     pub(crate) fn opening_traction(&self) -> Result<FluidPressure> {
         let outlet = match self.fluid {
-            Some(Fluid::Gas { outlet, .. }) => outlet,
-            Some(Fluid::Liquid { .. }) | None => 0.0,
+            Some(Fluid::Gas { outlet, .. } | Fluid::Liquid { outlet, .. }) => outlet,
+            None => 0.0,
         };
         let at_rest = Coupling {
             action: Action::Gaps(Pockets::Drained),

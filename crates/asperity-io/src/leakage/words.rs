@@ -25,7 +25,7 @@ impl Leak {
         let up_to = if self.coupling.as_ref().is_some_and(changes) { "up to " } else { "" };
         match self.fluid {
             None => "no fluid, the gap alone".to_owned(),
-            Some(Fluid::Liquid { pressure_drop, viscosity }) => format!(
+            Some(Fluid::Liquid { pressure_drop, viscosity, .. }) => format!(
                 "liquid of {}, pressure drop {up_to}{}",
                 quantity(viscosity, "Pa s"),
                 quantity(pressure_drop, "Pa")

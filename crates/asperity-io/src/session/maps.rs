@@ -26,34 +26,25 @@ impl Maps {
         }
     }
 
-    /// All fields of the case. Those of a contact that has moved are in its frame, but for what is worn off its track: beyond the ends of a free track nothing is known but
-    /// that there is no pressure.
+    /// All fields of the case, each in its frame.
     pub(super) fn of<'b>(&'b mut self, step: &Step<'b>) -> Vec<Field<'b>> {
-        let (shift, boundary) = (step.frame_shift(), step.simulation().boundary);
-        let has_moved = shift != [0; 2];
+        let boundary = step.simulation().boundary;
+        let has_moved = step.frame_shift() != [0; 2];
         for (kind, field) in &mut self.real {
             // The pressure is that of the step, where nothing has moved.
             if *kind != FieldKind::Pressure {
                 kind.of_step(step, field);
             }
-            if has_moved && *kind != FieldKind::CounterbodyWearDepth {
-                let is_unknown = matches!(
-                    kind,
-                    FieldKind::Gap
-                        | FieldKind::Displacement
-                        | FieldKind::UndeformedGap
-                        | FieldKind::FlashTemperature
-                        | FieldKind::SliderFlashTemperature
-                );
-                let beyond = if is_unknown { f64::NAN } else { 0.0 };
+            let shift = kind.shift(step);
+            if shift != [0; 2] {
                 let still = if *kind == FieldKind::Pressure { step.pressure() } else { field.view() };
-                *field = in_contact_frame(still, boundary, shift, beyond);
+                *field = in_contact_frame(still, boundary, shift, kind.beyond());
             }
         }
         if let Some(contact) = &mut self.contact {
             step.contact_into(contact);
             if has_moved {
-                *contact = in_contact_frame(contact.view(), boundary, shift, 0);
+                *contact = in_contact_frame(contact.view(), boundary, step.frame_shift(), 0);
             }
         }
         let lent = |kind: FieldKind| kind == FieldKind::Pressure && !has_moved;

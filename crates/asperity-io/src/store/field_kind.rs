@@ -131,6 +131,23 @@ impl FieldKind {
         choice::word(&self)
     }
 
+    /// Cells by which this field of a row is taken into the frame of the contact; worn depths are in those of their bodies already.
+    pub fn shift(self, step: &Step<'_>) -> [isize; 2] {
+        match self {
+            FieldKind::WearDepth | FieldKind::CounterbodyWearDepth => [0; 2],
+            _ => step.frame_shift(),
+        }
+    }
+
+    /// What it is beyond the ends of a free track, where nothing touches; NaN where that is not known.
+    pub fn beyond(self) -> f64 {
+        use FieldKind::{Displacement, FlashTemperature, Gap, SliderFlashTemperature, UndeformedGap};
+        match self {
+            Gap | Displacement | UndeformedGap | FlashTemperature | SliderFlashTemperature => f64::NAN,
+            _ => 0.0,
+        }
+    }
+
     /// The kind of that name.
     pub fn from_name(name: &str) -> Option<FieldKind> {
         choice::parse(name)

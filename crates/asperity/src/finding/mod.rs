@@ -62,7 +62,7 @@ pub use material::{
     points_left_out, reversal, shift_uncertain, too_few_points, unlikely_data, unlikely_modulus,
     unlikely_temperature,
 };
-pub use motion::{friction_zero, own_track};
+pub use motion::{friction_zero, leak_in_motion, own_track};
 pub use plausible::TEMPERATURES;
 pub use profile::{gaps_of_profile, of_profile, unlike_profile};
 pub use stress::{
@@ -233,6 +233,8 @@ codes! {
     LEAK_BELOW_GAP_ERROR = "leak-below-gap-error";
     /// The critical constriction of a leak is less than four cells wide.
     CONSTRICTION_UNRESOLVED = "constriction-unresolved";
+    /// A leak through a contact that moves.
+    LEAK_IN_MOTION = "leak-in-motion";
     /// The pressure drop of a fluid that does not load the bodies is more than 0.02 of the mean pressure.
     FLUID_UNCOUPLED = "fluid-uncoupled";
     /// The fluid lifts a seal.

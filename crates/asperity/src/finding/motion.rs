@@ -5,7 +5,7 @@
 //! returns to the contact before it has recovered. This is correct for a rough surface, but not for a single body.
 
 use super::words::{digits, rows, si};
-use super::{FRICTION_UNCERTAIN, FRICTION_ZERO, Finding, OWN_TRACK};
+use super::{FRICTION_UNCERTAIN, FRICTION_ZERO, Finding, LEAK_IN_MOTION, OWN_TRACK};
 use crate::drive::Coordinate;
 use crate::grid::Grid;
 use crate::sliding::{Direction, Friction};
@@ -86,6 +86,13 @@ pub fn own_track(
         );
         Finding::warning(OWN_TRACK, worst, REACH, text)
     })
+}
+
+/// A leak through a contact that moves.
+pub fn leak_in_motion() -> Finding {
+    let text = "The leak is that of a gap that stands still under the pressure drop: the flow that the moving surfaces drag along is not \
+                solved. It counts where velocity x viscosity x length / gap² is not small against the pressure drop.";
+    Finding::warning(LEAK_IN_MOTION, f64::NAN, f64::NAN, text).as_note()
 }
 
 /// A motion in which no viscoelastic body moves through the contact.

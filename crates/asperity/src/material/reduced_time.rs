@@ -72,7 +72,9 @@ impl ReducedTime {
         let mut reduced = 0.0;
         let Some(last) = temperatures.last() else { return Ok(clock) };
         let held = [*last, (f64::INFINITY, last.1)];
-        for pair in temperatures.windows(2).chain([held.as_slice()]) {
+        // A jump takes no time.
+        let takes_time = |pair: &&[(f64, f64)]| pair[0].0 < pair[1].0;
+        for pair in temperatures.windows(2).chain([held.as_slice()]).filter(takes_time) {
             let ((start, from), (end, to)) = (pair[0], pair[1]);
             for mut piece in clock.split_at_knots(Piece { start, end, from, to, reduced: 0.0, length: 0.0 }) {
                 piece.reduced = reduced;

@@ -16,7 +16,6 @@ mod wear;
 pub use motion::{Motion, in_contact_frame};
 pub(crate) use motion::{cells, roll};
 pub(crate) use partial_slip::SlipFields;
-pub(crate) use wear::WornFields;
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -83,8 +82,8 @@ pub(crate) trait Process: Send {
         None
     }
 
-    /// The worn depths of the last row.
-    fn worn(&self) -> Option<WornFields<'_>> {
+    /// The worn depths of body and counterbody after the last row \[m\], each in its own frame; empty of one that does not wear.
+    fn worn(&self) -> Option<&[Vec<f64>; 2]> {
         None
     }
 

@@ -77,7 +77,7 @@ impl Motion {
         require(cap, "plasticity of a contact in motion", "accumulate", expected)?;
         self.direction.validate(simulation)?;
         self.shear_stress.iter().try_for_each(ShearStress::validate).of("shear_stress")?;
-        if simulation.boundary == Boundary::Free {
+        if simulation.boundary == Boundary::Free && self.gap.follows() {
             let axis = self.direction.axis();
             let (length, start) = (simulation.grid.size()[axis], self.gap.centre()[axis]);
             let places = stops.iter().map(|t| start + self.path.position(*t));
@@ -219,7 +219,8 @@ impl Process for Moving {
 
     fn shift(&self, step: &Interval) -> Option<[isize; 2]> {
         let gone = self.motion.path.position(step.instant.time) - self.before;
-        (gone != 0.0).then(|| cells(self.motion.direction, self.spacing, gone))
+        let gone_with = if self.motion.gap.follows() { gone } else { 0.0 };
+        (gone != 0.0).then(|| cells(self.motion.direction, self.spacing, gone_with))
     }
 
     /// Finds the forces at the end of the row.

@@ -36,7 +36,7 @@ pub(super) struct Wearing {
 }
 
 /// Volumes \[m³\] of both together and of the counterbody, and of the last row's step over its length \[m³/s\]; sliding distance \[m\];
-/// volumes whose place is uncertain, and that are because load or cycles change over the steps \[m³\]; work \[J\]; largest depth, and roughness of the gap \[m\].
+/// volumes whose place is uncertain, and that are because load or cycles change over the steps \[m³\]; work \[J\]; largest depth \[m\].
 #[derive(Default)]
 struct Numbers {
     volume: f64,
@@ -47,25 +47,11 @@ struct Numbers {
     of_load: f64,
     work: f64,
     deepest: f64,
-    roughness: f64,
 }
 
 struct After {
     solver: RecedingSolver,
     state: ContactState,
-}
-
-/// The worn depth of a row, for its fields.
-pub(crate) struct WornFields<'a> {
-    depth: &'a Depth,
-    offset: [f64; 2],
-}
-
-impl WornFields<'_> {
-    /// Of the body (0) or the counterbody (1), in the frame of the grid \[m\].
-    pub(crate) fn of(&self, body: usize) -> Vec<f64> {
-        self.depth.on_grid(body, self.offset)
-    }
 }
 
 saved! {
@@ -144,7 +130,8 @@ impl Wearing {
         let pressure = &row.before.pressure;
         let shift =
             [0, 1].map(|axis| (self.offset[axis].round() - self.offset_before[axis].round()) as isize);
-        if shift == [0; 2] {
+        let follows = self.simulation.motion.as_ref().is_some_and(|motion| motion.gap.follows());
+        if shift == [0; 2] || !follows {
             return Cow::Borrowed(pressure);
         }
         let mut moved = vec![0.0; pressure.len()];
@@ -176,14 +163,6 @@ impl Wearing {
         };
         let (y, k) = ((yields / square).max(longest), wears / square);
         y / (y + k)
-    }
-
-    /// Root of the mean square of the gap's deviation from its mean, over the cells that can touch \[m\].
-    fn roughness(gap: &[f64]) -> f64 {
-        let [cells, sum] = sums(gap, |h| if h < f64::INFINITY { [1.0, h] } else { [0.0; 2] });
-        let mean = sum / cells;
-        let [square] = sums(gap, |h| if h < f64::INFINITY { [(h - mean) * (h - mean)] } else { [0.0] });
-        (square / cells).sqrt()
     }
 }
 
@@ -250,7 +229,6 @@ impl Process for Wearing {
         numbers.rate = if length > 0.0 { volume / length } else { 0.0 };
         numbers.distance += distance;
         numbers.deepest = self.depth.largest();
-        numbers.roughness = Self::roughness(row.undeformed.now());
         Ok(())
     }
 
@@ -304,7 +282,6 @@ impl Process for Wearing {
                 ((numbers.uncertain + numbers.of_load) / numbers.volume).min(1.0)
             }
             Quantity::WearError => 0.0,
-            Quantity::WornRoughness => numbers.roughness,
             _ => return None,
         })
     }
@@ -313,8 +290,8 @@ impl Process for Wearing {
         self.numbers.work
     }
 
-    fn worn(&self) -> Option<WornFields<'_>> {
-        Some(WornFields { depth: &self.depth, offset: self.offset })
+    fn worn(&self) -> Option<&[Vec<f64>; 2]> {
+        Some(&self.depth.of_bodies)
     }
 
     fn name(&self) -> &'static str {

@@ -1,7 +1,7 @@
 //! Distance of the centre of pressure from the middle of the contact: |Σ p x / Σ p - mean of x over the cells in contact|.
 //!
 //! On a periodic domain of length L the means are those around a circle, (L/2π) arg Σ exp(2πi x/L), and the distance is the shorter
-//! way round.
+//! way round. Where the contact goes around the domain along an axis, it has no middle there, and that axis does not count.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,10 @@ use ndarray::ArrayView2;
 
 use crate::grid::{Boundary, Grid};
 
-/// The distance \[m\]; 0 without contact.
+/// Length of the mean vector of the contact around an axis below which it has no middle along it; 1 for a small contact, 0 for an even one.
+const AROUND: f64 = 0.1;
+
+/// The distance \[m\]; 0 without contact, NaN where the contact has no middle along any axis.
 pub(crate) fn eccentricity(grid: &Grid, boundary: Boundary, pressure: ArrayView2<'_, f64>) -> f64 {
     let offset = [0, 1].map(|axis| {
         let along = |cell: (usize, usize)| if axis == 0 { grid.x(cell.0) } else { grid.y(cell.1) };
@@ -32,13 +35,20 @@ pub(crate) fn eccentricity(grid: &Grid, boundary: Boundary, pressure: ArrayView2
                         sum[1] += weight * libm::sin(phase);
                     }
                 }
+                let [[_, _], [cos, sin]] = sums;
+                let cells = touching().count() as f64;
+                if libm::hypot(cos, sin) < AROUND * cells {
+                    return f64::NAN;
+                }
                 let [of_pressure, of_area] = sums.map(|[cos, sin]| libm::atan2(sin, cos));
                 let turn = (of_pressure - of_area) / TAU;
                 length * (turn - turn.round())
             }
         }
     });
-    libm::hypot(offset[0], if grid.is_line() { 0.0 } else { offset[1] })
+    let axes = if grid.is_line() { &offset[..1] } else { &offset[..] };
+    let squares = axes.iter().filter(|offset| !offset.is_nan()).map(|offset| offset * offset);
+    squares.reduce(|a, b| a + b).map_or(f64::NAN, f64::sqrt)
 }
 
 #[cfg(test)]
@@ -64,6 +74,11 @@ mod tests {
             let tolerance = if boundary == Boundary::Free { 1e-3 } else { 0.04 };
             assert!((found / (b * a / 3.0) - 1.0).abs() < tolerance, "{boundary:?}: {found}");
         }
-        assert_eq!(eccentricity(&grid, Boundary::Free, Array2::zeros(grid.shape()).view()), 0.0);
+        let none = Array2::zeros(grid.shape());
+        assert_eq!(eccentricity(&grid, Boundary::Free, none.view()), 0.0);
+        assert_eq!(eccentricity(&grid, Boundary::Periodic, none.view()), 0.0);
+        // Full contact has no middle, whatever its pressure.
+        let full = Array2::from_shape_fn(grid.shape(), |(i, _)| 1.0 + 1e-3 * libm::sin(i as f64));
+        assert!(eccentricity(&grid, Boundary::Periodic, full.view()).is_nan());
     }
 }

@@ -29,6 +29,9 @@ pub struct MovingGap {
     /// The smallest gap at the start, which counts as 0.
     lowest: f64,
     centre: [f64; 2],
+    /// The middle of a shape; `None` of heights alone on a periodic domain, which have none.
+    middle: Option<[f64; 2]>,
+    follows: bool,
 }
 
 /// Offsets that are whole cells to this share are taken as such.
@@ -41,8 +44,13 @@ impl MovingGap {
     /// [`Error::Invalid`](crate::Error::Invalid) as [`undeformed_gap`], and for a flat punch.
     pub fn new(grid: &Grid, boundary: Boundary, parts: &[(Part, bool)]) -> Result<Self> {
         let all: Vec<Part> = parts.iter().map(|(part, _)| part.clone()).collect();
-        let centre = centre_of(grid, &all, &undeformed_gap(grid, &all)?)?;
-        let still = gap_of(grid, parts.iter().filter(|(_, moves)| !moves).map(|(part, _)| part))?;
+        let (middle, lowest) = places(grid, &all, &undeformed_gap(grid, &all)?)?;
+        let centre = middle.unwrap_or(lowest);
+        let middle = if boundary == Boundary::Free { Some(centre) } else { middle };
+        let stays = || parts.iter().filter(|(_, moves)| !moves).map(|(part, _)| part);
+        let still = gap_of(grid, stays())?;
+        let shapes_stay =
+            is_uneven(&gap_of(grid, stays().filter(|part| matches!(part, Part::Shape { .. })))?);
         let [x0, y0] = grid.centre();
         let (mut shapes, mut rough) = (vec![], vec![]);
         for part in parts.iter().filter(|(_, moves)| *moves).map(|(part, _)| part) {
@@ -52,6 +60,7 @@ impl MovingGap {
             }
         }
         let heights = if rough.is_empty() { None } else { Some(-gap_of(grid, rough)?) };
+        let follows = !shapes.is_empty() || heights.is_some() && !shapes_stay;
         let heights = heights.map(|z| {
             let [x, y] = derivatives(grid, boundary, &z);
             [z, x, y]
@@ -61,8 +70,18 @@ impl MovingGap {
             .as_ref()
             .filter(|_| boundary == Boundary::Periodic)
             .map(|fields| [0, 1, 2].map(|k| torus.transform(fields[k].as_slice().unwrap_or_default())));
-        let mut moving =
-            MovingGap { grid: *grid, boundary, still, shapes, heights, spectra, lowest: 0.0, centre };
+        let mut moving = MovingGap {
+            grid: *grid,
+            boundary,
+            still,
+            shapes,
+            heights,
+            spectra,
+            lowest: 0.0,
+            centre,
+            middle,
+            follows,
+        };
         let (start, _) = moving.at(0.0, Direction::X);
         moving.lowest = start.iter().fold(f64::INFINITY, |low, h| low.min(*h));
         require(moving.lowest.is_finite(), "area that can touch", "no cell", "one cell at least")?;
@@ -76,8 +95,12 @@ impl MovingGap {
 
     /// Whether any part moves, and whether any part that is not flat stands still.
     pub(crate) fn moves_and_stands(&self) -> [bool; 2] {
-        let uneven = self.still.iter().any(|h| *h != self.still[(0, 0)]);
-        [!self.shapes.is_empty() || self.heights.is_some(), uneven]
+        [!self.shapes.is_empty() || self.heights.is_some(), is_uneven(&self.still)]
+    }
+
+    /// Whether the contact goes with the moving parts: where a shape moves, or where parts move and no shape stays.
+    pub fn follows(&self) -> bool {
+        self.follows
     }
 
     /// The gap \[m\] and its slopes when the moving parts have gone `distance` \[m\]. The slopes are those of the moving parts alone:
@@ -86,7 +109,8 @@ impl MovingGap {
         let grid = &self.grid;
         let offset = direction.unit().map(|c| c * distance);
         let mut gap = self.still.clone();
-        let centre = [0, 1].map(|axis| self.centre[axis] + offset[axis]);
+        let gone = if self.follows { offset } else { [0.0; 2] };
+        let centre = self.middle.map_or([f64::NAN; 2], |at| [at[0] + gone[0], at[1] + gone[1]]);
         let mut slopes = Slopes { x: Array2::zeros(grid.shape()), y: Array2::zeros(grid.shape()), centre };
         for (shape, place) in &self.shapes {
             for ((i, j), h) in gap.indexed_iter_mut() {
@@ -184,8 +208,12 @@ impl MovingGap {
     }
 }
 
-/// The middle of the first shape that has one, else the cell of the smallest gap \[m\].
-fn centre_of(grid: &Grid, parts: &[Part], gap: &Array2<f64>) -> Result<[f64; 2]> {
+fn is_uneven(gap: &Array2<f64>) -> bool {
+    gap.iter().any(|h| *h != gap[(0, 0)])
+}
+
+/// The middle of the first shape that has one, and the cell of the smallest gap \[m\].
+fn places(grid: &Grid, parts: &[Part], gap: &Array2<f64>) -> Result<(Option<[f64; 2]>, [f64; 2])> {
     let has_edge = |part: &Part| match part {
         Part::Shape { shape, .. } => matches!(shape, Shape::FlatPunch(_)),
         Part::Heights { heights, .. } => heights.iter().any(|z| z.is_infinite()),
@@ -205,7 +233,7 @@ fn centre_of(grid: &Grid, parts: &[Part], gap: &Array2<f64>) -> Result<[f64; 2]>
         false => low,
     };
     let ((i, j), _) = gap.indexed_iter().fold(none, lower);
-    Ok(middle.unwrap_or([grid.x(i), grid.y(j)]))
+    Ok((middle, [grid.x(i), grid.y(j)]))
 }
 
 /// The cubic through four neighbours at t between the second and the third; a straight line beside an end.

@@ -16,7 +16,8 @@ pub struct Slopes {
     pub x: Array2<f64>,
     /// dh/dy.
     pub y: Array2<f64>,
-    /// The middle of the first shape that has one, else the cell of the smallest gap \[m\], from the corner of the domain.
+    /// The middle of the first shape that has one, else on a free domain the cell of the smallest gap \[m\], from the corner of the domain; NaN where
+    /// neither is known.
     pub centre: [f64; 2],
 }
 

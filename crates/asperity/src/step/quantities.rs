@@ -1,6 +1,9 @@
 //! The quantities of a row, taken when the row is solved: those of its state here, the others from the processes.
 
-use super::Step;
+use ndarray::CowArray;
+
+use super::{Step, UndeformedGap};
+use crate::process::in_contact_frame;
 use crate::quantities::{Column, Quantity, contact_edges, densities, eccentricity, spot_classes};
 use crate::simulation::Plasticity;
 use crate::spots::{Spots, spans};
@@ -50,9 +53,13 @@ impl Step<'_> {
             .any(|column| column.quantity.is_of_spots())
             .then(|| Spots::of(grid, boundary, pressure, |p| *p > 0.0));
         let of_spots = |of: fn(&Spots) -> f64| spots.as_ref().map_or(f64::NAN, of);
-        // 1 along x, 2 along y, 3 both; on a line of cells nothing reaches along y.
+        // 1 along x, 2 along y, 3 both; on a line of cells nothing reaches along y. The borders are those of the stored fields.
         let across = |on: fn(&f64) -> bool| {
-            let [x, y] = spans(boundary, pressure, on);
+            let framed = match self.frame_shift() {
+                [0, 0] => CowArray::from(pressure),
+                shift => CowArray::from(in_contact_frame(pressure, boundary, shift, 0.0)),
+            };
+            let [x, y] = spans(boundary, framed.view(), on);
             f64::from(u8::from(x) + 2 * u8::from(y && !grid.is_line()))
         };
         let (c, w) = (self.compliance, self.state.approach);
@@ -72,6 +79,7 @@ impl Step<'_> {
                 Quantity::ContactPercolation => across(|p| *p > 0.0),
                 Quantity::GapPercolation => across(|p| *p <= 0.0),
                 Quantity::RmsGap => self.rms_gap(),
+                Quantity::WornRoughness => self.worn_roughness(),
                 Quantity::ContactEccentricity => eccentricity(grid, boundary, pressure),
                 Quantity::SpotHistogram => {
                     if let Some(spots) = &spots {
@@ -99,6 +107,15 @@ impl Step<'_> {
             };
             own.fill(one);
         }
+    }
+
+    /// Root of the mean square of the undeformed gap's deviation from its mean, over the cells that can touch \[m\].
+    fn worn_roughness(&self) -> f64 {
+        let gap = self.undeformed.map_or(self.gap, UndeformedGap::now);
+        let [cells, sum] = sums(gap, |h| if h < f64::INFINITY { [1.0, h] } else { [0.0; 2] });
+        let mean = sum / cells;
+        let [square] = sums(gap, |h| if h < f64::INFINITY { [(h - mean) * (h - mean)] } else { [0.0] });
+        (square / cells).sqrt()
     }
 
     /// Root of the mean square of the gap over the cells that can touch \[m\].

@@ -180,10 +180,10 @@ impl<'a> Step<'a> {
     }
 
     /// Cells along x and y that the contact has moved, rounded: fields in its frame are taken there (see
-    /// [`in_contact_frame`](crate::process::in_contact_frame)). 0 where nothing moves.
+    /// [`in_contact_frame`](crate::process::in_contact_frame)). 0 where nothing moves, and where the contact stays on the track.
     pub fn frame_shift(&self) -> [isize; 2] {
         match (&self.simulation.motion, self.of_process(Quantity::SlidingDistance)) {
-            (Some(motion), Some(distance)) => {
+            (Some(motion), Some(distance)) if motion.gap.follows() => {
                 cells(motion.direction, self.simulation.grid.spacing(), distance)
             }
             _ => [0; 2],
@@ -281,10 +281,10 @@ impl<'a> Step<'a> {
         copy_into(self.slip_fields().map(|fields| fields.heat), work);
     }
 
-    /// Depth that wear has taken off the body (0), which moves with the contact, or the counterbody (1) \[m\]; 0 everywhere without wear.
+    /// Depth that wear has taken off the body (0), in the frame of what moves, or the counterbody (1), in that of the grid \[m\]; 0 without wear.
     pub fn wear_depth_into(&self, body: usize, depth: &mut Array2<f64>) {
         let worn = self.processes.iter().find_map(|process| process.worn());
-        copy_into(worn.map(|worn| worn.of(body)).as_deref(), depth);
+        copy_into(worn.map(|worn| &worn[body][..]), depth);
     }
 
     /// The undeformed gap h0 of the row \[m\]: moved, flattened and worn; least value of the start 0.
@@ -381,7 +381,7 @@ impl<'a> Step<'a> {
             let cells = flattening.iter_mut().zip(gap.now().iter().zip(gap.at_start()));
             cells.for_each(|(f, (now, then))| *f = if now > then { now - then } else { 0.0 });
             if let Some(worn) = self.processes.iter().find_map(|process| process.worn()) {
-                for depth in [0, 1].map(|body| worn.of(body)) {
+                for depth in worn {
                     flattening.iter_mut().zip(depth).for_each(|(f, z)| *f = (*f - z).max(0.0));
                 }
             }

@@ -52,18 +52,17 @@ impl Depth {
         sums.map(|sum| sum * self.grid.cell_area())
     }
 
-    /// That of a body in the frame of the grid.
-    pub(crate) fn on_grid(&self, body: usize, offset: [f64; 2]) -> Vec<f64> {
-        match (&self.of_bodies[body], body) {
-            (field, _) if field.is_empty() => zeros(self.grid.len()),
-            (field, 0) => moved(&self.grid, self.boundary, offset, field),
-            (field, _) => field.clone(),
+    /// That of the body in the frame of the grid.
+    fn on_grid(&self, offset: [f64; 2]) -> Vec<f64> {
+        match &self.of_bodies[0] {
+            field if field.is_empty() => zeros(self.grid.len()),
+            field => moved(&self.grid, self.boundary, offset, field),
         }
     }
 
     /// Adds it to a gap that does not have it yet. Returns the slopes of the body's own part.
     pub(crate) fn add_to(&self, gap: &mut [f64], offset: [f64; 2]) -> Slopes {
-        let own = self.on_grid(0, offset);
+        let own = self.on_grid(offset);
         each(gap, &own[..], |h, z| *h += z);
         if !self.of_bodies[1].is_empty() {
             each(gap, &self.of_bodies[1][..], |h, z| *h += z);
@@ -110,7 +109,7 @@ mod tests {
         for offset in [[2.0, 0.0], [2.25, 1.0], [-3.5, 0.25]] {
             let [volume, _] = depth.add(&recession, &pressure, &pressure, offset);
             assert_eq!(volume, 0.5);
-            let sum: f64 = depth.on_grid(0, offset).iter().sum();
+            let sum: f64 = depth.on_grid(offset).iter().sum();
             let own: f64 = depth.of_bodies[0].iter().sum();
             // moved by linear weights, which add up to 1 up to rounding
             assert!((sum - own).abs() < 1e-15);

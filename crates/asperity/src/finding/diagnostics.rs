@@ -358,5 +358,6 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     found.extend(wear::before(simulation));
     found.extend(wear::unlikely(simulation));
     found.extend(flash::unlikely(simulation));
+    found.extend(flash::both_uneven(simulation));
     found
 }

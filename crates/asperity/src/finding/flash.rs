@@ -4,7 +4,7 @@
 use super::words::{digits, rows, si};
 use super::worst::{Worst, extend};
 use super::{FLASH_STATES, FLASH_STEADY, FLASH_WARM, Finding, UNLIKELY_UNIT};
-use crate::flash::Partition;
+use crate::flash::{Flash, Partition};
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::sliding::Path;
@@ -82,6 +82,15 @@ pub(super) fn unlikely(simulation: &Simulation) -> Vec<Finding> {
     .collect()
 }
 
+/// Surfaces of both bodies that are not flat: no frame has a source that stands still.
+pub(super) fn both_uneven(simulation: &Simulation) -> Option<Finding> {
+    let motion = simulation.flash.as_ref().and(simulation.motion.as_ref())?;
+    let text = "Parts of the surface stay with the track (moves = false), but [flash] lets all of the heat move with the slider: places of the \
+                track that stay in contact become warmer than the temperatures say.";
+    let both = motion.gap.moves_and_stands() == [true; 2];
+    both.then(|| Finding::warning(FLASH_STEADY, f64::NAN, f64::NAN, text))
+}
+
 /// Surfaces hotter than any material, steady states of which there are several, and rows whose temperatures are not steady.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
@@ -124,11 +133,12 @@ impl Rows {
         }
         let width = if simulation.grid.is_line() { row.contact_area } else { row.contact_area.sqrt() };
         let speed = path.velocity(time).abs();
-        let slider_stays_cold = flash.partition == Partition::Track;
+        let still = Flash::still(simulation);
+        let only_other = flash.partition == [Partition::Track, Partition::Slider][still];
         let (way, duration, [lengths, times]) = match flash.heated_for {
             Some(heated) => (speed * heated, heated, [1.0; 2]),
-            None if slider_stays_cold => (width, 0.0, [LENGTHS, TIMES]),
-            None => (width, width * width / flash.bodies[0].diffusivity, [LENGTHS, TIMES]),
+            None if only_other => (width, 0.0, [LENGTHS, TIMES]),
+            None => (width, width * width / flash.bodies[still].diffusivity, [LENGTHS, TIMES]),
         };
         let remembered = (lengths * way).min(moved);
         let begin = start_of(path, time, remembered);
@@ -193,6 +203,8 @@ impl Rows {
             FLASH_STATES => {
                 self.several = finding.rows.map(|at| ([value, finding.limit.unwrap_or(f64::NAN)], at))
             }
+            // That of the surfaces, not of rows.
+            _ if finding.rows.is_none() => {}
             _ if finding.is_warning() => (self.uneven, self.length) = (finding.rows, value),
             _ => (self.early, self.length) = (finding.rows, value),
         }

@@ -1,8 +1,9 @@
 //! Flash temperature: how warm sliding makes the surfaces.
 //!
 //! Friction turns the power q = μ p v, or τ v on the area in contact, into heat where the surfaces meet. Both bodies carry it away as
-//! half-spaces. Over the *track* the source moves with v, in the *slider*, which carries the surfaces that move, it stands still. In a
-//! steady state a wave of the heat flux warms the surface by
+//! half-spaces. Over the *track* the source moves with v, in the *slider*, which carries the surfaces that move, it stands still; where no
+//! surface moves, the rough surface is that of the track, and the source stands still in the track and moves over the slider. In a steady
+//! state a wave of the heat flux warms the surface by
 //!
 //! T^ = q^ / (k √(|q|² - i q.v/χ)),      k conductivity, χ diffusivity      (J. C. Jaeger, Proc. R. Soc. NSW 76 (1942) 203)
 //!
@@ -29,6 +30,7 @@ pub(crate) use solver::{FlashSolver, Rise, Rubbing, bytes};
 use crate::error::{Of, Result, positive, require};
 use crate::grid::Boundary;
 use crate::material::Shift;
+use crate::process;
 use crate::simulation::Simulation;
 
 /// How a body conducts heat.
@@ -117,11 +119,13 @@ impl Flash {
             .of("heated_for")?;
         }
         let is_open = simulation.boundary == Boundary::Free;
+        let still = Flash::still(simulation);
+        let [body, other] = if still == 0 { ["slider", "track"] } else { ["track", "slider"] };
         require(
-            !(is_open && simulation.grid.is_line() && self.heats_slider()),
+            !(is_open && simulation.grid.is_line() && self.heats()[still]),
             "partition of the heat on a line of cells with a free domain",
             format!("\"{}\"", self.partition.name()),
-            "\"track\": a slider with a source that is endless across the motion and stands still has no steady temperature",
+            format!("\"{other}\": a {body} with a source that is endless across the motion and stands still has no steady temperature"),
         )
         .of("partition")?;
         require(
@@ -141,12 +145,15 @@ impl Flash {
         .of("feedback")
     }
 
-    fn heats_slider(&self) -> bool {
-        self.partition != Partition::Track
+    /// Whether slider and track are heated.
+    fn heats(&self) -> [bool; 2] {
+        [self.partition != Partition::Track, self.partition != Partition::Slider]
     }
 
-    fn heats_track(&self) -> bool {
-        self.partition != Partition::Slider
+    /// The body in which the source stands still: 0, the slider, which carries the surfaces that move, or 1, the track, where none moves.
+    pub(crate) fn still(simulation: &Simulation) -> usize {
+        let nothing_moves = |motion: &process::Motion| !motion.gap.moves_and_stands()[0];
+        usize::from(simulation.motion.as_ref().is_some_and(nothing_moves))
     }
 }
 

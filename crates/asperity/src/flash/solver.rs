@@ -73,9 +73,10 @@ pub(crate) struct FlashSolver {
     flash: Flash,
     cell: f64,
     conduction: Conduction,
-    slider: Option<Spectrum>,
-    /// Of the last velocity.
-    track: Option<(f64, Spectrum)>,
+    /// The body in which the source stands still.
+    still: usize,
+    /// Of slider and track, with the velocity of the source over it; `None` of one that takes no heat.
+    spectra: [Option<(f64, Spectrum)>; 2],
     pub(crate) rise: Rise,
 }
 
@@ -83,11 +84,11 @@ impl FlashSolver {
     /// `None` where nothing warms the surfaces.
     pub(crate) fn of(simulation: &Simulation, direction: Direction) -> Option<Self> {
         let (flash, grid) = (simulation.flash.as_deref()?.clone(), &simulation.grid);
-        let mut conduction = Conduction::new(grid, simulation.boundary, direction, flash.heated_for);
+        let conduction = Conduction::new(grid, simulation.boundary, direction, flash.heated_for);
         let cold = || vec![0.0; grid.len()];
         Some(FlashSolver {
-            slider: flash.heats_slider().then(|| conduction.spectrum(flash.bodies[0], 0.0)),
-            track: None,
+            still: Flash::still(simulation),
+            spectra: [None, None],
             cell: grid.cell_area(),
             conduction,
             rise: Rise { slider: cold(), track: cold(), row: FlashRow::default() },
@@ -113,16 +114,21 @@ impl FlashSolver {
             return Ok(());
         }
         let contact: Vec<usize> = (0..pressure.len()).filter(|cell| pressure[*cell] > 0.0).collect();
-        if self.flash.heats_track() && self.track.as_ref().is_none_or(|(of, _)| *of != velocity) {
-            self.track = Some((velocity, self.conduction.spectrum(self.flash.bodies[1], velocity)));
+        // Of the source over slider and track.
+        let velocities = if self.still == 0 { [0.0, velocity] } else { [-velocity, 0.0] };
+        for (k, velocity) in velocities.into_iter().enumerate() {
+            if self.flash.heats()[k] && self.spectra[k].as_ref().is_none_or(|(of, _)| *of != velocity) {
+                let spectrum = self.conduction.spectrum(self.flash.bodies[k], velocity);
+                self.spectra[k] = Some((velocity, spectrum));
+            }
         }
         let mut faces = Faces {
             flash: &self.flash,
             conduction: &mut self.conduction,
-            spectra: [self.slider.as_ref(), self.track.as_ref().map(|(_, spectrum)| spectrum)],
+            spectra: self.spectra.each_ref().map(|of| of.as_ref().map(|(_, spectrum)| spectrum)),
         };
         let ([slider, track], share) = faces.warm(&heat, &contact)?;
-        let heated = if self.flash.heats_track() { &track } else { &slider };
+        let heated = if self.flash.heats()[1] { &track } else { &slider };
         let row = FlashRow {
             max: slider.iter().chain(&track).copied().fold(0.0, f64::max),
             mean: mean(heated, &contact),

@@ -8,7 +8,10 @@ use ndarray::Array2;
 use super::conduction::Conduction;
 use super::*;
 use crate::grid::Grid;
-use crate::sliding::Direction;
+use crate::load::History;
+use crate::process::Motion;
+use crate::sliding::{Direction, MovingGap, Path};
+use crate::surface::{Part, Shape};
 
 const BODY: Conductor = Conductor { conductivity: 2.0, diffusivity: 0.5 };
 
@@ -240,6 +243,34 @@ fn nothing_is_warm_at_rest_and_the_motion_mirrors() {
         sum / t.iter().sum::<f64>()
     };
     assert!(middle(&there) < 14.0 && middle(&back) > 17.0, "{} {}", middle(&there), middle(&back));
+}
+
+#[test]
+fn where_no_surface_moves_the_source_stands_still_in_the_track() {
+    let (grid, pressure) = patch();
+    let rise_of = |moves: bool, bodies: [Conductor; 2], velocity: f64| {
+        let part = Part::Shape { shape: Shape::Sphere { radius: 1e4 }, center: [0.0, 0.0] };
+        let motion = Motion {
+            path: Path::of_velocity(History::Step { value: velocity }, 0.0).unwrap(),
+            direction: Direction::X,
+            gap: MovingGap::new(&grid, Boundary::Free, &[(part, moves)]).unwrap(),
+            cells_per_step: 1.0,
+            shear_stress: None,
+        };
+        let flash = Some(Arc::new(Flash { bodies, ..flash(Partition::Mean, None) }));
+        let simulation =
+            Simulation { flash, motion: Some(motion), ..Simulation::new(grid, Array2::zeros((32, 32))) };
+        let mut solver = FlashSolver::of(&simulation, Direction::X).unwrap();
+        solver.warm(Rubbing { velocity, pressure: &pressure, shear: 0.0, loss: 0.0 }).unwrap();
+        solver.rise.clone()
+    };
+    let [a, b] = flash(Partition::Mean, None).bodies;
+    // The same rubbing, seen from the other body.
+    let (still, moving) = (rise_of(false, [a, b], 0.7), rise_of(true, [b, a], -0.7));
+    assert_eq!(still.track, moving.slider);
+    assert_eq!(still.slider, moving.track);
+    assert!((still.row.share - (1.0 - moving.row.share)).abs() < 1e-15);
+    assert!((still.row.mean / rise_of(true, [a, b], 0.7).row.mean - 1.0).abs() > 0.01);
 }
 
 #[test]

@@ -74,6 +74,12 @@ impl MovingGap {
         self.centre
     }
 
+    /// Whether any part moves, and whether any part that is not flat stands still.
+    pub(crate) fn moves_and_stands(&self) -> [bool; 2] {
+        let uneven = self.still.iter().any(|h| *h != self.still[(0, 0)]);
+        [!self.shapes.is_empty() || self.heights.is_some(), uneven]
+    }
+
     /// The gap \[m\] and its slopes when the moving parts have gone `distance` \[m\]. The slopes are those of the moving parts alone:
     /// they take the force.
     pub fn at(&self, distance: f64, direction: Direction) -> (Array2<f64>, Slopes) {

@@ -1,7 +1,7 @@
 //! Writes valid files of every format, and those that once broke a reader, into the corpora of the fuzz targets:
 //! `cargo run --example seeds` in `fuzz/`.
 
-#[path = "../../crates/asperity-io/tests/all/samples/mod.rs"]
+#[path = "../../crates/asperity-files/tests/all/samples/mod.rs"]
 mod samples;
 
 use std::io::{Cursor, Write};
@@ -18,7 +18,7 @@ fn main() -> std::io::Result<()> {
         seed(&format!("{format}-{i}"), format.name(), &bytes)?;
     }
     // The name starts with the format.
-    for entry in std::fs::read_dir(root.join("../crates/asperity-io/tests/regressions"))? {
+    for entry in std::fs::read_dir(root.join("../crates/asperity-files/tests/regressions"))? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if let Some((format, _)) = name.split_once('-') {

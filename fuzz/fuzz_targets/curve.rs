@@ -1,6 +1,6 @@
 #![no_main]
 
-use asperity_io::curve::{Columns, Curves, Kind};
+use asperity_files::curve::{Columns, Curves, Kind};
 
 // Text tables and spreadsheets (.xls, .xlsx), as each kind of measurement.
 libfuzzer_sys::fuzz_target!(|data: &[u8]| {

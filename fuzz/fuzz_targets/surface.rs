@@ -2,7 +2,7 @@
 
 //! Every reader of surfaces: the first line of the input names the format, the rest is the file.
 
-use asperity_io::topography::{Format, ReadOptions, detect, read_bytes};
+use asperity_files::topography::{Format, ReadOptions, detect, read_bytes};
 
 libfuzzer_sys::fuzz_target!(|input: &[u8]| {
     let Some(end) = input.iter().position(|byte| *byte == b'\n') else { return };

@@ -312,7 +312,7 @@ Written by `cargo xtask verification` from `asperity verify`. Every quantity is 
 does not come from the solver. An error is |found/expected - 1| unless the quantity says otherwise. The tolerances
 follow from the discretisation (approach and peak pressure converge as (dx/a)², an area is known to a part of its
 outermost ring of cells) or, for an invariant, from the solver's tolerance; they do not depend on the error found.
-The test `verification::tests::every_case_holds` asserts all of them. Further tests compare with slow reference
+The test `every_case_holds` of the crate `asperity-verify` asserts all of them. Further tests compare with slow reference
 implementations (dense matrix, Gauss-Seidel, full hereditary sum, one-dimensional springs).
 
 ";

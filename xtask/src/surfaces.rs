@@ -6,7 +6,7 @@ use super::{Done, cargo, root, run};
 
 /// Reading, statistics and cleaning of 4096 x 4096 points.
 pub fn bench() -> Done {
-    run(&mut cargo(&["bench", "-p", "asperity-io", "--bench", "surfaces", "--", "4096"]))
+    run(&mut cargo(&["bench", "-p", "asperity-files", "--bench", "surfaces", "--", "4096"]))
 }
 
 /// The surface of `examples/ground-steel.toml`, prepared as there but for the window. Needs the command, built.

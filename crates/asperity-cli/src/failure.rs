@@ -23,6 +23,12 @@ pub enum Failure {
     Interrupted(String),
 }
 
+/// Ends a function with a sentence about wrong input.
+macro_rules! refuse {
+    ($($sentence:tt)*) => { return Err($crate::failure::Failure::Input(format!($($sentence)*))) };
+}
+pub(crate) use refuse;
+
 impl Failure {
     /// Wrong input, in one sentence.
     pub fn input(message: impl Into<String>) -> Self {

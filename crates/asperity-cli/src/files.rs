@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use asperity_io::output::WriteError;
 use asperity_report::figure::Form;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 
 /// The files of a verb.
 #[derive(Default)]
@@ -55,10 +55,10 @@ impl Files {
                 } else {
                     "a part of the result that is read"
                 };
-                return Err(Failure::input(format!(
+                refuse!(
                     "{} would replace {what}; choose another output (--force does not help here)",
                     output.display()
-                )));
+                );
             }
             free(output, self.force)?;
         }
@@ -76,11 +76,9 @@ fn free(path: &Path, force: bool) -> Result<(), Failure> {
         return Err(WriteError::Exists { path: path.to_owned() }.into());
     }
     match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
-        Some(folder) => Err(Failure::input(format!(
-            "cannot write {}: there is no folder {}; make it first",
-            path.display(),
-            folder.display()
-        ))),
+        Some(folder) => {
+            refuse!("cannot write {}: there is no folder {}; make it first", path.display(), folder.display())
+        }
         None => Ok(()),
     }
 }

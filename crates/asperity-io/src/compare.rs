@@ -188,6 +188,14 @@ pub fn short<'k>(key: &'k str, all: &[&str]) -> &'k str {
     named.into_iter().find(|end| !clash(end)).unwrap_or(key)
 }
 
+/// The first line in which two texts differ, from 1, and what stands there in each; `None` where only their line ends differ.
+pub(crate) fn other_line(old: &str, new: &str) -> Option<(usize, [String; 2])> {
+    let (mut old, mut new) = (old.lines(), new.lines());
+    let pairs = std::iter::from_fn(|| Some([old.next(), new.next()]).filter(|pair| *pair != [None; 2]));
+    let (n, pair) = (1..).zip(pairs).find(|(_, [old, new])| old != new)?;
+    Some((n, pair.map(|line| line.map_or("missing".to_owned(), |line| format!("`{}`", line.trim())))))
+}
+
 /// Rows are at the same time within this share of it: rounding of times that were computed differently.
 const SAME: f64 = 1e-12;
 /// Numbers that say how a row was solved, not what it is.

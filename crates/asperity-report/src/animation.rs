@@ -3,10 +3,11 @@
 //! All frames have the axes and colours that hold every one of them, found in a first pass, so that colours can be compared
 //! from frame to frame. One field at a time is in memory. Of the stress below the surface, instants without contact are left out.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
 
-use asperity_io::output::WriteError;
+use asperity_io::output::{PartialFile, WriteError};
 use asperity_io::store::{At, Reader};
 use asperity_io::stress::StressError;
 
@@ -46,39 +47,6 @@ pub struct Frames {
     pub without_contact: usize,
 }
 
-/// Why an animation cannot be written.
-#[derive(Debug, thiserror::Error)]
-pub enum AnimationError {
-    /// A frame cannot be made.
-    #[error(transparent)]
-    Plot(#[from] PlotError),
-    /// A frame cannot be drawn, or there is a file already.
-    #[error(transparent)]
-    Figure(#[from] FigureError),
-    /// The ending of the path names no form that is known.
-    #[error("{}: the ending says what an animation is written as: use .png, .apng or .gif", path.display())]
-    Ending {
-        /// The path.
-        path: PathBuf,
-    },
-    /// There are not two instants to show.
-    #[error("an animation needs two stored times at least, but has {found} {stored}")]
-    Few {
-        /// How many there are.
-        found: usize,
-        /// Where.
-        stored: &'static str,
-    },
-    /// The encoder refuses.
-    #[error("cannot write {}: {why}", path.display())]
-    Encoding {
-        /// The path.
-        path: PathBuf,
-        /// What it says.
-        why: String,
-    },
-}
-
 /// Dots to an inch: a map is some 700 dots wide.
 const DOTS: f64 = 144.0;
 /// Time of a frame and of all of them, where not given \[s\].
@@ -89,12 +57,15 @@ impl Motion {
     /// The form that the ending of a path asks for.
     ///
     /// # Errors
-    /// [`AnimationError::Ending`] where it is none of `.png`, `.apng` and `.gif`.
-    pub fn of(path: &Path) -> Result<Motion, AnimationError> {
+    /// [`PlotError::Refused`] where it is none of `.png`, `.apng` and `.gif`.
+    pub fn of(path: &Path) -> Result<Motion, PlotError> {
         match path.extension().map(|ending| ending.to_ascii_lowercase()) {
             Some(ending) if ending == "png" || ending == "apng" => Ok(Motion::Apng),
             Some(ending) if ending == "gif" => Ok(Motion::Gif),
-            _ => Err(AnimationError::Ending { path: path.to_owned() }),
+            _ => Err(PlotError::Refused(format!(
+                "{}: the ending says what an animation is written as: use .png, .apng or .gif",
+                path.display()
+            ))),
         }
     }
 }
@@ -103,7 +74,7 @@ impl Motion {
 /// frames it has and how many instants it leaves out. The file appears whole or not at all.
 ///
 /// # Errors
-/// [`AnimationError`].
+/// [`PlotError`]; [`FigureError::Drawing`] of what the encoder refuses.
 pub fn animation(
     reader: &Reader,
     plot: Plot,
@@ -111,7 +82,7 @@ pub fn animation(
     course: Course,
     path: &Path,
     force: bool,
-) -> Result<Frames, AnimationError> {
+) -> Result<Frames, PlotError> {
     let form = Motion::of(path)?;
     let chosen = instants(reader, options, course.frames)?;
     let frame = |n: usize| figure(reader, plot, &Options { at: At::Index(n), ..options.clone() });
@@ -127,70 +98,54 @@ pub fn animation(
     let without_contact = chosen.len() - with_contact.len();
     let chosen = with_contact;
     if chosen.len() < 2 {
-        return Err(AnimationError::Few { found: chosen.len(), stored: "with contact" });
+        return Err(few(chosen.len(), "with contact"));
     }
     let whole = course.duration.unwrap_or((FRAME * chosen.len() as f64).min(WHOLE));
     let each = whole / chosen.len() as f64;
-    let pictures = chosen.iter().map(|n| -> Result<Pixels, AnimationError> {
+    let pictures = chosen.iter().map(|n| -> Result<Pixels, PlotError> {
         let mut figure = frame(*n)?;
         common.apply(&mut figure);
         Ok(figure.dots(DOTS)?)
     });
-    let mut stopped = None;
-    let written = asperity_io::output::write(path, force, |file| {
-        let result = match form {
-            Motion::Apng => apng(file, chosen.len(), each, pictures),
-            Motion::Gif => gif(file, each, pictures),
-        };
-        result.map_err(|error| {
-            stopped = Some(error);
-            std::io::Error::other("stopped")
-        })
-    });
-    match (stopped, written) {
-        (Some(Stop::Frame(error)), _) => Err(error),
-        (Some(Stop::Encoder(why)), _) => Err(AnimationError::Encoding { path: path.to_owned(), why }),
-        (None, Err(source)) => Err(FigureError::from(WriteError::at(path, source)).into()),
-        (None, Ok(())) => Ok(Frames { shown: chosen.len(), without_contact }),
+    let failed = |source| FigureError::from(WriteError::at(path, source));
+    let partial = PartialFile::new(path, force).map_err(failed)?;
+    let mut file = BufWriter::new(File::create(partial.place()).map_err(failed)?);
+    match form {
+        Motion::Apng => apng(&mut file, chosen.len(), each, pictures)?,
+        Motion::Gif => gif(&mut file, each, pictures)?,
     }
+    file.flush().and_then(|()| partial.finish()).map_err(failed)?;
+    Ok(Frames { shown: chosen.len(), without_contact })
 }
 
 /// Numbers of the stored instants to show: those in the window, the first and the last among them.
-fn instants(reader: &Reader, options: &Options, most: usize) -> Result<Vec<usize>, AnimationError> {
+fn instants(reader: &Reader, options: &Options, most: usize) -> Result<Vec<usize>, PlotError> {
     let times = reader.field_times();
     let inside: Vec<usize> = (0..times.len()).filter(|n| options.shows(times[*n])).collect();
     if inside.len() < 2 {
         let stored =
             if times.len() < 2 { "in the result (output.every stores more)" } else { "in this window" };
-        return Err(AnimationError::Few { found: inside.len(), stored });
+        return Err(few(inside.len(), stored));
     }
     let most = most.clamp(2, inside.len());
     let last = inside.len() - 1;
     Ok((0..most).map(|k| inside[(k * last + (most - 1) / 2) / (most - 1)]).collect())
 }
 
-/// Why frames end early.
-enum Stop {
-    Frame(AnimationError),
-    Encoder(String),
+fn few(found: usize, stored: &str) -> PlotError {
+    PlotError::Refused(format!("an animation needs two stored times at least, but has {found} {stored}"))
 }
 
-impl From<AnimationError> for Stop {
-    fn from(error: AnimationError) -> Self {
-        Stop::Frame(error)
-    }
-}
-
-fn refused(error: impl std::fmt::Display) -> Stop {
-    Stop::Encoder(error.to_string())
+fn refused(error: impl std::fmt::Display) -> PlotError {
+    FigureError::Drawing(error.to_string()).into()
 }
 
 fn apng(
     file: &mut impl Write,
     count: usize,
     seconds: f64,
-    mut frames: impl Iterator<Item = Result<Pixels, AnimationError>>,
-) -> Result<(), Stop> {
+    mut frames: impl Iterator<Item = Result<Pixels, PlotError>>,
+) -> Result<(), PlotError> {
     let Some(first) = frames.next() else { return Ok(()) };
     let first = first?;
     let [width, height] = first.size.map(|side| u32::try_from(side).unwrap_or(u32::MAX));
@@ -210,8 +165,8 @@ fn apng(
 fn gif(
     file: &mut impl Write,
     seconds: f64,
-    mut frames: impl Iterator<Item = Result<Pixels, AnimationError>>,
-) -> Result<(), Stop> {
+    mut frames: impl Iterator<Item = Result<Pixels, PlotError>>,
+) -> Result<(), PlotError> {
     let Some(first) = frames.next() else { return Ok(()) };
     let first = first?;
     let [width, height] = first.size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
@@ -232,7 +187,7 @@ mod tests {
     use super::*;
 
     /// Frames of one colour each.
-    fn frames() -> Vec<Result<Pixels, AnimationError>> {
+    fn frames() -> Vec<Result<Pixels, PlotError>> {
         let frame = |k: u8| Pixels { size: [6, 4], rgb: [k, 0, 255 - k].repeat(24) };
         [10, 20, 30].map(|k| Ok(frame(k))).into()
     }
@@ -272,8 +227,8 @@ mod tests {
 
     #[test]
     fn a_frame_that_fails_ends_the_file() {
-        let failing = [Err(AnimationError::Few { found: 1, stored: "here" })];
+        let failing = [Err(few(1, "here"))];
         let first = frames().into_iter().take(1).chain(failing);
-        assert!(matches!(apng(&mut vec![], 3, 0.1, first), Err(Stop::Frame(AnimationError::Few { .. }))));
+        assert!(matches!(apng(&mut vec![], 3, 0.1, first), Err(PlotError::Refused(_))));
     }
 }

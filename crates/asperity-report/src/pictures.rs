@@ -1,7 +1,7 @@
 //! A result as a directory of pictures: the maps at every stored instant in the same colours, and the evolution.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use asperity_io::output::{PartialDirectory, WriteError};
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
@@ -11,56 +11,26 @@ use crate::figure::{Figure, FigureError, extent};
 use crate::result::line::{curve, over_time};
 use crate::result::{Options, Plot, PlotError, figure};
 
-/// Why pictures cannot be written.
-#[derive(Debug, thiserror::Error)]
-pub enum PicturesError {
-    /// The result does not hold what was asked for, or is damaged.
-    #[error(transparent)]
-    Plot(#[from] PlotError),
-    /// A picture could not be written.
-    #[error(transparent)]
-    Figure(#[from] FigureError),
-    /// There is something at the path.
-    #[error("{} {found}; name another directory{}", path.display(), if *ours { " or give --force" } else { "" })]
-    Taken {
-        /// The path.
-        path: PathBuf,
-        /// What is there, as the rest of a sentence.
-        found: String,
-        /// Whether these are pictures of before, which may be replaced.
-        ours: bool,
-    },
-    /// The system refuses.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-}
-
-impl From<StoreError> for PicturesError {
-    fn from(error: StoreError) -> Self {
-        PicturesError::Plot(error.into())
-    }
-}
-
 /// Writes pictures of a result into a new directory: `evolution.png`, `pressure_0000.png` and so on; `stress.png` and
 /// `leak.png` where these were computed. The directory
 /// appears whole or not at all; with `force` one that holds pictures only is replaced.
 ///
 /// # Errors
-/// [`PicturesError`]; [`PicturesError::Taken`] where the directory is there already.
+/// [`PlotError`]; [`PlotError::Refused`] where the directory is there already.
 pub fn pictures(
     reader: &Reader,
     fields: Option<&[FieldKind]>,
     directory: &Path,
     force: bool,
-) -> Result<(), PicturesError> {
+) -> Result<(), PlotError> {
     check(directory, force)?;
-    let failed = |source| PicturesError::from(WriteError::at(directory, source));
+    let failed = |source| FigureError::from(WriteError::at(directory, source));
     let partial = PartialDirectory::new(directory).map_err(failed)?;
     let place = |name: String| partial.place().join(name);
     // Messages name the directory asked for.
     let write = |picture: &Figure, name: &str| match picture.write(&place(name.into()), false) {
         Err(FigureError::Write(WriteError::Io { source, .. })) => Err(failed(source)),
-        other => other.map_err(PicturesError::Figure),
+        other => other,
     };
     write(&figure(reader, Plot::Evolution, &Options::default())?, "evolution.png")?;
     if reader.stress().is_some_and(|set| !set.instants.is_empty()) {
@@ -95,7 +65,7 @@ pub fn pictures(
             fs::write(name, picture.to_png(150.0)?).map_err(failed)?;
         }
     }
-    partial.finish().map_err(failed)
+    Ok(partial.finish().map_err(failed)?)
 }
 
 /// Ends of the colours at all instants: zero to the largest value of any, or the least where that is below.
@@ -110,19 +80,21 @@ fn range(reader: &Reader, kind: FieldKind) -> Result<Option<[f64; 2]>, StoreErro
     Ok((ends[0] < ends[1]).then_some(ends))
 }
 
-fn check(directory: &Path, force: bool) -> Result<(), PicturesError> {
+fn check(directory: &Path, force: bool) -> Result<(), PlotError> {
     let Ok(found) = fs::symlink_metadata(directory) else { return Ok(()) };
-    let taken =
-        |found: &str, ours| PicturesError::Taken { path: directory.to_owned(), found: found.into(), ours };
+    let taken = |found: &str, more: &str| {
+        let path = directory.display();
+        PlotError::Refused(format!("{path} {found}; name another directory{more}"))
+    };
     if !found.is_dir() {
-        return Err(taken("is not a directory", false));
+        return Err(taken("is not a directory", ""));
     }
-    let failed = |source| PicturesError::from(WriteError::at(directory, source));
+    let failed = |source| FigureError::from(WriteError::at(directory, source));
     for entry in fs::read_dir(directory).map_err(failed)? {
         let name = entry.map_err(failed)?.file_name();
         if !name.to_str().is_some_and(|name| name.ends_with(".png")) {
-            return Err(taken(&format!("holds other files ({})", name.display()), false));
+            return Err(taken(&format!("holds other files ({})", name.display()), ""));
         }
     }
-    if force { Ok(()) } else { Err(taken("is there already", true)) }
+    if force { Ok(()) } else { Err(taken("is there already", " or give --force")) }
 }

@@ -9,7 +9,7 @@ use asperity::surface::statistics::{
 use asperity::surface::{Fill, Level, Surface, fill, level};
 use asperity_io::readable::quantity;
 
-use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, block, extent, means, robust};
+use crate::figure::{Axes, Axis, Colours, Curves, Figure, Map, Series, Style, block, extent, means, robust};
 use crate::histogram;
 
 /// Bins of the height distribution.
@@ -132,7 +132,7 @@ fn radial(correlation: &Autocorrelation) -> Curves {
 fn lags(surface: &Surface, correlation: &Autocorrelation) -> Map {
     let (what, size) = (["autocorrelation", ""], surface.grid().size());
     let map = Map::new("Autocorrelation", what, Colours::Diverging, correlation.values.view(), size);
-    map.over_lags().between([-1.0, 1.0])
+    map.over(Axes::Lags).between([-1.0, 1.0])
 }
 
 /// Whether the spectrum is that of a self-affine surface: a Hurst exponent between 0 and 1 within its uncertainty, and known to

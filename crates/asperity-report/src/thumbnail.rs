@@ -3,8 +3,7 @@
 use asperity_io::store::{At, FieldKind, Reader};
 
 use crate::figure::{Figure, Panel};
-use crate::pictures::PicturesError;
-use crate::result::{Options, Plot, figure};
+use crate::result::{Options, Plot, PlotError, figure};
 
 /// Cells of a side at most.
 const SIDE: usize = 128;
@@ -16,8 +15,8 @@ const DOTS: f64 = 72.0;
 /// is stored, what changes over the rows.
 ///
 /// # Errors
-/// [`PicturesError`] where the result has no row yet or is damaged.
-pub fn thumbnail(reader: &Reader) -> Result<Vec<u8>, PicturesError> {
+/// [`PlotError`] where the result has no row yet or is damaged.
+pub fn thumbnail(reader: &Reader) -> Result<Vec<u8>, PlotError> {
     let fields = &reader.header().fields;
     let field = fields.iter().find(|kind| **kind == FieldKind::Pressure).or(fields.first());
     let plot = field.map(|kind| Plot::Map(*kind)).filter(|_| !reader.field_times().is_empty());
@@ -36,7 +35,7 @@ pub fn thumbnail(reader: &Reader) -> Result<Vec<u8>, PicturesError> {
 }
 
 /// The stored instant with the largest load.
-fn largest_load(reader: &Reader) -> Result<At, PicturesError> {
+fn largest_load(reader: &Reader) -> Result<At, PlotError> {
     let loads = reader.series("load")?;
     let load =
         |n: &usize| reader.field_steps().get(*n).and_then(|row| loads.get(*row)).copied().unwrap_or(0.0);

@@ -22,7 +22,7 @@
 //! - [`sliding`]: bodies that slide and roll; [`flash`]: how warm that makes them;
 //! - [`leakage`]: flow of a fluid through the gap;
 //! - [`operator`], [`kernel`], [`convolution`]: u = Kp; [`layer`]: K of bodies of layers;
-//! - [`mod@reference`], [`verification`]: closed forms and the checks against them.
+//! - [`mod@reference`]: closed forms and one-dimensional solutions; the crate `asperity-verify` compares the solver with them.
 //!
 //! The example of [`drive::March`] is a whole simulation. Theory, conventions and verification are in `docs/` of
 //! the repository. This crate touches no file and prints nothing.
@@ -60,7 +60,6 @@ pub mod surface;
 pub mod tangential;
 pub mod time;
 pub mod traction;
-pub mod verification;
 pub mod wear;
 
 pub use asperity_convolution as convolution;

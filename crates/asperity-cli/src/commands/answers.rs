@@ -6,7 +6,7 @@ use asperity_io::answer::{self, Answer, Units};
 use asperity_io::converge::ErrorBar;
 use asperity_io::store::Reader;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::format::quantity;
 
 /// Letters of the first column of a summary.
@@ -71,12 +71,12 @@ pub fn units(options: &[String]) -> Result<Units, Failure> {
     for option in options {
         let Some((name, unit)) = option.split_once('=') else {
             let message = "expected a name and a unit, e.g. --unit leak=ml/year or --unit time=h";
-            return Err(Failure::input(format!("--unit {option}: {message}")));
+            refuse!("--unit {option}: {message}");
         };
         let name = name.trim();
         if let Some(earlier) = units.text(name) {
             let message = format!("{name} has the unit {earlier} already; give one unit for each");
-            return Err(Failure::input(format!("--unit {option}: {message}")));
+            refuse!("--unit {option}: {message}");
         }
         let chosen = units.choose(name, unit.trim());
         chosen.map_err(|error| Failure::input(format!("--unit {option}: {error}")))?;

@@ -7,7 +7,7 @@ use asperity_io::store::Reader;
 use serde_json::json;
 
 use crate::args;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::format::{columns, counted, quantity};
 use crate::verb::Verb;
 
@@ -16,9 +16,7 @@ impl Verb for args::Compare {
     fn run(&self) -> Result<(), Failure> {
         let readers = super::labels::open(&self.results)?;
         if readers.len() < 2 {
-            return Err(Failure::input(
-                "two results or more are compared, and only one of these is a result",
-            ));
+            refuse!("two results or more are compared, and only one of these is a result");
         }
         let kind = |reader: &Reader| (reader.header().grid.is_line(), reader.header().axis());
         let first = &readers[0];
@@ -28,13 +26,13 @@ impl Verb for args::Compare {
                 (true, _) => "a line contact",
                 (false, _) => "a contact over an area",
             };
-            return Err(Failure::input(format!(
+            refuse!(
                 "{} is {}, and {} is {}: their numbers have different units",
                 first.path().display(),
                 words(first),
                 other.path().display(),
                 words(other)
-            )));
+            );
         }
         let units = super::answers::units_of(&self.unit, &readers)?;
         let labels = super::labels::of(&self.labels, &readers)?;

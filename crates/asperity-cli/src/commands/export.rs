@@ -6,7 +6,7 @@ use asperity_io::topography::{self, Topography, write};
 use asperity_report::pictures::pictures;
 
 use crate::args::Export;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::verb::Verb;
 
@@ -30,21 +30,14 @@ impl Verb for Export {
         if self.to == "sdf" {
             let path = output("sdf");
             if path.exists() && !self.force {
-                return Err(Failure::input(format!(
-                    "{} exists already; --force replaces it",
-                    path.display()
-                )));
+                refuse!("{} exists already; --force replaces it", path.display());
             }
             write(&path, &surface(&reader, fields.as_deref())?, topography::Format::Sdf)?;
             return crate::print(&format!("{}\n", path.display()));
         }
         let Some(format) = Format::from_name(&self.to) else {
             let names: Vec<_> = Format::ALL.iter().map(|f| f.name()).collect();
-            return Err(Failure::input(format!(
-                "there is no export to \"{}\"; choose one of {}, sdf, png",
-                self.to,
-                names.join(", ")
-            )));
+            refuse!("there is no export to \"{}\"; choose one of {}, sdf, png", self.to, names.join(", "));
         };
         let options = Options { fields, force: self.force, ..Options::default() };
         let written = export(&reader, format, &output(format.extension()), &options)?;
@@ -60,12 +53,10 @@ fn surface(reader: &Reader, fields: Option<&[FieldKind]>) -> Result<Topography, 
     let grid = &reader.header().grid;
     let (Some([kind]), false) = (fields, grid.is_line()) else {
         let expected = "one field of a plane, such as --fields undeformed_gap";
-        return Err(Failure::input(format!("a surface file holds {expected}")));
+        refuse!("a surface file holds {expected}");
     };
     if kind.units() != "m" {
-        return Err(Failure::input(format!(
-            "{kind} is no length, and a surface file holds heights: take npz"
-        )));
+        refuse!("{kind} is no length, and a surface file holds heights: take npz");
     }
     let values = reader.field(*kind, At::Last)?;
     let heights = if kind.look() == Look::Gap { -values } else { values };

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use super::force_curve::share;
 use super::material::{columns, refused};
 use crate::args::FitIndentation;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::format::quantity;
 use crate::verb::Verb;
@@ -34,7 +34,7 @@ impl Verb for FitIndentation {
         let profile = match (self.radius, self.cone) {
             (_, Some(slope)) => MdrProfile::Cone { slope: slope.get() },
             (Some(radius), None) => MdrProfile::Sphere { radius: radius.get() },
-            (None, None) => return Err(Failure::input("--radius or --cone is needed")),
+            (None, None) => refuse!("--radius or --cone is needed"),
         };
         let (poisson, interface) = (self.poisson.get(), self.interface);
         let layer = self.thickness.map(|depth| SampleLayer { thickness: depth.get(), poisson, interface });

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use super::fit_indentation::interval_in_words;
 use super::material::columns;
 use crate::args::FitIndentation;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::format::quantity;
 
 /// Refuses options of force curves where the relaxation is fitted.
@@ -29,9 +29,7 @@ pub fn not_given(args: &FitIndentation) -> Result<(), Failure> {
         ("--spring-constant", curve.spring_constant.is_some()),
     ] {
         if given {
-            return Err(Failure::input(format!(
-                "{option} goes with a force curve: give --model hertz, dmt, jkr or maugis"
-            )));
+            refuse!("{option} goes with a force curve: give --model hertz, dmt, jkr or maugis");
         }
     }
     Ok(())
@@ -41,10 +39,10 @@ pub fn not_given(args: &FitIndentation) -> Result<(), Failure> {
 pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
     let word = choice::word(&model);
     if args.thickness.is_some() {
-        return Err(Failure::input(format!(
+        refuse!(
             "--thickness does not go with --model {word}: its closed form is that of a half-space, and for adhesion on a thin sample there is \
              none; --model viscoelastic --terms 0 fits an elastic thin sample without adhesion"
-        )));
+        );
     }
     for (option, given) in [
         ("--cone", args.cone.is_some()),
@@ -55,9 +53,9 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
         ("--fit-touch", args.fit_touch),
     ] {
         if given {
-            return Err(Failure::input(format!(
+            refuse!(
                 "{option} goes with --model viscoelastic, but the model is {word}, a sphere on an elastic half-space: leave it out"
-            )));
+            );
         }
     }
     let radius =

@@ -7,7 +7,7 @@ use asperity_io::compare;
 use asperity_io::store::Reader;
 
 use crate::args::Labels;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::format::counted;
 
 /// Opens results. Of several paths, such as those of `study/*`, files and the table of a study are no results; they are left out and told.
@@ -33,9 +33,7 @@ pub fn of(options: &Labels, readers: &[Reader]) -> Result<Vec<String>, Failure> 
         true => Ok(given.clone()),
         false => {
             let (labels, results) = (counted(given.len(), "label"), counted(readers.len(), "result"));
-            Err(Failure::input(format!(
-                "--label: there are {labels}, but {results}; give one for each, in their order"
-            )))
+            refuse!("--label: there are {labels}, but {results}; give one for each, in their order")
         }
     }
 }

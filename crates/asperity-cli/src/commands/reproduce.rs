@@ -4,7 +4,7 @@ use asperity_report::paper::{FIGURES, Options, PaperError, reproduce};
 use serde_json::json;
 
 use crate::args::Reproduce;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::verb::{Threads, Verb};
 
 impl Verb for Reproduce {
@@ -20,10 +20,7 @@ impl Verb for Reproduce {
         let files: Vec<_> =
             numbers.iter().map(|n| self.output.join(format!("figure-{n}.{}", self.form))).collect();
         if let Some(taken) = files.iter().find(|file| !self.force && file.exists()) {
-            return Err(Failure::input(format!(
-                "{} already exists; choose another directory or use --force",
-                taken.display()
-            )));
+            refuse!("{} already exists; choose another directory or use --force", taken.display());
         }
         let results = self.output.join("results");
         std::fs::create_dir_all(&results)

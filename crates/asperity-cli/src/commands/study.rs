@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::answers::{note_unused, units};
 use crate::args::{self, StudyAction, StudyFolder};
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::format::{columns, counted, duration};
 use crate::verb::{Threads, Verb};
 
@@ -28,7 +28,7 @@ impl Verb for args::Study {
             (Some(StudyAction::Status(folder)), _) => status(folder),
             (Some(StudyAction::Collect(folder)), _) => collect(folder),
             (None, Some(case)) => self.work(case),
-            (None, None) => Err(Failure::input("name a case file")),
+            (None, None) => refuse!("name a case file"),
         }
     }
 }

@@ -1,10 +1,10 @@
 //! `asperity verify`: the solver against independent facts.
 
-use asperity::verification::{CASES, Check};
+use asperity_verify::{CASES, Check};
 use serde_json::json;
 
 use crate::args::Verify;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::verb::{Threads, Verb};
 
 impl Verb for Verify {
@@ -16,10 +16,7 @@ impl Verb for Verify {
     fn run(&self) -> Result<(), Failure> {
         if let Some(unknown) = self.cases.iter().find(|name| CASES.iter().all(|(case, _)| case != name)) {
             let names: Vec<_> = CASES.iter().map(|(name, _)| *name).collect();
-            return Err(Failure::input(format!(
-                "there is no case \"{unknown}\"; choose from {}",
-                names.join(", ")
-            )));
+            refuse!("there is no case \"{unknown}\"; choose from {}", names.join(", "));
         }
         let mut checks = Vec::new();
         let chosen =

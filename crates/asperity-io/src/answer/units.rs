@@ -112,10 +112,7 @@ impl Units {
 
     /// Whether leaks are wanted as a mass.
     fn is_mass(&self) -> bool {
-        self.0
-            .get("leak")
-            .and_then(|unit| Unit::parse(unit).ok())
-            .is_some_and(|unit| unit.powers == MASS_RATE)
+        self.chosen_unit("leak").is_some_and(|(_, unit)| unit.powers == MASS_RATE)
     }
 
     /// What units were chosen for, with the units.
@@ -267,9 +264,13 @@ impl Units {
 
     /// The unit chosen for `name`, per SI value; `None` where none is chosen.
     pub fn shown(&self, name: &str) -> Option<Shown> {
-        let text = self.0.get(name)?;
-        let unit = Unit::parse(text).ok()?;
-        Some(Shown { factor: 1.0 / unit.scale(), text: text.clone() })
+        let (text, unit) = self.chosen_unit(name)?;
+        Some(Shown { factor: 1.0 / unit.scale(), text: text.to_owned() })
+    }
+
+    fn chosen_unit(&self, name: &str) -> Option<(&str, Unit)> {
+        let text = self.text(name)?;
+        Some((text, Unit::parse(text).ok()?))
     }
 
     /// A leak in the unit chosen for leaks, where it can be given in it.
@@ -281,15 +282,14 @@ impl Units {
     /// The unit chosen for leaks, per value in this SI unit, and at which conditions it counts: a gas as mass, as pressure times volume at
     /// 0 °C, or as volume at 0 °C and one atmosphere; a liquid as volume. `None` where none is chosen, or it does not fit.
     fn leak_unit(&self, si: &str) -> Option<(Shown, &'static str)> {
-        let text = self.0.get("leak")?;
-        let unit = Unit::parse(text).ok()?;
+        let (text, unit) = self.chosen_unit("leak")?;
         let (per, conditions) = match (si, unit.powers) {
             ("m3/s", VOLUME_RATE) | ("kg/s", MASS_RATE) => (1.0, ""),
             ("Pa m3/s", PV_RATE) => (1.0, " (at 0 °C)"),
             ("Pa m3/s", VOLUME_RATE) => (ATMOSPHERE, " (at 0 °C and 1 atm)"),
             _ => return None,
         };
-        Some((Shown { factor: 1.0 / (per * unit.scale()), text: text.clone() }, conditions))
+        Some((Shown { factor: 1.0 / (per * unit.scale()), text: text.to_owned() }, conditions))
     }
 }
 

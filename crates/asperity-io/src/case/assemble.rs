@@ -3,31 +3,32 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use asperity::flash::Flash;
 use asperity::load::Course;
 use asperity::sliding::ShearStress;
 use asperity::tangential::Tangential;
 use asperity::time::Plan;
 use asperity::traction::{OpeningPressure, TractionLaw};
+use asperity::wear::Wear;
 use asperity::{Grid, Programme, Scheme, Simulation, TimeGrid};
 use ndarray::Array2;
 
 use super::body::{self, Body};
 use super::document::Document;
 use super::error::CaseError;
-use super::flash;
-use super::hardness::{self, Hardness};
+use super::hardness;
 use super::history::Bodies;
-use super::history_file::Origin;
 use super::material::Sample;
+use super::motion::MotionKind;
+use super::output::Usual;
 use super::pair::{self, Pair};
 use super::place::Checks;
-use super::plan::{Motion, Output, Rows, Surface};
-use super::shear;
-use super::temperature::{Temperature, Temperatures};
+use super::plan::{Motion, Rows, Surface};
+use super::temperature::Temperature;
 use super::text::Text;
-use super::warmth;
-use super::{Case, motion, time};
+use super::{Case, flash, motion, shear, time, warmth};
 use crate::Code;
+use crate::leakage::Leak;
 use crate::store::FieldKind;
 
 /// Most letters of a title.
@@ -43,10 +44,7 @@ pub fn case(
     output: PathBuf,
 ) -> Result<Case, Vec<CaseError>> {
     let checks = Checks::new(text, dir);
-    match document.convert(&checks, text.source, output) {
-        Some(case) if !checks.any() => Ok(case),
-        _ => Err(checks.into_errors()),
-    }
+    checks.finish(document.convert(&checks, text.source, output))
 }
 
 /// Bodies that stand alone, in a run of these instants.
@@ -59,25 +57,18 @@ pub fn bodies(
     let checks = Checks::new(text, Path::new(""));
     let parts = body::parts(&checks.at("body"), bodies);
     let temperatures = temperatures(&checks, temperature, &parts);
-    let points = temperatures.iter().flatten().map(|read| read.points.as_slice()).next();
+    let points = temperatures.as_ref().and_then(Option::as_deref);
     let instants = |_: &[f64]| plan.clone();
     let course = warmth::Course { end: None, plan: &instants, temperatures: points, beyond: 1.0 };
-    let pair = pair::pair(&checks.at("body"), bodies, &parts, &course);
-    match pair {
-        Some(pair) if !checks.any() => Ok(pair),
-        _ => Err({
-            drop(parts);
-            checks.into_errors()
-        }),
-    }
+    checks.finish(pair::pair(&checks.at("body"), bodies, &parts, &course))
 }
 
-/// The temperatures of the run; the inner `None` where the case gives none.
+/// The temperatures of the run as (time [s], temperature [K]); the inner `None` where the case gives none.
 fn temperatures(
     checks: &Checks<'_>,
     temperature: Option<&Temperature>,
     parts: &[body::Part<'_>],
-) -> Option<Option<Temperatures>> {
+) -> Option<Option<Vec<(f64, f64)>>> {
     let Some(temperature) = temperature else { return Some(None) };
     let depends = |sample: &&Sample| sample.shift.is_some() && sample.temperature.is_none();
     // A material that is wrong may depend on it.
@@ -102,7 +93,7 @@ impl Document {
         let parts = body::parts(&at("body"), &self.body);
         let temperatures = temperatures(checks, self.temperature.as_ref(), &parts);
         let samples = || parts.iter().filter_map(|part| part.sample.as_ref());
-        let points = temperatures.iter().flatten().map(|read| read.points.as_slice()).next();
+        let points = temperatures.as_ref().and_then(Option::as_deref);
         let first_step = |end: f64, course: Option<&Course>| {
             let shortest = samples().map(|sample| sample.shortest(points, end));
             time::first_step(shortest.fold(f64::INFINITY, f64::min), course)
@@ -110,15 +101,12 @@ impl Document {
         let adhesion = self.adhesion.as_ref().map(|adhesion| adhesion.law(&at("adhesion")));
         let bodies = Bodies { line, adhere: adhesion.is_some() };
         let loading = self.load.programme(&at("load"), bodies, &first_step);
-        let programme = loading.as_ref().map(|(programme, _)| programme);
+        let programme = loading.as_ref();
         if self.motion.is_none() {
             motion::nothing_moves(&at("surface"), &self.surface);
         }
         let motion = self.motion.as_ref().and_then(|motion| motion.moving(&at("motion"), &self.surface));
-        let motion = match motion {
-            Some(motion) => self.warmed(checks, motion, &parts, points),
-            None => None,
-        };
+        let motion = motion.and_then(|motion| warmed(checks, motion, &parts, points));
         if self.motion.is_some() && self.adhesion.is_some() {
             let help = "delete one of the two sections";
             at("motion").fault::<()>("surfaces that slide do not adhere here", "no [adhesion]", help);
@@ -133,9 +121,9 @@ impl Document {
         let times = match (&motion, &grid, &self.time) {
             (Some(motion), Some(grid), _) if swept.is_some() => motion.times(&at("motion"), grid),
             (.., Some(times)) => {
-                let course =
-                    programme.and_then(|programme| programme.stages.first()).map(|stage| &stage.course);
-                times.grid(&at("time"), self.load.has_own_steps(), |end| first_step(end, course))
+                let first = programme.and_then(|programme| programme.stages.first());
+                let first_step = |end| first_step(end, first.map(|stage| &stage.course));
+                times.grid(&at("time"), self.load.has_own_steps(), first_step)
             }
             (.., None) => None,
         };
@@ -148,24 +136,12 @@ impl Document {
         }
         let stops = motion.as_ref().zip(grid.as_ref()).zip(times.as_ref());
         let stops = stops.and_then(|((motion, grid), times)| motion.stops(&at("motion"), grid, times.end()));
-        let output = self.output.output(&at("output"), times.as_ref(), programme, default_path);
-        let output = output.map(|mut output| {
-            if self.tangential.is_some() && self.output.is_silent_on_fields() {
-                output.fields.extend([FieldKind::Contact, FieldKind::TractionX, FieldKind::TractionY]);
-            }
-            if self.flash.is_some() && self.output.is_silent_on_fields() {
-                output.fields.insert(FieldKind::FlashTemperature);
-            }
-            if (self.adhesion.is_some() || acts) && self.output.is_silent_on_fields() {
-                output.fields.insert(FieldKind::ContactPressure);
-            }
-            output
-        });
-        let known = swept.or(stops.as_ref().map(Vec::len));
-        let output = output.map(|output| match known.filter(|_| self.output.is_silent_on_rows()) {
-            Some(count) => Output { rows: Rows::Every((count / 10).max(1)), ..output },
-            None => output,
-        });
+        let usual = Usual {
+            path: default_path,
+            fields: self.usual_fields(acts),
+            count: swept.or(stops.as_ref().map(Vec::len)),
+        };
+        let output = self.output.output(&at("output"), times.as_ref(), programme, usual);
         let stages = programme.iter().flat_map(|programme| &programme.stages);
         let mut grids = times.iter().chain(stages.filter_map(|stage| stage.times.as_ref()));
         let adaptive = grids.any(TimeGrid::is_adaptive);
@@ -198,20 +174,16 @@ impl Document {
                 pair.findings.extend(found);
             }
         }
-        let conditions =
-            self.conditions(grid, pair.as_ref(), programme, times.as_ref(), hardness.as_ref(), include);
         let end = times.as_ref().map(TimeGrid::end);
-        let leakage =
-            self.leakage.as_ref().zip(output.as_ref().zip(end)).and_then(|(leakage, (output, end))| {
-                if line {
-                    return at("leakage").fault(
-                        "leakage needs a gap over a plane: on a line of cells nothing flows along y",
-                        "a domain with two values in cells",
-                        "delete the section, or give domain.cells and domain.size two values",
-                    );
-                }
-                leakage.of_case(&at("leakage"), boundary, points, output, end)
-            });
+        let leakage = self.leakage.as_ref().zip(output.as_ref().zip(end));
+        let leakage = leakage.and_then(|(leakage, (output, end))| match line {
+            true => at("leakage").fault(
+                "leakage needs a gap over a plane: on a line of cells nothing flows along y",
+                "a domain with two values in cells",
+                "delete the section, or give domain.cells and domain.size two values",
+            ),
+            false => leakage.of_case(&at("leakage"), boundary, points, output, end),
+        });
         let fluid = leakage.as_ref().and_then(|leak| at("leakage").core(leak.traction())).flatten();
         if fluid.is_some() && (self.adhesion.is_some() || self.seal.is_some()) {
             let help = "set coupling = \"one-way\", or delete the other section";
@@ -227,17 +199,15 @@ impl Document {
             Some(adhesion) => adhesion.map(|law| Some(Arc::new(law) as Arc<dyn TractionLaw>)),
         };
         let tangential = self.tangential(checks, grid.as_ref(), pair.as_ref());
-        let (tangential, slipped) = tangential.unzip();
         let wear = self.wear(checks, grid.as_ref(), swept.is_some());
-        let (wear, worn) = wear.unzip();
-        let materials =
-            pair.as_ref().map(|pair| flash::Materials { parts: &parts, pair, temperatures: points });
-        let flash = self.flash(checks, motion.as_ref(), materials.as_ref());
+        let flash = self.flash(checks, motion.as_ref(), &parts, pair.as_ref(), points);
+        let conditions =
+            self.conditions(grid, pair.as_ref(), programme, times.as_ref(), hardness.as_ref(), include);
         let conditions = law.zip(conditions).map(|(traction, conditions)| Simulation {
             traction,
             tangential,
-            wear: wear.map(Arc::new),
-            flash: flash.map(Arc::new),
+            wear,
+            flash,
             ..conditions
         });
         if let Some(conditions) = &conditions {
@@ -255,9 +225,7 @@ impl Document {
                 self.output.possible(&at("output"), conditions, motion.is_some());
             }
         }
-        if let Some(conditions) =
-            conditions.as_ref().filter(|_| leakage.as_ref().is_some_and(|leak| leak.opening))
-        {
+        if let (Some(conditions), Some(Leak { opening: true, .. })) = (&conditions, &leakage) {
             checks.root().core::<()>(OpeningPressure::check(conditions));
         }
         if let (Some(pair), Some(grid)) = (&pair, &grid) {
@@ -275,16 +243,7 @@ impl Document {
             }
             _ => None,
         };
-        let (seal, profile) = seal.map_or((None, None), |(plan, file)| (Some(plan), file));
-
-        let (hardness, (_, histories), pair) = (hardness?, loading?, pair?);
-        let mut files: Vec<_> = samples().filter_map(Sample::file).collect();
-        files.extend(temperatures.iter().flatten().filter_map(|read| read.file.clone()));
-        files.extend(hardness.files);
-        files.extend(histories);
-        files.extend(slipped.into_iter().flatten());
-        files.extend(worn.into_iter().flatten());
-        files.extend(profile);
+        let pair = pair?;
         let usual = pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 };
         let case = Case {
             title: self.title.clone(),
@@ -298,7 +257,7 @@ impl Document {
             temperatures: points.map(<[_]>::to_vec),
             materials: pair.reports,
             findings: pair.findings,
-            files,
+            files: checks.files(),
             output: output?,
             stress,
             leakage,
@@ -317,32 +276,36 @@ impl Document {
         Some(case)
     }
 
-    /// The load along the surfaces, with the files that it is from.
+    /// The fields that are stored where the case names none; `acts` tells whether a fluid acts on the surfaces.
+    fn usual_fields(&self, acts: bool) -> Vec<FieldKind> {
+        use FieldKind::{Contact, ContactPressure, FlashTemperature, Gap, Pressure, TractionX, TractionY};
+        let mut fields = vec![Pressure, Gap];
+        fields.extend(self.tangential.iter().flat_map(|_| [Contact, TractionX, TractionY]));
+        fields.extend(self.flash.as_ref().map(|_| FlashTemperature));
+        fields.extend((self.adhesion.is_some() || acts).then_some(ContactPressure));
+        fields
+    }
+
+    /// The load along the surfaces.
     fn tangential(
         &self,
         checks: &Checks<'_>,
         grid: Option<&Grid>,
         pair: Option<&Pair>,
-    ) -> Option<(Arc<Tangential>, Vec<Origin>)> {
+    ) -> Option<Arc<Tangential>> {
         let at = |section: &str| checks.at(section);
         let (friction, tangential) = match (&self.friction, &self.tangential) {
             (Some(friction), Some(tangential)) => (friction, tangential),
             (None, None) => return None,
             (Some(_), None) => {
                 let help = "add [tangential], or delete [friction]";
-                return at("friction").fault(
-                    "[friction] does nothing without [tangential]",
-                    "both sections",
-                    help,
-                );
+                let message = "[friction] does nothing without [tangential]";
+                return at("friction").fault(message, "both sections", help);
             }
             (None, Some(_)) => {
                 let help = "add [friction], or delete [tangential]";
-                return at("tangential").fault(
-                    "nothing holds [tangential] without [friction]",
-                    "both sections",
-                    help,
-                );
+                let message = "nothing holds [tangential] without [friction]";
+                return at("tangential").fault(message, "both sections", help);
             }
         };
         let others = [("motion", self.motion.is_some()), ("seal", self.seal.is_some())];
@@ -351,26 +314,7 @@ impl Document {
             at("tangential").fault::<()>(message, "one of the two sections", "delete one of them");
         }
         let bodies = (&at("body"), &pair?.bodies[..]);
-        let (law, files) = tangential.law(&at("tangential"), (&at("friction"), friction), grid, bodies)?;
-        Some((Arc::new(law), files))
-    }
-
-    /// The motion at the temperature of the run.
-    fn warmed(
-        &self,
-        checks: &Checks<'_>,
-        motion: Motion,
-        parts: &[body::Part<'_>],
-        temperatures: Option<&[(f64, f64)]>,
-    ) -> Option<Motion> {
-        let shear_stress = match motion.shear_stress {
-            Some(law @ ShearStress::Gaussian { .. }) => {
-                let at = checks.at("motion").key("shear_stress");
-                Some(shear::shifted(law, flash::shift_factor(&at, parts, temperatures)?))
-            }
-            other => other,
-        };
-        Some(Motion { shear_stress, ..motion })
+        tangential.law(&at("tangential"), (&at("friction"), friction), grid, bodies).map(Arc::new)
     }
 
     /// The heat of friction.
@@ -378,8 +322,10 @@ impl Document {
         &self,
         checks: &Checks<'_>,
         motion: Option<&Motion>,
-        materials: Option<&flash::Materials<'_>>,
-    ) -> Option<asperity::flash::Flash> {
+        parts: &[body::Part<'_>],
+        pair: Option<&Pair>,
+        temperatures: Option<&[(f64, f64)]>,
+    ) -> Option<Arc<Flash>> {
         let (section, at) = (self.flash.as_ref()?, checks.at("flash"));
         if self.motion.is_none() {
             let help = "add [motion] with a velocity, a path or steady states, or delete the section";
@@ -389,33 +335,25 @@ impl Document {
             };
             return at.fault(message, "a section [motion]", help);
         }
-        section.law(&at, motion?, materials?)
+        section.law(&at, motion?, parts, pair?, temperatures).map(Arc::new)
     }
 
-    /// The wear of the surfaces, with the files that it is from; `steady` where the case asks for steady states of motion.
-    fn wear(
-        &self,
-        checks: &Checks<'_>,
-        grid: Option<&Grid>,
-        steady: bool,
-    ) -> Option<(asperity::wear::Wear, Vec<Origin>)> {
+    /// The wear of the surfaces; `steady` where the case asks for steady states of motion.
+    fn wear(&self, checks: &Checks<'_>, grid: Option<&Grid>, steady: bool) -> Option<Arc<Wear>> {
         let (wear, at) = (self.wear.as_ref()?, checks.at("wear"));
         let refuse = |message: &str, expected: &str, help: &str| at.fault::<()>(message, expected, help);
         if steady {
             let help = "give [motion] a velocity and the case a [time], or wear the contact in its own frame by [wear] velocity";
             refuse("a steady state does not wear: its surfaces stay as they are", "a motion in time", help);
-        } else if self.motion.as_ref().is_some_and(|motion| motion.rolls()) {
+        } else if self.motion.as_ref().is_some_and(|motion| motion.kind == MotionKind::Roll) {
             refuse("surfaces that roll do not slide, so they do not wear here", "kind = \"slide\"", "");
         } else if self.seal.is_some() {
-            refuse(
-                "a [seal] is computed from patches that do not wear",
-                "one of the two sections",
-                "delete one of them",
-            );
+            let message = "a [seal] is computed from patches that do not wear";
+            refuse(message, "one of the two sections", "delete one of them");
         }
         let slides = [("motion", self.motion.is_some()), ("tangential", self.tangential.is_some())];
         let slides = slides.into_iter().find(|(_, given)| *given).map(|(section, _)| section);
-        wear.law(&at, grid, slides)
+        wear.law(&at, grid, slides).map(Arc::new)
     }
 
     /// The simulation as far as the sections give it: without gap and motion.
@@ -425,7 +363,7 @@ impl Document {
         pair: Option<&Pair>,
         programme: Option<&Programme>,
         times: Option<&TimeGrid>,
-        hardness: Option<&Hardness>,
+        hardness: Option<&Option<Array2<f64>>>,
         include: Vec<f64>,
     ) -> Option<Simulation> {
         let pair = pair?;
@@ -436,7 +374,7 @@ impl Document {
             creep: pair.creep.clone(),
             thermal: pair.thermal.clone(),
             hardness: pair.hardness,
-            hardness_map: hardness?.map.clone(),
+            hardness_map: hardness?.clone(),
             plasticity: self.solver.plasticity,
             loading: programme?.clone(),
             times: times?.clone(),
@@ -465,21 +403,29 @@ impl Document {
         (grid, line, parts)
     }
 
-    /// The hardness of the cells over all bodies that give it.
-    fn hardness(&self, checks: &Checks<'_>, grid: Option<&Grid>) -> Option<Hardness> {
+    /// The hardness of the cells over all bodies that give it; the inner `None` where none does.
+    fn hardness(&self, checks: &Checks<'_>, grid: Option<&Grid>) -> Option<Option<Array2<f64>>> {
         let of_body = |(n, body): (usize, &Body)| {
             let place = |key: &str| checks.at("body").item(n).key(key);
-            let file = body.hardness_file.as_ref().map(|file| {
-                file.of_cells(&place("hardness_file"), grid).map(|(map, file)| (map, Some(file)))
-            });
-            let array = body
-                .hardness_array
-                .as_ref()
-                .map(|name| hardness::of_array(&place("hardness_array"), name, grid).map(|map| (map, None)));
-            [file, array]
+            let file = body.hardness_file.as_ref().map(|file| file.of_cells(&place("hardness_file"), grid));
+            let array = body.hardness_array.as_ref();
+            [file, array.map(|name| hardness::of_array(&place("hardness_array"), name, grid))]
         };
         let all: Vec<_> = self.body.iter().enumerate().flat_map(of_body).flatten().collect();
-        let add = |hardness: Hardness, found: Option<_>| found.map(|(map, file)| hardness.and(map, file));
-        all.into_iter().try_fold(Hardness::default(), add)
+        let maps = all.into_iter().collect::<Option<Vec<_>>>()?;
+        Some(maps.into_iter().reduce(hardness::softer))
     }
+}
+
+/// The motion at the temperature of the run.
+fn warmed(
+    checks: &Checks<'_>,
+    motion: Motion,
+    parts: &[body::Part<'_>],
+    temperatures: Option<&[(f64, f64)]>,
+) -> Option<Motion> {
+    let Some(law @ ShearStress::Gaussian { .. }) = motion.shear_stress else { return Some(motion) };
+    let at = checks.at("motion").key("shear_stress");
+    let law = shear::shifted(law, flash::shift_factor(&at, parts, temperatures)?);
+    Some(Motion { shear_stress: Some(law), ..motion })
 }

@@ -1,40 +1,29 @@
 //! Numbers of a case without a unit: they are in SI, and `check` lists their keys.
 
-use toml::Value;
+use toml::de::DeValue;
 
 use super::schema;
-use super::text::join;
+use super::text::Text;
 
 /// The keys of quantities that the case in `source` gives as bare numbers, each list once. 0 needs no unit.
 pub fn bare_numbers(source: &str) -> Vec<String> {
-    let mut keys = vec![];
-    if let Ok(table) = source.parse::<toml::Table>() {
-        table.iter().for_each(|(key, value)| visit(value, key, &mut keys));
-    }
+    let mut keys: Vec<String> = vec![];
+    let Ok(text) = Text::parse(source) else { return keys };
+    text.visit(&mut |path, _, value| {
+        let number = match value.get_ref() {
+            DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix()).unwrap_or(0) as f64,
+            DeValue::Float(real) => real.as_str().parse().unwrap_or(0.0),
+            _ => return,
+        };
+        // A list is named once.
+        let key = path.trim_end_matches(|c: char| c == '[' || c == ']' || c.is_ascii_digit());
+        let key = if path.ends_with(']') { key } else { path };
+        let known = keys.last().is_some_and(|last| last == key);
+        if number != 0.0 && number.is_finite() && !known && schema::has_unit(path) {
+            keys.push(key.to_owned());
+        }
+    });
     keys
-}
-
-fn visit(value: &Value, path: &str, keys: &mut Vec<String>) {
-    let number = match value {
-        Value::Table(table) => {
-            table.iter().for_each(|(key, value)| visit(value, &join(path, key), keys));
-            return;
-        }
-        Value::Array(list) => {
-            list.iter().enumerate().for_each(|(n, value)| visit(value, &format!("{path}[{n}]"), keys));
-            return;
-        }
-        Value::Integer(number) => *number as f64,
-        Value::Float(number) => *number,
-        _ => return,
-    };
-    // A list is named once.
-    let key = path.trim_end_matches(|c: char| c == '[' || c == ']' || c.is_ascii_digit());
-    let key = if path.ends_with(']') { key } else { path };
-    let known = keys.last().is_some_and(|last| last == key);
-    if number != 0.0 && number.is_finite() && !known && schema::has_unit(path) {
-        keys.push(key.to_owned());
-    }
 }
 
 #[cfg(test)]

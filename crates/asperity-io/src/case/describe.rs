@@ -244,6 +244,10 @@ impl Case {
         });
         let stored_rows = self.stored_rows();
         let creep = self.reference_creep();
+        let largest = |history: &History| {
+            let [low, high] = history.range(self.conditions.times.end());
+            low.abs().max(high.abs())
+        };
         let field_bytes: u64 = self.output.fields.iter().map(|field| field.bytes()).sum();
         Description {
             title: self.title.clone(),
@@ -269,12 +273,7 @@ impl Case {
             friction: self.conditions.tangential.as_ref().map(|law| FrictionReport {
                 coefficient: law.coefficients.as_ref().map_or([law.coefficient; 2], extent),
                 control: law.control,
-                largest: law.histories.each_ref().map(|history| {
-                    history
-                        .range(self.conditions.times.end())
-                        .into_iter()
-                        .fold(0.0, |most: f64, end| most.max(end.abs()))
-                }),
+                largest: law.histories.each_ref().map(largest),
                 slides_at: law.slides_at(&self.conditions),
                 beta: law.beta,
                 coupling: law.coupling,

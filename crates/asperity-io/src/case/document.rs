@@ -5,6 +5,7 @@
 //! section is converted.
 
 use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
 
 use super::adhesion::Adhesion;
 use super::body::Body;
@@ -17,6 +18,7 @@ use super::material::Material;
 use super::motion::Motion;
 use super::output::{OutputKeys, Solver};
 use super::read::Reader;
+use super::schema;
 use super::seal::SealKeys;
 use super::stress::Stress;
 use super::study::Study;
@@ -28,29 +30,6 @@ use super::time::Times;
 use super::wear::Wear;
 use crate::quantity::range::{Poisson, Positive};
 use crate::quantity::{Length, Number, Pressure};
-
-/// The keys of the root.
-const SECTIONS: &[&str] = &[
-    "title",
-    "domain",
-    "surface",
-    "body",
-    "load",
-    "time",
-    "temperature",
-    "motion",
-    "adhesion",
-    "friction",
-    "tangential",
-    "wear",
-    "flash",
-    "leakage",
-    "seal",
-    "solver",
-    "output",
-    "stress",
-    "study",
-];
 
 /// Keys of a `[[body]]` that may stand next to a material of its own file: `fit-indentation` writes `poisson`.
 const OF_A_BODY: &[&str] = &["material", "name", "thickness", "poisson", "bulk_modulus", "hardness"];
@@ -124,7 +103,7 @@ impl Document {
     /// The document, or the faults that its sections have.
     pub fn read(text: &Text<'_>) -> Read<Document> {
         let mut reader = Reader::new(text);
-        reader.only(SECTIONS);
+        reader.only(&schema::sections());
         let document = Document {
             title: reader.optional("title"),
             domain: reader.required("domain").unwrap_or_default(),
@@ -175,18 +154,16 @@ pub fn bodies(text: &Text<'_>) -> Read<(Vec<Body>, Option<Temperature>)> {
     reader.finish(Some((bodies, temperature)))
 }
 
-/// The section `[stress]` of a document that may have nothing else.
-pub fn stress(text: &Text<'_>) -> Read<Stress> {
+/// The section of this name of a document that may have nothing else.
+pub fn section<T: DeserializeOwned>(text: &Text<'_>, name: &str) -> Read<T> {
     let mut reader = Reader::new(text);
-    let stress = reader.required("stress");
-    reader.finish(stress)
+    let section = reader.required(name);
+    reader.finish(section)
 }
 
 /// The section `[study]` of a document that may have nothing else; one without it varies nothing.
 pub fn study(text: &Text<'_>) -> Read<Study> {
-    let mut reader = Reader::new(text);
-    let study = if text.root.contains_key("study") { reader.table("study") } else { Some(Study::default()) };
-    reader.finish(study)
+    if text.root.contains_key("study") { section(text, "study") } else { Ok(Study::default()) }
 }
 
 /// The material of a file that holds the lines of a body, `material = { ... }` at least, or the faults that it has.

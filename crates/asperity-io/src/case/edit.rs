@@ -1,8 +1,12 @@
 //! A case file that a program such as a form changes key by key: comments, order and blanks stay.
 
-use toml_edit::{Document, DocumentMut, Item, TableLike, Value};
+use std::ops::Range;
+
+use toml::de::DeValue;
+use toml_edit::{DocumentMut, Value};
 
 use super::overrides::Override;
+use super::text::Text;
 
 /// A key of a case file with its value.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,18 +20,26 @@ pub struct Entry {
 }
 
 /// The keys of a case, in the order of the file; `None` where it is no TOML. Lists of numbers and texts are one value.
-pub fn entries(text: &str) -> Option<Vec<Entry>> {
-    let document = Document::parse(text).ok()?;
-    let mut found = vec![];
-    of_table(document.as_table(), "", &mut |key, value| {
-        let span = value.span().unwrap_or_default();
-        found.push((span.start, key.to_owned(), words(value, &text[span])));
+pub fn entries(source: &str) -> Option<Vec<Entry>> {
+    let mut found: Vec<(Range<usize>, String, String)> = vec![];
+    Text::parse(source).ok()?.visit(&mut |path, _, value| {
+        let holds_tables = match value.get_ref() {
+            DeValue::Table(_) => true,
+            DeValue::Array(list) => list.iter().any(|element| element.get_ref().is_table()),
+            _ => false,
+        };
+        let span = value.span();
+        let is_of_list = found.last().is_some_and(|(list, ..)| list.contains(&span.start));
+        if !holds_tables && !is_of_list {
+            let words = words(value.get_ref(), &source[span.clone()]);
+            found.push((span, path.to_owned(), words));
+        }
     });
-    found.sort_by_key(|(start, ..)| *start);
+    found.sort_by_key(|(span, ..)| span.start);
     let (mut line, mut at) = (1, 0);
-    let entry = |(start, key, value): (usize, String, String)| {
-        line += text[at..start].matches('\n').count();
-        at = start;
+    let entry = |(span, key, value): (Range<usize>, String, String)| {
+        line += source[at..span.start].matches('\n').count();
+        at = span.start;
         Entry { key, value, line }
     };
     Some(found.into_iter().map(entry).collect())
@@ -44,37 +56,8 @@ pub fn with_key(text: &str, key: &str, value: &str) -> Result<String, String> {
     Ok(document.to_string())
 }
 
-type Take<'a> = dyn FnMut(&str, &Value) + 'a;
-
-fn of_table(table: &dyn TableLike, path: &str, take: &mut Take<'_>) {
-    for (key, item) in table.iter() {
-        let path = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
-        match item {
-            Item::Value(value) => of_value(value, &path, take),
-            Item::Table(table) => of_table(table, &path, take),
-            Item::ArrayOfTables(tables) => {
-                tables
-                    .iter()
-                    .enumerate()
-                    .for_each(|(n, table)| of_table(table, &format!("{path}[{n}]"), take));
-            }
-            Item::None => {}
-        }
-    }
-}
-
-fn of_value(value: &Value, path: &str, take: &mut Take<'_>) {
-    match value {
-        Value::InlineTable(table) => of_table(table, path, take),
-        Value::Array(list) if list.iter().any(Value::is_inline_table) => {
-            list.iter().enumerate().for_each(|(n, value)| of_value(value, &format!("{path}[{n}]"), take));
-        }
-        value => take(path, value),
-    }
-}
-
 /// A text that would be read as something else keeps its quotes.
-fn words(value: &Value, written: &str) -> String {
+fn words(value: &DeValue<'_>, written: &str) -> String {
     let is_plain = |text: &&str| text.parse::<Value>().is_err() && text.trim() == *text && !text.is_empty();
     value.as_str().filter(is_plain).unwrap_or(written).to_owned()
 }

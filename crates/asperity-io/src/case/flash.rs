@@ -63,16 +63,18 @@ impl Word for Diffusivity<Positive> {
     const IS_QUANTITY: bool = true;
 }
 
-/// The materials of a case, and how warm the run is: (time \[s\], temperature \[K\]).
-pub struct Materials<'a> {
-    pub parts: &'a [Part<'a>],
-    pub pair: &'a Pair,
-    pub temperatures: Option<&'a [(f64, f64)]>,
-}
-
 impl Flash {
-    /// The heat of this motion.
-    pub fn law(&self, at: &Place<'_>, motion: &Motion, materials: &Materials<'_>) -> Option<Law> {
+    /// The heat of this motion over bodies of these materials, in a run as warm as (time \[s\], temperature \[K\]) say.
+    pub fn law(
+        &self,
+        at: &Place<'_>,
+        motion: &Motion,
+        parts: &[Part<'_>],
+        pair: &Pair,
+        temperatures: Option<&[(f64, f64)]>,
+    ) -> Option<Law> {
+        let remembering = parts.iter().zip(&pair.creeps).filter(|(_, (creep, _))| creep.remembers());
+        let remembering: Vec<&Part<'_>> = remembering.map(|(part, _)| part).collect();
         if motion.rolls {
             let help = "delete the section, or take motion.kind = \"slide\"";
             return at.fault("surfaces that roll do not rub", "kind = \"slide\"", help);
@@ -91,7 +93,7 @@ impl Flash {
                     "give friction = 0.3, a shear_stress in [motion], or hysteresis = true",
                 );
             }
-            (None, None) if !materials.pair.creeps.iter().any(|(creep, _)| creep.remembers()) => {
+            (None, None) if remembering.is_empty() => {
                 let message = "the bodies are elastic and lose nothing, so hysteresis makes no heat";
                 let help = "give friction = 0.3, or a shear_stress in [motion]";
                 return at.key("hysteresis").fault(message, "`friction` or `motion.shear_stress`", help);
@@ -108,7 +110,7 @@ impl Flash {
         };
         let feedback = match self.feedback {
             Choice::None => None,
-            Choice::Mean => Some(feedback(&at.key("feedback"), motion, materials)?),
+            Choice::Mean => Some(feedback(&at.key("feedback"), motion, &remembering, temperatures)?),
         };
         Some(Law {
             bodies: [slider, track],
@@ -122,16 +124,18 @@ impl Flash {
 }
 
 /// The material that sees its own temperature: that of the bodies whose memory streams by.
-fn feedback(at: &Place<'_>, motion: &Motion, materials: &Materials<'_>) -> Option<Feedback> {
+fn feedback(
+    at: &Place<'_>,
+    motion: &Motion,
+    remembering: &[&Part<'_>],
+    temperatures: Option<&[(f64, f64)]>,
+) -> Option<Feedback> {
     if matches!(motion.travel, Travel::Path(_)) {
         let message = "the feedback of the flash temperature is found for steady states only";
         let help =
             "give velocities in [motion.steady] in place of a course over time, or take feedback = \"none\"";
         return at.fault(message, "steady states of motion", help);
     }
-    let remembering = materials.parts.iter().zip(&materials.pair.creeps);
-    let remembering: Vec<&Part<'_>> =
-        remembering.filter(|(_, (creep, _))| creep.remembers()).map(|(part, _)| part).collect();
     let mut found: Option<Feedback> = None;
     for part in remembering {
         let place = part.at.key("material");
@@ -149,7 +153,7 @@ fn feedback(at: &Place<'_>, motion: &Motion, materials: &Materials<'_>) -> Optio
             let help = "leave `vertical` out, or take flash.feedback = \"none\"";
             return place.fault(message, "a shift without `vertical`", help);
         }
-        let temperature = temperature_of(shift, sample.temperature, materials.temperatures);
+        let temperature = temperature_of(shift, sample.temperature, temperatures);
         let Some(temperature) = temperature else {
             let help = "add a section [temperature]";
             return place.fault("the temperature of the run is not known", "a temperature", help);

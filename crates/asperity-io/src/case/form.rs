@@ -1,5 +1,6 @@
 //! Values that are written in one of several forms: a word (or a quantity), a list, or a table.
 
+use std::any::TypeId;
 use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
@@ -60,8 +61,8 @@ impl<W: Copy> Form<W, Vec<W>> {
 impl<'de, W, L, T> Deserialize<'de> for Form<W, L, T>
 where
     W: Deserialize<'de> + Word,
-    L: Deserialize<'de> + JsonSchema,
-    T: Deserialize<'de> + JsonSchema,
+    L: Deserialize<'de> + 'static,
+    T: Deserialize<'de> + 'static,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(FormVisitor(PhantomData))
@@ -82,8 +83,8 @@ impl<W: Word, L, T> FormVisitor<W, L, T> {
 impl<'de, W, L, T> Visitor<'de> for FormVisitor<W, L, T>
 where
     W: Deserialize<'de> + Word,
-    L: Deserialize<'de> + JsonSchema,
-    T: Deserialize<'de> + JsonSchema,
+    L: Deserialize<'de> + 'static,
+    T: Deserialize<'de> + 'static,
 {
     type Value = Form<W, L, T>;
 
@@ -118,11 +119,11 @@ where
     }
 }
 
-fn is_never<T: JsonSchema>() -> bool {
-    T::schema_name() == Never::schema_name()
+fn is_never<T: 'static>() -> bool {
+    TypeId::of::<T>() == TypeId::of::<Never>()
 }
 
-impl<W: JsonSchema, L: JsonSchema, T: JsonSchema> JsonSchema for Form<W, L, T> {
+impl<W: JsonSchema + 'static, L: JsonSchema + 'static, T: JsonSchema + 'static> JsonSchema for Form<W, L, T> {
     fn inline_schema() -> bool {
         true
     }

@@ -11,6 +11,7 @@ use super::error::{CaseError, CaseErrors};
 use super::given::{self, Arrays};
 use super::place::Checks;
 use super::schema;
+use super::stress::Stress;
 use super::surface::Kind;
 use crate::preparation::Step;
 use crate::stress::{StressBody, StressPlan};
@@ -80,8 +81,7 @@ pub fn step(words: &str) -> Result<Step, String> {
             Kind::File(file) => file.process.as_ref()?.first(),
             _ => None,
         });
-        let step = process.and_then(|operation| operation.step(&checks.at(place)));
-        step.ok_or_else(|| checks.into_errors())
+        checks.finish(process.and_then(|operation| operation.step(&checks.at(place))))
     });
     read.map_err(|wrong| {
         let Some(CaseError { message, help, .. }) = wrong.errors.into_iter().next() else {
@@ -195,12 +195,9 @@ pub fn stress(
     let table: Table = keys.iter().map(value).collect();
     let document = Table::from_iter([("stress".into(), table.into())]);
     let read = given::from_keys(&document, &Arrays::new(), |text| {
-        let section = document::stress(text)?;
+        let section: Stress = document::section(text, "stress")?;
         let checks = Checks::new(text, Path::new(""));
-        match section.plan(&checks.at("stress"), grid, bodies) {
-            Some(plan) if !checks.any() => Ok(plan),
-            _ => Err(checks.into_errors()),
-        }
+        checks.finish(section.plan(&checks.at("stress"), grid, bodies))
     });
     read.map_err(bare)
 }

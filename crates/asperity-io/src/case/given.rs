@@ -18,7 +18,6 @@ use super::history::Bodies;
 use super::load::Load;
 use super::material::Dependence;
 use super::place::Checks;
-use super::read::Reader;
 use super::shift::Shift;
 use super::surface::Surface;
 use super::text::Text;
@@ -92,13 +91,10 @@ pub fn surface(keys: &Table) -> Result<(Grid, Part, bool), CaseErrors> {
         let grid = domain.grid(&checks.at("domain"), &[]);
         let line = grid.as_ref().is_some_and(Grid::is_line);
         let place = checks.at("surface").item(0);
-        let part = surfaces.first().and_then(|surface| surface.part(&place, grid.as_ref(), line));
-        match (grid, part, checks.any()) {
-            (Some(grid), Some(part), false) => {
-                Ok((grid, part, surfaces.first().is_some_and(Surface::is_single)))
-            }
-            _ => Err(checks.into_errors()),
-        }
+        let surface = surfaces.first();
+        let part = surface.and_then(|surface| surface.part(&place, grid.as_ref(), line));
+        let made = grid.zip(part).map(|(grid, part)| (grid, part, surface.is_some_and(Surface::is_single)));
+        checks.finish(made)
     })
 }
 
@@ -112,13 +108,11 @@ pub fn prescribed(keys: Table, simulation: &Simulation) -> Result<(Control, Cour
     let load = Table::from_iter([("stages".to_owned(), toml::Value::Array(vec![keys.into()]))]);
     let keys = Table::from_iter([("load".to_owned(), load.into())]);
     from_keys(&keys, &Arrays::new(), |text| {
-        let mut reader = Reader::new(text);
-        let load = reader.required::<Load>("load");
-        let load = reader.finish(load)?;
+        let load: Load = document::section(text, "load")?;
         let checks = Checks::new(text, Path::new(""));
         let made = load.programme(&checks.at("load"), bodies, &|_, _| 0.0);
-        let stage = made.and_then(|(mut programme, _)| programme.stages.pop());
-        stage.map(|stage| (stage.control, stage.course)).ok_or_else(|| checks.into_errors())
+        let stage = made.and_then(|mut programme| programme.stages.pop());
+        checks.finish(stage.map(|stage| (stage.control, stage.course)))
     })
 }
 
@@ -129,9 +123,8 @@ pub fn prescribed(keys: Table, simulation: &Simulation) -> Result<(Control, Cour
 pub fn shift(keys: Table) -> Result<(ShiftRequest, VerticalRequest), CaseErrors> {
     let keys = Table::from_iter([("shift".to_owned(), keys.into())]);
     from_keys(&keys, &Arrays::new(), |text| {
-        let mut reader = Reader::new(text);
-        let shift = reader.required::<Shift>("shift");
-        let Dependence { shift, vertical } = reader.finish(shift)?.alone(text)?;
+        let shift: Shift = document::section(text, "shift")?;
+        let Dependence { shift, vertical } = shift.alone(text)?;
         Ok((shift, vertical))
     })
 }

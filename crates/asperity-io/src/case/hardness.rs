@@ -22,40 +22,18 @@ pub struct HardnessFile {
     unit: Option<Pressure<Positive>>,
 }
 
-/// The cut-off of each cell \[Pa\] over all bodies that have one, and the files with their MD5.
-#[derive(Default)]
-pub struct Hardness {
-    pub map: Option<Array2<f64>>,
-    pub files: Vec<(String, String)>,
-}
-
-impl Hardness {
-    /// Adds a body: the softer one decides in each cell.
-    pub fn and(self, map: Array2<f64>, file: Option<(String, String)>) -> Hardness {
-        let map = match self.map {
-            Some(softer) => Zip::from(&softer).and(&map).map_collect(|a, b| a.min(*b)),
-            None => map,
-        };
-        Hardness { map: Some(map), files: [self.files, Vec::from_iter(file)].concat() }
-    }
-}
-
 impl HardnessFile {
-    /// The cut-off of each cell \[Pa\]; the file and its MD5.
-    pub fn of_cells(&self, at: &Place<'_>, grid: Option<&Grid>) -> Option<(Array2<f64>, (String, String))> {
+    /// The cut-off of each cell \[Pa\].
+    pub fn of_cells(&self, at: &Place<'_>, grid: Option<&Grid>) -> Option<Array2<f64>> {
         let at = at.key("path");
-        let (numbers, file) = numbers_of_cells(&at, &self.path, grid)?;
+        let numbers = numbers_of_cells(&at, &self.path, grid)?;
         let unit = self.unit.map_or(1.0, Pressure::get);
-        Some((positive(&at, numbers.mapv(|number| number * unit), &file.0)?, file))
+        positive(&at, numbers.mapv(|number| number * unit), &self.path)
     }
 }
 
-/// A number for each cell from a file; the file and its MD5.
-pub fn numbers_of_cells(
-    at: &Place<'_>,
-    path: &str,
-    grid: Option<&Grid>,
-) -> Option<(Array2<f64>, (String, String))> {
+/// A number for each cell from a file.
+pub fn numbers_of_cells(at: &Place<'_>, path: &str, grid: Option<&Grid>) -> Option<Array2<f64>> {
     let full = at.file(path)?;
     let name = full.display();
     let digest = match std::fs::read(&full) {
@@ -77,12 +55,18 @@ pub fn numbers_of_cells(
         let what = format!("{name} holds {mx} x {my} numbers, but the domain has {nx} x {ny} cells");
         return at.refuse(Code::Data, what, "one number for each cell", "axis 0 of an array is x");
     }
-    Some((numbers.heights, (path.to_owned(), digest)))
+    at.note_file(path, digest);
+    Some(numbers.heights)
 }
 
 /// The cut-off of each cell \[Pa\], of the array of this name.
 pub fn of_array(at: &Place<'_>, name: &str, grid: Option<&Grid>) -> Option<Array2<f64>> {
     positive(at, at.array(name, grid?)?, "the array")
+}
+
+/// The cut-off of each cell of two bodies: the softer one decides.
+pub fn softer(one: Array2<f64>, other: Array2<f64>) -> Array2<f64> {
+    Zip::from(&one).and(&other).map_collect(|a, b| a.min(*b))
 }
 
 /// The map, where every cell has a hardness.

@@ -2,8 +2,10 @@
 
 use asperity::Control;
 
-use super::history_file::{self, Origin};
+use super::history_file;
 use super::keys::*;
+use crate::quantity::Quantity;
+use crate::quantity::range::Range;
 
 /// A value over time.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -87,29 +89,25 @@ pub enum From {
     Current,
 }
 
-/// The history of a velocity: a constant, or a table. There is no earlier value in it.
-pub fn of_velocity(
-    at: &Place<'_>,
-    velocity: &Form<Velocity, Never, Box<History>>,
-) -> Option<asperity::History> {
-    match velocity {
-        Form::Word(velocity) => Some(asperity::History::Step { value: velocity.get() }),
-        Form::Table(table) => table.read(at, Kind::Velocity, "").map(|(history, _)| history),
-        Form::List(never) => match *never {},
+/// A value that is constant, or has a history.
+pub type Course<W> = Form<W, Never, Box<History>>;
+
+impl<D: Dimension + Copy, R: Range + Copy> Course<Quantity<D, R>> {
+    /// The history in SI, as of [`History::read`].
+    pub fn history(&self, at: &Place<'_>, kind: Kind, help: &str) -> Option<asperity::History> {
+        match self {
+            Form::Word(value) => Some(asperity::History::Step { value: value.get() }),
+            Form::Table(history) => history.read(at, kind, help),
+            Form::List(never) => match *never {},
+        }
     }
 }
 
 impl History {
-    /// The history in SI, and the file that holds it; a hold has none without an earlier value. `help` says what to do instead.
-    pub fn read(
-        &self,
-        at: &Place<'_>,
-        kind: Kind,
-        help: &str,
-    ) -> Option<(asperity::History, Option<Origin>)> {
+    /// The history in SI; a hold has none without an earlier value. `help` says what to do instead.
+    pub fn read(&self, at: &Place<'_>, kind: Kind, help: &str) -> Option<asperity::History> {
         let value = |key: &str, value: &Prescribed| at.key(key).quantity(kind.resolve(value));
-        let mut file = None;
-        let history = match self {
+        Some(match self {
             History::Hold {} => return at.fault("there is no earlier value to hold", "another kind", help),
             History::Step { value: step } => asperity::History::Step { value: value("value", step)? },
             History::Ramp { value: top, duration, .. } => {
@@ -130,12 +128,10 @@ impl History {
             History::Table { points } => table(&at.key("points"), points, kind)?,
             History::File { path } => {
                 let at = at.key("path");
-                let (points, read) = history_file::of_key(&at, path, "value", |value| kind.resolve(value))?;
-                file = Some(read);
+                let points = history_file::of_key(&at, path, "value", |value| kind.resolve(value))?;
                 asperity::History::Table { points }
             }
-        };
-        Some((history, file))
+        })
     }
 }
 

@@ -7,7 +7,6 @@
 //! ```
 
 use super::place::Place;
-pub use super::small_table::Origin;
 use super::small_table::{of_key as file_of_key, rows};
 use super::words::number;
 use crate::quantity::range::NonNegative;
@@ -15,13 +14,13 @@ use crate::quantity::{Prescribed, QuantityError, Time};
 
 const MOST_POINTS: usize = 10_000_000;
 
-/// The points (time \[s\], value in SI) of the file that the key at `at` names, and where they come from.
+/// The points (time \[s\], value in SI) of the file that the key at `at` names.
 pub fn of_key(
     at: &Place<'_>,
     path: &str,
     value: &str,
     resolve: impl Fn(&Prescribed) -> Result<f64, QuantityError>,
-) -> Option<(Vec<(f64, f64)>, Origin)> {
+) -> Option<Vec<(f64, f64)>> {
     file_of_key(at, path, &format!("a file of two columns, time and {value}"), |text| parse(text, resolve))
 }
 

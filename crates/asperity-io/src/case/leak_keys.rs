@@ -1,7 +1,7 @@
 //! A leakage as the keys of `[leakage]`, and with some of them changed.
 
 use asperity::Boundary;
-use serde_json::{Map, Value, json};
+use serde_json::json;
 
 use super::{LeakageKeys, leak as checked};
 use crate::leakage::{Fluid, GasKind, Leak};
@@ -9,36 +9,31 @@ use crate::leakage::{Fluid, GasKind, Leak};
 impl Leak {
     /// The keys that describe it, without `times`.
     fn keys(&self) -> LeakageKeys {
-        let mut keys = Map::new();
-        let mut set = |key: &str, value: Value| drop(keys.insert(key.to_owned(), value));
-        set("direction", json!(self.direction));
-        set("sides", json!(self.sides));
-        set("smallest_gap", json!(self.smallest_gap));
-        set("field", json!(self.field));
-        match self.fluid {
-            None => {}
+        let mut keys = match self.fluid {
+            None => json!({}),
             Some(Fluid::Liquid { pressure_drop, viscosity }) => {
-                set("pressure_drop", json!(pressure_drop));
-                set("viscosity", json!(viscosity));
+                json!({ "pressure_drop": pressure_drop, "viscosity": viscosity })
             }
             Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
-                match kind {
-                    GasKind::Known(species) => set("gas", json!(species)),
+                let mut keys = match kind {
+                    GasKind::Known(species) => json!({ "gas": species }),
                     GasKind::Other { viscosity, molar_mass } => {
-                        set("viscosity", json!(viscosity));
-                        set("molar_mass", json!(molar_mass));
+                        json!({ "viscosity": viscosity, "molar_mass": molar_mass })
                     }
-                }
-                if let Some(kelvin) = temperature {
-                    set("temperature", json!(kelvin));
-                }
-                set("inlet", json!(inlet));
-                set("outlet", json!(outlet));
-                set("rarefaction", json!(rarefaction));
+                };
+                keys["temperature"] = json!(temperature);
+                keys["inlet"] = json!(inlet);
+                keys["outlet"] = json!(outlet);
+                keys["rarefaction"] = json!(rarefaction);
+                keys
             }
-        }
+        };
+        keys["direction"] = json!(self.direction);
+        keys["sides"] = json!(self.sides);
+        keys["smallest_gap"] = json!(self.smallest_gap);
+        keys["field"] = json!(self.field);
         // A bare number of a key is one in SI, so that all of this is read.
-        serde_json::from_value(Value::Object(keys)).unwrap_or_default()
+        serde_json::from_value(keys).unwrap_or_default()
     }
 
     /// The same with the keys that are `given` changed; their `times` are ignored. A liquid in place of a gas, or a gas
@@ -69,22 +64,15 @@ impl Leak {
         if given.viscosity.is_some() || given.molar_mass.is_some() {
             keys.gas = None;
         }
-        let merged = LeakageKeys {
-            direction: given.direction.or(keys.direction),
-            pressure_drop: given.pressure_drop.or(keys.pressure_drop),
-            viscosity: given.viscosity.or(keys.viscosity),
-            gas: given.gas.or(keys.gas),
-            molar_mass: given.molar_mass.or(keys.molar_mass),
-            temperature: given.temperature.or(keys.temperature),
-            inlet: given.inlet.or(keys.inlet),
-            outlet: given.outlet.or(keys.outlet),
-            rarefaction: given.rarefaction.or(keys.rarefaction),
-            sides: given.sides.or(keys.sides),
-            smallest_gap: given.smallest_gap.or(keys.smallest_gap),
-            field: given.field.or(keys.field),
-            // What acts on the surfaces, and what needs the bodies, belongs to the run: of the same flow it is kept.
-            ..LeakageKeys::default()
-        };
+        // What acts on the surfaces, and what needs the bodies, belongs to the run: of the same flow it is kept.
+        macro_rules! merged {
+            ($($key:ident)*) => {
+                LeakageKeys { $($key: given.$key.or(keys.$key),)* ..LeakageKeys::default() }
+            };
+        }
+        let merged = merged!(
+            direction pressure_drop viscosity gas molar_mass temperature inlet outlet rarefaction sides smallest_gap field
+        );
         let leak = checked(&merged, boundary)?;
         let (times, temperatures) = (self.times.clone(), self.temperatures.clone());
         let goes_on = |leak: &Leak| (leak.direction, leak.sides, leak.smallest_gap, leak.fluid);

@@ -4,7 +4,7 @@ use asperity::Boundary;
 use asperity::leakage::{Rarefaction, Sides, Species};
 use asperity::traction::{Action, Pockets};
 
-use super::history::{History, Kind, Sign};
+use super::history::{Course, Kind, Sign};
 use super::keys::*;
 use super::plan::Output;
 use super::stored_times::{StoredTimes, stored_times};
@@ -35,7 +35,7 @@ pub struct LeakageKeys {
     /// a ramp, a triangle and a trapezoid then begin at the pressure of the outlet.
     #[schemars(example = "3 bar")]
     #[schemars(example = serde_json::json!({ "kind": "table", "points": [["0 s", "1 bar"], ["5 s", "3 bar"]] }))]
-    pub inlet: Option<Form<Pressure<Positive>, Never, Box<History>>>,
+    pub inlet: Option<Course<Pressure<Positive>>>,
     /// Absolute pressure at the outlet; 0 for vacuum.
     #[schemars(example = "1 bar")]
     pub outlet: Option<Pressure<NonNegative>>,
@@ -154,14 +154,10 @@ impl LeakageKeys {
             );
         }
         let times = stored_times(&at.key("times"), self.times.as_ref(), output, end);
+        let (kind, help) = (Kind::Pressure(Sign::Press), "give the pressure as a number or a table");
         let inlet = match &self.inlet {
+            Some(inlet) => Some(inlet.history(&at.key("inlet"), kind, help)?),
             None => None,
-            Some(Form::Word(pressure)) => Some(held(pressure.get())),
-            Some(Form::Table(table)) => {
-                let kind = Kind::Pressure(Sign::Press);
-                Some(table.read(&at.key("inlet"), kind, "give the pressure as a number or a table")?.0)
-            }
-            Some(Form::List(never)) => match *never {},
         };
         let leak = match checked(self, boundary, inlet) {
             Ok(leak) => leak,

@@ -72,8 +72,8 @@ const AXES: &str = "a list of two values in brackets, along x and y, or of one v
 
 impl<'de, A: Deserialize<'de>, B: Deserialize<'de>> Deserialize<'de> for Two<A, B> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let pair = Pair { expected: TWO, make: |first, second: Option<B>| Some(Two(first, second?)) };
-        deserializer.deserialize_seq(Reader(pair, PhantomData))
+        let make = |first, second: Option<B>| Some(Two(first, second?));
+        deserializer.deserialize_seq(Reader { expected: TWO, make, kinds: PhantomData })
     }
 }
 
@@ -83,17 +83,16 @@ impl<'de, A: Deserialize<'de>> Deserialize<'de> for Axes<A> {
             None => Some(Axes::Line(x)),
             Some(y) => Some(Axes::Plane(x, y)),
         };
-        deserializer.deserialize_seq(Reader(Pair { expected: AXES, make }, PhantomData))
+        deserializer.deserialize_seq(Reader { expected: AXES, make, kinds: PhantomData })
     }
 }
 
 /// How a list of one or two values is read.
-struct Pair<F> {
+struct Reader<F, A, B> {
     expected: &'static str,
     make: F,
+    kinds: PhantomData<fn() -> (A, B)>,
 }
-
-struct Reader<F, A, B>(Pair<F>, PhantomData<fn() -> (A, B)>);
 
 impl<'de, F, A, B, T> Visitor<'de> for Reader<F, A, B>
 where
@@ -104,15 +103,15 @@ where
     type Value = T;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.0.expected)
+        f.write_str(self.expected)
     }
 
     fn visit_seq<S: SeqAccess<'de>>(self, mut values: S) -> Result<T, S::Error> {
-        let wrong = |n| S::Error::invalid_length(n, &self.0.expected);
+        let wrong = |n| S::Error::invalid_length(n, &self.expected);
         let first = values.next_element()?.ok_or_else(|| wrong(0))?;
         let second = values.next_element()?;
         match values.next_element::<IgnoredAny>()? {
-            None => (self.0.make)(first, second).ok_or_else(|| wrong(1)),
+            None => (self.make)(first, second).ok_or_else(|| wrong(1)),
             Some(_) => Err(wrong(3)),
         }
     }

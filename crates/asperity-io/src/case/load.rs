@@ -3,7 +3,6 @@
 use asperity::{Control, Course, Event, Programme, TimeGrid};
 
 use super::history::{Bodies, From, History, Kind};
-use super::history_file::Origin;
 use super::keys::*;
 use super::time::{Spacing, Times};
 use super::until::{self, Until};
@@ -13,7 +12,7 @@ use super::until::{self, Until};
 #[serde(deny_unknown_fields)]
 pub struct Load {
     /// The prescribed quantity; with `history`. "approach" if not given in a case with [adhesion].
-    control: Option<Control>,
+    pub control: Option<Control>,
     /// Its value over time, 0 before t = 0; with `control`.
     #[schemars(example = serde_json::json!({ "kind": "step", "value": "0.5 N" }))]
     history: Option<History>,
@@ -66,20 +65,15 @@ pub struct Stage {
 }
 
 impl Load {
-    /// The control of a run without stages.
-    pub fn control(&self) -> Option<Control> {
-        self.control
-    }
-
-    /// What is prescribed, and the files that hold histories. `first_step` is the first step of
+    /// What is prescribed. `first_step` is the first step of
     /// logarithmic steps to a time under a course, where the case does not say it.
     pub fn programme(
         &self,
         at: &Place<'_>,
         bodies: Bodies,
         first_step: &dyn Fn(f64, Option<&Course>) -> f64,
-    ) -> Option<(Programme, Vec<Origin>)> {
-        let (at, made) = match &self.stages {
+    ) -> Option<Programme> {
+        let (at, stages) = match &self.stages {
             Some(stages) => {
                 let why = "cannot be combined with `stages`; each stage has its own";
                 at.without(&["control", "history"], why, "one of the two", "leave one of them out")?;
@@ -104,14 +98,13 @@ impl Load {
                     let help = "kind = \"hold\" is only possible in a stage; to apply a load from the start use kind = \"step\"";
                     history.read(&at, Kind::of(control, bodies), help)?;
                 }
-                let made = of_history(&at, control, bodies, history)?;
-                (at, vec![made])
+                let stage = of_history(&at, control, bodies, history)?;
+                (at, vec![stage])
             }
         };
-        let (stages, files): (_, Vec<Option<Origin>>) = made.into_iter().unzip();
         let programme = Programme::new(stages);
         at.core(programme.validate())?;
-        Some((programme, files.into_iter().flatten().collect()))
+        Some(programme)
     }
 
     /// Whether every stage has steps of its own.
@@ -128,7 +121,7 @@ impl Stage {
         bodies: Bodies,
         last: bool,
         first_step: &dyn Fn(f64, Option<&Course>) -> f64,
-    ) -> Option<(asperity::Stage, Option<Origin>)> {
+    ) -> Option<asperity::Stage> {
         if !last && self.duration.is_none() && self.until.is_none() {
             return at.fault(
                 "this stage never ends, so the stages after it never begin",
@@ -136,7 +129,7 @@ impl Stage {
                 "give it duration = \"10 s\", or until = { approach = \"2 um\" }, { load = \"0.1 N\" } or \"contact-lost\"",
             );
         }
-        let (stage, file) = of_history(&at.key("history"), self.control, bodies, &self.history)?;
+        let stage = of_history(&at.key("history"), self.control, bodies, &self.history)?;
         let until = match &self.until {
             None => None,
             Some(Until::ContactLost) => Some(Event::ContactLost),
@@ -153,8 +146,7 @@ impl Stage {
         };
         let times = self.times(at, |end| first_step(end, Some(&stage.course)))?;
         let duration = self.duration.map(Time::get);
-        let stage = asperity::Stage { duration, until, after_jump: self.after_jump, times, ..stage };
-        Some((stage, file))
+        Some(asperity::Stage { duration, until, after_jump: self.after_jump, times, ..stage })
     }
 
     /// The instants of the stage, on its clock; the inner `None` where it has none of its own.
@@ -189,19 +181,19 @@ fn of_history(
     control: Control,
     bodies: Bodies,
     history: &History,
-) -> Option<(asperity::Stage, Option<Origin>)> {
+) -> Option<asperity::Stage> {
     let kind = Kind::of(control, bodies);
-    let (course, file) = match history {
-        History::Hold {} => (Course::Hold, None),
+    let course = match history {
+        History::Hold {} => Course::Hold,
         History::Ramp { value, from: From::Current, duration } => {
             let value = at.key("value").quantity(kind.resolve(value))?;
-            (Course::RampTo { value, duration: duration.get() }, None)
+            Course::RampTo { value, duration: duration.get() }
         }
         _ => {
-            let (history, file) = history.read(at, kind, "")?;
+            let history = history.read(at, kind, "")?;
             at.core(history.validate())?;
-            (Course::Given(history), file)
+            Course::Given(history)
         }
     };
-    Some((asperity::Stage::new(control, course), file))
+    Some(asperity::Stage::new(control, course))
 }

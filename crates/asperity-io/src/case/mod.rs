@@ -181,10 +181,7 @@ impl Case {
     /// # Errors
     /// [`CaseErrors`] where the file cannot be read, or with what is wrong in it.
     pub fn read(path: &Path, overrides: &[String]) -> Result<Case, CaseErrors> {
-        let name = path.display().to_string();
-        let text = file_text(path).map_err(|(reason, help)| {
-            CaseErrors::without_place(Code::File, &name, reason, "a case file", help)
-        })?;
+        let (name, text) = file_text(path, "a case file")?;
         let dir = path.parent().unwrap_or(Path::new(""));
         let stem = path.file_stem().map_or("result".into(), |stem| stem.to_string_lossy());
         Case::from_text(&name, text, dir, format!("{stem}.zarr").into(), overrides)
@@ -335,24 +332,18 @@ impl Case {
             };
             wanted.list = Quantity::at_rest().filter(possible).collect();
         }
+        let slips = simulation.tangential.is_some();
+        let mut of_laws = vec![];
         if let Some(traction) = &simulation.traction {
             let of_rows = traction.quantities().into_iter().chain([Quantity::ElasticEnergy]);
-            let new =
-                |quantity: &Quantity| !wanted.list.contains(quantity) && simulation.allows(*quantity).is_ok();
-            let of_rows: Vec<Quantity> = of_rows.filter(new).collect();
-            wanted.list.extend(of_rows);
+            of_laws.extend(of_rows.filter(|quantity| simulation.allows(*quantity).is_ok()));
         }
         if let Some(law) = &simulation.wear {
-            let is_new =
-                |own: &Quantity| law.has(*own, simulation.tangential.is_some()) && !wanted.list.contains(own);
-            let new: Vec<Quantity> = Quantity::of_wear().filter(is_new).collect();
-            wanted.list.extend(new);
+            of_laws.extend(Quantity::of_wear().filter(|own| law.has(*own, slips)));
         }
-        if simulation.tangential.is_some() {
-            let new: Vec<Quantity> =
-                Quantity::of_tangential().filter(|quantity| !wanted.list.contains(quantity)).collect();
-            wanted.list.extend(new);
-        }
+        of_laws.extend(Quantity::of_tangential().filter(|_| slips));
+        of_laws.retain(|quantity| !wanted.list.contains(quantity));
+        wanted.list.extend(of_laws);
         if let Some(flash) = &simulation.flash {
             wanted.list.retain(|quantity| !quantity.is_of_flash());
             wanted.list.extend(Quantity::of_flash());
@@ -383,14 +374,11 @@ impl Case {
 
     /// The errors that `report` gives at a key of the case.
     fn faults(&self, key: &str, report: impl FnOnce(&Place<'_>) -> Option<()>) -> CaseErrors {
-        let errors = match Text::parse(&self.source) {
-            Ok(text) => {
-                let checks = Checks::new(&text, Path::new(""));
-                report(&checks.at(key));
-                checks.into_errors()
-            }
-            Err(errors) => errors, // cannot be: the source was read before
-        };
+        let reported = Text::parse(&self.source).and_then(|text| {
+            let checks = Checks::new(&text, Path::new(""));
+            checks.finish(report(&checks.at(key)))
+        });
+        let errors = reported.err().unwrap_or_default();
         CaseErrors { name: self.name.clone(), source: self.source.clone(), errors }
     }
 }
@@ -436,16 +424,20 @@ fn line_of_file(line: usize, added: &[[usize; 2]]) -> usize {
     added.iter().rev().fold(line, |line, [after, count]| line.saturating_sub(*count).max(line.min(*after)))
 }
 
-/// The text of a case file; or what is wrong and what to do.
-fn file_text(path: &Path) -> Result<String, (String, Option<String>)> {
-    crate::resources::text(path, MOST_BYTES).map_err(|reason| {
-        let help = if !path.exists() {
-            "`asperity new TEMPLATE` writes a starter case"
-        } else if path.join("zarr.json").exists() {
-            "this is a result; asperity show and asperity report read it"
-        } else {
-            "name a case file: TOML, saved as UTF-8"
-        };
-        (reason, Some(help.to_owned()))
-    })
+/// The name and the text of a case file; `expected` says what else it may be.
+fn file_text(path: &Path, expected: &str) -> Result<(String, String), CaseErrors> {
+    let name = path.display().to_string();
+    match crate::resources::text(path, MOST_BYTES) {
+        Ok(text) => Ok((name, text)),
+        Err(reason) => {
+            let help = if !path.exists() {
+                "`asperity new TEMPLATE` writes a starter case"
+            } else if path.join("zarr.json").exists() {
+                "this is a result; asperity show and asperity report read it"
+            } else {
+                "name a case file: TOML, saved as UTF-8"
+            };
+            Err(CaseErrors::without_place(Code::File, &name, reason, expected, Some(help.to_owned())))
+        }
+    }
 }

@@ -9,7 +9,7 @@ use asperity::{Boundary, Grid, TimeGrid};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 
 use super::body::Body;
-use super::history::{History, Kind, of_velocity};
+use super::history::{Course, History, Kind};
 use super::keys::*;
 use super::pair::Pair;
 use super::plan::{Motion as Moving, Travel};
@@ -27,7 +27,7 @@ const MOST: usize = 10_000;
 pub struct Motion {
     /// Velocity of the contact over the body: a constant, or a history as in `[load]`. This, `path` or `steady`.
     #[schemars(example = "10 mm/s")]
-    velocity: Option<Form<Velocity, Never, Box<History>>>,
+    velocity: Option<Course<Velocity>>,
     /// Position of the contact over time, as a history that begins with 0. This, `velocity` or `steady`.
     #[schemars(example = serde_json::json!({ "kind": "table", "points": [["0 s", "0 mm"], ["2 s", "1 mm"]] }))]
     path: Option<History>,
@@ -36,7 +36,7 @@ pub struct Motion {
     pub steady: Option<Steady>,
     /// "slide" (the contact moves over the body `over`) or "roll" (over both bodies); "slide" if not given.
     #[serde(default)]
-    kind: MotionKind,
+    pub kind: MotionKind,
     /// Name of the body that the contact slides over, and that the grid is fixed to; the first viscoelastic one if not given.
     #[schemars(example = &"rubber")]
     over: Option<String>,
@@ -57,7 +57,7 @@ pub struct Motion {
 /// What the contact moves over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-enum MotionKind {
+pub enum MotionKind {
     /// One of the bodies.
     #[default]
     Slide,
@@ -167,11 +167,6 @@ pub fn nothing_moves(list: &Place<'_>, surfaces: &[Surface]) {
 }
 
 impl Motion {
-    /// Whether it rolls.
-    pub fn rolls(&self) -> bool {
-        self.kind == MotionKind::Roll
-    }
-
     /// What moves, and how; and whether each of the surfaces does.
     pub fn moving(&self, at: &Place<'_>, surfaces: &[Surface]) -> Option<Moving> {
         at.exactly_one(&["velocity", "path", "steady"])?;
@@ -179,12 +174,13 @@ impl Motion {
         let travel = match (&self.velocity, &self.path) {
             (Some(velocity), _) => {
                 let at = at.key("velocity");
-                Travel::Path(at.core(Path::of_velocity(of_velocity(&at, velocity)?, start))?)
+                let history = velocity.history(&at, Kind::Velocity, "")?;
+                Travel::Path(at.core(Path::of_velocity(history, start))?)
             }
             (None, Some(path)) => {
                 let at = at.key("path");
                 // There is no earlier value in the history.
-                let (history, _) = path.read(&at, Kind::Position, "")?;
+                let history = path.read(&at, Kind::Position, "")?;
                 Travel::Path(at.core(Path::of_position(history, start))?)
             }
             (None, None) => {
@@ -303,19 +299,15 @@ impl Motion {
         }
         let of_number =
             || over.parse::<usize>().ok().filter(|n| (1..=bodies.len()).contains(n)).map(|n| n - 1);
-        match bodies.iter().position(is_named).or_else(of_number) {
-            Some(found) => Some(Some(found)),
-            None => {
-                let names: Vec<&str> = bodies.iter().filter_map(|body| body.name.as_deref()).collect();
-                at.wrong(
-                    match names.is_empty() {
-                        true => format!("the number of a body, 1 to {}", bodies.len()),
-                        false => format!("the name of a body: {}", names.join(", ")),
-                    },
-                    "",
-                )
-            }
+        if let Some(found) = bodies.iter().position(is_named).or_else(of_number) {
+            return Some(Some(found));
         }
+        let names: Vec<&str> = bodies.iter().filter_map(|body| body.name.as_deref()).collect();
+        let expected = match names.is_empty() {
+            true => format!("the number of a body, 1 to {}", bodies.len()),
+            false => format!("the name of a body: {}", names.join(", ")),
+        };
+        at.wrong(expected, "")
     }
 }
 
@@ -411,22 +403,18 @@ impl Moving {
         boundary: Boundary,
         pair: &Pair,
         rubs: bool,
-    ) -> Vec<Finding> {
-        let parts = || std::iter::once(&pair.creep).chain(pair.thermal.iter().map(|body| &body.creep));
-        let branches: Vec<(f64, f64)> = parts()
-            .flat_map(|creep| creep.terms.iter().map(|term| (term.compliance, term.retardation_time)))
-            .collect();
-        if branches.is_empty() && !parts().any(|creep| creep.fluidity > 0.0) {
-            return if self.shear_stress.is_some() || rubs { vec![] } else { vec![finding::friction_zero()] };
+    ) -> Option<Finding> {
+        let creeps = || std::iter::once(&pair.creep).chain(pair.thermal.iter().map(|body| &body.creep));
+        if !creeps().any(Creep::remembers) {
+            return (self.shear_stress.is_none() && !rubs).then(finding::friction_zero);
         }
-        let velocities = match &self.travel {
-            Travel::Steady(velocities) => velocities.clone(),
-            // Only what travels round meets its own track.
-            Travel::Path(_) => vec![],
-        };
-        let single = surfaces.iter().any(Surface::is_single);
-        let found = (single && boundary == Boundary::Periodic)
-            .then(|| finding::own_track(grid, self.direction, &velocities, &branches, pair.instantaneous()));
-        found.flatten().into_iter().collect()
+        // Only what travels round meets its own track.
+        let Travel::Steady(velocities) = &self.travel else { return None };
+        if boundary == Boundary::Free || !surfaces.iter().any(Surface::is_single) {
+            return None;
+        }
+        let terms = creeps().flat_map(|creep| &creep.terms);
+        let branches: Vec<(f64, f64)> = terms.map(|term| (term.compliance, term.retardation_time)).collect();
+        finding::own_track(grid, self.direction, velocities, &branches, pair.instantaneous())
     }
 }

@@ -56,11 +56,11 @@ pub struct OutputKeys {
     /// Fields are stored at the first row, at every n-th row after it and at the last row; if not given, n is
     /// a tenth of the number of steps (10 if steps are adaptive). This or `times`.
     #[schemars(example = 10)]
-    pub every: Option<Whole<1>>,
+    every: Option<Whole<1>>,
     /// Times at which fields are stored, in addition to the first and the last row. Each becomes a step; if steps are
     /// adaptive the state there is interpolated instead. This or `every`.
     #[schemars(example = ("1 s", "10 s", "100 s"))]
-    pub times: Option<Vec<Time<NonNegative>>>,
+    times: Option<Vec<Time<NonNegative>>>,
     /// Units in which leaks and times are printed and drawn; numbers that are stored and JSON stay SI.
     #[schemars(example = json!({ "leak": "ml/year", "time": "h" }))]
     #[serde(default)]
@@ -137,14 +137,22 @@ impl Solver {
     }
 }
 
+/// What is stored where the case does not say it.
+pub struct Usual {
+    pub path: PathBuf,
+    pub fields: Vec<FieldKind>,
+    /// Number of steps that the motion asks for, of which every tenth has fields.
+    pub count: Option<usize>,
+}
+
 impl OutputKeys {
-    /// What is stored; at `default_path` where the case gives no path.
+    /// What is stored.
     pub fn output(
         &self,
         at: &Place<'_>,
         times: Option<&TimeGrid>,
         programme: Option<&Programme>,
-        default_path: PathBuf,
+        usual: Usual,
     ) -> Option<Output> {
         if self.path.as_ref().is_some_and(|path| path.trim().is_empty()) {
             return at.key("path").wrong("the path of a directory for the run to create", "");
@@ -155,24 +163,30 @@ impl OutputKeys {
                 return at.key("units").key(name).fault(error.to_string(), &error.expected(), "");
             }
         }
-        let usual = || vec![FieldKind::Pressure, FieldKind::Gap];
         Some(Output {
-            path: self.path.as_ref().map_or(default_path, PathBuf::from),
-            fields: self.fields.clone().unwrap_or_else(usual).into_iter().collect(),
-            rows: self.rows(at, times?, programme)?,
+            rows: self.rows(at, times?, programme, usual.count)?,
+            path: self.path.as_ref().map_or(usual.path, PathBuf::from),
+            fields: self.fields.clone().unwrap_or(usual.fields).into_iter().collect(),
             all_quantities: self.quantities.contains(&Wanted(None)),
             checkpoint: self.checkpoint.unwrap_or(true),
             units,
         })
     }
 
-    fn rows(&self, at: &Place<'_>, times: &TimeGrid, programme: Option<&Programme>) -> Option<Rows> {
+    fn rows(
+        &self,
+        at: &Place<'_>,
+        times: &TimeGrid,
+        programme: Option<&Programme>,
+        count: Option<usize>,
+    ) -> Option<Rows> {
         match (self.every, &self.times) {
             (Some(_), Some(_)) => {
                 let message = "`times` and `every` exclude each other";
                 at.key("times").fault(message, "one of the two", "leave one of them out")
             }
             (Some(every), None) => Some(Rows::Every(every.count())),
+            (None, None) if count.is_some() => Some(Rows::Every((count? / 10).max(1))),
             (None, None) => {
                 let stages = programme.iter().flat_map(|programme| &programme.stages);
                 let own: usize = stages.filter_map(|stage| stage.times.as_ref()).map(time::steps).sum();
@@ -190,16 +204,6 @@ impl OutputKeys {
                 Some(Rows::At(instants))
             }
         }
-    }
-
-    /// Whether the case leaves the stored fields open.
-    pub fn is_silent_on_fields(&self) -> bool {
-        self.fields.is_none()
-    }
-
-    /// Whether the case leaves the stored rows open.
-    pub fn is_silent_on_rows(&self) -> bool {
-        self.every.is_none() && self.times.is_none()
     }
 
     fn named(&self) -> impl Iterator<Item = (usize, Quantity)> {

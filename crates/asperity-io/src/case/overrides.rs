@@ -5,7 +5,7 @@
 
 use std::str::FromStr;
 
-use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value};
 
 /// One change.
 #[derive(Clone, Debug)]
@@ -50,8 +50,15 @@ impl Override {
     /// # Errors
     /// A sentence: the path leads through a value, or to an element that the list does not have.
     pub fn apply(&self, document: &mut DocumentMut) -> Result<(), String> {
-        set_in_table(document.as_table_mut(), &self.path, &self.value)
-            .map_err(|reason| format!("{} cannot be set: {reason}", self.key))
+        let place = place(document.as_item_mut(), &self.path);
+        let item = place.map_err(|reason| format!("{} cannot be set: {reason}", self.key))?;
+        let mut value = self.value.clone();
+        if let Some(old) = item.as_value() {
+            // Blanks and comment around the value stay, and so do the numbers of the lines.
+            old.decor().clone_into(value.decor_mut());
+        }
+        *item = Item::Value(value);
+        Ok(())
     }
 }
 
@@ -78,71 +85,38 @@ fn path(key: &str) -> Result<Vec<Step>, String> {
 /// No key of a case file lies deeper.
 const DEEPEST: usize = 16;
 
-fn set_in_table(table: &mut dyn TableLike, path: &[Step], value: &Value) -> Result<(), String> {
-    let (key, rest) = match path {
-        [Step::Key(key), rest @ ..] => (key, rest),
-        [Step::Index(n), ..] => return Err(format!("{n} is a number, but a table has names")),
-        [] => return Err("the path ends at a table".to_owned()),
-    };
-    if let Some(item) = table.get_mut(key) {
-        return set_in_item(item, rest, value);
-    }
-    let mut item = if rest.is_empty() { Item::None } else { Item::Table(Table::new()) };
-    set_in_item(&mut item, rest, value)?;
-    table.insert(key, item);
-    Ok(())
-}
-
-fn set_in_item(item: &mut Item, path: &[Step], value: &Value) -> Result<(), String> {
-    match item {
-        Item::Table(table) if !path.is_empty() => set_in_table(table, path, value),
-        Item::ArrayOfTables(tables) if !path.is_empty() => {
-            let count = tables.len();
-            let (n, rest) = first_index(path, count)?;
-            match (tables.get_mut(n), rest) {
-                (Some(_), []) => Err(format!("element {n} is a table; set one of its keys")),
-                (Some(table), _) => set_in_table(table, rest, value),
-                (None, _) => Err(beyond(n, count)),
+/// The item at a path; tables on the way to it are made where they are missing.
+fn place<'d>(mut item: &'d mut Item, path: &[Step]) -> Result<&'d mut Item, String> {
+    const NEITHER: &str = "the path leads through a value that is neither table nor list";
+    for (depth, step) in path.iter().enumerate() {
+        let is_last = depth + 1 == path.len();
+        let count = item.as_array().map(Array::len).or(item.as_array_of_tables().map(ArrayOfTables::len));
+        let (is_inline, holds_tables) = (item.is_value(), item.is_array_of_tables());
+        item = match (step, count) {
+            (Step::Key(key), None) => {
+                let table = item.as_table_like_mut().ok_or(NEITHER)?;
+                table.entry(key).or_insert_with(|| match is_inline {
+                    _ if is_last => Item::None,
+                    true => Item::Value(InlineTable::new().into()),
+                    false => Item::Table(Table::new()),
+                })
             }
-        }
-        Item::Value(old) => set_in_value(old, path, value),
-        // A whole table, or nothing yet.
-        _ => {
-            *item = Item::Value(value.clone());
-            Ok(())
-        }
+            (Step::Index(n), Some(count)) if *n < count && is_last && holds_tables => {
+                return Err(format!("element {n} is a table; set one of its keys"));
+            }
+            (Step::Index(n), Some(count)) => item
+                .get_mut(*n)
+                .ok_or_else(|| format!("there is no element {n}, the list has {count} (the first is 0)"))?,
+            (Step::Key(key), Some(count)) => {
+                return Err(format!("\"{key}\" is a name, but a list of {count} has numbers from 0"));
+            }
+            (Step::Index(n), None) if item.is_table_like() => {
+                return Err(format!("{n} is a number, but a table has names"));
+            }
+            (Step::Index(_), None) => return Err(NEITHER.to_owned()),
+        };
     }
-}
-
-fn set_in_value(old: &mut Value, path: &[Step], value: &Value) -> Result<(), String> {
-    match (old, path) {
-        (old, []) => {
-            // In place: blanks and comment around the value stay, and so do the numbers of the lines.
-            let decor = old.decor().clone();
-            *old = value.clone();
-            *old.decor_mut() = decor;
-            Ok(())
-        }
-        (Value::InlineTable(table), _) => set_in_table(table, path, value),
-        (Value::Array(array), _) => {
-            let count = array.len();
-            let (n, rest) = first_index(path, count)?;
-            set_in_value(array.get_mut(n).ok_or_else(|| beyond(n, count))?, rest, value)
-        }
-        _ => Err("the path leads through a value that is neither table nor list".to_owned()),
-    }
-}
-
-fn first_index(path: &[Step], count: usize) -> Result<(usize, &[Step]), String> {
-    match path {
-        [Step::Index(n), rest @ ..] => Ok((*n, rest)),
-        [Step::Key(key), ..] => Err(format!("\"{key}\" is a name, but a list of {count} has numbers from 0")),
-        [] => Err("the path ends at a list".to_owned()),
-    }
-}
-
-fn beyond(n: usize, count: usize) -> String {
-    format!("there is no element {n}, the list has {count} (the first is 0)")
+    Ok(item)
 }
 
 #[cfg(test)]

@@ -20,11 +20,15 @@ pub struct Checks<'c> {
     /// Where relative paths begin.
     dir: &'c Path,
     errors: RefCell<Vec<CaseError>>,
+    files: RefCell<Vec<Origin>>,
 }
+
+/// Path of a file as the case writes it, and its MD5.
+pub type Origin = (String, String);
 
 impl<'c> Checks<'c> {
     pub fn new(text: &'c Text<'c>, dir: &'c Path) -> Self {
-        Checks { text, dir, errors: RefCell::default() }
+        Checks { text, dir, errors: RefCell::default(), files: RefCell::default() }
     }
 
     /// The place of the document itself.
@@ -37,15 +41,16 @@ impl<'c> Checks<'c> {
         Place { checks: self, key: section.to_owned() }
     }
 
-    pub fn any(&self) -> bool {
-        !self.errors.borrow().is_empty()
+    /// What was made, where nothing is wrong; otherwise the faults in the order of their places.
+    pub fn finish<T>(&self, made: Option<T>) -> Result<T, Vec<CaseError>> {
+        let mut errors = self.errors.take();
+        in_order(&mut errors);
+        made.filter(|_| errors.is_empty()).ok_or(errors)
     }
 
-    /// The faults in the order of their places.
-    pub fn into_errors(self) -> Vec<CaseError> {
-        let mut errors = self.errors.into_inner();
-        in_order(&mut errors);
-        errors
+    /// The files of numbers that were read.
+    pub fn files(&self) -> Vec<Origin> {
+        self.files.take()
     }
 }
 
@@ -219,6 +224,11 @@ impl<'c> Place<'c> {
         let help =
             "correct the path, which is relative to the directory of the case file, or move the file there";
         self.refuse(Code::File, message, "a file", help)
+    }
+
+    /// Keeps the MD5 of a file of numbers that the case names.
+    pub fn note_file(&self, path: &str, digest: String) {
+        self.checks.files.borrow_mut().push((path.to_owned(), digest));
     }
 
     /// The values, where each is larger than the one before.

@@ -65,7 +65,7 @@ impl<'r, 't> Reader<'r, 't> {
     }
 
     /// Refuses keys of the root that are not among these.
-    pub fn only(&mut self, known: &'static [&'static str]) {
+    pub fn only(&mut self, known: &[&'static str]) {
         for key in self.text.root.keys().take(MOST_ERRORS) {
             let name = key.get_ref();
             if !known.contains(&name.as_ref()) {
@@ -77,13 +77,8 @@ impl<'r, 't> Reader<'r, 't> {
 
     /// What was read, where nothing is wrong.
     pub fn finish<T>(mut self, read: Option<T>) -> Result<T, Vec<CaseError>> {
-        match read {
-            Some(read) if self.errors.is_empty() => Ok(read),
-            _ => {
-                in_order(&mut self.errors);
-                Err(self.errors)
-            }
-        }
+        in_order(&mut self.errors);
+        read.filter(|_| self.errors.is_empty()).ok_or(self.errors)
     }
 
     pub fn required<T: DeserializeOwned>(&mut self, key: &str) -> Option<T> {
@@ -97,12 +92,8 @@ impl<'r, 't> Reader<'r, 't> {
     pub fn table<T: DeserializeOwned>(&mut self, key: &str) -> Option<T> {
         if let Some(DeValue::Array(_)) = self.text.root.get(key).map(Spanned::get_ref) {
             let help = format!("there is one {key}: begin it with the line [{key}], once");
-            self.errors.push(self.text.wrong(
-                Code::WrongType,
-                self.text.of(key),
-                "a table, not a list",
-                &help,
-            ));
+            let spot = self.text.of(key);
+            self.errors.push(self.text.wrong(Code::WrongType, spot, "a table, not a list", &help));
             return None;
         }
         self.optional(key)
@@ -146,35 +137,37 @@ impl<'r, 't> Reader<'r, 't> {
     fn read<T: DeserializeOwned>(&mut self, key: &str, value: &Spanned<DeValue<'t>>) -> Option<T> {
         let (mut value, span) = (value.clone(), value.span());
         let mut inside = UNIONS.iter().filter_map(|union| Some((union.0.strip_prefix(key)?, union)));
-        let listed = self.listed(key, &value).map_or(Ok(()), |error| Err(Box::new(error)));
-        let moved =
-            listed.and_then(|()| inside.try_for_each(|(path, union)| self.move_tag(&mut value, path, union)));
-        let read = match moved {
-            Ok(()) => T::deserialize(ValueDeserializer::from(value))
-                .map_err(|error| words::translate(self.text, &error, span)),
-            Err(error) => Err(*error),
-        };
+        let moved = self
+            .listed(key, &value)
+            .and_then(|()| inside.try_for_each(|(path, union)| self.move_tag(&mut value, path, union)));
+        let read = moved.map_err(|error| *error).and_then(|()| {
+            let read = T::deserialize(ValueDeserializer::from(value));
+            read.map_err(|error| words::translate(self.text, &error, span))
+        });
         read.map_err(|error| self.errors.push(error)).ok()
     }
 
-    /// A table below `path` that is written as a list: serde would fill it by the order of its fields.
-    fn listed(&self, path: &str, value: &Spanned<DeValue<'t>>) -> Option<CaseError> {
+    /// Refuses a table below `path` that is written as a list: serde would fill it by the order of its fields.
+    fn listed(&self, path: &str, value: &Spanned<DeValue<'t>>) -> Result<(), Box<CaseError>> {
         match value.get_ref() {
             DeValue::Table(table) => {
-                table.iter().find_map(|(key, value)| self.listed(&join(path, key.get_ref()), value))
+                table.iter().try_for_each(|(key, value)| self.listed(&join(path, key.get_ref()), value))
             }
             DeValue::Array(_) if schema::is_table(path) => {
                 let spot = self.text.at(&value.span());
                 let key = spot.key.trim_end_matches("[0]").to_owned();
                 let help =
                     "write one table in braces, { ... }, or begin it with a line in single brackets, once";
-                Some(self.text.wrong(Code::WrongType, Spot { key, ..spot }, "a table, not a list", help))
+                Err(self
+                    .text
+                    .wrong(Code::WrongType, Spot { key, ..spot }, "a table, not a list", help)
+                    .into())
             }
             DeValue::Array(array) => {
-                let tables = array.iter().filter(|element| element.get_ref().is_table());
-                tables.map(|element| self.listed(&format!("{path}[]"), element)).find_map(|error| error)
+                let mut tables = array.iter().filter(|element| element.get_ref().is_table());
+                tables.try_for_each(|element| self.listed(&format!("{path}[]"), element))
             }
-            _ => None,
+            _ => Ok(()),
         }
     }
 
@@ -200,39 +193,31 @@ impl<'r, 't> Reader<'r, 't> {
 
     /// `{ tag = name, ... }` becomes `{ name = { ... } }`; or `{ tag = { name = { ... } }, shared, ... }`.
     fn outwards(&self, value: &mut Spanned<DeValue<'t>>, union: &Union) -> Result<(), Box<CaseError>> {
-        let (span, Union(_, tag, shared)) = (value.span(), union);
+        let (text, span, Union(_, tag, shared)) = (self.text, value.span(), union);
         let table = match value.get_mut() {
             DeValue::Table(table) => table,
-            // These may be constant.
-            _ if ["motion.velocity", "wear.velocity", "leakage.inlet"]
-                .contains(&&self.text.at(&span).key[..]) =>
-            {
-                return Ok(());
-            }
             _ => {
+                let spot = text.at(&span);
+                // These may be constant.
+                if ["motion.velocity", "wear.velocity", "leakage.inlet"].contains(&spot.key.as_str()) {
+                    return Ok(());
+                }
                 let expected = format!("a table that begins with the key `{tag}`");
-                let spot = self.text.at(&span);
-                let help = words::as_table(&spot.key, &self.text.value(&spot));
-                return Err(self
-                    .text
-                    .wrong(Code::WrongType, spot, &expected, &help.unwrap_or_default())
-                    .into());
+                let help = words::as_table(&spot.key, &text.value(&spot)).unwrap_or_default();
+                return Err(text.wrong(Code::WrongType, spot, &expected, &help).into());
             }
         };
         let Some(name) = table.remove(*tag) else {
-            return Err(words::missing_key(self.text, &span, tag).into());
+            return Err(words::missing_key(text, &span, tag).into());
         };
         let place = name.span();
         let DeValue::String(name) = name.into_inner() else {
-            return Err(words::wrong_choice(self.text, self.text.at(&place), None).into());
+            return Err(words::wrong_choice(text, text.at(&place), None).into());
         };
-        if *tag == "kind" && name == "array" && self.text.arrays.is_none() {
+        if *tag == "kind" && name == "array" && text.arrays.is_none() {
             let message = "\"array\" is for arrays that a Python program passes";
-            let help = "in a case file use kind = \"file\"";
-            return Err(self
-                .text
-                .fault(Code::UnknownKind, self.text.at(&place), message, "another kind", help)
-                .into());
+            let (spot, help) = (text.at(&place), "in a case file use kind = \"file\"");
+            return Err(text.fault(Code::UnknownKind, spot, message, "another kind", help).into());
         }
         let (common, inner): (DeTable<'t>, DeTable<'t>) =
             std::mem::take(table).into_iter().partition(|(key, _)| shared.contains(&key.get_ref().as_ref()));

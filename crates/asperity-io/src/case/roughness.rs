@@ -23,7 +23,7 @@ pub struct SelfAffine {
     rms_height: Option<Length<Positive>>,
     /// Longest wavelength of the roughness. Needed without `preset`.
     #[schemars(example = "50 um")]
-    longest: Option<Length<Positive>>,
+    pub longest: Option<Length<Positive>>,
     /// Shortest wavelength of the roughness; at least two cells. Needed without `preset`.
     #[schemars(example = "0.8 um")]
     shortest: Option<Length<Positive>>,
@@ -38,19 +38,7 @@ pub struct SelfAffine {
     distribution: Option<Distribution>,
     /// Seed of the random numbers.
     #[schemars(example = 1)]
-    seed: Whole<0>,
-}
-
-impl SelfAffine {
-    /// The seed of its random numbers.
-    pub(super) fn seed(&self) -> u64 {
-        self.seed.get()
-    }
-
-    /// Its longest wave \[m\], where it is given.
-    pub(super) fn longest_wave(&self) -> Option<f64> {
-        self.longest.map(Length::get)
-    }
+    pub seed: Whole<0>,
 }
 
 /// A published roughness.

@@ -84,6 +84,11 @@ fn first_paragraph(schema: &mut Schema) {
     }
 }
 
+/// The keys of the root.
+pub fn sections() -> Vec<&'static str> {
+    generated()["properties"].as_object().into_iter().flatten().map(|(key, _)| key.as_str()).collect()
+}
+
 /// The schemas of the key at `path` ("body[0].poisson"), more than one where a union's members share it.
 pub fn find(path: &str) -> Vec<Value> {
     let mut schemas = vec![];

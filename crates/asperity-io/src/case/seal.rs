@@ -5,7 +5,7 @@ use asperity::seal::{Profile, Shape, Table};
 
 use super::keys::*;
 use super::load::Load;
-use super::small_table::{Origin, of_key, rows};
+use super::small_table::{of_key, rows};
 use super::surface::Surface;
 use super::words::number;
 use crate::leakage::{Leak, LeakDirection};
@@ -49,16 +49,16 @@ const MOST: usize = 1000;
 const SHAPES: [&str; 3] = ["uniform", "hertz", "parabola"];
 
 impl SealKeys {
-    /// The section, checked, and the file that it names.
+    /// The section, checked.
     pub(super) fn plan(
         &self,
         at: &Place<'_>,
         load: &Load,
         surfaces: &[Surface],
         leak: Option<&Leak>,
-    ) -> Option<(SealPlan, Option<Origin>)> {
-        let (shape, file) = self.shape(at)?;
-        let profile = Profile { shape, energising: self.energising.map_or(0.0, Number::get) };
+    ) -> Option<SealPlan> {
+        let profile =
+            Profile { shape: self.shape(at)?, energising: self.energising.map_or(0.0, Number::get) };
         at.core(profile.validate())?;
         let Some(leak) = leak else {
             let message = "a seal needs a fluid, but the case has no [leakage]";
@@ -72,7 +72,7 @@ impl SealKeys {
                 help,
             );
         };
-        if load.control() != Some(Control::Pressure) || !at.sibling("load").has("history.value") {
+        if load.control != Some(Control::Pressure) || !at.sibling("load").has("history.value") {
             let help = "set load.control = \"pressure\" and load.history = { kind = \"step\", value = \"...\" }; the value is that of a single run";
             return at.sibling("load").fault(
                 "a seal is computed from runs at several mean pressures",
@@ -82,13 +82,8 @@ impl SealKeys {
         }
         let rough = surfaces.iter().enumerate().find_map(|(n, surface)| surface.rough(n));
         let seeds = match (self.seeds.map(Whole::count), &rough) {
-            (None, rough) => {
-                if rough.is_some() {
-                    3
-                } else {
-                    1
-                }
-            }
+            (None, Some(_)) => 3,
+            (None, None) => 1,
             (Some(seeds), None) if seeds > 1 => {
                 let help = "leave `seeds` out: a measured surface is one; compute other measurements in their own folders";
                 return at.key("seeds").fault(
@@ -122,23 +117,11 @@ impl SealKeys {
             LeakDirection::Y => 1,
             LeakDirection::X | LeakDirection::Both => 0,
         };
-        let length = self.length.get();
-        Some((
-            SealPlan {
-                profile,
-                length,
-                pressures,
-                seeds,
-                rough,
-                patch,
-                ends: [inlet, outlet],
-                leak: leak.clone(),
-            },
-            file,
-        ))
+        let (length, ends, leak) = (self.length.get(), [inlet, outlet], leak.clone());
+        Some(SealPlan { profile, length, pressures, seeds, rough, patch, ends, leak })
     }
 
-    fn shape(&self, at: &Place<'_>) -> Option<(Shape, Option<Origin>)> {
+    fn shape(&self, at: &Place<'_>) -> Option<Shape> {
         let name = self.profile.get();
         if !SHAPES.contains(&name) {
             if !name.contains('.') {
@@ -150,22 +133,18 @@ impl SealKeys {
             at.without(&["peak", "width"], why, "the file alone", "leave it out")?;
             let columns =
                 "a file of the columns x, contact pressure and, if there are several, inlet pressure";
-            let (tables, origin) = of_key(&at.key("profile"), name, columns, parse)?;
-            return Some((Shape::Table(tables), Some(origin)));
+            return of_key(&at.key("profile"), name, columns, parse).map(Shape::Table);
         }
         let (Some(peak), Some(width)) = (self.peak, self.width) else {
             let key = if self.peak.is_none() { "peak" } else { "width" };
             return at.missing(key, &format!(" for the profile \"{name}\""));
         };
         let (peak, width) = (peak.get(), width.get());
-        Some((
-            match name {
-                "uniform" => Shape::Uniform { peak, width },
-                "hertz" => Shape::Hertz { peak, width },
-                _ => Shape::Parabola { peak, width },
-            },
-            None,
-        ))
+        Some(match name {
+            "uniform" => Shape::Uniform { peak, width },
+            "hertz" => Shape::Hertz { peak, width },
+            _ => Shape::Parabola { peak, width },
+        })
     }
 }
 
@@ -175,8 +154,8 @@ impl Surface {
         match &self.kind {
             super::surface::Kind::SelfAffine(roughness) => Some(Rough {
                 key: format!("surface.{n}.seed"),
-                seed: roughness.seed(),
-                longest: roughness.longest_wave(),
+                seed: roughness.seed.get(),
+                longest: roughness.longest.map(Length::get),
             }),
             _ => None,
         }

@@ -85,8 +85,7 @@ impl Shift {
     pub fn alone(&self, text: &Text<'_>) -> Result<Dependence, Vec<CaseError>> {
         let checks = Checks::new(text, Path::new(""));
         // The shift is the only key of its document.
-        let dependence = dependence(&checks.root(), Some(self), None);
-        dependence.ok_or_else(|| checks.into_errors())
+        checks.finish(dependence(&checks.root(), Some(self), None))
     }
 
     fn request(&self, at: &Place<'_>) -> Option<ShiftRequest> {

@@ -9,21 +9,19 @@ use crate::resources::text;
 /// A larger file is no such table.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Path of a file as the case writes it, and its MD5.
-pub type Origin = (String, String);
-
-/// What is read from the text of the file that the key at `at` names, and where it comes from.
+/// What is read from the text of the file that the key at `at` names.
 pub(super) fn of_key<T>(
     at: &Place<'_>,
     path: &str,
     expected: &str,
     read: impl FnOnce(&str) -> Result<T, String>,
-) -> Option<(T, Origin)> {
+) -> Option<T> {
     let full = at.file(path)?;
     let read = text(&full, MOST_BYTES).and_then(|text| Ok((read(&text)?, md5(text.as_bytes()))));
     let read = read.map_err(|reason| format!("{}: {reason}", full.display()));
     let (read, digest) = at.data(read, expected)?;
-    Some((read, (path.to_owned(), digest)))
+    at.note_file(path, digest);
+    Some(read)
 }
 
 /// A row of a table.

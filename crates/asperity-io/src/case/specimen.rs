@@ -8,7 +8,6 @@ use asperity::material::{Lateral, Material, Shift};
 use super::place::Checks;
 use super::text::Text;
 use super::{Case, CaseErrors, MaterialReport, document, file_text, overridden, warmth};
-use crate::Code;
 
 /// A material with its name and where it comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,10 +48,7 @@ pub fn specimens(
     overrides: &[String],
     window: Option<[f64; 2]>,
 ) -> Result<Vec<Specimen>, CaseErrors> {
-    let name = path.display().to_string();
-    let text = file_text(path).map_err(|(reason, help)| {
-        CaseErrors::without_place(Code::File, &name, reason, "a case file, or a file with a material", help)
-    })?;
+    let (name, text) = file_text(path, "a case file, or a file with a material")?;
     let source = overridden(&name, text, overrides)?.text;
     let alone = Text::parse(&source)
         .is_ok_and(|text| text.root.get("material").is_some() && text.root.get("domain").is_none());
@@ -78,8 +74,7 @@ pub fn specimens(
     let made = Text::parse(&source).and_then(|text| {
         let (material, checks) = (document::material(&text)?, Checks::new(&text, dir));
         let place = checks.at("material");
-        let made = material.sample(&place).and_then(|sample| warmth::alone(&place, &sample, window));
-        made.filter(|_| !checks.any()).ok_or_else(|| checks.into_errors())
+        checks.finish(material.sample(&place).and_then(|sample| warmth::alone(&place, &sample, window)))
     });
     match made {
         Ok((material, report)) => {

@@ -1,16 +1,15 @@
 //! `[study]`: keys of the case and the values that each takes in a study. A single run leaves the section out.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use schemars::{Schema, SchemaGenerator, json_schema};
+use serde_json::json;
 use toml::de::DeValue;
 
 use super::keys::*;
 use super::text::Text;
 use super::{Case, CaseErrors, document, file_text, overridden};
-use crate::Code;
 
 /// Keys that a study varies: it runs the case once for each combination of their values. `asperity run` ignores the section.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
@@ -19,8 +18,9 @@ pub struct Study {
     /// Paths of keys with the values that each takes: a list, or a text such as "0.1 N:10 N:5:log" (from, to, how many) or "1..10"
     /// (whole numbers, both ends included).
     #[schemars(example = serde_json::json!({ "load.history.value": ["0.1 N", "1 N"], "surface.0.seed": "1..10" }))]
+    #[schemars(schema_with = "values")]
     #[serde(default)]
-    vary: BTreeMap<String, Form<Sweep, Vec<Varied>>>,
+    vary: BTreeMap<String, Values>,
     /// Whether the first values of all keys make the first run, the second ones the second, and so on; if false, which is the
     /// default, every combination is run.
     #[schemars(example = true)]
@@ -28,71 +28,21 @@ pub struct Study {
     pub zip: bool,
 }
 
-/// Values as a text.
-#[derive(Clone, Debug)]
-struct Sweep(String);
+/// The values of a key: one text for all of them, or a list.
+pub(crate) type Values = Form<String, Vec<toml::Value>>;
 
-impl Scalar for Sweep {
-    fn expected() -> String {
-        Self::FORMS.to_owned()
-    }
-
-    fn from_text(text: &str) -> Result<Self, QuantityError> {
-        Ok(Sweep(text.to_owned()))
-    }
-}
-
-deserialize!(Sweep);
-
-impl Word for Sweep {
+impl Word for String {
     const FORMS: &'static str = "a list of values, or a text such as \"1..10\" or \"0.1 N:10 N:5:log\" (write the path of the key in quotes)";
 }
 
-impl JsonSchema for Sweep {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "Sweep".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": "string" })
-    }
-}
-
-/// A value of any key.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(transparent)]
-struct Varied(toml::Value);
-
-impl JsonSchema for Varied {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "Varied".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({})
-    }
-}
-
-/// How the values of a key are written.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Written {
-    /// One text for all of them.
-    Text(String),
-    /// The TOML of each.
-    List(Vec<String>),
+fn values(_: &mut SchemaGenerator) -> Schema {
+    let list = json!({ "type": "array", "items": {}, "minItems": 1 });
+    json_schema!({ "type": "object", "additionalProperties": { "anyOf": [{ "type": "string" }, list] } })
 }
 
 impl Study {
     /// The keys that vary, in the order of the text.
-    fn keys(&self, text: &Text<'_>) -> Vec<(String, Written)> {
+    fn keys(&self, text: &Text<'_>) -> Vec<(String, Values)> {
         let section = match text.root.get("study").map(|section| section.get_ref()) {
             Some(DeValue::Table(study)) => study.get("vary").map(|vary| vary.get_ref()),
             _ => None,
@@ -101,12 +51,7 @@ impl Study {
             Some(DeValue::Table(vary)) => vary.get_key_value(key).map_or(0, |(key, _)| key.span().start),
             _ => 0,
         };
-        let written = |values: &Form<Sweep, Vec<Varied>>| match values {
-            Form::Word(Sweep(text)) => Written::Text(text.clone()),
-            Form::List(list) => Written::List(list.iter().map(|value| value.0.to_string()).collect()),
-            Form::Table(never) => match *never {},
-        };
-        let mut keys: Vec<_> = self.vary.iter().map(|(key, values)| (key.clone(), written(values))).collect();
+        let mut keys = Vec::from_iter(self.vary.clone());
         keys.sort_by_key(|(key, _)| place(key));
         keys
     }
@@ -120,7 +65,7 @@ pub(crate) struct Base {
     source: String,
     overrides: Vec<String>,
     /// What its section `[study]` says, in the order of the text.
-    pub(crate) vary: Vec<(String, Written)>,
+    pub(crate) vary: Vec<(String, Values)>,
     /// Whether the values go together.
     pub(crate) zip: bool,
 }
@@ -131,10 +76,7 @@ impl Base {
     /// # Errors
     /// [`CaseErrors`] where the file cannot be read or is no TOML, where an override cannot be applied, or where `[study]` is wrong.
     pub(crate) fn read(path: &Path, overrides: &[String]) -> Result<Base, CaseErrors> {
-        let name = path.display().to_string();
-        let source = file_text(path).map_err(|(reason, help)| {
-            CaseErrors::without_place(Code::File, &name, reason, "a case file", help)
-        })?;
+        let (name, source) = file_text(path, "a case file")?;
         Base::of(name, source, path.parent().unwrap_or(Path::new("")), overrides)
     }
 

@@ -3,10 +3,10 @@
 use asperity::Grid;
 use asperity::material::Body;
 use asperity::tangential::{Coupling, PairRatio, Tangential as Law, TangentialControl};
+use ndarray::Array2;
 
 use super::hardness::numbers_of_cells;
 use super::history::{History, Kind, Sign};
-use super::history_file::Origin;
 use super::keys::*;
 
 /// Friction between the surfaces, under the load of `[tangential]`.
@@ -47,16 +47,15 @@ pub struct Tangential {
 }
 
 impl Tangential {
-    /// The load, with the files of its histories and coefficients.
+    /// The load.
     pub fn law(
         &self,
         at: &Place<'_>,
         friction: (&Place<'_>, &Friction),
         grid: Option<&Grid>,
         bodies: (&Place<'_>, &[Body]),
-    ) -> Option<(Law, Vec<Origin>)> {
-        let mut files = vec![];
-        let coefficients = friction.1.coefficients(friction.0, grid, &mut files);
+    ) -> Option<Law> {
+        let coefficients = friction.1.coefficients(friction.0, grid);
         if self.x.is_none() && self.y.is_none() {
             return at.fault("nothing is prescribed", "`x`, `y` or both", "give x = { kind = ... }");
         }
@@ -65,13 +64,9 @@ impl Tangential {
             TangentialControl::Force => Kind::Load(Sign::PressOrPull),
             TangentialControl::Displacement => Kind::Approach,
         };
-        let mut read = |key: &str, history: &Option<History>| match history {
+        let read = |key: &str, history: &Option<History>| match history {
             None => Some(asperity::History::Step { value: 0.0 }),
-            Some(history) => {
-                let (history, file) = history.read(&at.key(key), kind, "give a step, a ramp or a table")?;
-                files.extend(file);
-                Some(history)
-            }
+            Some(history) => history.read(&at.key(key), kind, "give a step, a ramp or a table"),
         };
         let (x, y) = (read("x", &self.x), read("y", &self.y));
         let PairRatio { poisson, beta, changes } = bodies.0.core(PairRatio::of(bodies.1))?;
@@ -84,7 +79,7 @@ impl Tangential {
             );
         }
         let (coefficient, coefficients) = coefficients?;
-        let law = Law {
+        Some(Law {
             coefficient,
             coefficients,
             shear_limit: friction.1.shear_limit.map_or(f64::INFINITY, Pressure::get),
@@ -93,34 +88,19 @@ impl Tangential {
             coupling,
             control: self.control,
             histories: [x?, y?],
-        };
-        Some((law, files))
+        })
     }
 }
 
 impl Friction {
     /// The friction coefficient, and that of each cell where they differ.
-    fn coefficients(
-        &self,
-        at: &Place<'_>,
-        grid: Option<&Grid>,
-        files: &mut Vec<Origin>,
-    ) -> Option<(f64, Option<ndarray::Array2<f64>>)> {
-        at.exactly_one(if self.array.is_some() {
-            &["coefficient", "array"]
-        } else {
-            &["coefficient", "field"]
-        })?;
-        if let Some(name) = &self.array {
-            return Some((0.0, Some(at.key("array").array(name, grid?)?)));
-        }
-        match &self.field {
-            None => Some((self.coefficient?.get(), None)),
-            Some(path) => {
-                let (map, file) = numbers_of_cells(&at.key("field"), path, grid)?;
-                files.push(file);
-                Some((0.0, Some(map)))
-            }
-        }
+    fn coefficients(&self, at: &Place<'_>, grid: Option<&Grid>) -> Option<(f64, Option<Array2<f64>>)> {
+        at.exactly_one(&["coefficient", if self.array.is_some() { "array" } else { "field" }])?;
+        let map = match (&self.array, &self.field) {
+            (Some(name), _) => at.key("array").array(name, grid?),
+            (None, Some(path)) => numbers_of_cells(&at.key("field"), path, grid),
+            (None, None) => return Some((self.coefficient?.get(), None)),
+        };
+        Some((0.0, Some(map?)))
     }
 }

@@ -56,34 +56,27 @@ enum TemperatureHistory {
     },
 }
 
-/// The temperatures of the run as (time [s], temperature [K]), and the MD5 of a file that holds them.
-pub struct Temperatures {
-    pub points: Vec<(f64, f64)>,
-    /// Path as written, and MD5.
-    pub file: Option<(String, String)>,
-}
-
 impl Temperature {
-    /// The temperatures, where the `shifts` of the bodies of these names are defined; `unknown` where another body may depend on them.
+    /// The temperatures of the run as (time [s], temperature [K]), where the `shifts` of the bodies of these names are defined; `unknown` where another body may depend on them.
     pub fn temperatures(
         &self,
         at: &Place<'_>,
         shifts: &[(&str, &Shift)],
         unknown: bool,
-    ) -> Option<Temperatures> {
+    ) -> Option<Vec<(f64, f64)>> {
         if shifts.is_empty() && !unknown {
             let message = "no body depends on it: none has a `shift` (without a `temperature` of its own)";
             let help = "add shift = { model = \"wlf\", ... } to a material, or leave the section out";
             return at.fault(message, "a material with a shift", help);
         }
         let at = at.key("history");
-        let read = self.history.read(&at)?;
-        for (n, (_, kelvin)) in read.points.iter().enumerate() {
+        let points = self.history.read(&at)?;
+        for (n, (_, kelvin)) in points.iter().enumerate() {
             for (body, shift) in shifts {
                 possible(&self.history.place(&at, n), &format!("the shift of {body}"), shift, *kelvin)?;
             }
         }
-        Some(read)
+        Some(points)
     }
 }
 
@@ -106,24 +99,22 @@ impl TemperatureHistory {
         }
     }
 
-    fn read(&self, at: &Place<'_>) -> Option<Temperatures> {
-        let points = match self {
-            TemperatureHistory::Constant { value } => vec![(0.0, value.get())],
+    fn read(&self, at: &Place<'_>) -> Option<Vec<(f64, f64)>> {
+        match self {
+            TemperatureHistory::Constant { value } => Some(vec![(0.0, value.get())]),
             TemperatureHistory::Ramp { from, to, duration } => {
-                vec![(0.0, from.get()), (duration.get(), to.get())]
+                Some(vec![(0.0, from.get()), (duration.get(), to.get())])
             }
-            TemperatureHistory::Table { points } => table(&at.key("points"), points)?,
+            TemperatureHistory::Table { points } => table(&at.key("points"), points),
             TemperatureHistory::File { path } => {
                 let kelvin = |value: &Prescribed| match value {
                     Prescribed::Number(kelvin) => Kelvin::from_kelvin(*kelvin),
                     Prescribed::Text(text) => text.parse(),
                 };
                 let kelvin = |value: &Prescribed| kelvin(value).map(Kelvin::get);
-                let (points, file) = history_file::of_key(&at.key("path"), path, "temperature", kelvin)?;
-                return Some(Temperatures { points, file: Some(file) });
+                history_file::of_key(&at.key("path"), path, "temperature", kelvin)
             }
-        };
-        Some(Temperatures { points, file: None })
+        }
     }
 }
 

@@ -63,7 +63,7 @@ impl<'t> Text<'t> {
     /// The spot whose value, key or table header stands at these bytes: the smallest that holds them.
     pub fn at(&self, span: &Range<usize>) -> Spot {
         let mut best = (usize::MAX, String::new());
-        visit_table(&self.root, "", &mut |path, key, value| {
+        self.visit(&mut |path, key, value| {
             for place in [key, Some(value.span())].into_iter().flatten() {
                 let holds = place.start <= span.start && span.end <= place.end;
                 // The deepest where places are equal.
@@ -105,12 +105,17 @@ impl<'t> Text<'t> {
     /// Paths of all tables whose place is `span`: a header `[load.history]` stands for two.
     pub fn tables(&self, span: &Range<usize>) -> Vec<String> {
         let mut paths = Vec::new();
-        visit_table(&self.root, "", &mut |path, _, value| {
+        self.visit(&mut |path, _, value| {
             if value.span() == *span && value.get_ref().is_table() {
                 paths.push(path.to_owned());
             }
         });
         paths
+    }
+
+    /// Visits every value, a table before what it holds: its path, the place of its key, and itself.
+    pub fn visit(&self, visitor: Visitor<'_, 't>) {
+        visit_table(&self.root, "", visitor);
     }
 
     fn inside(&self, span: Range<usize>) -> Range<usize> {

@@ -127,7 +127,7 @@ fn reference(
             let material = at.core(Material::generalised_kelvin(*measure, sum.creep))?;
             Some((material, MaterialReport { error: Some(sum.error), window: Some(window), ..report }, None))
         }
-        Model::Fitted { fitted, file, .. } => {
+        Model::Fitted { fitted, file } => {
             let warning = outside(sample, Some(fitted.window), window);
             let report = MaterialReport {
                 max_misfit: Some(fitted.misfit.max),

@@ -5,8 +5,7 @@ use asperity::sliding::Path;
 use asperity::wear::Wear as Law;
 
 use super::hardness::numbers_of_cells;
-use super::history::{History, of_velocity};
-use super::history_file::Origin;
+use super::history::{Course, Kind};
 use super::keys::*;
 use crate::quantity::WearCoefficient;
 
@@ -21,7 +20,7 @@ pub struct Wear {
     /// Sliding velocity where nothing moves on the grid, as of a pin on a disc: a constant, or a history as in `[load]`. With `[motion]` or
     /// `[tangential]` their sliding counts instead.
     #[schemars(example = "0.1 m/s")]
-    velocity: Option<Form<Velocity, Never, Box<History>>>,
+    velocity: Option<Course<Velocity>>,
     /// Pressure below which nothing wears: the depth per distance is coefficient x (pressure - threshold); 0 if not given.
     #[schemars(example = "10 MPa")]
     threshold: Option<Pressure<NonNegative>>,
@@ -51,13 +50,8 @@ impl Word for WearCoefficient<NonNegative> {
 }
 
 impl Wear {
-    /// The law, with the files that it is from. `slides` tells whether `[motion]` or `[tangential]` gives the sliding distance.
-    pub fn law(
-        &self,
-        at: &Place<'_>,
-        grid: Option<&Grid>,
-        slides: Option<&str>,
-    ) -> Option<(Law, Vec<Origin>)> {
+    /// The law. `slides` tells whether `[motion]` or `[tangential]` gives the sliding distance.
+    pub fn law(&self, at: &Place<'_>, grid: Option<&Grid>, slides: Option<&str>) -> Option<Law> {
         let (body, counterbody) =
             self.coefficient.one_or_two(&at.key("coefficient"), "the body and the counterbody")?;
         let coefficients = [body.get(), counterbody.map_or(0.0, WearCoefficient::get)];
@@ -79,19 +73,17 @@ impl Wear {
             }
             (Some(velocity), None) => {
                 let at = at.key("velocity");
-                Some(at.core(Path::of_velocity(of_velocity(&at, velocity)?, 0.0))?)
+                let history = velocity.history(&at, Kind::Velocity, "")?;
+                Some(at.core(Path::of_velocity(history, 0.0))?)
             }
             (None, Some(_)) => None,
         };
-        let (map, file) = match (&self.array, &self.map) {
-            (Some(name), _) => (Some(at.key("array").array(name, grid?)?), None),
-            (None, Some(path)) => {
-                let (map, file) = numbers_of_cells(&at.key("map"), path, grid)?;
-                (Some(map), Some(file))
-            }
-            (None, None) => (None, None),
+        let map = match (&self.array, &self.map) {
+            (Some(name), _) => Some(at.key("array").array(name, grid?)?),
+            (None, Some(path)) => Some(numbers_of_cells(&at.key("map"), path, grid)?),
+            (None, None) => None,
         };
-        let law = Law {
+        Some(Law {
             coefficients,
             map,
             threshold: self.threshold.map_or(0.0, Pressure::get),
@@ -99,7 +91,6 @@ impl Wear {
             cycles: self.cycles_per_step.map_or(1.0, Number::get),
             cycles_tolerance: self.cycles_tolerance.map(Number::get),
             depth_limit: self.depth_limit.map(Length::get),
-        };
-        Some((law, file.into_iter().collect()))
+        })
     }
 }

@@ -105,18 +105,8 @@ fn bar(answer: &Answer, runs: &Runs, extrapolate: bool) -> ErrorBar {
         _ => None,
     };
     let known = |number: f64| Some(number).filter(|number| number.is_finite());
-    ErrorBar {
-        name: name.to_owned(),
-        value: known(value),
-        unit: answer.unit.to_owned(),
-        error: error.and_then(known),
-        grid,
-        time,
-        solver,
-        at: answer.at.map(|at| at.value()),
-        order,
-        note,
-    }
+    let (value, error) = (known(value), error.and_then(known));
+    ErrorBar { value, error, grid, time, solver, order, note, ..ErrorBar::of(answer, f64::NAN) }
 }
 
 /// What the grid causes, from the same answer with half, a quarter or twice the cells.

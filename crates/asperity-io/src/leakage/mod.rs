@@ -332,7 +332,6 @@ impl Leak {
     }
 
     fn acting(&self, coupling: Coupling) -> Result<FluidPressure> {
-        let Coupling { action, inlet, outlet, reference, bulk_modulus } = coupling;
         let (gas, viscosity) = match self.fluid {
             Some(Fluid::Gas { kind, temperature, rarefaction, .. }) => {
                 let gas = self.gas(kind, temperature, 0.0)?;
@@ -341,18 +340,17 @@ impl Leak {
             Some(Fluid::Liquid { viscosity, .. }) => (None, viscosity),
             None => (None, 0.0),
         };
-        let (direction, sides, smallest_gap) = (self.axis(), self.sides, self.smallest_gap);
         Ok(FluidPressure {
-            inlet,
-            outlet,
-            reference,
+            inlet: coupling.inlet,
+            outlet: coupling.outlet,
+            reference: coupling.reference,
             gas,
             viscosity,
-            direction,
-            sides,
-            smallest_gap,
-            action,
-            bulk_modulus,
+            direction: self.axis(),
+            sides: self.sides,
+            smallest_gap: self.smallest_gap,
+            action: coupling.action,
+            bulk_modulus: coupling.bulk_modulus,
         })
     }
 

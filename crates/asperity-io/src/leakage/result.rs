@@ -139,7 +139,7 @@ pub fn store(
     mut observe: impl FnMut(usize, usize),
 ) -> Result<LeakHistory, LeakError> {
     let reader = Reader::open(path)?;
-    let writer = LeakWriter::new(path, &reader.header().grid, leak.field)?;
+    let writer = LeakWriter::new(path, leak.field)?;
     let history = evaluate(&reader, leak, beside, interrupt, &mut observe, Some(&writer))?;
     let settings = serde_json::to_value(leak).unwrap_or_default();
     writer.finish(&history.table, settings, &history.findings)?;

@@ -116,24 +116,21 @@ pub fn sweep(
     }
     let mut set = set.to_vec();
     // None of them changes the patch, so that another length, width, liquid or pressure of it takes the same runs.
-    set.push("seal.length=1 m".into());
-    let table = matches!(plan.profile.shape, Shape::Table(_));
-    if !table {
-        set.push("seal.width=1 m".into());
-    }
-    if !plan.is_gas() {
-        set.push("leakage.viscosity=1 Pa s".into());
-    }
-    if !table && !plan.is_gas() {
-        set.push("leakage.pressure_drop=1 Pa".into());
-    }
+    let (known, liquid) = (!matches!(plan.profile.shape, Shape::Table(_)), !plan.is_gas());
+    let keys = [
+        (true, "seal.length=1 m"),
+        (known, "seal.width=1 m"),
+        (liquid, "leakage.viscosity=1 Pa s"),
+        (known && liquid, "leakage.pressure_drop=1 Pa"),
+    ];
+    set.extend(keys.into_iter().filter(|(is_set, _)| *is_set).map(|(_, key)| key.to_owned()));
     let refined = plan.pressures / REFINED;
     let most = plan.largest();
     let values =
         |from: f64, to: f64, count: usize| format!("{} Pa:{} Pa:{count}:log", short(from), short(to));
     let vary = values(most / RANGE, up(most), plan.pressures - refined);
-    let mut findings = vec![];
-    let mut runs = swept(path, &set, plan, &folder.join("sweep"), &vary, options, observe, &mut findings)?;
+    let (mut runs, first) = swept(path, &set, plan, &folder.join("sweep"), &vary, options, observe)?;
+    let mut findings = Vec::from_iter(first);
     let found = SealSweep { times: times(&runs), seeds: seeds(&runs), findings: vec![], size: [0.0; 2] };
     if found.times.is_empty() {
         let message = "the runs of the sweep have no stored time in common; give [output] times, or steps that do not adapt";
@@ -143,16 +140,9 @@ pub fn sweep(
         // The ends are known already.
         let step = (to / from).powf(1.0 / (refined + 1) as f64);
         let vary = values(from * step, to / step, refined);
-        runs.extend(swept(
-            path,
-            &set,
-            plan,
-            &folder.join("refined"),
-            &vary,
-            options,
-            observe,
-            &mut findings,
-        )?);
+        let (more, second) = swept(path, &set, plan, &folder.join("refined"), &vary, options, observe)?;
+        runs.extend(more);
+        findings.extend(second);
     }
     runs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let case = Case::read(path, &set)?;
@@ -183,7 +173,7 @@ fn closing(sweep: &SealSweep) -> Result<Option<[f64; 2]>, SealError> {
     Ok((from < to).then_some([from, to]))
 }
 
-#[expect(clippy::too_many_arguments, reason = "the two studies differ in three of them")]
+/// The runs of one of the two studies, and which of them have findings, in words.
 fn swept(
     path: &Path,
     set: &[String],
@@ -192,16 +182,11 @@ fn swept(
     values: &str,
     options: &Options,
     observe: &mut (dyn FnMut(&Event<'_>) + Send),
-    findings: &mut Vec<String>,
-) -> Result<Vec<Run>, SealError> {
+) -> Result<(Vec<Run>, Option<String>), SealError> {
     let mut vary = vec![format!("load.history.value={values}")];
     if let Some(rough) = &plan.rough {
-        vary.push(format!(
-            "{}={}..{}",
-            rough.key,
-            rough.seed,
-            rough.seed.saturating_add(plan.seeds as u64 - 1)
-        ));
+        let last = rough.seed.saturating_add(plan.seeds as u64 - 1);
+        vary.push(format!("{}={}..{last}", rough.key, rough.seed));
     }
     let study = Study::new(path, &vary, Some(false), set, folder)?;
     if study.plan.vary.len() != vary.len() {
@@ -226,8 +211,8 @@ fn swept(
             return Err(SealError::Failed(message));
         }
     }
-    findings.extend(table.findings());
-    table.rows.iter().map(|row| run(&study, row, plan.rough.is_some())).collect()
+    let runs = table.rows.iter().map(|row| run(&study, row, plan.rough.is_some()));
+    Ok((runs.collect::<Result<_, _>>()?, table.findings()))
 }
 
 /// The conductance that a run has stored, at the times at which it has the pressure asked for.

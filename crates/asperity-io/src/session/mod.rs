@@ -25,7 +25,7 @@ use crate::resources::free_disk;
 use crate::store::{Outcome, Reader, SCALARS, Status, StoreError, Work, Writer};
 use crate::stress::{self, StressError};
 use maps::Maps;
-use record::{Earlier, Record, Stop};
+use record::{Record, Stop};
 use setup::header;
 pub use setup::setup;
 
@@ -174,16 +174,14 @@ fn run_inside(
     let diagnostics = Diagnostics::new(&simulation, known);
     drop(parts);
     let header = header(case, &simulation, steady.as_ref());
-    let (writer, checkpoint, earlier) = if options.resume {
-        let earlier = Earlier::read(&path).map_err(RunError::Output)?;
-        let (writer, checkpoint) = match Writer::resume(&path, &header, simulation.gap.view()) {
-            Err(complete @ StoreError::Complete { .. }) => return ended(case, &complete, &path, options),
-            resumed => resumed.map_err(RunError::Output)?,
-        };
-        (writer, checkpoint, earlier)
-    } else {
-        let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);
-        (writer.map_err(RunError::Output)?, None, Earlier::default())
+    let gap = simulation.gap.view();
+    let opened = match options.resume {
+        true => Writer::resume(&path, &header, gap),
+        false => Writer::create(&path, &header, gap, options.force).map(|writer| (writer, None)),
+    };
+    let (writer, checkpoint) = match opened {
+        Err(complete @ StoreError::Complete { .. }) => return ended(case, &complete, &path, options),
+        opened => opened.map_err(RunError::Output)?,
     };
     let mut record =
         Record { case, writer, diagnostics, path: &path, last: None, friction: None, stress: None };
@@ -198,11 +196,8 @@ fn run_inside(
     if let Some(streaming) = drive.streaming() {
         record.diagnostics = record.diagnostics.of_sweep(streaming.clone());
     }
-    if let Some(checkpoint) = &checkpoint {
-        let Earlier { rows, frictions, findings } = &earlier;
-        let rows = rows.get(..checkpoint.step).unwrap_or_default();
-        let frictions = frictions.get(..checkpoint.step).unwrap_or_default();
-        record.diagnostics.resume(rows, frictions, findings);
+    if checkpoint.is_some() {
+        record.recall().map_err(RunError::Output)?;
     }
     drive.interrupt_with(options.interrupt.clone());
     if let Err(stop) = rows(case, options, &mut *drive, &mut record, observe) {

@@ -13,26 +13,6 @@ use crate::case::Case;
 use crate::store::{Outcome, Reader, Status, StoreError, Work, Writer};
 use crate::stress::Below;
 
-/// Rows and findings of the sessions before a resumed one.
-#[derive(Default)]
-pub(super) struct Earlier {
-    pub(super) rows: Vec<Row>,
-    /// Friction of each row; empty where nothing moves.
-    pub(super) frictions: Vec<Friction>,
-    pub(super) findings: Vec<Finding>,
-}
-
-impl Earlier {
-    /// Those of the result at `path`.
-    pub(super) fn read(path: &Path) -> Result<Earlier, StoreError> {
-        let reader = Reader::open(path)?;
-        Ok(Earlier {
-            rows: reader.rows()?,
-            frictions: reader.frictions()?,
-            findings: reader.findings().to_vec(),
-        })
-    }
-}
 /// Why a run stops early.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Stop {
@@ -58,6 +38,13 @@ pub(super) struct Record<'a> {
 }
 
 impl Record<'_> {
+    /// Takes in what the sessions before a resumed one have stored.
+    pub(super) fn recall(&mut self) -> Result<(), StoreError> {
+        let stored = Reader::open(self.path)?;
+        self.diagnostics.resume(&stored.rows()?, &stored.frictions()?, stored.findings());
+        Ok(())
+    }
+
     /// Stores the last row, with its fields where they are asked for.
     pub(super) fn store(&mut self, maps: &mut Maps, drive: &dyn Drive) -> Result<Option<Row>, StoreError> {
         let Some(step) = drive.last() else { return Ok(None) };

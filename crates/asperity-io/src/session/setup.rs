@@ -1,5 +1,6 @@
 //! What a result says of its run before the first row: the case in numbers.
 
+use asperity::flash::Conductor;
 use asperity::kernel::Kernel;
 use asperity::load::Control;
 use asperity::material::Creep;
@@ -39,29 +40,27 @@ fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 
 /// The case and its `simulation` in numbers, SI: the attribute `setup` of its result.
 pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
-    let description = serde_json::to_value(case.describe()).unwrap_or_default();
-    let mut setup = match description {
-        Value::Object(map) => map,
-        _ => Map::new(),
-    };
-    setup.insert("contact_creep_compliance".into(), creep(&case.conditions.creep));
-    if !case.conditions.thermal.is_empty() {
-        let parts: Vec<Value> = case.conditions.thermal.iter().map(|body| creep(&body.creep)).collect();
-        setup.insert("contact_creep_compliance_over_reduced_time".into(), json!(parts));
+    let Value::Object(mut setup) = json!(case.describe()) else { return Map::new() };
+    let mut put = |key: &str, value: Value| drop(setup.insert(key.to_owned(), value));
+    let Simulation { solver, times, plasticity, creep, thermal, layers, loading, .. } = &case.conditions;
+    put("contact_creep_compliance", numbers(creep));
+    if !thermal.is_empty() {
+        let parts: Vec<Value> = thermal.iter().map(|body| numbers(&body.creep)).collect();
+        put("contact_creep_compliance_over_reduced_time", json!(parts));
     }
     if let Some(points) = &case.temperatures {
-        setup.insert("temperature_course".into(), json!(thinned(points)));
+        put("temperature_course", json!(thinned(points)));
     }
     if !case.files.is_empty() {
         let files: Map<String, Value> =
             case.files.iter().map(|(path, digest)| (path.clone(), json!(digest))).collect();
-        setup.insert("md5_of_files".into(), json!(files));
+        put("md5_of_files", json!(files));
     }
-    if let Some(layers) = &case.layers {
-        let misfit = case.conditions.layers.as_ref().map(|waves| waves.misfit());
-        setup.insert("layer_separable".into(), json!(misfit.is_none()));
-        setup.insert("layer_misfit".into(), json!(misfit.unwrap_or(0.0)));
-        setup.insert("layer_rigid_base".into(), json!(layers.depth().is_some()));
+    if let Some(own) = &case.layers {
+        let misfit = layers.as_ref().map(|waves| waves.misfit());
+        put("layer_separable", json!(misfit.is_none()));
+        put("layer_misfit", json!(misfit.unwrap_or(0.0)));
+        put("layer_rigid_base", json!(own.depth().is_some()));
     }
     if let Some(motion) = &case.motion {
         let steady = case.axis() == Axis::Velocity;
@@ -74,78 +73,72 @@ pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
                 json!({ "peak": peak, "velocity": velocity, "width": width })
             }
         };
-        setup.insert(
-            "motion".into(),
-            json!({ "steady": steady, "direction": [x, y], "rolls": motion.rolls, "shear_stress": shear }),
+        let rolls = motion.rolls;
+        put(
+            "motion",
+            json!({ "steady": steady, "direction": [x, y], "rolls": rolls, "shear_stress": shear }),
         );
     }
-    let contact = Some(&case.conditions.creep).filter(|_| case.conditions.thermal.is_empty());
+    let contact = Some(creep).filter(|_| thermal.is_empty());
     let ratio = |body| StressBody::of(body, contact).poisson;
     let ratios: Vec<Option<Ratio>> = case.bodies.iter().map(ratio).collect();
     if ratios.iter().flatten().any(|ratio| ratio.constant().is_none()) {
-        let creep = |ratio: &Option<Ratio>| match ratio {
+        let changing = |ratio: &Option<Ratio>| match ratio {
             Some(Ratio::Changing(changing)) => json!(changing),
             _ => Value::Null,
         };
-        setup.insert(stress::POISSON_CREEP.into(), ratios.iter().map(creep).collect());
+        put(stress::POISSON_CREEP, ratios.iter().map(changing).collect());
     }
-    let controls: Vec<Control> = case.conditions.loading.stages.iter().map(|stage| stage.control).collect();
-    setup.insert(Header::CONTROLS.into(), json!(controls));
+    let controls: Vec<Control> = loading.stages.iter().map(|stage| stage.control).collect();
+    put(Header::CONTROLS, json!(controls));
     if !case.output.units.is_empty() {
-        setup.insert(Units::SETUP.into(), json!(case.output.units));
+        put(Units::SETUP, json!(case.output.units));
     }
-    let Simulation { solver, times, plasticity, .. } = &case.conditions;
-    setup.insert("solver_method".into(), json!(solver.method));
-    setup.insert("solver_tolerance".into(), json!(solver.tolerance));
-    setup.insert("plasticity".into(), json!(plasticity));
+    put("solver_method", json!(solver.method));
+    put("solver_tolerance", json!(solver.tolerance));
+    put("plasticity", json!(plasticity));
     if let TimeGrid::Adaptive { tolerance, .. } = times {
-        setup.insert("time_tolerance".into(), json!(tolerance));
+        put("time_tolerance", json!(tolerance));
     }
     if let Some(plan) = &case.stress {
-        setup.insert(stress::SETUP.into(), serde_json::to_value(plan).unwrap_or_default());
+        put(stress::SETUP, json!(plan));
     }
     // Checked with the simulation.
     if let Ok(Some(scale)) = AdhesionScale::of(simulation) {
-        setup.insert(Header::ADHESION.into(), json!(scale));
+        put(Header::ADHESION, json!(scale));
     }
     if let Some(law) = &simulation.tangential {
         let limit = law.shear_limit.is_finite().then_some(law.shear_limit);
-        setup.insert(
-            Header::FRICTION.into(),
-            json!({
-                "coefficient": law.coefficients.is_none().then_some(law.coefficient), "shear_limit": limit, "control": law.control,
-                "poisson": law.poisson, "beta": law.beta, "coupling": law.coupling, "period": law.period(),
-            }),
-        );
+        let friction = json!({
+            "coefficient": law.coefficients.is_none().then_some(law.coefficient), "shear_limit": limit, "control": law.control,
+            "poisson": law.poisson, "beta": law.beta, "coupling": law.coupling, "period": law.period(),
+        });
+        put(Header::FRICTION, friction);
     }
     if let Some(law) = &simulation.wear {
-        setup.insert(
-            Header::WEAR.into(),
-            json!({
-                "coefficients": law.coefficients, "threshold": law.threshold, "cycles": law.cycles, "cycles_tolerance": law.cycles_tolerance, "depth_limit": law.depth_limit,
-            }),
-        );
+        let wear = json!({
+            "coefficients": law.coefficients, "threshold": law.threshold, "cycles": law.cycles,
+            "cycles_tolerance": law.cycles_tolerance, "depth_limit": law.depth_limit,
+        });
+        put(Header::WEAR, wear);
     }
     if let Some(flash) = &simulation.flash {
-        let bodies = flash
-            .bodies
-            .map(|body| json!({ "conductivity": body.conductivity, "diffusivity": body.diffusivity }));
-        setup.insert(
-            Header::FLASH.into(),
-            json!({
-                "bodies": bodies, "partition": flash.partition, "friction": flash.friction, "hysteresis": flash.hysteresis,
-                "heated_for": flash.heated_for, "feedback": flash.feedback.as_ref().map(|feedback| feedback.temperature),
-            }),
-        );
+        let body =
+            |body: Conductor| json!({ "conductivity": body.conductivity, "diffusivity": body.diffusivity });
+        let flash = json!({
+            "bodies": flash.bodies.map(body), "partition": flash.partition, "friction": flash.friction, "hysteresis": flash.hysteresis,
+            "heated_for": flash.heated_for, "feedback": flash.feedback.as_ref().map(|feedback| feedback.temperature),
+        });
+        put(Header::FLASH, flash);
     }
     if let Some(leak) = &case.leakage {
-        setup.insert("leakage".into(), serde_json::to_value(leak).unwrap_or_default());
+        put("leakage", json!(leak));
     }
     setup
 }
 
 /// A creep function in numbers, SI.
-fn creep(creep: &Creep) -> Value {
+fn numbers(creep: &Creep) -> Value {
     let terms: Vec<_> = creep.terms.iter().map(|t| json!([t.compliance, t.retardation_time])).collect();
     json!({ "instantaneous": creep.instantaneous, "terms": terms, "fluidity": creep.fluidity })
 }

@@ -74,6 +74,14 @@ impl Pages {
         Pages { group, guarded }
     }
 
+    /// Writes the documents of a result, first those of the arrays: they never count more than that of the group.
+    pub(super) fn publish(root: &Path, document: &Document) -> Result<Pages> {
+        let mut pages = Pages::new(document);
+        pages.write_arrays(root, Way::Safe)?;
+        pages.commit(root, &document.progress, Way::Safe)?;
+        Ok(pages)
+    }
+
     /// Replaces the group's document: from now on readers see `progress`.
     pub(super) fn commit(&mut self, root: &Path, progress: &Progress, way: Way) -> Result<()> {
         if let Some(attributes) = self.group["attributes"].as_object_mut() {
@@ -169,15 +177,10 @@ impl Document {
 /// # Errors
 /// [`StoreError::Io`] where the system refuses.
 pub fn store_error_bars(root: &Path, bars: Value) -> Result<()> {
-    exchange_arrays(
-        root,
-        |_| false,
-        &[],
-        |attributes| {
-            attributes.insert(ERROR_BARS.into(), bars);
-        },
-    )?;
-    Ok(())
+    let (file, mut group) = read_json(root)?;
+    let attributes = group["attributes"].as_object_mut();
+    attributes.ok_or_else(|| corrupt(&file, "the attributes are missing"))?.insert(ERROR_BARS.into(), bars);
+    replace(&file, &root.join(GROUP_PARTIAL), group.to_string().as_bytes(), Way::Safe)
 }
 
 /// Whether the directory is marked as a result, of any version.
@@ -191,32 +194,6 @@ pub(super) fn is_result(root: &Path) -> bool {
 pub(super) fn write(directory: &Path, document: &Value, way: Way) -> Result<()> {
     fs::create_dir_all(directory).map_err(io("make", directory))?;
     replace(&directory.join(NAME), &directory.join(PARTIAL), document.to_string().as_bytes(), way)
-}
-
-/// Replaces the arrays of a result that `old` names by new ones, whose chunks are written, and changes its attributes. Returns
-/// the names of the arrays that have gone.
-pub(super) fn exchange_arrays(
-    root: &Path,
-    old: impl Fn(&str) -> bool,
-    new: &[ArraySpec],
-    change: impl FnOnce(&mut Map<String, Value>),
-) -> Result<Vec<String>> {
-    let (file, mut group) = read_json(root)?;
-    for array in new {
-        write(&root.join(array.name()), &array.document(), Way::Safe)?;
-    }
-    let missing = || corrupt(&file, "the consolidated metadata are missing");
-    let metadata = group.pointer_mut("/consolidated_metadata/metadata").and_then(Value::as_object_mut);
-    let metadata = metadata.ok_or_else(missing)?;
-    let mut gone: Vec<String> = metadata.keys().filter(|name| old(name)).cloned().collect();
-    gone.iter().for_each(|name| drop(metadata.shift_remove(name)));
-    for array in new {
-        metadata.insert(array.name().to_owned(), array.document());
-        gone.retain(|name| name != array.name());
-    }
-    change(group["attributes"].as_object_mut().ok_or_else(|| corrupt(&file, "the attributes are missing"))?);
-    replace(&root.join(NAME), &root.join(GROUP_PARTIAL), group.to_string().as_bytes(), Way::Safe)?;
-    Ok(gone)
 }
 
 /// The document of a group or an array, and its path.

@@ -15,8 +15,7 @@
 //!
 //! They are written when a run is complete, or later, and appear together: the group's document names them last.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use asperity::Grid;
 use asperity::finding::{CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, Finding, LEAK_BELOW_GAP_ERROR};
@@ -24,12 +23,11 @@ use ndarray::ArrayView2;
 use serde_json::{Map, Value, json};
 
 use super::chunks::Chunks;
-use super::document;
+use super::document::Document;
 use super::error::Result;
 use super::layout::{ArraySpec, DataType, Series, Storage, cells};
 use super::reader::Reader;
-use super::writer::{lock, remove};
-use crate::finding;
+use super::writer::{Writer, remove};
 use crate::leakage::Leakage;
 
 /// Codes of the findings about leaks.
@@ -256,23 +254,17 @@ impl LeakTable {
 
 /// Brings leaks into a result.
 pub struct LeakWriter {
-    root: PathBuf,
-    grid: Grid,
+    writer: Writer,
     field: bool,
-    /// Form of the result.
-    form: u64,
-    _lock: Option<fs::File>,
 }
 
 impl LeakWriter {
     /// Takes the result at `root` for writing. The leaks that it has stay until [`finish`](Self::finish), except their fields.
     ///
     /// # Errors
-    /// [`StoreError::Busy`](super::StoreError::Busy) where a run is writing it, [`StoreError::Io`](super::StoreError::Io).
-    pub fn new(root: &Path, grid: &Grid, field: bool) -> Result<LeakWriter> {
-        let held = lock(root)?;
-        let form = document::Document::read(root)?.form;
-        Ok(LeakWriter { root: root.to_owned(), grid: *grid, field, form, _lock: held })
+    /// As of [`Writer::amend`].
+    pub fn new(root: &Path, field: bool) -> Result<LeakWriter> {
+        Ok(LeakWriter { writer: Writer::amend(root)?, field })
     }
 
     /// Writes the pressure of the fluid \[Pa\] of number `index`.
@@ -280,37 +272,31 @@ impl LeakWriter {
     /// # Errors
     /// [`StoreError::Io`](super::StoreError::Io) where the system refuses.
     pub fn put_pressure(&self, index: usize, pressure: ArrayView2<'_, f64>) -> Result<()> {
-        Chunks::new(&self.root, &self.spec(PRESSURE.name, index + 1, false))
-            .write_map(&[index as u64], pressure)
+        self.chunks(PRESSURE.name, index + 1, false).write_map(&[index as u64], pressure)
     }
 
-    fn spec(&self, name: &'static str, rows: usize, gas: bool) -> ArraySpec {
-        spec(name, rows, &self.grid, gas).of_form(self.form)
+    fn chunks(&self, name: &'static str, rows: usize, gas: bool) -> Chunks {
+        let Document { header, form, .. } = &self.writer.document;
+        Chunks::new(self.writer.path(), &spec(name, rows, &header.grid, gas).of_form(*form))
     }
 
     /// Writes the numbers and makes all of it visible.
     ///
     /// # Errors
     /// [`StoreError::Io`](super::StoreError::Io) where the system refuses.
-    pub fn finish(self, table: &LeakTable, settings: Value, findings: &[Finding]) -> Result<()> {
-        let rows = table.len();
-        let mut specs = vec![];
+    pub fn finish(mut self, table: &LeakTable, settings: Value, findings: &[Finding]) -> Result<()> {
+        let (rows, gas) = (table.len(), table.gas);
         for (name, numbers) in &table.columns {
-            let spec = self.spec(name, rows, table.gas);
-            Chunks::new(&self.root, &spec).write_whole(numbers)?;
-            specs.push(spec);
+            self.chunks(name, rows, gas).write_whole(numbers)?;
         }
-        specs.extend(self.field.then(|| self.spec(PRESSURE.name, rows, table.gas)));
-        let add_findings = |attributes: &mut Map<String, Value>| {
-            let earlier = attributes.get("findings").map(finding::from_list).unwrap_or_default();
-            let kept = earlier.into_iter().filter(|finding| !CODES.contains(&finding.code.as_ref()));
-            let all: Vec<Finding> = kept.chain(findings.iter().cloned()).collect();
-            attributes.insert("findings".into(), finding::list(&all));
-            attributes.insert(ATTRIBUTE.into(), json!(settings.to_string()));
-            // They were those of the earlier leaks.
-            attributes.shift_remove(document::ERROR_BARS);
-        };
-        let dropped = document::exchange_arrays(&self.root, owns, &specs, add_findings)?;
-        dropped.into_iter().try_for_each(|name| remove(&self.root.join(name)))
+        let stored = table.columns.iter().map(|column| column.0).chain(self.field.then_some(PRESSURE.name));
+        let leaks = Leaks { rows, settings, names: stored.collect(), gas };
+        let gone: Vec<_> = names().filter(|name| !leaks.names.contains(name)).collect();
+        let Document { progress, leaks: known, .. } = &mut self.writer.document;
+        *known = Some(leaks);
+        progress.findings.retain(|finding| !CODES.contains(&finding.code.as_ref()));
+        progress.findings.extend(findings.iter().cloned());
+        self.writer.publish()?;
+        gone.into_iter().try_for_each(|name| remove(&self.writer.path().join(name)))
     }
 }

@@ -189,12 +189,9 @@ impl Reader {
         let column = self.header().quantities.iter().find(|column| column.quantity == quantity);
         let Some(column) = column.filter(|_| quantity.is_histogram()) else {
             let kept = self.header().quantities.iter().map(|column| column.quantity);
-            let names: Vec<_> = kept.filter(|q| q.is_histogram()).map(Quantity::name).collect();
-            let instead = match &names[..] {
-                [] => "name it in output.quantities of the case, and run that again".to_owned(),
-                names => format!("it holds {}", names.join(", ")),
-            };
-            return Err(self.missing(format!("histogram `{quantity}`"), instead));
+            let names = kept.filter(|q| q.is_histogram()).map(Quantity::name);
+            let how = "name it in output.quantities of the case, and run that again";
+            return Err(self.missing(format!("histogram `{quantity}`"), holds(names, how)));
         };
         let numbers = self.numbers(quantity.name())?;
         let shape = (numbers.len() / column.width(), column.width());
@@ -212,8 +209,8 @@ impl Reader {
         let name = if name == "time" { self.header().stored("time") } else { name };
         let known = self.scalars();
         if !known.iter().any(|series| series.name == name) {
-            let names: Vec<_> = known.iter().map(|series| series.name).collect();
-            return Err(self.missing(format!("series `{name}`"), format!("it holds {}", names.join(", "))));
+            let names = known.iter().map(|series| series.name);
+            return Err(self.missing(format!("series `{name}`"), holds(names, "")));
         }
         for column in &self.header().quantities {
             let quantity = column.quantity;
@@ -479,11 +476,11 @@ impl Reader {
     /// The error of a field that was not kept.
     pub fn no_field(&self, kind: FieldKind) -> StoreError {
         let names: Vec<_> = self.header().fields.iter().map(|kind| kind.name()).collect();
-        let available = match &names[..] {
-            [] => String::new(),
-            names => format!("it holds the fields {}; ", names.join(", ")),
+        let how = "name it in output.fields of the case, and run that again";
+        let how = match &names[..] {
+            [] => how.to_owned(),
+            names => format!("it holds the fields {}; {how}", names.join(", ")),
         };
-        let how = format!("{available}name it in output.fields of the case, and run that again");
         self.missing(format!("field `{kind}`"), how)
     }
 
@@ -515,5 +512,13 @@ impl Reader {
 
     pub(crate) fn missing(&self, what: String, instead: String) -> StoreError {
         StoreError::Missing { path: self.root.clone(), what, instead }
+    }
+}
+
+/// What a result holds instead, or what to do where it holds nothing of the kind.
+pub(super) fn holds<'n>(names: impl Iterator<Item = &'n str>, otherwise: &str) -> String {
+    match &names.collect::<Vec<_>>()[..] {
+        [] => otherwise.to_owned(),
+        names => format!("it holds {}", names.join(", ")),
     }
 }

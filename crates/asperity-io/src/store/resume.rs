@@ -14,9 +14,9 @@ use super::error::{Result, StoreError, io};
 use super::header::{Header, Progress, Status};
 use super::layout::{ArraySpec, Storage};
 use super::reader::Reader;
-use super::replace::Way;
 use super::stress;
 use super::writer::{Writer, lock, remove};
+use crate::compare::other_line;
 
 impl Writer {
     /// Opens the result at `path` to go on from its checkpoint. Rows and fields after the checkpoint
@@ -71,10 +71,7 @@ impl Writer {
         }
         kept.rows_expected = header.rows_expected;
         let document = Document { form, header: kept, progress, stress: None, leaks: None, error_bars: None };
-        let mut pages = Pages::new(&document);
-        // First: the documents of the arrays never count more than that of the group.
-        pages.write_arrays(path, Way::Safe)?;
-        pages.commit(path, &document.progress, Way::Safe)?;
+        Pages::publish(path, &document)?;
         stress::clear(path)?;
         // Maps after the last one counted may have been written, the last of them by half.
         for kind in &document.header.fields {
@@ -134,19 +131,10 @@ fn compare(path: &Path, stored: &Header, given: &Header) -> Result<()> {
         Err(StoreError::Mismatch { path: path.to_owned(), what: what.to_owned(), stored, given })
     };
     if stored.case_text != given.case_text {
-        let mut lines = (stored.case_text.lines(), given.case_text.lines());
-        let mut number = 0;
-        let quote = |line: Option<&str>| line.map_or("missing".into(), |line| format!("`{}`", line.trim()));
-        loop {
-            number += 1;
-            let (old, new) = (lines.0.next(), lines.1.next());
-            if old != new {
-                return mismatch(&format!("line {number} of the case"), quote(old), quote(new));
-            }
-            if old.is_none() {
-                return mismatch("the case", "of other line ends".into(), "not".into());
-            }
-        }
+        return match other_line(&stored.case_text, &given.case_text) {
+            Some((n, [old, new])) => mismatch(&format!("line {n} of the case"), old, new),
+            None => mismatch("the case", "of other line ends".into(), "not".into()),
+        };
     }
     if stored.grid != given.grid {
         let name = |header: &Header| {

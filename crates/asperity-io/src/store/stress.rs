@@ -11,11 +11,10 @@ use serde::{Deserialize, Serialize};
 use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::column::Column;
-use super::document::{Document, Pages};
+use super::document::Document;
 use super::error::{Result, corrupt};
 use super::layout::{ArraySpec, Series, Storage, cells};
-use super::reader::{At, Reader};
-use super::replace::Way;
+use super::reader::{At, Reader, holds};
 use super::writer::{Writer, lock, remove};
 use crate::stress::Ratio;
 
@@ -154,36 +153,19 @@ pub struct StressWriter {
     root: PathBuf,
     set: StressSet,
     specs: Vec<ArraySpec>,
-    fields: Vec<(StressQuantity, Chunks)>,
     /// The rows of the scalars and profiles, each for every stored instant.
     rows: Vec<Vec<Vec<f64>>>,
 }
 
 impl StressWriter {
-    /// Starts the arrays in the result at `root`, which has `maps` stored instants.
-    ///
-    /// # Errors
-    /// [`super::StoreError`] where it is no result.
-    pub fn new(root: &Path, set: &StressSet, maps: usize) -> Result<StressWriter> {
-        let reader = Reader::open(root)?;
-        let form = reader.document().form;
-        let specs = set.arrays(&reader.header().grid, maps);
-        let specs: Vec<ArraySpec> = specs.into_iter().map(|spec| spec.of_form(form)).collect();
-        let chunks = |(quantity, series): &(StressQuantity, Series)| {
-            let spec = specs.iter().find(|spec| spec.name() == series.name);
-            let spec = spec
-                .ok_or_else(|| reader.missing(format!("array `{}`", series.name), "it is damaged".into()))?;
-            Ok((*quantity, Chunks::new(root, spec)))
-        };
-        Ok(StressWriter {
-            fields: set.fields().iter().map(chunks).collect::<Result<_>>()?,
-            rows: rows_of(&specs)
-                .map(|spec| vec![vec![f64::NAN; spec.shape()[1..].iter().product()]; maps])
-                .collect(),
-            root: root.to_owned(),
-            set: set.clone(),
-            specs,
-        })
+    /// Starts the arrays in the result of `writer`.
+    pub fn new(writer: &Writer, set: &StressSet) -> StressWriter {
+        let Document { header, form, progress, .. } = &writer.document;
+        let specs = set.arrays(&header.grid, progress.maps);
+        let specs: Vec<ArraySpec> = specs.into_iter().map(|spec| spec.of_form(*form)).collect();
+        let unknown = |spec: &ArraySpec| vec![f64::NAN; spec.shape()[1..].iter().product()];
+        let rows = rows_of(&specs).map(|spec| vec![unknown(spec); progress.maps]).collect();
+        StressWriter { root: writer.path().to_owned(), set: set.clone(), specs, rows }
     }
 
     /// Writes a field of the instant of number `map` at the depth of number `depth`; one that is not stored is left out.
@@ -197,8 +179,8 @@ impl StressWriter {
         depth: usize,
         field: ArrayView2<'_, f64>,
     ) -> Result<()> {
-        match self.fields.iter().find(|(kind, _)| *kind == quantity) {
-            Some((_, chunks)) => chunks.write_map(&[map as u64, depth as u64], field),
+        match self.specs.iter().find(|spec| spec.name() == quantity.field_name()) {
+            Some(spec) => Chunks::new(&self.root, spec).write_map(&[map as u64, depth as u64], field),
             None => Ok(()),
         }
     }
@@ -267,14 +249,6 @@ pub(super) fn clear(root: &Path) -> Result<()> {
     names().try_for_each(|name| remove(&root.join(name)))
 }
 
-/// Replaces the documents of a result.
-pub(super) fn publish(root: &Path, document: &Document) -> Result<Pages> {
-    let mut pages = Pages::new(document);
-    pages.write_arrays(root, Way::Safe)?;
-    pages.commit(root, &document.progress, Way::Safe)?;
-    Ok(pages)
-}
-
 impl Reader {
     /// The stress below the surface that was computed; `None` if it was not.
     pub fn stress(&self) -> Option<&StressSet> {
@@ -304,12 +278,8 @@ impl Reader {
 
     fn stress_column(&self, name: &str, known: &[Series]) -> Result<Vec<f64>> {
         if !known.iter().any(|series| series.name == name) {
-            let names: Vec<_> = known.iter().map(|series| series.name).collect();
-            let instead = match &names[..] {
-                [] => COMPUTES.to_owned(),
-                names => format!("it holds {}", names.join(", ")),
-            };
-            return Err(self.missing(format!("`{name}`"), instead));
+            let names = known.iter().map(|series| series.name);
+            return Err(self.missing(format!("`{name}`"), holds(names, COMPUTES)));
         }
         self.numbers(name)
     }

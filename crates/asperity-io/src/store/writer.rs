@@ -90,10 +90,7 @@ impl Outcome {
 /// Dropped without [`finish`](Self::finish), the result stays as that of a killed run.
 pub struct Writer {
     root: PathBuf,
-    /// Number of the form of the result.
-    form: u64,
-    header: Header,
-    progress: Progress,
+    pub(super) document: Document,
     pages: Pages,
     /// The [`SCALARS`] and the quantities that were asked for.
     per_row: Vec<Column>,
@@ -134,7 +131,7 @@ fn identity(_: &Path) -> Option<Identity> {
 
 impl std::fmt::Debug for Writer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Writer").field("root", &self.root).field("rows", &self.progress.rows).finish()
+        f.debug_struct("Writer").field("root", &self.root).field("rows", &self.len()).finish()
     }
 }
 
@@ -166,9 +163,7 @@ impl Writer {
             Document { form: SCHEMA, header, progress, stress: None, leaks: None, error_bars: None };
         let lock = create::publish(path, force, |root| {
             create::write_constants(root, &document, initial_gap)?;
-            let mut pages = Pages::new(&document);
-            pages.write_arrays(root, Way::Safe)?;
-            pages.commit(root, &document.progress, Way::Safe)
+            Pages::publish(root, &document).map(drop)
         })?;
         Writer::attach(path, document, lock, f64::NEG_INFINITY)
     }
@@ -176,13 +171,10 @@ impl Writer {
     /// A writer that goes on after the rows and fields of `document`.
     pub(super) fn attach(root: &Path, document: Document, lock: Option<File>, last: f64) -> Result<Writer> {
         let specs = document.arrays();
-        let header = document.header.clone();
         let spec = |name: &'static str| {
-            let name = header.stored(name);
-            specs
-                .iter()
-                .find(|spec| spec.name() == name)
-                .ok_or_else(|| input("array", name, "one of a result"))
+            let name = document.header.stored(name);
+            let found = specs.iter().find(|spec| spec.name() == name);
+            found.ok_or_else(|| input("array", name, "one of a result"))
         };
         let Progress { rows, maps, sums, .. } = &document.progress;
         let column = |name: &'static str, rows| Ok(Column::new(root, spec(name)?, rows, sums));
@@ -207,9 +199,7 @@ impl Writer {
             checkpoint: (*rows > 0).then(|| (Instant::now(), Duration::ZERO)),
             synchronised: (Instant::now(), SystemTime::UNIX_EPOCH),
             pages: Pages::new(&document),
-            form: document.form,
-            header: document.header,
-            progress: document.progress,
+            document,
             directory: identity(root),
             _lock: lock,
         })
@@ -229,7 +219,8 @@ impl Writer {
         if at >= last {
             return Ok(());
         }
-        let (name, unit) = (self.header.axis().name(), self.header.axis().unit());
+        let axis = self.document.header.axis();
+        let (name, unit) = (axis.name(), axis.unit());
         let expected = format!("not less than the {name} before it, {last} {unit}");
         Err(input(format!("{name} of the {of}"), format!("{at} {unit}"), expected))
     }
@@ -241,17 +232,17 @@ impl Writer {
 
     /// Rows stored so far.
     pub fn len(&self) -> usize {
-        self.progress.rows
+        self.document.progress.rows
     }
 
     /// Whether no row is stored yet.
     pub fn is_empty(&self) -> bool {
-        self.progress.rows == 0
+        self.len() == 0
     }
 
     /// Work done so far, with that of the sessions before a resume.
     pub fn work(&self) -> &Work {
-        &self.progress.work
+        &self.document.progress.work
     }
 
     /// Appends a step: its row and, where the step is one whose fields are kept, all fields of the
@@ -283,8 +274,7 @@ impl Writer {
         if self.staged > 0 {
             self.check_order("row", at, self.last_staged)?;
         }
-        let Progress { rows, maps, .. } = self.progress;
-        let maps = maps + self.staged;
+        let (rows, maps) = (self.len(), self.document.progress.maps + self.staged);
         let numbers: Vec<f64> =
             SCALARS.iter().map(|scalar| scalar.of(row)).chain(quantities.iter().copied()).collect();
         let mut rest = numbers.as_slice();
@@ -293,7 +283,7 @@ impl Writer {
             column.put(rows, own)?;
             rest = after;
         }
-        let mut progress = self.progress.clone();
+        let mut progress = self.document.progress.clone();
         progress.maps = maps;
         if !fields.is_empty() {
             self.write_maps(maps, at, fields)?;
@@ -303,7 +293,7 @@ impl Writer {
         progress.work.iterations += row.iterations as u64;
         progress.work.convolutions += row.convolutions as u64;
         progress.work.wall_s = self.wall();
-        if self.form > 1 {
+        if self.document.form > 1 {
             let (rows, maps, sums) = (progress.rows, progress.maps, &mut progress.sums);
             self.per_row.iter().for_each(|column| column.sum(rows, sums));
             self.per_map.iter().for_each(|column| column.sum(maps, sums));
@@ -313,7 +303,7 @@ impl Writer {
         self.committed = Instant::now();
         self.per_row.iter_mut().for_each(|column| column.commit(progress.rows));
         self.per_map.iter_mut().for_each(|column| column.commit(progress.maps));
-        self.progress = progress;
+        self.document.progress = progress;
         self.staged = 0;
         self.last = at;
         self.documents_behind = true;
@@ -335,7 +325,7 @@ impl Writer {
         if fields.is_empty() {
             return Ok(());
         }
-        self.write_maps(self.progress.maps + self.staged, time, fields)?;
+        self.write_maps(self.document.progress.maps + self.staged, time, fields)?;
         self.staged += 1;
         self.last_staged = time;
         Ok(())
@@ -353,32 +343,37 @@ impl Writer {
                 Field::Real(_, map) => chunks.write_map(&index, *map)?,
             }
         }
-        let numbers = [time, self.progress.rows as f64];
+        let numbers = [time, self.len() as f64];
         self.per_map.iter_mut().zip(numbers).try_for_each(|(column, number)| column.put(map, &[number]))
     }
 
     /// Sets the stress below the surface that readers see; `sums` are the checksums of its per-step arrays.
     pub(super) fn set_stress(&mut self, stress: Option<StressSet>, sums: Sums) -> Result<()> {
-        self.progress.sums.retain(|name, _| !stress::names().any(|own| own == name));
-        if self.form > 1 {
-            self.progress.sums.extend(sums);
+        let Document { form, progress, stress: known, .. } = &mut self.document;
+        progress.sums.retain(|name, _| !stress::names().any(|own| own == name));
+        if *form > 1 {
+            progress.sums.extend(sums);
         }
-        let leaks = Document::read(&self.root)?.leaks;
-        let (form, header, progress) = (self.form, self.header.clone(), self.progress.clone());
+        *known = stress;
+        self.publish()
+    }
+
+    /// Replaces the documents of the result: arrays were added to it, or taken away.
+    pub(super) fn publish(&mut self) -> Result<()> {
         // The errors of what it had before are those of other answers.
-        let document = Document { form, header, progress, stress, leaks, error_bars: None };
-        self.pages = stress::publish(&self.root, &document)?;
+        self.document.error_bars = None;
+        self.pages = Pages::publish(&self.root, &self.document)?;
         Ok(())
     }
 
     /// The findings of the run so far.
     pub fn findings(&self) -> &[Finding] {
-        &self.progress.findings
+        &self.document.progress.findings
     }
 
     /// Sets the findings of the run; readers see them with the next row, [`note`](Self::note) or end.
     pub fn set_findings(&mut self, findings: Vec<Finding>) {
-        self.progress.findings = findings;
+        self.document.progress.findings = findings;
     }
 
     /// Sets the findings of the run, which readers see at once.
@@ -388,7 +383,7 @@ impl Writer {
     pub fn note(&mut self, findings: Vec<Finding>) -> Result<()> {
         self.check_place()?;
         self.set_findings(findings);
-        self.pages.commit(&self.root, &self.progress, Way::Quick)
+        self.pages.commit(&self.root, &self.document.progress, Way::Quick)
     }
 
     /// Whether writing a checkpoint now keeps the writing of all of them below 1 % of the time. They are five seconds apart
@@ -403,8 +398,8 @@ impl Writer {
     /// [`StoreError::Input`] where the checkpoint is not of the rows stored; [`StoreError::Io`] where the
     /// system refuses (the checkpoint before it is kept).
     pub fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<()> {
-        if checkpoint.step != self.progress.rows {
-            let expected = format!("{}, the rows stored", self.progress.rows);
+        if checkpoint.step != self.len() {
+            let expected = format!("{}, the rows stored", self.len());
             return Err(input("rows of the checkpoint", checkpoint.step, expected));
         }
         self.check_place()?;
@@ -436,7 +431,7 @@ impl Writer {
     pub fn finish(mut self, outcome: &Outcome) -> Result<Work> {
         self.check_place()?;
         let wall = self.wall();
-        let Progress { status, work, .. } = &mut self.progress;
+        let Progress { status, work, .. } = &mut self.document.progress;
         *status = outcome.status;
         work.message = outcome.message.clone();
         work.peak_memory_bytes = work.peak_memory_bytes.max(outcome.peak_memory_bytes);
@@ -444,7 +439,7 @@ impl Writer {
         work.wall_s = wall;
         // The documents of the arrays first: those of a complete result do not lag behind.
         self.flush_documents(Way::Safe)?;
-        self.pages.commit(&self.root, &self.progress, Way::Safe)?;
+        self.pages.commit(&self.root, &self.document.progress, Way::Safe)?;
         if self.synchronised.0.elapsed() >= SYNC_PAUSE {
             self.synchronise()?;
         }
@@ -454,7 +449,7 @@ impl Writer {
         } else if let Some(kept) = leftovers::kept(&self.root) {
             tracing::warn!("the complete result that this one replaces is kept in {}", kept.display());
         }
-        Ok(self.progress.work.clone())
+        Ok(self.document.progress.work.clone())
     }
 
     fn wall(&self) -> f64 {
@@ -462,7 +457,7 @@ impl Writer {
     }
 
     fn check_fields(&self, fields: &[Field<'_>]) -> Result<()> {
-        let header = &self.header;
+        let header = &self.document.header;
         for field in fields {
             check_shape(&format!("shape of the {}", field.kind()), field.dim(), header)?;
             if matches!(field, Field::Real(FieldKind::Contact, _)) {

@@ -9,7 +9,7 @@ use ndarray::ArrayView2;
 use thiserror::Error as Failure;
 
 use super::below::{Loads, missed, profiles, scalars};
-use super::{Below, Depths, Pressures, StressPlan};
+use super::{Below, Depths, Instant, Pressures, StressPlan};
 use crate::choice;
 use crate::instants;
 use crate::store::{At, FieldKind, Reader, StoreError, StressSet, StressWriter, Writer};
@@ -63,11 +63,10 @@ pub fn evaluate(
     let set = set(&reader, plan)?;
     Pressures::new(&reader, &set.body, &set.poisson)?;
     writer.remove_stress()?;
-    let mut store = StressWriter::new(writer.path(), &set, reader.field_times().len())?;
-    compute(&reader, plan, &set, interrupt, &mut observe, Some(&mut store))?;
+    let mut store = StressWriter::new(writer, &set);
+    let instants = compute(&reader, plan, &set, interrupt, &mut observe, Some(&mut store))?;
     writer.add_stress(store)?;
-    let below = Below::of(&Reader::open(writer.path())?)?;
-    below.ok_or_else(|| StressError::Store(reader.missing("stress".into(), "it was not stored".into())))
+    below(&reader, set, instants)
 }
 
 /// The same for a result that is only read: nothing is stored.
@@ -77,6 +76,10 @@ pub fn evaluate(
 pub fn of_result(reader: &Reader, plan: &StressPlan, interrupt: &AtomicBool) -> Result<Below, StressError> {
     let set = set(reader, plan)?;
     let instants = compute(reader, plan, &set, interrupt, &mut |_, _| (), None)?;
+    below(reader, set, instants)
+}
+
+fn below(reader: &Reader, set: StressSet, instants: Vec<Instant>) -> Result<Below, StressError> {
     let missed = missed(reader, instants.iter().map(|instant| instant.row))?;
     Ok(Below { grid: reader.header().grid, set, instants, missed })
 }
@@ -123,14 +126,9 @@ fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StressError> {
     if line && plan.rolling == Some(Rolling::Y) {
         return Err(StressError::Refused { path: reader.path().to_owned(), why: ROLLS_ALONG_LINE });
     }
-    if !reader.header().fields.contains(&FieldKind::Pressure) {
-        return Err(reader.no_field(FieldKind::Pressure).into());
-    }
-    let slips = reader.header().slips();
-    let lacks = [FieldKind::TractionX, FieldKind::TractionY]
-        .into_iter()
-        .find(|kind| !reader.header().fields.contains(kind));
-    if let Some(kind) = lacks.filter(|_| slips) {
+    let needed = [FieldKind::Pressure, FieldKind::TractionX, FieldKind::TractionY];
+    let mut needed = needed.into_iter().take(if reader.header().slips() { 3 } else { 1 });
+    if let Some(kind) = needed.find(|kind| !reader.header().fields.contains(kind)) {
         return Err(reader.no_field(kind).into());
     }
     let instants = instants::stored(reader, plan.times.as_deref())?;
@@ -155,7 +153,7 @@ fn compute(
     interrupt: &AtomicBool,
     observe: &mut dyn FnMut(usize, usize),
     mut store: Option<&mut StressWriter>,
-) -> Result<Vec<super::Instant>, StressError> {
+) -> Result<Vec<Instant>, StressError> {
     let grid = reader.header().grid;
     let mut stress = set.poisson.transforms(grid, boundary(reader))?;
     let mut pressures = Pressures::new(reader, &set.body, &set.poisson)?;
@@ -180,7 +178,7 @@ fn compute(
             Ok(())
         };
         let survey = survey_with(&mut stress, &set.depths, &plan.survey(), visit)?;
-        let instant = super::Instant {
+        let instant = Instant {
             index: *index,
             time: reader.field_times()[*index],
             row: reader.field_steps()[*index],

@@ -12,6 +12,7 @@ use super::table::Table;
 use super::{StudyError, dataset};
 use crate::case::study::Base;
 use crate::case::{Case, Surface};
+use crate::compare::other_line;
 use crate::digest::md5;
 use crate::output::{WriteError, write_all};
 use crate::resources;
@@ -142,17 +143,10 @@ impl Study {
             return refused(format!("it was made with {}, not {}", words(old.plan.zip), words(new.plan.zip)));
         }
         if old.case != new.case {
-            let (mut before, mut now) = (old.case.lines(), new.case.lines());
-            let lines = std::iter::from_fn(|| match (before.next(), now.next()) {
-                (None, None) => None,
-                pair => Some(pair),
-            });
-            let word =
-                |line: Option<&str>| line.map_or("missing".to_owned(), |line| format!("`{}`", line.trim()));
-            let other = lines.enumerate().find(|(_, (a, b))| a != b);
-            let told = other.map_or("its line ends".to_owned(), |(n, (a, b))| {
-                format!("line {} was {} and is {}", n + 1, word(a), word(b))
-            });
+            let told = match other_line(&old.case, &new.case) {
+                Some((n, [before, now])) => format!("line {n} was {before} and is {now}"),
+                None => "its line ends".to_owned(),
+            };
             return refused(format!("the case has changed: {told}"));
         }
         let changed =

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::StudyError;
 use super::values::{self, Value};
-use crate::case::study::{Base, Written};
+use crate::case::Form;
+use crate::case::study::Base;
 use crate::compare::{called, short};
 use crate::digest::md5;
 use crate::readable::counted;
@@ -47,8 +48,9 @@ impl Plan {
         let mut vary: Vec<Varied> = vec![];
         for (key, written) in &base.vary {
             let values = match written {
-                Written::Text(text) => values::read(text).map_err(|reason| refused(key, reason))?,
-                Written::List(list) => list.iter().map(|source| Value::new(source)).collect(),
+                Form::Word(text) => values::read(text).map_err(|reason| refused(key, reason))?,
+                Form::List(list) => list.iter().map(|value| Value::new(&value.to_string())).collect(),
+                Form::Table(never) => match *never {},
             };
             vary.push(Varied { key: key.clone(), values });
         }

@@ -109,26 +109,16 @@ impl Ruler {
     pub(super) fn new(axis: &Axis, data: [f64; 2], margin: f64, wanted: f64) -> Ruler {
         let ends = ends(axis, data, margin);
         let unit = prefixed(axis, ends);
-        Ruler::with_power(axis, ends, wanted, unit)
-    }
-
-    /// The same with the prefix given, and the power of ten that suits it.
-    pub(super) fn in_unit(axis: &Axis, data: [f64; 2], margin: f64, wanted: f64, unit: Shown) -> Ruler {
-        Ruler::with_power(axis, ends(axis, data, margin), wanted, unit)
-    }
-
-    /// The same in this unit as it is.
-    pub(super) fn exactly(axis: &Axis, data: [f64; 2], margin: f64, wanted: f64, unit: Shown) -> Ruler {
-        Ruler::laid(axis, ends(axis, data, margin), wanted, unit.clone(), unit)
-    }
-
-    fn with_power(axis: &Axis, ends: [f64; 2], wanted: f64, unit: Shown) -> Ruler {
-        let numbers = if axis.scale == Scale::Log || !axis.names.is_empty() {
-            unit.clone()
-        } else {
-            with_power(&unit, ends[0].abs().max(ends[1].abs()))
+        let numbers = match axis.scale {
+            Scale::Linear if axis.names.is_empty() => with_power(&unit, ends[0].abs().max(ends[1].abs())),
+            _ => unit.clone(),
         };
         Ruler::laid(axis, ends, wanted, unit, numbers)
+    }
+
+    /// The same in this unit, without a power of ten of its own.
+    pub(super) fn exactly(axis: &Axis, data: [f64; 2], margin: f64, wanted: f64, unit: Shown) -> Ruler {
+        Ruler::laid(axis, ends(axis, data, margin), wanted, unit.clone(), unit)
     }
 
     /// `unit` is that of the axis, and `numbers` the same with a power of ten where the numbers need it.

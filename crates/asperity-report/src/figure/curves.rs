@@ -257,14 +257,12 @@ impl Curves {
         let foot = TEXT + SMALL + 12.0;
         let head = margins.head + margins.legend + self.height_beside();
         let x = Ruler::new(&self.x, across, ROOM[0], (width - margins.labels - TEXT - 25.0) / 48.0);
+        let mut y = self.y.clone();
         // A density over a length in µm is one per µm.
-        let inverse = (self.y.unit == format!("1/{}", self.x.unit))
-            .then(|| Shown { factor: 1.0 / x.unit.factor, text: format!("1/{}", x.unit.text) });
-        let wanted = (height - foot - head) / 32.0;
-        let y = match inverse {
-            Some(unit) => Ruler::in_unit(&self.y, up, ROOM[1], wanted, unit),
-            None => Ruler::new(&self.y, up, ROOM[1], wanted),
-        };
+        if y.unit == format!("1/{}", self.x.unit) {
+            y.chosen = Some(Shown { factor: 1.0 / x.unit.factor, text: format!("1/{}", x.unit.text) });
+        }
+        let y = Ruler::new(&y, up, ROOM[1], (height - foot - head) / 32.0);
         (x, y, [head, foot])
     }
 

@@ -113,19 +113,9 @@ impl Map {
         }
     }
 
-    /// The same map of something over lags in both directions.
-    pub fn over_lags(self) -> Map {
-        Map { axes: Axes::Lags, ..self }
-    }
-
-    /// The same map as a section whose second axis is the depth.
-    pub fn section(self, along: &'static str, start: f64) -> Map {
-        Map { axes: Axes::Section { along, start }, ..self }
-    }
-
-    /// The same map with the time \[s\] as its second axis, from `start` on; its size along that axis is a duration \[s\].
-    pub fn over_time(self, start: f64) -> Map {
-        Map { axes: Axes::Times { start }, ..self }
+    /// The same map over these axes; over the time, its size along the second one is a duration \[s\].
+    pub fn over(self, axes: Axes) -> Map {
+        Map { axes, ..self }
     }
 
     /// A map of states.
@@ -157,11 +147,6 @@ impl Map {
     pub fn marked(mut self, place: [f64; 2]) -> Map {
         self.marks.push(place);
         self
-    }
-
-    /// The same map with a line across it at this place of its second axis.
-    pub fn with_line(self, place: f64) -> Map {
-        Map { line: Some(place), ..self }
     }
 
     /// The same map with these values at the ends of its colours.
@@ -292,20 +277,19 @@ impl Map {
 
     /// The values in their colours.
     pub(super) fn picture(&self) -> Pixels {
-        match (&self.meaning, self.scale()) {
-            (Values::States(states), _) => raster::state_picture(&self.values, states),
-            (_, Some(scale)) if self.cover.is_none() && self.goes_down() => {
-                let flipped = self.values.slice(ndarray::s![.., ..;-1]).to_owned();
-                raster::coloured(&flipped, |value| scale.at(value))
-            }
-            (_, Some(scale)) => match &self.cover {
-                None => raster::coloured(&self.values, |value| scale.at(value)),
-                Some((states, cells)) => {
-                    raster::covered(&self.values, |value| scale.at(value), cells, states)
-                }
-            },
-            (_, None) => Pixels { size: [0, 0], rgb: vec![] },
-        }
+        let (scale, [nx, ny]) = (self.scale(), self.values.dim().into());
+        raster::coloured([nx, ny], |[i, j]| {
+            let cell = [i, if self.goes_down() { ny - 1 - j } else { j }];
+            let value = self.values[cell];
+            let covering = self.cover.as_ref().filter(|(_, cells)| cells[cell] > 0.0);
+            let state = match (&self.meaning, covering) {
+                (Values::States(states), _) => states.get(value as usize).filter(|_| value.is_finite()),
+                (_, Some((states, cells))) => states.get(cells[cell] as usize),
+                _ => None,
+            };
+            let of_value = || scale.map_or(BLANK, |scale| scale.at(value));
+            state.map_or_else(of_value, |(_, colour)| *colour)
+        })
     }
 }
 

@@ -63,6 +63,16 @@ pub enum Panel {
     Map(Map),
 }
 
+impl Panel {
+    pub(crate) fn curves(&self) -> Option<&Curves> {
+        if let Panel::Curves(curves) = self { Some(curves) } else { None }
+    }
+
+    pub(crate) fn map(&self) -> Option<&Map> {
+        if let Panel::Map(map) = self { Some(map) } else { None }
+    }
+}
+
 impl From<Curves> for Panel {
     fn from(curves: Curves) -> Panel {
         Panel::Curves(curves)

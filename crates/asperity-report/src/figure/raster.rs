@@ -3,7 +3,6 @@
 use ndarray::{Array2, ArrayView2, s};
 
 use super::drawing::Pixels;
-use super::map::State;
 
 /// Most cells of a side that a figure holds: a hand's breadth at 300 dots per inch.
 const FINEST: usize = 1024;
@@ -46,34 +45,10 @@ fn blocks(values: ArrayView2<f64>, block: usize, one: impl Fn(ArrayView2<f64>) -
     })
 }
 
-/// States in the colours of their numbers.
-pub(super) fn state_picture(values: &Array2<f64>, states: &[State]) -> Pixels {
-    let colour =
-        |v: f64| states.get(v as usize).filter(|_| v.is_finite()).map_or(BLANK, |(_, colour)| *colour);
-    coloured(values, colour)
-}
-
-/// Values in their colours: axis 0 to the right, axis 1 upwards.
-pub(super) fn coloured(values: &Array2<f64>, colour: impl Fn(f64) -> [u8; 3]) -> Pixels {
-    let (nx, ny) = values.dim();
+/// Cells in their colours: axis 0 to the right, axis 1 upwards.
+pub(super) fn coloured([nx, ny]: [usize; 2], colour: impl FnMut([usize; 2]) -> [u8; 3]) -> Pixels {
     let cells = (0..ny).rev().flat_map(|j| (0..nx).map(move |i| [i, j]));
-    Pixels { size: [nx, ny], rgb: cells.flat_map(|cell| colour(values[cell])).collect() }
-}
-
-/// Values in their colours, and in those of their states the cells whose state is not 0.
-pub(super) fn covered(
-    values: &Array2<f64>,
-    colour: impl Fn(f64) -> [u8; 3],
-    cells: &Array2<f64>,
-    states: &[State],
-) -> Pixels {
-    let (nx, ny) = values.dim();
-    let own = |cell: [usize; 2]| match states.get(cells[cell] as usize) {
-        Some((_, own)) if cells[cell] > 0.0 => *own,
-        _ => colour(values[cell]),
-    };
-    let rgb = (0..ny).rev().flat_map(|j| (0..nx).map(move |i| [i, j])).flat_map(own).collect();
-    Pixels { size: [nx, ny], rgb }
+    Pixels { size: [nx, ny], rgb: cells.flat_map(colour).collect() }
 }
 
 /// The pixels as a PNG. Fails only where a side is 0 or beyond 2^31: no figure has these.
@@ -91,6 +66,7 @@ pub(super) fn png(pixels: &Pixels) -> Result<Vec<u8>, png::EncodingError> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Colours, Map, State};
     use super::*;
 
     #[test]
@@ -104,20 +80,22 @@ mod tests {
 
     #[test]
     fn x_goes_right_and_y_goes_up() {
-        let names = [[1, 1, 1], [2, 2, 2], [3, 3, 3]].map(|c| ("", c));
+        const NAMES: [State; 3] = [("", [1; 3]), ("", [2; 3]), ("", [3; 3])];
         let values = ndarray::array![[0.0, 1.0], [2.0, f64::NAN], [7.0, 0.0]];
-        let pixels = state_picture(&values, &names);
+        let pixels = Map::states("", &NAMES, values.view(), [1.0; 2]).picture();
         assert_eq!(pixels.size, [3, 2]);
         assert_eq!(pixels.rgb, [[2, 2, 2], BLANK, [1, 1, 1], [1, 1, 1], [3, 3, 3], BLANK].concat());
     }
 
     #[test]
     fn states_other_than_0_hide_the_values() {
-        let names = [("", [0; 3]), ("contact", [1, 1, 1]), ("pocket", [2, 2, 2])];
+        const NAMES: [State; 3] = [("", [0; 3]), ("contact", [1; 3]), ("pocket", [2; 3])];
         let values = ndarray::array![[5.0, f64::NAN], [6.0, 7.0]];
         let cells = ndarray::array![[0.0, 1.0], [2.0, 0.0]];
-        let pixels = covered(&values, |value| [value as u8; 3], &cells, &names);
-        assert_eq!(pixels.rgb, [[1; 3], [7; 3], [5; 3], [2; 3]].concat());
+        let map = Map::new("", ["height", "m"], Colours::Sequential, values.view(), [1.0; 2]);
+        let scale = map.scale().unwrap();
+        let pixels = map.covered(&NAMES, cells.view()).picture();
+        assert_eq!(pixels.rgb, [[1; 3], scale.at(7.0), scale.at(5.0), [2; 3]].concat());
     }
 
     #[test]

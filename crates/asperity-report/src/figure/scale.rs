@@ -113,8 +113,8 @@ impl Bar {
     pub(super) fn draw(self, drawing: &mut Drawing, [left, top, bottom]: [f64; 3]) {
         let ruler = self.ruler.placed(bottom, top);
         let right = left + 10.0;
-        let column = Array2::from_shape_fn((1, 256), |(_, j)| self.scale.value((j as f64 + 0.5) / 256.0));
-        let picture = raster::coloured(&column, |value| self.scale.at(value));
+        let colour = |[_, j]: [usize; 2]| self.scale.at(self.scale.value((j as f64 + 0.5) / 256.0));
+        let picture = raster::coloured([1, 256], colour);
         drawing.image([left, top], [10.0, bottom - top], picture, true);
         drawing.rect([left, top], [10.0, bottom - top], Paint::outline(Pen::new(INK, 0.6)));
         for (value, text) in &ruler.ticks {

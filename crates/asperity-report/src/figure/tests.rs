@@ -292,7 +292,10 @@ fn curve_figure() -> Figure {
 #[test]
 fn curves_end_where_the_map_over_time_below_them_ends() {
     let states = Values::States(&[("open", [0; 3])]);
-    for map in [map().over_time(0.0), Map { meaning: states, ..map().over_time(0.0) }] {
+    for map in [
+        map().over(Axes::Times { start: 0.0 }),
+        Map { meaning: states, ..map().over(Axes::Times { start: 0.0 }) },
+    ] {
         let figure = Figure::new("").columns(1).with(curve()).with(map);
         let places = figure.places();
         let [Panel::Curves(curves), Panel::Map(map)] = &figure.panels[..] else { panic!("two panels") };

@@ -14,11 +14,8 @@ pub(super) fn load_displacement(reader: &Reader, options: &Options) -> Result<Fi
     let kept = shown(reader, options)?;
     let panel =
         Curves::new("", Axis::linear("approach", "m"), Axis::linear("load", reader.header().grid.units("N")));
-    let pick = |name: &str| -> Result<Vec<f64>, StoreError> {
-        let values = reader.series(name)?;
-        Ok(kept.iter().filter_map(|row| values.get(*row).copied()).collect())
-    };
-    let (approach, load) = (pick("approach")?, pick("load")?);
+    let [approach, load] = ["approach", "load"].map(|name| at_rows(reader, &kept, name));
+    let (approach, load) = (approach?, load?);
     let whole = match ForceCurve::of(reader, &approach, &load) {
         Some(curve) => curve.drawn(panel.clone(), &approach),
         None => nameless(panel.clone(), &approach, load),
@@ -38,16 +35,12 @@ const STILL: f64 = 1e-6;
 /// Tangential force over tangential displacement, of each component that moves.
 pub(super) fn tangential_loop(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let kept = shown(reader, options)?;
-    let pick = |name: &str| -> Result<Vec<f64>, StoreError> {
-        let values = reader.series(name)?;
-        Ok(kept.iter().filter_map(|row| values.get(*row).copied()).collect())
-    };
     let axis = Axis::linear("tangential displacement", "m");
     let panel = Curves::new("", axis, Axis::linear("tangential force", reader.header().grid.units("N")));
     let mut curves = vec![];
     for name in ["x", "y"] {
         let [displacement, force] =
-            ["displacement", "force"].map(|of| pick(&format!("tangential_{of}_{name}")));
+            ["displacement", "force"].map(|of| at_rows(reader, &kept, &format!("tangential_{of}_{name}")));
         curves.push((name, displacement?, force?));
     }
     let most = |values: &[f64]| values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
@@ -181,6 +174,12 @@ pub(super) fn shown(reader: &Reader, options: &Options) -> Result<Vec<usize>, Pl
     let times = times(reader)?;
     Rows::within(reader, options)?;
     Ok((0..times.len()).filter(|row| options.shows(times[*row])).collect())
+}
+
+/// The numbers of a series at these rows.
+fn at_rows(reader: &Reader, rows: &[usize], name: &str) -> Result<Vec<f64>, StoreError> {
+    let values = reader.series(name)?;
+    Ok(rows.iter().filter_map(|row| values.get(*row).copied()).collect())
 }
 
 /// Times of all rows; an error where there is none yet.

@@ -26,7 +26,10 @@ const FINEST: usize = 5;
 pub(super) fn map(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let leak = settings(reader);
     let Some((leak, coupling)) = leak.as_ref().and_then(|leak| Some((leak, leak.coupling.as_ref()?))) else {
-        return Err(PlotError::Dry { path: reader.path().to_owned() });
+        return Err(PlotError::Refused(format!(
+            "no fluid acts on the surfaces of {}; set coupling = \"two-way\" in [leakage] of its case",
+            reader.path().display()
+        )));
     };
     let index = reader.index(options.at)?;
     let (at, time) = (At::Index(index), reader.field_times()[index]);

@@ -15,7 +15,10 @@ use crate::figure::{Axis, Curves, Figure, Series, Style};
 pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let has = |name: &str| reader.scalars().iter().any(|series| series.name == name);
     if !has("friction_coefficient") {
-        return Err(PlotError::AtRest { path: reader.path().to_owned() });
+        return Err(PlotError::Refused(format!(
+            "{} has no friction: its case has no motion; give it a table [motion]",
+            reader.path().display()
+        )));
     }
     let x = times(reader)?;
     let rows = Rows::within(reader, options)?;

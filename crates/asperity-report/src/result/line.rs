@@ -5,7 +5,7 @@ use ndarray::Array2;
 
 use super::fields::contact_states;
 use super::{caption, colours, nameless, no_contact};
-use crate::figure::{Axis, COLOURS, Curves, Figure, INK, Map, Series, Style, extent, means, states};
+use crate::figure::{Axes, Axis, COLOURS, Curves, Figure, INK, Map, Series, Style, extent, means, states};
 
 /// Width and height of a panel \[points\].
 pub(super) const PANEL: [f64; 2] = [430.0, 180.0];
@@ -32,7 +32,7 @@ pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, 
         words += " Solid: this velocity.";
     }
     if let Some(map) = over_time(reader, kind)? {
-        figure = figure.with(map.with_line(reader.field_times()[index]));
+        figure = figure.with(Map { line: Some(reader.field_times()[index]), ..map });
         words += " The map: over x and time, at each time the nearest stored instant; its line: this time.";
     }
     Ok(figure.caption(words))
@@ -146,7 +146,7 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
         None => Map::states("", contact_states(reader), picture.view(), size),
         Some(colours) => Map::new("", [kind.short_name(), kind.units()], colours, picture.view(), size),
     };
-    Ok(Some(Map { whole, ..map.over_time(first) }))
+    Ok(Some(Map { whole, ..map.over(Axes::Times { start: first }) }))
 }
 
 /// Centres of the cells \[m\].

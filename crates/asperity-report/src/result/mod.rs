@@ -52,7 +52,7 @@ pub use temperature::temperatures;
 pub(crate) use together::colour as colour_among;
 pub use together::together;
 
-use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series};
+use crate::figure::{Colours, Curves, Figure, FigureError, Map, Palette, Panel, Scale, Series};
 
 /// What a figure shows of a result.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -110,90 +110,35 @@ pub enum PlotError {
     /// The stress below the surface cannot be computed.
     #[error(transparent)]
     Stress(#[from] StressError),
-    /// A line contact has no such figure.
-    #[error("{} is a line contact, in which nothing changes along y: {what}", path.display())]
-    OnLine {
-        /// The result.
-        path: std::path::PathBuf,
-        /// What there is not, or what to do instead.
-        what: &'static str,
-    },
-    /// The bodies do not move along each other.
-    #[error("{} has no friction: its case has no motion; give it a table [motion]", path.display())]
-    AtRest {
-        /// The result.
-        path: std::path::PathBuf,
-    },
-    /// The surfaces do not wear.
-    #[error("the surfaces of {} do not wear; give its case a table [wear]", path.display())]
-    Unworn {
-        /// The result.
-        path: std::path::PathBuf,
-    },
-    /// No fluid acts on the surfaces.
-    #[error("no fluid acts on the surfaces of {}; set coupling = \"two-way\" in [leakage] of its case", path.display())]
-    Dry {
-        /// The result.
-        path: std::path::PathBuf,
-    },
     /// The flow at the instant was not solved.
     #[error(transparent)]
     Flow(#[from] asperity::Error),
-    /// No row lies in the window of times.
-    #[error("no row lies in this window; the rows go from {} to {}", ends[0], ends[1])]
-    Window {
-        /// First and last row in words.
-        ends: [String; 2],
-    },
-    /// More results than a figure has room for.
-    #[error("the figure {figure} is for at most {most} results, but {given} are given; give fewer")]
-    Many {
-        /// Its name.
-        figure: &'static str,
-        /// Number of results.
-        given: usize,
-        /// Results in it at most.
-        most: usize,
-    },
-    /// The figure is too large or too small.
+    /// The figure is too large or too small, or cannot be written.
     #[error(transparent)]
     Figure(#[from] FigureError),
-    /// The line of a profile is outside of the area.
-    #[error(
-        "the line at {axis} = {} is outside of the area, which goes from 0 to {}",
-        quantity(*at, "m"), quantity(*length, "m")
-    )]
-    Outside {
-        /// x or y.
-        axis: char,
-        /// Where the line was asked for \[m\].
-        at: f64,
-        /// Length of the area along that axis \[m\].
-        length: f64,
-    },
+    /// The result has no such figure, for the reason that the sentence says.
+    #[error("{0}")]
+    Refused(String),
 }
 
 /// The figure of a result.
 ///
 /// # Errors
 /// [`PlotError::Store`] where the result has no row yet, does not hold the field or the instant, or is damaged;
-/// [`PlotError::Outside`] where the line of a profile does not cross the area; [`PlotError::Window`] where no row lies in the
-/// window; [`PlotError::Figure`] where the paper is too small.
+/// [`PlotError::Refused`] where the result has no such figure, as nothing wears, the line of a profile does not cross the area, or
+/// no row lies in the window; [`PlotError::Figure`] where the paper is too small.
 pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, PlotError> {
     finished(panels(reader, plot, options)?, options)
 }
 
 /// The figure with what it says of rows that a logarithmic axis leaves out, on the paper asked for.
 fn finished(mut figure: Figure, options: &Options) -> Result<Figure, PlotError> {
-    let leaves_out = |panel: &Panel| match panel {
-        Panel::Curves(curves) => curves.leaves_out_zero().then(|| curves.x.label.clone()),
-        Panel::Map(_) => None,
-    };
-    if let Some(label) = figure.panels.iter().find_map(leaves_out) {
-        let zero = if label == "time" { "t = 0".to_owned() } else { "0".to_owned() };
+    let curves = figure.panels.iter().filter_map(Panel::curves);
+    if let Some(label) = { curves }.find(|curves| curves.leaves_out_zero()).map(|curves| &curves.x.label) {
+        let zero = if label == "time" { "t = 0" } else { "0" };
         figure.caption += &format!(" {zero} is not shown: the {label} axis is logarithmic.");
     }
-    if let Some((axis, times)) = figure.panels.iter().find_map(stretched) {
+    if let Some((axis, times)) = figure.panels.iter().filter_map(Panel::map).find_map(Map::stretched) {
         let times = quantity(if times < 10.0 { times } else { times.round() }, "");
         figure.caption += &format!(" The map is stretched {times} times along {axis}.");
     }
@@ -204,24 +149,18 @@ fn finished(mut figure: Figure, options: &Options) -> Result<Figure, PlotError> 
     }
 }
 
-/// Which axis of a map is stretched, and how many times.
-fn stretched(panel: &Panel) -> Option<(&'static str, f64)> {
-    match panel {
-        Panel::Map(map) => map.stretched(),
-        Panel::Curves(_) => None,
-    }
-}
-
 /// The figure with its title, colours and caption.
 fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, PlotError> {
     if reader.header().grid.is_line() {
-        let refused = |what| Err(PlotError::OnLine { path: reader.path().to_owned(), what });
-        match plot {
-            Plot::Leak => return refused("it has no leakage"),
-            Plot::Profile if matches!(options.line, Line::AlongY(_)) => {
-                return refused("take the profile along x");
-            }
-            _ => {}
+        let what = match plot {
+            Plot::Leak => Some("it has no leakage"),
+            Plot::Profile if matches!(options.line, Line::AlongY(_)) => Some("take the profile along x"),
+            _ => None,
+        };
+        if let Some(what) = what {
+            let path = reader.path().display();
+            let on_line = format!("{path} is a line contact, in which nothing changes along y: {what}");
+            return Err(PlotError::Refused(on_line));
         }
     }
     let at = if plot.shows_contact() { with_contact(reader, options.at)? } else { options.at };

@@ -4,7 +4,7 @@ use asperity_io::readable::quantity;
 use asperity_io::store::{FieldKind, Reader};
 use ndarray::{Array2, Axis as Side};
 
-use super::{Line, Options, PlotError, caption, nameless, no_contact};
+use super::{Line, Options, PlotError, caption, no_contact};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
 pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
@@ -17,7 +17,10 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
     let (length, cells) = (grid.size()[1 - along], grid.cells()[1 - along]);
     let at = across.unwrap_or(0.5 * length);
     if !(0.0..=length).contains(&at) {
-        return Err(PlotError::Outside { axis: name[1], at, length });
+        let [at, length] = [at, length].map(|length| quantity(length, "m"));
+        let words =
+            format!("the line at {} = {at} is outside of the area, which goes from 0 to {length}", name[1]);
+        return Err(PlotError::Refused(words));
     }
     let row = ((at / length * cells as f64) as usize).min(cells - 1);
     let place: Vec<f64> =
@@ -34,10 +37,15 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
         )
     };
     let of = |values: &Array2<f64>| values.index_axis(Side(1 - along), row).to_vec();
-    if kept.contains(&FieldKind::Pressure) {
-        let pressure = of(&reader.field(FieldKind::Pressure, options.at)?);
-        figure = figure.with(nameless(panel("pressure", "Pa"), &place, pressure));
-    }
+    let fields = |quantity: &str, unit: &str, kinds: &[(FieldKind, &str)]| -> Result<_, PlotError> {
+        let mut curves = panel(quantity, unit);
+        for (kind, name) in kinds.iter().filter(|(kind, _)| kept.contains(kind)) {
+            let values = of(&reader.field(*kind, options.at)?);
+            curves = curves.with(Series::new(*name, Style::Line, &place, values));
+        }
+        Ok((!curves.series.is_empty()).then_some(curves))
+    };
+    figure = figure.with_all(fields("pressure", "Pa", &[(FieldKind::Pressure, "")])?);
     if kept.contains(&FieldKind::Gap) {
         let gap = super::fields::gap(reader, options.at)?;
         let undeformed = super::fields::undeformed_gap(reader, options.at)?;
@@ -55,32 +63,12 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
             figure = figure.with(super::line::surfaces(reader, index, &gap, &undeformed)?);
         }
     }
-    let of_both = [
-        (
-            "worn depth",
-            "m",
-            [(FieldKind::WearDepth, "body"), (FieldKind::CounterbodyWearDepth, "counterbody")],
-        ),
-        (
-            "temperature rise",
-            "K",
-            [(FieldKind::FlashTemperature, "track"), (FieldKind::SliderFlashTemperature, "slider")],
-        ),
-    ];
-    for (what, unit, bodies) in of_both {
-        let mut curves = panel(what, unit);
-        for (kind, body) in bodies.into_iter().filter(|(kind, _)| kept.contains(kind)) {
-            let values = of(&reader.field(kind, options.at)?);
-            curves = curves.with(Series::new(body, Style::Line, &place, values));
-        }
-        if !curves.series.is_empty() {
-            figure = figure.with(curves);
-        }
-    }
-    if kept.contains(&FieldKind::Displacement) {
-        let displacement = of(&reader.field(FieldKind::Displacement, options.at)?);
-        figure = figure.with(nameless(panel("displacement", "m"), &place, displacement));
-    }
+    let worn = [(FieldKind::WearDepth, "body"), (FieldKind::CounterbodyWearDepth, "counterbody")];
+    let warm = [(FieldKind::FlashTemperature, "track"), (FieldKind::SliderFlashTemperature, "slider")];
+    figure = figure
+        .with_all(fields("worn depth", "m", &worn)?)
+        .with_all(fields("temperature rise", "K", &warm)?)
+        .with_all(fields("displacement", "m", &[(FieldKind::Displacement, "")])?);
     if figure.panels.is_empty() {
         return Err(reader.no_field(FieldKind::Pressure).into());
     }

@@ -27,7 +27,7 @@ impl Rows {
     /// Those of a window.
     ///
     /// # Errors
-    /// [`PlotError::Window`] where no row lies in it.
+    /// [`PlotError::Refused`] where no row lies in it.
     pub(crate) fn within(reader: &Reader, options: &Options) -> Result<Rows, PlotError> {
         let values = reader.series("time")?;
         if options.window == [None, None] {
@@ -35,8 +35,10 @@ impl Rows {
         }
         let inside: Vec<f64> = values.iter().copied().filter(|value| options.shows(*value)).collect();
         let (Some(first), Some(last)) = (inside.first(), inside.last()) else {
-            let ends = [values.first(), values.last()].map(|end| super::moment(reader, *end.unwrap_or(&0.0)));
-            return Err(PlotError::Window { ends });
+            let ends = [values.first(), values.last()];
+            let [start, end] = ends.map(|end| super::moment(reader, *end.unwrap_or(&0.0)));
+            let words = format!("no row lies in this window; the rows go from {start} to {end}");
+            return Err(PlotError::Refused(words));
         };
         let rows = Rows::over(reader, &inside, &options.units);
         // A logarithmic axis begins at the first row after 0.

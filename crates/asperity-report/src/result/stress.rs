@@ -6,7 +6,7 @@ use asperity_io::stress::{Below, Instant, Section, StressError, StressPlan, belo
 use ndarray::{Array2, s};
 
 use super::{IN_PLACE, Options, PlotError, caption, moment, with_contact};
-use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style};
+use crate::figure::{Axes, Axis, Colours, Curves, Figure, Map, Series, Style};
 
 /// A section is this many times as wide as deep, unless the domain ends before.
 const WIDE: f64 = 3.0;
@@ -54,7 +54,7 @@ pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Fig
         let part = values.slice(s![first..end, ..]).to_owned();
         let start = first as f64 / cells as f64 * size;
         let wide = (end - first) as f64 / cells as f64 * size;
-        mises(title, &part, [wide, found.reach]).section(along, start)
+        mises(title, &part, [wide, found.reach]).over(Axes::Section { along, start })
     };
     let title = title(reader, instant);
     let y_words = if found.along_y.is_some() { format!(", y = {}", length(y)) } else { String::new() };

@@ -6,7 +6,8 @@ use asperity_io::store::{At, Reader};
 
 use super::{NO_CONTACT, Options, Plot, PlotError, finished, panels};
 use crate::figure::{
-    Axis, COLOURS, Curves, Figure, FigureError, INK, PANELS, Palette, Panel, Scale, Series, Style, Values,
+    Axis, COLOURS, Curves, Figure, FigureError, INK, Map, PANELS, Palette, Panel, Scale, Series, Style,
+    Values,
 };
 
 /// The figure of each result with its name and instant, put together. Panels of curves with the same title become one, with a
@@ -25,7 +26,7 @@ pub fn together(
     for (n, (name, reader, at)) in results.iter().enumerate() {
         let colour = colour(n, results.len());
         let own = panels(reader, plot, &Options { at: *at, ..options.clone() })?;
-        let maps = own.panels.iter().filter(|panel| matches!(panel, Panel::Map(_))).count() * results.len();
+        let maps = own.panels.iter().filter_map(Panel::map).count() * results.len();
         if maps > PANELS {
             return Err(FigureError::Panels { found: maps }.into());
         }
@@ -62,7 +63,11 @@ pub fn together(
     }
     for one in all {
         if one.results.len() > MOST {
-            return Err(PlotError::Many { figure: plot.name(), given: one.results.len(), most: MOST });
+            return Err(PlotError::Refused(format!(
+                "the figure {} is for at most {MOST} results, but {} are given; give fewer",
+                plot.name(),
+                one.results.len()
+            )));
         }
         let place = one.place;
         whole.panels[place] = one.finished().into();
@@ -77,14 +82,12 @@ const COMMON: f64 = 10.0;
 /// Gives the maps of a quantity the same colours where their ranges are of one size, and says which it is; empty for one map and
 /// none.
 fn alike(whole: &mut Figure) -> &'static str {
-    let ends = |panel: &Panel| match panel {
-        Panel::Map(map) => match &map.meaning {
-            Values::Quantity { label, .. } => map.ends().map(|ends| (label.clone(), ends)),
-            Values::States(_) => None,
-        },
-        Panel::Curves(_) => None,
+    let ends = |map: &Map| match &map.meaning {
+        Values::Quantity { label, .. } => map.ends().map(|ends| (label.clone(), ends)),
+        Values::States(_) => None,
     };
-    let all: Vec<(String, [f64; 2])> = whole.panels.iter().filter_map(ends).collect();
+    let maps = whole.panels.iter().filter_map(Panel::map);
+    let all: Vec<(String, [f64; 2])> = maps.filter_map(ends).collect();
     if all.len() < 2 {
         return "";
     }

@@ -25,7 +25,10 @@ pub(super) fn so_far(reader: &Reader, index: usize) -> Result<String, StoreError
 
 pub(super) fn wear(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     if !reader.header().wears() {
-        return Err(PlotError::Unworn { path: reader.path().to_owned() });
+        return Err(PlotError::Refused(format!(
+            "the surfaces of {} do not wear; give its case a table [wear]",
+            reader.path().display()
+        )));
     }
     let grid = &reader.header().grid;
     let kept = shown(reader, options)?;

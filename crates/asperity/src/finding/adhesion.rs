@@ -1,10 +1,11 @@
 //! Adhesion: cells that snap one by one, laws that converge slowly, attraction beyond the border.
 
-use super::words::{digits, rows, si};
+use super::words::{digits, si};
+use super::worst::{Watch, Worst};
 use super::{ADHESION_AT_BORDER, ADHESION_UNRESOLVED, Finding};
 use crate::grid::Boundary;
 use crate::simulation::Simulation;
-use crate::step::Step;
+use crate::step::{Row, Step};
 use crate::traction::{AdhesionLaw, AdhesionScale, FINE_TRAP};
 
 /// Largest attraction at the border of a free domain, over the largest of the law.
@@ -37,15 +38,11 @@ pub(super) fn before(simulation: &Simulation) -> Option<Finding> {
 }
 
 /// The attraction at the border of a free domain.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Border {
-    /// The largest share of the strength, and the rows in which it is too large.
-    worst: f64,
-    at: Option<[usize; 2]>,
-}
+#[derive(Default)]
+pub(super) struct Border(Worst);
 
-impl Border {
-    pub(super) fn see(&mut self, step: &Step<'_>) {
+impl Watch for Border {
+    fn see(&mut self, step: &Step<'_>, _: &Row) {
         let simulation = step.simulation();
         let law = simulation.traction.as_ref().and_then(|law| law.as_adhesion());
         let (Some(law), Some(bound)) = (law, step.other_traction()) else { return };
@@ -57,27 +54,22 @@ impl Border {
         let ends = (0..ny).flat_map(|j| [(0, j), (nx - 1, j)]);
         let sides = (0..nx).filter(|_| !is_line).flat_map(|i| [(i, 0), (i, ny - 1)]);
         let largest = ends.chain(sides).map(|cell| -bound[cell]).fold(0.0, f64::max) / law.strength();
-        if largest > CUT {
-            self.worst = self.worst.max(largest);
-            let index = step.index();
-            self.at = Some([self.at.map_or(index, |at| at[0]), index]);
-        }
+        self.0.above(step.index(), largest, CUT);
     }
 
-    pub(super) fn finding(&self) -> Option<Finding> {
-        let at = self.at?;
-        let text = format!(
-            "In {} the attraction at the border of the free domain is {} of its largest value, more than {CUT}: the attraction beyond the \
-             border is missing. Enlarge the domain, or take a law or a range that falls faster.",
-            rows(at),
-            digits(self.worst)
-        );
-        Some(Finding::warning(ADHESION_AT_BORDER, self.worst, CUT, text).at(at))
+    fn findings(&self, _: &Simulation) -> Vec<Finding> {
+        let cut = self.0.warning(ADHESION_AT_BORDER, |cut| {
+            format!(
+                "In {} the attraction at the border of the free domain is {} of its largest value, more than {CUT}: the attraction beyond the \
+                 border is missing. Enlarge the domain, or take a law or a range that falls faster.",
+                cut.which_rows(),
+                digits(cut.value)
+            )
+        });
+        cut.into_iter().collect()
     }
 
-    /// Takes over the finding of an earlier session.
-    pub(super) fn resume(&mut self, finding: &Finding) {
-        self.worst = finding.value.unwrap_or(0.0);
-        self.at = finding.rows;
+    fn resume(&mut self, finding: &Finding) {
+        self.0.resume(ADHESION_AT_BORDER, finding);
     }
 }

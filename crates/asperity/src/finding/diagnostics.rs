@@ -9,12 +9,11 @@ use super::histogram::Beyond;
 use super::motion::Slides;
 use super::strain::Strain;
 use super::thin::Widest;
-use super::worst::extend;
+use super::worst::{Watch, extend};
 use super::{
-    ADHESION_AT_BORDER, BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, FLASH_STATES, FLASH_STEADY,
-    FLASH_WARM, FLUID_CHATTER, FLUID_LIFTS, Finding, LARGE_SLOPE, LARGE_STRAIN, POCKET_TENSION,
-    SLIP_UNRESOLVED, SPOTS_UNRESOLVED, SQUEEZE_SLOW, STEPS_TOO_LONG, WEAR_STEPS, adhesion, domain, flash,
-    fluid, material, plausible, strain, surface, tangential, thin, time, wear,
+    BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN,
+    SPOTS_UNRESOLVED, STEPS_TOO_LONG, adhesion, domain, flash, fluid, material, plausible, strain, surface,
+    tangential, thin, time, wear,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -77,12 +76,8 @@ pub struct Diagnostics {
     resolution: Resolution,
     strain: Strain,
     slides: Slides,
-    adhesion: adhesion::Border,
-    fluid: fluid::Wet,
-    ring: tangential::Ring,
-    wear: wear::Steps,
-    warm: flash::Warm,
-    heated: flash::Rows,
+    /// Of adhesion, fluid, tangential load, wear and flash temperature.
+    watches: Vec<Box<dyn Watch + Send + Sync>>,
     balance: Balance,
     beyond: Beyond,
     /// Where an approach is held while cells are at the hardness, and the control of each stage.
@@ -97,8 +92,6 @@ pub struct Diagnostics {
     /// Thickness of a body on a free domain, and its contacts.
     thickness: Option<f64>,
     widest: Widest,
-    /// The energy balance in an earlier session of the run.
-    earlier_balance: Option<Finding>,
 }
 
 impl Diagnostics {
@@ -119,12 +112,14 @@ impl Diagnostics {
             resolution: Resolution::default(),
             strain: Strain::new(simulation, radius(grid, known.parts)),
             slides: Slides::default(),
-            adhesion: adhesion::Border::default(),
-            fluid: fluid::Wet::default(),
-            ring: tangential::Ring::default(),
-            wear: wear::Steps::default(),
-            warm: flash::Warm::default(),
-            heated: flash::Rows::default(),
+            watches: vec![
+                Box::<adhesion::Border>::default(),
+                Box::<fluid::Wet>::default(),
+                Box::<tangential::Ring>::default(),
+                Box::<wear::Steps>::default(),
+                Box::<flash::Warm>::default(),
+                Box::<flash::Rows>::default(),
+            ],
             balance: Balance::default(),
             beyond: Beyond::default(),
             held: time::Held::default(),
@@ -135,7 +130,6 @@ impl Diagnostics {
             touches: false,
             thickness: known.thickness.filter(|_| free),
             widest: Widest::default(),
-            earlier_balance: None,
             grid: *grid,
         }
     }
@@ -171,14 +165,8 @@ impl Diagnostics {
                     self.resolution.resume_line([first, last.min(rows.len() - 1)], width);
                 }
                 BEYOND_HISTOGRAM => self.beyond.resume(finding),
-                ADHESION_AT_BORDER => self.adhesion.resume(finding),
-                FLUID_LIFTS | FLUID_CHATTER | POCKET_TENSION | SQUEEZE_SLOW => self.fluid.resume(finding),
-                SLIP_UNRESOLVED => self.ring.resume(finding),
-                WEAR_STEPS => self.wear.resume(finding),
-                FLASH_WARM => self.warm.resume(finding),
-                FLASH_STATES | FLASH_STEADY => self.heated.resume(finding),
-                ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
-                _ => {}
+                ENERGY_BALANCE => self.balance.resume(finding),
+                _ => self.watches.iter_mut().for_each(|watch| watch.resume(finding)),
             }
         }
     }
@@ -195,12 +183,7 @@ impl Diagnostics {
         if let Some(friction) = step.friction() {
             self.slides.see(index, row.coordinate, &friction);
         }
-        self.adhesion.see(step);
-        self.fluid.see(step, row);
-        self.ring.see(step, row);
-        self.wear.see(step);
-        self.warm.see(step);
-        self.heated.see(step, row);
+        self.watches.iter_mut().for_each(|watch| watch.see(step, row));
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);
         }
@@ -295,15 +278,8 @@ impl Diagnostics {
         }
         found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
         found.extend(self.slides.finding());
-        found.extend(self.adhesion.finding());
-        found.extend(self.fluid.findings());
-        found.extend(self.ring.finding());
-        found.extend(self.wear.finding(simulation));
-        found.extend(self.warm.finding());
-        found.extend(self.heated.findings());
-        found.extend(self.wear.worn_layer(simulation));
-        let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
-        found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
+        found.extend(self.watches.iter().flat_map(|watch| watch.findings(simulation)));
+        found.extend(self.balance.finding());
         found
     }
 }

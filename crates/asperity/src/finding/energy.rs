@@ -8,12 +8,14 @@ use super::{ENERGY_BALANCE, Finding};
 const MISSING: f64 = 0.02;
 
 /// The balance over the rows.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub(super) struct Balance {
     /// Largest work and largest difference \[J\].
     work: f64,
     missing: f64,
     worst: usize,
+    /// Found in an earlier session of the run.
+    earlier: Option<Finding>,
 }
 
 impl Balance {
@@ -28,7 +30,7 @@ impl Balance {
 
     pub(super) fn finding(&self) -> Option<Finding> {
         let share = self.missing / self.work;
-        (share > MISSING).then(|| {
+        let now = (share > MISSING).then(|| {
             let text = format!(
                 "The work of the load differs from the energies stored and lost by {} % of the largest work: the steps are \
                  too long for the energies. Take more steps where the load moves. (Adaptive steps follow the stress of the \
@@ -36,6 +38,12 @@ impl Balance {
                 digits(100.0 * share)
             );
             Finding::warning(ENERGY_BALANCE, share, MISSING, text).at([self.worst; 2])
-        })
+        });
+        now.into_iter().chain(self.earlier.clone()).reduce(|a, b| if b.value > a.value { b } else { a })
+    }
+
+    /// Takes over the finding of an earlier session.
+    pub(super) fn resume(&mut self, finding: &Finding) {
+        self.earlier = Some(finding.clone());
     }
 }

@@ -114,9 +114,8 @@ impl Expected {
             };
             Some([radius(compliance[0])?, radius(compliance[1])?])
         };
-        let mut all: Vec<_> = cases.map(|case| (case.0, size(&case))).collect();
-        all.sort_by(|a, b| order(a).total_cmp(&order(b)));
-        let (largest, radii) = all.pop()?;
+        let all = cases.map(|case| (case.0, size(&case)));
+        let (largest, radii) = all.max_by(|a, b| order(a).total_cmp(&order(b)))?;
         let mut expected =
             Expected { largest, contact: None, strain: None, width: None, room: room(grid, parts) };
         match (form, radii, largest) {

@@ -1,8 +1,9 @@
 //! Flash temperature: materials that are taken colder than they become, several steady states, steady temperatures in a motion that is not
 //! steady.
 
+use super::plausible::exceeded;
 use super::words::{digits, rows, si};
-use super::worst::{Worst, extend};
+use super::worst::{Watch, Worst, extend};
 use super::{FLASH_STATES, FLASH_STEADY, FLASH_WARM, Finding, UNLIKELY_UNIT};
 use crate::flash::{Flash, Partition};
 use crate::quantities::Quantity;
@@ -14,41 +15,35 @@ use crate::step::{Row, Step};
 const WARM: f64 = 20.0;
 
 /// The largest mean temperature of the contact where the material does not see it.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Warm {
-    most: f64,
-    at: Option<[usize; 2]>,
-}
+#[derive(Default)]
+pub(super) struct Warm(Worst);
 
-impl Warm {
-    pub(super) fn see(&mut self, step: &Step<'_>) {
+impl Watch for Warm {
+    fn see(&mut self, step: &Step<'_>, _: &Row) {
         let simulation = step.simulation();
         let is_cold = simulation.flash.as_ref().is_some_and(|flash| flash.feedback.is_none());
         if !is_cold || !simulation.parts().any(|creep| !creep.terms.is_empty()) {
             return;
         }
         let mean = step.quantity(Quantity::FlashTemperatureMean).map_or(0.0, |values| values[0]);
-        if mean > WARM {
-            extend(&mut self.at, step.index());
-            self.most = self.most.max(mean);
-        }
+        self.0.above(step.index(), mean, WARM);
     }
 
-    pub(super) fn finding(&self) -> Option<Finding> {
-        let at = self.at?;
-        let text = format!(
-            "The contact becomes {} K warmer in the mean ({}), but the material is taken at the temperature of the run: its friction is that of \
-             cold material. For steady states give it a shift and flash.feedback = \"mean\"; otherwise lower the velocity or see what the warmer \
-             material does by [temperature].",
-            digits(self.most),
-            rows(at)
-        );
-        Some(Finding::warning(FLASH_WARM, self.most, WARM, text).at(at))
+    fn findings(&self, _: &Simulation) -> Vec<Finding> {
+        let warm = self.0.warning(FLASH_WARM, |warm| {
+            format!(
+                "The contact becomes {} K warmer in the mean{}, but the material is taken at the temperature of the run: its friction is that of \
+                 cold material. For steady states give it a shift and flash.feedback = \"mean\"; otherwise lower the velocity or see what the warmer \
+                 material does by [temperature].",
+                digits(warm.value),
+                warm.place()
+            )
+        });
+        warm.into_iter().collect()
     }
 
-    /// Takes over the finding of an earlier session.
-    pub(super) fn resume(&mut self, finding: &Finding) {
-        (self.most, self.at) = (finding.value.unwrap_or(0.0), finding.rows);
+    fn resume(&mut self, finding: &Finding) {
+        self.0.resume(FLASH_WARM, finding);
     }
 }
 
@@ -63,23 +58,20 @@ const HOT: f64 = 1500.0;
 /// Numbers that no material has.
 pub(super) fn unlikely(simulation: &Simulation) -> Vec<Finding> {
     let Some(flash) = &simulation.flash else { return vec![] };
-    let bodies = flash.bodies.iter();
-    let numbers = bodies.flat_map(|body| {
+    let numbers = flash.bodies.iter().flat_map(|body| {
         [
             ("thermal conductivity", body.conductivity, "W/(m K)", CONDUCTIVITIES),
             ("thermal diffusivity", body.diffusivity, "m²/s", DIFFUSIVITIES),
         ]
     });
     let friction = ("friction coefficient of [flash]", flash.friction, "", [0.0, FRICTION]);
-    let all =
-        numbers.chain([friction]).filter(|(_, value, _, [least, most])| !(least..=most).contains(&value));
-    all.map(|(what, value, unit, [least, most])| {
-        let limit = if value < least { least } else { most };
+    let unlikely = |(what, value, unit, range): (&str, f64, &str, [f64; 2])| {
+        let ([least, most], limit) = (range, exceeded(range, value)?);
         let text =
             format!("The {what} is {value:e} {unit}; materials have {least:e} to {most:e}. Check its unit.");
-        Finding::warning(UNLIKELY_UNIT, value, limit, text)
-    })
-    .collect()
+        Some(Finding::warning(UNLIKELY_UNIT, value, limit, text))
+    };
+    numbers.chain([friction]).filter_map(unlikely).collect()
 }
 
 /// Surfaces of both bodies that are not flat: no frame has a source that stands still.
@@ -92,7 +84,7 @@ pub(super) fn both_uneven(simulation: &Simulation) -> Option<Finding> {
 }
 
 /// Surfaces hotter than any material, steady states of which there are several, and rows whose temperatures are not steady.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub(super) struct Rows {
     hot: Worst,
     /// Rise of a row and another one with which the same velocity would be steady \[K\], and such rows.
@@ -112,8 +104,8 @@ const EVEN: f64 = 1.25;
 const LENGTHS: f64 = 4.0;
 const TIMES: f64 = 10.0;
 
-impl Rows {
-    pub(super) fn see(&mut self, step: &Step<'_>, row: &Row) {
+impl Watch for Rows {
+    fn see(&mut self, step: &Step<'_>, row: &Row) {
         let (simulation, Some(found)) = (step.simulation(), step.flash()) else { return };
         let Some(flash) = &simulation.flash else { return };
         self.hot.above(step.index(), found.max, HOT);
@@ -156,7 +148,7 @@ impl Rows {
         self.length = way;
     }
 
-    pub(super) fn findings(&self) -> Vec<Finding> {
+    fn findings(&self, _: &Simulation) -> Vec<Finding> {
         let hot = self.hot.warning(UNLIKELY_UNIT, |hot| {
             format!(
                 "Friction makes the surfaces {} K warmer{}; no material keeps its properties up to there. Check the units of [flash], of load and \
@@ -196,17 +188,17 @@ impl Rows {
         hot.into_iter().chain(several).chain(early).chain(uneven).collect()
     }
 
-    /// Takes over a finding of an earlier session.
-    pub(super) fn resume(&mut self, finding: &Finding) {
+    fn resume(&mut self, finding: &Finding) {
         let value = finding.value.unwrap_or(0.0);
         match finding.code.as_ref() {
             FLASH_STATES => {
                 self.several = finding.rows.map(|at| ([value, finding.limit.unwrap_or(f64::NAN)], at))
             }
             // That of the surfaces, not of rows.
-            _ if finding.rows.is_none() => {}
-            _ if finding.is_warning() => (self.uneven, self.length) = (finding.rows, value),
-            _ => (self.early, self.length) = (finding.rows, value),
+            FLASH_STEADY if finding.rows.is_none() => {}
+            FLASH_STEADY if finding.is_warning() => (self.uneven, self.length) = (finding.rows, value),
+            FLASH_STEADY => (self.early, self.length) = (finding.rows, value),
+            _ => {}
         }
     }
 }

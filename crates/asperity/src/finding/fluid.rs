@@ -1,8 +1,8 @@
 //! A fluid that acts on the surfaces: films, held access, slow squeezing, what it acts on.
 
 use super::plausible::unlikely_liquid;
-use super::words::{digits, rows, si};
-use super::worst::{Worst, extend};
+use super::words::{digits, si};
+use super::worst::{Watch, Worst};
 use super::{
     FLUID_ACTS_ON_DOMAIN, FLUID_APPROACH_HELD, FLUID_CHATTER, FLUID_LIFTS, FLUID_MAY_RUN_AWAY, Finding,
     POCKET_TENSION, SQUEEZE_SLOW,
@@ -73,9 +73,9 @@ fn runaway(simulation: &Simulation, fluid: &FluidPressure) -> Option<Finding> {
 }
 
 /// What the rows say.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub(super) struct Wet {
-    films: Option<[usize; 2]>,
+    films: Worst,
     held: Worst,
     /// Spread of the leak in the worst of these rows.
     spread: f64,
@@ -86,14 +86,14 @@ pub(super) struct Wet {
     mean_gap: Option<f64>,
 }
 
-impl Wet {
-    pub(super) fn see(&mut self, step: &Step<'_>, row: &Row) {
+impl Watch for Wet {
+    fn see(&mut self, step: &Step<'_>, row: &Row) {
         let simulation = step.simulation();
         let Some(law) = simulation.traction.as_ref().and_then(|law| law.as_fluid()) else { return };
         let of = |quantity| step.of_process(quantity).unwrap_or(0.0);
         let index = step.index();
-        if of(Quantity::Film) == 1.0 && row.load > 0.0 {
-            extend(&mut self.films, index);
+        if row.load > 0.0 {
+            self.films.above(index, of(Quantity::Film), 0.0);
         }
         let held = of(Quantity::LatchedCells);
         if self.held.above(index, held, 0.5) && self.held.value == held {
@@ -114,14 +114,13 @@ impl Wet {
         }
     }
 
-    pub(super) fn findings(&self) -> Vec<Finding> {
-        let films = self.films.map(|at| {
-            let text = format!(
+    fn findings(&self, _: &Simulation) -> Vec<Finding> {
+        let films = self.films.warning(FLUID_LIFTS, |films| {
+            format!(
                 "In {} the fluid carries all of the load in a film without contact: the seal is lifted. Raise the load, or lower the \
                  pressure.",
-                rows(at)
-            );
-            Finding::warning(FLUID_LIFTS, 1.0, 0.0, text).at(at)
+                films.which_rows()
+            )
         });
         let chatter = self.held.warning(FLUID_CHATTER, |worst| {
             format!(
@@ -156,17 +155,11 @@ impl Wet {
         [films, chatter, tension, squeezed].into_iter().flatten().collect()
     }
 
-    /// Takes over a finding of an earlier session.
-    pub(super) fn resume(&mut self, finding: &Finding) {
-        let (value, limit) = (finding.value.unwrap_or(0.0), finding.limit.unwrap_or(1.0));
-        let worst = Worst { value, limit, excess: value / limit, rows: finding.rows };
-        match finding.code.as_ref() {
-            FLUID_LIFTS => self.films = finding.rows,
-            FLUID_CHATTER => self.held = worst,
-            SQUEEZE_SLOW => self.squeezed = worst,
-            POCKET_TENSION => self.vapour = worst,
-            _ => {}
-        }
+    fn resume(&mut self, finding: &Finding) {
+        self.films.resume(FLUID_LIFTS, finding);
+        self.held.resume(FLUID_CHATTER, finding);
+        self.squeezed.resume(SQUEEZE_SLOW, finding);
+        self.vapour.resume(POCKET_TENSION, finding);
     }
 }
 

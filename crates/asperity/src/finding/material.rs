@@ -1,6 +1,6 @@
 //! Materials: moduli that suggest a wrong unit, and the quality and coverage of fits of measured data.
 
-use super::plausible::{MODULI, SOFTEST_DATA, TEMPERATURES, TRANSITION};
+use super::plausible::{MODULI, SOFTEST_DATA, TEMPERATURES, TRANSITION, exceeded};
 use super::words::{digits, si};
 use super::{
     AT_REFERENCE_TEMPERATURE, BEYOND_MATERIAL_DATA, DATA_SCATTER, Finding, MATERIAL_MISFIT, MODULUS_KIND,
@@ -19,18 +19,13 @@ const FACTOR: f64 = 0.3;
 
 /// A modulus \[Pa\] that no body has; `name` is the name of the modulus.
 pub fn unlikely_modulus(name: &str, modulus: f64) -> Option<Finding> {
-    let [least, most] = MODULI;
-    let limit = if modulus < least { least } else { most };
-    let unlikely = modulus.is_finite() && modulus > 0.0 && !(least..=most).contains(&modulus);
-    unlikely.then(|| {
-        let text = format!(
-            "The {name} is {}; solids have {} to {}. Check its unit (Pa, kPa, MPa, GPa; m is milli, M is mega).",
-            si(modulus, "Pa"),
-            si(least, "Pa"),
-            si(most, "Pa")
-        );
-        Finding::warning(UNLIKELY_UNIT, modulus, limit, text)
-    })
+    let limit = exceeded(MODULI, modulus).filter(|_| modulus.is_finite() && modulus > 0.0)?;
+    let [least, most] = MODULI.map(|modulus| si(modulus, "Pa"));
+    let text = format!(
+        "The {name} is {}; solids have {least} to {most}. Check its unit (Pa, kPa, MPa, GPa; m is milli, M is mega).",
+        si(modulus, "Pa")
+    );
+    Some(Finding::warning(UNLIKELY_UNIT, modulus, limit, text))
 }
 
 /// Measured moduli from the least to the largest \[Pa\] that are those of a polymer in another unit; `unnamed` if the file names no unit.
@@ -49,27 +44,23 @@ pub fn unlikely_data(name: &str, [least, most]: [f64; 2], unnamed: bool) -> Opti
 
 /// What a temperature \[K\] may be that is too low for a polymer: degrees Celsius without their unit.
 pub fn celsius_meant(kelvin: f64) -> Option<String> {
-    let [least, _] = TEMPERATURES;
-    (kelvin < least).then(|| {
-        let number = significant(kelvin, 6);
-        format!("a bare number is in kelvin: write \"{number} °C\" if degrees Celsius are meant")
-    })
+    let number = significant(kelvin, 6);
+    (kelvin < TEMPERATURES[0])
+        .then(|| format!("a bare number is in kelvin: write \"{number} °C\" if degrees Celsius are meant"))
 }
 
 /// A temperature \[K\] at which no polymer is used; `name` is the body.
 pub fn unlikely_temperature(name: &str, kelvin: f64) -> Option<Finding> {
+    let limit = exceeded(TEMPERATURES, kelvin).filter(|_| kelvin.is_finite())?;
     let [least, most] = TEMPERATURES;
-    let limit = if kelvin < least { least } else { most };
-    (kelvin.is_finite() && !(least..=most).contains(&kelvin)).then(|| {
-        let help = celsius_meant(kelvin).map_or(String::new(), |help| format!(" ({help})"));
-        let text = format!(
-            "The material of {name} has a temperature of {} K, which is {} °C; polymers are used from {least} K to {most} K. Check its \
-             unit{help}.",
-            digits(kelvin),
-            digits(kelvin - 273.15)
-        );
-        Finding::warning(UNLIKELY_UNIT, kelvin, limit, text)
-    })
+    let help = celsius_meant(kelvin).map_or(String::new(), |help| format!(" ({help})"));
+    let text = format!(
+        "The material of {name} has a temperature of {} K, which is {} °C; polymers are used from {least} K to {most} K. Check its \
+         unit{help}.",
+        digits(kelvin),
+        digits(kelvin - 273.15)
+    );
+    Some(Finding::warning(UNLIKELY_UNIT, kelvin, limit, text))
 }
 
 /// The material of `name` has a shift with this reference temperature \[K\], and the run has no temperature.

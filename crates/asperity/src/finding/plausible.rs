@@ -48,17 +48,19 @@ const ENDS: [f64; 2] = [1e-9, 3.2e9];
 /// Bulk moduli of liquids: from those with much air in them to metals \[Pa\].
 const BULK_MODULI: [f64; 2] = [1e7, 1e11];
 
+/// The end of a plausible range beyond which a value lies; `None` inside.
+pub(super) fn exceeded([least, most]: [f64; 2], value: f64) -> Option<f64> {
+    (!(least..=most).contains(&value)).then_some(if value < least { least } else { most })
+}
+
 /// A liquid in sealed pockets that is more like a gas or a solid.
 pub(super) fn unlikely_liquid(bulk_modulus: f64) -> Option<Finding> {
-    let [least, most] = BULK_MODULI;
-    (!(least..=most).contains(&bulk_modulus)).then(|| {
-        let text = format!(
-            "The bulk modulus of the liquid is {}; oils and water have about 2 GPa. Check its unit; air is described by leakage.gas.",
-            si(bulk_modulus, "Pa")
-        );
-        let limit = if bulk_modulus < least { least } else { most };
-        Finding::warning(UNLIKELY_UNIT, bulk_modulus, limit, text)
-    })
+    let limit = exceeded(BULK_MODULI, bulk_modulus)?;
+    let text = format!(
+        "The bulk modulus of the liquid is {}; oils and water have about 2 GPa. Check its unit; air is described by leakage.gas.",
+        si(bulk_modulus, "Pa")
+    );
+    Some(Finding::warning(UNLIKELY_UNIT, bulk_modulus, limit, text))
 }
 
 /// A load that is too small for a contact: its mean pressure over the periodic domain, or the number of cells of the expected contact.
@@ -88,17 +90,14 @@ pub(super) fn unlikely_load(
 
 /// A run that ends at a time that nobody means.
 pub(super) fn unlikely_end(simulation: &Simulation) -> Option<Finding> {
-    let ([least, most], end) = (ENDS, simulation.times.end());
-    (end > 0.0 && !(least..=most).contains(&end)).then(|| {
-        let limit = if end < least { least } else { most };
-        let text = format!(
-            "The run ends at {}; contacts last from {} to {}. Check the unit of time.end and of the history.",
-            si(end, "s"),
-            si(least, "s"),
-            si(most, "s")
-        );
-        Finding::warning(UNLIKELY_UNIT, end, limit, text)
-    })
+    let end = simulation.times.end();
+    let limit = exceeded(ENDS, end).filter(|_| end > 0.0)?;
+    let [least, most] = ENDS.map(|time| si(time, "s"));
+    let text = format!(
+        "The run ends at {}; contacts last from {least} to {most}. Check the unit of time.end and of the history.",
+        si(end, "s")
+    );
+    Some(Finding::warning(UNLIKELY_UNIT, end, limit, text))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! different bodies do to each other, slip that the grid does not resolve.
 
 use super::words::{digits, rows, si};
-use super::worst::extend;
+use super::worst::{Watch, extend};
 use super::{FORCE_BEYOND_FRICTION, Finding, NORMAL_COUPLING, SLIP_UNRESOLVED, UNLIKELY_UNIT};
 use crate::simulation::Simulation;
 use crate::step::{PERIMETER_SHARE, Row, Step};
@@ -67,7 +67,7 @@ fn coupling(law: &Tangential) -> Option<Finding> {
 }
 
 /// The ring that slips at the edge of the contact, in the rows with large contacts.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub(super) struct Ring {
     /// Area of the contact from which on rows of up to twice of it count \[m²\].
     area: f64,
@@ -78,8 +78,8 @@ pub(super) struct Ring {
     rows: Option<[usize; 2]>,
 }
 
-impl Ring {
-    pub(super) fn see(&mut self, step: &Step<'_>, row: &Row) {
+impl Watch for Ring {
+    fn see(&mut self, step: &Step<'_>, row: &Row) {
         let simulation = step.simulation();
         let (Some(law), Some(slip)) = (&simulation.tangential, step.slip_row()) else { return };
         // Area of the cells at the edge.
@@ -99,8 +99,10 @@ impl Ring {
         self.share = self.share.max(slip.slip_area / row.contact_area);
     }
 
-    pub(super) fn finding(&self) -> Option<Finding> {
-        let at = self.rows.filter(|_| self.width < RING && self.share < LARGE_PART)?;
+    fn findings(&self, _: &Simulation) -> Vec<Finding> {
+        let Some(at) = self.rows.filter(|_| self.width < RING && self.share < LARGE_PART) else {
+            return vec![];
+        };
         let width = match self.width {
             0.0 => "No cell slips, although a ring at the edge of each contact does".to_string(),
             width => format!("The ring that slips is at most {} cells wide", digits(width)),
@@ -109,11 +111,12 @@ impl Ring {
             "{width} ({}): slip areas, work of friction and loops are too small or missing. Take smaller cells; the stiffness hardly changes.",
             rows(at)
         );
-        Some(Finding::warning(SLIP_UNRESOLVED, self.width, RING, text).at(at))
+        vec![Finding::warning(SLIP_UNRESOLVED, self.width, RING, text).at(at)]
     }
 
-    /// Takes over the finding of an earlier session.
-    pub(super) fn resume(&mut self, finding: &Finding) {
-        (self.width, self.rows) = (finding.value.unwrap_or(0.0), finding.rows);
+    fn resume(&mut self, finding: &Finding) {
+        if finding.code == SLIP_UNRESOLVED {
+            (self.width, self.rows) = (finding.value.unwrap_or(0.0), finding.rows);
+        }
     }
 }

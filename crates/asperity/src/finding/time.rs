@@ -41,17 +41,16 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     let mut found = vec![];
     let mut long: Option<Piece> = None;
     let energies = simulation.quantities.has_energy();
-    for (n, stage) in simulation.loading.stages.iter().enumerate() {
+    let mut next = 0;
+    for instants in plan.instants.chunk_by(|a, b| a.stage == b.stage) {
+        let (n, first) = (instants[0].stage, next);
+        next += instants.len();
+        let stage = &simulation.loading.stages[n];
         if stage.times.as_ref().unwrap_or(&simulation.times).is_adaptive() {
             continue;
         }
-        let first =
-            plan.instants.iter().position(|instant| instant.stage == n).unwrap_or(plan.instants.len());
-        let count = plan.instants[first..].iter().take_while(|instant| instant.stage == n).count();
-        let instants = &plan.instants[first..first + count];
         found.extend(aliased(simulation, n, stage, instants));
-        for course in courses(stage, instants, energies) {
-            let course = Piece { first: first + course.first, last: first + course.last, ..course };
+        for course in courses(stage, instants, first, energies) {
             // The part that lacks the most steps.
             let fewer =
                 long.as_ref().is_none_or(|other| course.steps * other.least < other.steps * course.least);
@@ -158,8 +157,6 @@ fn rounded_down(number: f64) -> f64 {
 #[derive(Default)]
 pub(super) struct Held {
     pieces: Vec<Piece>,
-    /// The stage that each of them begins in.
-    stages: Vec<usize>,
     /// Time \[s\] and approach \[m\] of the last row, and whether it belongs to the last piece.
     last: Option<(f64, f64)>,
     holds: bool,
@@ -179,8 +176,7 @@ impl Held {
             Some(piece) => piece.add(index, time, dt),
             None => {
                 let what = "approach is held while cells are at the hardness";
-                self.pieces.push(Piece::new(index, time, dt, PER_COURSE, what));
-                self.stages.push(row.stage);
+                self.pieces.push(Piece::new(row.stage, index, time, dt, PER_COURSE, what));
             }
         }
         self.holds = holds && (self.holds || dt > 0.0);
@@ -190,11 +186,10 @@ impl Held {
     pub(super) fn finding(&self, simulation: &Simulation) -> Option<Finding> {
         let own = |stage: usize| simulation.loading.stages.get(stage).and_then(|stage| stage.times.as_ref());
         let fixed = |stage: usize| !own(stage).unwrap_or(&simulation.times).is_adaptive();
-        let long = std::iter::zip(&self.pieces, &self.stages)
-            .filter(|(piece, stage)| {
-                fixed(**stage) && piece.steps < piece.least && relaxes(simulation, piece)
-            })
-            .map(|(piece, _)| piece);
+        let long = self
+            .pieces
+            .iter()
+            .filter(|piece| fixed(piece.stage) && piece.steps < piece.least && relaxes(simulation, piece));
         long.min_by_key(|piece| piece.steps).map(|piece| too_long(simulation, piece, true))
     }
 }
@@ -232,6 +227,8 @@ fn drifting(simulation: &Simulation, plan: &Plan, instants: &[Instant], first: u
 
 /// A part of a stage in which the value is monotone.
 struct Piece {
+    /// The stage that it begins in.
+    stage: usize,
     /// Rows of the plan: the step that begins it, and the last.
     first: usize,
     last: usize,
@@ -247,8 +244,8 @@ struct Piece {
 }
 
 impl Piece {
-    fn new(row: usize, end: f64, dt: f64, least: usize, what: &'static str) -> Self {
-        Piece { first: row, last: row, steps: 1, end, length: dt, shortest: dt, least, what }
+    fn new(stage: usize, row: usize, end: f64, dt: f64, least: usize, what: &'static str) -> Self {
+        Piece { stage, first: row, last: row, steps: 1, end, length: dt, shortest: dt, least, what }
     }
 
     fn add(&mut self, row: usize, end: f64, dt: f64) {
@@ -260,8 +257,8 @@ impl Piece {
     }
 }
 
-/// The parts of a stage for which a single step is not exact.
-fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
+/// The parts of a stage for which a single step is not exact; `first` is the row of its first instant.
+fn courses(stage: &Stage, instants: &[Instant], first: usize, energies: bool) -> Vec<Piece> {
     if matches!(stage.course, Course::Hold | Course::Given(History::Step { .. } | History::Sine { .. })) {
         return vec![];
     }
@@ -269,23 +266,21 @@ fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
     let mut found: Vec<(Piece, f64)> = vec![];
     let mut going = 0.0;
     let mut before = instants.first().map_or(0.0, |instant| instant.value);
-    for (n, instant) in instants.iter().enumerate() {
+    for (row, instant) in (first..).zip(instants) {
         let change = instant.value - std::mem::replace(&mut before, instant.value);
         if instant.dt == 0.0 {
             going = 0.0;
             continue;
         }
         // The start value of a ramp from the value reached is not known yet.
-        let way = if change.is_nan() {
-            1.0
-        } else if change == 0.0 {
-            0.0
-        } else {
-            change.signum()
+        let way = match change {
+            0.0 => 0.0,
+            _ if change.is_nan() => 1.0,
+            _ => change.signum(),
         };
         match found.last_mut().filter(|_| way == going) {
             Some((course, moved)) if way != 0.0 => {
-                course.add(n, instant.time, instant.dt);
+                course.add(row, instant.time, instant.dt);
                 *moved += change;
             }
             _ if way != 0.0 => {
@@ -295,7 +290,8 @@ fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
                     _ if energies => (PER_COURSE, "load rises"),
                     _ => (PER_RISE, "load rises"),
                 };
-                found.push((Piece::new(n, instant.time, instant.dt, least, what), change));
+                let piece = Piece::new(instant.stage, row, instant.time, instant.dt, least, what);
+                found.push((piece, change));
             }
             _ => {}
         }

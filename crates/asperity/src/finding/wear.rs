@@ -1,11 +1,12 @@
 //! Wear: steps in which too much wears, tracks that do not go with the contact.
 
 use super::words::{digits, si};
+use super::worst::{Watch, Worst};
 use super::{Finding, LAYER_WORN, UNLIKELY_UNIT, WEAR_STEPS, WEAR_TRACK};
 use crate::load::{Control, Course, Stage};
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
-use crate::step::Step;
+use crate::step::{Row, Step};
 use crate::wear::Sliding;
 
 /// Share of the worn volume that may be in the wrong place, or wrong.
@@ -62,61 +63,60 @@ pub(super) fn before(simulation: &Simulation) -> Option<Finding> {
 }
 
 /// The estimated error of the worn depths.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub(super) struct Steps {
-    worst: f64,
-    rows: Option<[usize; 2]>,
+    worst: Worst,
     /// Worn volume at the last of the rows.
     volume: f64,
     /// Largest worn depth \[m\].
     deepest: f64,
 }
 
-impl Steps {
-    pub(super) fn see(&mut self, step: &Step<'_>) {
+impl Watch for Steps {
+    fn see(&mut self, step: &Step<'_>, _: &Row) {
         let of = |quantity| step.quantity(quantity).map_or(0.0, |values| values[0]);
         let (error, volume) = (of(Quantity::WearError), of(Quantity::WearVolume));
         self.deepest = self.deepest.max(of(Quantity::WearDepthMax));
-        if self.rows.is_some() && volume > FORGOTTEN * self.volume {
-            *self = Steps { deepest: self.deepest, ..Steps::default() };
+        if volume > FORGOTTEN * self.volume {
+            self.worst = Worst::default();
         }
-        if error > UNCERTAIN {
+        if self.worst.above(step.index(), error, UNCERTAIN) {
             self.volume = volume;
-            super::worst::extend(&mut self.rows, step.index());
-            self.worst = self.worst.max(error);
         }
     }
 
-    pub(super) fn finding(&self, simulation: &Simulation) -> Option<Finding> {
-        let at = self.rows?;
+    fn findings(&self, simulation: &Simulation) -> Vec<Finding> {
         let cure = match simulation.wear.as_ref().map(|law| law.sliding(simulation)) {
             Some(Sliding::Slip) => "Take fewer cycles_per_step, or more steps in a cycle",
             Some(Sliding::Motion) => "Take fewer cells_per_step",
             _ => "Take more time steps, or spacing = \"adaptive\"",
         };
-        let text = format!(
-            "Much wears in a step ({}): the pressure changes over the steps, so {} % of the worn volume may be in the wrong place, or wrong \
-             where the load changes. {cure}.",
-            super::words::rows(at),
-            digits(100.0 * self.worst)
-        );
-        Some(Finding::warning(WEAR_STEPS, self.worst, UNCERTAIN, text).at(at))
+        let steps = self.worst.warning(WEAR_STEPS, |worst| {
+            format!(
+                "Much wears in a step{}: the pressure changes over the steps, so {} % of the worn volume may be in the wrong place, or wrong \
+                 where the load changes. {cure}.",
+                worst.place(),
+                digits(100.0 * worst.value)
+            )
+        });
+        steps.into_iter().chain(worn_layer(simulation, self.deepest)).collect()
     }
 
-    /// A top layer of which much is worn off.
-    pub(super) fn worn_layer(&self, simulation: &Simulation) -> Option<Finding> {
-        let layer = simulation.kernel.top_layer().filter(|layer| self.deepest > WORN_LAYER * layer)?;
-        let text = format!(
-            "Up to {} of a layer of {} is worn off, but the layer stays as thick in the run: from a tenth on its response is off. Take the part \
-             of the run before, or give the layer its mean thickness.",
-            si(self.deepest, "m"),
-            si(layer, "m")
-        );
-        Some(Finding::warning(LAYER_WORN, self.deepest, WORN_LAYER * layer, text))
+    fn resume(&mut self, finding: &Finding) {
+        if self.worst.resume(WEAR_STEPS, finding) {
+            self.volume = f64::INFINITY;
+        }
     }
+}
 
-    /// Takes over the finding of an earlier session.
-    pub(super) fn resume(&mut self, finding: &Finding) {
-        (self.worst, self.rows, self.volume) = (finding.value.unwrap_or(0.0), finding.rows, f64::INFINITY);
-    }
+/// A top layer of which much is worn off.
+fn worn_layer(simulation: &Simulation, deepest: f64) -> Option<Finding> {
+    let layer = simulation.kernel.top_layer().filter(|layer| deepest > WORN_LAYER * layer)?;
+    let text = format!(
+        "Up to {} of a layer of {} is worn off, but the layer stays as thick in the run: from a tenth on its response is off. Take the part \
+         of the run before, or give the layer its mean thickness.",
+        si(deepest, "m"),
+        si(layer, "m")
+    );
+    Some(Finding::warning(LAYER_WORN, deepest, WORN_LAYER * layer, text))
 }

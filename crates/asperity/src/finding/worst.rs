@@ -1,7 +1,21 @@
-//! The worst value of a quantity over the rows of a run.
+//! Checks of the rows of a run, and the worst value of a quantity over them.
 
 use super::Finding;
 use super::words::rows;
+use crate::simulation::Simulation;
+use crate::step::{Row, Step};
+
+/// A check of each row.
+pub(super) trait Watch {
+    /// Takes in a row.
+    fn see(&mut self, step: &Step<'_>, row: &Row);
+
+    /// What is wrong with the rows so far.
+    fn findings(&self, simulation: &Simulation) -> Vec<Finding>;
+
+    /// Takes over a finding of an earlier session of the run, if it comes from this check.
+    fn resume(&mut self, finding: &Finding);
+}
 
 /// Adds a row to the range of rows concerned.
 pub(super) fn extend(range: &mut Option<[usize; 2]>, row: usize) {
@@ -38,6 +52,21 @@ impl Worst {
             *self = Worst { value, limit, excess, rows: self.rows };
         }
         true
+    }
+
+    /// Takes over the finding of this code of an earlier session, and returns whether it is one.
+    pub(super) fn resume(&mut self, code: &str, finding: &Finding) -> bool {
+        let (value, limit) = (finding.value.unwrap_or(0.0), finding.limit.unwrap_or(1.0));
+        let is_own = finding.code == code;
+        if is_own {
+            *self = Worst { value, limit, excess: value / limit, rows: finding.rows };
+        }
+        is_own
+    }
+
+    /// "rows 2 to 4"; nothing if the values belong to no run.
+    pub(super) fn which_rows(&self) -> String {
+        self.rows.map_or(String::new(), rows)
     }
 
     /// " (rows 2 to 4)"; nothing if the values belong to no run.

@@ -24,8 +24,8 @@ mod solver;
 mod tests;
 
 pub(crate) use feedback::{another, settle};
-pub use solver::FlashRow;
-pub(crate) use solver::{FlashSolver, Rise, Rubbing, bytes};
+pub(crate) use solver::bytes;
+pub use solver::{FlashRow, FlashSolver, Rise, Rubbing};
 
 use crate::error::{Of, Result, positive, require};
 use crate::grid::Boundary;

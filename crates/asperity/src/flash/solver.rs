@@ -43,23 +43,25 @@ impl FlashRow {
 
 /// How warm the surfaces of a row are above their surroundings \[K\], and its numbers.
 #[derive(Clone, Debug)]
-pub(crate) struct Rise {
-    pub(crate) slider: Vec<f64>,
-    pub(crate) track: Vec<f64>,
+pub struct Rise {
+    /// Of the body that carries the surfaces that move.
+    pub slider: Vec<f64>,
+    /// Of the other body.
+    pub track: Vec<f64>,
     pub(crate) row: FlashRow,
 }
 
 /// What rubs in a row.
 #[derive(Clone, Copy)]
-pub(crate) struct Rubbing<'a> {
+pub struct Rubbing<'a> {
     /// Of the contact over the track, along the direction of motion \[m/s\].
-    pub(crate) velocity: f64,
+    pub velocity: f64,
     /// Contact pressure \[Pa\].
-    pub(crate) pressure: &'a [f64],
+    pub pressure: &'a [f64],
     /// Shear stress on the area in contact \[Pa\].
-    pub(crate) shear: f64,
+    pub shear: f64,
     /// Friction coefficient of the loss in the bodies.
-    pub(crate) loss: f64,
+    pub loss: f64,
 }
 
 /// Memory that the temperatures take \[bytes\]: heat, two fields, those of the partition, and three spectra.
@@ -68,8 +70,8 @@ pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
     8 * grid.len() * (3 + 2 * VECTORS) + 5 * 16 * on_torus * (grid.len() / 2 + grid.cells()[0])
 }
 
-/// What the rows of a run need.
-pub(crate) struct FlashSolver {
+/// The temperatures under given pressures: what the rows of a run need.
+pub struct FlashSolver {
     flash: Flash,
     cell: f64,
     conduction: Conduction,
@@ -77,12 +79,13 @@ pub(crate) struct FlashSolver {
     still: usize,
     /// Of slider and track, with the velocity of the source over it; `None` of one that takes no heat.
     spectra: [Option<(f64, Spectrum)>; 2],
-    pub(crate) rise: Rise,
+    /// The temperatures found last.
+    pub rise: Rise,
 }
 
 impl FlashSolver {
     /// `None` where nothing warms the surfaces.
-    pub(crate) fn of(simulation: &Simulation, direction: Direction) -> Option<Self> {
+    pub fn of(simulation: &Simulation, direction: Direction) -> Option<Self> {
         let (flash, grid) = (simulation.flash.as_deref()?.clone(), &simulation.grid);
         let conduction = Conduction::new(grid, simulation.boundary, direction, flash.heated_for);
         let cold = || vec![0.0; grid.len()];
@@ -100,7 +103,7 @@ impl FlashSolver {
     ///
     /// # Errors
     /// As the partition.
-    pub(crate) fn warm(&mut self, rubbing: Rubbing<'_>) -> Result<()> {
+    pub fn warm(&mut self, rubbing: Rubbing<'_>) -> Result<()> {
         let Rubbing { velocity, pressure, shear, loss } = rubbing;
         let coefficient = self.flash.friction + if self.flash.hysteresis { loss.max(0.0) } else { 0.0 };
         let speed = velocity.abs();

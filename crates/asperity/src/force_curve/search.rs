@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::rows::Rows;
 use super::{ForceModel, ForceOptions, invalid};
 use crate::error::Result;
-use crate::indentation::{durbin_watson, invert};
+use crate::indentation::{covariance, damped_step, durbin_watson};
 use crate::material::dot;
 use crate::reference::{AdhesiveModel, AdhesiveSphere, BarPoint, maugis_lambda};
 
@@ -393,21 +393,13 @@ impl<'a> Problem<'a> {
         let (mut damping, mut slow) = (1e-3, 0);
         let mut columns = self.slopes(&at, &feet, &fitted);
         for _ in 0..MOST_ITERATIONS {
-            let normal = normal(&columns);
-            let gradient: Vec<f64> = columns.iter().map(|column| dot(column, &residuals)).collect();
-            let largest = (0..normal.len()).map(|k| normal[k][k]).fold(0.0, f64::max);
-            let mut damped = normal;
-            for (k, line) in damped.iter_mut().enumerate() {
-                line[k] += damping * line[k] + 1e-14 * largest;
-            }
-            let Some(inverse) = invert(damped) else {
+            let Some(step) = damped_step(&columns, &residuals, damping) else {
                 damping *= 10.0;
                 if damping > 1e10 {
                     break;
                 }
                 continue;
             };
-            let step: Vec<f64> = inverse.iter().map(|line| -dot(line, &gradient)).collect();
             let longest = step.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
             let share = if longest > 1.0 { 1.0 / longest } else { 1.0 };
             let mut trial = at.clone();
@@ -445,9 +437,7 @@ impl<'a> Problem<'a> {
         let durbin_watson = durbin_watson(&apart);
         let alike = (1.0 - 0.5 * durbin_watson).clamp(0.0, CORRELATED);
         let wider = variance * (1.0 + alike) / (1.0 - alike);
-        let covariance = invert(normal(&own)).map(|inverse| {
-            inverse.into_iter().map(|line| line.into_iter().map(|x| x * wider).collect()).collect()
-        });
+        let covariance = covariance(&own, wider);
         let kept = kept.into_iter().map(|k| fitted[k]).collect();
         Ok(Found { at, covariance, kept, squares, scatter: wider, durbin_watson })
     }
@@ -496,10 +486,6 @@ impl<'a> Problem<'a> {
         };
         fitted.iter().map(column).collect()
     }
-}
-
-fn normal(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect()
 }
 
 #[cfg(test)]

@@ -67,37 +67,33 @@ impl Average {
     /// Draws about the best fit; `whole` are the residuals of all rows of the record.
     pub(super) fn new(
         model: &Model,
-        parameters: &Parameters,
         best: &Solution,
         whole: &[f64],
         options: &IndentationOptions,
     ) -> Result<Self> {
         let [step, length] = model.window();
         let window = [step, BEYOND * length];
-        let spectrum = Spectrum::new(model, parameters, best, whole, window)?;
-        let stiffest = STIFFEST.map(|times| times * parameters.relaxation(&best.at).instantaneous());
-        let touch = match parameters.touch {
-            true => {
-                let k = parameters.len() - 1;
-                let half = TOUCH * best.deviations[k].min(1.0);
-                Some([best.at[k] - half, best.at[k] + half])
-            }
-            false => None,
+        let spectrum = Spectrum::new(model, best, whole, window)?;
+        let parameters = best.parameters;
+        let half = TOUCH * parameters.touch(&best.deviations).min(1.0);
+        let prior = Prior {
+            window,
+            stiffest: STIFFEST.map(|times| times * best.relaxation().instantaneous()),
+            touch: [best.touch() - half, best.touch() + half],
         };
         let numbers = match options.terms {
             Some(terms) => terms..=terms,
             None => 0..=MOST_TERMS.min(parameters.terms + MORE),
         };
-        let kinds: Vec<Kind> = numbers
-            .flat_map(|terms| [true, false].map(|solid| Kind { terms, solid, touch: touch.is_some() }))
+        let kinds: Vec<Parameters> = numbers
+            .flat_map(|terms| [true, false].map(|solid| Parameters { terms, solid, ..parameters }))
             .filter(|kind| match options.long_time {
                 LongTime::Free => kind.solid || kind.terms > 0,
                 LongTime::Solid => kind.solid,
                 LongTime::Fluid => !kind.solid && kind.terms > 0,
             })
             .collect();
-        let prior = Prior { window, stiffest, touch: touch.unwrap_or_default() };
-        let draws = kinds.par_iter().map(|kind| kind.draws(&prior, &spectrum)).collect::<Vec<_>>();
+        let draws = kinds.par_iter().map(|kind| prior.draws(*kind, &spectrum)).collect::<Vec<_>>();
         let mut draws: Vec<Draw> = draws.into_iter().flatten().collect();
         let whole = draws.iter().fold(f64::NEG_INFINITY, |sum, draw| add_logarithms(sum, draw.weight));
         draws.iter_mut().for_each(|draw| draw.weight -= whole);
@@ -161,14 +157,6 @@ fn quantiles(mut values: Vec<(f64, f64)>) -> [f64; 2] {
     })
 }
 
-/// A number of terms, with or without E∞.
-#[derive(Clone, Copy)]
-struct Kind {
-    terms: usize,
-    solid: bool,
-    touch: bool,
-}
-
 /// The prior.
 struct Prior {
     window: [f64; 2],
@@ -176,36 +164,28 @@ struct Prior {
     touch: [f64; 2],
 }
 
-impl Kind {
-    /// Times, then moduli of the terms, E∞, touch.
-    fn dimensions(self) -> usize {
-        2 * self.terms + usize::from(self.solid) + usize::from(self.touch)
+impl Prior {
+    /// Terms (E_i, ln τ_i), E∞ and touch of a point of the unit cube: times, then moduli of the terms, E∞, touch.
+    fn material(&self, kind: Parameters, point: &[f64]) -> (Vec<[f64; 2]>, f64, f64) {
+        let modulus = |u: f64| self.stiffest[0] * u * u;
+        let [first, last] = self.window.map(f64::ln);
+        let n = kind.terms;
+        let terms = (0..n).map(|k| [modulus(point[n + k]), first + (last - first) * point[k]]).collect();
+        let equilibrium = if kind.solid { self.stiffest[1] * point[2 * n] } else { 0.0 };
+        let [low, high] = self.touch;
+        let touch = if kind.touch { low + (high - low) * kind.touch(point) } else { 0.0 };
+        (terms, equilibrium, touch)
     }
 
-    /// Terms (ln τ), E∞ and touch of a point of the unit cube.
-    fn material(self, prior: &Prior, point: &[f64], terms: &mut Vec<[f64; 2]>) -> (f64, f64) {
-        let modulus = |u: f64| prior.stiffest[0] * u * u;
-        let [first, last] = prior.window.map(f64::ln);
-        let n = self.terms;
-        terms.clear();
-        terms.extend((0..n).map(|k| [modulus(point[n + k]), first + (last - first) * point[k]]));
-        let equilibrium = if self.solid { prior.stiffest[1] * point[2 * n] } else { 0.0 };
-        let [low, high] = prior.touch;
-        let touch = if self.touch { low + (high - low) * point[self.dimensions() - 1] } else { 0.0 };
-        (equilibrium, touch)
-    }
-
-    fn draws(self, prior: &Prior, spectrum: &Spectrum) -> Vec<Draw> {
+    fn draws(&self, kind: Parameters, spectrum: &Spectrum) -> Vec<Draw> {
         let likelihood = |point: &[f64]| {
-            let mut terms = Vec::with_capacity(self.terms);
-            let (equilibrium, touch) = self.material(prior, point, &mut terms);
+            let (terms, equilibrium, touch) = self.material(kind, point);
             spectrum.log_likelihood(equilibrium, &terms, touch)
         };
-        let seed = 2 * self.terms as u64 + u64::from(self.solid);
-        let found = nested::sample(self.dimensions(), self.terms, seed, likelihood);
+        let seed = 2 * kind.terms as u64 + u64::from(kind.solid);
+        let found = nested::sample(kind.len(), kind.terms, seed, likelihood);
         let draw = |(weight, point): (f64, Vec<f64>)| {
-            let mut terms = vec![];
-            let (equilibrium, touch) = self.material(prior, &point, &mut terms);
+            let (mut terms, equilibrium, touch) = self.material(kind, &point);
             terms.iter_mut().for_each(|term| term[1] = term[1].exp());
             Draw { weight, equilibrium, terms, touch }
         };

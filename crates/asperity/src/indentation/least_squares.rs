@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::model::Model;
 use super::parameters::Parameters;
 use crate::error::{Result, require};
-use crate::material::dot;
+use crate::material::{Relaxation, dot};
 
 /// Steps of the central differences, in logarithms: the model's own steps are 1e-5 of its values.
 const STEP: f64 = 1e-2;
@@ -21,6 +21,7 @@ const MOST_ITERATIONS: usize = 60;
 
 /// The parameters that fit best.
 pub(super) struct Solution {
+    pub(super) parameters: Parameters,
     pub(super) at: Vec<f64>,
     /// Weighted, over the largest measured value.
     pub(super) residuals: Vec<f64>,
@@ -32,10 +33,19 @@ impl Solution {
     pub(super) fn rms(&self) -> f64 {
         (squares(&self.residuals) / self.residuals.len() as f64).sqrt()
     }
+
+    pub(super) fn relaxation(&self) -> Relaxation {
+        self.parameters.relaxation(&self.at)
+    }
+
+    /// The depth of first touch over the largest depth.
+    pub(super) fn touch(&self) -> f64 {
+        self.parameters.touch(&self.at)
+    }
 }
 
 /// Minimises the residuals from `start`.
-pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> Result<Solution> {
+pub(super) fn solve(model: &Model, parameters: Parameters, start: Vec<f64>) -> Result<Solution> {
     require(
         model.compared() >= 2 * parameters.len() + 2,
         "number of rows of the record",
@@ -47,8 +57,7 @@ pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> 
     let mut columns = slopes(model, parameters, &at, &residuals)?;
     let (mut damping, mut slow) = (1e-3, 0);
     for _ in 0..MOST_ITERATIONS {
-        let (normal, gradient) = system(&columns, &residuals);
-        let Some(step) = damped_step(&normal, &gradient, damping) else {
+        let Some(step) = damped_step(&columns, &residuals, damping) else {
             damping *= 10.0;
             if damping > 1e10 {
                 break;
@@ -81,15 +90,16 @@ pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> 
         }
     }
     let columns = jacobian(model, parameters, &at)?;
-    let deviations = match covariance(&columns, &residuals) {
+    let variance = squares(&residuals) / (residuals.len() - columns.len()) as f64;
+    let deviations = match covariance(&columns, variance) {
         Some(covariance) => (0..at.len()).map(|k| covariance[k][k].max(0.0).sqrt()).collect(),
         None => vec![f64::INFINITY; at.len()],
     };
-    Ok(Solution { at, residuals, deviations })
+    Ok(Solution { parameters, at, residuals, deviations })
 }
 
 /// Columns of dr/dx by one-sided differences, for the search.
-fn slopes(model: &Model, parameters: &Parameters, at: &[f64], residuals: &[f64]) -> Result<Vec<Vec<f64>>> {
+fn slopes(model: &Model, parameters: Parameters, at: &[f64], residuals: &[f64]) -> Result<Vec<Vec<f64>>> {
     let column = |k: usize| {
         let moved = |by: f64| moved(model, parameters, at, k, by).map(|there| (there, by));
         let (there, by) = moved(SIDESTEP).or_else(|_| moved(-SIDESTEP))?;
@@ -99,7 +109,7 @@ fn slopes(model: &Model, parameters: &Parameters, at: &[f64], residuals: &[f64])
 }
 
 /// Columns of dr/dx by central differences; one-sided if the model fails on one side.
-fn jacobian(model: &Model, parameters: &Parameters, at: &[f64]) -> Result<Vec<Vec<f64>>> {
+fn jacobian(model: &Model, parameters: Parameters, at: &[f64]) -> Result<Vec<Vec<f64>>> {
     let column = |k: usize| {
         let moved = |by: f64| moved(model, parameters, at, k, by);
         let (ends, length) = match (moved(STEP), moved(-STEP)) {
@@ -114,34 +124,34 @@ fn jacobian(model: &Model, parameters: &Parameters, at: &[f64]) -> Result<Vec<Ve
 }
 
 /// The residuals with parameter `k` changed by `by`.
-fn moved(model: &Model, parameters: &Parameters, at: &[f64], k: usize, by: f64) -> Result<Vec<f64>> {
+fn moved(model: &Model, parameters: Parameters, at: &[f64], k: usize, by: f64) -> Result<Vec<f64>> {
     let mut there = at.to_vec();
     there[k] += by;
     model.residuals(parameters, &there)
 }
 
-/// J'J and J'r.
-fn system(columns: &[Vec<f64>], residuals: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let normal = columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
-    (normal, columns.iter().map(|a| dot(a, residuals)).collect())
+/// J'J.
+pub(crate) fn normal<C: AsRef<[f64]>>(columns: &[C]) -> Vec<Vec<f64>> {
+    let row = |a: &C| columns.iter().map(|b| dot(a.as_ref(), b.as_ref())).collect();
+    columns.iter().map(row).collect()
 }
 
 /// (J'J + damping diag J'J) step = -J'r.
-fn damped_step(normal: &[Vec<f64>], gradient: &[f64], damping: f64) -> Option<Vec<f64>> {
-    let largest = (0..normal.len()).map(|k| normal[k][k]).fold(0.0, f64::max);
-    let mut damped = normal.to_vec();
+pub(crate) fn damped_step(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
+    let mut damped = normal(columns);
+    let largest = (0..damped.len()).map(|k| damped[k][k]).fold(0.0, f64::max);
     for (k, row) in damped.iter_mut().enumerate() {
         row[k] += damping * row[k] + 1e-14 * largest;
     }
+    let gradient: Vec<f64> = columns.iter().map(|column| dot(column, residuals)).collect();
     let inverse = invert(damped)?;
-    let step: Vec<f64> = inverse.iter().map(|row| -dot(row, gradient)).collect();
+    let step: Vec<f64> = inverse.iter().map(|row| -dot(row, &gradient)).collect();
     step.iter().all(|s| s.is_finite()).then_some(step)
 }
 
-/// (J'J)⁻¹ Σ r²/(n - k) over the n rows and k parameters; `None` if J'J is singular.
-fn covariance(columns: &[Vec<f64>], residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
-    let inverse = invert(system(columns, residuals).0)?;
-    let variance = squares(residuals) / (residuals.len() - columns.len()) as f64;
+/// (J'J)⁻¹ `variance`; `None` if J'J is singular.
+pub(crate) fn covariance(columns: &[Vec<f64>], variance: f64) -> Option<Vec<Vec<f64>>> {
+    let inverse = invert(normal(columns))?;
     Some(inverse.into_iter().map(|line| line.into_iter().map(|x| variance * x).collect()).collect())
 }
 

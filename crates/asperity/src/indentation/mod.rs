@@ -46,7 +46,7 @@ use crate::layer::Interface;
 use crate::material::{LongTime, Relaxation, RelaxationTerm};
 use crate::reference::MdrProfile;
 
-pub(crate) use least_squares::invert;
+pub(crate) use least_squares::{covariance, damped_step};
 pub(crate) use notes::{ALIKE, unlikely_radius};
 pub(crate) use spectrum::durbin_watson;
 #[cfg(test)]
@@ -55,7 +55,6 @@ pub(crate) use tests::Noise as TestNoise;
 use average::Average;
 use least_squares::Solution;
 use model::Model;
-use parameters::Parameters;
 use stated::Stated;
 pub(crate) use stated::{SENSITIVITY, check_shares};
 
@@ -269,9 +268,9 @@ pub fn fit_indentation(
     let given = options.given.unwrap_or_else(|| control::controlled(&times, &loads, &depths));
     let whole = Model::new(profile, times, loads, depths, given, options)?;
     let (model, rows) = whole.averaged();
-    let (best, parameters) = select::select(&model, options.terms, options.long_time)?;
+    let best = select::select(&model, options.terms, options.long_time)?;
     // The means of a long record are fitted; the fit is judged by all its rows.
-    let prediction = whole.predict(&parameters, &best.at)?;
+    let prediction = whole.predict(best.parameters, &best.at)?;
     let apart = prediction.values.iter().zip(whole.measured()).map(|(model, measured)| model - measured);
     let apart = apart.collect::<Vec<f64>>();
     let residuals = apart.iter().zip(whole.weights(&prediction)).map(|(apart, w)| apart * w);
@@ -280,13 +279,13 @@ pub fn fit_indentation(
     let rms = (apart.iter().map(|x| x * x).sum::<f64>() / apart.len() as f64).sqrt();
     require_fit(rms / model.scale, options.limit)?;
     if options.terms.is_some() {
-        require_known(&parameters, &best)?;
+        require_known(&best)?;
     }
-    let average = Average::new(&model, &parameters, &best, &residuals, options)?;
+    let average = Average::new(&model, &best, &residuals, options)?;
 
-    let stated = Stated::new(&model, &parameters, &best.at, profile, options)?;
+    let stated = Stated::new(&model, &best, profile, options)?;
 
-    let relaxation = parameters.relaxation(&best.at);
+    let relaxation = best.relaxation();
     let instantaneous = average.interval(relaxation.instantaneous(), |draw| Some(draw.instantaneous()));
     let instantaneous = stated.widen(instantaneous, Relaxation::instantaneous);
     let equilibrium = average.interval(relaxation.equilibrium, |draw| Some(draw.equilibrium));
@@ -306,8 +305,8 @@ pub fn fit_indentation(
     if relaxes {
         (equilibrium.low, equilibrium.determined) = (0.0, false);
     }
-    let touch = match parameters.touch {
-        true => average.interval(best.at[parameters.len() - 1], |draw| Some(draw.touch)),
+    let touch = match best.parameters.touch {
+        true => average.interval(best.touch(), |draw| Some(draw.touch)),
         false => Interval::new(0.0, [0.0, 0.0]),
     };
     let [value, low, high] = [touch.value, touch.low, touch.high].map(|x| model.depth_scale() * x);
@@ -347,15 +346,15 @@ fn require_fit(relative_rms: f64, limit: f64) -> Result<()> {
 }
 
 /// Refuses more terms than the record determines.
-fn require_known(parameters: &Parameters, best: &Solution) -> Result<()> {
-    let worst = parameters.worst(&best.deviations).filter(|(_, deviation)| *deviation > select::UNKNOWN);
+fn require_known(best: &Solution) -> Result<()> {
+    let worst = best.parameters.worst(&best.deviations).filter(|(_, deviation)| *deviation > select::UNKNOWN);
     let Some((name, deviation)) = worst else { return Ok(()) };
     let known = match deviation < 20.0 {
         true => format!("a factor of {:.0} only", (1.96 * deviation).exp()),
         false => "nothing".to_owned(),
     };
     Err(Error::invalid(
-        format!("number of terms ({})", parameters.terms),
+        format!("number of terms ({})", best.parameters.terms),
         format!("too large for the record: {name} is known to {known}"),
         "smaller, or a record that is longer or has more points in the beginning",
     ))

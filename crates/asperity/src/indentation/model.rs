@@ -234,7 +234,7 @@ impl Model {
 
     /// Model minus measurement at each row where they are compared, over the largest measured value, and weighted: rows with more
     /// noise than the mean of the fitted channel have less weight, the mean of n rows has sqrt(n) times that of one.
-    pub(super) fn residuals(&self, parameters: &Parameters, at: &[f64]) -> Result<Vec<f64>> {
+    pub(super) fn residuals(&self, parameters: Parameters, at: &[f64]) -> Result<Vec<f64>> {
         let predicted = self.predict(parameters, at)?;
         let apart = predicted.values.iter().zip(self.measured()).map(|(model, measured)| model - measured);
         let weighted: Vec<f64> = apart.zip(self.weights(&predicted)).map(|(apart, w)| apart * w).collect();
@@ -261,8 +261,8 @@ impl Model {
     }
 
     /// The channel that is not given, at each row.
-    pub(super) fn predict(&self, parameters: &Parameters, at: &[f64]) -> Result<Prediction> {
-        let touch = if parameters.touch { self.depth_scale() * at[parameters.len() - 1] } else { 0.0 };
+    pub(super) fn predict(&self, parameters: Parameters, at: &[f64]) -> Result<Prediction> {
+        let touch = self.depth_scale() * parameters.touch(at);
         self.respond(&parameters.relaxation(at), touch, self.taken(), self.springs)
     }
 

@@ -16,6 +16,11 @@ impl Parameters {
         usize::from(self.solid) + 2 * self.terms + usize::from(self.touch)
     }
 
+    /// The depth of first touch over the largest depth; 0 if it is not fitted.
+    pub(super) fn touch(&self, at: &[f64]) -> f64 {
+        if self.touch { at[self.len() - 1] } else { 0.0 }
+    }
+
     pub(super) fn relaxation(&self, at: &[f64]) -> Relaxation {
         let first = usize::from(self.solid);
         let term = |k: usize| RelaxationTerm {
@@ -39,11 +44,9 @@ impl Parameters {
             false if relaxation.equilibrium == 0.0 => {}
             false => return None,
         }
-        for term in &relaxation.terms {
-            at.push(positive(term.modulus)?);
-        }
-        for term in &relaxation.terms {
-            at.push(positive(term.relaxation_time)?);
+        let terms = relaxation.terms.iter();
+        for number in terms.clone().map(|term| term.modulus).chain(terms.map(|term| term.relaxation_time)) {
+            at.push(positive(number)?);
         }
         at.extend(self.touch.then_some(0.0));
         Some(at)

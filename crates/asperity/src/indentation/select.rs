@@ -14,11 +14,7 @@ pub(super) const UNKNOWN: f64 = 1.0;
 pub(super) const MODEL_ERROR: f64 = 2e-5;
 
 /// The best fit, with `terms` terms or the number needed.
-pub(super) fn select(
-    model: &Model,
-    terms: Option<usize>,
-    long_time: LongTime,
-) -> Result<(Solution, Parameters)> {
+pub(super) fn select(model: &Model, terms: Option<usize>, long_time: LongTime) -> Result<Solution> {
     match terms {
         Some(terms) => best_of(model, terms, long_time),
         None => as_many_as_needed(model, long_time),
@@ -26,52 +22,47 @@ pub(super) fn select(
 }
 
 /// Fits with `terms` terms: a solid, a fluid, or the better of both.
-fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<(Solution, Parameters)> {
+fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<Solution> {
     let solids = match (long_time, terms) {
         (LongTime::Solid, _) | (_, 0) => &[true][..],
         (LongTime::Fluid, _) => &[false],
         (LongTime::Free, _) => &[true, false],
     };
-    let mut best: Option<(Solution, Parameters)> = None;
+    let mut best: Option<Solution> = None;
     let mut refused = None;
     for solid in solids {
         // An equilibrium modulus that is known to 30 % and carries a part of the load is not 0.
-        let known = |(solution, of): &(Solution, Parameters)| {
-            let share = solution.at[0].exp() / of.relaxation(&solution.at).instantaneous();
-            of.solid && solution.deviations[0] < 0.3 && share > 1e-3
+        let known = |solution: &Solution| {
+            let share = solution.at[0].exp() / solution.relaxation().instantaneous();
+            solution.parameters.solid && solution.deviations[0] < 0.3 && share > 1e-3
         };
         if best.as_ref().is_some_and(known) {
             break;
         }
         let parameters = Parameters { solid: *solid, terms, touch: model.fit_touch };
-        let found = start::start(model, &parameters).and_then(|start| solve(model, &parameters, start));
+        let found = start::start(model, parameters).and_then(|start| solve(model, parameters, start));
         match found {
             Err(error) => refused = Some(error),
-            Ok(solution) => {
-                let better = best.as_ref().is_none_or(|(other, of)| {
-                    information(model, &solution, &parameters) < information(model, other, of)
-                });
-                if better {
-                    best = Some((solution, parameters));
+            Ok(next) => {
+                let is_better = |other: &Solution| information(model, &next) < information(model, other);
+                if best.as_ref().is_none_or(is_better) {
+                    best = Some(next);
                 }
             }
         }
     }
-    match (best, refused) {
-        (Some(best), _) => Ok(best),
-        (None, Some(error)) => Err(error),
-        (None, None) => Err(Error::invalid("number of terms", terms, "one that can be fitted")),
-    }
+    let unknown = || Error::invalid("number of terms", terms, "one that can be fitted");
+    best.ok_or_else(|| refused.unwrap_or_else(unknown))
 }
 
 /// Adds terms while this lowers the information criterion and each term is determined.
-fn as_many_as_needed(model: &Model, long_time: LongTime) -> Result<(Solution, Parameters)> {
+fn as_many_as_needed(model: &Model, long_time: LongTime) -> Result<Solution> {
     let mut best = best_of(model, usize::from(long_time == LongTime::Fluid), long_time)?;
-    let first = best.1.terms;
-    for terms in first + 1..=MOST_TERMS {
+    for terms in best.parameters.terms + 1..=MOST_TERMS {
         let Ok(next) = best_of(model, terms, long_time) else { break };
-        let known = next.1.worst(&next.0.deviations).is_none_or(|(_, deviation)| deviation <= UNKNOWN);
-        if !known || information(model, &next.0, &next.1) >= information(model, &best.0, &best.1) {
+        let worst = next.parameters.worst(&next.deviations);
+        let known = worst.is_none_or(|(_, deviation)| deviation <= UNKNOWN);
+        if !known || information(model, &next) >= information(model, &best) {
             break;
         }
         best = next;
@@ -80,7 +71,7 @@ fn as_many_as_needed(model: &Model, long_time: LongTime) -> Result<(Solution, Pa
 }
 
 /// Bayesian information criterion of m residuals, means of n rows in all: m ln(Σ r²/m) + k ln n.
-fn information(model: &Model, solution: &Solution, parameters: &Parameters) -> f64 {
+fn information(model: &Model, solution: &Solution) -> f64 {
     let mean = solution.rms().powi(2).max(MODEL_ERROR * MODEL_ERROR);
-    solution.residuals.len() as f64 * mean.ln() + parameters.len() as f64 * model.rows().ln()
+    solution.residuals.len() as f64 * mean.ln() + solution.parameters.len() as f64 * model.rows().ln()
 }

@@ -51,22 +51,15 @@ impl Spectrum {
     /// Linearises around the best fit, for times within `window` \[s\]. `whole`: the residuals of all rows of the record, of whose
     /// means `best` is the fit. The larger of both standard deviations counts: the rows show how neighbours are correlated, their
     /// means what varies slowly.
-    pub(super) fn new(
-        model: &Model,
-        parameters: &Parameters,
-        best: &Solution,
-        whole: &[f64],
-        window: [f64; 2],
-    ) -> Result<Self> {
-        let relaxation = parameters.relaxation(&best.at);
+    pub(super) fn new(model: &Model, best: &Solution, whole: &[f64], window: [f64; 2]) -> Result<Self> {
+        let (relaxation, parameters) = (best.relaxation(), best.parameters);
         let times = || relaxation.terms.iter().map(|term| term.relaxation_time);
         let first = times().fold(window[0], f64::min).ln();
         let last = times().fold(window[1], f64::max).ln();
         let count = (PER_DECADE * (last - first) / std::f64::consts::LN_10).ceil().clamp(4.0, 120.0) as usize;
         let step = (last - first) / count as f64;
 
-        let touch = if parameters.touch { best.at[parameters.len() - 1] } else { 0.0 };
-        let depth = model.depth_scale();
+        let (touch, depth) = (best.touch(), model.depth_scale());
         // Without its noise, which would make the columns of short times noisy.
         let history = smoothed(&model.times, (model.taken(), &model.given_noise));
         let respond = |relaxation: &Relaxation, touch: f64| {
@@ -76,7 +69,7 @@ impl Spectrum {
         let base = respond(&relaxation, touch)?;
         let sd = deviation(&best.residuals, parameters).max(deviation(whole, parameters));
         let weights: Vec<f64> =
-            model.weights(&model.predict(parameters, &best.at)?).iter().map(|w| w / sd).collect();
+            model.weights(&model.predict(best.parameters, &best.at)?).iter().map(|w| w / sd).collect();
         let column = |changed: Vec<f64>, by: f64| {
             let rows = changed.iter().zip(&base).zip(&weights);
             model.of_compared(&rows.map(|((there, here), w)| (there - here) / by * w).collect::<Vec<f64>>())
@@ -151,7 +144,7 @@ fn add(to: &mut [f64], factor: f64, column: &[f64]) {
 
 /// Standard deviation of a weighted residual. Correlated neighbours contain less information than independent ones: with the
 /// correlation ρ of one row with the next, n rows are equivalent to n (1 - ρ)/(1 + ρ) independent ones.
-fn deviation(residuals: &[f64], parameters: &Parameters) -> f64 {
+fn deviation(residuals: &[f64], parameters: Parameters) -> f64 {
     let k = parameters.len() as f64;
     let alike = (1.0 - 0.5 * durbin_watson(residuals)).clamp(0.0, MOST_ALIKE);
     let variance = dot(residuals, residuals) / (residuals.len() as f64 - k) * (1.0 + alike) / (1.0 - alike);

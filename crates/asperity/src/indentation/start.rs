@@ -2,7 +2,7 @@
 //! depth are linear in the weights (theory of Lee and Radok, see [`super`]).
 
 use super::Given;
-use super::least_squares::invert;
+use super::least_squares::{invert, normal};
 use super::model::Model;
 use super::parameters::Parameters;
 use crate::error::{Error, Result};
@@ -14,22 +14,21 @@ const PER_DECADE: f64 = 4.0;
 const SHRINKS: f64 = 0.95;
 
 /// Parameters to start from.
-pub(super) fn start(model: &Model, parameters: &Parameters) -> Result<Vec<f64>> {
+pub(super) fn start(model: &Model, parameters: Parameters) -> Result<Vec<f64>> {
     let growing = Growing::of(model);
     let grid = growing.grid();
     let found = match model.given {
         Given::Depth => growing.relaxation(parameters, &grid),
         Given::Load => growing.creep(parameters, &grid),
     };
-    found.and_then(|relaxation| parameters.of(&relaxation)).or_else(|| growing.spread(parameters)).ok_or_else(
-        || {
-            Error::invalid(
-                "record of the indentation",
-                "one whose load does not grow with the depth",
-                "an indentation from first touch on (check the signs of load and depth)",
-            )
-        },
-    )
+    let start = found.and_then(|relaxation| parameters.of(&relaxation));
+    start.or_else(|| growing.spread(parameters)).ok_or_else(|| {
+        Error::invalid(
+            "record of the indentation",
+            "one whose load does not grow with the depth",
+            "an indentation from first touch on (check the signs of load and depth)",
+        )
+    })
 }
 
 /// The part of a record in which the contact grows: φ(d), the loads, and the weight of each row.
@@ -104,7 +103,7 @@ impl Growing {
     }
 
     /// W = E∞ φ + Σ E_i ∫ exp(-(t - s)/τ_i) dφ.
-    fn relaxation(&self, parameters: &Parameters, grid: &[f64]) -> Option<Relaxation> {
+    fn relaxation(&self, parameters: Parameters, grid: &[f64]) -> Option<Relaxation> {
         let fixed = if parameters.solid { vec![self.weighted(self.unit.clone())] } else { vec![] };
         let columns = grid.iter().map(|time| self.weighted(self.faded(&self.unit, *time))).collect();
         let system = System { target: self.weighted(self.loads.clone()), fixed, columns };
@@ -123,7 +122,7 @@ impl Growing {
 
     /// φ = C0 W + Σ C_j ∫ (1 - exp(-(t - s)/λ_j)) dW (+ ∫ W dt/η), then its relaxation function. A fluid of n terms has n - 1
     /// retarded ones.
-    fn creep(&self, parameters: &Parameters, grid: &[f64]) -> Option<Relaxation> {
+    fn creep(&self, parameters: Parameters, grid: &[f64]) -> Option<Relaxation> {
         let mut fixed = vec![self.weighted(self.loads.clone())];
         let mut terms = parameters.terms;
         if !parameters.solid {
@@ -158,7 +157,7 @@ impl Growing {
     }
 
     /// Fallback: the overall stiffness, with the terms spread over the record.
-    fn spread(&self, parameters: &Parameters) -> Option<Vec<f64>> {
+    fn spread(&self, parameters: Parameters) -> Option<Vec<f64>> {
         let mean = dot(&self.unit, &self.loads) / dot(&self.unit, &self.unit);
         if !(mean > 0.0 && mean.is_finite()) {
             return None;
@@ -206,9 +205,8 @@ impl System {
     fn fit(&self, chosen: &[usize]) -> Option<(f64, Vec<f64>)> {
         let columns: Vec<&Vec<f64>> =
             self.fixed.iter().chain(chosen.iter().map(|k| &self.columns[*k])).collect();
-        let normal = columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
         let right: Vec<f64> = columns.iter().map(|a| dot(a, &self.target)).collect();
-        let inverse = invert(normal)?;
+        let inverse = invert(normal(&columns))?;
         let weights: Vec<f64> = inverse.iter().map(|row| dot(row, &right)).collect();
         let left = dot(&self.target, &self.target) - dot(&weights, &right);
         weights.iter().all(|w| *w > 0.0).then_some((left, weights))

@@ -6,9 +6,8 @@
 //!
 //! On a half-space d ln E/d ln R is -1/2 for a sphere and 1 for the slope of a cone; a layer has no such rule.
 
-use super::least_squares::solve;
+use super::least_squares::{Solution, solve};
 use super::model::Model;
-use super::parameters::Parameters;
 use super::{IndentationOptions, Interval, WIDTH};
 use crate::error::{Result, non_negative, require};
 use crate::material::Relaxation;
@@ -74,16 +73,14 @@ impl Stated {
     /// Fits again, from the best fit on.
     pub(super) fn new(
         model: &Model,
-        parameters: &Parameters,
-        best: &[f64],
+        best: &Solution,
         profile: MdrProfile,
         options: &IndentationOptions,
     ) -> Result<Stated> {
         let fit = |profile: MdrProfile, options: &IndentationOptions, columns: [Vec<f64>; 2]| {
             let changed = model.with(profile, options, columns)?;
-            let found = solve(&changed, parameters, best.to_vec())?;
-            let touch = if parameters.touch { found.at[parameters.len() - 1] } else { 0.0 };
-            Ok((parameters.relaxation(&found.at), touch * changed.depth_scale()))
+            let found = solve(&changed, best.parameters, best.at.clone())?;
+            Ok((found.relaxation(), found.touch() * changed.depth_scale()))
         };
         let columns = || [model.loads.clone(), model.depths.clone()];
         let of_radius = |times: f64| {

@@ -1,6 +1,7 @@
 //! Checks of measured curves before the fit: order, sign, noise, and passivity.
 
 use crate::error::{Error, Result, increasing, require, significant};
+use crate::material::spectrum::Kernel;
 
 /// Number of points above which a curve is averaged.
 const MOST_POINTS: usize = 10_000_000;
@@ -9,38 +10,58 @@ const FEW_POINTS: usize = 20;
 /// Widest range of times or frequencies.
 const MOST_DECADES: f64 = 60.0;
 
-/// The names of the quantities of one kind of curve.
+/// A kind of curve: the names of its quantities, and what a material makes of them.
 #[derive(Clone, Copy)]
-pub(super) struct Words {
+pub(super) struct Kind {
     /// "time" or "angular frequency"
     pub abscissa: &'static str,
     pub abscissa_unit: &'static str,
     /// "relaxation modulus"
     pub ordinate: &'static str,
     pub ordinate_unit: &'static str,
+    pub kernel: Kernel,
+    /// Where that of a passive material changes in one direction only.
+    pub trend: Option<Trend>,
 }
 
-impl Words {
-    pub(super) const RELAXATION: Words =
-        Words { abscissa: "time", abscissa_unit: "s", ordinate: "relaxation modulus", ordinate_unit: "Pa" };
-    pub(super) const CREEP: Words =
-        Words { ordinate: "creep compliance", ordinate_unit: "1/Pa", ..Words::RELAXATION };
-    pub(super) const STORAGE: Words = Words {
+impl Kind {
+    pub(super) const RELAXATION: Kind = Kind {
+        abscissa: "time",
+        abscissa_unit: "s",
+        ordinate: "relaxation modulus",
+        ordinate_unit: "Pa",
+        kernel: Kernel::Relaxation,
+        trend: Some(Trend::Falls),
+    };
+    pub(super) const CREEP: Kind = Kind {
+        ordinate: "creep compliance",
+        ordinate_unit: "1/Pa",
+        kernel: Kernel::Creep,
+        trend: Some(Trend::Rises),
+        ..Kind::RELAXATION
+    };
+    pub(super) const STORAGE: Kind = Kind {
         abscissa: "angular frequency",
         abscissa_unit: "rad/s",
         ordinate: "storage modulus",
         ordinate_unit: "Pa",
+        kernel: Kernel::Storage,
+        trend: Some(Trend::Rises),
     };
-    pub(super) const LOSS: Words = Words { ordinate: "loss modulus", ..Words::STORAGE };
+    pub(super) const LOSS: Kind =
+        Kind { ordinate: "loss modulus", kernel: Kernel::Loss, trend: None, ..Kind::STORAGE };
+}
 
-    /// "relaxation modulus of point 3 (time 0.5 s)"
-    fn point(&self, n: usize, x: f64) -> String {
-        format!("{} of point {} ({} {x:e} {})", self.ordinate, n + 1, self.abscissa, self.abscissa_unit)
-    }
-
-    fn value(&self, value: f64) -> String {
-        format!("{value:e} {}", self.ordinate_unit)
-    }
+/// A measured curve.
+#[derive(Clone, Copy)]
+pub(super) struct Curve<'a> {
+    pub kind: Kind,
+    pub xs: &'a [f64],
+    pub values: &'a [f64],
+    /// Smallest scale of a value: residuals are relative to the larger of the two.
+    pub floor: f64,
+    /// Weight of its residuals in the sum of squares.
+    pub weight: f64,
 }
 
 /// The direction in which the curve of a passive material changes along the abscissa.
@@ -51,11 +72,11 @@ pub(super) enum Trend {
 }
 
 /// Checks that the abscissae increase strictly from a positive number (or from 0, where `zero`).
-pub(super) fn check_abscissae(words: Words, xs: &[f64], zero: bool) -> Result<()> {
-    let name = |n: usize| format!("{} of point {}", words.abscissa, n + 1);
+pub(super) fn check_abscissae(kind: Kind, xs: &[f64], zero: bool) -> Result<()> {
+    let name = |n: usize| format!("{} of point {}", kind.abscissa, n + 1);
     require(
         (2..=MOST_POINTS).contains(&xs.len()),
-        format!("number of points of the {}", words.ordinate),
+        format!("number of points of the {}", kind.ordinate),
         xs.len(),
         format!("between 2 and {MOST_POINTS}"),
     )?;
@@ -63,41 +84,19 @@ pub(super) fn check_abscissae(words: Words, xs: &[f64], zero: bool) -> Result<()
         let positive = *x >= f64::MIN_POSITIVE || (zero && n == 0 && *x == 0.0);
         if !(positive && x.is_finite()) {
             let least = if zero && n == 0 { "not less than" } else { "greater than" };
-            let expected = format!("finite and {least} 0 {}", words.abscissa_unit);
+            let expected = format!("finite and {least} 0 {}", kind.abscissa_unit);
             return Err(Error::invalid(name(n), x, expected));
         }
     }
-    increasing(xs.iter().copied(), name, |x| format!("{x:e} {}", words.abscissa_unit))?;
+    increasing(xs.iter().copied(), name, |x| format!("{x:e} {}", kind.abscissa_unit))?;
     let first = if xs[0] > 0.0 { xs[0] } else { xs[1] };
     let decades = xs[xs.len() - 1].log10() - first.log10();
     require(
         decades <= MOST_DECADES,
-        format!("range of the {}", words.abscissa),
+        format!("range of the {}", kind.abscissa),
         format!("{decades:.0} decades"),
         format!("at most {MOST_DECADES} decades"),
-    )?;
-    Ok(())
-}
-
-/// Checks that there is one finite, positive (or not negative) value for each abscissa.
-pub(super) fn check_values(words: Words, xs: &[f64], values: &[f64], zero: bool) -> Result<()> {
-    require(
-        values.len() == xs.len(),
-        format!("number of values of the {}", words.ordinate),
-        values.len(),
-        format!("{}, one for each {}", xs.len(), words.abscissa),
-    )?;
-    for (n, (x, value)) in xs.iter().zip(values).enumerate() {
-        if !(value.is_finite() && (*value >= f64::MIN_POSITIVE || (zero && *value == 0.0))) {
-            let bound = if zero { "not less than" } else { "greater than" };
-            return Err(Error::invalid(
-                words.point(n, *x),
-                words.value(*value),
-                format!("finite and {bound} 0, as for every passive material"),
-            ));
-        }
-    }
-    Ok(())
+    )
 }
 
 /// Relative scatter of a curve (standard deviation), from the distances between each point and the cubic through its four
@@ -177,103 +176,109 @@ pub struct Reversal {
     pub extreme: usize,
 }
 
-/// The reversal of a curve. Its scatter explains the distance of the two extremes of N normal deviates, and at least `limit`,
-/// the misfit that a fit may have: sweeps of a master curve often differ by a few per cent. The scatter of a few points cannot be
-/// distinguished from the curvature of their curve.
-pub(super) fn reversal(
-    words: Words,
-    trend: Trend,
-    xs: &[f64],
-    values: &[f64],
-    limit: f64,
-) -> Option<Reversal> {
-    let extremes = 2.0 * (1.0 + (2.0 * (xs.len() as f64).ln()).sqrt());
-    let scatter = if is_short(xs) { 0.0 } else { extremes * noise(xs, values) };
-    // A fall by the whole value is not scatter.
-    let allowed = scatter.max(limit.min(0.5));
-    let (mut found, mut extreme): (Option<Reversal>, usize) = (None, 0);
-    for (point, value) in values.iter().enumerate() {
-        let share = match trend {
-            Trend::Falls => value / values[extreme] - 1.0,
-            Trend::Rises => 1.0 - value / values[extreme],
-        };
-        if share > allowed {
-            let first = Reversal { quantity: words.ordinate, share, allowed, point, extreme };
-            let found = found.get_or_insert(first);
-            found.share = found.share.max(share);
+impl<'a> Curve<'a> {
+    /// A curve with one finite, positive (or not negative, where `zero`) value for each abscissa.
+    pub(super) fn new(kind: Kind, xs: &'a [f64], values: &'a [f64], zero: bool) -> Result<Self> {
+        let curve = Curve { kind, xs, values, floor: 0.0, weight: 1.0 };
+        require(
+            values.len() == xs.len(),
+            format!("number of values of the {}", kind.ordinate),
+            values.len(),
+            format!("{}, one for each {}", xs.len(), kind.abscissa),
+        )?;
+        let valid =
+            |value: &f64| value.is_finite() && (*value >= f64::MIN_POSITIVE || (zero && *value == 0.0));
+        if let Some(n) = values.iter().position(|value| !valid(value)) {
+            let bound = if zero { "not less than" } else { "greater than" };
+            return Err(curve.wrong(n, format!("finite and {bound} 0, as for every passive material")));
         }
-        if share < 0.0 {
-            extreme = point;
-        }
+        Ok(curve)
     }
-    found
-}
 
-/// Whether a curve has too few points to determine its scatter.
-pub(super) fn is_short(xs: &[f64]) -> bool {
-    xs.len() < FEW_POINTS
-}
+    /// The error of point `n`: "relaxation modulus of point 3 (time 0.5 s) is 2e6 Pa, but must be ...".
+    pub(super) fn wrong(&self, n: usize, expected: String) -> Error {
+        let Kind { abscissa, abscissa_unit, ordinate, ordinate_unit, .. } = self.kind;
+        let point = format!("{ordinate} of point {} ({abscissa} {:e} {abscissa_unit})", n + 1, self.xs[n]);
+        Error::invalid(point, format!("{:e} {ordinate_unit}", self.values[n]), expected)
+    }
 
-/// The error for a curve with such a reversal.
-pub(super) fn reversed(words: Words, trend: Trend, xs: &[f64], values: &[f64], found: Reversal) -> Error {
-    let (not, side) = match trend {
-        Trend::Falls => ("not rise", "above"),
-        Trend::Rises => ("not fall", "below"),
-    };
-    Error::invalid(
-        words.point(found.point, xs[found.point]),
-        words.value(values[found.point]),
-        format!(
-            "not more than {:.1} % {side} the {} at {} {:e} {}: in a passive material it does {not}",
+    /// Its scatter.
+    pub(super) fn noise(&self) -> f64 {
+        noise(self.xs, self.values)
+    }
+
+    /// The reversal of a curve with a trend. Its scatter explains the distance of the two extremes of N normal deviates, and at least
+    /// `limit`, the misfit that a fit may have: sweeps of a master curve often differ by a few per cent. The scatter of a few points
+    /// cannot be distinguished from the curvature of their curve.
+    pub(super) fn reversal(&self, limit: f64) -> Option<Reversal> {
+        let (trend, values) = (self.kind.trend?, self.values);
+        let extremes = 2.0 * (1.0 + (2.0 * (values.len() as f64).ln()).sqrt());
+        let scatter = if self.is_short() { 0.0 } else { extremes * self.noise() };
+        // A fall by the whole value is not scatter.
+        let allowed = scatter.max(limit.min(0.5));
+        let (mut found, mut extreme): (Option<Reversal>, usize) = (None, 0);
+        for (point, value) in values.iter().enumerate() {
+            let share = match trend {
+                Trend::Falls => value / values[extreme] - 1.0,
+                Trend::Rises => 1.0 - value / values[extreme],
+            };
+            if share > allowed {
+                let first = Reversal { quantity: self.kind.ordinate, share, allowed, point, extreme };
+                let found = found.get_or_insert(first);
+                found.share = found.share.max(share);
+            }
+            if share < 0.0 {
+                extreme = point;
+            }
+        }
+        found
+    }
+
+    /// Whether it has too few points to determine its scatter.
+    pub(super) fn is_short(&self) -> bool {
+        self.xs.len() < FEW_POINTS
+    }
+
+    /// The error for such a reversal.
+    pub(super) fn reversed(&self, found: Reversal) -> Error {
+        let (not, side) = match self.kind.trend {
+            Some(Trend::Falls) => ("not rise", "above"),
+            _ => ("not fall", "below"),
+        };
+        let Kind { abscissa, abscissa_unit, ordinate_unit, .. } = self.kind;
+        let expected = format!(
+            "not more than {:.1} % {side} the {:e} {ordinate_unit} at {abscissa} {:e} {abscissa_unit}: in a passive material it does {not}",
             100.0 * found.allowed,
-            words.value(values[found.extreme]),
-            words.abscissa,
-            xs[found.extreme],
-            words.abscissa_unit
-        ),
-    )
-}
+            self.values[found.extreme],
+            self.xs[found.extreme]
+        );
+        self.wrong(found.point, expected)
+    }
 
-/// Refuses a curve from which the best passive material deviates systematically: the mean of up to five neighbouring relative
-/// residuals exceeds `limit` (or 5 standard deviations of such a mean).
-pub(super) fn check_misfit(
-    words: Words,
-    xs: &[f64],
-    values: &[f64],
-    residuals: &[f64],
-    limit: f64,
-) -> Result<()> {
-    let window = residuals.len().div_ceil(4).min(5);
-    let allowed = limit.max(5.0 * noise(xs, values) / (window as f64).sqrt());
-    let worst = residuals
-        .windows(window)
-        .map(|r| r.iter().sum::<f64>() / window as f64)
-        .enumerate()
-        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-    match worst {
-        Some((start, mean)) if mean.is_nan() || mean.abs() > allowed => {
-            let n = start + window / 2;
-            Err(Error::invalid(
-                words.point(n, xs[n]),
-                words.value(values[n]),
-                format!(
+    /// Refuses a curve from which the best passive material deviates systematically: the mean of up to five neighbouring relative
+    /// residuals exceeds `limit` (or 5 standard deviations of such a mean).
+    pub(super) fn check_misfit(&self, residuals: &[f64], limit: f64) -> Result<()> {
+        let window = residuals.len().div_ceil(4).min(5);
+        let allowed = limit.max(5.0 * self.noise() / (window as f64).sqrt());
+        let means = residuals.windows(window).map(|r| r.iter().sum::<f64>() / window as f64);
+        match means.enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) {
+            Some((start, mean)) if mean.is_nan() || mean.abs() > allowed => {
+                let expected = format!(
                     "within {} % of a passive material; the nearest one lies {:.1} % {} the data there",
                     significant(100.0 * allowed, 2),
                     100.0 * mean.abs(),
                     if mean > 0.0 { "above" } else { "below" }
-                ),
-            ))
+                );
+                Err(self.wrong(start + window / 2, expected))
+            }
+            _ => Ok(()),
         }
-        _ => Ok(()),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const WORDS: Words =
-        Words { abscissa: "time", abscissa_unit: "s", ordinate: "relaxation modulus", ordinate_unit: "Pa" };
 
     #[test]
     fn scatter_is_measured_and_an_outlier_is_not_scatter() {
@@ -309,17 +314,17 @@ mod tests {
     #[test]
     fn few_points_that_rise_are_refused_though_their_scatter_is_unknown() {
         let xs = [0.1, 1.0, 10.0, 100.0, 1000.0];
-        assert!(reversal(WORDS, Trend::Falls, &xs, &[3.0, 2.0, 1.5, 1.2, 1.1], 0.1).is_none());
-        let rises = [3.0, 2.0, 1.5, 1.9, 1.1];
-        let found = reversal(WORDS, Trend::Falls, &xs, &rises, 0.1).unwrap();
-        let error = reversed(WORDS, Trend::Falls, &xs, &rises, found);
+        let curve = |values| Curve::new(Kind::RELAXATION, &xs, values, false).unwrap();
+        assert!(curve(&[3.0, 2.0, 1.5, 1.2, 1.1]).reversal(0.1).is_none());
+        let rises = curve(&[3.0, 2.0, 1.5, 1.9, 1.1]);
+        let error = rises.reversed(rises.reversal(0.1).unwrap());
         assert!(error.to_string().contains("point 4 (time 1e2 s)"), "{error}");
     }
 
     #[test]
     fn disorder_is_named_with_its_place() {
         let says = |xs: &[f64], words: &str| {
-            let error = check_abscissae(WORDS, xs, true).unwrap_err().to_string();
+            let error = check_abscissae(Kind::RELAXATION, xs, true).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
         };
         says(&[1.0], "number of points of the relaxation modulus is 1");

@@ -6,9 +6,9 @@
 //! fit cannot describe the data, no passive material can: such data are refused, with the position.
 
 use crate::error::{Error, Result, non_negative, positive, require, significant};
-use crate::material::data::{self, Reversal, Trend, Words};
+use crate::material::data::{self, Curve, Kind, Reversal};
 use crate::material::refine;
-use crate::material::spectrum::{Kernel, Problem, Row, Spectrum};
+use crate::material::spectrum::{Problem, Row, Spectrum};
 use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 
 /// Behaviour at times longer than the data.
@@ -178,17 +178,14 @@ fn covered(run: [f64; 2], data: [f64; 2]) -> f64 {
 /// grow with time by more than their scatter and than a passive material that runs through them explains, or a misfit of every
 /// passive material above `options.limit`.
 pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Result<Fit<Relaxation>> {
-    let words = Words::RELAXATION;
     options.validate()?;
-    data::check_abscissae(words, times, true)?;
-    data::check_values(words, times, moduli, false)?;
+    data::check_abscissae(Kind::RELAXATION, times, true)?;
+    let curve = Curve::new(Kind::RELAXATION, times, moduli, false)?;
     let window = window(times);
     // A term much faster than the first time is invisible there, with a factor exp(-10), and would fit the noise of one point
     // with any size; half the first time is still visible (unless t = 0 is measured).
     let margin = 10f64.powf(options.margin);
     let fastest = if times[0] == 0.0 { margin } else { margin.min(2.0) };
-    let (kernel, trend) = (Kernel::Relaxation, Some(Trend::Falls));
-    let curve = Curve { words, kernel, trend, xs: times, values: moduli, floor: 0.0, weight: 1.0 };
     let problem = Problem {
         rows: curve.rows(),
         constant: options.long_time != LongTime::Fluid,
@@ -215,15 +212,12 @@ pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Re
 /// # Errors
 /// As [`fit_relaxation`], for a compliance that falls with time.
 pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Result<Fit<Creep>> {
-    let words = Words::CREEP;
     options.validate()?;
-    data::check_abscissae(words, times, true)?;
+    data::check_abscissae(Kind::CREEP, times, true)?;
     let from_zero = times[0] == 0.0 && compliances.first() == Some(&0.0);
     let (kept, values) = if from_zero { (&times[1..], &compliances[1..]) } else { (times, compliances) };
-    data::check_values(words, kept, values, false)?;
+    let curve = Curve::new(Kind::CREEP, kept, values, false)?;
     let (window, margin) = (window(times), 10f64.powf(options.margin));
-    let (kernel, trend) = (Kernel::Creep, Some(Trend::Rises));
-    let curve = Curve { words, kernel, trend, xs: kept, values, floor: 0.0, weight: 1.0 };
     let problem = Problem {
         rows: curve.rows(),
         constant: !from_zero,
@@ -286,7 +280,7 @@ impl FitOptions {
         }
         let reversal = self.judge(curves, &spectrum, misfit);
         let reversal = reversal.map_err(|fault| self.too_few(problem, curves, &spectrum).unwrap_or(fault))?;
-        let noise = curves.iter().map(|curve| data::noise(curve.xs, curve.values)).fold(0.0, f64::max);
+        let noise = curves.iter().map(Curve::noise).fold(0.0, f64::max);
         let uncertainty = refine::uncertainty(problem, &spectrum);
         Ok(Fit { function: spectrum, misfit, columns, window, noise, uncertainty, reversal })
     }
@@ -296,10 +290,10 @@ impl FitOptions {
     /// # Errors
     /// Where the spectrum, with this misfit, is too far from the data.
     fn judge(&self, curves: &[Curve], spectrum: &Spectrum, misfit: Misfit) -> Result<Option<Reversal>> {
-        let reversals = curves.iter().map(|curve| curve.reversal(spectrum, self.limit));
+        let reversals = curves.iter().map(|curve| curve.reversal_about(spectrum, self.limit));
         let reversals: Vec<Option<Reversal>> = reversals.collect::<Result<_>>()?;
         for curve in curves {
-            data::check_misfit(curve.words, curve.xs, curve.values, &curve.residuals(spectrum), self.limit)?;
+            curve.check_misfit(&curve.residuals(spectrum), self.limit)?;
         }
         require(
             misfit.rms <= self.limit,
@@ -353,25 +347,11 @@ fn together(curves: &[Curve], columns: &[Misfit]) -> Misfit {
 /// usual for its rms): a point further away is wrong.
 const FARTHEST: f64 = 3.0;
 
-/// One measured curve.
-struct Curve<'a> {
-    words: Words,
-    kernel: Kernel,
-    /// Where that of a passive material changes in one direction only.
-    trend: Option<Trend>,
-    xs: &'a [f64],
-    values: &'a [f64],
-    /// Smallest scale of a value: residuals are relative to the larger of the two.
-    floor: f64,
-    /// Weight of its residuals in the sum of squares.
-    weight: f64,
-}
-
 impl Curve<'_> {
     fn rows(&self) -> Vec<Row> {
         // The mean of n points has the weight of n points.
         let row = |(x, value, count): (f64, f64, f64)| Row {
-            kernel: self.kernel,
+            kernel: self.kind.kernel,
             x,
             value,
             weight: self.weight * count.sqrt() / value.max(self.floor),
@@ -385,15 +365,12 @@ impl Curve<'_> {
     /// # Errors
     /// Where this is no scatter about the spectrum: a point is too far from it, or all of them are, or a few points do not show
     /// their scatter.
-    fn reversal(&self, spectrum: &Spectrum, limit: f64) -> Result<Option<Reversal>> {
-        let Some(trend) = self.trend else { return Ok(None) };
-        let Some(found) = data::reversal(self.words, trend, self.xs, self.values, limit) else {
-            return Ok(None);
-        };
+    fn reversal_about(&self, spectrum: &Spectrum, limit: f64) -> Result<Option<Reversal>> {
+        let Some(found) = self.reversal(limit) else { return Ok(None) };
         let Misfit { rms, max, .. } = self.misfit(spectrum);
-        match !data::is_short(self.xs) && rms <= limit && max <= FARTHEST * limit {
+        match !self.is_short() && rms <= limit && max <= FARTHEST * limit {
             true => Ok(Some(found)),
-            false => Err(data::reversed(self.words, trend, self.xs, self.values, found)),
+            false => Err(self.reversed(found)),
         }
     }
 
@@ -412,7 +389,7 @@ impl Curve<'_> {
     /// Relative residuals (fit - value) at all points.
     fn residuals(&self, spectrum: &Spectrum) -> Vec<f64> {
         let residual =
-            |(x, value): (&f64, &f64)| (spectrum.value(self.kernel, *x) - value) / value.max(self.floor);
+            |(x, value): (&f64, &f64)| (spectrum.value(self.kind.kernel, *x) - value) / value.max(self.floor);
         self.xs.iter().zip(self.values).map(residual).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! A measured creep function without any model. It is used in the full hereditary sum, which needs only C(t), and to check a fit.
 
-use crate::error::{Error, Result};
-use crate::material::data::{self, Words};
+use crate::error::Result;
+use crate::material::data::{Curve, Kind, check_abscissae};
 
 /// C(t), linear between measured points, and constant before the first and after the last point.
 ///
@@ -27,19 +27,15 @@ impl CreepTable {
     /// [`Error::Invalid`] naming the point: fewer than two points, times not in order or repeated, or a compliance that is
     /// negative, not finite, or smaller than the previous one (noise must be smoothed or fitted first).
     pub fn new(times: &[f64], compliances: &[f64]) -> Result<Self> {
-        data::check_abscissae(Words::CREEP, times, true)?;
-        data::check_values(Words::CREEP, times, compliances, true)?;
+        check_abscissae(Kind::CREEP, times, true)?;
+        let curve = Curve::new(Kind::CREEP, times, compliances, true)?;
         for (n, pair) in compliances.windows(2).enumerate() {
             if pair[1] < pair[0] {
-                return Err(Error::invalid(
-                    format!("creep compliance of point {} (time {:e} s)", n + 2, times[n + 1]),
-                    format!("{:e} 1/Pa", pair[1]),
-                    format!(
-                        "not less than the one before it, {:e} 1/Pa: in a passive material it does not \
-                         fall (smooth the data, or fit them)",
-                        pair[0]
-                    ),
-                ));
+                let expected = format!(
+                    "not less than the one before it, {:e} 1/Pa: in a passive material it does not fall (smooth the data, or fit them)",
+                    pair[0]
+                );
+                return Err(curve.wrong(n + 1, expected));
             }
         }
         let mut sum = times[0] * compliances[0];

@@ -29,7 +29,7 @@ use self::folder::{Folder, LARGEST};
 use self::jobs::Jobs;
 use super::view::page_of;
 use crate::args::App;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::serve::{self, Body, FOREIGN, Request, Response, Site};
 use crate::verb::Verb;
 
@@ -99,10 +99,10 @@ fn alone(folder: &Folder, place: &Path) -> Result<File, Failure> {
         Err(_) => {
             let address = fs::read_to_string(place.join("address")).unwrap_or_default();
             let there = if address.is_empty() { String::new() } else { format!(" at {address}") };
-            Err(Failure::input(format!(
+            refuse!(
                 "{} is open in another asperity app{there}; use that one, or stop it first",
                 folder.path().display()
-            )))
+            )
         }
     }
 }

@@ -15,7 +15,7 @@ use asperity_io::store::{LeakTable, Reader};
 use serde_json::{Map, Value, json};
 
 use crate::args;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::format::quantity;
 use crate::input::with_options;
@@ -37,12 +37,12 @@ impl Verb for args::Leak {
     /// Computes the leakage, or shows the one that is stored.
     fn run(&self) -> Result<(), Failure> {
         match (&self.result, &self.gap) {
-            (Some(_), _) if self.plot.is_some() => Err(Failure::input(
-                "--plot draws a map of the gap (--gap FILE); the figure of a result is drawn by: asperity plot RESULT leak",
-            )),
+            (Some(_), _) if self.plot.is_some() => refuse!(
+                "--plot draws a map of the gap (--gap FILE); the figure of a result is drawn by: asperity plot RESULT leak"
+            ),
             (Some(result), _) => result_leak(self, result),
             (None, Some(path)) => gap::run(self, path),
-            (None, None) => Err(Failure::input("name a result, or a map of the gap with --gap FILE")),
+            (None, None) => refuse!("name a result, or a map of the gap with --gap FILE"),
         }
     }
 }

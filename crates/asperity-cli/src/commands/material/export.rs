@@ -6,7 +6,7 @@ use asperity_io::material_export::{Exported, text};
 use asperity_io::output::write_all;
 
 use crate::args::MaterialExport;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::verb::Verb;
 
@@ -50,11 +50,11 @@ fn chosen<'a>(specimens: &'a [Specimen], args: &MaterialExport) -> Result<&'a Sp
     match (suited.next(), suited.next(), &args.body) {
         (Some(found), None, _) | (Some(found), _, Some(_)) => Ok(found),
         (None, _, Some(name)) => {
-            Err(Failure::input(format!("--body is \"{name}\", but the bodies are {names}")))
+            refuse!("--body is \"{name}\", but the bodies are {names}")
         }
-        (None, _, None) => Err(Failure::input(format!("{path}: no body is viscoelastic ({names})"))),
+        (None, _, None) => refuse!("{path}: no body is viscoelastic ({names})"),
         (Some(_), Some(_), None) => {
-            Err(Failure::input(format!("{path}: one body must be chosen with --body: {names}")))
+            refuse!("{path}: one body must be chosen with --body: {names}")
         }
     }
 }

@@ -7,7 +7,7 @@ use asperity_report::material as pictures;
 use serde_json::json;
 
 use crate::args::Show;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::format::quantity;
 
 /// Shortest wave over the thinnest layer, and longest wave over all layers together.
@@ -18,9 +18,7 @@ pub fn show(args: &Show) -> Result<(), Failure> {
     let case = Case::read(&args.file, &args.set)?;
     let Some(layers) = &case.layers else {
         let path = args.file.display();
-        return Err(Failure::input(format!(
-            "{path} has no [[body.layer]]: --layers is for bodies of layers"
-        )));
+        refuse!("{path} has no [[body.layer]]: --layers is for bodies of layers");
     };
     let all = || layers.stacks().iter().flat_map(|stack| stack.layers()).map(|layer| layer.thickness);
     let [first, last] =

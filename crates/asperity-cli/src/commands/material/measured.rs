@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::{celsius, law, options};
 use crate::args::Show;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::format::{counted, extent, quantity};
 
 /// Whether a file is one of measured data, not a case or a material.
@@ -23,9 +23,7 @@ pub fn is_data(path: &Path) -> bool {
 pub fn show(args: &Show) -> Result<(), Failure> {
     if args.from.is_some() || args.to.is_some() || !args.set.is_empty() {
         let path = args.file.display();
-        return Err(Failure::input(format!(
-            "{path} holds measured data: --from, --to and --set are for materials"
-        )));
+        refuse!("{path} holds measured data: --from, --to and --set are for materials");
     }
     let curves = options::curves(&args.file, &args.table)?;
     if let Some(path) = &args.plot {

@@ -17,7 +17,7 @@ use asperity_report::material as pictures;
 use serde_json::{Value, json};
 
 use crate::args::Show;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::format::{counted, quantity};
 use crate::verb::Verb;
@@ -46,7 +46,7 @@ fn show(args: &Show) -> Result<(), Failure> {
     let [from, to] = [args.from, args.to].map(|time| time.map(Time::get));
     let asked = match (from, to) {
         (Some(from), Some(to)) if from >= to => {
-            return Err(Failure::input(format!("--from is {from} s, but must be less than --to, {to} s")));
+            refuse!("--from is {from} s, but must be less than --to, {to} s");
         }
         (Some(from), Some(to)) => Some([from, to]),
         _ => None,
@@ -57,10 +57,10 @@ fn show(args: &Show) -> Result<(), Failure> {
     let decades = (window[1] / window[0]).log10();
     if !(decades > 0.0 && decades <= MOST_DECADES) {
         let [first, last] = window;
-        return Err(Failure::input(format!(
+        refuse!(
             "the times run from {first:e} s to {last:e} s, but must rise and span {MOST_DECADES} decades at most; \
              give --from and --to"
-        )));
+        );
     }
     for specimen in &specimens {
         specimen.warnings.iter().for_each(|warning| crate::messages::message!("warning: {warning}"));

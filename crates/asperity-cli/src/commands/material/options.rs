@@ -13,7 +13,7 @@ use asperity_io::quantity::{
 };
 
 use crate::args::{Data, Fit};
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::input::read;
 
 /// A fault of a file, with what to do in the words of the command.
@@ -66,9 +66,9 @@ fn pairs(option: &str, texts: &[String]) -> Result<BTreeMap<Role, String>, Failu
     for (role, value) in texts.iter().map(pair).collect::<Result<Vec<_>, Failure>>()? {
         if let Some(earlier) = pairs.insert(role, value) {
             let name = role.name();
-            return Err(Failure::input(format!(
+            refuse!(
                 "{option} is given twice for {name}, first \"{earlier}\"; give it once for each quantity"
-            )));
+            );
         }
     }
     Ok(pairs)
@@ -110,7 +110,7 @@ pub fn vertical(args: &Fit) -> Result<VerticalRequest, Failure> {
         (Some(VerticalWord::Density), expansion) => {
             Ok(VerticalRequest::Density { expansion: expansion.map_or(0.0, Expansion::get) })
         }
-        (_, Some(_)) => Err(Failure::input("--expansion goes with --vertical density")),
+        (_, Some(_)) => refuse!("--expansion goes with --vertical density"),
     }
 }
 
@@ -127,9 +127,7 @@ pub fn ends(kind: Kind, text: &str) -> Result<[f64; 2], Failure> {
     let (first, last) = (first?, last?);
     match first < last {
         true => Ok([first, last]),
-        false => Err(Failure::input(format!(
-            "--window is \"{text}\": the second end must be greater than the first"
-        ))),
+        false => refuse!("--window is \"{text}\": the second end must be greater than the first"),
     }
 }
 
@@ -143,9 +141,7 @@ fn split<'t, const N: usize>(text: &'t str, option: &str, wanted: &str) -> Resul
 fn temperature(what: &str, text: &str) -> Result<f64, Failure> {
     let kelvin = read::<Temperature>(what, text)?.get();
     match celsius_meant(kelvin).is_some() && text.trim().parse::<f64>().is_ok() {
-        true => Err(Failure::input(format!(
-            "{what} is \"{text}\", but must have a unit: \"{text} °C\" or \"{text} K\""
-        ))),
+        true => refuse!("{what} is \"{text}\", but must have a unit: \"{text} °C\" or \"{text} K\""),
         false => Ok(kelvin),
     }
 }

@@ -9,7 +9,7 @@ use asperity_examples::{TEMPLATES, Template};
 use asperity_io::output::write_all;
 
 use crate::args::New;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::input::meant;
 use crate::verb::{Threads, Verb};
@@ -36,11 +36,11 @@ impl Verb for New {
         };
         let Some(template) = Template::find(name) else {
             let names: Vec<_> = TEMPLATES.iter().map(|t| t.name).collect();
-            return Err(Failure::input(format!(
+            refuse!(
                 "there is no starter case \"{name}\"{}; choose one of {}",
                 meant(name, &names),
                 names.join(", ")
-            )));
+            );
         };
         let path = self.path.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
         write_all(&path, self.force, template.text.as_bytes())?;

@@ -15,7 +15,7 @@ use super::adhesion;
 use crate::args::{New, Purpose, SurfaceFile};
 use crate::commands::material::{ROOM, estimated_unless_known, refused};
 use crate::commands::surface;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::format::{extent, quantity};
 
 /// The remark behind a value that only the user knows.
@@ -26,9 +26,7 @@ const MOST_CELLS: usize = 512;
 /// Writes the case.
 pub(super) fn write(args: &New, purpose: Purpose, from: &Path, material: &Path) -> Result<(), Failure> {
     if args.path.is_some() {
-        return Err(Failure::input(
-            "with --for give one PATH, that of the case; a template has no own files",
-        ));
+        refuse!("with --for give one PATH, that of the case; a template has no own files");
     }
     let name = format!("{purpose:?}").to_lowercase();
     let path = args.template.as_ref().map_or_else(|| PathBuf::from(format!("{name}.toml")), PathBuf::from);
@@ -155,10 +153,10 @@ impl Material {
             .map_err(|error| Failure::input(format!("cannot read {shown}: {error}")))?;
         let has = |text: &str, key: &str| text.lines().any(|line| line.trim_start().starts_with(key));
         if has(&text, "[") || !has(&text, "material") {
-            return Err(Failure::input(format!(
+            refuse!(
                 "{shown} must hold the material of a body as `material fit -o` writes it, `material = {{ ... }}`, and no tables in brackets; \
                  give that file, or the measured data"
-            )));
+            );
         }
         if !has(&text, "poisson") && !has(&text, "bulk_modulus") {
             let line = format!(
@@ -237,11 +235,11 @@ fn of_surface(
         channel: None,
     };
     if surface::is_profile(&file)? {
-        return Err(Failure::input(format!(
+        refuse!(
             "{} is a profile, and the case needs a surface; make one: asperity surface from-profile {} -o surface.npz, then --from surface.npz",
             from.display(),
             from.display()
-        )));
+        );
     }
     let topography = surface::open(&file)?;
     let title = match purpose {

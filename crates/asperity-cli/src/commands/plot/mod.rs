@@ -7,13 +7,14 @@ use std::path::{Path, PathBuf};
 
 use asperity_io::quantity::Time;
 use asperity_io::store::{At, Reader};
-use asperity_report::animation::{AnimationError, Course, Frames, Motion, animation};
-use asperity_report::result::{Options, Plot, common_limits, figure, together};
+use asperity_report::animation::{Course, Frames, Motion, animation};
+use asperity_report::figure::FigureError;
+use asperity_report::result::{Options, Plot, PlotError, common_limits, figure, together};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::instant;
 use crate::args;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::format::counted;
 use crate::input::meant;
@@ -109,7 +110,7 @@ fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(),
 
 fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path) -> Result<(), Failure> {
     let [(_, reader)] = all else {
-        return Err(Failure::input("--animate shows one result; give one".to_owned()));
+        refuse!("--animate shows one result; give one");
     };
     Motion::of(path)?;
     let usual = Course::default();
@@ -130,7 +131,7 @@ fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path)
             }
             crate::print(&format!("{}: {shown} frames\n", path.display()))
         }
-        Err(AnimationError::Encoding { path, why }) => {
+        Err(PlotError::Figure(FigureError::Drawing(why))) => {
             Err(Failure::System(format!("cannot write {}: {why}", path.display())))
         }
         Err(error) => Err(error.into()),

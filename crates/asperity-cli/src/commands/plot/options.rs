@@ -6,7 +6,7 @@ use asperity_report::result::{Line, Options, Plot};
 
 use super::super::moment;
 use crate::args;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::input::read;
 
 /// Sides of the paper \[m\].
@@ -20,9 +20,8 @@ pub(super) fn check(args: &args::Plot, plot: Plot) -> Result<(), Failure> {
         let names: Vec<_> = Plot::all().filter(|plot| plot.unit().is_some()).map(|p| p.name()).collect();
         names.join(", ")
     };
-    let refused = |option: &str, why: String| {
-        Err(Failure::input(format!("{option} does not apply to the figure {}: {why}", plot.name())))
-    };
+    let refused =
+        |option: &str, why: String| refuse!("{option} does not apply to the figure {}: {why}", plot.name());
     for (given, option) in
         [(args.limits.is_some(), "--limits"), (args.same_colours, "--same-colours"), (args.log, "--log")]
     {
@@ -66,7 +65,7 @@ pub(super) fn of(args: &args::Plot, plot: Plot, reader: &Reader) -> Result<Optio
         && from >= to
     {
         let end = args.to.as_deref().unwrap_or_default();
-        return Err(Failure::input(format!("--from is \"{text}\", but must be before --to, \"{end}\"")));
+        refuse!("--from is \"{text}\", but must be before --to, \"{end}\"");
     }
     Ok(Options {
         line: if args.along == "x" { Line::AlongX(place) } else { Line::AlongY(place) },
@@ -97,12 +96,12 @@ fn limits(text: &str, plot: Plot, log: bool) -> Result<[f64; 2], Failure> {
     };
     let Some([low, high]) = two(text, &[',']) else { return Err(refused()) };
     match [number(&low)?, number(&high)?] {
-        [low, high] if low >= high => Err(Failure::input(format!(
-            "--limits is \"{text}\", but the first value must be less than the second"
-        ))),
-        [low, _] if log && low <= 0.0 => Err(Failure::input(format!(
-            "--limits is \"{text}\", but with --log both values must be greater than 0"
-        ))),
+        [low, high] if low >= high => {
+            refuse!("--limits is \"{text}\", but the first value must be less than the second")
+        }
+        [low, _] if log && low <= 0.0 => {
+            refuse!("--limits is \"{text}\", but with --log both values must be greater than 0")
+        }
         ends => Ok(ends),
     }
 }
@@ -111,19 +110,16 @@ fn limits(text: &str, plot: Plot, log: bool) -> Result<[f64; 2], Failure> {
 fn size(text: &str) -> Result<[f64; 2], Failure> {
     let example = "160 mm,100 mm";
     let Some(sides) = two(text, &[',', 'x']) else {
-        return Err(Failure::input(format!(
-            "--size is \"{text}\", but must be a width and a height, e.g. --size '{example}'"
-        )));
+        refuse!("--size is \"{text}\", but must be a width and a height, e.g. --size '{example}'");
     };
     let mut points = [0.0; 2];
     for (point, side) in points.iter_mut().zip(&sides) {
         let metres = read::<Length>("--size", side)?.get();
         if !(SIDES[0]..=SIDES[1]).contains(&metres) {
             let [least, most] = SIDES.map(|side| 1e3 * side);
-            let message = format!(
+            refuse!(
                 "--size is \"{text}\", but each side must be {least} mm to {most} mm, e.g. --size '{example}'"
             );
-            return Err(Failure::input(message));
         }
         *point = metres * POINTS;
     }

@@ -12,7 +12,7 @@ use asperity_report::sheet::Sheet;
 use super::answers::units;
 use super::study::{told, usual};
 use crate::args;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::format::counted;
 use crate::messages::message;
@@ -33,7 +33,7 @@ impl Verb for args::Seal {
         let case = Case::read(&self.case, &self.common.set).map_err(Failure::Case)?;
         let Some(plan) = &case.seal else {
             let help = "write [seal] with profile, peak, width and length into the case";
-            return Err(Failure::input(format!("{} has no [seal]; {help}", self.case.display())));
+            refuse!("{} has no [seal]; {help}", self.case.display());
         };
         units.check_leak(if plan.is_gas() { &["kg/s", "Pa m3/s"] } else { &["m3/s"] })?;
         let folder = self.output.clone().unwrap_or_else(|| usual(&self.case, "seal"));

@@ -16,7 +16,7 @@ use asperity_io::stress::{
 use asperity_report::result::stress_figure;
 
 use crate::args::Stress;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::input::{note_unit, option};
 use crate::messages::message;
@@ -134,9 +134,7 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
     let mut bodies = bodies_of(reader);
     if let Some(ratio) = args.poisson.map(Number::get) {
         if ratio < 0.0 {
-            return Err(Failure::input(format!(
-                "--poisson is {ratio}, but must be a Poisson's ratio from 0 to 0.5"
-            )));
+            refuse!("--poisson is {ratio}, but must be a Poisson's ratio from 0 to 0.5");
         }
         if bodies.is_empty() {
             bodies.push(StressBody { name: "body 1".into(), poisson: None });
@@ -147,9 +145,7 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
     let known = bodies.iter().any(|body| body.poisson.is_some());
     if !known && !reader.header().setup.contains_key("poisson") {
         let path = args.result.display();
-        return Err(Failure::input(format!(
-            "{path} does not say the Poisson's ratio of its bodies; give --poisson NU"
-        )));
+        refuse!("{path} does not say the Poisson's ratio of its bodies; give --poisson NU");
     }
     let optional = ["components", "threshold", "yield_stress", "rolling"];
     let is_taken_out = |(key, text): &(&str, &str)| text.trim() == NONE && optional.contains(key);

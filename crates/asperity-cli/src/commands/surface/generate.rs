@@ -5,7 +5,7 @@ use asperity::surface::{Part, SelfAffine};
 use asperity_io::case::fragment;
 
 use crate::args::SurfaceGenerate;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::input::{note_unit, option};
 use crate::verb::Verb;
@@ -62,7 +62,7 @@ impl Verb for SurfaceGenerate {
             Part::SelfAffine(roughness) => (roughness.heights(&grid), roughness),
             Part::Synthesis(roughness) => (roughness.heights(&grid), roughness.spectrum),
             Part::Shape { .. } | Part::Heights { .. } => {
-                return Err(Failure::input("no roughness".to_owned()));
+                refuse!("no roughness");
             }
         };
         let heights = heights?;

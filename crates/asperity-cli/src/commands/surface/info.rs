@@ -6,7 +6,7 @@ use asperity_io::quantity::Length;
 
 use super::table::SurfaceSummary;
 use crate::args::SurfaceInfo;
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::verb::Verb;
 
@@ -22,9 +22,7 @@ impl Verb for SurfaceInfo {
         }
         if self.cutoff.is_some() || self.circle.is_some() {
             let name = self.file.file.display();
-            return Err(Failure::input(format!(
-                "{name} is no profile: --cutoff and --circle are for two columns of text"
-            )));
+            refuse!("{name} is no profile: --cutoff and --circle are for two columns of text");
         }
         let topography = super::open(&self.file)?;
         let name = self.file.file.display().to_string();

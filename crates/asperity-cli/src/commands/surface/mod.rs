@@ -21,7 +21,7 @@ use ndarray::Array2;
 
 use self::table::SurfaceSummary;
 use crate::args::{SurfaceFile, SurfaceOutput};
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::input::read as parsed;
 
 /// Reads the file with what the command line says about it.
@@ -59,10 +59,7 @@ fn target(path: &Path, to: Option<&str>) -> Result<Format, Failure> {
     })?;
     if !format.is_written() {
         let names: Vec<&str> = Format::written().map(Format::name).collect();
-        return Err(Failure::input(format!(
-            "{format} is read, but not written; write one of {}",
-            names.join(", ")
-        )));
+        refuse!("{format} is read, but not written; write one of {}", names.join(", "));
     }
     Ok(format)
 }
@@ -115,9 +112,9 @@ fn size(option: &str, text: &str) -> Result<[f64; 2], Failure> {
     match lengths[..] {
         [x, y] if x > 0.0 && y > 0.0 => Ok([x, y]),
         [side] if side > 0.0 => Ok([side; 2]),
-        _ => Err(Failure::input(format!(
+        _ => refuse!(
             "{option} is \"{text}\", but must be one length (of a square) or two, greater than 0, e.g. {option} '1 mm,1 mm'"
-        ))),
+        ),
     }
 }
 

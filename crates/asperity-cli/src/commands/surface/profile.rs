@@ -13,7 +13,7 @@ use asperity_report::figure::{Axis, Curves, Figure, Series, Style};
 use serde_json::json;
 
 use crate::args::{SurfaceFile, SurfaceFromProfile, SurfaceInfo, SurfaceProcess};
-use crate::failure::Failure;
+use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::format::{extent, quantity};
 use crate::verb::Verb;
@@ -133,9 +133,7 @@ pub(super) fn process(
     let name = args.file.file.display().to_string();
     let to = &args.to;
     if format != Format::Text {
-        return Err(Failure::input(format!(
-            "{name} is a profile, and {format} holds maps; a profile is written as text: -o profile.txt"
-        )));
+        refuse!("{name} is a profile, and {format} holds maps; a profile is written as text: -o profile.txt");
     }
     let done = super::prepared(&name, profile.surface, steps)?;
     let history: Vec<String> = profile.history.into_iter().chain(done.history).collect();
@@ -182,9 +180,9 @@ impl Verb for SurfaceFromProfile {
         let name = self.file.file.display().to_string();
         let failed = Failure::about(&name);
         let Some(profile) = open(&self.file)? else {
-            return Err(Failure::input(format!(
+            refuse!(
                 "{name} is no profile: it needs two columns of text, position and height, or one column of heights with --size LENGTH"
-            )));
+            );
         };
         let (mut history, gaps) =
             (profile.history, finding::gaps_of_profile("the profile of the file", profile.gaps));
@@ -267,8 +265,6 @@ fn cells(
     match numbers.as_deref() {
         Ok([n]) => Ok(([*n; 2], None)),
         Ok([nx, ny]) => Ok(([*nx, *ny], None)),
-        _ => Err(Failure::input(format!(
-            "--cells is \"{text}\", but must be one or two numbers, e.g. --cells 512,512"
-        ))),
+        _ => refuse!("--cells is \"{text}\", but must be one or two numbers, e.g. --cells 512,512"),
     }
 }

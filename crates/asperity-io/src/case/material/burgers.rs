@@ -2,7 +2,7 @@
 
 use asperity::material::Material;
 
-use super::{Dependence, Law, Model, springs};
+use super::{Model, springs};
 use crate::case::keys::*;
 
 springs! {
@@ -17,12 +17,8 @@ springs! {
         /// Retardation time of the Kelvin element.
         retardation_time: Time<Positive>,
     }
-}
-
-impl Law for Burgers {
-    fn model(&self, at: &Place<'_>, _: Dependence) -> Option<Model> {
-        let (measure, [modulus, kelvin]) = self.springs(at)?;
-        let [relaxation, retardation] = [self.relaxation_time, self.retardation_time].map(Time::get);
+    model |keys, at, measure, [modulus, kelvin]| {
+        let [relaxation, retardation] = [keys.relaxation_time, keys.retardation_time].map(Time::get);
         Model::known(at, Material::burgers(measure, modulus, relaxation, kelvin, retardation))
     }
 }

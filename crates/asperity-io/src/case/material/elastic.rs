@@ -2,7 +2,7 @@
 
 use asperity::material::Material;
 
-use super::{Dependence, Law, Model, springs};
+use super::{Model, springs};
 use crate::case::keys::*;
 
 springs! {
@@ -11,11 +11,5 @@ springs! {
         young | shear: "of the spring", "2.1 GPa" | "0.8 GPa";
     ] {
     }
-}
-
-impl Law for Elastic {
-    fn model(&self, at: &Place<'_>, _: Dependence) -> Option<Model> {
-        let (measure, [modulus]) = self.springs(at)?;
-        Model::known(at, Material::elastic(measure, modulus))
-    }
+    model |keys, at, measure, [modulus]| Model::known(at, Material::elastic(measure, modulus))
 }

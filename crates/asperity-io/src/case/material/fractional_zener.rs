@@ -2,7 +2,7 @@
 
 use asperity::material::Fractional;
 
-use super::{Dependence, Law, Model, springs};
+use super::{Model, springs};
 use crate::case::keys::*;
 
 springs! {
@@ -21,13 +21,9 @@ springs! {
         #[schemars(example = 1e-3)]
         tolerance: Option<Number<Tolerance>>,
     }
-}
-
-impl Law for FractionalZener {
-    fn model(&self, at: &Place<'_>, _: Dependence) -> Option<Model> {
-        let (measure, [equilibrium, instantaneous]) = self.springs(at)?;
-        let (time, order) = (self.time.get(), self.order.get());
+    model |keys, at, measure, [equilibrium, instantaneous]| {
+        let (time, order) = (keys.time.get(), keys.order.get());
         let model = Fractional::Zener { equilibrium, instantaneous, time, order };
-        Some(Model::fractional(measure, model, time, self.tolerance))
+        Some(Model::fractional(measure, model, time, keys.tolerance))
     }
 }

@@ -2,7 +2,7 @@
 
 use asperity::material::Material;
 
-use super::{Dependence, Law, Model, springs};
+use super::{Model, springs};
 use crate::case::keys::*;
 
 springs! {
@@ -13,11 +13,7 @@ springs! {
         /// Retardation time: viscosity over modulus.
         retardation_time: Time<Positive>,
     }
-}
-
-impl Law for KelvinVoigt {
-    fn model(&self, at: &Place<'_>, _: Dependence) -> Option<Model> {
-        let (measure, [modulus]) = self.springs(at)?;
-        Model::known(at, Material::kelvin_voigt(measure, modulus, self.retardation_time.get()))
+    model |keys, at, measure, [modulus]| {
+        Model::known(at, Material::kelvin_voigt(measure, modulus, keys.retardation_time.get()))
     }
 }

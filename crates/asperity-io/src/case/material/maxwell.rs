@@ -2,7 +2,7 @@
 
 use asperity::material::Material;
 
-use super::{Dependence, Law, Model, springs};
+use super::{Model, springs};
 use crate::case::keys::*;
 
 springs! {
@@ -13,11 +13,7 @@ springs! {
         /// Relaxation time: viscosity over modulus.
         relaxation_time: Time<Positive>,
     }
-}
-
-impl Law for Maxwell {
-    fn model(&self, at: &Place<'_>, _: Dependence) -> Option<Model> {
-        let (measure, [modulus]) = self.springs(at)?;
-        Model::known(at, Material::maxwell(measure, modulus, self.relaxation_time.get()))
+    model |keys, at, measure, [modulus]| {
+        Model::known(at, Material::maxwell(measure, modulus, keys.relaxation_time.get()))
     }
 }

@@ -169,7 +169,8 @@ impl Source<'_> {
         let fitted = curves.and_then(|curves| Ok((request.fit(&curves)?, curves.digest)));
         let expected = format!("a table of a {} measurement", self.kind.name());
         let (fitted, digest) = path.data(fitted, &expected)?;
-        Some(Model::Fitted { fitted: Box::new(fitted), file: self.path.to_owned(), digest })
+        path.note_file(self.path, digest);
+        Some(Model::Fitted { fitted: Box::new(fitted), file: self.path.to_owned() })
     }
 }
 

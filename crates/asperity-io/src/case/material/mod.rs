@@ -119,8 +119,8 @@ pub enum Model {
     Known(Known),
     /// A fractional model, which becomes a Prony sum over the times of the run.
     Fractional { measure: Modulus, model: Fractional, time: f64, tolerance: f64 },
-    /// A fit of measured curves from a file, and its MD5.
-    Fitted { fitted: Box<Fitted>, file: String, digest: String },
+    /// A fit of measured curves from a file.
+    Fitted { fitted: Box<Fitted>, file: String },
 }
 
 impl Model {
@@ -154,14 +154,6 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The file that it was fitted to, and its MD5.
-    pub fn file(&self) -> Option<(String, String)> {
-        match &self.model {
-            Model::Fitted { file, digest, .. } => Some((file.clone(), digest.clone())),
-            _ => None,
-        }
-    }
-
     /// The shortest time that it shows in a run to `end` [s]: the shortest retardation time, at the warmest; for models that
     /// hold at all times, or were measured over any, a thousandth of the run. Infinite for elastic bodies.
     pub fn shortest(&self, temperatures: Option<&[(f64, f64)]>, end: f64) -> f64 {
@@ -264,7 +256,7 @@ fn known(at: &Place<'_>, dependence: &Dependence) -> Option<(Option<ShiftLaw>, O
 }
 
 /// A law whose springs are given by Young's or by shear moduli: the keys of each spring with its place in the model and examples,
-/// then the other keys.
+/// then the other keys, and what the law makes of them.
 macro_rules! springs {
     (
         $(#[$attribute:meta])*
@@ -273,6 +265,7 @@ macro_rules! springs {
         ] {
             $($(#[$key_attribute:meta])* $key:ident: $type:ty,)*
         }
+        model |$keys:ident, $at:ident, $measure:ident, $moduli:pat_param| $model:expr
     ) => {
         $(#[$attribute])*
         #[derive(Debug, Deserialize, JsonSchema)]
@@ -289,14 +282,12 @@ macro_rules! springs {
             $($(#[$key_attribute])* $key: $type,)*
         }
 
-        impl $law {
-            /// What its moduli measure, and their values.
-            fn springs(
-                &self,
-                at: &Place<'_>,
-            ) -> Option<(asperity::material::Modulus, [f64; [$(stringify!($young)),+].len()])> {
-                let keys = [$([stringify!($young), stringify!($shear)]),+];
-                super::moduli(at, keys, [$([self.$young, self.$shear]),+])
+        impl super::Law for $law {
+            fn model(&self, $at: &Place<'_>, _: super::Dependence) -> Option<super::Model> {
+                let $keys = self;
+                let names = [$([stringify!($young), stringify!($shear)]),+];
+                let ($measure, $moduli) = super::moduli($at, names, [$([$keys.$young, $keys.$shear]),+])?;
+                $model
             }
         }
     };

@@ -2,7 +2,7 @@
 
 use asperity::material::Fractional;
 
-use super::{Dependence, Law, Model, springs};
+use super::{Model, springs};
 use crate::case::keys::*;
 
 springs! {
@@ -20,13 +20,8 @@ springs! {
         #[schemars(example = 1e-3)]
         tolerance: Option<Number<Tolerance>>,
     }
-}
-
-impl Law for Springpot {
-    fn model(&self, at: &Place<'_>, _: Dependence) -> Option<Model> {
-        let (measure, [modulus]) = self.springs(at)?;
-        let (time, order) = (self.time.get(), self.order.get());
-        let model = Fractional::Springpot { modulus, time, order };
-        Some(Model::fractional(measure, model, time, self.tolerance))
+    model |keys, at, measure, [modulus]| {
+        let (time, order) = (keys.time.get(), keys.order.get());
+        Some(Model::fractional(measure, Fractional::Springpot { modulus, time, order }, time, keys.tolerance))
     }
 }

@@ -2,7 +2,7 @@
 
 use asperity::material::{Material, Relaxation};
 
-use super::{Dependence, Law, Model, springs};
+use super::{Model, springs};
 use crate::case::keys::*;
 
 springs! {
@@ -15,18 +15,14 @@ springs! {
         /// Relaxation time: viscosity over modulus of the Maxwell element.
         relaxation_time: Time<Positive>,
     }
-}
-
-impl Law for StandardLinearSolid {
-    fn model(&self, at: &Place<'_>, _: Dependence) -> Option<Model> {
-        let (measure, [relaxed, instantaneous]) = self.springs(at)?;
+    model |keys, at, measure, [relaxed, instantaneous]| {
         if instantaneous < relaxed {
             let message = format!(
                 "the instantaneous modulus, {instantaneous} Pa, is below that after all relaxation, {relaxed} Pa"
             );
             return at.fault(message, "an instantaneous modulus above the relaxed one", "exchange them");
         }
-        let terms = [(instantaneous - relaxed, self.relaxation_time.get())];
+        let terms = [(instantaneous - relaxed, keys.relaxation_time.get())];
         let relaxation = at.core(Relaxation::absolute(relaxed, &terms))?;
         Model::known(at, Material::prony(measure, relaxation))
     }

@@ -2,7 +2,7 @@
 
 use asperity::material::Material;
 
-use super::{Dependence, Law, Model, springs};
+use super::{Model, springs};
 use crate::case::keys::*;
 
 springs! {
@@ -14,11 +14,7 @@ springs! {
         /// Retardation time of the Kelvin element.
         retardation_time: Time<Positive>,
     }
-}
-
-impl Law for Zener {
-    fn model(&self, at: &Place<'_>, _: Dependence) -> Option<Model> {
-        let (measure, [modulus, kelvin]) = self.springs(at)?;
-        Model::known(at, Material::zener(measure, modulus, kelvin, self.retardation_time.get()))
+    model |keys, at, measure, [modulus, kelvin]| {
+        Model::known(at, Material::zener(measure, modulus, kelvin, keys.retardation_time.get()))
     }
 }

@@ -6,10 +6,10 @@
 //! storage modulus is that of a passive material, the fit of both runs between them, and its misfit states by how much they contradict each
 //! other. Data that it misses by more than [`CONTRADICTION`] are refused, and the error states the misfit of each modulus fitted separately.
 
-use super::{Curve, Fit, FitOptions, LongTime, Misfit, Moduli, relaxation, together};
+use super::{Fit, FitOptions, LongTime, Misfit, Moduli, relaxation, together};
 use crate::error::{Error, Result};
 use crate::material::Relaxation;
-use crate::material::data::{self, Trend, Words};
+use crate::material::data::{Curve, Kind, check_abscissae};
 use crate::material::spectrum::{Kernel, Problem, Spectrum};
 
 /// Largest misfit of moduli that contradict each other, as a multiple of that of data that do not: 30 % by default. Measured pairs are
@@ -46,34 +46,13 @@ pub fn fit_dma(
     loss: &[f64],
     options: &FitOptions,
 ) -> Result<Fit<Relaxation>> {
-    let (words, loss_words) = (Words::STORAGE, Words::LOSS);
     options.validate()?;
-    data::check_abscissae(words, omega, false)?;
-    data::check_values(words, omega, storage, false)?;
-    data::check_values(loss_words, omega, loss, true)?;
+    check_abscissae(Kind::STORAGE, omega, false)?;
+    let stored = Curve::new(Kind::STORAGE, omega, storage, false)?;
+    let lost = Curve::new(Kind::LOSS, omega, loss, true)?;
     // A loss below a thousandth of the stored energy is below the accuracy of instruments.
     let floor = 1e-3 * storage.iter().copied().fold(f64::INFINITY, f64::min);
-    let weight = options.loss_weight;
-    let curves = [
-        Curve {
-            words,
-            kernel: Kernel::Storage,
-            trend: Some(Trend::Rises),
-            xs: omega,
-            values: storage,
-            floor: 0.0,
-            weight: 1.0,
-        },
-        Curve {
-            words: loss_words,
-            kernel: Kernel::Loss,
-            trend: None,
-            xs: omega,
-            values: loss,
-            floor,
-            weight,
-        },
-    ];
+    let curves = [stored, Curve { floor, weight: options.loss_weight, ..lost }];
     let window = [1.0 / omega[omega.len() - 1], 1.0 / omega[0]];
     let fit = match options {
         FitOptions { moduli: Moduli::Both, misfit: None, .. } => both(&curves, window, options),
@@ -142,8 +121,7 @@ fn alone(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Option<
         return None;
     }
     let single = |moduli: Moduli| solve(curves, window, &FitOptions { moduli, ..*options }).ok();
-    let Curve { words, xs, values, .. } = curves[0];
-    let falls = data::reversal(words, Trend::Rises, xs, values, options.limit).is_some();
+    let falls = curves[0].reversal(options.limit).is_some();
     if falls && single(Moduli::Storage).is_none() {
         return None;
     }

@@ -1,0 +1,10 @@
+//! The facts about measured files, in one program.
+
+mod curve_files;
+mod curve_hostile;
+mod samples;
+mod topography_formats;
+mod topography_hostile;
+mod topography_instruments;
+mod topography_round_trip;
+mod topography_text;

@@ -119,10 +119,10 @@ impl FlashSolver {
         let contact: Vec<usize> = (0..pressure.len()).filter(|cell| pressure[*cell] > 0.0).collect();
         // Of the source over slider and track.
         let velocities = if self.still == 0 { [0.0, velocity] } else { [-velocity, 0.0] };
-        for k in 0..2 {
-            if self.flash.heats()[k] && self.spectra[k].as_ref().is_none_or(|(of, _)| *of != velocities[k]) {
-                let spectrum = self.conduction.spectrum(self.flash.bodies[k], velocities[k]);
-                self.spectra[k] = Some((velocities[k], spectrum));
+        for (k, velocity) in velocities.into_iter().enumerate() {
+            if self.flash.heats()[k] && self.spectra[k].as_ref().is_none_or(|(of, _)| *of != velocity) {
+                let spectrum = self.conduction.spectrum(self.flash.bodies[k], velocity);
+                self.spectra[k] = Some((velocity, spectrum));
             }
         }
         let mut faces = Faces {

@@ -5,7 +5,7 @@
 
 use super::{Control, History, Loading, TimeGrid};
 use crate::error::{Error, Result, positive, require};
-use crate::quantities::RowNumber;
+use crate::quantities::{Quantity, RowNumber};
 
 /// The consecutive stages of a run. The run ends with the last stage or at the end of its time grid, whichever comes first.
 ///
@@ -110,6 +110,14 @@ impl Stage {
     /// A stage that lasts to the end of the run, with the times of the run.
     pub fn new(control: Control, course: impl Into<Course>) -> Self {
         Stage { control, course: course.into(), duration: None, until: None, after_jump: false, times: None }
+    }
+
+    /// The quantity of the rows that the stage waits for.
+    pub(crate) fn awaited(&self) -> Option<Quantity> {
+        match self.until {
+            Some(Event::Number(RowNumber::Quantity(quantity), _)) => Some(quantity),
+            _ => None,
+        }
     }
 }
 

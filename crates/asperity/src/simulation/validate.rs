@@ -319,29 +319,28 @@ impl Simulation {
 
     /// Rows must have what a stage waits for.
     fn validate_awaited(&self, stage: &Stage) -> Result<()> {
-        let Some(Event::Number(RowNumber::Quantity(quantity), _)) = stage.until else { return Ok(()) };
-        let moves = self.motion.is_some();
+        let Some(quantity) = stage.awaited() else { return Ok(()) };
         let rubs = self.motion.as_ref().is_some_and(|motion| motion.shear_stress.is_some())
             || self.flash.as_ref().is_some_and(|flash| flash.friction > 0.0);
-        let checked = if quantity.is_of_motion() && !moves {
-            let expected = "one that the rows have. Only a contact in motion has this one: add [motion] (in Python use slide)";
-            Err(Error::invalid("quantity of the event", quantity, expected))
+        let expected = if quantity.is_of_motion() && self.motion.is_none() {
+            "one that the rows have. Only a contact in motion has this one: add [motion] (in Python use slide)"
         } else if quantity == Quantity::FrictionCoefficientTotal && !rubs {
-            let expected = "one that the rows have. This one needs the friction of the surfaces: give motion.shear_stress or flash.friction";
-            Err(Error::invalid("quantity of the event", quantity, expected))
+            "one that the rows have. This one needs the friction of the surfaces: give motion.shear_stress or flash.friction"
         } else {
-            self.allows(quantity)
+            return self.allows(quantity).map_err(|error| match error {
+                Error::Invalid { what, value, expected, .. } => {
+                    Error::invalid(what, value, expected).of("until")
+                }
+                other => other,
+            });
         };
-        checked.map_err(|error| match error {
-            Error::Invalid { what, value, expected, .. } => Error::invalid(what, value, expected).of("until"),
-            other => other,
-        })
+        Err(Error::invalid("quantity of the event", quantity, expected).of("until"))
     }
 
     /// Whether the run computes a quantity: it is asked for, or a stage waits for it.
     pub(crate) fn takes(&self, quantity: Quantity) -> bool {
-        let waits = |stage: &Stage| matches!(stage.until, Some(Event::Number(RowNumber::Quantity(other), _)) if other == quantity);
-        self.quantities.has(quantity) || self.loading.stages.iter().any(waits)
+        self.quantities.has(quantity)
+            || self.loading.stages.iter().any(|stage| stage.awaited() == Some(quantity))
     }
 
     /// Times of a history must be apart.

@@ -43,8 +43,8 @@ impl Waves {
         nyquist.min((largest / self.fundamental[axis]) as usize)
     }
 
-    /// The waves, and the mean of z^2 and of |grad z|^2. Column ky holds A_k at index kx (negative ones from the end), with the phase that moves the
-    /// samples from the corners to the centres of the cells.
+    /// The waves, and the mean of z^2 and of |grad z|^2. Column ky holds A_k at index kx (negative ones from the end), with the
+    /// phase that moves the samples from the corners to the centres of the cells.
     pub(super) fn amplitudes(
         &self,
         seed: u64,

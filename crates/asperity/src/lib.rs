@@ -44,6 +44,7 @@ pub mod leakage;
 mod linear;
 pub mod load;
 pub mod material;
+mod numbers;
 pub mod operator;
 pub mod process;
 pub mod quantities;

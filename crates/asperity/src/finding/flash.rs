@@ -6,6 +6,7 @@ use super::words::{digits, rows, si};
 use super::worst::{Watch, Worst, extend};
 use super::{FLASH_STATES, FLASH_STEADY, FLASH_WARM, Finding, UNLIKELY_UNIT};
 use crate::flash::{Flash, Partition};
+use crate::numbers::bisect;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
 use crate::sliding::Path;
@@ -205,12 +206,7 @@ impl Watch for Rows {
 
 /// When the last `way` before a time began \[s\].
 fn start_of(path: &Path, time: f64, way: f64) -> f64 {
-    let [mut before, mut after] = [0.0, time];
-    for _ in 0..40 {
-        let middle = 0.5 * (before + after);
-        if path.travel(middle, time) > way { before = middle } else { after = middle }
-    }
-    before
+    bisect([0.0, time], 40, |start| path.travel(start, time) > way)[0]
 }
 
 /// Whether the path of length `way` between two times goes one way.

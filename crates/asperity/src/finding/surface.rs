@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use super::plausible::{DEEPEST, FLATTEST, LARGEST_RADIUS, SLOPES};
+use super::plausible::{DEEPEST, FLATTEST, LARGEST_RADIUS, SLOPES, exceeded};
 use super::words::{digits, si};
 use super::{
     Finding, HURST_OUT_OF_RANGE, HURST_UNCERTAIN, LARGE_SLOPE, OUTLIERS, SHORTEST_WAVE_UNRESOLVED,
@@ -97,25 +97,17 @@ pub fn of_heights(name: &str, surface: &Surface) -> Vec<Finding> {
         );
         found.push(Finding::warning(OUTLIERS, heights.sku, OUTLYING, text));
     }
-    if slope > SLOPES[1] {
-        let text = format!(
-            "The heights of {name} have an rms slope of {} and span {}: check their unit (height_unit) and the size of \
-             the surface.",
-            digits(slope),
-            si(heights.sz, "m")
-        );
-        found.push(Finding::warning(UNLIKELY_UNIT, slope, SLOPES[1], text));
-    } else if slope > 0.0 && slope < SLOPES[0] {
-        let text = format!(
-            "The heights of {name} have an rms slope of {} and span {}, flatter than any real surface: check their unit \
-             (height_unit) and the size of the surface.",
-            digits(slope),
-            si(heights.sz, "m")
-        );
-        found.push(Finding::warning(UNLIKELY_UNIT, slope, SLOPES[0], text));
-    } else {
+    let Some(limit) = exceeded(SLOPES, slope).filter(|_| slope > 0.0) else {
         found.extend(steep(name, slope));
-    }
+        return found;
+    };
+    let text = format!(
+        "The heights of {name} have an rms slope of {} and span {}{}: check their unit (height_unit) and the size of the surface.",
+        digits(slope),
+        si(heights.sz, "m"),
+        if slope < limit { ", flatter than any real surface" } else { "" }
+    );
+    found.push(Finding::warning(UNLIKELY_UNIT, slope, limit, text));
     found
 }
 

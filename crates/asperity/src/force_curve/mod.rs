@@ -224,7 +224,7 @@ pub fn fit_force_curve(radius: f64, record: &ForceRecord, options: &ForceOptions
     let contact_modulus = interval(modulus, &[1.0], stated(0.5, 1.0, by_deflection[0]));
     let work = match adhesive {
         true => interval(work, &[0.0, 1.0], stated(1.0, 1.0, by_deflection[1])),
-        false => Interval { value: 0.0, low: 0.0, high: 0.0, determined: true },
+        false => Interval::exact(0.0),
     };
     let model = problem.model(&found.at);
     let (mut lambda, mut range, mut alpha) = (None, None, None);
@@ -242,10 +242,7 @@ pub fn fit_force_curve(radius: f64, record: &ForceRecord, options: &ForceOptions
                 let across = interval(of, &[-2.0 / 3.0, 2.0 / 3.0, -1.0], 0.0);
                 (Some(open(Interval::new(value, ends), closed)), Some(open(across, [above, below])))
             }
-            None => {
-                let exact = Interval { value: of, low: of, high: of, determined: true };
-                (Some(interval(value, &[-2.0 / 3.0, 2.0 / 3.0], 0.0)), Some(exact))
-            }
+            None => (Some(interval(value, &[-2.0 / 3.0, 2.0 / 3.0], 0.0)), Some(Interval::exact(of))),
         };
         alpha = Some(carpick_alpha(value));
     }

@@ -22,17 +22,10 @@ const CANTILEVER: [f64; 2] = [0.01, 100.0];
 pub(super) fn notes(fit: &ForceFit, radius: f64, rows: &Rows, options: &ForceOptions) -> Vec<String> {
     let mut notes = vec![];
     let adhesive = fit.model != ForceModel::Hertz;
-    if !fit.contact_modulus.determined {
-        notes.push(
-            "the modulus is not determined by this record: its 95 % interval spans more than a factor of 10"
-                .to_owned(),
-        );
-    }
-    if adhesive && !fit.work.determined {
-        notes.push(
-            "the work of adhesion is not determined by this record: its 95 % interval spans more than a factor of 10".to_owned(),
-        );
-    }
+    let numbers = [("the modulus", &fit.contact_modulus), ("the work of adhesion", &fit.work)];
+    notes.extend(numbers.into_iter().filter(|(_, interval)| !interval.determined).map(|(what, _)| {
+        format!("{what} is not determined by this record: its 95 % interval spans more than a factor of 10")
+    }));
     if fit.lambda.is_some_and(|lambda| !lambda.determined) {
         notes.push(format!(
             "the transition parameter lambda is not determined by this record (alpha {:.2}, 0 for DMT and 1 for JKR): give the range of \
@@ -45,18 +38,18 @@ pub(super) fn notes(fit: &ForceFit, radius: f64, rows: &Rows, options: &ForceOpt
         Some(range) => format!("the given range of {range:.2e} m"),
         None => format!("a range of {:.1} nm, usual between solids; give yours", 1e9 * ATOMIC),
     };
-    match fit.model {
-        ForceModel::Jkr if fit.tabor < SOFT => notes.push(format!(
-            "Tabor's number is {:.2e} with {range}, and JKR holds above {SOFT}: use the model `maugis`{}",
-            fit.tabor,
-            if fit.tabor < STIFF { " or `dmt`" } else { "" }
-        )),
-        ForceModel::Dmt if fit.tabor > STIFF => notes.push(format!(
-            "Tabor's number is {:.2e} with {range}, and DMT holds below {STIFF}: use the model `maugis`{}",
-            fit.tabor,
-            if fit.tabor > SOFT { " or `jkr`" } else { "" }
-        )),
-        _ => {}
+    let (rule, or) = match fit.model {
+        ForceModel::Jkr if fit.tabor < STIFF => (format!("JKR holds above {SOFT}"), " or `dmt`"),
+        ForceModel::Jkr if fit.tabor < SOFT => (format!("JKR holds above {SOFT}"), ""),
+        ForceModel::Dmt if fit.tabor > SOFT => (format!("DMT holds below {STIFF}"), " or `jkr`"),
+        ForceModel::Dmt if fit.tabor > STIFF => (format!("DMT holds below {STIFF}"), ""),
+        _ => (String::new(), ""),
+    };
+    if !rule.is_empty() {
+        let tabor = fit.tabor;
+        notes.push(format!(
+            "Tabor's number is {tabor:.2e} with {range}, and {rule}: use the model `maugis`{or}"
+        ));
     }
     if !rows.baseline {
         notes.push(

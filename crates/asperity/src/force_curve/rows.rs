@@ -3,6 +3,7 @@
 use super::{Branch, ForceModel, ForceOptions, ForceRecord, invalid};
 use crate::error::{Result, require};
 use crate::indentation::noise;
+use crate::numbers::{self, extent};
 
 /// Smallest number of rows of the branch, and of rows that are free before the baseline is fitted.
 const FEWEST: usize = 20;
@@ -85,7 +86,7 @@ impl Rows {
         let (loads, depths) = (pick(record.loads), pick(record.depths));
         let steps: Vec<f64> = (0..loads.len()).map(|k| k as f64).collect();
         let ranges = [&loads, &depths].map(|values| {
-            let [low, high] = span(values);
+            let [low, high] = extent(values.iter().copied());
             high - low
         });
         let share = |k: usize, values: &[f64]| {
@@ -115,7 +116,7 @@ impl Rows {
                 ),
             );
         }
-        let [loads, depths] = [0, 1].map(|k| span(&contact.iter().map(|row| row[k]).collect::<Vec<_>>()));
+        let [loads, depths] = [0, 1].map(|k| extent(contact.iter().map(|row| row[k])));
         let [of_loads, of_depths] = [loads, depths].map(|[low, high]| high - low);
         require(
             contact.len() >= FEWEST / 2 && of_loads > 3.0 * noise[0] && of_depths > 0.0,
@@ -159,7 +160,7 @@ impl Rows {
     pub(super) fn with_deflection(&self, change: f64, stiffness: f64) -> Rows {
         let moved = self.contact.iter().map(|[w, d]| [w * (1.0 + change), d - change * w / stiffness]);
         let contact: Vec<[f64; 2]> = moved.collect();
-        let depths = span(&contact.iter().map(|row| row[1]).collect::<Vec<_>>());
+        let depths = extent(contact.iter().map(|row| row[1]));
         Rows {
             contact,
             depths,
@@ -216,12 +217,6 @@ fn free_of_hertz(loads: &[f64], noise: f64) -> (usize, f64, bool) {
     if flat { (n, median(end), true) } else { (n, 0.0, false) }
 }
 
-/// Smallest and largest value.
-fn span(values: &[f64]) -> [f64; 2] {
-    let [low, high] = [f64::INFINITY, f64::NEG_INFINITY];
-    values.iter().fold([low, high], |[low, high], x| [low.min(*x), high.max(*x)])
-}
-
 /// Mean of the first rows less that of the last.
 fn drift(values: &[f64], count: usize) -> f64 {
     (mean(&values[..count]) - mean(&values[values.len() - count..])).abs()
@@ -242,7 +237,5 @@ fn mean_of(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 }
 
 fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+    numbers::median(&mut values.to_vec())
 }

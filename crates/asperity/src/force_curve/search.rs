@@ -10,6 +10,7 @@ use super::{ForceModel, ForceOptions, invalid};
 use crate::error::Result;
 use crate::indentation::{covariance, damped_step, durbin_watson};
 use crate::material::dot;
+use crate::numbers::bisect;
 use crate::reference::{AdhesiveModel, AdhesiveSphere, BarPoint, maugis_lambda};
 
 /// Points of the curve among which the nearest is looked for first.
@@ -308,12 +309,8 @@ impl<'a> Problem<'a> {
         };
         let end = model.at(model.end(0.0));
         let unit = (rest - lowest[0]) / -end.load;
-        let (mut low, mut high) = (model.end(0.0), model.beyond((largest / unit).powf(2.0 / 3.0) + 10.0));
-        for _ in 0..80 {
-            let middle = 0.5 * (low + high);
-            if model.at(middle).load < largest / unit { low = middle } else { high = middle }
-        }
-        let pressed = model.at(low);
+        let ends = [model.end(0.0), model.beyond((largest / unit).powf(2.0 / 3.0) + 10.0)];
+        let pressed = model.at(bisect(ends, 80, |u| model.at(u).load < largest / unit)[0]);
         let depth = (top[1] - lowest[1]) / (pressed.depth - end.depth);
         if !(unit > 0.0 && depth > 0.0 && depth.is_finite()) {
             return None;
@@ -354,31 +351,23 @@ impl<'a> Problem<'a> {
         let best = at(found.at[2], found)?;
         let beyond = |other: &Found| other.squares > best.squares + CHI * found.scatter;
         let end = |side: f64, limit: f64| -> Result<(Found, bool)> {
-            let mut inside = best.clone();
-            let mut step = 0.1;
-            loop {
+            let (mut inside, mut step) = (best.clone(), 0.1);
+            let mut outside = loop {
                 let next = inside.at[2] + side * step;
                 let last = side * next >= side * limit;
                 let there = at(if last { limit } else { next }, &inside)?;
-                if beyond(&there) {
-                    // The interval ends between the two.
-                    let mut outside = there;
-                    for _ in 0..4 {
-                        let middle = at(0.5 * (inside.at[2] + outside.at[2]), &inside)?;
-                        if beyond(&middle) {
-                            outside = middle;
-                        } else {
-                            inside = middle;
-                        }
-                    }
-                    return Ok((outside, true));
+                match beyond(&there) {
+                    true => break there,
+                    false if last => return Ok((there, false)),
+                    false => (inside, step) = (there, 2.0 * step),
                 }
-                inside = there;
-                if last {
-                    return Ok((inside, false));
-                }
-                step *= 2.0;
+            };
+            // The interval ends between the two.
+            for _ in 0..4 {
+                let middle = at(0.5 * (inside.at[2] + outside.at[2]), &inside)?;
+                if beyond(&middle) { outside = middle } else { inside = middle }
             }
+            Ok((outside, true))
         };
         let (low, closed_below) = end(-1.0, LAMBDA[0].ln())?;
         let (high, closed_above) = end(1.0, LAMBDA[1].ln())?;

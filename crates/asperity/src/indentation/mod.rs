@@ -176,6 +176,11 @@ impl Interval {
         self.low <= value && value <= self.high
     }
 
+    /// A value without uncertainty.
+    pub(crate) fn exact(value: f64) -> Self {
+        Interval { value, low: value, high: value, determined: true }
+    }
+
     pub(crate) fn new(value: f64, [low, high]: [f64; 2]) -> Self {
         Interval { value, low, high, determined: high <= DETERMINED * low }
     }
@@ -307,7 +312,7 @@ pub fn fit_indentation(
     }
     let touch = match best.parameters.touch {
         true => average.interval(best.touch(), |draw| Some(draw.touch)),
-        false => Interval::new(0.0, [0.0, 0.0]),
+        false => Interval::exact(0.0),
     };
     let [value, low, high] = [touch.value, touch.low, touch.high].map(|x| model.depth_scale() * x);
     let mut fit = IndentationFit {

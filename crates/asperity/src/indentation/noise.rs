@@ -11,6 +11,8 @@
 //! no influence. Rows with small and with large values are evaluated separately, so that noise relative to the value is found as
 //! well: σ² = a + b y².
 
+use crate::numbers::median;
+
 /// Median of the chi-squared distribution of one degree of freedom.
 const MEDIAN: f64 = 0.454_936;
 /// Smallest number of rows for a median.
@@ -27,7 +29,8 @@ pub(crate) fn variances(times: &[f64], values: &[f64]) -> Vec<f64> {
         let group = if value < 0.25 * largest * largest { &mut small } else { &mut large };
         group.push((square, value));
     }
-    let constant = |group: &[(f64, f64)]| median(group.iter().map(|pair| pair.0).collect()) / MEDIAN;
+    let constant =
+        |group: &[(f64, f64)]| median(&mut group.iter().map(|pair| pair.0).collect::<Vec<f64>>()) / MEDIAN;
     let (a, b) = if small.len() < FEWEST || large.len() < FEWEST {
         small.append(&mut large);
         (constant(&small), 0.0)
@@ -57,14 +60,6 @@ fn third_difference(t: &[f64], y: &[f64]) -> f64 {
     // Rows so close that the products underflow are ignored.
     let difference = sum / norm.sqrt();
     if difference.is_finite() { difference } else { 0.0 }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// Root of the mean variance over the largest value.

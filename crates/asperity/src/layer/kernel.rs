@@ -71,6 +71,12 @@ impl Layered {
         &self.stacks
     }
 
+    /// What the layers of each body add to the half-space, up to the distance `reach` \[m\].
+    fn smooth(&self, load: Load, reach: f64) -> Result<Vec<Smooth>> {
+        let all = self.stacks.iter().map(|stack| Smooth::new(stack, load, self.scale, reach));
+        Ok(all.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+    }
+
     /// Displacements \[m\] at the distances (`xs`\[i\], `ys`\[j\]) \[m\] from the centre of a cell of sides `cell` \[m\] under
     /// unit pressure; distances must be ascending.
     ///
@@ -80,8 +86,7 @@ impl Layered {
         let [dx, dy] = cell;
         let farthest = |side: &[f64], d: f64| side.last().copied().unwrap_or(0.0) + d;
         let reach = libm::hypot(farthest(xs, dx), farthest(ys, dy));
-        let smooth = self.stacks.iter().map(|stack| Smooth::new(stack, Load::Point, self.scale, reach));
-        let smooth: Vec<Smooth> = smooth.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+        let smooth = self.smooth(Load::Point, reach)?;
         let at = |x: f64, y: f64| {
             love(x, y, cell) + smooth.iter().map(|smooth| over_cell(smooth, [x, y], cell)).sum::<f64>()
         };
@@ -110,8 +115,7 @@ impl Layered {
     /// [`Error::Invalid`](crate::Error::Invalid) if the layers differ too much.
     pub(crate) fn response_of_line(&self, dx: f64, xs: &[f64]) -> Result<Vec<f64>> {
         let reach = xs.last().copied().unwrap_or(0.0) + dx;
-        let smooth = self.stacks.iter().map(|stack| Smooth::new(stack, Load::Line, self.scale, reach));
-        let smooth: Vec<Smooth> = smooth.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+        let smooth = self.smooth(Load::Line, reach)?;
         // The logarithm of the half-space is that of x/dx, the other one is that of r/d: on a rigid base the difference matters.
         let units = self.stacks.iter().filter_map(|stack| {
             let d = stack.layers().first()?.thickness;

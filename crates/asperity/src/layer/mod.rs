@@ -35,6 +35,7 @@ pub use nonseparable::NonseparableLayers;
 pub(crate) use nonseparable::TOLERANCE;
 
 use crate::error::{Error, Result, length, positive, require};
+use crate::numbers::extent;
 
 /// The interface between the lower face of a layer and the material below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -151,9 +152,7 @@ impl Stack {
             Base::HalfSpace { shear, .. } => Some(shear),
             Base::Rigid => None,
         };
-        let moduli = self.layers.iter().map(|layer| layer.shear).chain(base);
-        let [least, most] =
-            moduli.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], mu| [least.min(mu), most.max(mu)]);
+        let [least, most] = extent(self.layers.iter().map(|layer| layer.shear).chain(base));
         most / least
     }
 

@@ -19,6 +19,7 @@ use std::sync::Arc;
 use super::body::{LayeredBody, stack};
 use super::{Layered, Stack};
 use crate::error::{Error, Result};
+use crate::kernel::Kernel;
 use crate::material::{Body, Creep, CreepTerm, Lateral, least_squares};
 
 /// Largest relative error of C~(q, s) that is accepted.
@@ -47,9 +48,9 @@ pub struct NonseparableLayers {
     /// λ_j \[s\], ascending.
     nodes: Vec<f64>,
     /// The s at which C~ is fitted, besides ∞ and 0 \[1/s\].
-    frequencies: Vec<f64>,
+    pub(crate) frequencies: Vec<f64>,
     /// The elastic bodies at s = ∞, 0 and `frequencies`: a kernel, and the compliance \[1/Pa\] that multiplies it.
-    stages: Vec<(Arc<Layered>, f64)>,
+    pub(crate) stages: Vec<(Arc<Layered>, f64)>,
     misfit: f64,
 }
 
@@ -76,8 +77,9 @@ impl NonseparableLayers {
             }
         }
         best.filter(|best| best.misfit <= TOLERANCE).ok_or_else(|| {
+            let first = bodies.iter().flat_map(LayeredBody::materials).next();
             Error::invalid(
-                format!("creep of the layers of {}", name(bodies)),
+                format!("creep of the layers of {}", first.map_or("", |material| &material.name)),
                 "not described by a sum of exponentials",
                 format!("a sum that is exact to {TOLERANCE:e}: use materials with fewer or closer relaxation times"),
             )
@@ -87,17 +89,6 @@ impl NonseparableLayers {
     /// The elastic bodies of short times: the kernel of the instantaneous response.
     pub(crate) fn glassy(&self) -> &Layered {
         &self.stages[0].0
-    }
-
-    /// The elastic bodies at the values of s at which C~ is fitted: s = ∞, 0, and those between; with the compliance \[1/Pa\] of
-    /// each.
-    pub(crate) fn stages(&self) -> impl Iterator<Item = (Arc<Layered>, f64)> + '_ {
-        self.stages.iter().cloned()
-    }
-
-    /// The s of [`stages`](Self::stages) that are neither 0 nor ∞ \[1/s\].
-    pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
-        self.frequencies.iter().copied()
     }
 
     /// The bending length of the stiff layers on the soft ones after all creep \[m\]: total thickness times the cube root of the
@@ -142,13 +133,13 @@ impl NonseparableLayers {
     /// # Errors
     /// [`Error::Invalid`] if q is so extreme that the compliance is out of range.
     pub fn creep(&self, q: f64) -> Result<Creep> {
-        let values: Vec<f64> = self.stages.iter().map(|(kernel, c)| c * kernel.wave(q)).collect();
+        let values: Vec<f64> = self.stages.iter().map(|(kernel, c)| c * kernel.symbol(q, 0.0)).collect();
         self.fit(&values).map(|(creep, _)| creep).ok_or_else(|| {
             Error::invalid("wave number", format!("{q:e} rad/m"), "one whose compliance is positive")
         })
     }
 
-    /// The creep function with these values of C~ at the [`stages`](Self::stages), and its largest relative error there; `None`
+    /// The creep function with these values of C~ at the `stages`, and its largest relative error there; `None`
     /// if it is not that of a passive body.
     pub(crate) fn fit(&self, values: &[f64]) -> Option<(Creep, f64)> {
         let [glassy, relaxed, between @ ..] = values else { return None };
@@ -161,7 +152,7 @@ impl NonseparableLayers {
         }
         // Rows of C~ - S_0 over C~.
         let rows: Vec<(f64, f64, f64)> = std::iter::once((0.0, rise, EXACT / relaxed))
-            .chain(between.iter().zip(self.frequencies()).map(|(c, s)| (s, c - glassy, 1.0 / c.abs())))
+            .chain(between.iter().zip(&self.frequencies).map(|(c, s)| (*s, c - glassy, 1.0 / c.abs())))
             .collect();
         let column = |time: &f64| rows.iter().map(|(s, _, weight)| weight / (1.0 + s * time)).collect();
         let columns: Vec<Vec<f64>> = self.nodes.iter().map(column).collect();
@@ -197,20 +188,13 @@ impl NonseparableLayers {
             let q = libm::exp(first + (last - first) * n as f64 / (JUDGED - 1) as f64);
             let creep = self.creep(q)?;
             for (s, (kernel, c)) in frequencies.iter().zip(&checks) {
-                let exact = c * kernel.wave(q);
+                let exact = c * kernel.symbol(q, 0.0);
                 let terms =
                     creep.terms.iter().map(|term| term.compliance / (1.0 + s * term.retardation_time));
                 worst = worst.max(((creep.instantaneous + terms.sum::<f64>()) / exact - 1.0).abs());
             }
         }
         Ok(worst)
-    }
-}
-
-impl Layered {
-    /// The symbol at a wave number.
-    fn wave(&self, q: f64) -> f64 {
-        crate::kernel::Kernel::symbol(self, q, 0.0)
     }
 }
 
@@ -294,13 +278,4 @@ fn nodes(intervals: &[[f64; 2]], spacing: f64) -> Vec<f64> {
         (0..=parts).map(node).collect::<Vec<f64>>()
     };
     intervals.iter().flat_map(of_one).collect()
-}
-
-fn name(bodies: &[LayeredBody]) -> String {
-    bodies
-        .iter()
-        .flat_map(LayeredBody::materials)
-        .map(|material| material.name.clone())
-        .next()
-        .unwrap_or_default()
 }

@@ -9,7 +9,7 @@
 //!   function that belongs to the relaxation function X(t), since
 //!   (1 - nu)/(2 G) = (3 B + 4 G)/(4 G (3 B + G)) = (1/4) \[1/G + 3/(3 B + G)\].
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 use crate::material::{Creep, Material, Modulus};
 
 /// The second elastic constant of an isotropic body, constant in time.
@@ -138,15 +138,9 @@ impl Body {
     /// [`Error::Invalid`] if Poisson's ratio is outside (-1, 0.5], the bulk modulus or the hardness
     /// is not positive, or the bulk modulus is too small for the Young's moduli (9 B > E(0) is needed).
     pub fn contact_creep(&self) -> Result<Creep> {
-        if let Some(hardness) = self.hardness
-            && (hardness.is_nan() || hardness <= 0.0)
-        {
-            return Err(Error::invalid(
-                format!("hardness of {}", self.name),
-                hardness,
-                "greater than 0 Pa (leave it out for no limit)",
-            ));
-        }
+        let hardness = self.hardness.unwrap_or(f64::INFINITY);
+        let expected = "greater than 0 Pa (leave it out for no limit)";
+        require(hardness > 0.0, format!("hardness of {}", self.name), hardness, expected)?;
         let creep = self.material.creep();
         match self.lateral {
             Lateral::Poisson(nu) if nu > -1.0 && nu <= 0.5 => {

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result, increasing, require, significant};
 use crate::material::spectrum::Kernel;
+use crate::numbers::median;
 
 /// Number of points above which a curve is averaged.
 const MOST_POINTS: usize = 10_000_000;
@@ -116,9 +117,8 @@ pub(super) fn noise(xs: &[f64], values: &[f64]) -> f64 {
         }
     };
     let mut distances: Vec<f64> = xs.windows(5).zip(values.windows(5)).map(distance).collect();
-    let middle = distances.len() / 2;
     // The median of the absolute value of a normal variable is 0.6745 of its standard deviation.
-    *distances.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745
+    median(&mut distances) / 0.6745
 }
 
 /// Distance of the third of five points from the cubic through the others (Lagrange), over its standard deviation where each

@@ -21,6 +21,7 @@
 use std::f64::consts::PI;
 
 use crate::error::{Result, non_negative, positive};
+use crate::numbers::bisect;
 
 /// The model of an adhesive sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,11 +93,11 @@ impl AdhesiveModel {
                 false => point.depth_slope <= 0.0,
             }
         };
-        let (from, to) = match self {
+        let ends = match self {
             // Without adhesion the curve goes on: the sphere leaves without a force.
             AdhesiveModel::Hertz => return f64::NEG_INFINITY,
             AdhesiveModel::Dmt => return 0.0,
-            AdhesiveModel::Jkr => (2.0, JKR_END),
+            AdhesiveModel::Jkr => [2.0, JKR_END],
             AdhesiveModel::Maugis { .. } => {
                 let [first, last] = MAUGIS.map(|s| -s.ln());
                 // From the pressed end: the first interval in which the branch ends.
@@ -104,22 +105,13 @@ impl AdhesiveModel {
                 let u = |k: i32| first + (last - first) * f64::from(k) / f64::from(steps);
                 match (0..=steps).find(|k| falls(u(*k))) {
                     Some(0) => return first,
-                    Some(k) => (u(k - 1), u(k)),
+                    Some(k) => [u(k - 1), u(k)],
                     // Stable until the contact is a point.
                     None => return last,
                 }
             }
         };
-        let (mut stable, mut beyond) = (from, to);
-        for _ in 0..60 {
-            let middle = 0.5 * (stable + beyond);
-            if falls(middle) {
-                beyond = middle;
-            } else {
-                stable = middle;
-            }
-        }
-        stable
+        bisect(ends, 60, |u| !falls(u))[0]
     }
 
     /// A parameter on the stable branch whose approach is at least this one, in bars.
@@ -266,22 +258,9 @@ impl AdhesiveSphere {
     pub fn at_approach(&self, approach: f64) -> Result<Option<AdhesivePoint>> {
         non_negative("size of the approach", approach.abs(), "m")?;
         let depth = approach / self.depth_unit;
-        let (mut low, mut high) = (self.model.end(f64::INFINITY).max(self.first()), self.model.beyond(depth));
-        if self.model.at(low).depth > depth {
-            return Ok(None);
-        }
-        for _ in 0..200 {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if self.model.at(middle).depth <= depth {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Ok(Some(self.point(low)))
+        let ends = [self.model.end(f64::INFINITY).max(self.first()), self.model.beyond(depth)];
+        let touches = |u: f64| self.model.at(u).depth <= depth;
+        Ok(touches(ends[0]).then(|| self.point(bisect(ends, 200, touches)[0])))
     }
 }
 

@@ -78,16 +78,19 @@ impl CappedHertz {
         if hardness != f64::INFINITY {
             positive("hardness", hardness, "Pa")?;
         }
-        if hardness >= hertz.peak_pressure {
-            return Ok(CappedHertz {
-                contact_radius: hertz.contact_radius,
-                capped_radius: 0.0,
-                approach: hertz.approach,
+        let of = |contact_radius, capped_radius, approach, form| {
+            Ok(CappedHertz {
+                contact_radius,
+                capped_radius,
+                approach,
                 radius,
                 contact_modulus,
                 hardness,
-                form: Form::Elastic(hertz),
-            });
+                form,
+            })
+        };
+        if hardness >= hertz.peak_pressure {
+            return of(hertz.contact_radius, 0.0, hertz.approach, Form::Elastic(hertz));
         }
         // x = ln(c^2 / (a^2 - c^2)) grows as the hardness falls against Hertz's peak pressure.
         let target = hardness / hertz.peak_pressure;
@@ -96,27 +99,12 @@ impl CappedHertz {
         let x = root(elastic, plastic, missing);
         if x == plastic {
             let a = (load / (PI * hardness)).sqrt();
-            return Ok(CappedHertz {
-                contact_radius: a,
-                capped_radius: a,
-                approach: a * a / (2.0 * radius) + 4.0 * hardness * a / (PI * contact_modulus),
-                radius,
-                contact_modulus,
-                hardness,
-                form: Form::Plastic,
-            });
+            let approach = a * a / (2.0 * radius) + 4.0 * hardness * a / (PI * contact_modulus);
+            return of(a, a, approach, Form::Plastic);
         }
         let annulus = Annulus::new(x);
         let a = (load * radius / (contact_modulus * annulus.load)).cbrt();
-        Ok(CappedHertz {
-            contact_radius: a,
-            capped_radius: a * annulus.inner2.sqrt(),
-            approach: annulus.approach * a * a / radius,
-            radius,
-            contact_modulus,
-            hardness,
-            form: Form::Annulus(annulus),
-        })
+        of(a, a * annulus.inner2.sqrt(), annulus.approach * a * a / radius, Form::Annulus(annulus))
     }
 
     /// Pressure at the distance r from the axis \[Pa\].

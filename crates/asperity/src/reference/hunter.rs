@@ -91,13 +91,20 @@ impl HunterCylinder {
         let (glassy, relaxed) = (creep.instantaneous, creep.instantaneous + retarded);
         let memory = velocity * time;
         require(memory.is_finite(), "velocity times retardation time", memory, "finite, in m")?;
-        let lengths =
-            Lengths { memory, lag: memory * (retarded / relaxed), short: memory * (glassy / relaxed) };
+        // l - l', and the quotients i and j at a/l', k at a/l.
+        let lag = memory * (retarded / relaxed);
+        let quotients = |a: f64| {
+            let (i, j) = quotients_i(a / (memory * (glassy / relaxed)));
+            [i, j, quotient_k(a / memory)]
+        };
         let hertz = |compliance: f64| (4.0 * radius * load_per_length * compliance / PI).sqrt();
         let scale = PI / (4.0 * radius * relaxed);
-        let surplus = |a: f64| scale * a * (a + 2.0 * lengths.lag / lengths.at(a).sum()) - load_per_length;
+        let surplus = |a: f64| {
+            let [i, _, k] = quotients(a);
+            scale * a * (a + 2.0 * lag / (i + k)) - load_per_length
+        };
         // The width lies between those of the glassy and of the relaxed body.
-        let a = if lengths.lag > 0.0 && load_per_length > 0.0 {
+        let a = if lag > 0.0 && load_per_length > 0.0 {
             root(hertz(glassy), hertz(relaxed), surplus)
         } else {
             hertz(relaxed)
@@ -113,14 +120,13 @@ impl HunterCylinder {
             memory,
             shift: 0.0,
         };
-        if a == 0.0 || lengths.lag == 0.0 {
+        if a == 0.0 || lag == 0.0 {
             return Ok(body);
         }
-        let quotients = lengths.at(a);
-        let lag = lengths.lag / quotients.sum();
-        let centre = lag * quotients.k0;
-        let friction_per_length =
-            scale * (a / radius) * lag * (a * (quotients.i2 + quotients.k0) + 2.0 * centre);
+        let [i, j, k] = quotients(a);
+        let lag = lag / (i + k);
+        let centre = lag * k;
+        let friction_per_length = scale * (a / radius) * lag * (a * (j + k) + 2.0 * centre);
         Ok(HunterCylinder { centre, friction_per_length, shift: a * lag / (2.0 * radius), ..body })
     }
 
@@ -192,33 +198,6 @@ impl HunterCylinder {
     /// If l is below rounding compared with the contact, the body is practically relaxed.
     fn is_elastic(&self) -> bool {
         self.instantaneous == self.relaxed || self.memory <= 1e-13 * self.half_width
-    }
-}
-
-/// l, l - l' and l'.
-struct Lengths {
-    memory: f64,
-    lag: f64,
-    short: f64,
-}
-
-impl Lengths {
-    fn at(&self, a: f64) -> Quotients {
-        let (i0, i2) = quotients_i(a / self.short);
-        Quotients { i0, i2, k0: quotient_k(a / self.memory) }
-    }
-}
-
-/// I0/I1 and I2/I1 at a/l', K0/K1 at a/l.
-struct Quotients {
-    i0: f64,
-    i2: f64,
-    k0: f64,
-}
-
-impl Quotients {
-    fn sum(&self) -> f64 {
-        self.i0 + self.k0
     }
 }
 

@@ -20,6 +20,7 @@ use super::MdrProfile;
 use crate::error::{Result, positive, require};
 use crate::layer::{Base, Interface, Layer, Stack};
 use crate::linear;
+use crate::numbers::bisect;
 
 /// Radii of the table.
 const RADII: usize = 48;
@@ -199,12 +200,8 @@ impl LayerContact {
 }
 
 /// The x between 0 and `high` with f(x) = value for an increasing function, by bisection.
-fn inverse(mut high: f64, value: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let mut low = 0.0;
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if f(middle) < value { low = middle } else { high = middle }
-    }
+fn inverse(high: f64, value: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let [low, high] = bisect([0.0, high], 60, |x| f(x) < value);
     0.5 * (low + high)
 }
 

@@ -12,6 +12,7 @@ use super::membrane::Membrane;
 use super::spectrum::check_shape;
 use crate::error::{Error, Result, require};
 use crate::grid::Grid;
+use crate::numbers::extent;
 
 /// The treatment of undefined points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -134,10 +135,7 @@ fn nearest(grid: &Grid, heights: ArrayView2<f64>) -> Array2<f64> {
 
 fn harmonic(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<f64>> {
     // Heights relative to their mean in units of their range: the tolerance is then a fraction of it.
-    let (low, high) = heights
-        .iter()
-        .filter(|z| z.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(*z), high.max(*z)));
+    let [low, high] = extent(heights.iter().copied().filter(|z| z.is_finite()));
     let range = high - low;
     let mut filled = heights.to_owned();
     if range == 0.0 || !range.is_finite() {

@@ -134,13 +134,8 @@ fn subtract(gap: &mut Array2<f64>, name: &str, heights: &Array2<f64>) -> Result<
 fn add_shape(gap: &mut Array2<f64>, grid: &Grid, shape: &Shape, center: [f64; 2]) -> Result<()> {
     shape.validate()?;
     for (offset, axis) in center.iter().zip(["x", "y"]) {
-        if !offset.is_finite() {
-            return Err(Error::invalid(
-                format!("centre of the {} along {axis}", shape.name()),
-                offset,
-                "finite",
-            ));
-        }
+        let what = format!("centre of the {} along {axis}", shape.name());
+        require(offset.is_finite(), what, offset, "finite")?;
     }
     let [x0, y0] = [grid.centre()[0] + center[0], grid.centre()[1] + center[1]];
     let under = |i, j| shape.gap(grid.x(i) - x0, grid.y(j) - y0);

@@ -118,16 +118,16 @@ impl SelfAffine {
         // Along a line the waves of a surface of exponent -2 (1 + H) have the exponent -(1 + 2 H).
         let exponent = if grid.is_line() { -1.0 - 2.0 * self.hurst } else { -2.0 * (1.0 + self.hurst) };
         let amplitude = |qx: f64, qy: f64| self.spectrum(seen(qx, qy), exponent).sqrt();
-        let (mut columns, moments) = waves.amplitudes(self.seed, amplitude);
+        let (mut columns, [height, gradient]) = waves.amplitudes(self.seed, amplitude);
         require(
-            moments.height > 0.0,
+            height > 0.0,
             "band of wavelengths",
             format!("{:e} m to {:e} m", self.shortest, self.longest),
             "wide enough to hold a wave that fits the domain (size over an integer along x and y)",
         )?;
         let scale = match self.roughness {
-            Roughness::RmsHeight(height) => height / moments.height.sqrt(),
-            Roughness::RmsGradient(gradient) => gradient / moments.gradient.sqrt(),
+            Roughness::RmsHeight(wanted) => wanted / height.sqrt(),
+            Roughness::RmsGradient(wanted) => wanted / gradient.sqrt(),
         };
         let heights = waves.sum(&mut columns, scale);
         require(

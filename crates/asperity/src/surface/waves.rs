@@ -31,13 +31,6 @@ pub(super) struct Waves {
     largest: f64,
 }
 
-/// Mean of z^2 and of |grad z|^2 before scaling.
-#[derive(Clone, Copy)]
-pub(super) struct Moments {
-    pub(super) height: f64,
-    pub(super) gradient: f64,
-}
-
 impl Waves {
     pub(super) fn new(grid: &Grid, largest: f64) -> Self {
         let fundamental = grid.size().map(|length| TAU / length);
@@ -50,23 +43,18 @@ impl Waves {
         nyquist.min((largest / self.fundamental[axis]) as usize)
     }
 
-    /// Column ky holds A_k at index kx (negative ones from the end), with the phase that moves the
-    /// samples from the corners to the centres of the cells.
+    /// The waves, and the mean of z^2 and of |grad z|^2. Column ky holds A_k at index kx (negative ones from the end), with the
+    /// phase that moves the samples from the corners to the centres of the cells.
     pub(super) fn amplitudes(
         &self,
         seed: u64,
         amplitude: impl Fn(f64, f64) -> f64 + Sync,
-    ) -> (Vec<Vec<Complex64>>, Moments) {
+    ) -> (Vec<Vec<Complex64>>, [f64; 2]) {
         let (columns, moments): (Vec<_>, Vec<_>) = (0..=self.reach(1, self.largest))
             .into_par_iter()
             .map(|ky| self.column(seed, ky, &amplitude))
             .unzip();
-        let zero = Moments { height: 0.0, gradient: 0.0 };
-        let total = moments.iter().fold(zero, |sum, m| Moments {
-            height: sum.height + m.height,
-            gradient: sum.gradient + m.gradient,
-        });
-        (columns, total)
+        (columns, moments.iter().fold([0.0; 2], |sum, m: &[f64; 2]| [sum[0] + m[0], sum[1] + m[1]]))
     }
 
     fn column(
@@ -74,10 +62,10 @@ impl Waves {
         seed: u64,
         ky: usize,
         amplitude: &(impl Fn(f64, f64) -> f64 + Sync),
-    ) -> (Vec<Complex64>, Moments) {
+    ) -> (Vec<Complex64>, [f64; 2]) {
         let [nx, ny] = self.cells;
         let mut column = vec![Complex64::ZERO; nx];
-        let mut moments = Moments { height: 0.0, gradient: 0.0 };
+        let [mut height, mut gradient] = [0.0; 2];
         let mut random = generator(seed, ky as u64);
         let qy = self.fundamental[1] * ky as f64;
         let room = (self.largest * self.largest - qy * qy).max(0.0).sqrt();
@@ -92,13 +80,13 @@ impl Waves {
             let q2 = qx * qx + qy * qy;
             let a = normal * amplitude(qx, qy);
             // This wave and its conjugate.
-            moments.height += 2.0 * a.norm_sqr();
-            moments.gradient += 2.0 * q2 * a.norm_sqr();
+            height += 2.0 * a.norm_sqr();
+            gradient += 2.0 * q2 * a.norm_sqr();
             let half_a_cell = 0.5 * TAU * (kx as f64 / nx as f64 + ky as f64 / ny as f64);
             let (sin, cos) = libm::sincos(half_a_cell);
             column[kx.rem_euclid(nx as i64) as usize] = a * Complex64::new(cos, sin);
         }
-        (column, moments)
+        (column, [height, gradient])
     }
 
     /// scale * (sum of the waves and their conjugates) at the cell centres.

@@ -188,7 +188,7 @@ impl History for Spectral {
             Some(mean) => mean.close(load),
             None if load > 0.0 => {
                 let Spectrum(p) = self.torus.transform(&ends.now.pressure);
-                let values = self.waves.mean(&p, self.layers.frequencies());
+                let values = self.waves.mean(&p, self.layers.frequencies.iter().copied());
                 // A mean of creep functions is one.
                 if let Some((creep, _)) = self.layers.fit(&values) {
                     self.mean = Some(Mean::new(creep, self.length, load)?);

@@ -132,7 +132,7 @@ impl Waves {
         };
         let mut stages: Vec<Array2<f64>> = vec![];
         let mut own = 0.0;
-        for (kernel, compliance) in layers.stages() {
+        for (kernel, compliance) in layers.stages.iter().cloned() {
             let mut unit = match width {
                 Width::Narrow => eigenvalues(grid, boundary, &*kernel)?,
                 Width::Wide => wide::eigenvalues(grid, &kernel)?,

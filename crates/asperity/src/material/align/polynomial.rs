@@ -2,6 +2,7 @@
 
 use super::Logs;
 use crate::material::dot;
+use crate::numbers::extent;
 
 /// The polynomials of all quantities, with the second curves moved by d and, if v is free, raised by the best v.
 pub(super) struct Joint {
@@ -74,9 +75,7 @@ impl Polynomial {
 /// Polynomials up to a degree at the given points: Chebyshev polynomials, orthogonalised one after the other (modified
 /// Gram-Schmidt).
 pub(super) fn orthonormal(points: &[(f64, f64)], degree: usize) -> Vec<Vec<f64>> {
-    let ends = points
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (x, _)| [low.min(*x), high.max(*x)]);
+    let ends = extent(points.iter().map(|point| point.0));
     let unit = 2.0 / (ends[1] - ends[0]).max(f64::MIN_POSITIVE);
     let places: Vec<f64> = points.iter().map(|(x, _)| unit * (x - ends[0]) - 1.0).collect();
     let mut basis: Vec<Vec<f64>> = Vec::with_capacity(degree + 1);

@@ -18,6 +18,8 @@
 
 mod shells;
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use crate::error::{Error, Result, positive, require};
@@ -65,7 +67,7 @@ pub enum Correction {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Persson {
-    shells: Shells,
+    shells: Arc<dyn Shells>,
     creep: Creep,
     pressure: f64,
     correction: Correction,
@@ -111,7 +113,7 @@ impl Persson {
         pressure: f64,
         correction: Correction,
     ) -> Result<Self> {
-        Persson::new(Shells::Waves(Waves::of(surface, direction)?), creep, pressure, correction)
+        Persson::new(Arc::new(Waves::of(surface, direction)?), creep, pressure, correction)
     }
 
     /// From an isotropic spectrum C(q) \[m^4\] at increasing wave numbers \[1/m\], normalised as in
@@ -141,10 +143,10 @@ impl Persson {
         correction: Correction,
     ) -> Result<Self> {
         let spectrum = Isotropic::new(wave_number, power, Fineness::default())?;
-        Persson::new(Shells::Isotropic(spectrum), creep, pressure, correction)
+        Persson::new(Arc::new(spectrum), creep, pressure, correction)
     }
 
-    fn new(shells: Shells, creep: &Creep, pressure: f64, correction: Correction) -> Result<Self> {
+    fn new(shells: Arc<dyn Shells>, creep: &Creep, pressure: f64, correction: Correction) -> Result<Self> {
         creep.validate_solid()?;
         positive("nominal pressure", pressure, "Pa")?;
         Ok(Persson { shells, creep: creep.tidy(), pressure, correction })
@@ -186,7 +188,7 @@ impl Persson {
     fn accumulate(&self, velocity: f64, mut visit: impl FnMut(f64, f64, f64)) -> Result<(f64, f64)> {
         require(velocity.is_finite(), "velocity", velocity, "finite, in m/s")?;
         let (mut root, mut friction) = (0.0, 0.0);
-        self.shells.each(&self.creep, velocity.abs(), |shell| {
+        self.shells.each(&self.creep, velocity.abs(), &mut |shell| {
             // sqrt(G), which does not overflow if G would.
             let next = libm::hypot(root, shell.square.sqrt() / self.pressure);
             friction += shell.stress / self.pressure * self.mean_share(root, next);

@@ -31,24 +31,13 @@ pub(super) struct Shell {
 }
 
 /// A spectrum divided into shells.
-#[derive(Clone, Debug)]
-pub(super) enum Shells {
-    Waves(Waves),
-    Isotropic(Isotropic),
-}
-
-impl Shells {
-    /// The shells at a speed, starting from the longest waves.
-    pub(super) fn each(&self, creep: &Creep, speed: f64, visit: impl FnMut(Shell)) {
-        match self {
-            Shells::Waves(waves) => waves.each(creep, speed, visit),
-            Shells::Isotropic(spectrum) => spectrum.each(creep, speed, visit),
-        }
-    }
+pub(super) trait Shells: std::fmt::Debug + Send + Sync {
+    /// Visits the shells at a speed, starting from the longest waves.
+    fn each(&self, creep: &Creep, speed: f64, visit: &mut dyn FnMut(Shell));
 }
 
 /// The waves of a periodic grid, in order of |q|.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Waves {
     /// The different q_e \[1/m\].
     along: Vec<f64>,
@@ -101,8 +90,10 @@ impl Waves {
         });
         Ok(Waves { waves: weighed.collect(), along: different, shells })
     }
+}
 
-    fn each(&self, creep: &Creep, speed: f64, mut visit: impl FnMut(Shell)) {
+impl Shells for Waves {
+    fn each(&self, creep: &Creep, speed: f64, visit: &mut dyn FnMut(Shell)) {
         let moduli: Vec<(f64, f64)> = self.along.iter().map(|q| square_and_loss(creep, q * speed)).collect();
         let mut start = 0;
         for &(wave_number, end) in &self.shells {
@@ -119,7 +110,7 @@ impl Waves {
 }
 
 /// An isotropic spectrum.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Isotropic {
     panels: Vec<Panel>,
     /// Nodes around the circle: q_e/|q| and the weight of the node.
@@ -193,8 +184,10 @@ impl Isotropic {
         };
         Ok(Isotropic { panels, circle: (0..=count).map(node).collect() })
     }
+}
 
-    fn each(&self, creep: &Creep, speed: f64, mut visit: impl FnMut(Shell)) {
+impl Shells for Isotropic {
+    fn each(&self, creep: &Creep, speed: f64, visit: &mut dyn FnMut(Shell)) {
         for panel in &self.panels {
             let mut shell = Shell { wave_number: panel.end, square: 0.0, stress: 0.0 };
             for (q, power) in panel.points {

@@ -89,8 +89,7 @@ fn finer_shells_and_circles_change_nothing() {
         for pressure in [1e-4, 1e-3, 1e-2] {
             let with = |shell: f64, circle: f64| {
                 let spectrum = Isotropic::new(&q, &power, Fineness { shell, circle }).unwrap();
-                Persson::new(Shells::Isotropic(spectrum), &rubber(), pressure, Correction::YangPersson)
-                    .unwrap()
+                Persson::new(Arc::new(spectrum), &rubber(), pressure, Correction::YangPersson).unwrap()
             };
             let Fineness { shell, circle } = Fineness::default();
             let (usual, fine) = (with(shell, circle), with(0.5 * shell, 0.5 * circle));

@@ -19,6 +19,7 @@ use ndarray::parallel::prelude::*;
 
 use super::Surface;
 use crate::error::{Result, positive, require};
+use crate::numbers::median;
 
 /// Criteria for outliers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,12 +120,6 @@ fn deviation(heights: ArrayView2<f64>, of: impl Fn([usize; 2]) -> Option<f64> + 
     // Heights in coarse steps: most deviations are zero. The mean deviation of a normal e is sqrt(2/pi) sigma.
     let mean = sizes.iter().sum::<f64>() / sizes.len() as f64;
     if robust > 0.0 { robust } else { 1.2533 * mean }
-}
-
-/// The median (the upper one of an even number); reorders the values, of which there is at least one.
-fn median(values: &mut [f64]) -> f64 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]

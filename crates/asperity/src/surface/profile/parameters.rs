@@ -14,6 +14,7 @@ use std::f64::consts::{LN_2, PI};
 
 use super::super::spectrum::check_defined;
 use crate::error::{Result, positive, require};
+use crate::numbers::extent;
 
 /// Sections of a profile, for Rz.
 const SECTIONS: usize = 5;
@@ -65,8 +66,8 @@ impl ProfileParameters {
         let moment = |power: i32| z.iter().map(|z| z.powi(power)).sum::<f64>() / n;
         let rq = moment(2).sqrt();
         let range = |part: &[f64]| {
-            part.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-                - part.iter().copied().fold(f64::INFINITY, f64::min)
+            let [low, high] = extent(part.iter().copied());
+            high - low
         };
         let sections = (0..SECTIONS).map(|k| &z[k * z.len() / SECTIONS..(k + 1) * z.len() / SECTIONS]);
         let rz = sections.map(range).sum::<f64>() / SECTIONS as f64;

@@ -34,6 +34,7 @@ use super::super::waves::Waves;
 use super::parameters::check;
 use crate::error::{Result, positive, require};
 use crate::grid::Grid;
+use crate::numbers::bisect;
 
 /// Power spectrum of a profile, averaged over rings of wave numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -301,15 +302,7 @@ fn root(holds: impl Fn(f64) -> bool, start: f64, high: f64) -> f64 {
     while holds(end) && end < high {
         (low, end) = (end, 2.0 * end);
     }
-    for _ in 0..60 {
-        let middle = 0.5 * (low + end);
-        if holds(middle) {
-            low = middle;
-        } else {
-            end = middle;
-        }
-    }
-    low
+    bisect([low, end], 60, holds)[0]
 }
 
 /// Heights minus their straight line.

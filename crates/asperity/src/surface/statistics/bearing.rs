@@ -4,6 +4,7 @@
 use super::super::Surface;
 use super::heights::defined;
 use crate::error::{Result, require};
+use crate::numbers::extent;
 
 /// Fraction of the defined points above each height of a list.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,8 +127,7 @@ pub fn height_distribution(surface: &Surface, bins: usize) -> Result<(Vec<f64>, 
 }
 
 fn range(surface: &Surface) -> Result<(f64, f64)> {
-    let (low, high) = defined(surface.heights())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
+    let [low, high] = extent(defined(surface.heights()));
     require(low <= high, "number of defined heights", 0, "1 at least")?;
     Ok((low, high))
 }

@@ -184,10 +184,10 @@ impl PowerSpectrum {
         };
         let last = ring(nyquist);
         // Blocks of rows are summed separately, then added in order: the same bits for any number of threads.
-        let blocks: Vec<Vec<Ring>> = (0..nx.div_ceil(ROWS))
+        let blocks: Vec<Vec<[f64; 3]>> = (0..nx.div_ceil(ROWS))
             .into_par_iter()
             .map(|block| {
-                let mut sums = vec![Ring::default(); last + 1];
+                let mut sums = vec![[0.0; 3]; last + 1];
                 let rows = (block * ROWS..nx.min((block + 1) * ROWS)).flat_map(|i| {
                     self.power.row(i).into_iter().enumerate().map(move |(j, power)| (i, j, power))
                 });
@@ -196,29 +196,22 @@ impl PowerSpectrum {
                     let q = (m[0][0] * qx * qx + 2.0 * m[0][1] * qx * qy + m[1][1] * qy * qy).sqrt();
                     if q > 0.0 && q <= nyquist * (1.0 + 1e-9) {
                         let times = count(grid, j);
-                        let sum = &mut sums[ring(q).min(last)];
-                        sum.wave_number += times * q;
-                        sum.power += times * power;
-                        sum.waves += times as usize;
+                        add(&mut sums[ring(q).min(last)], [times * q, times * power, times]);
                     }
                 }
                 sums
             })
             .collect();
-        let mut sums = vec![Ring::default(); last + 1];
-        for block in &blocks {
-            for (sum, part) in sums.iter_mut().zip(block) {
-                sum.wave_number += part.wave_number;
-                sum.power += part.power;
-                sum.waves += part.waves;
-            }
+        let mut sums = vec![[0.0; 3]; last + 1];
+        for block in blocks {
+            sums.iter_mut().zip(block).for_each(|(sum, part)| add(sum, part));
         }
         let mut spectrum = RadialSpectrum { wave_number: vec![], power: vec![], waves: vec![] };
         // The linear ring around 0 is not used.
-        for Ring { wave_number, power, waves } in sums.into_iter().filter(|s| s.waves > 0) {
-            spectrum.wave_number.push(wave_number / waves as f64);
-            spectrum.power.push(grid.area() * power / waves as f64);
-            spectrum.waves.push(waves);
+        for [wave_number, power, waves] in sums.into_iter().filter(|[.., waves]| *waves > 0.0) {
+            spectrum.wave_number.push(wave_number / waves);
+            spectrum.power.push(grid.area() * power / waves);
+            spectrum.waves.push(waves as usize);
         }
         Ok(spectrum)
     }
@@ -260,8 +253,7 @@ impl PowerSpectrum {
         let row = |i: usize| {
             let mut sums = [0.0; 3];
             for (j, power) in self.power.row(i).iter().enumerate().skip(usize::from(i == 0)) {
-                let terms = of(self.slope_vector((i, j)), count(&self.grid, j) * power);
-                terms.iter().zip(&mut sums).for_each(|(term, sum)| *sum += term);
+                add(&mut sums, of(self.slope_vector((i, j)), count(&self.grid, j) * power));
             }
             sums
         };
@@ -308,12 +300,9 @@ impl SpectralLay {
 /// Rows of a block that is summed separately.
 const ROWS: usize = 64;
 
-/// Sums over the waves of a ring.
-#[derive(Clone, Copy, Default)]
-struct Ring {
-    wave_number: f64,
-    power: f64,
-    waves: usize,
+/// Adds to the sums over some waves: of wave numbers, powers, or 1.
+fn add(sum: &mut [f64; 3], terms: [f64; 3]) {
+    sum.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
 }
 
 /// Moments of the spectrum of a profile through an isotropic surface.

@@ -57,8 +57,7 @@ pub struct OutputKeys {
     /// a tenth of the number of steps (10 if steps are adaptive). This or `times`.
     #[schemars(example = 10)]
     every: Option<Whole<1>>,
-    /// Times at which fields are stored, in addition to the first and the last row. Each becomes a step; if steps are
-    /// adaptive the state there is interpolated instead. This or `every`.
+    /// Times at which fields are stored, in addition to the first and the last row. Each becomes a step. This or `every`.
     #[schemars(example = ("1 s", "10 s", "100 s"))]
     times: Option<Vec<Time<NonNegative>>>,
     /// Units in which leaks and times are printed and drawn; numbers that are stored and JSON stay SI.

@@ -93,7 +93,7 @@ pub enum From {
 pub type Course<W> = Form<W, Never, Box<History>>;
 
 impl<D: Dimension + Copy, R: Range + Copy> Course<Quantity<D, R>> {
-    /// The history in SI, as of [`History::read`].
+    /// The history in SI; `help` says what to do where it has none.
     pub fn history(&self, at: &Place<'_>, kind: Kind, help: &str) -> Option<asperity::History> {
         match self {
             Form::Word(value) => Some(asperity::History::Step { value: value.get() }),

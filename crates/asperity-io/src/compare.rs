@@ -122,12 +122,11 @@ pub fn answers(readers: &[Reader], units: &Units) -> Result<Vec<Answers>, StoreE
     }
     for Answers { values, changes, .. } in &mut all {
         let first = values[0];
-        let change = |value: &f64| if *value == first { 0.0 } else { value / first - 1.0 };
-        *changes = values
-            .iter()
-            .map(change)
-            .map(|change| if change.is_finite() { change } else { f64::NAN })
-            .collect();
+        let change = |value: &f64| {
+            let change = if *value == first { 0.0 } else { value / first - 1.0 };
+            if change.is_finite() { change } else { f64::NAN }
+        };
+        *changes = values.iter().map(change).collect();
     }
     Ok(all)
 }

@@ -62,7 +62,7 @@ macro_rules! dimensions {
     ($($(#[$doc:meta])* $type:ident = $name:literal, $si:literal, $units:literal, $example:literal, $powers:expr;)*) => {
         /// The dimensions that a case file knows.
         pub mod dimension {
-            use super::{Dimension, Finite, Powers, Prescribed, Quantity, QuantityError};
+            use super::{Dimension, Powers, Prescribed, Quantity, QuantityError, Range};
 
             $(
                 #[doc = concat!("The dimension of ", $name, ".")]
@@ -92,11 +92,11 @@ macro_rules! dimensions {
             ///
             /// # Errors
             /// [`QuantityError`] for another dimension, or a text that is no quantity.
-            pub fn resolve(unit: &str, value: &Prescribed) -> Result<f64, QuantityError> {
+            pub fn resolve<R: Range>(unit: &str, value: &Prescribed) -> Result<f64, QuantityError> {
                 $(if unit == $type::SI {
-                    return value.resolve::<$type, Finite>().map(Quantity::get);
+                    return value.resolve::<$type, R>().map(Quantity::get);
                 })*
-                value.resolve::<Number, Finite>().map(Quantity::get)
+                value.resolve::<Number, R>().map(Quantity::get)
             }
 
             /// The name of the dimension with these powers, where it has one here.

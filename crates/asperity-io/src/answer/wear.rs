@@ -36,6 +36,7 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         return Ok(vec![]);
     }
     let grid = &reader.header().grid;
+    let times: Vec<f64> = rows.iter().map(|row| row.coordinate.value()).collect();
     let last = rows.len() - 1;
     let of_rows = |quantity: Quantity| reader.series(quantity.name());
     let (volume, depth) = (of_rows(Quantity::WearVolume)?, of_rows(Quantity::WearDepthMax)?);
@@ -57,8 +58,8 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         // Slip is fastest in the middle of a way, so the rate is that of the last computed cycle.
         let period = number(reader, Header::FRICTION, "period");
         let from = period.and_then(|period| {
-            let begin = rows[last].coordinate.value() - period;
-            rows.iter().rposition(|row| row.coordinate.value() <= begin * (1.0 + 1e-9))
+            let begin = times[last] - period;
+            times.iter().rposition(|time| *time <= begin * (1.0 + 1e-9))
         });
         let of = quantity(limit, "m");
         let (time, note) = match reached(limit, &depth, &course, from) {
@@ -68,14 +69,8 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
                     ("1", Some(period)) => way * period,
                     ("s", _) => way,
                     // At the mean velocity of the run.
-                    _ if share > 1.0 => share * rows[last].coordinate.value(),
-                    _ => reached(
-                        limit,
-                        &depth,
-                        &rows.iter().map(|row| row.coordinate.value()).collect::<Vec<_>>(),
-                        None,
-                    )
-                    .unwrap_or(f64::NAN),
+                    _ if share > 1.0 => share * times[last],
+                    _ => reached(limit, &depth, &times, None).unwrap_or(f64::NAN),
                 };
                 let how = match share > 1.0 {
                     true => {

@@ -43,11 +43,8 @@ impl Adhesion {
         };
         if range == 0.0 {
             let help = "give `range`, or leave the section out";
-            return at.key("strength").fault(
-                "a strength gives no range where the work is 0",
-                "a work above 0",
-                help,
-            );
+            let message = "a strength gives no range where the work is 0";
+            return at.key("strength").fault(message, "a work above 0", help);
         }
         let usual = Law::new(work, range);
         let law = Law {

@@ -42,13 +42,9 @@ impl Domain {
         // Of a line, the length along y that its grid has.
         let size = self.size.map(|size| size.map(1.0, Length::get));
         // Before anything of that size is made.
-        if let Some([nx, ny]) = cells {
-            self.fits(
-                at,
-                [nx, ny],
-                (nx as u64).saturating_mul(ny as u64).saturating_mul(BYTES_PER_CELL),
-                "",
-            )?;
+        if let Some(cells) = cells {
+            let bytes = cells.iter().fold(BYTES_PER_CELL, |bytes, n| bytes.saturating_mul(*n as u64));
+            self.fits(at, cells, bytes, "")?;
         }
         let (cells, size, line) = match (cells, size, files) {
             (Some(cells), Some(size), _) => (cells, size, line == Some(true)),
@@ -98,17 +94,8 @@ impl Domain {
     /// Refuses a problem on these cells that takes more memory than the machine has.
     pub fn fits(&self, at: &Place<'_>, [nx, ny]: [usize; 2], bytes: u64, or: &str) -> Option<()> {
         let count = if self.is_line() == Some(true) { nx.to_string() } else { format!("{nx} x {ny}") };
-        match check_memory(&format!("{count} cells"), bytes) {
-            Ok(()) => Some(()),
-            Err(message) => {
-                let help = format!("take fewer cells{or}");
-                self.place_of_cells(at).refuse(
-                    Code::TooLarge,
-                    message,
-                    "a problem that fits into memory",
-                    &help,
-                )
-            }
-        }
+        let Err(message) = check_memory(&format!("{count} cells"), bytes) else { return Some(()) };
+        let (at, help) = (self.place_of_cells(at), format!("take fewer cells{or}"));
+        at.refuse(Code::TooLarge, message, "a problem that fits into memory", &help)
     }
 }

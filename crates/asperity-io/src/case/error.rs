@@ -9,7 +9,7 @@ use crate::Code;
 ///
 /// `message` is a sentence by itself; the other fields serve programs and renderers that point into the
 /// source (the `span` counts bytes of [`CaseErrors::source`]).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub struct CaseError {
     /// What kind of fault it is.
     pub code: Code,
@@ -35,14 +35,9 @@ impl fmt::Display for CaseError {
             write!(f, "line {line}: ")?;
         }
         write!(f, "{}", self.message)?;
-        match &self.help {
-            Some(help) => write!(f, " ({help})"),
-            None => Ok(()),
-        }
+        self.help.iter().try_for_each(|help| write!(f, " ({help})"))
     }
 }
-
-impl std::error::Error for CaseError {}
 
 /// All faults found in one case file, with the text that they point into.
 #[derive(Clone, Debug, PartialEq)]

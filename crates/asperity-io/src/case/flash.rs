@@ -165,14 +165,8 @@ fn feedback(
         }
         found = Some(own);
     }
-    match found {
-        Some(found) => Some(found),
-        None => at.fault(
-            "no material that remembers moves through the contact, so its temperature changes nothing",
-            "a viscoelastic track",
-            "take feedback = \"none\"",
-        ),
-    }
+    let message = "no material that remembers moves through the contact, so its temperature changes nothing";
+    found.or_else(|| at.fault(message, "a viscoelastic track", "take feedback = \"none\""))
 }
 
 /// The temperature \[K\] of a material with this shift: its own, that of the run at its start, or the reference.
@@ -191,11 +185,8 @@ pub fn shift_factor(at: &Place<'_>, parts: &[Part<'_>], temperatures: Option<&[(
     let changes = temperatures.is_some_and(|points| points.iter().any(|point| point.1 != points[0].1));
     if changes && sample.temperature.is_none() {
         let message = "a shear stress with a peak shifts with the temperature, which changes in this run";
-        return at.fault(
-            message,
-            "a constant temperature",
-            "take a constant or a table, or hold the temperature",
-        );
+        let help = "take a constant or a table, or hold the temperature";
+        return at.fault(message, "a constant temperature", help);
     }
     match temperature_of(shift, sample.temperature, temperatures) {
         Some(kelvin) => at.core(shift.factor(kelvin)),

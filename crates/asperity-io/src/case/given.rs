@@ -18,7 +18,7 @@ use super::history::Bodies;
 use super::load::Load;
 use super::material::Dependence;
 use super::place::Checks;
-use super::shift::Shift;
+use super::shift::{Shift, dependence};
 use super::surface::Surface;
 use super::text::Text;
 use super::{Case, CaseErrors, Pair, assemble};
@@ -124,8 +124,10 @@ pub fn shift(keys: Table) -> Result<(ShiftRequest, VerticalRequest), CaseErrors>
     let keys = Table::from_iter([("shift".to_owned(), keys.into())]);
     from_keys(&keys, &Arrays::new(), |text| {
         let shift: Shift = document::section(text, "shift")?;
-        let Dependence { shift, vertical } = shift.alone(text)?;
-        Ok((shift, vertical))
+        let checks = Checks::new(text, Path::new(""));
+        // The shift is the only key of its document.
+        let found = dependence(&checks.root(), Some(&shift), None);
+        checks.finish(found.map(|Dependence { shift, vertical }| (shift, vertical)))
     })
 }
 

@@ -93,7 +93,7 @@ pub enum From {
 pub type Course<W> = Form<W, Never, Box<History>>;
 
 impl<D: Dimension + Copy, R: Range + Copy> Course<Quantity<D, R>> {
-    /// The history in SI, as of [`History::read`].
+    /// The history in SI; `help` says what to do where it has none.
     pub fn history(&self, at: &Place<'_>, kind: Kind, help: &str) -> Option<asperity::History> {
         match self {
             Form::Word(value) => Some(asperity::History::Step { value: value.get() }),
@@ -148,24 +148,12 @@ fn table(at: &Place<'_>, points: &[Two<Time, Prescribed>], kind: Kind) -> Option
 }
 
 /// What a prescribed value is.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Kind {
-    Load(Sign),
-    /// Of a line contact.
-    LoadPerLength(Sign),
-    Pressure(Sign),
-    Approach,
-    Velocity,
-    Position,
-}
-
-/// Which loads the bodies bear.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Sign {
-    /// Bodies only press.
-    Press,
-    /// Bodies that adhere also pull.
-    PressOrPull,
+#[derive(Clone, Copy)]
+pub struct Kind {
+    /// Its unit in SI.
+    pub unit: &'static str,
+    /// Whether it may not be negative: bodies that do not adhere only press.
+    pub presses: bool,
 }
 
 /// What the rest of the case says of the contact.
@@ -178,48 +166,36 @@ pub struct Bodies {
 }
 
 impl Kind {
+    pub const LENGTH: Kind = Kind { unit: "m", presses: false };
+    pub const VELOCITY: Kind = Kind { unit: "m/s", presses: false };
+
     pub fn of(control: Control, bodies: Bodies) -> Self {
-        let sign = if bodies.adhere { Sign::PressOrPull } else { Sign::Press };
-        match control {
-            Control::Load if bodies.line => Kind::LoadPerLength(sign),
-            Control::Load => Kind::Load(sign),
-            Control::Pressure => Kind::Pressure(sign),
-            Control::Approach => Kind::Approach,
-        }
+        let unit = match control {
+            Control::Load if bodies.line => "N/m",
+            Control::Load => "N",
+            Control::Pressure => "Pa",
+            Control::Approach => "m",
+        };
+        Kind { unit, presses: control != Control::Approach && !bodies.adhere }
     }
 
-    /// Whether it may not be negative.
-    pub fn presses(self) -> bool {
-        use Sign::Press;
-        matches!(self, Kind::Load(Press) | Kind::LoadPerLength(Press) | Kind::Pressure(Press))
-    }
-
-    /// The value in SI, in the dimension that the control has. A load presses, unless the bodies adhere; an approach may be negative.
+    /// The value in SI, in the dimension that it must have.
     pub fn resolve(self, value: &Prescribed) -> Result<f64, QuantityError> {
-        fn load<D: Dimension>(value: &Prescribed, sign: Sign) -> Result<f64, QuantityError> {
-            match sign {
-                Sign::Press => value.resolve::<D, NonNegative>().map(|v| v.get()),
-                Sign::PressOrPull => value.resolve::<D, Finite>().map(|v| v.get()),
-            }
-        }
-        let si = match self {
-            Kind::LoadPerLength(sign) => load::<dimension::ForcePerLength>(value, sign),
-            Kind::Load(sign) => load::<dimension::Force>(value, sign),
-            Kind::Pressure(sign) => load::<dimension::Pressure>(value, sign),
-            Kind::Approach | Kind::Position => value.resolve::<dimension::Length, Finite>().map(|v| v.get()),
-            Kind::Velocity => value.resolve::<dimension::Velocity, Finite>().map(|v| v.get()),
+        let si = match self.presses {
+            true => dimension::resolve::<NonNegative>(self.unit, value),
+            false => dimension::resolve::<Finite>(self.unit, value),
         };
         si.map_err(|QuantityError { code, expected, help }| {
-            let help = match (self, help) {
-                (Kind::LoadPerLength(_), Some(help)) if help.contains("unit of a force;") => {
+            let help = match (self.unit, help) {
+                ("N/m", Some(help)) if help.contains("unit of a force;") => {
                     format!("{help}; the domain is a line of cells, so the load is per length along y")
                 }
-                (Kind::Load(_), Some(help)) if help.contains("unit of a force per length") => {
+                ("N", Some(help)) if help.contains("unit of a force per length") => {
                     format!(
                         "{help}; loads per length are for a line contact, with cells = [N] and size = [\"L\"]"
                     )
                 }
-                (kind, None) if kind.presses() => {
+                (_, None) if self.presses => {
                     "there is no adhesion; to pull the bodies apart prescribe the approach".to_owned()
                 }
                 (_, help) => return QuantityError { code, expected, help },

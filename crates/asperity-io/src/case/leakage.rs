@@ -4,7 +4,7 @@ use asperity::Boundary;
 use asperity::leakage::{Rarefaction, Sides, Species};
 use asperity::traction::{Action, Pockets};
 
-use super::history::{Course, Kind, Sign};
+use super::history::{Course, Kind};
 use super::keys::*;
 use super::plan::Output;
 use super::stored_times::{StoredTimes, stored_times};
@@ -154,7 +154,8 @@ impl LeakageKeys {
             );
         }
         let times = stored_times(&at.key("times"), self.times.as_ref(), output, end);
-        let (kind, help) = (Kind::Pressure(Sign::Press), "give the pressure as a number or a table");
+        let kind = Kind { unit: "Pa", presses: true };
+        let help = "give the pressure as a number or a table";
         let inlet = match &self.inlet {
             Some(inlet) => Some(inlet.history(&at.key("inlet"), kind, help)?),
             None => None,

@@ -272,10 +272,8 @@ impl Case {
         };
         let simulation = Simulation { gap, motion, ..self.conditions.clone() };
         let simulation = Simulation { quantities: self.quantities(&simulation), ..simulation };
-        match simulation.validate() {
-            Ok(()) => Ok(simulation),
-            Err(error) => Err(self.refused("", error)),
-        }
+        simulation.validate().map_err(|error| self.refused("", error))?;
+        Ok(simulation)
     }
 
     /// The gap of parts that may move.

@@ -174,13 +174,13 @@ impl Motion {
         let travel = match (&self.velocity, &self.path) {
             (Some(velocity), _) => {
                 let at = at.key("velocity");
-                let history = velocity.history(&at, Kind::Velocity, "")?;
+                let history = velocity.history(&at, Kind::VELOCITY, "")?;
                 Travel::Path(at.core(Path::of_velocity(history, start))?)
             }
             (None, Some(path)) => {
                 let at = at.key("path");
                 // There is no earlier value in the history.
-                let history = path.read(&at, Kind::Position, "")?;
+                let history = path.read(&at, Kind::LENGTH, "")?;
                 Travel::Path(at.core(Path::of_position(history, start))?)
             }
             (None, None) => {
@@ -225,11 +225,8 @@ impl Motion {
         end: f64,
     ) -> Option<()> {
         if self.start.is_some_and(|start| start.get() >= end) {
-            at.key("start").fault::<()>(
-                "the motion starts after the end of the run",
-                "a time before the end",
-                "",
-            );
+            let message = "the motion starts after the end of the run";
+            at.key("start").fault::<()>(message, "a time before the end", "");
         }
         let named = self.named(&at.key("over"), bodies)?;
         if moving.rolls {
@@ -335,12 +332,8 @@ impl Steady {
         }
         if let Some(velocity) = list.iter().find(|velocity| !velocity.is_finite()) {
             let message = format!("the range reaches a velocity of {velocity} m/s");
-            return at.refuse(
-                Code::OutOfRange,
-                message,
-                "finite velocities",
-                "bring its ends closer together",
-            );
+            let help = "bring its ends closer together";
+            return at.refuse(Code::OutOfRange, message, "finite velocities", help);
         }
         list.sort_by(f64::total_cmp);
         if let Some(pair) = list.windows(2).find(|pair| pair[0] == pair[1]) {

@@ -57,8 +57,7 @@ pub struct OutputKeys {
     /// a tenth of the number of steps (10 if steps are adaptive). This or `times`.
     #[schemars(example = 10)]
     every: Option<Whole<1>>,
-    /// Times at which fields are stored, in addition to the first and the last row. Each becomes a step; if steps are
-    /// adaptive the state there is interpolated instead. This or `every`.
+    /// Times at which fields are stored, in addition to the first and the last row. Each becomes a step. This or `every`.
     #[schemars(example = ("1 s", "10 s", "100 s"))]
     times: Option<Vec<Time<NonNegative>>>,
     /// Units in which leaks and times are printed and drawn; numbers that are stored and JSON stay SI.
@@ -180,21 +179,21 @@ impl OutputKeys {
         programme: Option<&Programme>,
         count: Option<usize>,
     ) -> Option<Rows> {
-        match (self.every, &self.times) {
-            (Some(_), Some(_)) => {
+        match (self.every, &self.times, count) {
+            (Some(_), Some(_), _) => {
                 let message = "`times` and `every` exclude each other";
                 at.key("times").fault(message, "one of the two", "leave one of them out")
             }
-            (Some(every), None) => Some(Rows::Every(every.count())),
-            (None, None) if count.is_some() => Some(Rows::Every((count? / 10).max(1))),
-            (None, None) => {
+            (Some(every), None, _) => Some(Rows::Every(every.count())),
+            (None, None, Some(count)) => Some(Rows::Every((count / 10).max(1))),
+            (None, None, None) => {
                 let stages = programme.iter().flat_map(|programme| &programme.stages);
                 let own: usize = stages.filter_map(|stage| stage.times.as_ref()).map(time::steps).sum();
                 let own_only = matches!(times, TimeGrid::List(end) if end.len() == 1);
                 let steps = if own > 0 && own_only { own } else { time::steps(times) + own };
                 Some(Rows::Every(steps.div_ceil(10)))
             }
-            (None, Some(list)) => {
+            (None, Some(list), _) => {
                 let (at, end) = (at.key("times"), times.end());
                 let instants = at.increasing(list.iter().map(|time| time.get()))?;
                 if let Some(n) = instants.iter().position(|time| *time > end) {

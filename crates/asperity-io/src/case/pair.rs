@@ -78,11 +78,8 @@ pub fn pair(
 ) -> Option<Pair> {
     if bodies.len() > 2 {
         let help = "write a coating as [[body.layer]] of its body; a rigid body is left out";
-        return list.item(2).fault(
-            "a contact has one or two bodies, and this is the third",
-            "two bodies",
-            help,
-        );
+        let message = "a contact has one or two bodies, and this is the third";
+        return list.item(2).fault(message, "two bodies", help);
     }
     let warmths: Vec<Option<Warmth>> = parts
         .iter()

@@ -140,10 +140,11 @@ impl<'r, 't> Reader<'r, 't> {
         let moved = self
             .listed(key, &value)
             .and_then(|()| inside.try_for_each(|(path, union)| self.move_tag(&mut value, path, union)));
-        let read = moved.map_err(|error| *error).and_then(|()| {
-            let read = T::deserialize(ValueDeserializer::from(value));
-            read.map_err(|error| words::translate(self.text, &error, span))
-        });
+        let read = match moved {
+            Ok(()) => T::deserialize(ValueDeserializer::from(value))
+                .map_err(|error| words::translate(self.text, &error, span)),
+            Err(error) => Err(*error),
+        };
         read.map_err(|error| self.errors.push(error)).ok()
     }
 

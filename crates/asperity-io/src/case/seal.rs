@@ -66,19 +66,14 @@ impl SealKeys {
         };
         let Some(fluid) = leak.fluid else {
             let help = "give [leakage] pressure_drop and viscosity, or gas, inlet and outlet";
-            return at.sibling("leakage").fault(
-                "a seal needs a fluid, but [leakage] has none",
-                "a fluid",
-                help,
-            );
+            let message = "a seal needs a fluid, but [leakage] has none";
+            return at.sibling("leakage").fault(message, "a fluid", help);
         };
         if load.control != Some(Control::Pressure) || !at.sibling("load").has("history.value") {
             let help = "set load.control = \"pressure\" and load.history = { kind = \"step\", value = \"...\" }; the value is that of a single run";
-            return at.sibling("load").fault(
-                "a seal is computed from runs at several mean pressures",
-                "load.control = \"pressure\" and a history with a `value`",
-                help,
-            );
+            let message = "a seal is computed from runs at several mean pressures";
+            let expected = "load.control = \"pressure\" and a history with a `value`";
+            return at.sibling("load").fault(message, expected, help);
         }
         let rough = surfaces.iter().enumerate().find_map(|(n, surface)| surface.rough(n));
         let seeds = match (self.seeds.map(Whole::count), &rough) {
@@ -86,11 +81,8 @@ impl SealKeys {
             (None, None) => 1,
             (Some(seeds), None) if seeds > 1 => {
                 let help = "leave `seeds` out: a measured surface is one; compute other measurements in their own folders";
-                return at.key("seeds").fault(
-                    "no surface of the case has a seed",
-                    "a surface of the kind self-affine",
-                    help,
-                );
+                let message = "no surface of the case has a seed";
+                return at.key("seeds").fault(message, "a surface of the kind self-affine", help);
             }
             (Some(seeds), _) if seeds > MOST => return at.key("seeds").wrong(format!("{MOST} at most"), ""),
             (Some(seeds), _) => seeds,
@@ -107,11 +99,8 @@ impl SealKeys {
                 "the pressure at the inlet is {} Pa, but the file has pressures from {from} Pa to {to} Pa only",
                 number(inlet)
             );
-            return at.key("profile").fault(
-                message,
-                "a profile at this inlet pressure",
-                "add rows to the file",
-            );
+            let expected = "a profile at this inlet pressure";
+            return at.key("profile").fault(message, expected, "add rows to the file");
         }
         let patch = match leak.direction {
             LeakDirection::Y => 1,

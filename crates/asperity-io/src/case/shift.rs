@@ -2,13 +2,8 @@
 
 use asperity::material::{self, VerticalShift};
 
-use std::path::Path;
-
-use super::error::CaseError;
 use super::keys::*;
 use super::material::Dependence;
-use super::place::Checks;
-use super::text::Text;
 use crate::curve::{self, ShiftRequest, VerticalRequest, VerticalWord};
 
 /// How all times of a material scale with temperature: by the shift factor a_T, 1 at the reference.
@@ -81,13 +76,6 @@ pub struct VerticalDensity {
 }
 
 impl Shift {
-    /// The shift, and how moduli depend on temperature, of a shift that stands alone.
-    pub fn alone(&self, text: &Text<'_>) -> Result<Dependence, Vec<CaseError>> {
-        let checks = Checks::new(text, Path::new(""));
-        // The shift is the only key of its document.
-        checks.finish(dependence(&checks.root(), Some(self), None))
-    }
-
     fn request(&self, at: &Place<'_>) -> Option<ShiftRequest> {
         let shift = match &self.model {
             Model::Wlf { c1, c2, reference } => {

@@ -165,11 +165,8 @@ impl Stress {
                     body.name
                 );
                 let help = "give the body a constant `poisson` (a stored result: --poisson NU), or choose the other body";
-                return place.fault(
-                    message,
-                    "a body of constant Poisson's ratio or constant temperature",
-                    help,
-                );
+                let expected = "a body of constant Poisson's ratio or constant temperature";
+                return place.fault(message, expected, help);
             }
             Some(poisson) => poisson.clone(),
         };

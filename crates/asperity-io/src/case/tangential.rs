@@ -6,7 +6,7 @@ use asperity::tangential::{Coupling, PairRatio, Tangential as Law, TangentialCon
 use ndarray::Array2;
 
 use super::hardness::numbers_of_cells;
-use super::history::{History, Kind, Sign};
+use super::history::{History, Kind};
 use super::keys::*;
 
 /// Friction between the surfaces, under the load of `[tangential]`.
@@ -59,11 +59,11 @@ impl Tangential {
         if self.x.is_none() && self.y.is_none() {
             return at.fault("nothing is prescribed", "`x`, `y` or both", "give x = { kind = ... }");
         }
-        let kind = match self.control {
-            TangentialControl::Force if grid?.is_line() => Kind::LoadPerLength(Sign::PressOrPull),
-            TangentialControl::Force => Kind::Load(Sign::PressOrPull),
-            TangentialControl::Displacement => Kind::Approach,
+        let unit = match self.control {
+            TangentialControl::Force => grid?.units("N"),
+            TangentialControl::Displacement => "m",
         };
+        let kind = Kind { unit, presses: false };
         let read = |key: &str, history: &Option<History>| match history {
             None => Some(asperity::History::Step { value: 0.0 }),
             Some(history) => history.read(&at.key(key), kind, "give a step, a ramp or a table"),

@@ -75,7 +75,7 @@ pub fn resolve(number: RowNumber, value: &Prescribed, line: bool) -> Result<f64,
         "J/m" => "N",
         units => units,
     };
-    dimension::resolve(known, value)
+    dimension::resolve::<Finite>(known, value)
 }
 
 impl JsonSchema for Until {

@@ -65,15 +65,12 @@ impl Wear {
             }
             (Some(_), Some(section)) => {
                 let help = format!("delete `velocity`, or [{section}]");
-                return at.key("velocity").fault(
-                    format!("the sliding distance is that of [{section}]"),
-                    "one of the two",
-                    &help,
-                );
+                let message = format!("the sliding distance is that of [{section}]");
+                return at.key("velocity").fault(message, "one of the two", &help);
             }
             (Some(velocity), None) => {
                 let at = at.key("velocity");
-                let history = velocity.history(&at, Kind::Velocity, "")?;
+                let history = velocity.history(&at, Kind::VELOCITY, "")?;
                 Some(at.core(Path::of_velocity(history, 0.0))?)
             }
             (None, Some(_)) => None,

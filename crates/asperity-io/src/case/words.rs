@@ -27,14 +27,9 @@ pub fn translate(text: &Text<'_>, error: &toml::de::Error, section: Range<usize>
     };
     // The crate toml hands a date on as a table with a key of its own.
     if message.contains("`$__toml_private_datetime`") {
-        let found = text.value(&spot);
-        return text.fault(
-            Code::WrongType,
-            spot,
-            &format!("{found} is a date, and a case has none"),
-            "another value",
-            "write texts between quotes",
-        );
+        let message = format!("{} is a date, and a case has none", text.value(&spot));
+        let help = "write texts between quotes";
+        return text.fault(Code::WrongType, spot, &message, "another value", help);
     }
     if let Some((name, known)) = named("unknown field `") {
         return unknown_key(text, spot, name, &backticked(known));

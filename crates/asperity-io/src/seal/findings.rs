@@ -37,9 +37,7 @@ pub(super) fn of(
         );
         found.push(Finding::warning(SEAL_LIFTED, inlet, largest, text));
     }
-    if flows.iter().any(|flow| flow.state == SealState::Unknown) {
-        let ends =
-            flows.iter().find(|flow| flow.state == SealState::Unknown).map_or([0.0; 2], |flow| flow.pressed);
+    if let Some(SealFlow { pressed: ends, .. }) = flows.iter().find(|flow| flow.state == SealState::Unknown) {
         let text = format!(
             "The fluid leaves the contact {}, but the patch is tight already at the smallest pressure of the sweep, {}: whether \
              the seal leaks is not known. Raise seal.pressures, or run the patch at smaller pressures.",

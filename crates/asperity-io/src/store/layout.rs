@@ -222,13 +222,8 @@ impl ArraySpec {
         let rows = if self.dimensions.len() == 1 { ROWS_PER_CHUNK } else { WIDE_ROWS_PER_CHUNK };
         let length = |(n, (name, cells)): (usize, &(&str, usize))| match (self.storage, *name) {
             (Storage::Whole, _) => (*cells).max(1),
-            (Storage::Rows, _) => {
-                if n == 0 {
-                    rows
-                } else {
-                    *cells
-                }
-            }
+            (Storage::Rows, _) if n == 0 => rows,
+            (Storage::Rows, _) => *cells,
             (Storage::Maps, "x") if is_line => pieces(*cells, LONGEST_LINE),
             (Storage::Maps, "x" | "y") => pieces(*cells, LONGEST_SIDE),
             (Storage::Maps, _) => 1,

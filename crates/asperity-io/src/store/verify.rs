@@ -165,12 +165,8 @@ fn is_of_its_row(reader: &Reader, index: usize, row: &Row) -> Result<()> {
                 (mean - row.mean_gap).abs() <= OF_GAP * size
             }
             FieldKind::Contact => {
-                let cells = reader.contact(at)?.into_iter().filter(|state| *state > 0).count();
-                close(
-                    cells as f64,
-                    row.contact_fraction * reader.header().grid.len() as f64,
-                    cells as f64 + 1.0,
-                )
+                let cells = reader.contact(at)?.into_iter().filter(|state| *state > 0).count() as f64;
+                close(cells, row.contact_fraction * reader.header().grid.len() as f64, cells + 1.0)
             }
             _ => true,
         };

@@ -469,12 +469,10 @@ impl Writer {
         if fields.is_empty() || same {
             return Ok(());
         }
-        let names = |kinds: &mut dyn Iterator<Item = FieldKind>| {
-            kinds.map(|kind| kind.name()).collect::<Vec<_>>().join(", ")
-        };
-        let given = names(&mut fields.iter().map(Field::kind));
-        let expected = names(&mut header.fields.iter().copied());
-        Err(input("fields of the step", given, format!("those of the result: {expected}")))
+        let names = |kinds: &[FieldKind]| kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
+        let given: Vec<FieldKind> = fields.iter().map(Field::kind).collect();
+        let expected = format!("those of the result: {}", names(&header.fields));
+        Err(input("fields of the step", names(&given), expected))
     }
 
     fn flush_documents(&mut self, way: Way) -> Result<()> {

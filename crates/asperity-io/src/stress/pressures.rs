@@ -72,11 +72,8 @@ impl<'a> Pressures<'a> {
         while *next <= index {
             let pressure = read(*next)?;
             let control = controls.get(*next).copied().unwrap_or(Control::Load);
-            pressures.advance(
-                self.reader.field_times()[*next],
-                control,
-                pressure.as_slice().unwrap_or_default(),
-            )?;
+            let time = self.reader.field_times()[*next];
+            pressures.advance(time, control, pressure.as_slice().unwrap_or_default())?;
             *next += 1;
         }
         Ok(stress.set_history(pressures)?)

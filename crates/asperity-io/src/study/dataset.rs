@@ -69,11 +69,11 @@ pub fn is_dataset(path: &Path) -> bool {
 
 fn arrays(study: &Study, table: &Table) -> Vec<Array> {
     let plan = &study.plan;
-    let keys: Vec<String> = table.keys.iter().map(|key| key.name.clone()).collect();
-    let (dimensions, shape) = match plan.zip {
-        true => (vec!["run".to_owned()], plan.shape()),
-        false => (keys.clone(), plan.shape()),
+    let dimensions: Vec<String> = match plan.zip {
+        true => vec!["run".to_owned()],
+        false => table.keys.iter().map(|key| key.name.clone()).collect(),
     };
+    let shape = plan.shape();
     let mut arrays: Vec<Array> = vec![];
     for (n, key) in table.keys.iter().enumerate() {
         let values = &plan.vary[n].values;
@@ -122,17 +122,11 @@ fn arrays(study: &Study, table: &Table) -> Vec<Array> {
     add("status".into(), Data::Texts(status), json!({ "long_name": "how far the run is" }));
     let error =
         |row: &super::Row| if let State::Failed(why) = &row.state { why.clone() } else { String::new() };
-    add(
-        "error".into(),
-        Data::Texts(rows().map(error).collect()),
-        json!({ "long_name": "why the run failed" }),
-    );
+    let errors = rows().map(error).collect();
+    add("error".into(), Data::Texts(errors), json!({ "long_name": "why the run failed" }));
     let path = rows().map(|row| row.run.name.clone()).collect();
-    add(
-        "path".into(),
-        Data::Texts(path),
-        json!({ "long_name": "result of the run, in the folder of the study" }),
-    );
+    let words = json!({ "long_name": "result of the run, in the folder of the study" });
+    add("path".into(), Data::Texts(path), words);
     arrays
 }
 

@@ -60,14 +60,10 @@ impl Plan {
                     "--vary {option:?} has no \"=\"; write KEY=VALUES, e.g. --vary load.history.value=\"0.1 N, 1 N\""
                 )));
             };
-            if options[..n]
-                .iter()
-                .filter_map(|other| other.split_once('='))
-                .any(|(other, _)| other.trim() == key)
-            {
-                return Err(StudyError::Input(format!(
-                    "--vary {key} is given twice; list all of its values in one"
-                )));
+            let mut earlier = options[..n].iter().filter_map(|other| other.split_once('='));
+            if earlier.any(|(other, _)| other.trim() == key) {
+                let message = format!("--vary {key} is given twice; list all of its values in one");
+                return Err(StudyError::Input(message));
             }
             let values = values::read(text).map_err(|reason| refused(key, reason))?;
             match vary.iter_mut().find(|varied| varied.key == key) {

@@ -139,14 +139,8 @@ impl Study {
                         let mut shared = hold(shared);
                         shared.taken -= self.memory.get(n).copied().unwrap_or(0);
                         shared.working -= 1;
-                        self.note(
-                            n,
-                            done,
-                            &mut shared,
-                            of,
-                            started.elapsed().as_secs_f64(),
-                            &options.interrupt,
-                        );
+                        let seconds = started.elapsed().as_secs_f64();
+                        self.note(n, done, &mut shared, of, seconds, &options.interrupt);
                         changed.notify_all();
                     }
                 });

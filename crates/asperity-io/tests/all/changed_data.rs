@@ -27,6 +27,9 @@ history = { kind = "file", path = "warm.csv" }
 [load]
 control = "load"
 history = { kind = "file", path = "load.csv" }
+[wear]
+coefficient = "1e-15 m2/N"
+velocity = { kind = "file", path = "slide.csv" }
 [time]
 end = "10 s"
 steps = 5
@@ -41,8 +44,12 @@ fn a_changed_file_of_a_case_is_noticed_by_resume() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let test = "t [s], E [MPa]\n0.1, 3\n1, 2\n10, 1.5\n100, 1.2\n1000, 1.1\n";
-    let files =
-        [("test.csv", test), ("warm.csv", "0 s, 20 °C\n10 s, 30 °C\n"), ("load.csv", "0, 0\n10, 0.1\n")];
+    let files = [
+        ("test.csv", test),
+        ("warm.csv", "0 s, 20 °C\n10 s, 30 °C\n"),
+        ("load.csv", "0, 0\n10, 0.1\n"),
+        ("slide.csv", "0 s, 0.1 m/s\n10 s, 0.2 m/s\n"),
+    ];
     files.iter().for_each(|(name, text)| write(dir, name, text));
     let case = || Case::parse(CASE, dir, &[]).unwrap_or_else(|errors| panic!("{errors}"));
     let result = dir.join("result.zarr");

@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 
 use asperity::force_curve::{ForceFit, ForceModel, ForceOptions, ForceRecord, fit_force_curve};
-use asperity::indentation::Interval;
 use asperity::layer::Interface;
 use asperity::material::{LongTime, Modulus};
 use asperity_io::choice;
@@ -13,7 +12,7 @@ use asperity_io::quantity::{Dimension, Number, Quantity, range};
 use asperity_report::material::force_curve as picture;
 use serde_json::{Value, json};
 
-use super::fit_indentation::interval_in_words;
+use super::fit_indentation::{interval, interval_in_words};
 use super::material::columns;
 use crate::args::FitIndentation;
 use crate::failure::{Failure, refuse};
@@ -173,9 +172,6 @@ fn block(args: &FitIndentation, fit: &ForceFit, of: MaterialOf) -> String {
 }
 
 fn json_of(fit: &ForceFit, of: MaterialOf) -> Value {
-    // What is not determined has no value, and JSON no infinity: null.
-    let finite = |x: f64| x.is_finite().then_some(x);
-    let interval = |x: Interval| json!([x.determined.then_some(x.value), finite(x.low), finite(x.high)]);
     json!({
         "model": choice::word(&fit.model),
         "modulus": of.modulus,

@@ -1,7 +1,5 @@
 //! `asperity fit-indentation --model jkr`: modulus and work of adhesion from a force curve.
 
-use std::fmt::Write as _;
-
 use asperity::force_curve::{ForceFit, ForceModel, ForceOptions, ForceRecord, fit_force_curve};
 use asperity::layer::Interface;
 use asperity::material::{LongTime, Modulus};
@@ -157,15 +155,13 @@ fn block(args: &FitIndentation, fit: &ForceFit, of: MaterialOf) -> String {
     let mut text =
         format!("# From the force curve {name}, model {}; 95 % intervals.\n", choice::word(&fit.model));
     if fit.model != ForceModel::Hertz {
-        let _ = writeln!(
-            text,
-            "# Work of adhesion {:e} J/m2 ({:.3e} to {:.3e}).",
+        text += &format!(
+            "# Work of adhesion {:e} J/m2 ({:.3e} to {:.3e}).\n",
             fit.work.value, fit.work.low, fit.work.high
         );
     }
-    let _ = writeln!(
-        text,
-        "poisson = {:?}\nmaterial = {{ model = \"elastic\", {measure} = \"{:e} Pa\" }}  # {:.3e} to {:.3e} Pa",
+    text += &format!(
+        "poisson = {:?}\nmaterial = {{ model = \"elastic\", {measure} = \"{:e} Pa\" }}  # {:.3e} to {:.3e} Pa\n",
         of.poisson, modulus.value, modulus.low, modulus.high
     );
     text

@@ -145,8 +145,8 @@ impl Material {
     /// What `material fit -o` or `fit-indentation -o` wrote.
     fn written(path: &Path) -> Result<Material, Failure> {
         let shown = path.display();
-        let mut text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::input(format!("cannot read {shown}: {error}")))?;
+        let mut text =
+            std::fs::read_to_string(path).map_err(Failure::about(format!("cannot read {shown}")))?;
         let has = |text: &str, key: &str| text.lines().any(|line| line.trim_start().starts_with(key));
         if has(&text, "[") || !has(&text, "material") {
             refuse!(
@@ -244,11 +244,7 @@ fn of_surface(
         Purpose::Adhesion => "Adhesion of a rough surface",
         _ => "Contact of a rough surface",
     };
-    let mut text = String::from(
-        "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n",
-    );
-    text += "# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved.\n";
-    text += &format!("title = {}\n\n", toml(&format!("{title}: {}", surface::name(from))));
+    let mut text = head(title, from);
     text += &domain(&topography, purpose);
     text += &surface_part(args, &topography, &relative(from, folder), purpose);
     if purpose == Purpose::Indentation {
@@ -264,6 +260,15 @@ fn of_surface(
         _ => in_time(purpose, material),
     };
     Ok(with_adhesion(text, rest, purpose, folder))
+}
+
+/// How a case begins; its title ends with the name of a file.
+fn head(title: &str, from: &Path) -> String {
+    format!(
+        "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved.\n\
+         title = {}\n\n",
+        toml(&format!("{title}: {}", surface::name(from)))
+    )
 }
 
 /// The two parts of a case, with `[adhesion]` between them where it is for that.
@@ -432,9 +437,8 @@ fn indentation_of(
         "# what the test controlled; the other channel is the response"
     };
     let before = format!(
-        "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved.\n\
-         title = {}\n\n[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n{indenter}{}",
-        toml(&format!("{title}: {}", surface::name(from))),
+        "{}[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n{indenter}{}",
+        head(title, from),
         material.body(),
     );
     let after = format!(

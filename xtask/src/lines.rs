@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-use crate::{Done, root};
+use crate::{Done, output, root};
 
 /// Folders that hold no product.
 const OTHERS: [&str; 4] = ["tests", "benches", "fuzz", "examples"];
@@ -16,12 +16,7 @@ const OTHERS: [&str; 4] = ["tests", "benches", "fuzz", "examples"];
 const FILES: &str = "(files)";
 
 pub fn lines() -> Done {
-    let listed = Command::new("git").args(["ls-files", "*.rs", "*.py"]).current_dir(root()).output();
-    let listed = listed.map_err(|error| format!("git ls-files: {error}"))?;
-    if !listed.status.success() {
-        return Err(String::from_utf8_lossy(&listed.stderr).into_owned());
-    }
-    let listed = String::from_utf8_lossy(&listed.stdout).into_owned();
+    let listed = output(Command::new("git").args(["ls-files", "*.rs", "*.py"]).current_dir(root()))?;
     let mut table: BTreeMap<(&str, &str), [usize; 2]> = BTreeMap::new();
     for path in listed.lines().filter(|path| is_product(path)) {
         // A file that is deleted but not committed has no lines.

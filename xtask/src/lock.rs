@@ -3,85 +3,75 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use toml::{Table, Value};
+
 /// Name and version.
 pub type Package = (String, String);
 
 /// What is handed out is compiled from these.
 pub const HANDED_OUT: [&str; 2] = ["asperity-cli", "asperity-py"];
 
+#[derive(Deserialize)]
+struct Lock {
+    package: Vec<Entry>,
+}
+
+/// A package of Cargo.lock; those of the workspace have no source.
+#[derive(Deserialize)]
+struct Entry {
+    name: String,
+    version: String,
+    source: Option<String>,
+    /// Names, each with its version where Cargo.lock has several.
+    #[serde(default)]
+    dependencies: Vec<String>,
+}
+
 /// The packages of others that Cargo.lock leads to from what is handed out, on any system, those that only the compiler uses included. Packages
 /// that only tests of the workspace use are not.
 pub fn reached(root: &Path) -> Result<BTreeSet<Package>, String> {
-    let read =
-        |path: &Path| std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()));
-    let lock = read(&root.join("Cargo.lock"))?;
-    let entries: Vec<Entry> = lock.split("[[package]]").skip(1).map(Entry::parse).collect();
-    let mut reached = BTreeSet::new();
-    let mut waiting: Vec<&Entry> = entries.iter().filter(|entry| HANDED_OUT.contains(&entry.name)).collect();
-    let mut members = BTreeSet::new();
+    let entries = read::<Lock>(&root.join("Cargo.lock"))?.package;
+    let mut waiting: Vec<&Entry> =
+        entries.iter().filter(|entry| HANDED_OUT.contains(&entry.name.as_str())).collect();
+    let (mut seen, mut reached) = (BTreeSet::new(), BTreeSet::new());
     while let Some(entry) = waiting.pop() {
-        let new = if entry.of_others {
-            reached.insert((entry.name.to_owned(), entry.version.to_owned()))
-        } else {
-            members.insert(entry.name)
-        };
-        if !new {
+        let package = (entry.name.clone(), entry.version.clone());
+        if !seen.insert(package.clone()) {
             continue;
         }
-        let manifest = match (entry.of_others, entry.name) {
-            (true, _) => None,
-            (false, "asperity-examples") => Some(read(&root.join("Cargo.toml"))?),
-            (false, name) => Some(read(&root.join("crates").join(name).join("Cargo.toml"))?),
+        // Cargo.lock does not tell the dependencies of tests apart; those of packages of others are not in it.
+        let manifest = match (&entry.source, entry.name.as_str()) {
+            (Some(_), _) => None,
+            (None, "asperity-examples") => Some(read(&root.join("Cargo.toml"))?),
+            (None, name) => Some(read(&root.join("crates").join(name).join("Cargo.toml"))?),
         };
+        if entry.source.is_some() {
+            reached.insert(package);
+        }
         for dependency in &entry.dependencies {
-            // A name, and its version where Cargo.lock has several.
             let (name, version) = dependency.split_once(' ').unwrap_or((dependency, ""));
-            // Cargo.lock does not tell the dependencies of tests apart; those of packages of others are not in it.
-            if manifest.as_ref().is_some_and(|manifest| !depends(manifest, name)) {
-                continue;
+            if manifest.as_ref().is_none_or(|manifest| depends(manifest, name)) {
+                let is_it = |e: &&Entry| e.name == name && (version.is_empty() || e.version == version);
+                waiting.extend(entries.iter().filter(is_it));
             }
-            waiting.extend(
-                entries.iter().filter(|e| e.name == name && (version.is_empty() || e.version == version)),
-            );
         }
     }
     Ok(reached)
 }
 
-/// A package of Cargo.lock.
-struct Entry<'a> {
-    name: &'a str,
-    version: &'a str,
-    of_others: bool,
-    dependencies: Vec<&'a str>,
+fn read<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
+    let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-impl Entry<'_> {
-    fn parse(text: &str) -> Entry<'_> {
-        let value = |key: &str| {
-            let line = text.lines().find_map(|line| line.strip_prefix(key));
-            line.map_or("", |line| line.trim_matches(['"', ' ', '=']))
-        };
-        let list = text.split_once("dependencies = [").map_or("", |(_, list)| list);
-        let dependencies = list.lines().map(|line| line.trim().trim_matches([',', '"', ']']));
-        Entry {
-            name: value("name"),
-            version: value("version"),
-            of_others: !value("source").is_empty(),
-            dependencies: dependencies.filter(|line| !line.is_empty()).collect(),
-        }
-    }
-}
-
-/// Whether a manifest has this name among its dependencies, other than those of tests.
-fn depends(manifest: &str, name: &str) -> bool {
-    let mut inside = false;
-    manifest.lines().any(|line| {
-        if line.starts_with('[') {
-            inside = line.ends_with("dependencies]")
-                && !line.ends_with("dev-dependencies]")
-                && !line.starts_with("[workspace");
-        }
-        inside && line.split(['.', ' ', '=']).next() == Some(name)
+/// Whether a manifest has this name among its dependencies, on any system, other than those of tests.
+fn depends(manifest: &Table, name: &str) -> bool {
+    let targets = manifest.get("target").and_then(Value::as_table).into_iter().flat_map(Table::values);
+    let all = targets.filter_map(Value::as_table).chain([manifest]);
+    { all }.any(|table| {
+        let lists = ["dependencies", "build-dependencies"];
+        lists.iter().filter_map(|list| table.get(*list)).any(|list| list.get(name).is_some())
     })
 }

@@ -64,27 +64,32 @@ const PYTHON_PACKAGES: [&str; 16] = [
     "ipykernel",
 ];
 
+/// The system's interpreter.
+const PYTHON: &str = if cfg!(windows) { "python" } else { "python3" };
+
 /// Other programs that tests and a notebook compare with; where they cannot be installed, these are skipped.
 const PEERS: [&str; 3] = ["tamaas", "ContactMechanics", "SurfaceTopography"];
 
 type Done = Result<(), String>;
 
 fn main() -> ExitCode {
-    let task = std::env::args().nth(1);
-    let done = match task.as_deref() {
-        Some("test") => test(std::env::args().any(|a| a == "--without-python")),
-        Some("golden") => golden::golden(&std::env::args().skip(2).collect::<Vec<_>>()),
-        Some("bench") => bench(std::env::args().any(|a| a == "--quick")),
-        Some("peers") => peers::peers(std::env::args().any(|a| a == "--quick")),
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let (task, words) = words.split_first().map_or((None, &[][..]), |(task, words)| (Some(task), words));
+    let has = |option: &str| words.iter().any(|word| word == option);
+    let done = match task.map(String::as_str) {
+        Some("test") => test(has("--without-python")),
+        Some("golden") => golden::golden(words),
+        Some("bench") => bench(has("--quick")),
+        Some("peers") => peers::peers(has("--quick")),
         Some("sanitize") => sanitize(),
         Some("miri") => miri(),
         Some("figures") => figures(),
         Some("verification") => verification(),
         Some("notices") => notices::notices(),
-        Some("package") => package::package(&std::env::args().skip(2).collect::<Vec<_>>()),
+        Some("package") => package::package(words),
         Some("workflows") => workflows::workflows(),
         Some("lines") => lines::lines(),
-        Some("site") => site::site(std::env::args().any(|a| a == "--check")),
+        Some("site") => site::site(has("--check")),
         _ => {
             print!("{HELP}");
             return ExitCode::from(if task.is_none() { 0 } else { 2 });
@@ -112,9 +117,32 @@ fn run(command: &mut Command) -> Done {
     }
 }
 
+/// What a command prints.
+fn output(command: &mut Command) -> Result<String, String> {
+    let output = command.output().map_err(|error| format!("{command:?}: {error}"))?;
+    match output.status.success() {
+        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        false => Err(String::from_utf8_lossy(&output.stderr).into_owned()),
+    }
+}
+
+/// What went wrong with a file.
+fn at(path: impl AsRef<Path>) -> impl Fn(std::io::Error) -> String {
+    move |error| format!("{}: {error}", path.as_ref().display())
+}
+
+/// Cargo of the nightly toolchain on the tests of the crates with unsafe code.
+fn nightly(words: &[&str], target: &str) -> Command {
+    let mut command = Command::new("rustup");
+    command.args(["run", "nightly", "cargo"]).args(words);
+    command.args(["-p", "asperity-sweep", "-p", "asperity-convolution", "--lib"]);
+    command.env("CARGO_TARGET_DIR", root().join(target));
+    command
+}
+
 fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    command.args(arguments);
+    command.args(arguments).current_dir(root());
     command
 }
 
@@ -139,7 +167,7 @@ fn test(without_python: bool) -> Done {
 
 /// Licences, advisories and sources of the dependencies, by deny.toml. The list of advisories comes from the network.
 fn supply_chain() -> Done {
-    if !cargo(&["deny", "--version"]).output().is_ok_and(|output| output.status.success()) {
+    if output(&mut cargo(&["deny", "--version"])).is_err() {
         eprintln!("xtask: cargo-deny is not installed: licences and advisories are not checked");
         return Ok(());
     }
@@ -150,10 +178,10 @@ fn supply_chain() -> Done {
 fn python() -> Result<PathBuf, String> {
     let python = interpreter("target/python");
     let imports = format!("import {}", PYTHON_PACKAGES.join(", "));
-    let complete = Command::new(&python).args(["-c", &imports]).output().is_ok_and(|o| o.status.success());
+    let complete = output(Command::new(&python).args(["-c", &imports])).is_ok();
     let python = if complete { python } else { python_in("target/python", &PYTHON_PACKAGES)? };
     let imports = format!("import {}", PEERS.join(", "));
-    if !Command::new(&python).args(["-c", &imports]).output().is_ok_and(|o| o.status.success())
+    if output(Command::new(&python).args(["-c", &imports])).is_err()
         && let Err(message) = python_in("target/python", &PEERS)
     {
         eprintln!("xtask: {message}: comparisons with these programs are left out");
@@ -163,12 +191,17 @@ fn python() -> Result<PathBuf, String> {
 
 /// A Python in a virtual environment in this folder, with what pip installs by these words.
 fn python_in(folder: &str, packages: &[&str]) -> Result<PathBuf, String> {
+    let python = environment(folder)?;
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(packages))?;
+    Ok(python)
+}
+
+/// A Python in a virtual environment in this folder.
+fn environment(folder: &str) -> Result<PathBuf, String> {
     let python = interpreter(folder);
     if !python.exists() {
-        let python3 = if cfg!(windows) { "python" } else { "python3" };
-        run(Command::new(python3).args(["-m", "venv"]).arg(root().join(folder)))?;
+        run(Command::new(PYTHON).args(["-m", "venv"]).arg(root().join(folder)))?;
     }
-    run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(packages))?;
     Ok(python)
 }
 
@@ -182,11 +215,7 @@ fn wheel(python: &Path, profile: &str) -> Result<PathBuf, String> {
     let wheels = root().join("target/wheels");
     let _ = std::fs::remove_dir_all(&wheels);
     run(Command::new(python).args(["-m", "maturin", "build", "--profile", profile, "--out"]).arg(&wheels))?;
-    let built = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
-    let mut built = built.flatten().map(|entry| entry.path());
-    built
-        .find(|path| path.extension().is_some_and(|e| e == "whl"))
-        .ok_or_else(|| "maturin made no wheel".into())
+    package::files(&wheels, "whl")?.pop().ok_or_else(|| "maturin made no wheel".into())
 }
 
 /// Builds the Python package and installs it in the environment of `python`, which has what it needs.
@@ -222,7 +251,7 @@ fn bench(quick: bool) -> Done {
     run(&mut cargo(&["bench", "-p", "asperity", "--bench", "sliding", "--", "256", "512"]))?;
     run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
     let directory = root().join("target/bench");
-    std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;
+    std::fs::create_dir_all(&directory).map_err(at(&directory))?;
     for case in ["hertz", "rough-pmma"] {
         run(Command::new(root().join("target/release/asperity"))
             .args(["run", "--quiet", "--force", "-o"])
@@ -234,23 +263,8 @@ fn bench(quick: bool) -> Done {
 
 /// Every instruction set that this processor has, with reads and writes out of bounds told.
 fn sanitize() -> Done {
-    let host = package::host()?;
-    run(Command::new("rustup")
-        .args([
-            "run",
-            "nightly",
-            "cargo",
-            "test",
-            "-p",
-            "asperity-convolution",
-            "-p",
-            "asperity-sweep",
-            "--lib",
-            "--target",
-            &host,
-        ])
-        .env("RUSTFLAGS", "-Zsanitizer=address")
-        .env("CARGO_TARGET_DIR", root().join("target/sanitize")))
+    let mut tests = nightly(&["test", "--target", &package::host()?], "target/sanitize");
+    run(tests.env("RUSTFLAGS", "-Zsanitizer=address"))
 }
 
 /// The parts with unsafe code in the interpreter Miri.
@@ -258,25 +272,10 @@ fn miri() -> Done {
     // It knows no vector instructions of one processor beyond the oldest: the portable forms run. The last bits of sin and
     // cos are random in it unless told otherwise, and tests compare the bits of transforms planned twice. The threads of rayon
     // never end.
-    run(Command::new("rustup")
-        .args([
-            "run",
-            "nightly",
-            "cargo",
-            "miri",
-            "test",
-            "-p",
-            "asperity-sweep",
-            "-p",
-            "asperity-convolution",
-        ])
-        .arg("--lib")
-        .env(
-            "MIRIFLAGS",
-            "-Zmiri-disable-isolation -Zmiri-tree-borrows -Zmiri-deterministic-floats -Zmiri-ignore-leaks",
-        )
-        .env("PROPTEST_CASES", "1")
-        .env("CARGO_TARGET_DIR", root().join("target/miri")))
+    let flags =
+        "-Zmiri-disable-isolation -Zmiri-tree-borrows -Zmiri-deterministic-floats -Zmiri-ignore-leaks";
+    let mut tests = nightly(&["miri", "test"], "target/miri");
+    run(tests.env("MIRIFLAGS", flags).env("PROPTEST_CASES", "1"))
 }
 
 fn figures() -> Done {
@@ -300,7 +299,7 @@ fn figures() -> Done {
     for n in 1..=8 {
         let name = format!("figure-{n}.png");
         let to = pictures.join(&name);
-        std::fs::copy(directory.join(&name), &to).map_err(|error| format!("{}: {error}", to.display()))?;
+        std::fs::copy(directory.join(&name), &to).map_err(at(&to))?;
     }
     Ok(())
 }
@@ -346,16 +345,10 @@ of these errors and those of the pressure fields, or at most 1e-3. The test asse
 
 fn verification() -> Done {
     run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
-    let output = Command::new(root().join("target/release/asperity"))
-        .args(["verify", "--markdown"])
-        .output()
-        .map_err(|error| error.to_string())?;
-    if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).into_owned());
-    }
+    let program = root().join("target/release/asperity");
+    let cases = output(Command::new(program).args(["verify", "--markdown"]))?;
     let times = rows_of_test("asperity", "time_error")?;
     let bars = rows_of_test("asperity-io", "error_bars::the_stated")?;
-    let cases = String::from_utf8_lossy(&output.stdout);
     let text = format!("{VERIFICATION}{cases}{TIME_ERRORS}{times}\n{ERROR_BARS}{bars}\n");
     std::fs::write(root().join("docs/verification.md"), text).map_err(|error| error.to_string())
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::lock::{HANDED_OUT, Package, reached};
-use crate::{Done, cargo, root};
+use crate::{Done, at, cargo, output, root};
 
 /// The machines that a release is built for.
 const TARGETS: [&str; 5] = [
@@ -59,7 +59,7 @@ pub fn notices() -> Done {
         write!(out, "\n{:=<100}\n[{}]\n\n{text}\n", "", at + 1).expect("a text");
     }
     let path = root.join("THIRD-PARTY-LICENSES.txt");
-    std::fs::write(&path, out).map_err(|error| format!("{}: {error}", path.display()))
+    std::fs::write(&path, out).map_err(at(&path))
 }
 
 /// The packages of others that are compiled into what is handed out, for any machine of a release.
@@ -155,7 +155,7 @@ fn texts_of(package: &Value, mit: &str, texts: &mut Texts) -> Result<BTreeSet<us
 fn licence_files(package: &Value) -> Result<BTreeSet<std::path::PathBuf>, String> {
     let manifest = text(package, "manifest_path");
     let folder = Path::new(&manifest).parent().ok_or("a manifest without a folder")?;
-    let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let entries = std::fs::read_dir(folder).map_err(at(folder))?;
     let paths = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_file());
     let named = package["license_file"].as_str().map(|file| folder.join(file));
     let starts = ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE"];
@@ -196,14 +196,6 @@ fn before_apache<'a>(text: &'a str, apache: &str) -> Option<&'a str> {
 }
 
 fn read(path: &Path) -> Result<String, String> {
-    let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let bytes = std::fs::read(path).map_err(at(&path))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
-}
-
-fn output(command: &mut std::process::Command) -> Result<String, String> {
-    let output = command.current_dir(root()).output().map_err(|error| format!("{command:?}: {error}"))?;
-    if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).into_owned());
-    }
-    String::from_utf8(output.stdout).map_err(|error| error.to_string())
 }

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::{Done, cargo, python_in, root, run};
+use crate::{Done, PYTHON, at, cargo, output, python_in, root, run};
 
 /// What can be packaged, and how.
 type Part = (&'static str, fn() -> Done);
@@ -44,8 +44,8 @@ pub fn package(arguments: &[String]) -> Done {
 }
 
 /// The files of a folder with this ending.
-fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, String> {
-    let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+pub fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, String> {
+    let entries = std::fs::read_dir(folder).map_err(at(&folder))?;
     let paths = entries.flatten().map(|entry| entry.path());
     Ok(paths.filter(|path| path.to_string_lossy().ends_with(&format!(".{ending}"))).collect())
 }
@@ -53,7 +53,7 @@ fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, String> {
 /// Where packages go: target/packages.
 fn folder() -> Result<PathBuf, String> {
     let folder = root().join("target/packages");
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    std::fs::create_dir_all(&folder).map_err(at(&folder))?;
     std::path::absolute(folder).map_err(|error| error.to_string())
 }
 
@@ -93,9 +93,7 @@ fn releasable(tag: &str) -> Done {
 
 /// Folders of this machine, and what stands for them in what is handed out: a later one counts where two fit.
 fn folders() -> Result<Vec<(String, &'static str)>, String> {
-    let output = Command::new("rustc").args(["--print", "sysroot"]).output();
-    let output = output.map_err(|error| format!("rustc: {error}"))?;
-    let compiler = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
+    let compiler = PathBuf::from(output(Command::new("rustc").args(["--print", "sysroot"]))?.trim());
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a folder");
     let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(std::env::home_dir()?.join(".cargo"))).ok_or("no home folder")?;
@@ -123,7 +121,7 @@ fn portable(command: &mut Command) -> Result<&mut Command, String> {
 
 /// What is handed out has no table of symbols and names no folder of this machine.
 fn presentable(program: &Path) -> Done {
-    let bytes = std::fs::read(program).map_err(|error| format!("{}: {error}", program.display()))?;
+    let bytes = std::fs::read(program).map_err(at(&program))?;
     let has = |text: &str| bytes.windows(text.len()).any(|part| part == text.as_bytes());
     if has("\0.symtab\0") {
         return Err(format!("{}: it has a table of symbols", program.display()));
@@ -141,16 +139,14 @@ fn crates() -> Done {
     run(package.arg("--target-dir").arg(root().join("target/packages/build")))?;
     let packed = folder()?.join("build/package");
     for path in files(&packed, "crate")? {
-        let list =
-            Command::new("tar").arg("tzf").arg(&path).output().map_err(|error| format!("tar: {error}"))?;
-        let list = String::from_utf8_lossy(&list.stdout).into_owned();
+        let list = output(Command::new("tar").arg("tzf").arg(&path))?;
         for file in ["LICENSE-MIT", "LICENSE-APACHE", "README.md", "Cargo.toml"] {
             if !list.lines().any(|line| line.ends_with(&format!("/{file}"))) {
                 return Err(format!("{}: there is no {file} in it", path.display()));
             }
         }
         let to = folder()?.join(path.file_name().expect("a file"));
-        std::fs::copy(&path, &to).map_err(|error| format!("{}: {error}", to.display()))?;
+        std::fs::copy(&path, &to).map_err(at(&to))?;
     }
     Ok(())
 }
@@ -159,7 +155,7 @@ fn crates() -> Done {
 fn python() -> Done {
     let folder = folder()?;
     for old in files(&folder, "tar.gz")?.into_iter().chain(files(&folder, "whl")?) {
-        std::fs::remove_file(&old).map_err(|error| format!("{}: {error}", old.display()))?;
+        std::fs::remove_file(&old).map_err(at(&old))?;
     }
     let maker = python_in("target/packages/maker", &["maturin>=1.9,<2"])?;
     run(Command::new(&maker).args(["-m", "maturin", "sdist", "--out"]).arg(&folder))?;
@@ -172,9 +168,8 @@ fn python() -> Done {
     let user = python_in("target/packages/user", &["pytest"])?;
     run(Command::new(&user).args(["-m", "pip", "install", "--quiet"]).args(files(&folder, "whl")?))?;
     let module = "import asperity._core as module; print(module.__file__)";
-    let module = Command::new(&user).args(["-c", module]).current_dir(&environment).output();
-    let module = module.map_err(|error| format!("{}: {error}", user.display()))?;
-    presentable(Path::new(String::from_utf8_lossy(&module.stdout).trim()))?;
+    let module = output(Command::new(&user).args(["-c", module]).current_dir(&environment))?;
+    presentable(Path::new(module.trim()))?;
     let tests = root().join("crates/asperity-py/tests/test_command.py");
     let test = std::path::absolute(tests).map_err(|error| error.to_string())?;
     let mut pytest = Command::new(&user);
@@ -194,9 +189,9 @@ fn program() -> Done {
     let inside = folder.join(&name);
     let copy_to = |folder: &str, from: PathBuf| -> Done {
         let to = inside.join(folder);
-        std::fs::create_dir_all(&to).map_err(|error| format!("{}: {error}", to.display()))?;
+        std::fs::create_dir_all(&to).map_err(at(&to))?;
         let to = to.join(from.file_name().expect("a file"));
-        std::fs::copy(&from, &to).map(drop).map_err(|error| format!("{}: {error}", from.display()))
+        std::fs::copy(&from, &to).map(drop).map_err(at(&from))
     };
     let copy = |from: PathBuf| copy_to("", from);
     let program = folder.join(format!("build/release/asperity{}", std::env::consts::EXE_SUFFIX));
@@ -219,17 +214,16 @@ fn program() -> Done {
             copy_to(folder, file)?;
         }
     }
-    let python = if cfg!(windows) { "python" } else { "python3" };
     let archive = folder.join(format!("{name}.zip"));
-    run(Command::new(python).args(["-m", "zipfile", "-c"]).arg(&archive).arg(&inside))?;
+    run(Command::new(PYTHON).args(["-m", "zipfile", "-c"]).arg(&archive).arg(&inside))?;
     std::fs::remove_dir_all(&inside).map_err(|error| error.to_string())?;
-    unpacked(python, &archive, &name)
+    unpacked(&archive, &name)
 }
 
 /// Unpacks the archive elsewhere and runs the program in it.
-fn unpacked(python: &str, archive: &Path, name: &str) -> Done {
+fn unpacked(archive: &Path, name: &str) -> Done {
     let place = std::env::temp_dir().join(format!("asperity-package-{}", std::process::id()));
-    run(Command::new(python).args(["-m", "zipfile", "-e"]).arg(archive).arg(&place))?;
+    run(Command::new(PYTHON).args(["-m", "zipfile", "-e"]).arg(archive).arg(&place))?;
     let program = place.join(name).join(format!("asperity{}", std::env::consts::EXE_SUFFIX));
     #[cfg(unix)]
     {
@@ -246,8 +240,7 @@ fn unpacked(python: &str, archive: &Path, name: &str) -> Done {
 
 /// The machine that the compiler compiles for, such as x86_64-unknown-linux-gnu.
 pub fn host() -> Result<String, String> {
-    let version = Command::new("rustc").arg("-vV").output().map_err(|error| format!("rustc: {error}"))?;
-    let version = String::from_utf8_lossy(&version.stdout).into_owned();
+    let version = output(Command::new("rustc").arg("-vV"))?;
     let host = version.lines().find_map(|line| line.strip_prefix("host: "));
     host.map(str::to_owned).ok_or_else(|| "rustc names no host".into())
 }

@@ -10,7 +10,7 @@ use std::process::Command;
 
 use serde_json::{Value, json};
 
-use crate::{Done, cargo, root, run};
+use crate::{Done, at, cargo, environment, output, root, run};
 
 /// Programs, their packages, and the packages that building them needs.
 const PEERS: [(&str, &str); 3] =
@@ -36,8 +36,8 @@ struct Case {
 
 pub fn peers(quick: bool) -> Done {
     let directory = root().join("target/peers");
-    std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;
-    let python = environment(&directory)?;
+    std::fs::create_dir_all(&directory).map_err(at(&directory))?;
+    let python = with_programs()?;
     run(&mut cargo(&["build", "--release", "-p", "asperity", "--example", "gap_file"]))?;
     let cells = if quick { 256 } else { 1024 };
     let cases = [
@@ -57,30 +57,21 @@ pub fn peers(quick: bool) -> Done {
 }
 
 /// A Python with those of the programs that can be installed.
-fn environment(directory: &Path) -> Result<PathBuf, String> {
-    let environment = directory.join("environment");
-    let folder = if cfg!(windows) { "Scripts" } else { "bin" };
-    let python = environment.join(folder).join("python");
-    if !python.exists() {
-        run(Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
-    }
-    let installed = |package: &str| {
-        let show = Command::new(&python).args(["-m", "pip", "show", "--quiet", package]).output();
-        show.is_ok_and(|o| o.status.success())
-    };
+fn with_programs() -> Result<PathBuf, String> {
+    let python = environment("target/peers/environment")?;
+    let installed =
+        |package: &str| output(Command::new(&python).args(["-m", "pip", "show", "--quiet", package])).is_ok();
     for package in [EIGEN, "tamaas", "ContactMechanics", "aspher"] {
         if installed(package) {
             continue;
         }
         // The package of headers lies beside the others; aspher looks for it where these variables say.
-        let prefix = Command::new(&python)
-            .args(["-c", "import sysconfig; print(sysconfig.get_path('purelib') + '/cmeel.prefix')"])
-            .output()
-            .map_err(|e| e.to_string())?;
-        let prefix = String::from_utf8_lossy(&prefix.stdout).trim().to_string();
+        let prefix = "import sysconfig; print(sysconfig.get_path('purelib') + '/cmeel.prefix')";
+        let prefix = output(Command::new(&python).args(["-c", prefix]))?;
+        let prefix = prefix.trim();
         let install = run(Command::new(&python)
             .args(["-m", "pip", "install", "--quiet", package])
-            .env("CMAKE_PREFIX_PATH", &prefix)
+            .env("CMAKE_PREFIX_PATH", prefix)
             .env("CPLUS_INCLUDE_PATH", format!("{prefix}/include/eigen3")));
         if let Err(message) = install {
             eprintln!("xtask: {package} is left out: {message}");
@@ -213,11 +204,7 @@ struct Answer {
 /// What a program prints on its last line.
 fn answer(command: &mut Command) -> Result<Answer, String> {
     eprintln!("xtask: {command:?}");
-    let output = command.current_dir(root()).output().map_err(|e| format!("{command:?}: {e}"))?;
-    if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).into_owned());
-    }
-    let text = String::from_utf8_lossy(&output.stdout);
+    let text = output(command.current_dir(root()))?;
     let value: Value =
         serde_json::from_str(text.lines().last().unwrap_or_default()).map_err(|e| format!("{e}: {text}"))?;
     let number = |key: &str| value[key].as_f64().ok_or_else(|| format!("no {key} in {value}"));

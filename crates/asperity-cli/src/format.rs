@@ -2,12 +2,7 @@
 
 use asperity::step::Row;
 pub use asperity_io::readable::{bytes, coordinate, counted, duration, quantity};
-
-/// The least and the greatest of the finite values.
-pub fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
-    let finite = values.into_iter().filter(|value| value.is_finite());
-    finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
-}
+pub use asperity_report::figure::extent;
 
 /// Rows of cells, the first one the head, in columns that are as wide as their cells. A row that ends early may end in a longer text.
 pub fn columns(rows: &[Vec<String>], indent: &str) -> String {

@@ -38,7 +38,7 @@ pub fn pictures(
             Ok(picture) => write(&picture, "stress.png")?,
             // Nothing touches.
             Err(PlotError::Stress(StressError::NoContact { .. })) => {}
-            Err(error) => return Err(error.into()),
+            Err(error) => return Err(error),
         }
     }
     if reader.leaks().is_some() {

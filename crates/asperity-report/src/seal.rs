@@ -71,9 +71,8 @@ fn by_inlet(answer: &SealAnswer, list: &[Over], y: Axis) -> Curves {
 
 fn inside(answer: &SealAnswer) -> Curves {
     let (x, p0, fluid) = answer.inside();
-    let axes = [Axis::linear("place across the seal", "m"), Axis::linear("pressure", "Pa")];
-    let [place, pressure] = axes;
-    let panel = Curves::new("inside the seal", place, pressure)
+    let axis = Axis::linear("place across the seal", "m");
+    let panel = Curves::new("inside the seal", axis, Axis::linear("pressure", "Pa"))
         .with(Series::new("contact p0", Style::Line, &x, p0).in_colour(COLOURS[1]));
     fluid.iter().enumerate().fold(panel, |panel, (n, fluid)| {
         let name = if n == 0 { "fluid" } else { "" };
@@ -82,9 +81,8 @@ fn inside(answer: &SealAnswer) -> Curves {
 }
 
 fn conductance(answer: &SealAnswer) -> Curves {
-    let axes = [Axis::log("mean pressure on the patch", "Pa"), Axis::log("conductance", "m3")];
-    let [pressure, sigma] = axes;
-    let panel = Curves::new("patch, at the last time", pressure, sigma);
+    let axis = Axis::log("mean pressure on the patch", "Pa");
+    let panel = Curves::new("patch, at the last time", axis, Axis::log("conductance", "m3"));
     let panel = answer.sweep.seeds.iter().enumerate().fold(panel, |panel, (n, seed)| {
         let last = |point: &(f64, Vec<State>)| {
             [point.0, drawn(point.1.last().map_or(f64::NAN, |state| state.sigma))]

@@ -79,7 +79,7 @@ pub fn units(options: &[String]) -> Result<Units, Failure> {
             refuse!("--unit {option}: {message}");
         }
         let chosen = units.choose(name, unit.trim());
-        chosen.map_err(|error| Failure::input(format!("--unit {option}: {error}")))?;
+        chosen.map_err(Failure::about(format!("--unit {option}")))?;
     }
     Ok(units)
 }

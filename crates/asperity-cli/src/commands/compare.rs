@@ -67,12 +67,17 @@ fn object(
 }
 
 fn side_by_side(answers: &[Answers], labels: &[String], units: &Units) -> String {
-    let mut rows = vec![[&["answers".to_owned()], labels].concat()];
-    for answer in answers {
+    format!("\n{}", columns(&rows_of("answers", answers, labels, units), ""))
+}
+
+/// The answers in rows, a column for each result, below a head that begins with these words.
+pub fn rows_of(first: &str, answers: &[Answers], labels: &[String], units: &Units) -> Vec<Vec<String>> {
+    let head = [&[first.to_owned()], labels].concat();
+    let row = |answer: &Answers| {
         let values = (0..labels.len()).map(|n| answer.words(n, units));
-        rows.push([answer.label()].into_iter().chain(values).collect());
-    }
-    format!("\n{}", columns(&rows, ""))
+        [answer.label()].into_iter().chain(values).collect()
+    };
+    [head].into_iter().chain(answers.iter().map(row)).collect()
 }
 
 /// The keys that differ, of several results.

@@ -144,10 +144,12 @@ pub(super) fn interval_in_words(x: Interval, unit: &str) -> String {
     }
 }
 
+/// Value and ends; what is not determined has no value, and JSON no infinity: null.
+pub(super) fn interval(x: Interval) -> Value {
+    json!([x.determined.then_some(x.value), x.low, x.high])
+}
+
 fn json_of(fit: &IndentationFit, of: MaterialOf) -> Value {
-    // What is not determined has no value, and JSON no infinity: null.
-    let finite = |x: f64| x.is_finite().then_some(x);
-    let interval = |x: Interval| json!([x.determined.then_some(x.value), finite(x.low), finite(x.high)]);
     let modulus = |x: Interval| interval(of.of(x));
     let (taken, ..) = given(fit);
     json!({

@@ -1,9 +1,6 @@
 //! `asperity fit-indentation --model jkr`: modulus and work of adhesion from a force curve.
 
-use std::fmt::Write as _;
-
 use asperity::force_curve::{ForceFit, ForceModel, ForceOptions, ForceRecord, fit_force_curve};
-use asperity::indentation::Interval;
 use asperity::layer::Interface;
 use asperity::material::{LongTime, Modulus};
 use asperity_io::choice;
@@ -13,7 +10,7 @@ use asperity_io::quantity::{Dimension, Number, Quantity, range};
 use asperity_report::material::force_curve as picture;
 use serde_json::{Value, json};
 
-use super::fit_indentation::interval_in_words;
+use super::fit_indentation::{interval, interval_in_words};
 use super::material::columns;
 use crate::args::FitIndentation;
 use crate::failure::{Failure, refuse};
@@ -158,24 +155,19 @@ fn block(args: &FitIndentation, fit: &ForceFit, of: MaterialOf) -> String {
     let mut text =
         format!("# From the force curve {name}, model {}; 95 % intervals.\n", choice::word(&fit.model));
     if fit.model != ForceModel::Hertz {
-        let _ = writeln!(
-            text,
-            "# Work of adhesion {:e} J/m2 ({:.3e} to {:.3e}).",
+        text += &format!(
+            "# Work of adhesion {:e} J/m2 ({:.3e} to {:.3e}).\n",
             fit.work.value, fit.work.low, fit.work.high
         );
     }
-    let _ = writeln!(
-        text,
-        "poisson = {:?}\nmaterial = {{ model = \"elastic\", {measure} = \"{:e} Pa\" }}  # {:.3e} to {:.3e} Pa",
+    text += &format!(
+        "poisson = {:?}\nmaterial = {{ model = \"elastic\", {measure} = \"{:e} Pa\" }}  # {:.3e} to {:.3e} Pa\n",
         of.poisson, modulus.value, modulus.low, modulus.high
     );
     text
 }
 
 fn json_of(fit: &ForceFit, of: MaterialOf) -> Value {
-    // What is not determined has no value, and JSON no infinity: null.
-    let finite = |x: f64| x.is_finite().then_some(x);
-    let interval = |x: Interval| json!([x.determined.then_some(x.value), finite(x.low), finite(x.high)]);
     json!({
         "model": choice::word(&fit.model),
         "modulus": of.modulus,

@@ -10,6 +10,7 @@ use asperity_report::page::{Options, write};
 use asperity_report::result::{self, Plot, together};
 use asperity_report::sheet::Sheet;
 
+use super::compare::rows_of;
 use crate::args::Report;
 use crate::failure::Failure;
 use crate::files::Files;
@@ -47,41 +48,27 @@ impl Verb for Report {
 /// Several results: what differs, their answers, their curves.
 fn sheet(readers: Vec<Reader>, labels: &[String]) -> Result<Sheet, Failure> {
     let mut sheet = Sheet::new(counted(readers.len(), "result"));
-    let head = |first: &str| [&[first.to_owned()], labels].concat();
     let units = Units::of(&readers[0], &Units::default());
-    let mut rows = vec![head("")];
-    for answer in answers(&readers, &units)? {
-        let values = (0..readers.len()).map(|n| answer.words(n, &units));
-        rows.push([answer.label()].into_iter().chain(values).collect());
-    }
+    let rows = rows_of("", &answers(&readers, &units)?, labels, &units);
     sheet = sheet.table("Answers", &rows).note("In brackets: the change against the first result.");
-    let mut rows = vec![head("key")];
+    let mut rows = vec![[&["key".to_owned()], labels].concat()];
     for (key, values) in cases(&readers.iter().collect::<Vec<_>>()) {
-        rows.push(
-            [key]
-                .into_iter()
-                .chain(
-                    values.into_iter().map(|value| value.unwrap_or("-".into()).trim_matches('"').to_owned()),
-                )
-                .collect(),
-        );
+        let words = values.into_iter().map(|value| value.unwrap_or("-".into()).trim_matches('"').to_owned());
+        rows.push([key].into_iter().chain(words).collect());
     }
     sheet = match rows.len() {
         1 => sheet.note("The cases are the same."),
         _ => sheet.table("What differs in the cases", &rows),
     };
-    let plots = match readers[0].header().axis() {
-        Axis::Velocity => vec![Plot::Friction],
-        _ => vec![Plot::Evolution],
+    let plot = match readers[0].header().axis() {
+        Axis::Velocity => Plot::Friction,
+        _ => Plot::Evolution,
     };
     let all: Vec<(String, Reader, At)> =
         labels.iter().cloned().zip(readers).map(|(label, reader)| (label, reader, At::Last)).collect();
-    for plot in plots {
-        // A page without the curves is still a page.
-        sheet = match together(&all, plot, &result::Options::default()) {
-            Ok(figure) => sheet.figure("Curves", &figure),
-            Err(error) => sheet.note(&error.to_string()),
-        };
-    }
-    Ok(sheet)
+    // A page without the curves is still a page.
+    Ok(match together(&all, plot, &result::Options::default()) {
+        Ok(figure) => sheet.figure("Curves", &figure),
+        Err(error) => sheet.note(&error.to_string()),
+    })
 }

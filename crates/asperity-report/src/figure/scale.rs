@@ -181,7 +181,7 @@ fn decades(values: &Array2<f64>, high: f64) -> [f64; 2] {
 }
 
 /// Least and greatest of the finite values.
-pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+pub fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     let finite = values.into_iter().filter(|v| v.is_finite());
     finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }

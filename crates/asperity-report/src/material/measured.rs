@@ -19,27 +19,20 @@ pub fn isotherms(title: &str, measured: &Measured) -> Figure {
         Kind::Dma => (Axis::log("frequency", "Hz"), TAU),
         _ => (Axis::log("time", "s"), 1.0),
     };
-    let panels = match measured.kind {
-        Kind::Relaxation => vec![("Relaxation", Axis::log("relaxation modulus", "Pa"))],
-        Kind::Creep => vec![("Creep", Axis::log("creep compliance", "1/Pa"))],
-        Kind::Dma => vec![
-            ("Storage", Axis::log("storage modulus", "Pa")),
-            ("Loss", Axis::log("loss modulus", "Pa")),
-            ("Loss factor", Axis::log("tan delta", "")),
-        ],
+    let panels: &[Dynamic] = match measured.kind {
+        Kind::Relaxation => &[("Relaxation", "relaxation modulus", "Pa", |[modulus, _]| modulus)],
+        Kind::Creep => &[("Creep", "creep compliance", "1/Pa", |[compliance, _]| compliance)],
+        Kind::Dma => &DYNAMIC,
     };
     let key = key(measured.sweeps.iter().filter_map(|sweep| sweep.temperature));
-    let panels = panels.iter().enumerate().map(|(n, (title, y))| {
-        let mut panel = Curves::new(*title, x.clone(), y.clone());
+    let panels = panels.iter().map(|(title, y, unit, value)| {
+        let mut panel = Curves::new(*title, x.clone(), Axis::log(*y, *unit));
         for sweep in &measured.sweeps {
             let places: Vec<f64> = sweep.x.iter().map(|x| x / scale).collect();
-            let values = match (sweep.curves.get(n), sweep.curves.as_slice()) {
-                (Some(values), _) => values.clone(),
-                (None, [storage, loss]) => {
-                    loss.iter().zip(storage).map(|(loss, storage)| loss / storage).collect()
-                }
-                _ => vec![],
-            };
+            // A curve alone, or storage and loss.
+            let curves = sweep.curves.first().zip(sweep.curves.last());
+            let rows = curves.into_iter().flat_map(|(first, last)| first.iter().zip(last));
+            let values: Vec<f64> = rows.map(|(first, last)| value([*first, *last])).collect();
             let colour = match (&key, sweep.temperature) {
                 (Some(key), Some(kelvin)) => key.colour(celsius(kelvin)),
                 _ => PLAIN.to_owned(),
@@ -63,6 +56,16 @@ pub fn isotherms(title: &str, measured: &Measured) -> Figure {
     Figure::new(title).with_all(panels).caption(caption)
 }
 
+/// A panel of measured curves: its title, quantity and unit, and the quantity of a row of curves.
+type Dynamic = (&'static str, &'static str, &'static str, fn([f64; 2]) -> f64);
+
+/// Of storage and loss modulus.
+const DYNAMIC: [Dynamic; 3] = [
+    ("Storage", "storage modulus", "Pa", |[storage, _]| storage),
+    ("Loss", "loss modulus", "Pa", |[_, loss]| loss),
+    ("Loss factor", "tan delta", "", |[storage, loss]| loss / storage),
+];
+
 /// Frequencies that agree to this share are one: instruments round them.
 const SAME: f64 = 0.01;
 
@@ -81,20 +84,14 @@ fn over_temperature(title: &str, measured: &Measured) -> Option<Figure> {
     if lines.is_empty() || lines.len() > COLOURS.len() {
         return None;
     }
-    type OfRow = fn(&[f64; 4]) -> f64;
-    let panels: [(&str, Axis, OfRow); 3] = [
-        ("Storage", Axis::log("storage modulus", "Pa"), |point| point[2]),
-        ("Loss", Axis::log("loss modulus", "Pa"), |point| point[3]),
-        ("Loss factor", Axis::log("tan delta", ""), |point| point[3] / point[2]),
-    ];
-    let panels = panels.into_iter().map(|(name, y, value)| {
-        let mut panel = Curves::new(name, Axis::linear("temperature [°C]", ""), y);
+    let panels = DYNAMIC.map(|(name, y, unit, value)| {
+        let mut panel = Curves::new(name, Axis::linear("temperature [°C]", ""), Axis::log(y, unit));
         for (n, line) in lines.iter().enumerate() {
             let mut line = line.clone();
             line.sort_by(|a, b| a[1].total_cmp(&b[1]));
             let name = if lines.len() > 1 { quantity(line[0][0], "Hz") } else { String::new() };
             for (name, style) in [(name, Style::Line), (String::new(), Style::Points)] {
-                let through = line.iter().map(|point| [point[1], value(point)]);
+                let through = line.iter().map(|point| [point[1], value([point[2], point[3]])]);
                 panel = panel.with(Series::through(name, style, through).in_colour(COLOURS[n]));
             }
         }

@@ -53,6 +53,20 @@ fn equation_21(radius: f64, load: f64, shear: f64, kelvin: f64, time: f64, r: f6
     8.0 * shear / (PI * radius) * (q(t) - shear / viscosity * past)
 }
 
+const AWAY: &str = "Largest difference of the pressure, a cell away from the border";
+
+/// The largest difference of the pressure from the exact one. The cells at the border are in contact in part and left out.
+fn apart(computed: &[[f64; 2]], border: f64, spacing: f64, exact: impl Fn(f64) -> f64) -> f64 {
+    let inner = computed.iter().filter(|[r, _]| (r - border).abs() > spacing);
+    inner.map(|[r, p]| (p - exact(*r)).abs()).fold(0.0, f64::max)
+}
+
+/// A figure of one panel and one difference.
+fn reproduction(number: u8, title: &str, panel: Curves, difference: Difference, more: &str) -> Reproduction {
+    let figure = Figure::new("").with(panel).panel_size([345.0, 260.0]);
+    Reproduction::new(number, title, figure, vec![difference], more)
+}
+
 /// Figure 1.
 pub(super) fn zener_step(options: &Options) -> Result<Reproduction> {
     let (radius, load, shear, time) = (10e-3, 0.1, 2e6, 1.0);
@@ -66,30 +80,19 @@ pub(super) fn zener_step(options: &Options) -> Result<Reproduction> {
     for (n, t) in reader.field_times().iter().enumerate() {
         let computed = profile(&reader, At::Index(n))?;
         let a = (3.0 * radius * load / (16.0 * shear) * (2.0 - (-t / time).exp())).cbrt();
-        for [r, p] in &computed {
-            // The cells at the border are in contact in part.
-            if (r - a).abs() > spacing {
-                let exact = equation_21(radius, load, shear, shear, time, *r, *t);
-                largest = largest.max((p - exact).abs() / p0);
-            }
-        }
+        let exact = |r: f64| equation_21(radius, load, shear, shear, time, r, *t);
+        largest = largest.max(apart(&computed, a, spacing, exact) / p0);
         let points: Vec<_> = computed.iter().step_by(3).filter(|[r, _]| *r < 1.4 * a0).collect();
         let name = format!("t = {}", quantity(*t, "s"));
         panel =
             panel.with(Series::through(name, Style::Points, points.iter().map(|[r, p]| [r / a0, p / p0])));
         let fine: Vec<f64> = (0..=140).map(|k| f64::from(k) * 0.01).collect();
-        let exact = |r: f64| equation_21(radius, load, shear, shear, time, r * a0, *t) / p0;
         let name = if n == 0 { "eq. 21, corrected" } else { "" };
-        panel = panel.with(Series::of(name, Style::Reference, &fine, exact));
+        panel = panel.with(Series::of(name, Style::Reference, &fine, |r| exact(r * a0) / p0));
     }
-    let figure = Figure::new("").with(panel).panel_size([345.0, 260.0]);
-    let differences = vec![Difference::new(
-        "Largest difference of the pressure, a cell away from the border",
-        largest,
-        "the first peak",
-    )];
     let more = "Retardation time 1 s, G = G_K. The paper does not name the times of its curves.";
-    Ok(Reproduction::new(1, "pressure on a Zener half-space, step load", figure, differences, more))
+    let difference = Difference::new(AWAY, largest, "the first peak");
+    Ok(reproduction(1, "pressure on a Zener half-space, step load", panel, difference, more))
 }
 
 /// Figure 2.
@@ -108,25 +111,16 @@ pub(super) fn capped(options: &Options) -> Result<Reproduction> {
         let exact = CappedHertz::under_load(radius, modulus, limit.min(1e12), load)?;
         let border = (exact.contact_area() / PI).sqrt();
         let spacing = reader.header().grid.spacing()[0];
-        for [r, p] in &computed {
-            if (r - border).abs() > spacing {
-                largest = largest.max((p - exact.pressure(*r)).abs() / peak);
-            }
-        }
+        largest = largest.max(apart(&computed, border, spacing, |r| exact.pressure(r)) / peak);
         let title = if limit.is_finite() { format!("limit {name} MPa") } else { "no limit".into() };
         panel = panel.with(Series::through(title, Style::Points, computed.iter().copied().step_by(3)));
         let fine: Vec<f64> = (0..=240).map(|k| f64::from(k) * 0.25e-6).collect();
         let name = if n == 0 { "axisymmetric solution" } else { "" };
         panel = panel.with(Series::of(name, Style::Reference, &fine, |r| exact.pressure(r)));
     }
-    let figure = Figure::new("").with(panel).panel_size([345.0, 260.0]);
-    let differences = vec![Difference::new(
-        "Largest difference of the pressure, a cell away from the border",
-        largest,
-        "the Hertz peak",
-    )];
+    let difference = Difference::new(AWAY, largest, "the Hertz peak");
     let more = "The paper does not name its limits.";
-    Ok(Reproduction::new(2, "pressure under a sphere, cut off", figure, differences, more))
+    Ok(reproduction(2, "pressure under a sphere, cut off", panel, difference, more))
 }
 
 /// Figure 4.
@@ -149,8 +143,7 @@ pub(super) fn triangle(options: &Options) -> Result<Reproduction> {
     let panel = Curves::new("", Axis::linear("depth", "m"), Axis::linear("load", "N"))
         .with(Series::through("computed", Style::Points, every))
         .with(Series::new("Ting (1966)", Style::Reference, exact, &load));
-    let figure = Figure::new("").with(panel).panel_size([345.0, 260.0]);
-    let differences = vec![Difference::new("Largest difference of the depth", largest, "the largest depth")];
+    let difference = Difference::new("Largest difference of the depth", largest, "the largest depth");
     let more = "Sphere of 1 mm: the paper does not name its radius.";
-    Ok(Reproduction::new(4, "load over depth, triangular load on PMMA", figure, differences, more))
+    Ok(reproduction(4, "load over depth, triangular load on PMMA", panel, difference, more))
 }

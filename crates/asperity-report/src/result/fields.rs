@@ -91,13 +91,9 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, Pl
         {
             (no_contact(reader, index)?, " Light: no contact.")
         }
-        FieldKind::FlashTemperature | FieldKind::SliderFlashTemperature => {
-            let face = if kind == FieldKind::FlashTemperature {
-                " Above the surroundings."
-            } else {
-                " Of the slider, above the surroundings."
-            };
-            (no_contact(reader, index)?, face)
+        FieldKind::FlashTemperature => (no_contact(reader, index)?, " Above the surroundings."),
+        FieldKind::SliderFlashTemperature => {
+            (no_contact(reader, index)?, " Of the slider, above the surroundings.")
         }
         _ if values.iter().all(touches) => {
             (format!("0 everywhere at {}: {label}", super::moment(reader, reader.field_times()[index])), "")

@@ -34,6 +34,7 @@ use asperity_io::choice;
 use asperity_io::readable::{coordinate, quantity};
 use asperity_io::store::{At, Look, Reader, StoreError};
 use asperity_io::stress::StressError;
+use serde::Deserialize;
 use serde_json::Value;
 
 pub(crate) use common::Common;
@@ -360,16 +361,15 @@ pub(crate) fn creep_over_reduced_time(reader: &Reader) -> Vec<Creep> {
 }
 
 fn creep_of(stored: &Value) -> Option<Creep> {
-    let number = |name: &str| stored.get(name).and_then(Value::as_f64);
-    let terms = stored.get("terms")?.as_array()?.iter().map(|term| {
-        let pair = term.as_array()?;
-        Some(CreepTerm { compliance: pair.first()?.as_f64()?, retardation_time: pair.get(1)?.as_f64()? })
-    });
-    let creep = Creep {
-        instantaneous: number("instantaneous")?,
-        terms: terms.collect::<Option<_>>()?,
-        fluidity: number("fluidity")?,
-    };
+    #[derive(Deserialize)]
+    struct Stored {
+        instantaneous: f64,
+        terms: Vec<(f64, f64)>,
+        fluidity: f64,
+    }
+    let Stored { instantaneous, terms, fluidity } = Stored::deserialize(stored).ok()?;
+    let term = |(compliance, retardation_time)| CreepTerm { compliance, retardation_time };
+    let creep = Creep { instantaneous, terms: terms.into_iter().map(term).collect(), fluidity };
     creep.validate().ok().map(|()| creep)
 }
 

@@ -1,6 +1,7 @@
 //! The temperature of a run over time.
 
 use asperity_io::store::{Reader, StoreError};
+use serde::Deserialize;
 use serde_json::Value;
 
 use super::Rows;
@@ -28,9 +29,8 @@ fn ends(setup: &serde_json::Map<String, Value>) -> Option<String> {
 fn course(reader: &Reader) -> Option<Vec<[f64; 2]>> {
     let setup = &reader.header().setup;
     // Results of Python have the points in place of the lowest and the highest temperature.
-    let stored = setup.get("temperature_course").or(setup.get("temperature"))?.as_array()?;
-    let pair = |point: &Value| Some([point.get(0)?.as_f64()?, point.get(1)?.as_f64()?]);
-    let course: Vec<[f64; 2]> = stored.iter().map(pair).collect::<Option<_>>()?;
+    let stored = setup.get("temperature_course").or(setup.get("temperature"))?;
+    let course = Vec::<[f64; 2]>::deserialize(stored).ok()?;
     let changes = course.iter().any(|point| point[1] != course[0][1]);
     (reader.header().axis() == asperity::Axis::Time && changes).then_some(course)
 }

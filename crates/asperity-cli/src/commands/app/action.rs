@@ -166,7 +166,6 @@ impl Action {
             if resume { reads(name).or_else(|_| writes(name)) } else { writes(name) }
         };
         let all = |names: &[String]| names.iter().map(reads).collect::<Result<Vec<_>, _>>();
-        let drawn = || vec!["--json".to_owned(), format!("--plot={scratch}/shown.svg")];
         let looked_at = |name: &str| vec!["-o".to_owned(), format!("{scratch}/{name}")];
         Ok(match self {
             Action::Template { template, output } => Line::of(&["new", &named(template), &writes(output)?]),
@@ -182,7 +181,7 @@ impl Action {
                     format!("surface = asp.Surface.read({})\nprint(surface.statistics())", quoted(&file));
                 let known = [SURFACE, SPECTRUM].concat();
                 let line = Line::of(&["surface", "info", &file]).with(given(options, &known)?);
-                line.more(drawn()).draws("shown.svg").python(options, python)
+                line.drawn(scratch).python(options, python)
             }
             Action::Process { file, ops, options, output, write } => {
                 let (file, to) = (reads(file)?, writes(output)?);
@@ -192,31 +191,25 @@ impl Action {
                     format!("surface = asp.Surface.read({from}).process({steps})\nsurface.write({into})");
                 let line =
                     Line::of(&["surface", "process", &file]).with(ops.iter().map(|op| format!("--op={op}")));
-                let line = line
-                    .with(given(options, SURFACE)?)
-                    .python(options, python)
-                    .draws("shown.svg")
-                    .more(drawn());
+                let line = line.with(given(options, SURFACE)?).python(options, python).drawn(scratch);
                 let shown = [line.shown, vec!["-o".to_owned(), to.clone()]].concat();
                 let line = Line { shown, ..line };
                 let last = to.rsplit(['/', '\\']).next().unwrap_or_default();
                 if *write { line } else { line.instead(looked_at(last)) }
             }
-            Action::Data { file } => {
-                Line::of(&["material", "show", &reads(file)?]).more(drawn()).draws("shown.svg")
-            }
+            Action::Data { file } => Line::of(&["material", "show", &reads(file)?]).drawn(scratch),
             Action::Fit { file, options, output, write } => {
                 let (file, output) = (reads(file)?, writes(output)?);
                 options.get("shift-table").map(reads).transpose()?;
                 let python = format!("fit = asp.fit_file({}, poisson=0.5)\nprint(fit)", quoted(&file));
-                let line = Line::of(&["material", "fit", &file]).with(given(options, FIT)?).more(drawn());
-                let line = line.draws("shown.svg").python(options, python);
+                let line = Line::of(&["material", "fit", &file]).with(given(options, FIT)?);
+                let line = line.drawn(scratch).python(options, python);
                 if *write { line.with(["-o".to_owned(), output]) } else { line }
             }
             Action::Indentation { file, options, output, write } => {
                 let (file, output) = (reads(file)?, writes(output)?);
                 let line = Line::of(&["fit-indentation", &file]).with(given(options, INDENTATION)?);
-                let line = line.more(drawn()).draws("shown.svg");
+                let line = line.drawn(scratch);
                 if *write { line.with(["-o".to_owned(), output]) } else { line }
             }
             Action::Report { results, output, write } => {
@@ -227,7 +220,11 @@ impl Action {
                 };
                 let line = Line::of(&["report"]).with(results).with(["-o".to_owned(), output]);
                 let line = line.python(&Given::new(), python);
-                if *write { line } else { line.instead(looked_at("shown.html")).draws("shown.html") }
+                if *write {
+                    line
+                } else {
+                    Line { draws: Some("shown.html"), ..line.instead(looked_at("shown.html")) }
+                }
             }
             Action::Compare { results } => Line::of(&["compare"]).with(all(results)?),
             Action::Export { result, to, output } => {
@@ -244,7 +241,7 @@ impl Action {
                 );
                 let line =
                     Line::of(&["run", &case, "-o", &output]).with(resume.then(|| "--resume".to_owned()));
-                line.more(vec!["-v".to_owned()]).python(&Given::new(), python)
+                Line { more: vec!["-v".to_owned()], ..line }.python(&Given::new(), python)
             }
             Action::Study { case, vary, output, resume } if vary.trim().is_empty() => {
                 Line::of(&["study", &reads(case)?]).with(["-o".to_owned(), goes_on(output, *resume)?])
@@ -315,12 +312,10 @@ impl Line {
         self
     }
 
-    fn more(self, more: Vec<String>) -> Line {
-        Line { more, ..self }
-    }
-
-    fn draws(self, ending: &'static str) -> Line {
-        Line { draws: Some(ending), ..self }
+    /// With its numbers for the page, and a picture in that folder.
+    fn drawn(self, scratch: &str) -> Line {
+        let more = vec!["--json".to_owned(), format!("--plot={scratch}/shown.svg")];
+        Line { more, draws: Some("shown.svg"), ..self }
     }
 
     /// The last two words, "-o FILE", are only shown; these are run in their place.

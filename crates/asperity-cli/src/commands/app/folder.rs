@@ -10,6 +10,7 @@ use asperity_io::answer::{self, Units};
 use asperity_io::curve::{Columns, Curves, Indentation};
 use asperity_io::output;
 use asperity_io::store::Reader;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -149,8 +150,8 @@ impl Folder {
                 _ => json!({}),
             };
             entry["name"] = json!(name);
-            entry["kind"] =
-                json!(if kind == Kind::Case && !has_tables(&place) { "block" } else { kind.name() });
+            let is_block = kind == Kind::Case && !has_tables(&place);
+            entry["kind"] = if is_block { json!("block") } else { json!(kind) };
             entry
         });
         shown.collect()
@@ -210,7 +211,8 @@ struct Entry {
     kind: Kind,
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
 enum Kind {
     Case,
     Result,
@@ -219,19 +221,6 @@ enum Kind {
     Dataset,
     Folder,
     File,
-}
-
-impl Kind {
-    fn name(self) -> &'static str {
-        match self {
-            Kind::Case => "case",
-            Kind::Result => "result",
-            Kind::Study => "study",
-            Kind::Dataset => "dataset",
-            Kind::Folder => "folder",
-            Kind::File => "file",
-        }
-    }
 }
 
 fn kind(path: &Path) -> Kind {

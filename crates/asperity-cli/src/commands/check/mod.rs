@@ -309,6 +309,16 @@ fn roughly(seconds: f64) -> String {
     duration((seconds / unit).round() * unit)
 }
 
+/// "3 MPa", or "3 MPa instantaneous, 1 MPa relaxed".
+fn moduli(instantaneous: Option<f64>, relaxed: f64) -> String {
+    let relaxed = quantity(relaxed, "Pa");
+    match instantaneous.map(|modulus| quantity(modulus, "Pa")) {
+        Some(instantaneous) if instantaneous == relaxed => relaxed,
+        Some(instantaneous) => format!("{instantaneous} instantaneous, {relaxed} relaxed"),
+        None => format!("{relaxed} relaxed, instantaneously rigid"),
+    }
+}
+
 /// "1 mm x 2 mm".
 fn lengths(sides: &[f64]) -> String {
     let sides: Vec<String> = sides.iter().map(|side| quantity(*side, "m")).collect();
@@ -342,30 +352,11 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>, error_bars:
             line("", format!("- {step}"));
         }
     }
-    let modulus = match d.instantaneous_modulus {
-        Some(e) if d.retardation_times.is_empty() && d.relaxed_modulus > 0.0 => {
-            format!("contact modulus {}", quantity(e, "Pa"))
-        }
-        Some(e) => {
-            format!(
-                "contact modulus {} instantaneous, {} relaxed",
-                quantity(e, "Pa"),
-                quantity(d.relaxed_modulus, "Pa")
-            )
-        }
-        None => {
-            format!("contact modulus {} relaxed, instantaneously rigid", quantity(d.relaxed_modulus, "Pa"))
-        }
-    };
-    line("bodies", format!("{}; {modulus}", d.bodies.join(", ")));
+    let modulus = moduli(d.instantaneous_modulus, d.relaxed_modulus);
+    line("bodies", format!("{}; contact modulus {modulus}", d.bodies.join(", ")));
     for modulus in &inputs.moduli {
         let name = if modulus.modulus == "shear" { "shear modulus" } else { "Young's modulus" };
-        let relaxed = quantity(modulus.relaxed, "Pa");
-        let value = match modulus.instantaneous.map(|at_once| quantity(at_once, "Pa")) {
-            Some(at_once) if at_once == relaxed => at_once,
-            Some(instantaneous) => format!("{instantaneous} instantaneous, {relaxed} relaxed"),
-            None => format!("{relaxed} relaxed, instantaneously rigid"),
-        };
+        let value = moduli(modulus.instantaneous, modulus.relaxed);
         line("", format!("{}: {name} {value}", modulus.body));
     }
     if let Some(layers) = &d.layers {
@@ -380,12 +371,7 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>, error_bars:
         }
         line("", "equivalent half-space:".into());
         for (name, wave) in ["longest", "shortest"].iter().zip(&layers.waves) {
-            let relaxed = quantity(wave.relaxed_modulus, "Pa");
-            let modulus = match wave.instantaneous_modulus.map(|modulus| quantity(modulus, "Pa")) {
-                Some(at_once) if at_once == relaxed => at_once,
-                Some(instantaneous) => format!("{instantaneous} instantaneous, {relaxed} relaxed"),
-                None => format!("{relaxed} relaxed, instantaneously rigid"),
-            };
+            let modulus = moduli(wave.instantaneous_modulus, wave.relaxed_modulus);
             let length = quantity(wave.length, "m");
             // Of a free domain the contact decides, not its waves: strain and compliance of a contact of radius a are those of q = 1/a.
             let radius = quantity(wave.length / std::f64::consts::TAU, "m");
@@ -452,9 +438,8 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>, error_bars:
         ),
     );
     if let Some(stress) = &d.stress {
-        stress_lines(stress, cost::stress_seconds(case, stress))
-            .into_iter()
-            .for_each(|[name, value]| line(&name, value));
+        let lines = stress_lines(stress, cost::stress_seconds(case, stress));
+        lines.into_iter().for_each(|[name, value]| line(&name, value));
     }
     if let Some(leak) = &case.leakage {
         let memory = bytes(leak.bytes(case.conditions.grid.len()));

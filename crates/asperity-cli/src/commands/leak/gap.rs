@@ -88,14 +88,14 @@ fn warn_of_heights(path: &Path, map: &Array2<f64>) {
     }
 }
 
+/// Numbers that are not finite become null.
 fn object(state: &Leakage) -> Value {
-    let place = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
     json!({
         "percolates": state.percolates,
         "hydraulic_gap": state.hydraulic_gap,
-        "critical_gap": place(state.critical_gap),
-        "critical_x": place(state.critical[0]),
-        "critical_y": place(state.critical[1]),
+        "critical_gap": state.critical_gap,
+        "critical_x": state.critical[0],
+        "critical_y": state.critical[1],
         "critical_width": state.critical_width,
         "medium_gap": state.medium_gap,
         "open_fraction": state.open_fraction,
@@ -106,7 +106,7 @@ fn object(state: &Leakage) -> Value {
         "leak_rate_standard": state.leak_rate_standard,
         "leak_estimate_junction": state.leak_estimate_junction,
         "leak_estimate_medium": state.leak_estimate_medium,
-        "knudsen_number": state.knudsen.map(place),
+        "knudsen_number": state.knudsen,
     })
 }
 

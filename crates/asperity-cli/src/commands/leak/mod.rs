@@ -100,7 +100,7 @@ fn check(units: &Units, rates: &[&str]) -> Result<(), Failure> {
     if let (Some(unit), true) = (units.text("leak"), rates.is_empty()) {
         message!("note: the unit {unit} for leaks changes nothing: without a fluid there is no leak rate");
     }
-    units.check_leak(rates).map_err(|error| Failure::input(format!("--unit: {error}")))
+    units.check_leak(rates).map_err(Failure::about("--unit"))
 }
 
 fn observe(done: usize, of: usize) {

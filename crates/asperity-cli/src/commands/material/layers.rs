@@ -1,7 +1,5 @@
 //! `asperity material show CASE --layers`: how bodies of layers answer waves of pressure.
 
-use std::fmt::Write as _;
-
 use asperity_io::case::{Case, WaveReport};
 use asperity_report::material as pictures;
 use serde_json::json;
@@ -37,11 +35,8 @@ pub fn show(args: &Show) -> Result<(), Failure> {
         return crate::print(&format!("{}\n", json!(waves)));
     }
     let mut text = String::new();
-    let _ = writeln!(
-        text,
-        "A wave of pressure of wave number q displaces the surface by C(q) times its amplitude;"
-    );
-    let _ = writeln!(text, "2/(q C) is the contact modulus of the equivalent half-space\n");
+    text += "A wave of pressure of wave number q displaces the surface by C(q) times its amplitude;\n";
+    text += "2/(q C) is the contact modulus of the equivalent half-space\n\n";
     let at_once = waves.iter().any(|wave| wave.instantaneous_modulus != Some(wave.relaxed_modulus));
     let of_modulus = |length: f64, modulus: f64| {
         let q = std::f64::consts::TAU / length;
@@ -49,18 +44,17 @@ pub fn show(args: &Show) -> Result<(), Failure> {
     };
     let columns = format!("{:>14}{:>14}{:>14}", "C [m/Pa]", "q C [1/Pa]", "2/(q C)");
     if at_once {
-        let _ = writeln!(text, "{:>12}{:>14}{:^42}{:^42}", "", "", "instantaneous", "relaxed");
+        text += &format!("{:>12}{:>14}{:^42}{:^42}\n", "", "", "instantaneous", "relaxed");
     }
     let more = if at_once { columns.as_str() } else { "" };
-    let _ = writeln!(text, "{:>12}{:>14}{columns}{more}", "wave length", "q [1/m]");
+    text += &format!("{:>12}{:>14}{columns}{more}\n", "wave length", "q [1/m]");
     for wave in &waves {
-        let _ =
-            write!(text, "{:>12}{:>14.5e}", quantity(wave.length, "m"), std::f64::consts::TAU / wave.length);
+        text += &format!("{:>12}{:>14.5e}", quantity(wave.length, "m"), std::f64::consts::TAU / wave.length);
         if at_once {
             let instantaneous = wave.instantaneous_modulus.map(|modulus| of_modulus(wave.length, modulus));
-            let _ = write!(text, "{:>42}", instantaneous.unwrap_or_else(|| "rigid".into()));
+            text += &format!("{:>42}", instantaneous.unwrap_or_else(|| "rigid".into()));
         }
-        let _ = writeln!(text, "{}", of_modulus(wave.length, wave.relaxed_modulus));
+        text += &format!("{}\n", of_modulus(wave.length, wave.relaxed_modulus));
     }
     crate::print(&text)
 }

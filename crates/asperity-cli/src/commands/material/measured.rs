@@ -1,6 +1,5 @@
 //! `asperity material show FILE` of measured data: what is found in a file, before anything is fitted.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use asperity::material::Modulus;
@@ -48,9 +47,8 @@ fn text(curves: &Curves) -> String {
     };
     let mut text = format!("{}{sheet}: {} ({kind})\n\n", curves.path.display(), curves.kind.name());
     for place in &curves.columns {
-        let _ = writeln!(
-            text,
-            "  column {:<3} {:<22} {:<20} [{}]",
+        text += &format!(
+            "  column {:<3} {:<22} {:<20} [{}]\n",
             place.column,
             format!("\"{}\"", place.header),
             place.role.name(),
@@ -58,9 +56,9 @@ fn text(curves: &Curves) -> String {
         );
     }
     if !curves.unused.is_empty() {
-        let _ = writeln!(text, "  not used: {}", curves.unused.join(", "));
+        text += &format!("  not used: {}\n", curves.unused.join(", "));
     }
-    let _ = writeln!(text, "  modulus: {measure}\n");
+    text += &format!("  modulus: {measure}\n\n");
     let names: &[&str] = match curves.kind {
         Kind::Relaxation => &["modulus"],
         Kind::Creep => &["compliance"],
@@ -68,9 +66,8 @@ fn text(curves: &Curves) -> String {
     };
     if curves.is_over_temperature() {
         let rows = counted(curves.sweeps.len(), "temperature");
-        let _ = writeln!(
-            text,
-            "  a temperature ramp, {}: {rows}, {}, {}",
+        text += &format!(
+            "  a temperature ramp, {}: {rows}, {}, {}\n",
             curves.temperatures(),
             counted(curves.points(), "point"),
             frequencies(curves)
@@ -78,17 +75,17 @@ fn text(curves: &Curves) -> String {
     }
     for sweep in curves.sweeps.iter().filter(|_| !curves.is_over_temperature()) {
         let at = sweep.temperature.map_or(String::new(), |kelvin| format!("{:7.1} °C: ", celsius(kelvin)));
-        let _ = write!(text, "  {at}{}", counted(sweep.x.len(), "point"));
-        let _ = write!(text, ", {}", range(&abscissae(curves.kind, sweep), abscissa_unit(curves.kind)));
+        text += &format!("  {at}{}", counted(sweep.x.len(), "point"));
+        text += &format!(", {}", range(&abscissae(curves.kind, sweep), abscissa_unit(curves.kind)));
         for (name, curve) in names.iter().zip(&sweep.curves) {
             let unit = if curves.kind == Kind::Creep { "1/Pa" } else { "Pa" };
-            let _ = write!(text, ", {name} {}", range(curve, unit));
+            text += &format!(", {name} {}", range(curve, unit));
         }
         text.push('\n');
     }
     for (name, shift) in [("list", &curves.held.list), ("constants", &curves.held.wlf)] {
         if let Some(shift) = shift {
-            let _ = writeln!(text, "\n  shift of the file ({name}): {}", law(shift));
+            text += &format!("\n  shift of the file ({name}): {}\n", law(shift));
         }
     }
     curves.notes.iter().for_each(|note| text += &format!("\n  note: {note}\n"));

@@ -8,7 +8,6 @@ mod measured;
 mod options;
 
 use std::f64::consts::TAU;
-use std::fmt::Write as _;
 
 use asperity::material::{Modulus, Relaxation, Shift};
 use asperity_io::case::{MaterialReport, Specimen, specimens};
@@ -169,9 +168,8 @@ impl<'a> Table<'a> {
         let (name, modulus, compliance) = symbols(specimen.material.measure());
         let mut text = format!("{}: {}, {name}\n", specimen.name, specimen.report.model);
         source(&specimen.report).iter().for_each(|line| text += &format!("  {line}\n"));
-        let _ = writeln!(
-            text,
-            "\n  {:>12} {:>14} {:>14}",
+        text += &format!(
+            "\n  {:>12} {:>14} {:>14}\n",
             "t [s]",
             format!("{modulus}(t) [Pa]"),
             format!("{compliance}(t) [1/Pa]")
@@ -180,11 +178,10 @@ impl<'a> Table<'a> {
         let mark = |t: f64| if t < covered[0] * 0.999 || t > covered[1] * 1.001 { " *" } else { "" };
         for t in &self.times {
             let (relaxation, creep) = (self.relaxation.value(*t), specimen.material.creep().value(*t));
-            let _ = writeln!(text, "  {t:>12.4e} {relaxation:>14.6e} {creep:>14.6e}{}", mark(*t));
+            text += &format!("  {t:>12.4e} {relaxation:>14.6e} {creep:>14.6e}{}\n", mark(*t));
         }
-        let _ = writeln!(
-            text,
-            "\n  {:>12} {:>12} {:>14} {:>14} {:>12}",
+        text += &format!(
+            "\n  {:>12} {:>12} {:>14} {:>14} {:>12}\n",
             "ω [rad/s]",
             "f [Hz]",
             format!("{modulus}' [Pa]"),
@@ -193,17 +190,15 @@ impl<'a> Table<'a> {
         );
         for [w, storage, loss] in self.dynamic() {
             let (hertz, tan_delta) = (w / TAU, loss / storage);
-            let _ = writeln!(
-                text,
-                "  {w:>12.4e} {hertz:>12.4e} {storage:>14.6e} {loss:>14.6e} {tan_delta:>12.4e}{}",
+            text += &format!(
+                "  {w:>12.4e} {hertz:>12.4e} {storage:>14.6e} {loss:>14.6e} {tan_delta:>12.4e}{}\n",
                 mark(1.0 / w)
             );
         }
         if self.times.iter().any(|t| !mark(*t).is_empty()) {
             let [first, last] = covered.map(|t| quantity(t, "s"));
-            let _ = writeln!(
-                text,
-                "\n  * extrapolated: the terms stand for the material from {first} to {last} only"
+            text += &format!(
+                "\n  * extrapolated: the terms stand for the material from {first} to {last} only\n"
             );
         }
         text

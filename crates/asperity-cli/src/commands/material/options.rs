@@ -58,8 +58,7 @@ fn pairs(option: &str, texts: &[String]) -> Result<BTreeMap<Role, String>, Failu
         let (role, value) = text.split_once('=').ok_or_else(|| {
             Failure::input(format!("{option} is \"{text}\", but must be QUANTITY=..., e.g. {option} time=1"))
         })?;
-        let role =
-            role.trim().parse::<Role>().map_err(|error| Failure::input(format!("{option}: {error}")))?;
+        let role = role.trim().parse::<Role>().map_err(Failure::about(option))?;
         Ok((role, value.trim().to_owned()))
     };
     let mut pairs = BTreeMap::new();

@@ -2,7 +2,6 @@
 //! the remark [`YOURS`].
 
 use std::f64::consts::{PI, TAU};
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::indentation::{Given, IndentationRecord, controlled};
@@ -111,13 +110,11 @@ impl Material {
             Some(Modulus::Young) => ("young", String::new()),
             None => ("young", format!("   {YOURS}\"young\" (tension, bending) or \"shear\"")),
         };
-        let _ = writeln!(
-            text,
-            "poisson = 0.5           {YOURS}0.5 rubber and gel, 0.3 to 0.4 plastics and metals"
-        );
-        let _ = writeln!(text, "[body.material]\nmodel = \"{model}\"");
-        let _ = writeln!(text, "path = {}", toml(&relative(path, folder)));
-        let _ = writeln!(text, "{measure_key} = \"{measure}\"{unknown}");
+        text +=
+            &format!("poisson = 0.5           {YOURS}0.5 rubber and gel, 0.3 to 0.4 plastics and metals\n");
+        text += &format!("[body.material]\nmodel = \"{model}\"\n");
+        text += &format!("path = {}\n", toml(&relative(path, folder)));
+        text += &format!("{measure_key} = \"{measure}\"{unknown}\n");
         let mut reference = None;
         if celsius.len() > 1 {
             let held = curves.held.shift().is_some();
@@ -134,11 +131,10 @@ impl Material {
             let about = format!("{:.2} °C", kelvin - 273.15);
             let law = format!("{{ model = \"wlf\", c1 = 8.86, c2 = \"101.6 K\", reference = \"{about}\" }}");
             if curves.is_over_temperature() {
-                let _ = writeln!(text, "shift = {law}   {YOURS}the law of your material");
+                text += &format!("shift = {law}   {YOURS}the law of your material\n");
             } else if !held {
-                let _ = writeln!(
-                    text,
-                    "shift = {{ model = \"estimated\", reference = \"{about}\" }}   # or your WLF: {law}"
+                text += &format!(
+                    "shift = {{ model = \"estimated\", reference = \"{about}\" }}   # or your WLF: {law}\n"
                 );
             }
             reference = Some(about);
@@ -149,8 +145,8 @@ impl Material {
     /// What `material fit -o` or `fit-indentation -o` wrote.
     fn written(path: &Path) -> Result<Material, Failure> {
         let shown = path.display();
-        let mut text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::input(format!("cannot read {shown}: {error}")))?;
+        let mut text =
+            std::fs::read_to_string(path).map_err(Failure::about(format!("cannot read {shown}")))?;
         let has = |text: &str, key: &str| text.lines().any(|line| line.trim_start().starts_with(key));
         if has(&text, "[") || !has(&text, "material") {
             refuse!(
@@ -191,8 +187,7 @@ impl Material {
     fn body(&self) -> String {
         let mut text = format!("\n[[body]]\n{}", self.text);
         if let Some(reference) = &self.reference {
-            let _ = write!(
-                text,
+            text += &format!(
                 "\n[temperature]\nhistory = {{ kind = \"constant\", value = \"{reference}\" }}   {YOURS}of the contact; this is the reference of the shift\n"
             );
         }
@@ -249,14 +244,7 @@ fn of_surface(
         Purpose::Adhesion => "Adhesion of a rough surface",
         _ => "Contact of a rough surface",
     };
-    let mut text = String::from(
-        "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n",
-    );
-    let _ = writeln!(
-        text,
-        "# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved."
-    );
-    let _ = writeln!(text, "title = {}\n", toml(&format!("{title}: {}", surface::name(from))));
+    let mut text = head(title, from);
     text += &domain(&topography, purpose);
     text += &surface_part(args, &topography, &relative(from, folder), purpose);
     if purpose == Purpose::Indentation {
@@ -272,6 +260,15 @@ fn of_surface(
         _ => in_time(purpose, material),
     };
     Ok(with_adhesion(text, rest, purpose, folder))
+}
+
+/// How a case begins; its title ends with the name of a file.
+fn head(title: &str, from: &Path) -> String {
+    format!(
+        "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved.\n\
+         title = {}\n\n",
+        toml(&format!("{title}: {}", surface::name(from)))
+    )
 }
 
 /// The two parts of a case, with `[adhesion]` between them where it is for that.
@@ -319,15 +316,15 @@ fn surface_part(args: &New, topography: &Topography, path: &str, purpose: Purpos
     );
     if args.size.is_some() {
         let [x, y] = topography.size.map(|side| plain(side, "m"));
-        let _ = writeln!(text, "size = [\"{x}\", \"{y}\"]");
+        text += &format!("size = [\"{x}\", \"{y}\"]\n");
     }
     if let Some(unit) = &args.height_unit {
-        let _ = writeln!(text, "height_unit = {}", toml(unit));
+        text += &format!("height_unit = {}\n", toml(unit));
     }
     text += "level = \"plane\"                       # the sample may be tilted under the instrument\n";
     text += "outliers = { threshold = 8, radius = 2 }   # spikes of the instrument; summits of the surface stay\n";
     if holes > 0 {
-        let _ = writeln!(text, "fill = \"harmonic\"                     # {holes} points are undefined");
+        text += &format!("fill = \"harmonic\"                     # {holes} points are undefined\n");
     }
     if purpose != Purpose::Indentation {
         text += "window = { shape = \"tukey\", share = 0.1 }   # opposite borders match\n";
@@ -350,15 +347,13 @@ fn in_time(purpose: Purpose, material: &Material) -> String {
             "\n[load]\ncontrol = \"pressure\"                  # mean over the surface\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure\n"
         ),
     };
-    let _ = write!(
-        text,
+    text += &format!(
         "\n[time]\nend = \"{end} s\"   {YOURS}length of the run; the data of the material reach {}\nsteps = 40\nspacing = \"log\"\nfirst = \"{} s\"\n",
         material.times.map_or("as far as was fitted".to_owned(), |[_, last]| quantity(last, "s")),
         one_digit(end / 1000.0),
     );
     if purpose == Purpose::Seal {
-        let _ = write!(
-            text,
+        text += &format!(
             "\n[solver]\ntolerance = 1e-8                      # narrow gaps need it\n\n[leakage]\ndirection = \"x\"                       {YOURS}from inlet to outlet: \"x\" or \"y\"\npressure_drop = \"0.1 bar\"             {YOURS}between inlet and outlet\nviscosity = \"1 mPa s\"                 {YOURS}water 1 mPa s, oil 100 mPa s; of a gas: gas, inlet and outlet in place of both\n"
         );
     }
@@ -442,9 +437,8 @@ fn indentation_of(
         "# what the test controlled; the other channel is the response"
     };
     let before = format!(
-        "#:schema case.schema.json\n# (asperity schema > case.schema.json lets an editor check this file while you type)\n#\n# Lines with \"YOUR VALUE\" hold examples: put your own there. `asperity check` says what will be solved.\n\
-         title = {}\n\n[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n{indenter}{}",
-        toml(&format!("{title}: {}", surface::name(from))),
+        "{}[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n{indenter}{}",
+        head(title, from),
         material.body(),
     );
     let after = format!(

@@ -88,17 +88,13 @@ fn sheet(
     rows: &[[String; 2]],
     figure: &asperity_report::figure::Figure,
 ) -> Sheet {
-    let title = answer_title(case);
+    let title = case.file_stem().unwrap_or_default().to_string_lossy();
     let table: Vec<Vec<String>> =
         [["answer".to_owned(), "value".to_owned()]].iter().chain(rows).map(|row| row.to_vec()).collect();
     let sheet = Sheet::new(title).table("Seal", &table);
     let sheet = answer.findings.iter().fold(sheet, |sheet, finding| sheet.note(&finding.to_string()));
     let sheet = answer.sweep.findings.iter().fold(sheet, |sheet, words| sheet.note(words));
     sheet.figure("Leak and pressure", figure)
-}
-
-fn answer_title(case: &Path) -> String {
-    case.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn text(rows: &[[String; 2]], folder: &Path) -> String {

@@ -6,7 +6,7 @@ use std::path::Path;
 use asperity::material::Shift;
 
 use super::bytes;
-use super::error::{CurveError, Fault, Remedy, fault};
+use super::error::{CurveError, Remedy, fault};
 use super::role::{Role, bare};
 use super::table::{Heading, Table, split_unit};
 use super::units::tidy;
@@ -39,9 +39,9 @@ impl HeldShift {
 /// [`CurveError`] if there are no such columns, the unit is not one of temperature, the factors rise with temperature, or a
 /// temperature occurs twice.
 pub fn read_shift_table(path: &Path) -> Result<Shift, CurveError> {
-    let read = || -> Result<Shift, Fault> {
+    let read = || -> Result<Shift, CurveError> {
         let mut last = None;
-        for sheet in sheets(&bytes(path).map_err(|error| fault(error.message))?, None)? {
+        for sheet in sheets(&bytes(path)?, None)? {
             match sheet.table.and_then(|table| factors(&table, None)) {
                 Ok(shift) => return Ok(shift),
                 Err(fault) => last = Some(fault),
@@ -162,7 +162,7 @@ pub(super) fn told_by(table: &Table) -> bool {
 }
 
 /// The factors of a table; temperatures without a unit are in `unit`, or kelvin.
-fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
+fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, CurveError> {
     let is_temperature = |heading: &Heading| {
         ["t", "temp", "temperature", "temperatur"].contains(&bare(&heading.name).as_str())
     };
@@ -218,7 +218,7 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
 }
 
 /// Refuses a table whose moduli shift too, by a column of b_T that holds more than b_T = 1.
-fn vertical_free(table: &Table) -> Result<(), Fault> {
+fn vertical_free(table: &Table) -> Result<(), CurveError> {
     for (n, Heading { name, base, .. }) in table.headings.iter().enumerate() {
         let whole = bare(name);
         let plain = ["log10", "log", "lg", "ln"].iter().find_map(|prefix| whole.strip_prefix(prefix));
@@ -250,7 +250,7 @@ fn is_vertical(name: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Shift, Fault> {
+    fn read(text: &str) -> Result<Shift, CurveError> {
         factors(&Table::parse(text.as_bytes()).unwrap(), None)
     }
 

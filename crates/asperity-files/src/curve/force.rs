@@ -106,6 +106,6 @@ impl ForceTable {
                 notes,
             })
         };
-        read().map_err(|fault: super::error::Fault| fault.of(path))
+        read().map_err(|fault: super::error::CurveError| fault.of(path))
     }
 }

@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use super::error::{Fault, fault};
+use super::error::{CurveError, fault};
 use super::{role, units, wide};
 use crate::quantity::unit::Unit;
 use crate::topography::{dialect, is_numbers, to_text};
@@ -57,7 +57,7 @@ const LONGEST_LINE: usize = 1 << 20;
 
 impl Table {
     /// From the bytes of a text file.
-    pub(super) fn parse(bytes: &[u8]) -> Result<Table, Fault> {
+    pub(super) fn parse(bytes: &[u8]) -> Result<Table, CurveError> {
         let text = to_text(bytes).ok_or_else(|| fault("the file is binary, not a text table"))?;
         if text.lines().nth(MOST_LINES).is_some() {
             return Err(fault(format!("the file has more than {MOST_LINES} lines")));
@@ -80,7 +80,11 @@ impl Table {
     }
 
     /// From text whose separator and decimal mark are known.
-    pub(super) fn split(text: String, separator: Option<char>, decimal_comma: bool) -> Result<Table, Fault> {
+    pub(super) fn split(
+        text: String,
+        separator: Option<char>,
+        decimal_comma: bool,
+    ) -> Result<Table, CurveError> {
         let lines: Vec<&str> = text.lines().map(trim).collect();
         // "NaN" counts as a number; dashes may be anything.
         let number = |cell: &str| parse_number(cell, decimal_comma).is_some() || is_undefined(cell);
@@ -178,12 +182,12 @@ impl Table {
     }
 
     /// The numbers of a column.
-    pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>, Fault> {
+    pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>, CurveError> {
         self.rows.iter().map(|row| self.number(row, column)).collect()
     }
 
     /// The numbers of a column, and `None` where a cell is empty or says that there is none.
-    pub(super) fn sparse(&self, column: usize) -> Result<Vec<Option<f64>>, Fault> {
+    pub(super) fn sparse(&self, column: usize) -> Result<Vec<Option<f64>>, CurveError> {
         let sparse = |row: &Row| match is_missing(self.cell(row, column)) {
             true => Ok(None),
             false => self.number(row, column).map(Some),
@@ -197,7 +201,7 @@ impl Table {
         cells(line, self.separator).get(column).copied().unwrap_or_default()
     }
 
-    fn number(&self, row: &Row, column: usize) -> Result<f64, Fault> {
+    fn number(&self, row: &Row, column: usize) -> Result<f64, CurveError> {
         let cell = self.cell(row, column);
         parse_number(cell, self.decimal_comma).ok_or_else(|| {
                 let shown: String = cell.chars().take(40).collect();
@@ -295,7 +299,7 @@ fn names_column(cell: &str) -> bool {
 }
 
 /// The error for a line between the points that does not repeat the heading.
-fn another_heading(line: &str) -> Fault {
+fn another_heading(line: &str) -> CurveError {
     let shown: String = line.chars().take(60).collect();
     fault(format!(
         "{shown:?} stands between the points: columns, units or temperatures change there, and all points would be read by the first \
@@ -305,7 +309,7 @@ fn another_heading(line: &str) -> Fault {
 }
 
 /// The error for numbers whose comma is ambiguous.
-pub(super) fn doubtful(cell: &str) -> Fault {
+pub(super) fn doubtful(cell: &str) -> CurveError {
     fault(format!(
         "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and the file does not show which; write \
          them with a decimal point, or without commas"

@@ -201,14 +201,8 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
     let possible = form.roles();
     for role in said.columns.keys().chain(said.units.keys()) {
         if !possible.contains(role) {
-            let names: Vec<&str> = possible.iter().map(|role| role.name()).collect();
-            let message = format!(
-                "a {} file has no `{}`; its columns are {}",
-                form.name,
-                role.name(),
-                names.join(", ")
-            );
-            return Err(fault(message));
+            let (role, columns) = (role.name(), role::listed(&possible));
+            return Err(fault(format!("a {} file has no `{role}`; its columns are {columns}", form.name)));
         }
     }
     let mut places = BTreeMap::new();
@@ -240,7 +234,7 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
                 "no column is named as one of a {} file, and there are {there}, more than the {needed} that are needed ({}); the file has \
                  {}",
                 form.name,
-                order.map(|role| role.name()).collect::<Vec<_>>().join(", "),
+                role::listed(order),
                 table.listed()
             ))
             .remedy(Remedy::Column(form.needed[0])));

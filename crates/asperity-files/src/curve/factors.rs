@@ -9,9 +9,8 @@ use super::bytes;
 use super::error::{CurveError, Remedy, fault};
 use super::role::{Role, bare};
 use super::table::{Heading, Table, split_unit};
-use super::units::tidy;
+use super::units::{kelvin, tidy};
 use super::workbook::{Sheet, sheets};
-use crate::quantity::Temperature;
 use crate::topography::leading_number;
 
 /// The shift that a file holds.
@@ -58,13 +57,12 @@ pub(super) fn held(sheets: &[Sheet]) -> HeldShift {
     for sheet in sheets {
         let reference =
             labelled(&sheet.cells, &["reftemp", "referencetemperature", "tref", "referenztemperatur"]);
-        let reference = reference.and_then(|(value, unit)| {
-            Temperature::from_unit(value, &tidy(Role::Temperature, "", &unit)).ok()
-        });
+        let reference =
+            reference.and_then(|(value, unit)| kelvin(value, &tidy(Role::Temperature, "", &unit)).ok());
         if let (Some(c1), Some(c2), Some(reference)) =
             (constant(&sheet.cells, "c1"), constant(&sheet.cells, "c2"), reference)
         {
-            let wlf = Shift::Wlf { c1, c2, reference: reference.get() };
+            let wlf = Shift::Wlf { c1, c2, reference };
             found.wlf = found.wlf.or(Some(wlf).filter(|shift| shift.validate().is_ok()));
         }
         if let Ok(table) = &sheet.table {
@@ -182,8 +180,7 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, CurveError> {
     let mut points = Vec::with_capacity(table.rows.len());
     let numbers = table.numbers(temperature)?.into_iter().zip(table.numbers(column)?);
     for ((value, factor), row) in numbers.zip(&table.rows) {
-        let kelvin = Temperature::from_unit(value, &unit).map_err(|error| {
-            let why = error.help.unwrap_or_else(|| format!("{value} must be {}", error.expected));
+        let kelvin = kelvin(value, &unit).map_err(|why| {
             fault(format!("temperature: {why}")).remedy(Remedy::Unit(Role::Temperature)).at(row.line)
         })?;
         let ln = match how {
@@ -194,7 +191,7 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, CurveError> {
                 return Err(fault(format!("the shift factor {factor} must be greater than 0")).at(row.line));
             }
         };
-        points.push((kelvin.get(), ln));
+        points.push((kelvin, ln));
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let rises = points.first().zip(points.last()).is_some_and(|(cold, warm)| warm.1 > cold.1);

@@ -57,7 +57,7 @@ use serde::Deserialize;
 use crate::choice;
 use error::{CurveError, fault};
 use table::Table;
-use workbook::Sheet;
+use workbook::{Sheet, listed};
 
 /// What was measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
@@ -265,10 +265,6 @@ fn kind_of(table: &Table) -> Option<Kind> {
 
 /// The first sheet whose header names a curve of the kind, or the only one with a table; and a note on others like it.
 fn chosen(sheets: Vec<Sheet>, kind: Kind) -> Result<(Option<String>, Table, Option<String>), CurveError> {
-    let listed = |names: &[String]| {
-        let names: Vec<String> = names.iter().take(20).map(|name| format!("\"{name}\"")).collect();
-        names.join(", ")
-    };
     let (mut named, mut other, mut refused, mut names) = (Vec::new(), Vec::new(), None, Vec::new());
     for sheet in sheets {
         names.extend(sheet.name.clone());

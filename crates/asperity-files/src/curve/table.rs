@@ -94,10 +94,10 @@ impl Table {
         })?;
         let cells_of_first = cells(lines[first], separator);
         // An empty last cell belongs to a column that has a name; otherwise a separator ends the line.
+        let last_above = lines[..first].iter().rev().copied().find(|line| !is_blank(line, separator));
         let unnamed = || {
-            let above = lines[..first].iter().rev().find(|line| !is_blank(line, separator));
-            let named =
-                above.map(|line| cells(line, separator)).filter(|named| named.len() == cells_of_first.len());
+            let named = last_above.map(|line| cells(line, separator));
+            let named = named.filter(|named| named.len() == cells_of_first.len());
             named.is_none_or(|named| named.last().is_some_and(|cell| cell.is_empty()))
         };
         let ended = cells_of_first.last().is_some_and(|cell| cell.is_empty()) && unnamed();
@@ -106,18 +106,10 @@ impl Table {
             return Err(fault(format!("the table has {columns} columns, but may have {MOST_COLUMNS}")));
         }
         let (headers, units) = header(&lines[..first], separator, columns);
-        let unread = match headers.iter().all(String::is_empty) && units.is_none() {
-            true => lines[..first]
-                .iter()
-                .rev()
-                .find(|line| !is_blank(line, separator))
-                .map(|line| (*line).to_owned()),
-            false => None,
-        };
-        let named = match unread.is_none() {
-            true => heading(&lines[..first], separator, if units.is_some() { 2 } else { 1 }),
-            false => vec![],
-        };
+        let is_named = units.is_some() || headers.iter().any(|header| !header.is_empty());
+        let unread = last_above.filter(|_| !is_named).map(str::to_owned);
+        let lines_of_heading = usize::from(is_named) + usize::from(units.is_some());
+        let named = heading(&lines[..first], separator, lines_of_heading);
         let is_row = |line: &str| {
             let width = cells(line, separator).len();
             numbers(line) >= 2 && (width == columns || width == columns + 1)

@@ -91,14 +91,8 @@ pub(super) fn convert(
                 let why = format!("has no unit, and {coldest} is hardly a temperature in K: give °C or K");
                 return Err((None, why));
             }
-            let kelvin = |(row, value): (usize, &f64)| {
-                let temperature = Temperature::from_unit(*value, unit);
-                temperature.map(Temperature::get).map_err(|error| {
-                    let why = error.help.unwrap_or_else(|| format!("{value} must be {}", error.expected));
-                    (Some(row), why)
-                })
-            };
-            return numbers.iter().enumerate().map(kelvin).collect();
+            let rows = numbers.iter().enumerate();
+            return rows.map(|(row, value)| kelvin(*value, unit).map_err(|why| (Some(row), why))).collect();
         }
         Role::Set => Ok(1.0),
         Role::Phase => degrees(unit, &numbers),
@@ -122,6 +116,13 @@ pub(super) fn taken(role: Role) -> &'static str {
         Role::Phase => "deg", // as `degrees` has it
         _ => role.si(),
     }
+}
+
+/// A temperature \[K\], or why it is none.
+pub(super) fn kelvin(value: f64, unit: &str) -> Result<f64, String> {
+    Temperature::from_unit(value, unit)
+        .map(Temperature::get)
+        .map_err(|error| error.help.unwrap_or_else(|| format!("{value} must be {}", error.expected)))
 }
 
 /// One unit in the SI unit of its dimension.

@@ -2,6 +2,7 @@
 
 use super::Problem;
 use super::sample::Order;
+use super::text::label;
 
 /// Reads numbers and texts one after the other.
 #[derive(Clone, Debug)]
@@ -83,11 +84,7 @@ pub(super) fn utf16(bytes: &[u8], order: Order) -> String {
 /// A text up to its first zero, without surrounding blanks, in UTF-8 or Latin-1.
 pub(super) fn text(bytes: &[u8]) -> String {
     let bytes = bytes.split(|b| *b == 0).next().unwrap_or_default();
-    let text = match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
-    };
-    text.trim().to_owned()
+    label(bytes).trim().to_owned()
 }
 
 #[cfg(test)]

@@ -69,24 +69,21 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
 
 /// The sections of the header, and the numbers after it.
 fn header(bytes: &[u8]) -> Result<(Vec<Entries>, &[u8]), Problem> {
+    const END: &[u8] = b"\n#!";
     let head = &bytes[..bytes.len().min(LONGEST_HEADER)];
+    let length = bytes.len() as u64;
+    let end = memchr::memmem::find(head, END).ok_or_else(|| {
+        Problem::truncated("the header of the Nanosurf file, up to \"#!\",", length + 2, length)
+    })?;
     let mut sections: Vec<Entries> = Vec::new();
-    let mut at = 0;
-    while at < head.len() {
-        if head[at..].starts_with(b"#!") {
-            return Ok((sections, &bytes[at + 2..]));
-        }
-        let end = memchr::memchr(b'\n', &head[at..]).map_or(head.len(), |n| at + n + 1);
-        let line = text(&head[at..end]);
-        at = end;
+    for line in head[..end].split(|byte| *byte == b'\n').map(text) {
         if let Some(title) = line.strip_prefix('[').and_then(|l| l.strip_suffix(']')) {
             sections.push(Entries::new(title));
         } else if let (Some((key, value)), Some(section)) = (line.split_once('='), sections.last_mut()) {
             section.push(key, value);
         }
     }
-    let length = bytes.len() as u64;
-    Err(Problem::truncated("the header of the Nanosurf file, up to \"#!\",", length + 2, length))
+    Ok((sections, &bytes[end + END.len()..]))
 }
 
 /// The data sets in their order.

@@ -90,16 +90,19 @@ fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>, Curve
     let mut listed = book.sheets();
     listed.sort_by_key(|sheet| sheet.hidden);
     let names: Vec<String> = listed.into_iter().map(|sheet| sheet.name).collect();
-    let listed =
-        || names.iter().take(20).map(|name| format!("\"{name}\"")).collect::<Vec<String>>().join(", ");
     if let Some(name) = wanted
         && !names.iter().any(|known| known == name)
     {
-        return Err(fault(format!("there is no sheet \"{name}\"")).remedy(Remedy::Sheet(listed())));
+        return Err(fault(format!("there is no sheet \"{name}\"")).remedy(Remedy::Sheet(listed(&names))));
     }
     let wanted = names.iter().filter(|name| wanted.is_none_or(|wanted| wanted == *name));
     let mut left = MOST_CELLS;
     wanted.take(MOST_SHEETS).map(|name| Ok((name.clone(), book.cells(name)?.rows(&mut left)?))).collect()
+}
+
+/// Names of sheets, for messages.
+pub(super) fn listed(names: &[String]) -> String {
+    names.iter().take(20).map(|name| format!("\"{name}\"")).collect::<Vec<String>>().join(", ")
 }
 
 /// A number that was entered as text with a decimal comma, with a point.

@@ -22,6 +22,7 @@ use header::Header;
 
 use super::{Format, Problem, Reader, write};
 
+pub(super) use encoding::label;
 pub(crate) use header::leading_number;
 pub(super) use parse::numbers;
 pub(super) use profile::{is_profile, read_columns};

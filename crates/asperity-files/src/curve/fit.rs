@@ -317,7 +317,7 @@ impl Request {
             ))
             .remedy(Remedy::KnownShift)),
             (ShiftRequest::None, None) if curves.sweeps.len() > 1 => {
-                let known: Vec<String> = curves.sweeps.iter().take(20).filter_map(celsius).collect();
+                let known: Vec<String> = curves.sweeps.iter().take(20).filter_map(Sweep::celsius).collect();
                 let message =
                     format!("the file holds {} temperatures ({})", curves.sweeps.len(), known.join(", "));
                 Err(fault(message).remedy(Remedy::Shift))
@@ -365,10 +365,6 @@ impl Request {
         let lines = kept.iter().filter_map(|n| lines.get(*n).copied()).collect();
         Ok((MasterCurve { x: pick(&data.x), curves: data.curves.iter().map(pick).collect() }, lines))
     }
-}
-
-fn celsius(sweep: &Sweep) -> Option<String> {
-    sweep.temperature.map(|kelvin| format!("{:.1} °C", kelvin - 273.15))
 }
 
 /// The curve at the reference temperature, and the lines of its points if it is one sweep.

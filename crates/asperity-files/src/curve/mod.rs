@@ -101,6 +101,13 @@ pub struct Sweep {
     pub lines: Vec<usize>,
 }
 
+impl Sweep {
+    /// Its temperature in words: "-20.0 °C".
+    fn celsius(&self) -> Option<String> {
+        self.temperature.map(|kelvin| format!("{:.1} °C", kelvin - 273.15))
+    }
+}
+
 /// What a file holds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
@@ -239,8 +246,8 @@ impl Curves {
 
     /// The lowest and the highest temperature in words: "-20.0 °C to 60.0 °C"; empty where the file holds none.
     pub fn temperatures(&self) -> String {
-        let celsius = |sweep: &Sweep| Some(format!("{:.1} °C", sweep.temperature? - 273.15));
-        let ends = self.sweeps.first().and_then(celsius).zip(self.sweeps.last().and_then(celsius));
+        let [first, last] = [self.sweeps.first(), self.sweeps.last()];
+        let ends = first.and_then(Sweep::celsius).zip(last.and_then(Sweep::celsius));
         ends.map_or(String::new(), |(coldest, warmest)| format!("{coldest} to {warmest}"))
     }
 

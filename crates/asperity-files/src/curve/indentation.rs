@@ -64,8 +64,7 @@ impl Indentation {
     pub fn parse(path: &Path, bytes: &[u8], columns: &Columns) -> Result<Indentation, CurveError> {
         let parsed = sheets(bytes, columns.sheet.as_deref()).and_then(|sheets| {
             // The first sheet that holds such columns, or what is wrong with the first.
-            let values = |table| columns::values(&table, FORM, columns);
-            let mut read = sheets.into_iter().map(|sheet| sheet.table.and_then(values));
+            let mut read = sheets.into_iter().map(|sheet| columns::values(&sheet.table?, FORM, columns));
             let first = read.next().unwrap_or_else(|| Err(fault("the file holds no table")));
             first.or_else(|fault| read.find_map(Result::ok).ok_or(fault))
         });

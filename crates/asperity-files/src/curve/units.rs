@@ -101,8 +101,10 @@ pub(super) fn convert(
         Role::Deflection if unit == "mV" => Ok(1e-3),
         _ => scale(role.si(), unit),
     };
-    let factor = factor.map_err(|why| (None, why))?;
-    Ok(numbers.into_iter().map(|value| factor * value).collect())
+    match factor {
+        Ok(factor) => Ok(numbers.into_iter().map(|value| factor * value).collect()),
+        Err(why) => Err((None, why)),
+    }
 }
 
 /// Whether a deflection is measured in volts.

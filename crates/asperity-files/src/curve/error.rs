@@ -115,6 +115,9 @@ impl Remedy {
     }
 }
 
+/// Result of reading a file of curves.
+pub(super) type Result<T, E = CurveError> = std::result::Result<T, E>;
+
 /// A fault before its file is known.
 pub(super) fn fault(message: impl Into<String>) -> CurveError {
     CurveError { path: PathBuf::new(), line: None, message: message.into(), remedy: None }

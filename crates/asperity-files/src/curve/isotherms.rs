@@ -2,7 +2,7 @@
 
 use asperity::material::{Abscissa, Isotherm, Shift};
 
-use super::error::{CurveError, Remedy, fault};
+use super::error::{CurveError, Remedy, Result, fault};
 use super::sweeps::SAME_TEMPERATURE;
 use super::{Curves, Kind, Sweep};
 
@@ -42,7 +42,7 @@ pub(super) fn shifted_by(curves: &Curves, shift: &Shift) -> Vec<Isotherm> {
 }
 
 /// Refuses to estimate `what` from the rows of a temperature ramp: no two of them overlap.
-pub(super) fn held(curves: &Curves, what: &str) -> Result<(), CurveError> {
+pub(super) fn held(curves: &Curves, what: &str) -> Result<()> {
     match curves.is_over_temperature() {
         false => Ok(()),
         true => Err(fault(format!(

@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use super::error::{CurveError, fault};
+use super::error::{CurveError, Result, fault};
 use super::{role, units, wide};
 use crate::quantity::unit::Unit;
 use crate::topography::{dialect, is_numbers, to_text};
@@ -57,7 +57,7 @@ const LONGEST_LINE: usize = 1 << 20;
 
 impl Table {
     /// From the bytes of a text file.
-    pub(super) fn parse(bytes: &[u8]) -> Result<Table, CurveError> {
+    pub(super) fn parse(bytes: &[u8]) -> Result<Table> {
         let text = to_text(bytes).ok_or_else(|| fault("the file is binary, not a text table"))?;
         if text.lines().nth(MOST_LINES).is_some() {
             return Err(fault(format!("the file has more than {MOST_LINES} lines")));
@@ -80,11 +80,7 @@ impl Table {
     }
 
     /// From text whose separator and decimal mark are known.
-    pub(super) fn split(
-        text: String,
-        separator: Option<char>,
-        decimal_comma: bool,
-    ) -> Result<Table, CurveError> {
+    pub(super) fn split(text: String, separator: Option<char>, decimal_comma: bool) -> Result<Table> {
         let lines: Vec<&str> = text.lines().map(trim).collect();
         // "NaN" counts as a number; dashes may be anything.
         let number = |cell: &str| parse_number(cell, decimal_comma).is_some() || is_undefined(cell);
@@ -174,12 +170,12 @@ impl Table {
     }
 
     /// The numbers of a column.
-    pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>, CurveError> {
+    pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>> {
         self.rows.iter().map(|row| self.number(row, column)).collect()
     }
 
     /// The numbers of a column, and `None` where a cell is empty or says that there is none.
-    pub(super) fn sparse(&self, column: usize) -> Result<Vec<Option<f64>>, CurveError> {
+    pub(super) fn sparse(&self, column: usize) -> Result<Vec<Option<f64>>> {
         let sparse = |row: &Row| match is_missing(self.cell(row, column)) {
             true => Ok(None),
             false => self.number(row, column).map(Some),
@@ -193,7 +189,7 @@ impl Table {
         cells(line, self.separator).get(column).copied().unwrap_or_default()
     }
 
-    fn number(&self, row: &Row, column: usize) -> Result<f64, CurveError> {
+    fn number(&self, row: &Row, column: usize) -> Result<f64> {
         let cell = self.cell(row, column);
         parse_number(cell, self.decimal_comma).ok_or_else(|| {
                 let shown: String = cell.chars().take(40).collect();

@@ -7,7 +7,7 @@ mod xlsx;
 use self::cells::{Cells, MOST_CELLS};
 use self::xls::Excel;
 use self::xlsx::OfficeOpen;
-use super::error::{CurveError, Remedy, fault};
+use super::error::{CurveError, Remedy, Result, fault};
 use super::table::{Table, doubtful, is_grouped};
 use super::wide;
 use crate::topography::compound::is_compound;
@@ -19,7 +19,7 @@ pub(super) struct Sheet {
     /// Its cells by rows, in a spreadsheet.
     pub cells: Vec<Vec<String>>,
     /// The table in it, or why there is none.
-    pub table: Result<Table, CurveError>,
+    pub table: Result<Table>,
 }
 
 /// A sheet by name.
@@ -34,7 +34,7 @@ trait Book {
     /// Its sheets, in order.
     fn sheets(&self) -> Vec<Named>;
     /// The cells of the sheet of this name.
-    fn cells(&mut self, name: &str) -> Result<Cells, CurveError>;
+    fn cells(&mut self, name: &str) -> Result<Cells>;
 }
 
 /// Larger spreadsheets are no curves.
@@ -54,7 +54,7 @@ fn damaged() -> CurveError {
 }
 
 /// The tables of a file: the one of a text file; of a spreadsheet those of all sheets, or of the `wanted` one.
-pub(super) fn sheets(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Sheet>, CurveError> {
+pub(super) fn sheets(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Sheet>> {
     if !is_workbook(bytes) {
         if let Some(name) = wanted {
             return Err(fault(format!("the file is no spreadsheet, and has no sheet \"{name}\"")));
@@ -81,7 +81,7 @@ fn is_workbook(bytes: &[u8]) -> bool {
 
 type Rows = Vec<Vec<String>>;
 
-fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>, CurveError> {
+fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>> {
     let mut book: Box<dyn Book + '_> = match is_compound(bytes) {
         true => Box::new(Excel::open(bytes)?),
         false => Box::new(OfficeOpen::open(bytes)?),
@@ -120,7 +120,7 @@ fn thousands(cells: &Rows) -> Option<&str> {
     commas.all(|cell| is_grouped(cell)).then_some(first)
 }
 
-fn table(cells: &Rows) -> Result<Table, CurveError> {
+fn table(cells: &Rows) -> Result<Table> {
     if let Some(cell) = thousands(cells) {
         return Err(doubtful(cell));
     }

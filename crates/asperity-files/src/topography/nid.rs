@@ -17,7 +17,7 @@ use super::grid::{self, Layout};
 use super::request::check_channels;
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 pub(super) const NID: Reader = Reader::new("nid", is_nid, read).also_called(&["ezd"]);
 
@@ -40,7 +40,7 @@ struct Set<'a> {
 }
 
 /// Reads the data set asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let (sections, data) = header(bytes)?;
     let sets = sets(&sections)?;
     let names: Vec<String> = sets.iter().map(Set::name).collect();
@@ -68,7 +68,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
 }
 
 /// The sections of the header, and the numbers after it.
-fn header(bytes: &[u8]) -> Result<(Vec<Entries>, &[u8]), Problem> {
+fn header(bytes: &[u8]) -> Result<(Vec<Entries>, &[u8])> {
     const END: &[u8] = b"\n#!";
     let head = &bytes[..bytes.len().min(LONGEST_HEADER)];
     let length = bytes.len() as u64;
@@ -87,7 +87,7 @@ fn header(bytes: &[u8]) -> Result<(Vec<Entries>, &[u8]), Problem> {
 }
 
 /// The data sets in their order.
-fn sets(sections: &[Entries]) -> Result<Vec<Set<'_>>, Problem> {
+fn sets(sections: &[Entries]) -> Result<Vec<Set<'_>>> {
     let mut places: Vec<([u32; 2], &str)> = Vec::new();
     for (key, section) in sections.first().into_iter().flat_map(Entries::iter) {
         let place = key.strip_prefix("Gr").and_then(|k| k.split_once("-Ch"));

@@ -19,7 +19,7 @@ use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::unpack::{most_unpacked, read_bounded};
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 pub(super) const SUR: Reader = Reader::new(
     "sur",
@@ -39,7 +39,7 @@ mod studiable {
 }
 
 /// Reads the surface asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let mut cursor = Cursor::new(bytes, Order::Little);
     let first = Object::parse(&mut cursor)?;
     // The first header counts the objects; "P size" is the number of channels of each, 0 for one.
@@ -103,7 +103,7 @@ enum Data<'a> {
 }
 
 impl<'a> Object<'a> {
-    fn parse(c: &mut Cursor<'a>) -> Result<Self, Problem> {
+    fn parse(c: &mut Cursor<'a>) -> Result<Self> {
         const H: &str = "the SUR header";
         let signature = c.clone().text(12, H)?;
         let packed = match signature.as_str() {
@@ -171,7 +171,7 @@ impl<'a> Object<'a> {
         })
     }
 
-    fn measured(self, names: Vec<String>, index: usize) -> Result<Measured, Problem> {
+    fn measured(self, names: Vec<String>, index: usize) -> Result<Measured> {
         if self.values_per_point > 1 {
             let what = format!("a SUR object with {} values per point", self.values_per_point);
             return Err(Problem::unsupported(what, "export the surface alone from MountainsMap"));
@@ -209,7 +209,7 @@ impl<'a> Object<'a> {
 }
 
 /// The first `needed` bytes of the streams.
-fn unpack(streams: &[(&[u8], u32)], needed: u64) -> Result<Vec<u8>, Problem> {
+fn unpack(streams: &[(&[u8], u32)], needed: u64) -> Result<Vec<u8>> {
     const WHAT: &str = "the points of the SUR object";
     let packed: usize = streams.iter().map(|(stream, _)| stream.len()).sum();
     let most = most_unpacked(packed);

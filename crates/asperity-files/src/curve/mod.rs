@@ -55,7 +55,7 @@ use asperity::material::Modulus;
 use serde::Deserialize;
 
 use crate::choice;
-use error::{CurveError, fault};
+use error::fault;
 use table::Table;
 use workbook::{Sheet, listed};
 

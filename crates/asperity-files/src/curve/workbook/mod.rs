@@ -87,9 +87,9 @@ fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>> {
         false => Box::new(OfficeOpen::open(bytes)?),
     };
     // Hidden sheets come last.
-    let mut listed = book.sheets();
-    listed.sort_by_key(|sheet| sheet.hidden);
-    let names: Vec<String> = listed.into_iter().map(|sheet| sheet.name).collect();
+    let mut sheets = book.sheets();
+    sheets.sort_by_key(|sheet| sheet.hidden);
+    let names: Vec<String> = sheets.into_iter().map(|sheet| sheet.name).collect();
     if let Some(name) = wanted
         && !names.iter().any(|known| known == name)
     {

@@ -218,12 +218,8 @@ fn text(bytes: &[u8], wide: bool) -> String {
     match wide {
         false => bytes.iter().take(MOST_CHARACTERS).map(|byte| char::from(*byte)).collect(),
         true => {
-            let units: Vec<u16> = bytes
-                .chunks_exact(2)
-                .take(MOST_CHARACTERS)
-                .map(|two| u16::from_le_bytes([two[0], two[1]]))
-                .collect();
-            String::from_utf16_lossy(&units)
+            let units = bytes.as_chunks().0.iter().take(MOST_CHARACTERS).map(|two| u16::from_le_bytes(*two));
+            String::from_utf16_lossy(&units.collect::<Vec<u16>>())
         }
     }
 }

@@ -136,19 +136,16 @@ impl Header {
 
     fn attribute(&mut self, name: &str, attribute: &Attribute) {
         self.text(name);
-        let doubles =
-            |values: &mut dyn Iterator<Item = f64>| values.flat_map(f64::to_be_bytes).collect::<Vec<u8>>();
         let (kind, length, bytes) = match attribute {
             Attribute::Text(text) => (Type::Char, text.len(), text.as_bytes().to_vec()),
-            Attribute::Reals(reals) => (Type::Double, reals.len(), doubles(&mut reals.iter().copied())),
+            Attribute::Reals(reals) => {
+                (Type::Double, reals.len(), reals.iter().flat_map(|x| x.to_be_bytes()).collect())
+            }
+            Attribute::Counts(counts) if counts.iter().all(|n| i32::try_from(*n).is_ok()) => {
+                (Type::Int, counts.len(), counts.iter().flat_map(|n| (*n as i32).to_be_bytes()).collect())
+            }
             Attribute::Counts(counts) => {
-                let ints: Option<Vec<i32>> = counts.iter().map(|n| i32::try_from(*n).ok()).collect();
-                match ints {
-                    Some(ints) => {
-                        (Type::Int, ints.len(), ints.into_iter().flat_map(i32::to_be_bytes).collect())
-                    }
-                    None => (Type::Double, counts.len(), doubles(&mut counts.iter().map(|n| *n as f64))),
-                }
+                (Type::Double, counts.len(), counts.iter().flat_map(|n| (*n as f64).to_be_bytes()).collect())
             }
         };
         self.tag(kind as u32);

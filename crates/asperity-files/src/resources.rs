@@ -73,18 +73,26 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The text of a file of at most `most` bytes.
+/// The bytes of a file of at most `most`.
 ///
 /// # Errors
-/// A sentence: the file does not exist, is none, cannot be read, is larger, or is not UTF-8.
-pub fn text(path: &Path, most: u64) -> Result<String, String> {
+/// A sentence: the file does not exist, is none, cannot be read, or is larger.
+pub fn bytes(path: &Path, most: u64) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let read = open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes));
     read.map_err(|error| why(&error))?;
-    if bytes.len() as u64 > most {
-        return Err(format!("the file is larger than {} MB", most >> 20));
+    match bytes.len() as u64 <= most {
+        true => Ok(bytes),
+        false => Err(format!("the file is larger than {} MB", most >> 20)),
     }
-    String::from_utf8(bytes).map_err(|error| {
+}
+
+/// The text of a file of at most `most` bytes.
+///
+/// # Errors
+/// As [`bytes`], and where it is not UTF-8.
+pub fn text(path: &Path, most: u64) -> Result<String, String> {
+    String::from_utf8(bytes(path, most)?).map_err(|error| {
         let byte = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count();
         format!("the file is not UTF-8 text (line {line}, byte {byte})")

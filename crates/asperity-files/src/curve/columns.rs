@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use asperity::material::Modulus;
 
 use super::Kind;
-use super::error::{Fault, Remedy, fault};
+use super::error::{Remedy, Result, fault};
 use super::role::{self, Role, unnumbered};
 use super::sweeps::{DYNAMIC, Pair};
 use super::table::{Heading, Table};
@@ -92,7 +92,7 @@ pub struct Place {
 }
 
 /// The values of all quantities of a curve of `form` in SI, the columns that hold them, and what was assumed.
-pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, Fault> {
+pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> {
     let places = places(table, form, said)?;
     let (kept, mut notes) = complete(table, &places)?;
     let (mut values, mut used) = (Values::new(), Vec::new());
@@ -122,11 +122,8 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
             None => numbers,
         };
         let converted = convert(role, &unit, numbers).map_err(|(row, why)| {
-            let fault = fault(format!("{} ({place}): {why}", role.name())).remedy(Remedy::Unit(role));
-            match row {
-                Some(row) => fault.at(table.rows[kept[row]].line),
-                None => fault,
-            }
+            let line = row.map(|row| table.rows[kept[row]].line);
+            fault(format!("{} ({place}): {why}", role.name())).remedy(Remedy::Unit(role)).at(line)
         })?;
         if unit.is_empty() && !matches!(role, Role::TanDelta | Role::Set) {
             notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));
@@ -158,7 +155,7 @@ pub(super) struct Read {
 }
 
 /// The rows with a number in each of the columns, and a note on the others.
-fn complete(table: &Table, places: &BTreeMap<Role, usize>) -> Result<(Vec<usize>, Vec<String>), Fault> {
+fn complete(table: &Table, places: &BTreeMap<Role, usize>) -> Result<(Vec<usize>, Vec<String>)> {
     let mut whole = vec![true; table.rows.len()];
     for (_, column) in places.iter().filter(|(role, _)| **role != Role::Set) {
         for (whole, number) in whole.iter_mut().zip(table.sparse(*column)?) {
@@ -200,18 +197,12 @@ fn powers(base: f64, logarithms: &[f64]) -> Result<Vec<f64>, String> {
 }
 
 /// The column of each quantity: as said; else by the names in the header; else in order.
-pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeMap<Role, usize>, Fault> {
+pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeMap<Role, usize>> {
     let possible = form.roles();
     for role in said.columns.keys().chain(said.units.keys()) {
         if !possible.contains(role) {
-            let names: Vec<&str> = possible.iter().map(|role| role.name()).collect();
-            let message = format!(
-                "a {} file has no `{}`; its columns are {}",
-                form.name,
-                role.name(),
-                names.join(", ")
-            );
-            return Err(fault(message));
+            let (role, columns) = (role.name(), role::listed(&possible));
+            return Err(fault(format!("a {} file has no `{role}`; its columns are {columns}", form.name)));
         }
     }
     let mut places = BTreeMap::new();
@@ -243,7 +234,7 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
                 "no column is named as one of a {} file, and there are {there}, more than the {needed} that are needed ({}); the file has \
                  {}",
                 form.name,
-                order.map(|role| role.name()).collect::<Vec<_>>().join(", "),
+                role::listed(order),
                 table.listed()
             ))
             .remedy(Remedy::Column(form.needed[0])));
@@ -275,7 +266,7 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
 
 /// # Errors
 /// Where a column was found by a heading that another one has too, with other numbers.
-fn once(table: &Table, places: &BTreeMap<Role, usize>, said: &Columns) -> Result<(), Fault> {
+fn once(table: &Table, places: &BTreeMap<Role, usize>, said: &Columns) -> Result<()> {
     let header = |column: usize| unnumbered(&table.headings[column].header);
     let numbered = |role: &Role| matches!(said.columns.get(role), Some(Column::Number(_)));
     for (role, column) in places.iter().filter(|(role, _)| **role != Role::Set && !numbered(role)) {
@@ -350,7 +341,7 @@ fn time_or_temperature(table: &Table, column: usize, form: Form) -> Role {
 ///
 /// # Errors
 /// Where one column is called one and another the other.
-pub(super) fn measure(used: &[Place], table: &Table) -> Result<Option<Modulus>, Fault> {
+pub(super) fn measure(used: &[Place], table: &Table) -> Result<Option<Modulus>> {
     let called = |place: &&Place| {
         let is_modulus = !matches!(
             place.role,
@@ -417,7 +408,7 @@ fn names(table: &Table, role: Role, form: Form) -> bool {
     (0..table.headings.len()).any(|column| means(table, column, role, form))
 }
 
-fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
+fn find(table: &Table, role: Role, column: &Column) -> Result<usize> {
     let wrong = |what: String| {
         let message = format!("{} must be {what}, but the columns are {}", role.name(), table.listed());
         fault(message).remedy(Remedy::Column(role))

@@ -1,6 +1,6 @@
 //! What is wrong with a file of measured curves, and what to do about it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::Role;
 
@@ -115,12 +115,32 @@ impl Remedy {
     }
 }
 
+/// Result of reading a file of curves.
+pub(super) type Result<T, E = CurveError> = std::result::Result<T, E>;
+
+/// A fault before its file is known.
+pub(super) fn fault(message: impl Into<String>) -> CurveError {
+    CurveError { path: PathBuf::new(), line: None, message: message.into(), remedy: None }
+}
+
 impl CurveError {
     /// The whole message, with the remedy in the given words.
     pub fn told(&self, words: impl Fn(&Remedy) -> String) -> String {
         let line = self.line.map(|line| format!(", line {line}")).unwrap_or_default();
         let remedy = self.remedy.as_ref().map(|remedy| format!("; {}", words(remedy))).unwrap_or_default();
         format!("{}{line}: {}{remedy}", self.path.display(), self.message)
+    }
+
+    pub(super) fn at(self, line: impl Into<Option<usize>>) -> CurveError {
+        CurveError { line: line.into(), ..self }
+    }
+
+    pub(super) fn remedy(self, remedy: Remedy) -> CurveError {
+        CurveError { remedy: Some(remedy), ..self }
+    }
+
+    pub(super) fn of(self, path: &Path) -> CurveError {
+        CurveError { path: path.to_owned(), ..self }
     }
 }
 
@@ -131,29 +151,3 @@ impl std::fmt::Display for CurveError {
 }
 
 impl std::error::Error for CurveError {}
-
-/// A fault before its file is known.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fault {
-    pub line: Option<usize>,
-    pub message: String,
-    pub remedy: Option<Remedy>,
-}
-
-pub(super) fn fault(message: impl Into<String>) -> Fault {
-    Fault { line: None, message: message.into(), remedy: None }
-}
-
-impl Fault {
-    pub(super) fn at(self, line: usize) -> Fault {
-        Fault { line: Some(line), ..self }
-    }
-
-    pub(super) fn remedy(self, remedy: Remedy) -> Fault {
-        Fault { remedy: Some(remedy), ..self }
-    }
-
-    pub(super) fn of(self, path: &std::path::Path) -> CurveError {
-        CurveError { path: path.to_owned(), line: self.line, message: self.message, remedy: self.remedy }
-    }
-}

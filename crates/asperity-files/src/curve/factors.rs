@@ -6,12 +6,11 @@ use std::path::Path;
 use asperity::material::Shift;
 
 use super::bytes;
-use super::error::{CurveError, Fault, Remedy, fault};
+use super::error::{CurveError, Remedy, fault};
 use super::role::{Role, bare};
 use super::table::{Heading, Table, split_unit};
-use super::units::tidy;
+use super::units::{kelvin, tidy};
 use super::workbook::{Sheet, sheets};
-use crate::quantity::Temperature;
 use crate::topography::leading_number;
 
 /// The shift that a file holds.
@@ -39,9 +38,9 @@ impl HeldShift {
 /// [`CurveError`] if there are no such columns, the unit is not one of temperature, the factors rise with temperature, or a
 /// temperature occurs twice.
 pub fn read_shift_table(path: &Path) -> Result<Shift, CurveError> {
-    let read = || -> Result<Shift, Fault> {
+    let read = || -> Result<Shift, CurveError> {
         let mut last = None;
-        for sheet in sheets(&bytes(path).map_err(|error| fault(error.message))?, None)? {
+        for sheet in sheets(&bytes(path)?, None)? {
             match sheet.table.and_then(|table| factors(&table, None)) {
                 Ok(shift) => return Ok(shift),
                 Err(fault) => last = Some(fault),
@@ -58,13 +57,12 @@ pub(super) fn held(sheets: &[Sheet]) -> HeldShift {
     for sheet in sheets {
         let reference =
             labelled(&sheet.cells, &["reftemp", "referencetemperature", "tref", "referenztemperatur"]);
-        let reference = reference.and_then(|(value, unit)| {
-            Temperature::from_unit(value, &tidy(Role::Temperature, "", &unit)).ok()
-        });
+        let reference =
+            reference.and_then(|(value, unit)| kelvin(value, &tidy(Role::Temperature, "", &unit)).ok());
         if let (Some(c1), Some(c2), Some(reference)) =
             (constant(&sheet.cells, "c1"), constant(&sheet.cells, "c2"), reference)
         {
-            let wlf = Shift::Wlf { c1, c2, reference: reference.get() };
+            let wlf = Shift::Wlf { c1, c2, reference };
             found.wlf = found.wlf.or(Some(wlf).filter(|shift| shift.validate().is_ok()));
         }
         if let Ok(table) = &sheet.table {
@@ -162,7 +160,7 @@ pub(super) fn told_by(table: &Table) -> bool {
 }
 
 /// The factors of a table; temperatures without a unit are in `unit`, or kelvin.
-fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
+fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, CurveError> {
     let is_temperature = |heading: &Heading| {
         ["t", "temp", "temperature", "temperatur"].contains(&bare(&heading.name).as_str())
     };
@@ -182,8 +180,7 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
     let mut points = Vec::with_capacity(table.rows.len());
     let numbers = table.numbers(temperature)?.into_iter().zip(table.numbers(column)?);
     for ((value, factor), row) in numbers.zip(&table.rows) {
-        let kelvin = Temperature::from_unit(value, &unit).map_err(|error| {
-            let why = error.help.unwrap_or_else(|| format!("{value} must be {}", error.expected));
+        let kelvin = kelvin(value, &unit).map_err(|why| {
             fault(format!("temperature: {why}")).remedy(Remedy::Unit(Role::Temperature)).at(row.line)
         })?;
         let ln = match how {
@@ -194,7 +191,7 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
                 return Err(fault(format!("the shift factor {factor} must be greater than 0")).at(row.line));
             }
         };
-        points.push((kelvin.get(), ln));
+        points.push((kelvin, ln));
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let rises = points.first().zip(points.last()).is_some_and(|(cold, warm)| warm.1 > cold.1);
@@ -218,7 +215,7 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
 }
 
 /// Refuses a table whose moduli shift too, by a column of b_T that holds more than b_T = 1.
-fn vertical_free(table: &Table) -> Result<(), Fault> {
+fn vertical_free(table: &Table) -> Result<(), CurveError> {
     for (n, Heading { name, base, .. }) in table.headings.iter().enumerate() {
         let whole = bare(name);
         let plain = ["log10", "log", "lg", "ln"].iter().find_map(|prefix| whole.strip_prefix(prefix));
@@ -250,7 +247,7 @@ fn is_vertical(name: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Shift, Fault> {
+    fn read(text: &str) -> Result<Shift, CurveError> {
         factors(&Table::parse(text.as_bytes()).unwrap(), None)
     }
 

@@ -9,7 +9,7 @@ use asperity::material::{
     fit_relaxation, fit_wlf, master_curve,
 };
 
-use super::error::{CurveError, Fault, Remedy, fault};
+use super::error::{CurveError, Remedy, fault};
 use super::isotherms::{abscissa, at_isotherm, held, isotherms, point, shifted_by, snap};
 use super::sweeps::is_ramp;
 use super::vertical::{self, VerticalRequest};
@@ -229,7 +229,7 @@ impl Request {
         self.fitted(curves).map_err(|fault| fault.of(&curves.path))
     }
 
-    fn fitted(&self, curves: &Curves) -> Result<Fitted, Fault> {
+    fn fitted(&self, curves: &Curves) -> Result<Fitted, CurveError> {
         let mut notes = curves.notes.clone();
         let temperatures: Vec<f64> = curves.sweeps.iter().filter_map(|sweep| sweep.temperature).collect();
         let reference = self.reference(curves);
@@ -250,10 +250,8 @@ impl Request {
             if message.contains("Kramers-Kronig") {
                 return fault(unsure(message, &factors)).remedy(Remedy::Moduli);
             }
-            match point(&message).and_then(|n| lines.get(n.checked_sub(1)?)) {
-                Some(line) => fault(message).at(*line),
-                None => fault(message),
-            }
+            let line = point(&message).and_then(|n| lines.get(n.checked_sub(1)?).copied());
+            fault(message).at(line)
         };
         let (options, none) = (&self.options, Vec::new());
         let curve = |n: usize| data.curves.get(n).unwrap_or(&none).as_slice();
@@ -301,7 +299,7 @@ impl Request {
     }
 
     /// The shift of the material.
-    fn shift_of(&self, curves: &Curves, notes: &mut Vec<String>) -> Result<Found, Fault> {
+    fn shift_of(&self, curves: &Curves, notes: &mut Vec<String>) -> Result<Found, CurveError> {
         let known = |shift: Option<Shift>| Found { shift, rms: None, factors: Vec::new() };
         if let (ShiftRequest::None, None, Some(why)) = (&self.shift, &curves.held.list, &curves.held.refused)
         {
@@ -319,7 +317,7 @@ impl Request {
             ))
             .remedy(Remedy::KnownShift)),
             (ShiftRequest::None, None) if curves.sweeps.len() > 1 => {
-                let known: Vec<String> = curves.sweeps.iter().take(20).filter_map(celsius).collect();
+                let known: Vec<String> = curves.sweeps.iter().take(20).filter_map(Sweep::celsius).collect();
                 let message =
                     format!("the file holds {} temperatures ({})", curves.sweeps.len(), known.join(", "));
                 Err(fault(message).remedy(Remedy::Shift))
@@ -350,7 +348,7 @@ impl Request {
     }
 
     /// The points inside the window.
-    fn inside(&self, data: MasterCurve, lines: Vec<usize>) -> Result<(MasterCurve, Vec<usize>), Fault> {
+    fn inside(&self, data: MasterCurve, lines: Vec<usize>) -> Result<(MasterCurve, Vec<usize>), CurveError> {
         let Some([first, last]) = self.window else { return Ok((data, lines)) };
         // A point at the end of the window is inside it, even if the conversion of units rounds one of the two.
         let inside = |x: &f64| *x >= first * (1.0 - 1e-9) && *x <= last * (1.0 + 1e-9);
@@ -369,12 +367,8 @@ impl Request {
     }
 }
 
-fn celsius(sweep: &Sweep) -> Option<String> {
-    sweep.temperature.map(|kelvin| format!("{:.1} °C", kelvin - 273.15))
-}
-
 /// The curve at the reference temperature, and the lines of its points if it is one sweep.
-fn master(curves: &Curves, shift: Option<&Shift>) -> Result<(MasterCurve, Vec<usize>), Fault> {
+fn master(curves: &Curves, shift: Option<&Shift>) -> Result<(MasterCurve, Vec<usize>), CurveError> {
     if let ([sweep], None) | ([sweep @ Sweep { temperature: None, .. }], _) =
         (curves.sweeps.as_slice(), shift)
     {
@@ -403,7 +397,7 @@ fn estimated(
     reference: f64,
     moduli: ModulusChange,
     notes: &mut Vec<String>,
-) -> Result<Found, Fault> {
+) -> Result<Found, CurveError> {
     held(curves, "a shift")?;
     let isotherms = isotherms(curves);
     if isotherms.len() < 2 {

@@ -83,21 +83,14 @@ impl ForceTable {
             let [height, deflection] = [Role::Height, Role::Deflection].map(&mut take);
             let unit =
                 places.iter().find(|place| place.role == Role::Deflection).map_or("", |place| &place.unit);
+            let wrong = |why: &str| {
+                Err(fault(format!("deflection is in {unit}{why}")).remedy(Remedy::Unit(Role::Deflection)))
+            };
             let scale = match (units::is_voltage(unit), sensitivity) {
                 (true, Some(scale)) => scale,
                 (false, None) => 1.0,
-                (true, None) => {
-                    return Err(fault(format!(
-                        "deflection is in {unit}: give the sensitivity, the deflection per volt"
-                    ))
-                    .remedy(Remedy::Unit(Role::Deflection)));
-                }
-                (false, Some(_)) => {
-                    return Err(fault(format!(
-                        "deflection is in {unit}, but a sensitivity is that of volts"
-                    ))
-                    .remedy(Remedy::Unit(Role::Deflection)));
-                }
+                (true, None) => return wrong(": give the sensitivity, the deflection per volt"),
+                (false, Some(_)) => return wrong(", but a sensitivity is that of volts"),
             };
             let bent: Vec<f64> = deflection.iter().map(|x| scale * x).collect();
             Ok(ForceTable {
@@ -106,6 +99,6 @@ impl ForceTable {
                 notes,
             })
         };
-        read().map_err(|fault: super::error::Fault| fault.of(path))
+        read().map_err(|fault: super::error::CurveError| fault.of(path))
     }
 }

@@ -64,13 +64,9 @@ impl Indentation {
     pub fn parse(path: &Path, bytes: &[u8], columns: &Columns) -> Result<Indentation, CurveError> {
         let parsed = sheets(bytes, columns.sheet.as_deref()).and_then(|sheets| {
             // The first sheet that holds such columns, or what is wrong with the first.
-            let mut read = sheets
-                .into_iter()
-                .map(|sheet| sheet.table.and_then(|table| columns::values(&table, FORM, columns)))
-                .collect::<Vec<_>>()
-                .into_iter();
+            let mut read = sheets.into_iter().map(|sheet| columns::values(&sheet.table?, FORM, columns));
             let first = read.next().unwrap_or_else(|| Err(fault("the file holds no table")));
-            if first.is_ok() { first } else { read.find(Result::is_ok).unwrap_or(first) }
+            first.or_else(|fault| read.find_map(Result::ok).ok_or(fault))
         });
         let columns::Read { values, notes, .. } = parsed.map_err(|fault| fault.of(path))?;
         let of = |role: Role| values.get(&role).cloned().unwrap_or_default();

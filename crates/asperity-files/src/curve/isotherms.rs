@@ -2,7 +2,7 @@
 
 use asperity::material::{Abscissa, Isotherm, Shift};
 
-use super::error::{Fault, Remedy, fault};
+use super::error::{CurveError, Remedy, Result, fault};
 use super::sweeps::SAME_TEMPERATURE;
 use super::{Curves, Kind, Sweep};
 
@@ -20,7 +20,7 @@ pub(super) fn snap(temperature: &mut f64, points: &[(f64, f64)], ramp: bool) {
 }
 
 /// A fault of the isotherms, with the line of the point that it names.
-pub(super) fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
+pub(super) fn at_isotherm(curves: &Curves, error: &asperity::Error) -> CurveError {
     let message = error.to_string();
     let sweep = curves.sweeps.iter().find(|sweep| {
         sweep.temperature.is_some_and(|kelvin| {
@@ -28,10 +28,7 @@ pub(super) fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
         })
     });
     let line = sweep.and_then(|sweep| sweep.lines.get(point(&message)?.checked_sub(1)?));
-    match line {
-        Some(line) => fault(message).at(*line),
-        None => fault(message),
-    }
+    fault(message).at(line.copied())
 }
 
 /// The sweeps as isotherms, at the temperatures of the shift factors of a table.
@@ -45,7 +42,7 @@ pub(super) fn shifted_by(curves: &Curves, shift: &Shift) -> Vec<Isotherm> {
 }
 
 /// Refuses to estimate `what` from the rows of a temperature ramp: no two of them overlap.
-pub(super) fn held(curves: &Curves, what: &str) -> Result<(), Fault> {
+pub(super) fn held(curves: &Curves, what: &str) -> Result<()> {
     match curves.is_over_temperature() {
         false => Ok(()),
         true => Err(fault(format!(

@@ -39,7 +39,6 @@ mod vertical;
 mod wide;
 mod workbook;
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 pub use columns::{Column, Columns, Place};
@@ -56,9 +55,9 @@ use asperity::material::Modulus;
 use serde::Deserialize;
 
 use crate::choice;
-use error::{Fault, fault};
+use error::fault;
 use table::Table;
-use workbook::Sheet;
+use workbook::{Sheet, listed};
 
 /// What was measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
@@ -100,6 +99,13 @@ pub struct Sweep {
     pub curves: Vec<Vec<f64>>,
     /// The line of the file of each point.
     pub lines: Vec<usize>,
+}
+
+impl Sweep {
+    /// Its temperature in words: "-20.0 °C".
+    fn celsius(&self) -> Option<String> {
+        self.temperature.map(|kelvin| format!("{:.1} °C", kelvin - 273.15))
+    }
 }
 
 /// What a file holds.
@@ -147,9 +153,9 @@ impl Curves {
     /// # Errors
     /// [`CurveError`] if the file cannot be read, holds no table, or its header does not say what was measured.
     pub fn kind_of(path: &Path, sheet: Option<&str>) -> Result<Kind, CurveError> {
-        let kind = |bytes: Vec<u8>| -> Result<Kind, Fault> {
+        let kind = || -> Result<Kind, CurveError> {
             let (mut tables, mut refused) = (Vec::new(), None);
-            for sheet in workbook::sheets(&bytes, sheet)? {
+            for sheet in workbook::sheets(&bytes(path)?, sheet)? {
                 match sheet.table {
                     Ok(table) => tables.push(table),
                     Err(fault) => refused = refused.or(Some(fault)),
@@ -177,7 +183,7 @@ impl Curves {
                 .remedy(Remedy::Kind),
             })
         };
-        kind(bytes(path)?).map_err(|fault| fault.of(path))
+        kind().map_err(|fault| fault.of(path))
     }
 
     /// From the bytes of a file that is called `path` in messages.
@@ -185,7 +191,7 @@ impl Curves {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(path: &Path, bytes: &[u8], kind: Kind, columns: &Columns) -> Result<Curves, CurveError> {
-        let parse = || -> Result<Curves, Fault> {
+        let parse = || -> Result<Curves, CurveError> {
             let sheets = workbook::sheets(bytes, columns.sheet.as_deref())?;
             let held = match sheets.as_slice() {
                 [Sheet { name: None, .. }] => HeldShift::default(),
@@ -240,8 +246,8 @@ impl Curves {
 
     /// The lowest and the highest temperature in words: "-20.0 °C to 60.0 °C"; empty where the file holds none.
     pub fn temperatures(&self) -> String {
-        let celsius = |sweep: &Sweep| Some(format!("{:.1} °C", sweep.temperature? - 273.15));
-        let ends = self.sweeps.first().and_then(celsius).zip(self.sweeps.last().and_then(celsius));
+        let [first, last] = [self.sweeps.first(), self.sweeps.last()];
+        let ends = first.and_then(Sweep::celsius).zip(last.and_then(Sweep::celsius));
         ends.map_or(String::new(), |(coldest, warmest)| format!("{coldest} to {warmest}"))
     }
 
@@ -252,14 +258,7 @@ impl Curves {
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>, CurveError> {
-    let mut bytes = Vec::new();
-    crate::resources::open(path)
-        .and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes))
-        .map_err(|error| fault(crate::resources::why(&error)).of(path))?;
-    if bytes.len() as u64 > MOST_BYTES {
-        return Err(fault(format!("the file is larger than {} MB", MOST_BYTES >> 20)).of(path));
-    }
-    Ok(bytes)
+    crate::resources::bytes(path, MOST_BYTES).map_err(|why| fault(why).of(path))
 }
 
 /// What the header of a table says that it holds.
@@ -272,11 +271,7 @@ fn kind_of(table: &Table) -> Option<Kind> {
 }
 
 /// The first sheet whose header names a curve of the kind, or the only one with a table; and a note on others like it.
-fn chosen(sheets: Vec<Sheet>, kind: Kind) -> Result<(Option<String>, Table, Option<String>), Fault> {
-    let listed = |names: &[String]| {
-        let names: Vec<String> = names.iter().take(20).map(|name| format!("\"{name}\"")).collect();
-        names.join(", ")
-    };
+fn chosen(sheets: Vec<Sheet>, kind: Kind) -> Result<(Option<String>, Table, Option<String>), CurveError> {
     let (mut named, mut other, mut refused, mut names) = (Vec::new(), Vec::new(), None, Vec::new());
     for sheet in sheets {
         names.extend(sheet.name.clone());

@@ -34,14 +34,17 @@ impl Role {
     }
 }
 
+/// Names of roles, for messages.
+pub(super) fn listed<'a>(roles: impl IntoIterator<Item = &'a Role>) -> String {
+    roles.into_iter().map(|role| role.name()).collect::<Vec<_>>().join(", ")
+}
+
 impl FromStr for Role {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        Role::ALL.into_iter().find(|role| role.name() == name).ok_or_else(|| {
-            let names: Vec<&str> = Role::ALL.iter().map(|role| role.name()).collect();
-            format!("\"{name}\" is no quantity of a curve; there are {}", names.join(", "))
-        })
+        let known = Role::ALL.into_iter().find(|role| role.name() == name);
+        known.ok_or_else(|| format!("\"{name}\" is no quantity of a curve; there are {}", listed(&Role::ALL)))
     }
 }
 

@@ -7,7 +7,7 @@
 //! ```
 
 use super::columns::Values;
-use super::error::{Fault, Remedy, fault};
+use super::error::{Remedy, Result, fault};
 use super::{Kind, Role, Sweep};
 
 /// Temperatures closer than this belong to one sweep \[K\]: no chamber holds a temperature better.
@@ -19,11 +19,7 @@ const MOST_SWEEPS: usize = 1000;
 
 /// The rows by temperature, the coldest first; each sweep in the order of the file, or the reverse where that goes down;
 /// a DMA by frequency.
-pub(super) fn sweeps(
-    kind: Kind,
-    values: &Values,
-    lines: &[usize],
-) -> Result<(Vec<Sweep>, Option<String>), Fault> {
+pub(super) fn sweeps(kind: Kind, values: &Values, lines: &[usize]) -> Result<(Vec<Sweep>, Option<String>)> {
     let of = |role: Role| values.get(&role).cloned().unwrap_or_default();
     let (x, curves) = match kind {
         Kind::Relaxation => (of(Role::Time), vec![of(Role::Modulus)]),
@@ -75,7 +71,7 @@ pub(super) fn sweeps(
 const SAME_VALUE: f64 = 0.1;
 
 /// Each sweep with the mean of the values at the same time or frequency, and a note on these.
-fn once(kind: Kind, sweeps: Vec<Sweep>) -> Result<(Vec<Sweep>, Option<String>), Fault> {
+fn once(kind: Kind, sweeps: Vec<Sweep>) -> Result<(Vec<Sweep>, Option<String>)> {
     let name = if kind == Kind::Dma { "frequency" } else { "time" };
     let (mut repeated, mut farthest, mut first) = (0, 0.0_f64, None);
     let mut single = Vec::with_capacity(sweeps.len());
@@ -199,7 +195,7 @@ pub(super) fn is_ramp(temperatures: impl Iterator<Item = f64>) -> bool {
 
 /// Rows whose temperatures follow each other closely. The rows of a temperature ramp of a DMA, which has no such groups, are sweeps of
 /// their own: each is a point of E*(omega, T), whatever the temperature was before.
-fn by_temperature(kind: Kind, temperatures: &[f64], rows: &[usize]) -> Result<Vec<Vec<usize>>, Fault> {
+fn by_temperature(kind: Kind, temperatures: &[f64], rows: &[usize]) -> Result<Vec<Vec<usize>>> {
     let mut order = rows.to_vec();
     order.sort_by(|a, b| temperatures[*a].total_cmp(&temperatures[*b]));
     let same = |a: &usize, b: &usize| temperatures[*b] - temperatures[*a] <= SAME_TEMPERATURE;

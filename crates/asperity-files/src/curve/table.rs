@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use super::error::{Fault, fault};
+use super::error::{CurveError, Result, fault};
 use super::{role, units, wide};
 use crate::quantity::unit::Unit;
 use crate::topography::{dialect, is_numbers, to_text};
@@ -57,7 +57,7 @@ const LONGEST_LINE: usize = 1 << 20;
 
 impl Table {
     /// From the bytes of a text file.
-    pub(super) fn parse(bytes: &[u8]) -> Result<Table, Fault> {
+    pub(super) fn parse(bytes: &[u8]) -> Result<Table> {
         let text = to_text(bytes).ok_or_else(|| fault("the file is binary, not a text table"))?;
         if text.lines().nth(MOST_LINES).is_some() {
             return Err(fault(format!("the file has more than {MOST_LINES} lines")));
@@ -80,7 +80,7 @@ impl Table {
     }
 
     /// From text whose separator and decimal mark are known.
-    pub(super) fn split(text: String, separator: Option<char>, decimal_comma: bool) -> Result<Table, Fault> {
+    pub(super) fn split(text: String, separator: Option<char>, decimal_comma: bool) -> Result<Table> {
         let lines: Vec<&str> = text.lines().map(trim).collect();
         // "NaN" counts as a number; dashes may be anything.
         let number = |cell: &str| parse_number(cell, decimal_comma).is_some() || is_undefined(cell);
@@ -90,10 +90,10 @@ impl Table {
         })?;
         let cells_of_first = cells(lines[first], separator);
         // An empty last cell belongs to a column that has a name; otherwise a separator ends the line.
+        let last_above = lines[..first].iter().rev().copied().find(|line| !is_blank(line, separator));
         let unnamed = || {
-            let above = lines[..first].iter().rev().find(|line| !is_blank(line, separator));
-            let named =
-                above.map(|line| cells(line, separator)).filter(|named| named.len() == cells_of_first.len());
+            let named = last_above.map(|line| cells(line, separator));
+            let named = named.filter(|named| named.len() == cells_of_first.len());
             named.is_none_or(|named| named.last().is_some_and(|cell| cell.is_empty()))
         };
         let ended = cells_of_first.last().is_some_and(|cell| cell.is_empty()) && unnamed();
@@ -102,18 +102,10 @@ impl Table {
             return Err(fault(format!("the table has {columns} columns, but may have {MOST_COLUMNS}")));
         }
         let (headers, units) = header(&lines[..first], separator, columns);
-        let unread = match headers.iter().all(String::is_empty) && units.is_none() {
-            true => lines[..first]
-                .iter()
-                .rev()
-                .find(|line| !is_blank(line, separator))
-                .map(|line| (*line).to_owned()),
-            false => None,
-        };
-        let named = match unread.is_none() {
-            true => heading(&lines[..first], separator, if units.is_some() { 2 } else { 1 }),
-            false => vec![],
-        };
+        let is_named = units.is_some() || headers.iter().any(|header| !header.is_empty());
+        let unread = last_above.filter(|_| !is_named).map(str::to_owned);
+        let lines_of_heading = usize::from(is_named) + usize::from(units.is_some());
+        let named = heading(&lines[..first], separator, lines_of_heading);
         let is_row = |line: &str| {
             let width = cells(line, separator).len();
             numbers(line) >= 2 && (width == columns || width == columns + 1)
@@ -178,12 +170,12 @@ impl Table {
     }
 
     /// The numbers of a column.
-    pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>, Fault> {
+    pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>> {
         self.rows.iter().map(|row| self.number(row, column)).collect()
     }
 
     /// The numbers of a column, and `None` where a cell is empty or says that there is none.
-    pub(super) fn sparse(&self, column: usize) -> Result<Vec<Option<f64>>, Fault> {
+    pub(super) fn sparse(&self, column: usize) -> Result<Vec<Option<f64>>> {
         let sparse = |row: &Row| match is_missing(self.cell(row, column)) {
             true => Ok(None),
             false => self.number(row, column).map(Some),
@@ -197,7 +189,7 @@ impl Table {
         cells(line, self.separator).get(column).copied().unwrap_or_default()
     }
 
-    fn number(&self, row: &Row, column: usize) -> Result<f64, Fault> {
+    fn number(&self, row: &Row, column: usize) -> Result<f64> {
         let cell = self.cell(row, column);
         parse_number(cell, self.decimal_comma).ok_or_else(|| {
                 let shown: String = cell.chars().take(40).collect();
@@ -295,7 +287,7 @@ fn names_column(cell: &str) -> bool {
 }
 
 /// The error for a line between the points that does not repeat the heading.
-fn another_heading(line: &str) -> Fault {
+fn another_heading(line: &str) -> CurveError {
     let shown: String = line.chars().take(60).collect();
     fault(format!(
         "{shown:?} stands between the points: columns, units or temperatures change there, and all points would be read by the first \
@@ -305,7 +297,7 @@ fn another_heading(line: &str) -> Fault {
 }
 
 /// The error for numbers whose comma is ambiguous.
-pub(super) fn doubtful(cell: &str) -> Fault {
+pub(super) fn doubtful(cell: &str) -> CurveError {
     fault(format!(
         "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and the file does not show which; write \
          them with a decimal point, or without commas"

@@ -7,7 +7,7 @@ use asperity::finding::celsius_meant;
 
 use super::role::{self, Role};
 use crate::quantity::unit::Unit;
-use crate::quantity::{Dimension, Quantity, QuantityError, Temperature, dimension, range};
+use crate::quantity::{Dimension, Prescribed, QuantityError, Temperature, dimension};
 
 /// A unit of instruments with the capital letters and the words of the SI: "MPA", "Mpa" are MPa, "rad/sec" is rad/s. "mpa" may be
 /// milli- or megapascal and stays.
@@ -84,49 +84,27 @@ pub(super) fn convert(
     unit: &str,
     numbers: Vec<f64>,
 ) -> Result<Vec<f64>, (Option<usize>, String)> {
-    let whole = |why: String| (None, why);
     let factor = match role {
         Role::Temperature => {
             let coldest = numbers.iter().copied().fold(f64::INFINITY, f64::min);
             if unit.is_empty() && celsius_meant(coldest).is_some() {
-                return Err(whole(format!(
-                    "has no unit, and {coldest} is hardly a temperature in K: give °C or K"
-                )));
+                let why = format!("has no unit, and {coldest} is hardly a temperature in K: give °C or K");
+                return Err((None, why));
             }
-            let kelvin = |(row, value): (usize, &f64)| {
-                let temperature = Temperature::from_unit(*value, unit);
-                temperature.map(Temperature::get).map_err(|error| {
-                    let why = error.help.unwrap_or_else(|| format!("{value} must be {}", error.expected));
-                    (Some(row), why)
-                })
-            };
-            return numbers.iter().enumerate().map(kelvin).collect();
+            let rows = numbers.iter().enumerate();
+            return rows.map(|(row, value)| kelvin(*value, unit).map_err(|why| (Some(row), why))).collect();
         }
-        Role::Set => 1.0,
-        Role::Phase => degrees(unit, &numbers).map_err(whole)?,
-        Role::Frequency => frequency(unit).map_err(whole)?,
-        Role::Time => scale::<dimension::Time>(unit).map_err(whole)?,
-        Role::Modulus | Role::Storage | Role::Loss | Role::ComplexModulus => {
-            scale::<dimension::Pressure>(unit).map_err(whole)?
-        }
-        Role::Compliance | Role::StorageCompliance | Role::LossCompliance => {
-            scale::<dimension::Compliance>(unit).map_err(whole)?
-        }
-        Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity => {
-            scale::<dimension::Viscosity>(unit).map_err(whole)?
-        }
-        Role::TanDelta => scale::<dimension::Number>(unit).map_err(whole)?,
-        Role::Load => scale::<dimension::Force>(unit).map_err(whole)?,
-        Role::Deflection if is_voltage(unit) => {
-            if unit == "mV" {
-                1e-3
-            } else {
-                1.0
-            }
-        }
-        Role::Depth | Role::Height | Role::Deflection => scale::<dimension::Length>(unit).map_err(whole)?,
+        Role::Set => Ok(1.0),
+        Role::Phase => degrees(unit, &numbers),
+        Role::Frequency => frequency(unit),
+        Role::Deflection if unit == "V" => Ok(1.0),
+        Role::Deflection if unit == "mV" => Ok(1e-3),
+        _ => scale(role.si(), unit),
     };
-    Ok(numbers.into_iter().map(|value| factor * value).collect())
+    match factor {
+        Ok(factor) => Ok(numbers.into_iter().map(|value| factor * value).collect()),
+        Err(why) => Err((None, why)),
+    }
 }
 
 /// Whether a deflection is measured in volts.
@@ -142,11 +120,17 @@ pub(super) fn taken(role: Role) -> &'static str {
     }
 }
 
-/// SI of one unit.
-fn scale<D: Dimension>(unit: &str) -> Result<f64, String> {
-    let one = format!("1 {unit}");
-    let quantity = one.parse::<Quantity<D, range::Positive>>();
-    quantity.map(Quantity::get).map_err(|error| error.help.unwrap_or(error.expected))
+/// A temperature \[K\], or why it is none.
+pub(super) fn kelvin(value: f64, unit: &str) -> Result<f64, String> {
+    Temperature::from_unit(value, unit)
+        .map(Temperature::get)
+        .map_err(|error| error.help.unwrap_or_else(|| format!("{value} must be {}", error.expected)))
+}
+
+/// One unit in the SI unit of its dimension.
+fn scale(si: &str, unit: &str) -> Result<f64, String> {
+    let one = Prescribed::Text(format!("1 {unit}"));
+    dimension::resolve(si, &one).map_err(|error| error.help.unwrap_or(error.expected))
 }
 
 /// Radians of one unit of a phase angle, which is at most a right angle.
@@ -176,8 +160,7 @@ fn frequency(unit: &str) -> Result<f64, String> {
     let parsed = Unit::parse(&unit.replace("rad", "1"));
     match parsed {
         Ok(parsed) if parsed.powers == dimension::Frequency::POWERS => {
-            let scale = parsed.numerator / parsed.denominator * 10f64.powi(parsed.exponent);
-            Ok(if radians { milli * scale } else { TAU * scale })
+            Ok(if radians { milli } else { TAU } * parsed.scale())
         }
         _ => Err(format!("\"{unit}\" is not a unit of frequency (Hz, kHz, rad/s)")),
     }

@@ -5,7 +5,7 @@ use asperity::material::{Shift, VerticalShift, estimate_vertical};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::error::{Fault, Remedy, fault};
+use super::error::{Remedy, Result, fault};
 use super::isotherms::{abscissa, at_isotherm, held, shifted_by, snap};
 use super::{Curves, Kind};
 
@@ -80,14 +80,14 @@ pub(super) fn corrected(
     curves: &Curves,
     request: &VerticalRequest,
     reference: Option<f64>,
-) -> Result<Option<Corrected>, Fault> {
+) -> Result<Option<Corrected>> {
     let known = request.known(reference).map_err(|message| fault(message).remedy(Remedy::Shift))?;
     known.map(|vertical| scaled(curves, vertical, &[])).transpose()
 }
 
 /// The curves corrected by one factor for each sweep, estimated so that neighbouring sweeps continue each other after the shift.
 /// `factors` are those of the shift with their standard deviations \[decades\].
-pub(super) fn free(curves: &Curves, shift: Option<&Shift>, factors: &[[f64; 3]]) -> Result<Corrected, Fault> {
+pub(super) fn free(curves: &Curves, shift: Option<&Shift>, factors: &[[f64; 3]]) -> Result<Corrected> {
     let Some(shift) = shift.filter(|_| curves.sweeps.len() > 1) else {
         return Err(fault("vertical shifts that are free need sweeps at two temperatures or more"));
     };
@@ -107,7 +107,7 @@ pub(super) fn free(curves: &Curves, shift: Option<&Shift>, factors: &[[f64; 3]])
 }
 
 /// Values times the factors of their temperatures.
-fn scaled(curves: &Curves, vertical: VerticalShift, uncertainty: &[f64]) -> Result<Corrected, Fault> {
+fn scaled(curves: &Curves, vertical: VerticalShift, uncertainty: &[f64]) -> Result<Corrected> {
     let (mut curves, mut factors) = (curves.clone(), Vec::new());
     let (kind, ramp) = (curves.kind, curves.is_ramp());
     for (n, sweep) in curves.sweeps.iter_mut().enumerate() {

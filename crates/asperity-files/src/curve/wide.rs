@@ -12,7 +12,7 @@
 
 use std::ops::Range;
 
-use super::error::{Fault, fault};
+use super::error::{Result, fault};
 use super::role::{Role, unnumbered};
 use super::table::{Heading, MOST_ROWS, Row, Table, cells, is_missing, split_unit};
 
@@ -42,7 +42,7 @@ impl Value {
 ///
 /// # Errors
 /// If columns are repeated and no temperatures are given for them.
-pub(super) fn long(table: Table) -> Result<Table, Fault> {
+pub(super) fn long(table: Table) -> Result<Table> {
     if let Some(blocks) = repeated(&table)? {
         let headers = blocks[0].columns.iter().map(|column| header(&table, *column, None)).collect();
         return stacked(&table, headers, &blocks);
@@ -54,7 +54,7 @@ pub(super) fn long(table: Table) -> Result<Table, Fault> {
 }
 
 /// The blocks of a table whose columns are repeated, with the temperature above each.
-fn repeated(table: &Table) -> Result<Option<Vec<Block>>, Fault> {
+fn repeated(table: &Table) -> Result<Option<Vec<Block>>> {
     let columns = table.headings.len();
     let plain: Vec<String> = table.headings.iter().map(|heading| unnumbered(&heading.header)).collect();
     let name = |column: usize| plain.get(column).map_or("", String::as_str);
@@ -148,7 +148,7 @@ fn header(table: &Table, column: usize, value: Option<&Value>) -> String {
 }
 
 /// The blocks below each other, with the columns of `headers`, and of the values if there are any.
-fn stacked(table: &Table, headers: Vec<String>, blocks: &[Block]) -> Result<Table, Fault> {
+fn stacked(table: &Table, headers: Vec<String>, blocks: &[Block]) -> Result<Table> {
     if table.rows.len() * blocks.len() > MOST_ROWS {
         return Err(fault(format!("there are more than {MOST_ROWS} points")));
     }
@@ -239,7 +239,7 @@ fn value_in(text: &str) -> Option<Value> {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Table, Fault> {
+    fn read(text: &str) -> Result<Table> {
         long(Table::parse(text.as_bytes()).unwrap())
     }
 

@@ -19,17 +19,11 @@ impl<'t> Decimal<'t> {
         }
         let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
         let whole = digits(unsigned);
-        let mut length = whole;
-        if unsigned[length..].starts_with('.') {
-            let fraction = digits(&unsigned[length + 1..]);
-            if whole + fraction == 0 {
-                return None;
-            }
-            length += 1 + fraction;
-        }
-        if length == 0 {
+        let fraction = unsigned[whole..].strip_prefix('.').map(digits);
+        if whole + fraction.unwrap_or(0) == 0 {
             return None;
         }
+        let length = whole + fraction.map_or(0, |count| 1 + count);
         let mantissa = &text[..sign + length];
         let mut rest = &unsigned[length..];
         let mut exponent = 0;

@@ -101,7 +101,7 @@ impl Unit {
             return Ok(Unit::ONE);
         }
         let mut parser = Parser { characters: text.chars().peekable(), factors: 0 };
-        let unit = parser.product(0)?;
+        let unit = parser.product()?;
         match parser.characters.peek() {
             None => Ok(unit),
             Some(c) => Err(format!("\"{text}\" is not a unit: \"{c}\" is out of place")),
@@ -159,24 +159,18 @@ struct Parser<'t> {
 
 impl Parser<'_> {
     /// factor { (* | / | blank) factor }, also with a leading `/`: "2 /MPa".
-    fn product(&mut self, depth: usize) -> Result<Unit, String> {
+    fn product(&mut self) -> Result<Unit, String> {
         let mut unit = Unit::ONE;
         let mut first = true;
         loop {
             self.blanks();
-            let divide = match self.characters.peek() {
-                None | Some(')') => break,
-                Some('/') => true,
-                Some('*' | '·' | '.') if !first => false,
-                Some(_) => {
-                    unit = unit.times(self.factor(depth)?);
-                    first = false;
-                    continue;
-                }
-            };
-            self.characters.next();
-            self.blanks();
-            unit = unit.times(self.factor(depth)?.power(if divide { -1 } else { 1 }));
+            let next = self.characters.peek().copied().filter(|next| *next != ')');
+            let Some(next) = next else { break };
+            if next == '/' || (!first && matches!(next, '*' | '·' | '.')) {
+                self.characters.next();
+                self.blanks();
+            }
+            unit = unit.times(self.factor()?.power(if next == '/' { -1 } else { 1 }));
             first = false;
         }
         match first {
@@ -186,13 +180,13 @@ impl Parser<'_> {
     }
 
     /// symbol [exponent], or a product in brackets.
-    fn factor(&mut self, depth: usize) -> Result<Unit, String> {
+    fn factor(&mut self) -> Result<Unit, String> {
         self.factors += 1;
         if self.factors > MOST_FACTORS {
             return Err(format!("the unit has more than {MOST_FACTORS} factors"));
         }
         let unit = if self.characters.next_if_eq(&'(').is_some() {
-            let unit = self.product(depth + 1)?;
+            let unit = self.product()?;
             if self.characters.next_if_eq(&')').is_none() {
                 return Err("a closing bracket is missing".into());
             }

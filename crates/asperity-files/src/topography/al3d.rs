@@ -9,14 +9,14 @@ use super::entries::Entries;
 use super::finish::{Lateral, Measured, Unit};
 use super::grid::Layout;
 use super::sample::{Kind, Order};
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 const SIGNATURE: &[u8] = b"AliconaImaging\0\r\n";
 
 pub(super) const AL3D: Reader = Reader::new("al3d", |bytes| bytes.starts_with(SIGNATURE), read);
 
 /// Reads the depth image.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let mut cursor = Cursor::new(bytes, Order::Little);
     cursor.bytes(SIGNATURE.len() as u64, "the signature")?;
     let mut tags = Entries::new("the AL3D tags");
@@ -49,7 +49,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     Ok(Measured::new(heights, Unit::Metres(1.0), lateral).with(tags).with([("Comment", comment)]))
 }
 
-fn read_tag(cursor: &mut Cursor, tags: &mut Entries) -> Result<(), Problem> {
+fn read_tag(cursor: &mut Cursor, tags: &mut Entries) -> Result<()> {
     let (key, value) = (cursor.text(20, "a tag")?, cursor.text(30, "a tag")?);
     let end = cursor.bytes(2, "a tag")?;
     if end != b"\r\n" {

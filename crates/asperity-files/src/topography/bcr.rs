@@ -10,7 +10,7 @@ use super::finish::{Lateral, Measured, unit_of};
 use super::grid::Layout;
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 pub(super) const BCR: Reader =
     Reader::new("bcr", |bytes| characters(bytes).is_some(), read).also_called(&["bcrf"]);
@@ -31,7 +31,7 @@ fn characters(bytes: &[u8]) -> Option<Option<Order>> {
 }
 
 /// Reads the surface.
-fn read(bytes: &[u8], _: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], _: &Request) -> Result<Measured> {
     let characters = characters(bytes)
         .ok_or_else(|| Problem::malformed("the start of the file", "something else", START))?;
     let width = if characters.is_some() { 2 } else { 1 };

@@ -1,7 +1,8 @@
 //! A place in the bytes of a file: every read is checked against the end, none allocates.
 
-use super::Problem;
 use super::sample::Order;
+use super::text::label;
+use super::{Problem, Result};
 
 /// Reads numbers and texts one after the other.
 #[derive(Clone, Debug)]
@@ -13,7 +14,7 @@ pub(super) struct Cursor<'a> {
 macro_rules! number {
     ($name:ident, $number:ty, $doc:literal) => {
         #[doc = $doc]
-        pub(super) fn $name(&mut self, what: &str) -> Result<$number, Problem> {
+        pub(super) fn $name(&mut self, what: &str) -> Result<$number> {
             let bytes = self.array(what)?;
             Ok(match self.order {
                 Order::Little => <$number>::from_le_bytes(bytes),
@@ -30,7 +31,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// At a distance from the start of `bytes`.
-    pub(super) fn at(bytes: &'a [u8], offset: u64, order: Order, what: &str) -> Result<Self, Problem> {
+    pub(super) fn at(bytes: &'a [u8], offset: u64, order: Order, what: &str) -> Result<Self> {
         let rest = usize::try_from(offset).ok().and_then(|at| bytes.get(at..));
         let rest = rest.ok_or_else(|| Problem::truncated(what, offset, bytes.len() as u64))?;
         Ok(Cursor { rest, order })
@@ -42,14 +43,14 @@ impl<'a> Cursor<'a> {
     }
 
     /// The next `count` bytes.
-    pub(super) fn bytes(&mut self, count: u64, what: &str) -> Result<&'a [u8], Problem> {
+    pub(super) fn bytes(&mut self, count: u64, what: &str) -> Result<&'a [u8]> {
         let split = usize::try_from(count).ok().and_then(|n| self.rest.split_at_checked(n));
         let (bytes, rest) = split.ok_or_else(|| Problem::truncated(what, count, self.rest.len() as u64))?;
         self.rest = rest;
         Ok(bytes)
     }
 
-    fn array<const N: usize>(&mut self, what: &str) -> Result<[u8; N], Problem> {
+    fn array<const N: usize>(&mut self, what: &str) -> Result<[u8; N]> {
         let (bytes, rest) = self
             .rest
             .split_first_chunk()
@@ -59,7 +60,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A text of fixed length, padded by zeros or blanks, in UTF-8 or Latin-1.
-    pub(super) fn text(&mut self, length: u64, what: &str) -> Result<String, Problem> {
+    pub(super) fn text(&mut self, length: u64, what: &str) -> Result<String> {
         Ok(text(self.bytes(length, what)?))
     }
 
@@ -83,11 +84,7 @@ pub(super) fn utf16(bytes: &[u8], order: Order) -> String {
 /// A text up to its first zero, without surrounding blanks, in UTF-8 or Latin-1.
 pub(super) fn text(bytes: &[u8]) -> String {
     let bytes = bytes.split(|b| *b == 0).next().unwrap_or_default();
-    let text = match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
-    };
-    text.trim().to_owned()
+    label(bytes).trim().to_owned()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Keys and values of a header, with the same errors for every format.
 
-use super::Problem;
+use super::{Problem, Result};
 
 /// Keys and values in the order of the file; keys compare without case.
 #[derive(Clone, Debug)]
@@ -47,13 +47,13 @@ impl Entries {
     }
 
     /// A finite number.
-    pub(super) fn number(&self, key: &str) -> Result<f64, Problem> {
+    pub(super) fn number(&self, key: &str) -> Result<f64> {
         let number = self.get(key).and_then(|v| v.parse().ok()).filter(|v: &f64| v.is_finite());
         number.ok_or_else(|| self.wrong(key, "a number"))
     }
 
     /// A whole number.
-    pub(super) fn whole(&self, key: &str) -> Result<u64, Problem> {
+    pub(super) fn whole(&self, key: &str) -> Result<u64> {
         self.get(key).and_then(|v| v.parse().ok()).ok_or_else(|| self.wrong(key, "a whole number"))
     }
 

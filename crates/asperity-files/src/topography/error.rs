@@ -6,6 +6,9 @@ use thiserror::Error;
 
 use super::{Format, format};
 
+/// Result of reading or writing one.
+pub(super) type Result<T, E = Problem> = std::result::Result<T, E>;
+
 /// A file that cannot be read or written as a topography.
 #[derive(Debug, Error)]
 #[error("{}{problem}", match .path { Some(path) => format!("{}: ", path.display()), None => String::new() })]
@@ -159,7 +162,7 @@ impl Problem {
 
     /// # Errors
     /// Where fewer bytes of the file are left than `what` needs.
-    pub(super) fn check_length(what: &str, needed: u64, available: usize) -> Result<(), Problem> {
+    pub(super) fn check_length(what: &str, needed: u64, available: usize) -> Result<()> {
         match needed <= available as u64 {
             true => Ok(()),
             false => Err(Problem::truncated(what, needed, available as u64)),

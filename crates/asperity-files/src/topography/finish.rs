@@ -3,7 +3,7 @@
 use ndarray::Array2;
 
 use super::unit::{LoneA, metres};
-use super::{Format, Problem, ReadOptions, Topography, grid};
+use super::{Format, Problem, ReadOptions, Result, Topography, grid};
 
 /// The result of a reader.
 #[derive(Debug)]
@@ -83,11 +83,7 @@ impl Lateral {
 }
 
 /// Decides size and unit.
-pub(super) fn finish(
-    format: Format,
-    measured: Measured,
-    options: &ReadOptions,
-) -> Result<Topography, Problem> {
+pub(super) fn finish(format: Format, measured: Measured, options: &ReadOptions) -> Result<Topography> {
     check_options(options)?;
     let Measured { format: found, mut heights, unit, lateral, channel, channels, metadata } = measured;
     let format = found.unwrap_or(format);
@@ -132,7 +128,7 @@ pub(super) fn finish(
     Ok(Topography { format, heights, size, channel, channels, metadata })
 }
 
-fn check_options(options: &ReadOptions) -> Result<(), Problem> {
+fn check_options(options: &ReadOptions) -> Result<()> {
     let wrong = |what, value, expected: &str| Err(Problem::Option { what, value, expected: expected.into() });
     match (options.size, options.height_unit) {
         (Some(size), _) if !size.into_iter().all(is_positive) => {

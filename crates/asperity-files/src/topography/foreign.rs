@@ -1,6 +1,6 @@
 //! Formats that are not read: the instrument or program that wrote the file, and how to get its heights.
 
-use super::{Problem, compound, unpack};
+use super::{Problem, Result, compound, unpack};
 
 /// A format: its name, where it is read, and the export of the maker's program.
 type Known = (&'static str, Way, &'static str);
@@ -75,7 +75,7 @@ pub(super) fn is_known_by_end(head: &[u8]) -> bool {
 }
 
 /// Files that look like another format: HDF5 of Zygo's Mx software.
-pub(super) fn refuse_look_alikes(bytes: &[u8]) -> Result<(), Problem> {
+pub(super) fn refuse_look_alikes(bytes: &[u8]) -> Result<()> {
     // Its heights are phases with converters of their own; both names are in every file.
     let holds = |name: &[u8]| memchr::memmem::find(bytes, name).is_some();
     if holds(b"MetaData") && holds(b"Z Converter") {

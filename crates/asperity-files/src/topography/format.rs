@@ -3,7 +3,7 @@
 use std::{fmt, str::FromStr};
 
 use super::finish::Measured;
-use super::{Format, Problem, Request, Topography, unpack};
+use super::{Format, Request, Result, Topography, unpack};
 
 /// A format: its names, how to tell it, and how to read and write it.
 pub(super) struct Reader {
@@ -14,7 +14,7 @@ pub(super) struct Reader {
     /// Whether the content, not packed by gzip, is of this format.
     pub sniff: fn(&[u8]) -> bool,
     /// Heights in the file's unit.
-    pub read: fn(&[u8], &Request) -> Result<Measured, Problem>,
+    pub read: fn(&[u8], &Request) -> Result<Measured>,
     /// The bytes of a file, where the format is written too.
     pub write: Option<Write>,
 }
@@ -24,7 +24,7 @@ impl Reader {
     pub(super) const fn new(
         name: &'static str,
         sniff: fn(&[u8]) -> bool,
-        read: fn(&[u8], &Request) -> Result<Measured, Problem>,
+        read: fn(&[u8], &Request) -> Result<Measured>,
     ) -> Reader {
         Reader { name, aliases: &[], sniff, read, write: None }
     }
@@ -39,7 +39,7 @@ impl Reader {
 }
 
 /// Writes a surface as the bytes of a file.
-pub(super) type Write = fn(&Topography) -> Result<Vec<u8>, Problem>;
+pub(super) type Write = fn(&Topography) -> Result<Vec<u8>>;
 
 /// Makes the enum of the formats from a table of readers.
 macro_rules! formats {

@@ -9,7 +9,7 @@ use super::cursor::Cursor;
 use super::finish::{Lateral, Measured, Unit};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 pub(super) const FRT: Reader = Reader::new("frt", |bytes| bytes.starts_with(SIGNATURE), read);
 
@@ -39,7 +39,7 @@ struct Image<'a> {
 }
 
 /// Reads the image asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     const H: &str = "the start of the FRT file";
     let mut c = Cursor::new(bytes, Order::Little);
     c.bytes(SIGNATURE.len() as u64, H)?;
@@ -96,7 +96,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     Ok(Measured::new(heights, Unit::Metres(1.0), lateral).of_channel(names, index).with(metadata))
 }
 
-fn kind(bits: u32) -> Result<Kind, Problem> {
+fn kind(bits: u32) -> Result<Kind> {
     match bits {
         16 => Ok(Kind::U16),
         32 => Ok(Kind::I32),
@@ -105,7 +105,7 @@ fn kind(bits: u32) -> Result<Kind, Problem> {
 }
 
 /// The images of lengths.
-fn parse_images<'a>(c: &mut Cursor<'a>, what: &str) -> Result<Vec<Image<'a>>, Problem> {
+fn parse_images<'a>(c: &mut Cursor<'a>, what: &str) -> Result<Vec<Image<'a>>> {
     let _buffers = c.bytes(8, what)?;
     let mut images = Vec::new();
     while !c.rest().is_empty() {

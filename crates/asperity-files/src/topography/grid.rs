@@ -3,8 +3,8 @@
 use ndarray::Array2;
 use rayon::prelude::*;
 
-use super::Problem;
 use super::sample::{FEW, Kind, Order, decode_into};
+use super::{Problem, Result};
 
 /// Most points of a topography, as of a grid.
 pub(super) const MOST_POINTS: usize = 1 << 31;
@@ -13,7 +13,7 @@ pub(super) const MOST_POINTS: usize = 1 << 31;
 const TILE: usize = 32;
 
 /// Number of points nx ny, refused where it is 0 or absurd.
-pub(super) fn points(nx: u64, ny: u64) -> Result<usize, Problem> {
+pub(super) fn points(nx: u64, ny: u64) -> Result<usize> {
     match nx.checked_mul(ny) {
         Some(n) if n > 0 && n <= MOST_POINTS as u64 => Ok(n as usize),
         _ => Err(Problem::malformed(
@@ -60,17 +60,12 @@ impl Layout {
         bytes: &[u8],
         what: &str,
         value: impl Fn(f64) -> f64 + Sync,
-    ) -> Result<Array2<f64>, Problem> {
+    ) -> Result<Array2<f64>> {
         self.read(bytes, what, &|line| line.iter_mut().for_each(|v| *v = value(*v)))
     }
 
     /// `values` replaces the numbers of a part of a line.
-    fn read(
-        self,
-        bytes: &[u8],
-        what: &str,
-        values: &(dyn Fn(&mut [f64]) + Sync),
-    ) -> Result<Array2<f64>, Problem> {
+    fn read(self, bytes: &[u8], what: &str, values: &(dyn Fn(&mut [f64]) + Sync)) -> Result<Array2<f64>> {
         let [nx, ny] = self.points;
         points(nx, ny)?;
         let line = nx.saturating_mul(self.kind.width() as u64);

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use hdf5_reader::group::Group;
 use hdf5_reader::{Hdf5File, OpenOptions};
 
-use super::Problem;
+use super::{Problem, Result};
 
 /// Most groups inside each other.
 const DEEPEST: usize = 32;
@@ -25,7 +25,7 @@ const MOST: u64 = 20_000;
 const MOST_DIMENSIONS: u64 = 4_000_000;
 
 /// Refuses groups that link to a group around them, and trees that are too large.
-pub(super) fn check(bytes: Arc<[u8]>, options: OpenOptions) -> Result<(), Problem> {
+pub(super) fn check(bytes: Arc<[u8]>, options: OpenOptions) -> Result<()> {
     let file = Hdf5File::from_shared_bytes_with_options(bytes, options)
         .map_err(|error| broken("the file", error))?;
     let mut walk = Walk::default();
@@ -52,7 +52,7 @@ struct Walk {
 }
 
 impl Walk {
-    fn visit(&mut self, group: &Group, depth: usize) -> Result<Tree, Problem> {
+    fn visit(&mut self, group: &Group, depth: usize) -> Result<Tree> {
         let name = if group.name().is_empty() { "/" } else { group.name() };
         match self.trees.get(&group.address()) {
             Some(Some(tree)) => return Ok(*tree),

@@ -10,13 +10,13 @@ use super::finish::{Lateral, Measured, unit_of};
 use super::grid::Layout;
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 pub(super) const GSF: Reader = Reader::new("gsf", |bytes| bytes.starts_with(SIGNATURE), read);
 
 const SIGNATURE: &[u8] = b"Gwyddion Simple Field 1.0\n";
 
-fn read(bytes: &[u8], _: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], _: &Request) -> Result<Measured> {
     let end = memchr::memchr(0, bytes).ok_or_else(|| {
         Problem::malformed("the end of the GSF header", "missing", "1 to 4 zero bytes after the last entry")
     })?;

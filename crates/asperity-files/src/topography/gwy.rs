@@ -15,7 +15,7 @@ use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
-use super::{Problem, Reader, Request, write};
+use super::{Problem, Reader, Request, Result, write};
 
 pub(super) const GWY: Reader =
     Reader::new("gwy", |bytes| bytes.starts_with(SIGNATURE), read).written_by(write::gwy::encode);
@@ -25,7 +25,7 @@ const SIGNATURE: &[u8] = b"GWYP";
 const DEEPEST: usize = 32;
 
 /// Reads the channel asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let mut cursor = Cursor::new(bytes, Order::Little);
     cursor.bytes(SIGNATURE.len() as u64, "the signature")?;
     let container = Object::parse(&mut cursor, 0)?;
@@ -99,7 +99,7 @@ struct Object<'a> {
 }
 
 impl<'a> Object<'a> {
-    fn parse(cursor: &mut Cursor<'a>, depth: usize) -> Result<Self, Problem> {
+    fn parse(cursor: &mut Cursor<'a>, depth: usize) -> Result<Self> {
         if depth > DEEPEST {
             let expected = format!("at most {DEEPEST}");
             return Err(Problem::malformed("the depth of nested objects", depth, expected));
@@ -134,7 +134,7 @@ impl<'a> Object<'a> {
     }
 
     /// The values of a data field.
-    fn map(&self) -> Result<Array2<f64>, Problem> {
+    fn map(&self) -> Result<Array2<f64>> {
         let resolution = |key: &str| match self.get(key) {
             Some(Value::Int(n)) => Ok(u64::try_from(*n).unwrap_or(0)),
             _ => Err(Problem::malformed(format!("{key:?} of the data field"), "missing", "present")),
@@ -148,7 +148,7 @@ impl<'a> Object<'a> {
 }
 
 impl<'a> Value<'a> {
-    fn parse(c: &mut Cursor<'a>, name: &[u8], depth: usize) -> Result<Self, Problem> {
+    fn parse(c: &mut Cursor<'a>, name: &[u8], depth: usize) -> Result<Self> {
         let what = || format!("the component {:?}", text(name));
         let kind = c.u8(&what())?;
         let array = |c: &mut Cursor<'a>, width: u64| {
@@ -181,7 +181,7 @@ impl<'a> Value<'a> {
 }
 
 /// A string that ends with a zero.
-fn string<'a>(cursor: &mut Cursor<'a>) -> Result<&'a [u8], Problem> {
+fn string<'a>(cursor: &mut Cursor<'a>) -> Result<&'a [u8]> {
     let rest = cursor.rest();
     let length = memchr::memchr(0, rest)
         .ok_or_else(|| Problem::truncated("a string", rest.len() as u64 + 1, rest.len() as u64))?;

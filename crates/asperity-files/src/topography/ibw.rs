@@ -14,7 +14,7 @@ use super::grid::{self, Layout};
 use super::request::check_channels;
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 pub(super) const IBW: Reader = Reader::new("ibw", is_ibw, read);
 
@@ -42,7 +42,7 @@ fn is_ibw(bytes: &[u8]) -> bool {
 }
 
 /// Reads the layer asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     const H: &str = "the header of the Igor wave";
     let order = order(bytes).ok_or_else(|| {
         Problem::unsupported("an Igor wave of another version than 5", "save it with Igor Pro 6 or newer")
@@ -113,7 +113,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     Ok(measured.with([("Wave", name)]).with(note))
 }
 
-fn kind(code: u16) -> Result<Kind, Problem> {
+fn kind(code: u16) -> Result<Kind> {
     Ok(match code {
         0x02 => Kind::F32,
         0x04 => Kind::F64,

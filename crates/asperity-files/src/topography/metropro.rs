@@ -13,7 +13,7 @@ use super::cursor::Cursor;
 use super::finish::{Lateral, Measured, Unit};
 use super::grid::Layout;
 use super::sample::{Kind, Order};
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 pub(super) const METROPRO: Reader =
     Reader::new("metropro", |bytes| header_length(bytes).is_some(), read).also_called(&["dat"]);
@@ -33,7 +33,7 @@ fn header_length(bytes: &[u8]) -> Option<u32> {
 }
 
 /// Reads the phases.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     const H: &str = "the MetroPro header";
     let expected = header_length(bytes).ok_or_else(|| {
         Problem::malformed("the signature", "something else", "881b036f, 881b0370 or 881b0371")

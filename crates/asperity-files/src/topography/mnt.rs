@@ -23,7 +23,7 @@ use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
 use super::unpack::{most_unpacked, read_bounded};
-use super::{Problem, Reader, Request, foreign};
+use super::{Problem, Reader, Request, Result, foreign};
 
 // Other documents of this kind are refused by the reader.
 pub(super) const MNT: Reader = Reader::new("mnt", is_compound, read);
@@ -41,7 +41,7 @@ mod class {
 }
 
 /// Reads the surface asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let contents = compound::stream(bytes, CONTENTS)
         .map_err(|error| Problem::malformed("the compound document", error, "undamaged"))?;
     let Some(contents) = contents else {
@@ -72,7 +72,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
 #[derive(Clone, Copy)]
 struct Node<'a>(&'a [u8]);
 
-fn entry<'a>(c: &mut Cursor<'a>) -> Result<(u16, Node<'a>), Problem> {
+fn entry<'a>(c: &mut Cursor<'a>) -> Result<(u16, Node<'a>)> {
     const E: &str = "an entry of the MNT file";
     let (tag, length) = (c.u16(E)?, c.u64(E)?);
     Ok((tag, Node(c.bytes(length, E)?)))
@@ -80,7 +80,7 @@ fn entry<'a>(c: &mut Cursor<'a>) -> Result<(u16, Node<'a>), Problem> {
 
 impl<'a> Node<'a> {
     /// The first entry with this tag.
-    fn find(self, tag: u16) -> Result<Option<Node<'a>>, Problem> {
+    fn find(self, tag: u16) -> Result<Option<Node<'a>>> {
         let mut c = Cursor::new(self.0, Order::Little);
         while !c.rest().is_empty() {
             let (found, content) = entry(&mut c)?;
@@ -91,12 +91,12 @@ impl<'a> Node<'a> {
         Ok(None)
     }
 
-    fn at(self, path: &[u16]) -> Result<Option<Node<'a>>, Problem> {
+    fn at(self, path: &[u16]) -> Result<Option<Node<'a>>> {
         let step = |node: Option<Node<'a>>, tag: &u16| node.map_or(Ok(None), |node| node.find(*tag));
         path.iter().try_fold(Some(self), step)
     }
 
-    fn class(self) -> Result<Option<u32>, Problem> {
+    fn class(self) -> Result<Option<u32>> {
         Ok(self.at(&[0x1, 0x1])?.and_then(Node::whole))
     }
 
@@ -127,7 +127,7 @@ struct Scale {
 }
 
 impl Scale {
-    fn of(node: Node, axis: &str) -> Result<Self, Problem> {
+    fn of(node: Node, axis: &str) -> Result<Self> {
         let number = |tag| Ok::<_, Problem>(node.find(tag)?.and_then(Node::number));
         let text = |tag| Ok::<_, Problem>(node.find(tag)?.and_then(Node::text).unwrap_or_default());
         let step = number(0x1)?;
@@ -159,7 +159,7 @@ struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     /// `None` where the object has no heights.
-    fn of(body: Node<'a>) -> Result<Option<Self>, Problem> {
+    fn of(body: Node<'a>) -> Result<Option<Self>> {
         let title = body.at(&[BASE, 0x4])?.and_then(Node::text).filter(|t| !t.is_empty());
         let Some(object) = body.find(0x1)? else { return Ok(None) };
         if object.class()? != Some(class::MEASUREMENT) {
@@ -199,7 +199,7 @@ impl<'a> Surface<'a> {
         unit_of(&self.axes[2].display_unit, LoneA::Angstrom)
     }
 
-    fn measured(self, names: Vec<String>, index: usize) -> Result<Measured, Problem> {
+    fn measured(self, names: Vec<String>, index: usize) -> Result<Measured> {
         const WHAT: &str = "the heights of the MNT file";
         let [x, y, z] = &self.axes;
         let count = grid::points(self.points[0], self.points[1])? as u64;
@@ -234,7 +234,7 @@ impl<'a> Surface<'a> {
 }
 
 /// An array of `count` elements in blocks of zlib: offset and number of elements, packed length, stream.
-fn blocks(array: Node, count: u64, what: &str) -> Result<Vec<u8>, Problem> {
+fn blocks(array: Node, count: u64, what: &str) -> Result<Vec<u8>> {
     let missing = || Problem::malformed(what, "missing", "present");
     let array = array.find(0x2)?.ok_or_else(missing)?;
     let stated = array.find(0x1)?.and_then(Node::whole).map(u64::from);

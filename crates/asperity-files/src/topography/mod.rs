@@ -46,6 +46,7 @@ use std::path::Path;
 
 use ndarray::Array2;
 
+use error::Result;
 pub use error::{Problem, TopographyError};
 pub use format::detect;
 pub use profile::{Profile, profile_of, read_profile};
@@ -209,7 +210,7 @@ const HEAD: u64 = 1 << 20;
 const MEMORY_PER_BYTE: u64 = 3;
 
 /// The bytes of a file. A large file is read whole only if its start is that of a known format and there is enough memory.
-fn bytes_of(path: &Path, options: &ReadOptions) -> Result<Vec<u8>, Problem> {
+fn bytes_of(path: &Path, options: &ReadOptions) -> Result<Vec<u8>> {
     let mut file = resources::open(path)?;
     let length = file.metadata()?.len();
     let mut bytes = Vec::new();
@@ -248,7 +249,7 @@ pub fn read_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Top
     Ok(parse(bytes, options)?)
 }
 
-fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Problem> {
+fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography> {
     let unpacked = unpack::gunzip(bytes)?;
     let bytes = unpacked.as_deref().unwrap_or(bytes);
     let format = match options.format {

@@ -20,7 +20,7 @@ use super::grid::{self, Layout};
 use super::request::check_channels;
 use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 pub(super) const NANOSCOPE: Reader = Reader::new("di", is_nanoscope, read).also_called(&["spm", "nanoscope"]);
 
@@ -40,7 +40,7 @@ fn is_nanoscope(bytes: &[u8]) -> bool {
 }
 
 /// Reads the image asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     if bytes.first() == Some(&b'?') {
         let instead = "save it as binary, or export it as ASCII matrix from NanoScope Analysis";
         return Err(Problem::unsupported("a Nanoscope file whose numbers are written as text", instead));
@@ -138,7 +138,7 @@ impl Header {
     }
 
     /// What one unit of the image's numbers is worth, and in which unit.
-    fn scale(&self, image: &Entries) -> Result<(f64, Unit), Problem> {
+    fn scale(&self, image: &Entries) -> Result<(f64, Unit)> {
         let scale = image.get("@4:z scale").or(image.get("@2:z scale")).ok_or_else(|| {
             Problem::unsupported(
                 "a Nanoscope file without \"@2:Z scale\" (before version 4.3)",
@@ -165,7 +165,7 @@ impl Header {
         }
     }
 
-    fn plane(&self, image: &Entries) -> Result<Plane, Problem> {
+    fn plane(&self, image: &Entries) -> Result<Plane> {
         let stated = [image.whole("Samps/line")?, image.whole("Number of lines")?];
         let length = image.whole("Data length")?;
         let global =
@@ -231,7 +231,7 @@ impl Header {
 }
 
 /// "500 500 nm", "10 10 ~m" or, for a square, "500 nm": both lengths and metres per unit.
-fn size(image: &Entries) -> Result<[f64; 3], Problem> {
+fn size(image: &Entries) -> Result<[f64; 3]> {
     let text = image.get("scan size").unwrap_or("missing");
     let words: Vec<&str> = text.split_whitespace().collect();
     let number = |i: usize| words.get(i).and_then(|w| w.parse::<f64>().ok());
@@ -311,7 +311,7 @@ fn image_names(image: &Entries) -> (String, String) {
     (name.filter(|n| !n.is_empty()).unwrap_or(label).to_owned(), label.to_owned())
 }
 
-fn bytes_per_number(image: &Entries) -> Result<u64, Problem> {
+fn bytes_per_number(image: &Entries) -> Result<u64> {
     match image.get("Bytes/pixel") {
         None | Some("2") => Ok(2),
         Some("4") => Ok(4),

@@ -15,7 +15,7 @@ use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::groups::broken;
 use super::unit::LoneA;
 use super::unpack::most_unpacked;
-use super::{Format, Problem, Reader, Request, foreign, grid, groups, write};
+use super::{Format, Problem, Reader, Request, Result, foreign, grid, groups, write};
 
 /// What NetCDF writes where a variable was never written.
 const DEFAULT_FILL: f64 = 9.969_209_968_386_869e36;
@@ -33,7 +33,7 @@ fn is_hdf5(bytes: &[u8]) -> bool {
 }
 
 /// Reads the variable asked for, and tells NetCDF-4 from other HDF5.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     foreign::refuse_look_alikes(bytes)?;
     let most = usize::try_from(most_unpacked(bytes.len())).unwrap_or(usize::MAX);
     let options =
@@ -95,7 +95,7 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
 }
 
 /// The two-dimensional variables of numbers with their paths, those of outer groups first.
-fn maps(file: &NcFile) -> Result<Vec<(String, &NcVariable)>, Problem> {
+fn maps(file: &NcFile) -> Result<Vec<(String, &NcVariable)>> {
     const MOST: usize = 10_000;
     let root = file.root_group().map_err(|e| broken("the root group", e))?;
     let mut maps = Vec::new();
@@ -126,10 +126,7 @@ fn width(kind: &NcType) -> u64 {
     }
 }
 
-fn two_dimensional(
-    read: Result<ArrayD<f64>, impl std::fmt::Display>,
-    name: &str,
-) -> Result<Array2<f64>, Problem> {
+fn two_dimensional(read: Result<ArrayD<f64>, impl std::fmt::Display>, name: &str) -> Result<Array2<f64>> {
     let what = format!("the variable {name:?}");
     let array = read.map_err(|e| broken(&what, e))?;
     let array = array.into_dimensionality::<Ix2>().map_err(|e| broken(&what, e))?;

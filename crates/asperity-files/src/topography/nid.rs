@@ -17,7 +17,7 @@ use super::grid::{self, Layout};
 use super::request::check_channels;
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 pub(super) const NID: Reader = Reader::new("nid", is_nid, read).also_called(&["ezd"]);
 
@@ -40,7 +40,7 @@ struct Set<'a> {
 }
 
 /// Reads the data set asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let (sections, data) = header(bytes)?;
     let sets = sets(&sections)?;
     let names: Vec<String> = sets.iter().map(Set::name).collect();
@@ -68,29 +68,26 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
 }
 
 /// The sections of the header, and the numbers after it.
-fn header(bytes: &[u8]) -> Result<(Vec<Entries>, &[u8]), Problem> {
+fn header(bytes: &[u8]) -> Result<(Vec<Entries>, &[u8])> {
+    const END: &[u8] = b"\n#!";
     let head = &bytes[..bytes.len().min(LONGEST_HEADER)];
+    let length = bytes.len() as u64;
+    let end = memchr::memmem::find(head, END).ok_or_else(|| {
+        Problem::truncated("the header of the Nanosurf file, up to \"#!\",", length + 2, length)
+    })?;
     let mut sections: Vec<Entries> = Vec::new();
-    let mut at = 0;
-    while at < head.len() {
-        if head[at..].starts_with(b"#!") {
-            return Ok((sections, &bytes[at + 2..]));
-        }
-        let end = memchr::memchr(b'\n', &head[at..]).map_or(head.len(), |n| at + n + 1);
-        let line = text(&head[at..end]);
-        at = end;
+    for line in head[..end].split(|byte| *byte == b'\n').map(text) {
         if let Some(title) = line.strip_prefix('[').and_then(|l| l.strip_suffix(']')) {
             sections.push(Entries::new(title));
         } else if let (Some((key, value)), Some(section)) = (line.split_once('='), sections.last_mut()) {
             section.push(key, value);
         }
     }
-    let length = bytes.len() as u64;
-    Err(Problem::truncated("the header of the Nanosurf file, up to \"#!\",", length + 2, length))
+    Ok((sections, &bytes[end + END.len()..]))
 }
 
 /// The data sets in their order.
-fn sets(sections: &[Entries]) -> Result<Vec<Set<'_>>, Problem> {
+fn sets(sections: &[Entries]) -> Result<Vec<Set<'_>>> {
     let mut places: Vec<([u32; 2], &str)> = Vec::new();
     for (key, section) in sections.first().into_iter().flat_map(Entries::iter) {
         let place = key.strip_prefix("Gr").and_then(|k| k.split_once("-Ch"));

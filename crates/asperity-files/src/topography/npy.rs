@@ -13,7 +13,7 @@ use super::grid::{self, Layout};
 use super::sample::{Kind, Order, decode};
 use super::unit::LoneA;
 use super::unpack::{Archive, holds_member};
-use super::{HISTORY, Problem, Reader, Request, write};
+use super::{HISTORY, Problem, Reader, Request, Result, write};
 
 pub(super) const NPY: Reader = Reader::new("npy", |bytes| bytes.starts_with(SIGNATURE), read);
 
@@ -24,13 +24,13 @@ pub(super) const NPZ: Reader =
 const SIGNATURE: &[u8] = b"\x93NUMPY";
 
 /// Reads an NPY file.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let heights = Npy::parse(bytes)?.heights(request)?;
     Ok(Measured::new(heights, Unit::Unstated, Lateral::Unstated(String::new())))
 }
 
 /// Reads the channel asked for from an NPZ file: each two-dimensional array is a channel.
-fn read_archive(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read_archive(bytes: &[u8], request: &Request) -> Result<Measured> {
     let mut archive = Archive::open(bytes)?;
     let (mut names, mut size, mut unit, mut metadata) = (Vec::new(), None, None, Vec::new());
     for member in archive.names() {
@@ -74,7 +74,7 @@ struct Npy<'a> {
 }
 
 impl<'a> Npy<'a> {
-    fn parse(bytes: &'a [u8]) -> Result<Self, Problem> {
+    fn parse(bytes: &'a [u8]) -> Result<Self> {
         const HEADER: &str = "the NPY header";
         let rest = bytes
             .strip_prefix(SIGNATURE)
@@ -140,7 +140,7 @@ impl<'a> Npy<'a> {
         Some((kind, order))
     }
 
-    fn real(&self) -> Result<(Kind, Order), Problem> {
+    fn real(&self) -> Result<(Kind, Order)> {
         self.kind().ok_or_else(|| {
             Problem::unsupported(
                 format!("an NPY file of numbers of type {:?}", self.descr),
@@ -150,14 +150,14 @@ impl<'a> Npy<'a> {
     }
 
     /// The numbers in the order of the file.
-    fn values(&self) -> Result<Vec<f64>, Problem> {
+    fn values(&self) -> Result<Vec<f64>> {
         let (kind, order) = self.real()?;
         let count = self.shape.iter().try_fold(1u64, |n, m| n.checked_mul(*m)).unwrap_or(u64::MAX);
         let count = grid::points(count, 1)?;
         decode(self.data, kind, order, count, "the NPY array")
     }
 
-    fn heights(&self, request: &Request) -> Result<Array2<f64>, Problem> {
+    fn heights(&self, request: &Request) -> Result<Array2<f64>> {
         let &[nx, ny] = self.shape.as_slice() else {
             let detail = format!("its array has the shape {:?}, not (nx, ny)", self.shape);
             return Err(request.no_heights(detail));

@@ -9,7 +9,7 @@ use ndarray::{Array2, Axis};
 use super::cursor::Cursor;
 use super::finish::{Lateral, Measured, Unit};
 use super::sample::{Kind, Order, decode};
-use super::{Problem, Reader, Request, cursor, grid};
+use super::{Problem, Reader, Request, Result, cursor, grid};
 
 pub(super) const OPD: Reader = Reader::new("opd", is_opd, read);
 
@@ -37,7 +37,7 @@ struct Block<'a> {
 }
 
 /// Reads the heights asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let blocks = blocks(bytes)?;
     let arrays: Vec<&Block> =
         blocks.iter().filter(|b| b.kind == block_type::ARRAY && HEIGHTS.contains(&b.name.as_str())).collect();
@@ -64,11 +64,11 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     Ok(Measured::new(heights, Unit::Metres(NM), lateral).of_channel(names, index).with(metadata))
 }
 
-fn blocks(bytes: &[u8]) -> Result<Vec<Block<'_>>, Problem> {
+fn blocks(bytes: &[u8]) -> Result<Vec<Block<'_>>> {
     const D: &str = "the OPD directory";
     const ENTRY: u32 = 24;
     let mut directory = Cursor::at(bytes, 2, Order::Little, D)?;
-    let entry = |c: &mut Cursor| -> Result<(String, u16, u32), Problem> {
+    let entry = |c: &mut Cursor| -> Result<(String, u16, u32)> {
         let (name, kind, length) = (c.text(16, D)?, c.u16(D)?, c.u32(D)?);
         let _flags = c.u16(D)?;
         Ok((name, kind, length))
@@ -113,7 +113,7 @@ impl Block<'_> {
     }
 
     /// The array, x along axis 0, y downwards.
-    fn array(&self) -> Result<Array2<f64>, Problem> {
+    fn array(&self) -> Result<Array2<f64>> {
         let what = format!("the array {:?}", self.name);
         let mut c = Cursor::new(self.content, Order::Little);
         let [nx, ny, width] = [c.u16(&what)?, c.u16(&what)?, c.u16(&what)?];

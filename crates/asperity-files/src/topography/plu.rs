@@ -9,7 +9,7 @@ use super::cursor::{Cursor, text};
 use super::finish::{Lateral, Measured, Unit};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
-use super::{Problem, Reader, Request};
+use super::{Reader, Request, Result};
 
 // The least certain sign: there is no signature.
 pub(super) const PLU: Reader = Reader::new("plu", is_plu, read).also_called(&["apx"]);
@@ -37,7 +37,7 @@ struct Header {
 }
 
 impl Header {
-    fn parse(c: &mut Cursor) -> Result<Self, Problem> {
+    fn parse(c: &mut Cursor) -> Result<Self> {
         const H: &str = "the PLU header";
         let date = c.text(128, H)?;
         let _time = c.u32(H)?;
@@ -80,7 +80,7 @@ struct Layer<'a> {
 }
 
 /// Reads the layer asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     const S: &str = "the settings of the PLU file";
     let mut c = Cursor::new(bytes, Order::Little);
     let header = Header::parse(&mut c)?;

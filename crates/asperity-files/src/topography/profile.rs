@@ -13,7 +13,7 @@ use ndarray::Array2;
 
 use super::finish::Unit;
 use super::text::{is_profile, read_columns};
-use super::{Format, Problem, ReadOptions, TopographyError, format, unpack};
+use super::{Format, Problem, ReadOptions, Result, TopographyError, format, unpack};
 
 /// Spacings that agree to this share of their mean are equal: instruments round their positions.
 const EVEN: f64 = 1e-3;
@@ -72,7 +72,7 @@ pub fn profile_of(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Topogr
     Ok(profile(bytes, options)?)
 }
 
-fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile, Problem> {
+fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile> {
     let columns = read_columns(bytes)?;
     let count = columns.heights.len();
     if count < 2 {

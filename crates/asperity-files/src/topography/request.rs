@@ -1,7 +1,7 @@
 //! What the caller asks for: a format and a channel.
 
 use super::finish::Unit;
-use super::{Format, Problem};
+use super::{Format, Problem, Result};
 
 /// What the caller asks for.
 pub(super) struct Request<'a> {
@@ -15,7 +15,7 @@ pub(super) struct Request<'a> {
 
 impl Request<'_> {
     /// The channel asked for by name (any case) or number, or the first.
-    pub(super) fn choose(&self, names: &[String]) -> Result<usize, Problem> {
+    pub(super) fn choose(&self, names: &[String]) -> Result<usize> {
         if names.is_empty() {
             return Err(self.no_heights("no channel with heights in it"));
         }
@@ -31,11 +31,7 @@ impl Request<'_> {
     /// The channel asked for; by default the first of heights, and without one the first.
     ///
     /// A length is not always a height (the deflection of a cantilever is one too): names decide first.
-    pub(super) fn choose_heights(
-        &self,
-        names: &[String],
-        unit: impl Fn(usize) -> Unit,
-    ) -> Result<usize, Problem> {
+    pub(super) fn choose_heights(&self, names: &[String], unit: impl Fn(usize) -> Unit) -> Result<usize> {
         const NAMES: [&str; 6] = ["height", "zsensor", "z-axis", "topo", "elevation", "relief"];
         let first = self.choose(names)?;
         if self.channel.is_some() {
@@ -56,7 +52,7 @@ impl Request<'_> {
 }
 
 /// Refuses a file of more channels than any instrument writes: every one is looked at.
-pub(super) fn check_channels(count: usize) -> Result<(), Problem> {
+pub(super) fn check_channels(count: usize) -> Result<()> {
     const MOST: usize = 1000;
     match count <= MOST {
         true => Ok(()),

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::Problem;
+use super::{Problem, Result};
 
 /// Maps with fewer points are not worth the threads.
 pub(super) const FEW: usize = 1 << 15;
@@ -69,13 +69,7 @@ pub(super) enum Order {
 ///
 /// # Errors
 /// [`Problem::Truncated`] where there are fewer; nothing is allocated then.
-pub(super) fn decode(
-    bytes: &[u8],
-    kind: Kind,
-    order: Order,
-    count: usize,
-    what: &str,
-) -> Result<Vec<f64>, Problem> {
+pub(super) fn decode(bytes: &[u8], kind: Kind, order: Order, count: usize, what: &str) -> Result<Vec<f64>> {
     let needed = (count as u64).saturating_mul(kind.width() as u64);
     Problem::check_length(what, needed, bytes.len())?;
     let mut numbers = vec![0.0; count];

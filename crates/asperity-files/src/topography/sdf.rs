@@ -13,7 +13,7 @@ use super::finish::{Lateral, Measured, Unit};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::text::numbers;
-use super::{Problem, Reader, Request, write};
+use super::{Problem, Reader, Request, Result, write};
 
 pub(super) const SDF: Reader = Reader::new("sdf", is_sdf, read).written_by(write::sdf::encode);
 
@@ -24,12 +24,12 @@ fn is_sdf(bytes: &[u8]) -> bool {
 }
 
 /// Reads the surface.
-fn read(bytes: &[u8], _: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], _: &Request) -> Result<Measured> {
     if bytes.first() == Some(&b'b') { read_binary(bytes) } else { read_text(bytes) }
 }
 
 /// Types of numbers by their code.
-fn kind(code: u64) -> Result<Kind, Problem> {
+fn kind(code: u64) -> Result<Kind> {
     const KINDS: [Kind; 8] =
         [Kind::U8, Kind::U16, Kind::U32, Kind::F32, Kind::I8, Kind::I16, Kind::I32, Kind::F64];
     let index = usize::try_from(code).ok();
@@ -52,7 +52,7 @@ fn undefined(kind: Kind) -> Option<f64> {
     }
 }
 
-fn read_binary(bytes: &[u8]) -> Result<Measured, Problem> {
+fn read_binary(bytes: &[u8]) -> Result<Measured> {
     const H: &str = "the SDF header";
     let mut c = Cursor::new(bytes, Order::Little);
     let version = c.bytes(8, H)?;
@@ -76,7 +76,7 @@ fn read_binary(bytes: &[u8]) -> Result<Measured, Problem> {
     Ok(measured(heights, scale).with(metadata))
 }
 
-fn read_text(bytes: &[u8]) -> Result<Measured, Problem> {
+fn read_text(bytes: &[u8]) -> Result<Measured> {
     let (header, data, line) = split(bytes)?;
     let lines = header.split(|b| *b == b'\n').map(text).filter(|l| !l.starts_with(';'));
     let header = Entries::from_lines("the SDF header", lines);
@@ -107,7 +107,7 @@ fn measured(heights: Array2<f64>, [dx, dy, _]: [f64; 3]) -> Measured {
 
 /// Header and numbers, which lines of one asterisk end, and the line where the numbers start. The trailer after
 /// the second asterisk is free text.
-fn split(bytes: &[u8]) -> Result<(&[u8], &[u8], usize), Problem> {
+fn split(bytes: &[u8]) -> Result<(&[u8], &[u8], usize)> {
     let asterisk = |from: usize| {
         let line_start = |at: usize| bytes[from..at].iter().rev().find(|b| !matches!(b, b' ' | b'\t'));
         memchr::memchr_iter(b'*', &bytes[from..])
@@ -122,7 +122,7 @@ fn split(bytes: &[u8]) -> Result<(&[u8], &[u8], usize), Problem> {
     Ok((&bytes[..end], &bytes[end + 1..stop], line))
 }
 
-fn refuse_compression(code: u64) -> Result<(), Problem> {
+fn refuse_compression(code: u64) -> Result<()> {
     if code == 0 {
         return Ok(());
     }

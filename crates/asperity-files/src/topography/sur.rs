@@ -19,7 +19,7 @@ use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
 use super::unpack::{most_unpacked, read_bounded};
-use super::{Problem, Reader, Request};
+use super::{Problem, Reader, Request, Result};
 
 pub(super) const SUR: Reader = Reader::new(
     "sur",
@@ -39,7 +39,7 @@ mod studiable {
 }
 
 /// Reads the surface asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let mut cursor = Cursor::new(bytes, Order::Little);
     let first = Object::parse(&mut cursor)?;
     // The first header counts the objects; "P size" is the number of channels of each, 0 for one.
@@ -103,9 +103,9 @@ enum Data<'a> {
 }
 
 impl<'a> Object<'a> {
-    fn parse(c: &mut Cursor<'a>) -> Result<Self, Problem> {
+    fn parse(c: &mut Cursor<'a>) -> Result<Self> {
         const H: &str = "the SUR header";
-        let signature = c.text(12, H)?;
+        let signature = c.clone().text(12, H)?;
         let packed = match signature.as_str() {
             "DIGITAL SURF" => false,
             "DSCOMPRESSED" => true,
@@ -114,40 +114,19 @@ impl<'a> Object<'a> {
                 return Err(Problem::malformed("the signature of a SUR object", signature, expected));
             }
         };
-        let _format = c.i16(H)?;
-        let objects = c.u16(H)?;
-        let _version = c.i16(H)?;
-        let kind = c.i16(H)?;
-        let name = c.text(30, H)?;
-        let operator = c.text(30, H)?;
-        let channels = c.u16(H)?;
-        let [_acquisition, _range] = [c.i16(H)?, c.i16(H)?];
-        let special_points = c.i16(H)? == 1;
-        let absolute = c.i16(H)? != 0;
-        let _gauge_resolution = c.f32(H)?;
-        let values_per_point = c.u32(H)?;
-        let bits = c.i16(H)?;
-        let [least, _most] = [c.i32(H)?, c.i32(H)?];
-        let [points, lines, _total] = [c.u32(H)?, c.u32(H)?, c.u32(H)?].map(u64::from);
-        let spacing = [c.f32(H)?, c.f32(H)?, c.f32(H)?].map(f64::from);
-        let _axis_names = c.bytes(3 * 16, H)?;
-        let unit = [c.text(16, H)?, c.text(16, H)?, c.text(16, H)?];
-        let _length_units_and_ratios = c.bytes(3 * 16 + 3 * 4, H)?;
-        let _replica = c.i16(H)?;
-        let inversion = c.i16(H)?;
-        let _levelled = c.i16(H)?;
-        let _obsolete = c.bytes(12, H)?;
-        let [second, minute, hour, day, month, year, _weekday] =
-            [c.i16(H)?, c.i16(H)?, c.i16(H)?, c.i16(H)?, c.i16(H)?, c.i16(H)?, c.i16(H)?];
-        let _duration = c.f32(H)?;
-        let _packed_length = c.u32(H)?;
-        let _obsolete = c.bytes(6, H)?;
-        let [comment_length, private_length] = [c.u16(H)?, c.u16(H)?];
-        let _client_zone = c.bytes(128, H)?;
-        let [_offset_x, _offset_y, offset] = [c.f32(H)?, c.f32(H)?, c.f32(H)?].map(f64::from);
-        let _time_axis = c.bytes(4 + 4 + 13 + 13, H)?;
-        let comment = c.text(u64::from(comment_length), "the SUR comment")?;
-        let _private = c.bytes(u64::from(private_length), "the private zone of the SUR object")?;
+        let header = c.bytes(512, H)?;
+        let at = |offset| Cursor::at(header, offset, Order::Little, H);
+        let short = |offset| at(offset)?.i16(H);
+        let text = |offset, length| at(offset)?.text(length, H);
+        let values_per_point = at(94)?.u32(H)?;
+        let bits = short(98)?;
+        let [points, lines] = [at(108)?.u32(H)?, at(112)?.u32(H)?].map(u64::from);
+        let unit = [text(180, 16)?, text(196, 16)?, text(212, 16)?];
+        let [second, minute, hour] = [short(306)?, short(308)?, short(310)?];
+        let [day, month, year] = [short(312)?, short(314)?, short(316)?];
+        let offset = f64::from(at(474)?.f32(H)?);
+        let comment = c.text(u64::from(at(334)?.u16(H)?), "the SUR comment")?;
+        let _private = c.bytes(u64::from(at(336)?.u16(H)?), "the private zone of the SUR object")?;
 
         let data = if packed {
             let count = c.u32("the number of packed streams")?;
@@ -169,29 +148,30 @@ impl<'a> Object<'a> {
             true => format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}"),
             false => String::new(),
         };
-        let mut metadata = vec![("operator", operator), ("comment", comment), ("date", date)];
+        let mut metadata = vec![("operator", text(50, 30)?), ("comment", comment), ("date", date)];
         if offset != 0.0 {
             metadata.push(("z offset", format!("{offset} {}", unit[2])));
         }
         Ok(Object {
-            objects,
-            channels,
-            kind,
-            name,
-            undefined: if special_points { f64::from(least) - 2.0 } else { f64::NAN },
+            objects: at(14)?.u16(H)?,
+            channels: at(80)?.u16(H)?,
+            kind: short(18)?,
+            name: text(20, 30)?,
+            undefined: if short(86)? == 1 { f64::from(at(100)?.i32(H)?) - 2.0 } else { f64::NAN },
             bits,
             points: [points, lines],
             values_per_point,
-            spacing,
+            spacing: [at(120)?.f32(H)?, at(124)?.f32(H)?, at(128)?.f32(H)?].map(f64::from),
             unit,
-            inversion,
-            offset: if absolute { offset } else { 0.0 },
+            inversion: short(290)?,
+            // Of the heights, on an absolute axis.
+            offset: if short(88)? != 0 { offset } else { 0.0 },
             metadata,
             data,
         })
     }
 
-    fn measured(self, names: Vec<String>, index: usize) -> Result<Measured, Problem> {
+    fn measured(self, names: Vec<String>, index: usize) -> Result<Measured> {
         if self.values_per_point > 1 {
             let what = format!("a SUR object with {} values per point", self.values_per_point);
             return Err(Problem::unsupported(what, "export the surface alone from MountainsMap"));
@@ -229,7 +209,7 @@ impl<'a> Object<'a> {
 }
 
 /// The first `needed` bytes of the streams.
-fn unpack(streams: &[(&[u8], u32)], needed: u64) -> Result<Vec<u8>, Problem> {
+fn unpack(streams: &[(&[u8], u32)], needed: u64) -> Result<Vec<u8>> {
     const WHAT: &str = "the points of the SUR object";
     let packed: usize = streams.iter().map(|(stream, _)| stream.len()).sum();
     let most = most_unpacked(packed);

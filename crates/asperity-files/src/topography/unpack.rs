@@ -5,7 +5,7 @@ use std::io::{Cursor, Read};
 use flate2::read::MultiGzDecoder;
 use zip::ZipArchive;
 
-use super::Problem;
+use super::{Problem, Result};
 
 /// Largest number of bytes that `packed` bytes may unpack to.
 ///
@@ -16,12 +16,7 @@ pub(super) fn most_unpacked(packed: usize) -> u64 {
 }
 
 /// Reads `source` to its end, but refuses more than `most` bytes. `likely` is the length that the file states.
-pub(super) fn read_bounded(
-    source: impl Read,
-    most: u64,
-    likely: u64,
-    what: &str,
-) -> Result<Vec<u8>, Problem> {
+pub(super) fn read_bounded(source: impl Read, most: u64, likely: u64, what: &str) -> Result<Vec<u8>> {
     // The stated length may be wrong: the vector grows as the bytes come.
     let mut bytes = Vec::with_capacity(usize::try_from(likely.min(most)).unwrap_or(0));
     source.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| {
@@ -43,7 +38,7 @@ pub(super) fn is_gzip(bytes: &[u8]) -> bool {
 }
 
 /// The unpacked bytes, or `None` where they are not packed by gzip.
-pub(super) fn gunzip(bytes: &[u8]) -> Result<Option<Vec<u8>>, Problem> {
+pub(super) fn gunzip(bytes: &[u8]) -> Result<Option<Vec<u8>>> {
     if !is_gzip(bytes) {
         return Ok(None);
     }
@@ -74,7 +69,7 @@ pub(super) struct Archive<'a> {
 
 impl<'a> Archive<'a> {
     /// Opens the archive.
-    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, Problem> {
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self> {
         let zip = ZipArchive::new(Cursor::new(bytes))
             .map_err(|e| Problem::malformed("the zip archive", e, "a whole, undamaged archive"))?;
         Ok(Archive { zip, length: 8 * bytes.len() as u64, left: most_unpacked(bytes.len()) })
@@ -86,7 +81,7 @@ impl<'a> Archive<'a> {
     }
 
     /// Unpacks a member. All members together stay within the bound of the archive.
-    pub(super) fn member(&mut self, name: &str) -> Result<Vec<u8>, Problem> {
+    pub(super) fn member(&mut self, name: &str) -> Result<Vec<u8>> {
         let file = self.zip.by_name(name).map_err(|e| broken(name, e))?;
         let likely = file.size().min(file.compressed_size().saturating_mul(8)).min(self.length);
         let bytes = read_bounded(file, self.left, likely, &format!("member {name:?}"))?;
@@ -95,7 +90,7 @@ impl<'a> Archive<'a> {
     }
 
     /// The first bytes of a member.
-    pub(super) fn start(&mut self, name: &str, most: u64) -> Result<Vec<u8>, Problem> {
+    pub(super) fn start(&mut self, name: &str, most: u64) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let file = self.zip.by_name(name).map_err(|e| broken(name, e))?;
         file.take(most).read_to_end(&mut bytes).map_err(|e| broken(name, e))?;

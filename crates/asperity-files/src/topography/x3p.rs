@@ -12,7 +12,7 @@ use super::finish::{Lateral, Measured, Unit};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unpack::{Archive, holds_member};
-use super::{HISTORY, Problem, Reader, Request, write};
+use super::{HISTORY, Problem, Reader, Request, Result, write};
 use crate::xml::{Malformed, Piece, walk};
 
 pub(super) const X3P: Reader =
@@ -25,7 +25,7 @@ const DEEPEST: usize = 32;
 const MOST_ELEMENTS: usize = 10_000;
 
 /// Reads the layer asked for.
-fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let mut archive = Archive::open(bytes)?;
     let xml = archive.member("main.xml")?;
     let main = Main::parse(&xml)?;
@@ -79,7 +79,7 @@ struct Main {
 }
 
 impl Main {
-    fn parse(xml: &[u8]) -> Result<Self, Problem> {
+    fn parse(xml: &[u8]) -> Result<Self> {
         let mut main = Main { elements: Entries::new("main.xml"), data: Vec::new() };
         let mut path: Vec<String> = Vec::new();
         let mut content = String::new();
@@ -121,7 +121,7 @@ impl Main {
         all: usize,
         range: std::ops::Range<usize>,
         height: impl Fn(f64) -> f64 + Sync,
-    ) -> Result<Array2<f64>, Problem> {
+    ) -> Result<Array2<f64>> {
         let kind = match self.elements.get("Record1/Axes/CZ/DataType") {
             Some("I") => Kind::I16,
             Some("L") => Kind::I32,
@@ -150,7 +150,7 @@ impl Main {
 }
 
 /// Refuses profiles, point clouds and points that are not equally spaced.
-fn check(elements: &Entries, request: &Request) -> Result<(), Problem> {
+fn check(elements: &Entries, request: &Request) -> Result<()> {
     if let Some(kind @ ("PRF" | "PCL")) = elements.get("Record1/FeatureType") {
         return Err(request.no_heights(format!("its feature type is {kind}, not SUR")));
     }
@@ -185,7 +185,7 @@ fn split_history((key, value): (String, String)) -> Vec<(String, String)> {
 }
 
 /// A list entry: the height alone, or "x;y;height"; an empty one is undefined.
-fn datum(text: &str) -> Result<f64, Problem> {
+fn datum(text: &str) -> Result<f64> {
     let text = text.rsplit(';').next().unwrap_or_default().trim();
     if text.is_empty() {
         return Ok(f64::NAN);

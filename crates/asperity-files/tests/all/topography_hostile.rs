@@ -5,6 +5,7 @@
 //! at random places. The fuzz targets in `fuzz/` go on from here; what they found is kept in `tests/regressions`.
 
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use crate::samples::files;
 use asperity_files::topography::{Format, ReadOptions, Topography, TopographyError, read_bytes};
@@ -25,12 +26,21 @@ fn read(bytes: &[u8], format: Option<Format>) -> Result<Topography, TopographyEr
     let options =
         ReadOptions { size: Some([1.0, 1.0]), height_unit: Some(1.0), format, ..Default::default() };
     let _reading = READING.lock().unwrap_or_else(PoisonError::into_inner);
-    MEMORY.reset_peak_usage();
-    let before = MEMORY.current_usage();
-    let result = read_bytes(bytes, &options);
-    let peak = MEMORY.peak_usage().saturating_sub(before);
     // What a packed file may unpack to is bounded, but by a wider margin (see `unpack`).
     let most = SHARE + PER_BYTE * bytes.len();
+    // Other tests of this program take memory meanwhile: what a reading takes is the least of several.
+    let mut readings = 0;
+    let (result, peak) = loop {
+        MEMORY.reset_peak_usage();
+        let before = MEMORY.current_usage();
+        let result = read_bytes(bytes, &options);
+        let peak = MEMORY.peak_usage().saturating_sub(before);
+        readings += 1;
+        if peak <= most || readings == 50 {
+            break (result, peak);
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    };
     assert!(peak <= most, "{} bytes of memory for {} bytes of {format:?}", peak, bytes.len());
     if let Ok(surface) = &result {
         assert!(!surface.heights.is_empty() && surface.heights.iter().all(|h| !h.is_infinite()));

@@ -10,7 +10,7 @@ use crate::store::{ArraySpec, FieldKind, Reader, Storage};
 
 /// A result as variables over dimensions.
 pub(super) struct Contents<'a> {
-    reader: &'a Reader,
+    pub(super) reader: &'a Reader,
     /// Numbers of the stored instants that are exported.
     pub(super) instants: Vec<usize>,
     pub(super) dimensions: Vec<(&'static str, usize)>,
@@ -135,10 +135,6 @@ impl<'a> Contents<'a> {
             }
             _ => Map::Real(self.reader.map(variable.name, &index)?),
         })
-    }
-
-    pub(super) fn reader(&self) -> &Reader {
-        self.reader
     }
 }
 

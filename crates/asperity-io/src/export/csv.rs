@@ -120,7 +120,7 @@ fn matrix(
     heading: &str,
     cell: impl Fn(usize, usize) -> String,
 ) -> Result<()> {
-    let grid = &contents.reader().header().grid;
+    let grid = &contents.reader.header().grid;
     let [nx, ny] = grid.cells();
     if grid.is_line() {
         line(file, ["x [m]".to_owned(), heading.to_owned()].into_iter())?;

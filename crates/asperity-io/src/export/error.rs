@@ -27,12 +27,10 @@ pub enum ExportError {
         found: String,
     },
     /// The operating system refused to write.
-    #[error("cannot {action} {}: {source}", .path.display())]
+    #[error("cannot write {}: {source}", .path.display())]
     Io {
         /// The file or directory.
         path: PathBuf,
-        /// What was tried, as a verb.
-        action: &'static str,
         /// The system's answer.
         source: io::Error,
     },
@@ -66,7 +64,7 @@ pub type Result<T, E = ExportError> = std::result::Result<T, E>;
 /// An error of writing a file; its path is added later.
 impl From<io::Error> for ExportError {
     fn from(source: io::Error) -> Self {
-        ExportError::Io { path: PathBuf::new(), action: "write", source }
+        ExportError::Io { path: PathBuf::new(), source }
     }
 }
 
@@ -90,7 +88,7 @@ impl ExportError {
                     ErrorKind::IsADirectory | ErrorKind::InvalidInput if found.is_some() => {
                         ExportError::Foreign { path, found: found.unwrap_or_default().into() }
                     }
-                    _ => ExportError::Io { path, action: "write", source },
+                    _ => ExportError::Io { path, source },
                 }
             }
             other => other,

@@ -46,7 +46,7 @@ fn members(contents: &Contents<'_>, npz: &mut Npz<&mut Output<'_>>) -> Result<()
     }
     let units: serde_json::Map<_, _> =
         contents.variables.iter().map(|v| (v.name.to_owned(), json!(v.units))).collect();
-    let mut attributes = contents.reader().attributes();
+    let mut attributes = contents.reader.attributes();
     attributes.insert("units".into(), Value::Object(units));
     Ok(npz.text("attributes", &Value::Object(attributes).to_string())?)
 }

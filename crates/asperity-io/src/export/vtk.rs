@@ -74,7 +74,7 @@ fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output<'_>) -
     writeln!(file, r#"<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">"#)?;
     writeln!(file, "  <Collection>")?;
     let mut times: Vec<f64> =
-        contents.instants.iter().map(|index| contents.reader().field_times()[*index]).collect();
+        contents.instants.iter().map(|index| contents.reader.field_times()[*index]).collect();
     for n in (1..times.len()).rev() {
         if times[n - 1] == times[n] {
             times[n - 1] = times[n].next_down();
@@ -88,7 +88,7 @@ fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output<'_>) -
 }
 
 fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize) -> Result<()> {
-    let grid = &contents.reader().header().grid;
+    let grid = &contents.reader.header().grid;
     let ([nx, ny], [dx, dy]) = (grid.cells(), grid.spacing());
     // A line of cells has no extent along y.
     let (my, dy) = if grid.is_line() { (0, dx) } else { (ny, dy) };

@@ -1,7 +1,7 @@
 //! The cells of a sheet. A file of a few bytes may claim any number of them at any place, so their number is bounded.
 
 use super::Rows;
-use crate::curve::error::{Fault, fault};
+use crate::curve::error::{Result, fault};
 
 /// Most cells of all sheets, empty ones between others included.
 pub(super) const MOST_CELLS: usize = 4_000_000;
@@ -17,7 +17,7 @@ pub(super) struct Cells {
 
 impl Cells {
     /// Adds the cell of a row and a column, from 0; those without text are left out.
-    pub(super) fn push(&mut self, row: u32, column: u32, text: &str) -> Result<(), Fault> {
+    pub(super) fn push(&mut self, row: u32, column: u32, text: &str) -> Result<()> {
         let text = text.trim();
         if text.is_empty() {
             return Ok(());
@@ -37,7 +37,7 @@ impl Cells {
 
     /// The rows from the first of the sheet, with the columns from the first that holds anything; of the number of cells
     /// that is left for all sheets.
-    pub(super) fn rows(self, left: &mut usize) -> Result<Rows, Fault> {
+    pub(super) fn rows(self, left: &mut usize) -> Result<Rows> {
         let Some(first) = self.found.iter().map(|(_, column, _)| *column).min() else {
             return Ok(Rows::new());
         };

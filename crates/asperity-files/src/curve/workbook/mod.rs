@@ -7,7 +7,7 @@ mod xlsx;
 use self::cells::{Cells, MOST_CELLS};
 use self::xls::Excel;
 use self::xlsx::OfficeOpen;
-use super::error::{Fault, Remedy, fault};
+use super::error::{CurveError, Remedy, Result, fault};
 use super::table::{Table, doubtful, is_grouped};
 use super::wide;
 use crate::topography::compound::is_compound;
@@ -19,7 +19,7 @@ pub(super) struct Sheet {
     /// Its cells by rows, in a spreadsheet.
     pub cells: Vec<Vec<String>>,
     /// The table in it, or why there is none.
-    pub table: Result<Table, Fault>,
+    pub table: Result<Table>,
 }
 
 /// A sheet by name.
@@ -34,7 +34,7 @@ trait Book {
     /// Its sheets, in order.
     fn sheets(&self) -> Vec<Named>;
     /// The cells of the sheet of this name.
-    fn cells(&mut self, name: &str) -> Result<Cells, Fault>;
+    fn cells(&mut self, name: &str) -> Result<Cells>;
 }
 
 /// Larger spreadsheets are no curves.
@@ -43,18 +43,18 @@ const MOST_SHEETS: usize = 100;
 /// Characters of a text that are kept: longer ones are no names or numbers, and many cells may share one.
 const MOST_CHARACTERS: usize = 1000;
 
-impl From<crate::xml::Malformed> for Fault {
-    fn from(_: crate::xml::Malformed) -> Fault {
+impl From<crate::xml::Malformed> for CurveError {
+    fn from(_: crate::xml::Malformed) -> CurveError {
         damaged()
     }
 }
 
-fn damaged() -> Fault {
+fn damaged() -> CurveError {
     fault("the spreadsheet is damaged; save it again or as text (csv)")
 }
 
 /// The tables of a file: the one of a text file; of a spreadsheet those of all sheets, or of the `wanted` one.
-pub(super) fn sheets(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Sheet>, Fault> {
+pub(super) fn sheets(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Sheet>> {
     if !is_workbook(bytes) {
         if let Some(name) = wanted {
             return Err(fault(format!("the file is no spreadsheet, and has no sheet \"{name}\"")));
@@ -81,25 +81,28 @@ fn is_workbook(bytes: &[u8]) -> bool {
 
 type Rows = Vec<Vec<String>>;
 
-fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>, Fault> {
+fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>> {
     let mut book: Box<dyn Book + '_> = match is_compound(bytes) {
         true => Box::new(Excel::open(bytes)?),
         false => Box::new(OfficeOpen::open(bytes)?),
     };
     // Hidden sheets come last.
-    let mut listed = book.sheets();
-    listed.sort_by_key(|sheet| sheet.hidden);
-    let names: Vec<String> = listed.into_iter().map(|sheet| sheet.name).collect();
-    let listed =
-        || names.iter().take(20).map(|name| format!("\"{name}\"")).collect::<Vec<String>>().join(", ");
+    let mut sheets = book.sheets();
+    sheets.sort_by_key(|sheet| sheet.hidden);
+    let names: Vec<String> = sheets.into_iter().map(|sheet| sheet.name).collect();
     if let Some(name) = wanted
         && !names.iter().any(|known| known == name)
     {
-        return Err(fault(format!("there is no sheet \"{name}\"")).remedy(Remedy::Sheet(listed())));
+        return Err(fault(format!("there is no sheet \"{name}\"")).remedy(Remedy::Sheet(listed(&names))));
     }
     let wanted = names.iter().filter(|name| wanted.is_none_or(|wanted| wanted == *name));
     let mut left = MOST_CELLS;
     wanted.take(MOST_SHEETS).map(|name| Ok((name.clone(), book.cells(name)?.rows(&mut left)?))).collect()
+}
+
+/// Names of sheets, for messages.
+pub(super) fn listed(names: &[String]) -> String {
+    names.iter().take(20).map(|name| format!("\"{name}\"")).collect::<Vec<String>>().join(", ")
 }
 
 /// A number that was entered as text with a decimal comma, with a point.
@@ -117,7 +120,7 @@ fn thousands(cells: &Rows) -> Option<&str> {
     commas.all(|cell| is_grouped(cell)).then_some(first)
 }
 
-fn table(cells: &Rows) -> Result<Table, Fault> {
+fn table(cells: &Rows) -> Result<Table> {
     if let Some(cell) = thousands(cells) {
         return Err(doubtful(cell));
     }

@@ -4,7 +4,7 @@
 
 use super::cells::Cells;
 use super::{Book, MOST_CHARACTERS, Named, damaged};
-use crate::curve::error::{Fault, fault};
+use crate::curve::error::{CurveError, Result, fault};
 use crate::topography::compound;
 
 /// Kinds of records (\[MS-XLS\] 2.3).
@@ -35,7 +35,7 @@ pub(super) struct Excel {
 }
 
 impl Excel {
-    pub(super) fn open(bytes: &[u8]) -> Result<Self, Fault> {
+    pub(super) fn open(bytes: &[u8]) -> Result<Self> {
         let stream_of = |name| {
             compound::stream(bytes, name)
                 .map_err(|error| fault(format!("cannot be read as a spreadsheet (.xls): {error}")))
@@ -79,7 +79,7 @@ impl Book for Excel {
         self.sheets.iter().map(|(named, _)| named.clone()).collect()
     }
 
-    fn cells(&mut self, name: &str) -> Result<Cells, Fault> {
+    fn cells(&mut self, name: &str) -> Result<Cells> {
         let start = self.sheets.iter().find(|(named, _)| named.name == name).map(|(_, start)| *start);
         let stream = start.and_then(|start| self.stream.get(start..)).ok_or_else(damaged)?;
         let mut cells = Cells::default();
@@ -99,7 +99,7 @@ impl Book for Excel {
             if depth > 1 {
                 continue;
             }
-            let at = || Ok::<_, Fault>((u32::from(two(data, 0)?), u32::from(two(data, 2)?)));
+            let at = || Ok::<_, CurveError>((u32::from(two(data, 0)?), u32::from(two(data, 2)?)));
             let mut number = |(row, column), value: f64| cells.push(row, column, &format!("{value:?}"));
             match kind {
                 kind::NUMBER => number(at()?, f64::from_le_bytes(array(data, 6)?))?,
@@ -152,7 +152,7 @@ enum Version {
 }
 
 impl Version {
-    fn of(number: u16) -> Result<Version, Fault> {
+    fn of(number: u16) -> Result<Version> {
         match number {
             0x0500 => Ok(Version::Five),
             0x0600 => Ok(Version::Eight),
@@ -161,7 +161,7 @@ impl Version {
     }
 
     /// The text of so many characters.
-    fn text(self, data: &[u8], at: usize, length: usize) -> Result<String, Fault> {
+    fn text(self, data: &[u8], at: usize, length: usize) -> Result<String> {
         match self {
             Version::Five => Ok(text(part(data, at, length)?, false)),
             Version::Eight => {
@@ -172,12 +172,12 @@ impl Version {
     }
 
     /// A text after the two bytes of its length.
-    fn counted(self, data: &[u8], at: usize) -> Result<String, Fault> {
+    fn counted(self, data: &[u8], at: usize) -> Result<String> {
         self.text(data, at + 2, usize::from(two(data, at)?))
     }
 }
 
-fn other() -> Fault {
+fn other() -> CurveError {
     fault("is no spreadsheet of Excel 5 to 2003 (.xls); save it again as .xlsx or text (csv)")
 }
 
@@ -191,15 +191,15 @@ fn records(mut stream: &[u8]) -> impl Iterator<Item = (u16, &[u8])> {
     })
 }
 
-fn part(data: &[u8], at: usize, length: usize) -> Result<&[u8], Fault> {
+fn part(data: &[u8], at: usize, length: usize) -> Result<&[u8]> {
     data.get(at..).and_then(|rest| rest.get(..length)).ok_or_else(damaged)
 }
 
-fn array<const N: usize>(data: &[u8], at: usize) -> Result<[u8; N], Fault> {
+fn array<const N: usize>(data: &[u8], at: usize) -> Result<[u8; N]> {
     part(data, at, N)?.try_into().map_err(|_| damaged())
 }
 
-fn two(data: &[u8], at: usize) -> Result<u16, Fault> {
+fn two(data: &[u8], at: usize) -> Result<u16> {
     Ok(u16::from_le_bytes(array(data, at)?))
 }
 
@@ -218,12 +218,8 @@ fn text(bytes: &[u8], wide: bool) -> String {
     match wide {
         false => bytes.iter().take(MOST_CHARACTERS).map(|byte| char::from(*byte)).collect(),
         true => {
-            let units: Vec<u16> = bytes
-                .chunks_exact(2)
-                .take(MOST_CHARACTERS)
-                .map(|two| u16::from_le_bytes([two[0], two[1]]))
-                .collect();
-            String::from_utf16_lossy(&units)
+            let units = bytes.as_chunks().0.iter().take(MOST_CHARACTERS).map(|two| u16::from_le_bytes(*two));
+            String::from_utf16_lossy(&units.collect::<Vec<u16>>())
         }
     }
 }
@@ -236,7 +232,7 @@ struct Strings<'a> {
 }
 
 impl<'a> Strings<'a> {
-    fn read(mut self) -> Result<Vec<String>, Fault> {
+    fn read(mut self) -> Result<Vec<String>> {
         self.parts.reverse();
         let mut strings = Vec::new();
         while self.rest().is_some() {
@@ -257,14 +253,14 @@ impl<'a> Strings<'a> {
         None
     }
 
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N]> {
         let bytes = array(self.rest().unwrap_or_default(), 0)?;
         self.at += N;
         Ok(bytes)
     }
 
     /// A text with its formats (four bytes each) and phonetic signs (\[MS-XLS\] 2.5.293).
-    fn one(&mut self) -> Result<String, Fault> {
+    fn one(&mut self) -> Result<String> {
         let mut left = usize::from(u16::from_le_bytes(self.take()?));
         let [flags] = self.take()?;
         let formats = if flags & 8 == 0 { 0 } else { 4 * usize::from(u16::from_le_bytes(self.take()?)) };
@@ -290,7 +286,7 @@ impl<'a> Strings<'a> {
         Ok(found)
     }
 
-    fn skip(&mut self, mut bytes: usize) -> Result<(), Fault> {
+    fn skip(&mut self, mut bytes: usize) -> Result<()> {
         while bytes > 0 {
             let step = self.rest().ok_or_else(damaged)?.len().min(bytes);
             (bytes, self.at) = (bytes - step, self.at + step);
@@ -331,7 +327,7 @@ mod tests {
         file.into_inner().into_inner()
     }
 
-    fn rows(bytes: &[u8]) -> Result<super::super::Rows, Fault> {
+    fn rows(bytes: &[u8]) -> Result<super::super::Rows, CurveError> {
         let mut book = Excel::open(bytes)?;
         assert!(book.sheets()[0].name == "S" && book.sheets()[0].hidden);
         book.cells("S")?.rows(&mut 1000)

@@ -10,7 +10,7 @@ use zip::ZipArchive;
 
 use super::cells::Cells;
 use super::{Book, MOST_CHARACTERS, Named, damaged};
-use crate::curve::error::{Fault, fault};
+use crate::curve::error::{Result, fault};
 use crate::xml::{self, Piece};
 
 /// Most bytes that are unpacked: far above what a table of measurements needs.
@@ -26,7 +26,7 @@ pub(super) struct OfficeOpen<'a> {
 }
 
 impl<'a> OfficeOpen<'a> {
-    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, Fault> {
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self> {
         let zip = ZipArchive::new(Cursor::new(bytes)).map_err(|_| damaged())?;
         let mut parts = Parts { zip, left: MOST_UNPACKED };
         let root = parts.relations("_rels/.rels", "")?;
@@ -65,7 +65,7 @@ impl Book for OfficeOpen<'_> {
         self.sheets.iter().map(|(named, _)| named.clone()).collect()
     }
 
-    fn cells(&mut self, name: &str) -> Result<Cells, Fault> {
+    fn cells(&mut self, name: &str) -> Result<Cells> {
         let path = self.sheets.iter().find(|(named, _)| named.name == name).map(|(_, path)| path);
         // A sheet of a chart has no cells.
         let xml = self.parts.text(path.ok_or_else(damaged)?)?.unwrap_or_default();
@@ -116,7 +116,7 @@ impl Book for OfficeOpen<'_> {
 }
 
 /// Row and column, from 1, of a reference such as "AB12".
-fn place(reference: &str) -> Result<(u32, u32), Fault> {
+fn place(reference: &str) -> Result<(u32, u32)> {
     let digits = reference.find(|c: char| c.is_ascii_digit()).ok_or_else(damaged)?;
     let (letters, digits) = reference.split_at(digits);
     let row = digits.parse().map_err(|_| damaged())?;
@@ -128,7 +128,7 @@ fn place(reference: &str) -> Result<(u32, u32), Fault> {
 }
 
 /// The shared texts, without the phonetic signs beside them.
-fn strings(xml: &str) -> Result<Vec<String>, Fault> {
+fn strings(xml: &str) -> Result<Vec<String>> {
     let (mut found, mut content) = (Vec::new(), Content::default());
     walk(xml, |piece| {
         match piece {
@@ -181,7 +181,7 @@ struct Parts<'a> {
 
 impl Parts<'_> {
     /// The text of a part, or `None` where there is no such part.
-    fn text(&mut self, path: &str) -> Result<Option<String>, Fault> {
+    fn text(&mut self, path: &str) -> Result<Option<String>> {
         let Ok(member) = self.zip.by_name(path) else { return Ok(None) };
         let mut bytes = Vec::new();
         member.take(self.left + 1).read_to_end(&mut bytes).map_err(|_| damaged())?;
@@ -195,7 +195,7 @@ impl Parts<'_> {
     }
 
     /// The relations in the part `path`, whose targets are below `folder`.
-    fn relations(&mut self, path: &str, folder: &str) -> Result<Vec<Relation>, Fault> {
+    fn relations(&mut self, path: &str, folder: &str) -> Result<Vec<Relation>> {
         let xml = self.text(path.trim_start_matches('/'))?.unwrap_or_default();
         let mut found = Vec::new();
         walk(&xml, |piece| {
@@ -216,15 +216,12 @@ impl Parts<'_> {
 }
 
 /// Calls `on` for each piece of a part.
-fn walk(part: &str, on: impl FnMut(Piece<'_>) -> Result<(), Fault>) -> Result<(), Fault> {
+fn walk(part: &str, on: impl FnMut(Piece<'_>) -> Result<()>) -> Result<()> {
     xml::walk(part, on)
 }
 
 /// The attributes of these names, without their namespace.
-fn attributes<const N: usize>(
-    element: &BytesStart<'_>,
-    names: [&str; N],
-) -> Result<[Option<String>; N], Fault> {
+fn attributes<const N: usize>(element: &BytesStart<'_>, names: [&str; N]) -> Result<[Option<String>; N]> {
     let mut found = [const { None }; N];
     for attribute in element.attributes().with_checks(false) {
         let attribute = attribute.map_err(|_| damaged())?;

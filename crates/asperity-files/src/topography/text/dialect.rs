@@ -2,7 +2,7 @@
 
 use memchr::memchr;
 
-use crate::topography::Problem;
+use crate::topography::{Problem, Result};
 
 /// The separator between two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,7 @@ impl Dialect {
     ///
     /// # Errors
     /// Where two dialects do, or none.
-    pub(super) fn of<'a>(blocks: impl Iterator<Item = &'a [u8]> + Clone) -> Result<Self, Problem> {
+    pub(super) fn of<'a>(blocks: impl Iterator<Item = &'a [u8]> + Clone) -> Result<Self> {
         let has = |byte| blocks.clone().any(|b| memchr(byte, b).is_some());
         let mixed = |value: &str| {
             Problem::malformed(

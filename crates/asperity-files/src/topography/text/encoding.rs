@@ -22,7 +22,7 @@ pub(super) fn utf8(bytes: &[u8]) -> Option<Cow<'_, [u8]>> {
 }
 
 /// A line or part of it as text: UTF-8, else Latin-1.
-pub(super) fn label(bytes: &[u8]) -> String {
+pub(in crate::topography) fn label(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
         Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),

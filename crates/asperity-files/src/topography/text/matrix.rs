@@ -3,13 +3,13 @@
 use super::parse::table;
 use super::{Block, Text, decode};
 use crate::topography::finish::{Measured, Unit};
-use crate::topography::{Problem, Request, grid};
+use crate::topography::{Problem, Request, Result, grid};
 
 /// Reads the channel asked for. Each block of numbers is a channel; blocks that are not lengths are left out if there are others.
 ///
 /// Two columns are a profile (position, height) rather than an area, unless the header or the caller says that they
 /// are a matrix.
-pub(super) fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+pub(super) fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let bytes = decode(bytes)?;
     let text = Text::split(&bytes)?;
     let unit = |block: &&Block| block.header.scales([1, 1]).2;

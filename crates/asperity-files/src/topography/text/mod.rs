@@ -20,8 +20,9 @@ use memchr::memchr;
 use dialect::{Dialect, Separator};
 use header::Header;
 
-use super::{Format, Problem, Reader, write};
+use super::{Format, Problem, Reader, Result, write};
 
+pub(super) use encoding::label;
 pub(crate) use header::leading_number;
 pub(super) use parse::numbers;
 pub(super) use profile::{is_profile, read_columns};
@@ -73,9 +74,7 @@ pub(crate) fn is_numbers(line: &str) -> bool {
 ///
 /// # Errors
 /// Where the lines make sense in two ways, or in none.
-pub(crate) fn dialect<'a>(
-    lines: impl Iterator<Item = &'a str> + Clone,
-) -> Result<(Option<char>, bool), Problem> {
+pub(crate) fn dialect<'a>(lines: impl Iterator<Item = &'a str> + Clone) -> Result<(Option<char>, bool)> {
     let dialect = Dialect::of(lines.map(str::as_bytes))?;
     let separator = match dialect.separator {
         Separator::Blank => None,
@@ -109,14 +108,14 @@ fn detect(bytes: &[u8]) -> Option<Format> {
 }
 
 /// The bytes as UTF-8 (or as an 8-bit code, which only concerns the header).
-fn decode(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Problem> {
+fn decode(bytes: &[u8]) -> Result<Cow<'_, [u8]>> {
     encoding::utf8(bytes).ok_or_else(|| {
         Problem::malformed("the file", "binary", "text; omit the format to have it detected from the content")
     })
 }
 
 impl<'a> Text<'a> {
-    fn split(bytes: &'a [u8]) -> Result<Self, Problem> {
+    fn split(bytes: &'a [u8]) -> Result<Self> {
         let mut blocks: Vec<Block> = Vec::new();
         let mut header = Header::default();
         let (mut metadata, mut header_lines) = (Vec::new(), 0);

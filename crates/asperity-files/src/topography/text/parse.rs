@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::dialect::{Dialect, Separator, is_undefined};
 use super::{Block, encoding};
-use crate::topography::Problem;
+use crate::topography::{Problem, Result};
 
 /// The numbers of a block in runs of whole lines.
 pub(super) struct Table {
@@ -41,23 +41,18 @@ pub(super) fn columns(dialect: Dialect, data: &[u8]) -> usize {
 }
 
 /// Parses the block: lines of equally many numbers.
-pub(super) fn table(dialect: Dialect, block: &Block) -> Result<Table, Problem> {
+pub(super) fn table(dialect: Dialect, block: &Block) -> Result<Table> {
     let columns = columns(dialect, block.data);
     Ok(Table { columns, runs: parse(dialect, Some(columns), block.data, block.line)? })
 }
 
 /// The numbers of lines of any length, separated by blanks, from this line of the file on.
-pub(crate) fn numbers(data: &[u8], first_line: usize) -> Result<Vec<f64>, Problem> {
+pub(crate) fn numbers(data: &[u8], first_line: usize) -> Result<Vec<f64>> {
     let dialect = Dialect { separator: Separator::Blank, decimal_comma: false };
     Ok(parse(dialect, None, data, first_line)?.concat())
 }
 
-fn parse(
-    dialect: Dialect,
-    columns: Option<usize>,
-    data: &[u8],
-    first_line: usize,
-) -> Result<Vec<Vec<f64>>, Problem> {
+fn parse(dialect: Dialect, columns: Option<usize>, data: &[u8], first_line: usize) -> Result<Vec<Vec<f64>>> {
     let runs = runs(data);
     let parsed: Vec<_> = match runs.as_slice() {
         [run] => vec![parse_run(dialect, columns, run)],

@@ -4,7 +4,7 @@ use super::parse::{columns, table};
 use super::{Block, Text, decode, encoding};
 use crate::topography::finish::Unit;
 use crate::topography::unit::{LoneA, metres};
-use crate::topography::{Format, Problem};
+use crate::topography::{Format, Problem, Result};
 
 /// What the columns hold.
 pub(crate) struct Columns {
@@ -29,7 +29,7 @@ pub(crate) fn is_profile(bytes: &[u8]) -> bool {
 }
 
 /// Reads the column or the two columns.
-pub(crate) fn read_columns(bytes: &[u8]) -> Result<Columns, Problem> {
+pub(crate) fn read_columns(bytes: &[u8]) -> Result<Columns> {
     let bytes = decode(bytes)?;
     let text = Text::split(&bytes)?;
     let Some(block) = longest(&text) else {

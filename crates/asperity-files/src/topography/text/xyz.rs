@@ -11,7 +11,7 @@ use super::parse::{Table, table};
 use super::{Text, decode};
 use crate::topography::finish::{Lateral, Measured, unit_of};
 use crate::topography::unit::LoneA;
-use crate::topography::{Format, Problem, Request, grid};
+use crate::topography::{Format, Problem, Request, Result, grid};
 
 /// Most grid points per point of the file: a file that covers less is no grid.
 const MOST_CELLS_PER_POINT: usize = 8;
@@ -35,7 +35,7 @@ pub(super) fn named_columns(columns: &[Column]) -> Option<[usize; 2]> {
 }
 
 /// Reads points.
-pub(super) fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+pub(super) fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let bytes = decode(bytes)?;
     let text = Text::split(&bytes)?;
     let block = match text.blocks.as_slice() {
@@ -93,7 +93,7 @@ impl Axis {
         ((coordinate - self.first) / self.spacing).round() as usize
     }
 
-    fn of(table: &Table, column: usize, name: &str) -> Result<Self, Problem> {
+    fn of(table: &Table, column: usize, name: &str) -> Result<Self> {
         let mut sorted: Vec<f64> = table.lines().map(|point| point[column]).collect();
         if sorted.iter().any(|v| v.is_nan()) {
             let expected = format!("a number; {HINT}");
@@ -150,7 +150,7 @@ fn gridded(
     x_axis: &Axis,
     y_axis: &Axis,
     first_line: usize,
-) -> Result<Array2<f64>, Problem> {
+) -> Result<Array2<f64>> {
     let cells = grid::points(x_axis.points as u64, y_axis.points as u64)?;
     if cells > MOST_CELLS_PER_POINT * table.len() {
         return Err(irregular("x and y"));

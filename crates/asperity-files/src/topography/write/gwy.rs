@@ -1,9 +1,9 @@
 //! Gwyddion GWY: one channel in metres. Gwyddion knows no undefined heights: masked points have the mean height.
 
 use super::title;
-use crate::topography::{HISTORY, Problem, Topography};
+use crate::topography::{HISTORY, Problem, Result, Topography};
 
-pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>> {
     let (nx, ny) = topography.heights.dim();
     let too_large = || Problem::unsupported(format!("a GWY file of {nx} x {ny} points"), "write NPZ instead");
     let container = container(topography).ok_or_else(too_large)?;

@@ -19,7 +19,7 @@ use crate::output;
 
 use super::finish::is_positive;
 use super::format::list;
-use super::{Format, Problem, Topography, TopographyError};
+use super::{Format, Problem, Result, Topography, TopographyError};
 
 /// Writes a topography into a file; an existing one is replaced. It appears whole or not at all.
 ///
@@ -53,7 +53,7 @@ pub fn to_bytes(topography: &Topography, format: Format) -> Result<Vec<u8>, Topo
     Ok(encode(topography, format)?)
 }
 
-fn encode(topography: &Topography, format: Format) -> Result<Vec<u8>, Problem> {
+fn encode(topography: &Topography, format: Format) -> Result<Vec<u8>> {
     let (nx, ny) = topography.heights.dim();
     super::grid::points(nx as u64, ny as u64)?;
     let [lx, ly] = topography.size;

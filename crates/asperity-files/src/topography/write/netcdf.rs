@@ -2,9 +2,9 @@
 //! the coordinates `x` and `y` with the attributes `length`, `periodic` and `unit`, and a `mask` of undefined points.
 
 use crate::classic::{Attribute, Type, Variable, header};
-use crate::topography::{Problem, Topography};
+use crate::topography::{Problem, Result, Topography};
 
-pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>> {
     let ([lx, ly], heights) = (topography.size, &topography.heights);
     let (nx, ny) = heights.dim();
     if [nx, ny].iter().any(|n| *n >= 1 << 31) {

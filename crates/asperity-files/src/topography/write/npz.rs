@@ -4,9 +4,9 @@
 use std::io::Cursor;
 
 use crate::npz::Npz;
-use crate::topography::{Problem, Topography};
+use crate::topography::{Result, Topography};
 
-pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>> {
     let (nx, ny) = topography.heights.dim();
     let mut npz = Npz::new(Cursor::new(Vec::with_capacity(8 * nx * ny + 1024)));
     npz.reals("heights", &[nx, ny], &topography.heights)?;

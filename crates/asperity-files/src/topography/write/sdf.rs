@@ -3,9 +3,9 @@
 //! Version 1.0 counts up to 65535 points along x and y, version 2.0 up to 2^32 - 1.
 
 use super::lines;
-use crate::topography::{Problem, Topography};
+use crate::topography::{Problem, Result, Topography};
 
-pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>> {
     let (nx, ny) = topography.heights.dim();
     let [lx, ly] = topography.size;
     let narrow = u16::try_from(nx).ok().zip(u16::try_from(ny).ok());

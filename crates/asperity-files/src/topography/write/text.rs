@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::title;
-use crate::topography::{Problem, Topography};
+use crate::topography::{Result, Topography};
 
 /// The shortest decimal numbers that give the same heights back.
-pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>> {
     let [lx, ly] = topography.size;
     // A line break in the name would end the line.
     let title = title(topography).replace(['\n', '\r'], " ");

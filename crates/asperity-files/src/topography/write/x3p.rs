@@ -9,11 +9,11 @@ use zip::write::SimpleFileOptions;
 
 use super::{lines, title};
 use crate::digest::md5;
-use crate::topography::{Format, HISTORY, Problem, Topography};
+use crate::topography::{Format, HISTORY, Problem, Result, Topography};
 
 const DATA: &str = "bindata/data.bin";
 
-pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>> {
     let data = lines(topography);
     let xml = main(topography, &md5(&data));
     let checksums = format!("{} *main.xml\n", md5(xml.as_bytes()));

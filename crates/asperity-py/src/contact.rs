@@ -11,12 +11,12 @@ use asperity::quantities::ContactStiffness;
 use asperity::step::Row;
 use asperity::{Boundary, Control, Drive, Simulation, Solver};
 use ndarray::{Array2, ArrayView2};
-use numpy::{IntoPyArray, PyReadonlyArray2};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, ConvergenceError, raised};
-use crate::given::{choose, grid_of, memory};
+use crate::error::{Answer, Failure};
+use crate::given::{Dict, Plane, choose, grid_of, memory};
 use crate::kernel::Table;
 use crate::march::fill;
 use crate::trace::{Iteration, traced};
@@ -51,29 +51,28 @@ struct Solution {
 impl Elastic {
     #[new]
     #[pyo3(signature = (*, gap, size, contact_modulus, hardness, hardness_map, boundary, method, tolerance, max_iterations, kernel))]
-    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
-        gap: PyReadonlyArray2<'_, f64>,
+        gap: Plane<'_>,
         size: Vec<f64>,
         contact_modulus: f64,
         hardness: f64,
-        hardness_map: Option<PyReadonlyArray2<'_, f64>>,
+        hardness_map: Option<Plane<'_>>,
         boundary: &str,
         method: &str,
         tolerance: f64,
         max_iterations: usize,
-        kernel: Option<PyReadonlyArray2<'_, f64>>,
-    ) -> PyResult<Elastic> {
+        kernel: Option<Plane<'_>>,
+    ) -> Answer<Elastic> {
         let gap = gap.as_array().as_standard_layout().into_owned();
-        let grid = grid_of(py, gap.dim(), &size)?;
+        let grid = grid_of(gap.dim(), &size)?;
         let boundary: Boundary = choose("boundary", boundary)?;
         if grid.is_line() && boundary == Boundary::Free && grid.len() < 2 {
-            return Err(CaseError::new_err(FREE_LINE));
+            return Err(Failure::case(FREE_LINE));
         }
         if !(contact_modulus.is_finite() && contact_modulus > 0.0) {
             let expected = "finite and greater than 0 Pa";
-            return Err(CaseError::new_err(format!(
+            return Err(Failure::case(format!(
                 "contact modulus is {contact_modulus}, but must be {expected}"
             )));
         }
@@ -81,7 +80,7 @@ impl Elastic {
         let options =
             asperity::SolverOptions { method: choose("method", method)?, tolerance, max_iterations };
         let kernel = kernel.map(|values| Table::new(grid, boundary, values.as_array().to_owned()));
-        let kernel = kernel.transpose().map_err(|error| raised(py, error))?;
+        let kernel = kernel.transpose()?;
         let half_space = kernel.is_none();
         let kernel: Arc<dyn Kernel> = match kernel {
             None => Arc::new(HalfSpace),
@@ -90,7 +89,7 @@ impl Elastic {
         let bytes =
             asperity::operator::bytes(&grid, boundary) + Solver::bytes(options.method, &grid, boundary);
         memory(&grid, bytes)?;
-        let planned = without_python(py, &AtomicBool::new(false), || {
+        let planned = without_python(py, &AtomicBool::new(false), || -> asperity::Result<_> {
             let creep = Creep::elastic(1.0 / contact_modulus);
             let simulation = Simulation {
                 boundary,
@@ -103,30 +102,29 @@ impl Elastic {
             };
             Ok(Planned { contacts: Contacts::new(simulation, [])?, half_space, stiffness: None })
         })?;
-        let planned = Mutex::new(planned.map_err(|error| raised(py, error))?);
+        let planned = Mutex::new(planned?);
         let is_free_line = grid.is_line() && boundary == Boundary::Free;
         Ok(Elastic { planned, shape: grid.shape(), is_free_line })
     }
 
     /// The contact under a load \[N\] or an approach \[m\], starting from a pressure; the numbers of its row by their names, and the
     /// fields; with `history` its iterations.
-    #[pyo3(signature = (control, value, start, history))]
     fn solve<'py>(
         &self,
         py: Python<'py>,
         control: &str,
         value: f64,
-        start: Option<PyReadonlyArray2<'_, f64>>,
+        start: Option<Plane<'_>>,
         history: bool,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> Answer<Dict<'py>> {
         let start: Option<Vec<f64>> = start.map(|pressure| pressure.as_array().iter().copied().collect());
         let control = choose("control", control)?;
         if control == Control::Approach && self.is_free_line {
-            return Err(CaseError::new_err(FREE_LINE));
+            return Err(Failure::case(FREE_LINE));
         }
         let shape = self.shape;
         if start.as_ref().is_some_and(|start| start.len() != shape.0 * shape.1) {
-            return Err(CaseError::new_err(format!("the start needs a pressure of shape {shape:?}")));
+            return Err(Failure::case(format!("the start needs a pressure of shape {shape:?}")));
         }
         let interrupt = Arc::new(AtomicBool::new(false));
         let solved = without_python(py, &interrupt, || {
@@ -137,11 +135,7 @@ impl Elastic {
             Ok(solution) => solution,
             Err(failed) => {
                 let (error, best) = *failed;
-                let raised = raised(py, error);
-                if raised.is_instance_of::<ConvergenceError>(py) {
-                    raised.value(py).setattr("best", best.into_pyarray(py))?;
-                }
-                return Err(raised);
+                return Err(Failure::from(error).with_best(py, || Ok(best.into_pyarray(py).into_any())));
             }
         };
         let out = PyDict::new(py);
@@ -155,13 +149,13 @@ impl Elastic {
     }
 
     /// dW/dw \[N/m\] of the contact that has this pressure.
-    fn stiffness(&self, py: Python<'_>, pressure: PyReadonlyArray2<'_, f64>) -> PyResult<f64> {
+    fn stiffness(&self, py: Python<'_>, pressure: Plane<'_>) -> Answer<f64> {
         let pressure: Vec<f64> = pressure.as_array().iter().copied().collect();
         let interrupt = AtomicBool::new(false);
         let found = without_python(py, &interrupt, || {
             self.planned.lock().unwrap_or_else(PoisonError::into_inner).stiffness(&pressure, &interrupt)
         })?;
-        found.map_err(|error| raised(py, error))
+        Ok(found?)
     }
 }
 
@@ -238,9 +232,9 @@ fn judged(simulation: &Simulation, control: Control, row: &Row, pressure: ArrayV
 #[pyfunction]
 pub fn spot_labels<'py>(
     py: Python<'py>,
-    pressure: PyReadonlyArray2<'_, f64>,
+    pressure: Plane<'_>,
     boundary: &str,
-) -> PyResult<Bound<'py, numpy::PyArray2<u32>>> {
+) -> Answer<Bound<'py, numpy::PyArray2<u32>>> {
     let boundary = choose("boundary", boundary)?;
     let pressure = pressure.as_array();
     let labels = crate::wait::detached(py, || asperity::spots::labels(boundary, pressure, |p| *p > 0.0))?;

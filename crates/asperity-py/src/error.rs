@@ -4,7 +4,11 @@ use std::path::Path;
 
 use asperity::Error;
 use asperity_io::case::CaseErrors;
+use asperity_io::curve::{CurveError, Remedy};
+use asperity_io::leakage::LeakError;
 use asperity_io::session::RunError;
+use asperity_io::store::StoreError;
+use asperity_io::stress::StressError;
 use asperity_io::topography::{Problem, TopographyError};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
@@ -31,42 +35,136 @@ create_exception!(
     "The file belongs to a format that is not read; the message names it and says what to do."
 );
 
-/// An error of the numerics.
-pub fn raised(py: Python<'_>, error: Error) -> PyErr {
-    match &error {
-        Error::Interrupted => PyKeyboardInterrupt::new_err(()),
-        Error::NotConverged(stopped) => {
-            let raised = ConvergenceError::new_err(error.to_string());
-            let value = raised.value(py);
-            // Setting attributes of an exception that was just made cannot fail.
-            let _ = value.setattr("residual", stopped.residual);
-            let _ = value.setattr("tolerance", stopped.tolerance);
-            let _ = value.setattr("certificate", stopped.certificate);
-            let _ = value.setattr("iterations", stopped.iterations);
-            let _ = value.setattr("time", stopped.time);
-            let _ = value.setattr("best", py.None());
-            raised
+/// An error on its way to Python: the exception that suits it. `?` makes it of the errors of the library; those of
+/// keys that Python gave go through [`given`] or [`alone`].
+pub struct Failure(PyErr);
+
+/// What a function gives Python.
+pub type Answer<T> = Result<T, Failure>;
+
+impl Failure {
+    /// Wrong input.
+    pub fn case(message: impl ToString) -> Failure {
+        Failure(CaseError::new_err(message.to_string()))
+    }
+
+    /// Anything that files do.
+    pub fn file(error: impl std::fmt::Display) -> Failure {
+        Failure(PyOSError::new_err(spoken(&error.to_string())))
+    }
+
+    /// An error of reading the file or folder at this path.
+    pub fn of_path(path: &Path, error: impl std::fmt::Display) -> Failure {
+        match path.try_exists() {
+            Ok(false) => Failure(PyFileNotFoundError::new_err(spoken(&error.to_string()))),
+            _ => Failure::file(error),
         }
-        _ => CaseError::new_err(error.to_string()),
+    }
+
+    /// Gives the exception its best state, if it is one that has some.
+    pub fn with_best<'py>(
+        self,
+        py: Python<'py>,
+        best: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
+    ) -> Failure {
+        if self.0.is_instance_of::<ConvergenceError>(py) {
+            // The error itself matters more than that.
+            let _ = best().and_then(|best| self.0.value(py).setattr("best", best));
+        }
+        self
     }
 }
 
-/// The faults of a case file, one to a line.
-pub fn case(errors: CaseErrors) -> PyErr {
-    CaseError::new_err(errors.to_string())
+impl From<Failure> for PyErr {
+    fn from(failure: Failure) -> PyErr {
+        failure.0
+    }
+}
+
+/// How each error becomes a failure.
+macro_rules! failures {
+    ($($error:ty => $failure:expr,)*) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Failure {
+                $failure(error)
+            }
+        })*
+    };
+}
+failures! {
+    PyErr => Failure,
+    Error => of_numerics,
+    RunError => of_run,
+    TopographyError => of_topography,
+    CurveError => of_curve,
+    CaseErrors => Failure::case,
+    String => Failure::case,
+    serde_json::Error => Failure::case,
+    ndarray::ShapeError => Failure::case,
+    std::io::Error => Failure::file,
+    StoreError => Failure::file,
+    StressError => Failure::file,
+    LeakError => Failure::file,
+}
+
+fn of_numerics(error: Error) -> Failure {
+    let stopped = match &error {
+        Error::Interrupted => return Failure(PyKeyboardInterrupt::new_err(())),
+        Error::NotConverged(stopped) => stopped,
+        _ => return Failure::case(error),
+    };
+    let raised = ConvergenceError::new_err(error.to_string());
+    // Setting attributes of an exception that was just made cannot fail.
+    let _ = Python::attach(|py| {
+        let value = raised.value(py);
+        value.setattr("residual", stopped.residual)?;
+        value.setattr("tolerance", stopped.tolerance)?;
+        value.setattr("certificate", stopped.certificate)?;
+        value.setattr("iterations", stopped.iterations)?;
+        value.setattr("time", stopped.time)?;
+        value.setattr("best", py.None())
+    });
+    Failure(raised)
+}
+
+fn of_run(error: RunError) -> Failure {
+    match error {
+        RunError::Case(errors) => errors.into(),
+        RunError::Solve { source, .. } => source.into(),
+        error => Failure::file(error),
+    }
+}
+
+/// A measured surface that cannot be read.
+fn of_topography(error: TopographyError) -> Failure {
+    match (&error.problem, &error.path) {
+        (Problem::Unrecognised | Problem::Foreign { .. }, _) => {
+            Failure(FormatError::new_err(spoken(&error.to_string())))
+        }
+        (_, Some(path)) => Failure::of_path(path, &error),
+        (_, None) => Failure::file(error),
+    }
+}
+
+/// A fault of a file of measured curves: of what it holds, or of reading it.
+fn of_curve(error: CurveError) -> Failure {
+    match error.path.is_file() {
+        true => Failure::case(error.told(Remedy::in_python)),
+        false => Failure::of_path(&error.path, &error),
+    }
 }
 
 /// The faults of keys that Python gave, one to a line: their places in a text that nobody wrote are left out.
-pub fn given(errors: &CaseErrors) -> PyErr {
+pub fn given(errors: CaseErrors) -> Failure {
     let said = errors.errors.iter().map(|error| {
         let help = error.help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
         spoken(&format!("{}{help}", error.message)).replace('`', "")
     });
-    CaseError::new_err(said.collect::<Vec<_>>().join("\n"))
+    Failure::case(said.collect::<Vec<_>>().join("\n"))
 }
 
 /// The faults of tables that stand alone, whose keys are parameters: a message begins with the parameter, or with a word for the table.
-pub fn alone(mut errors: CaseErrors) -> PyErr {
+pub fn alone(mut errors: CaseErrors) -> Failure {
     const TABLES: [(&str, &str); 6] = [
         ("body[0].material", "the material"),
         ("body[0]", "the body"),
@@ -81,16 +179,7 @@ pub fn alone(mut errors: CaseErrors) -> PyErr {
             error.message = rest.strip_prefix('.').map_or_else(|| format!("{word}{rest}"), str::to_owned);
         }
     }
-    given(&errors)
-}
-
-/// An error of a run from a case file.
-pub fn run(py: Python<'_>, error: RunError) -> PyErr {
-    match error {
-        RunError::Case(errors) => case(errors),
-        RunError::Solve { source, .. } => raised(py, source),
-        error => PyOSError::new_err(spoken(&error.to_string())),
-    }
+    given(errors)
 }
 
 /// The words of a message with the parameters of Python in place of the options of the command.
@@ -107,28 +196,4 @@ fn spoken(message: &str) -> String {
         ("--set", "set="),
     ];
     WORDS.iter().fold(message.to_owned(), |text, (option, parameter)| text.replace(option, parameter))
-}
-
-/// A measured surface that cannot be read.
-pub fn topography(error: TopographyError) -> PyErr {
-    match &error.problem {
-        Problem::Unrecognised | Problem::Foreign { .. } => FormatError::new_err(spoken(&error.to_string())),
-        _ => match &error.path {
-            Some(path) => of_path(path, &error),
-            None => file(error),
-        },
-    }
-}
-
-/// Anything that files do.
-pub fn file(error: impl std::fmt::Display) -> PyErr {
-    PyOSError::new_err(spoken(&error.to_string()))
-}
-
-/// An error of reading the file or folder at this path.
-pub fn of_path(path: &Path, error: impl std::fmt::Display) -> PyErr {
-    match path.try_exists() {
-        Ok(false) => PyFileNotFoundError::new_err(spoken(&error.to_string())),
-        _ => file(error),
-    }
 }

@@ -7,15 +7,15 @@ use std::str::FromStr;
 use asperity::material::{FitOptions, Modulus};
 use asperity_io::choice;
 use asperity_io::curve::{
-    Column, Columns, CurveError, Curves, Fitted, Remedy, Request, Role, Series, ShiftRequest, Sweep,
-    VerticalRequest, VerticalWord,
+    Column, Columns, CurveError, Curves, Fitted, Request, Role, Series, ShiftRequest, Sweep, VerticalRequest,
+    VerticalWord,
 };
-use numpy::{IntoPyArray, PyReadonlyArray1};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, of_path};
-use crate::given::{choose, dictionary, entries};
+use crate::error::{Answer, Failure};
+use crate::given::{Dict, List, choose, dictionary, entries};
 use crate::material::{shift, shift_keys};
 use crate::wait::detached;
 
@@ -26,7 +26,7 @@ pub struct Options<'py> {
     /// None: what the header of the file names, or else Young's modulus.
     modulus: Option<String>,
     /// Keys of a shift, also of one that is to be estimated.
-    shift: Option<Bound<'py, PyDict>>,
+    shift: Option<Dict<'py>>,
     /// "density", "free", or none.
     vertical: Option<String>,
     window: Option<[f64; 2]>,
@@ -42,7 +42,7 @@ pub struct Options<'py> {
 
 impl Options<'_> {
     /// The request; `named` is the modulus that the header of the file names.
-    fn request(self, named: Option<Modulus>) -> PyResult<Request> {
+    fn request(self, named: Option<Modulus>) -> Answer<Request> {
         let measure = self.modulus.map(|word| choose("modulus", &word)).transpose()?;
         let (shift, vertical) = match &self.shift {
             Some(keys) => shift(keys)?,
@@ -56,7 +56,7 @@ impl Options<'_> {
             }
             (Some(VerticalWord::Free), VerticalRequest::None) => VerticalRequest::Free,
             (Some(_), _) => {
-                return Err(CaseError::new_err("vertical is given, and the shift has one of its own"));
+                return Err(Failure::case("vertical is given, and the shift has one of its own"));
             }
         };
         Ok(Request {
@@ -78,24 +78,16 @@ impl Options<'_> {
     }
 }
 
-/// A fault of a file: of what it holds, or of reading it.
-fn unreadable(error: CurveError) -> PyErr {
-    match error.path.is_file() {
-        true => CaseError::new_err(error.told(Remedy::in_python)),
-        false => of_path(&error.path, &error),
-    }
-}
-
 /// Fits sweeps of (temperature, times or angular frequencies, curves), in SI, one per temperature.
 #[pyfunction]
 #[allow(clippy::type_complexity)]
 pub fn fit<'py>(
     py: Python<'py>,
     kind: &str,
-    sweeps: Vec<(Option<f64>, PyReadonlyArray1<'_, f64>, Vec<PyReadonlyArray1<'_, f64>>)>,
+    sweeps: Vec<(Option<f64>, List<'_>, Vec<List<'_>>)>,
     options: Options<'_>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let array = |array: &PyReadonlyArray1<'_, f64>| array.as_array().to_vec();
+) -> Answer<Dict<'py>> {
+    let array = |array: &List<'_>| array.as_array().to_vec();
     let mut points = 0;
     let sweeps = sweeps.iter().map(|(temperature, x, curves)| {
         let x = array(x);
@@ -111,10 +103,10 @@ pub fn fit<'py>(
 }
 
 /// A fault of the caller's arrays: the number is that of a point, not a line.
-fn located(error: CurveError) -> PyErr {
+fn located(error: CurveError) -> Failure {
     let point = error.line.map(|n| format!("point {n}: ")).unwrap_or_default();
     let remedy = error.remedy.as_ref().map(|remedy| format!("; {}", remedy.in_python())).unwrap_or_default();
-    CaseError::new_err(format!("{point}{}{remedy}", error.message))
+    Failure::case(format!("{point}{}{remedy}", error.message))
 }
 
 /// Where a column is.
@@ -134,8 +126,8 @@ pub fn fit_file<'py>(
     units: BTreeMap<String, String>,
     sheet: Option<String>,
     options: Options<'_>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let role = |name: String| Role::from_str(&name).map_err(CaseError::new_err);
+) -> Answer<Dict<'py>> {
+    let role = |name: String| Role::from_str(&name);
     let column = |place| match place {
         Place::Name(name) => Column::Name(name),
         Place::Number(number) => Column::Number(number),
@@ -145,14 +137,17 @@ pub fn fit_file<'py>(
         columns: columns
             .into_iter()
             .map(|(name, place)| Ok((role(name)?, column(place))))
-            .collect::<PyResult<_>>()?,
-        units: units.into_iter().map(|(name, unit)| Ok((role(name)?, unit))).collect::<PyResult<_>>()?,
+            .collect::<Result<_, String>>()?,
+        units: units
+            .into_iter()
+            .map(|(name, unit)| Ok((role(name)?, unit)))
+            .collect::<Result<_, String>>()?,
     };
     let found = match kind {
         Some(word) => choose("kind", &word)?,
-        None => Curves::kind_of(&path, said.sheet.as_deref()).map_err(unreadable)?,
+        None => Curves::kind_of(&path, said.sheet.as_deref())?,
     };
-    let mut curves = detached(py, || Curves::read(&path, found, &said))?.map_err(unreadable)?;
+    let mut curves = detached(py, || Curves::read(&path, found, &said))??;
     let mut request = options.request(curves.measure)?;
     if let (ShiftRequest::None, Some(reference)) = (&request.shift, reference_of_several(&curves)) {
         curves.notes.push(format!(
@@ -160,7 +155,7 @@ pub fn fit_file<'py>(
         ));
         request.shift = ShiftRequest::Estimate(reference);
     }
-    let fitted = detached(py, || request.fit(&curves))?.map_err(unreadable)?;
+    let fitted = detached(py, || request.fit(&curves))??;
     told(py, fitted, &curves)
 }
 
@@ -174,13 +169,13 @@ fn reference_of_several(curves: &Curves) -> Option<f64> {
 
 /// The shift that a table of temperatures and shift factors holds, in a text file or a spreadsheet.
 #[pyfunction]
-pub fn read_shift_table(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
-    let read = asperity_io::curve::read_shift_table(&path).map_err(unreadable)?;
-    dictionary(py, &shift_keys(&read, None))
+pub fn read_shift_table(py: Python<'_>, path: PathBuf) -> Answer<Dict<'_>> {
+    let read = asperity_io::curve::read_shift_table(&path)?;
+    Ok(dictionary(py, &shift_keys(&read, None))?)
 }
 
 /// The fields of a `Fit`.
-fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> PyResult<Bound<'py, PyDict>> {
+fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> Answer<Dict<'py>> {
     let out = PyDict::new(py);
     out.set_item("kind", curves.kind.name())?;
     out.set_item("modulus", choice::word(&fitted.material.measure()))?;

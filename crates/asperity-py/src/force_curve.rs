@@ -3,22 +3,20 @@
 use asperity::force_curve::{ForceOptions, ForceRecord, fit_force_curve as fit};
 use asperity::indentation::Interval;
 use asperity_io::choice;
-use numpy::{IntoPyArray, PyReadonlyArray1};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::raised;
-use crate::given::{choose, entries};
+use crate::error::Answer;
+use crate::given::{Dict, List, choose, entries};
 use crate::wait::detached;
 
 /// Fits a force curve of a sphere; uncertainties are standard ones over the value. Intervals are (value, low, high, determined).
 #[pyfunction]
-#[pyo3(signature = (loads, depths, radius, model, branch, control, range, spring_constant, radius_uncertainty, load_uncertainty, sensitivity_uncertainty))]
-#[allow(clippy::too_many_arguments)]
 pub fn fit_force_curve<'py>(
     py: Python<'py>,
-    loads: PyReadonlyArray1<'_, f64>,
-    depths: PyReadonlyArray1<'_, f64>,
+    loads: List<'_>,
+    depths: List<'_>,
     radius: f64,
     model: &str,
     branch: &str,
@@ -28,7 +26,7 @@ pub fn fit_force_curve<'py>(
     radius_uncertainty: f64,
     load_uncertainty: f64,
     sensitivity_uncertainty: f64,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> Answer<Dict<'py>> {
     let [loads, depths] = [loads, depths].map(|column| column.as_array().to_vec());
     let options = ForceOptions {
         model: choose("model", model)?,
@@ -41,7 +39,7 @@ pub fn fit_force_curve<'py>(
         sensitivity_uncertainty,
     };
     let record = ForceRecord { loads: &loads, depths: &depths };
-    let fit = detached(py, || fit(radius, &record, &options))?.map_err(|error| raised(py, error))?;
+    let fit = detached(py, || fit(radius, &record, &options))??;
     let interval = |x: Interval| (x.value, x.low, x.high, x.determined);
     let out = PyDict::new(py);
     out.set_item("model", choice::word(&fit.model))?;

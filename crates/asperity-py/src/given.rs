@@ -3,19 +3,28 @@
 use asperity::Grid;
 use asperity_io::choice::{self, Choice};
 use asperity_io::resources;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use toml::{Table, Value};
 
-use crate::error::{CaseError, raised};
+use crate::error::{Answer, Failure};
+
+/// Numbers in a row and of cells that Python gives, and a dictionary.
+pub type List<'py> = PyReadonlyArray1<'py, f64>;
+pub type Plane<'py> = PyReadonlyArray2<'py, f64>;
+pub type Dict<'py> = Bound<'py, PyDict>;
+/// Numbers in a row and of cells, for Python.
+pub type Numbers<'py> = Bound<'py, PyArray1<f64>>;
+pub type Map<'py> = Bound<'py, PyArray2<f64>>;
 
 /// A dictionary as the keys of a case; numbers keep every bit.
-pub fn table(given: &Bound<'_, PyDict>) -> PyResult<Table> {
+pub fn table(given: &Dict<'_>) -> Answer<Table> {
     inside("", given)
 }
 
 /// The table at this path.
-fn inside(path: &str, given: &Bound<'_, PyDict>) -> PyResult<Table> {
+fn inside(path: &str, given: &Dict<'_>) -> Answer<Table> {
     let entry = |(key, given): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
         let key = key.str()?.to_string();
         let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
@@ -27,11 +36,11 @@ fn inside(path: &str, given: &Bound<'_, PyDict>) -> PyResult<Table> {
 /// The deepest table or list of a case lies above this; what is deeper may hold itself.
 const DEEPEST: usize = 32;
 
-fn value(path: &str, given: &Bound<'_, PyAny>) -> PyResult<Value> {
+fn value(path: &str, given: &Bound<'_, PyAny>) -> Answer<Value> {
     if path.matches(['.', '[']).count() > DEEPEST {
         let words =
             format!("{path} lies more than {DEEPEST} tables and lists deep, which no key of a case does");
-        return Err(CaseError::new_err(words));
+        return Err(Failure::case(words));
     }
     if let Ok(table) = given.cast::<PyDict>() {
         return inside(path, table).map(Value::Table);
@@ -40,18 +49,18 @@ fn value(path: &str, given: &Bound<'_, PyAny>) -> PyResult<Value> {
         let list = given.try_iter()?.enumerate();
         return list
             .map(|(n, one)| value(&format!("{path}[{n}]"), &one?))
-            .collect::<PyResult<_>>()
+            .collect::<Answer<_>>()
             .map(Value::Array);
     }
     if given.is_instance_of::<PyBool>() {
-        return given.extract().map(Value::Boolean);
+        return Ok(Value::Boolean(given.extract()?));
     }
     if given.is_instance_of::<PyString>() {
-        return given.extract().map(Value::String);
+        return Ok(Value::String(given.extract()?));
     }
     if given.is_instance_of::<PyInt>() {
         // What is larger than any count is a number.
-        return given.extract().map(Value::Integer).or_else(|_| given.extract().map(Value::Float));
+        return Ok(given.extract().map(Value::Integer).or_else(|_| given.extract().map(Value::Float))?);
     }
     let wrong = match given.cast::<PyFloat>().map(|number| number.extract::<f64>()) {
         Ok(number) => match number? {
@@ -63,11 +72,11 @@ fn value(path: &str, given: &Bound<'_, PyAny>) -> PyResult<Value> {
             format!("{}, which a case file cannot hold; write quantities as text with units", given.repr()?)
         }
     };
-    Err(CaseError::new_err(format!("{path} is {wrong}")))
+    Err(Failure::case(format!("{path} is {wrong}")))
 }
 
 /// The keys of a table as a dictionary.
-pub fn dictionary<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
+pub fn dictionary<'py>(py: Python<'py>, table: &Table) -> PyResult<Dict<'py>> {
     let out = PyDict::new(py);
     for (key, value) in table {
         out.set_item(key, object(py, value)?)?;
@@ -90,43 +99,32 @@ fn object<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
 }
 
 /// The choice that a keyword names, or an error with the words that it takes.
-pub fn choose<T: Choice>(what: &str, word: &str) -> PyResult<T> {
-    choice::parse(word).ok_or_else(|| no_choice(what, word, choice::words::<T>()))
-}
-
-/// The choice that a keyword names, out of a list of names and values.
-pub fn choose_among<T: Copy>(what: &str, word: &str, choices: &[(&str, T)]) -> PyResult<T> {
-    let found = choices.iter().find(|(name, _)| *name == word);
-    let names = || choices.iter().map(|(name, _)| *name).collect::<Vec<_>>();
-    found.map(|(_, value)| *value).ok_or_else(|| no_choice(what, word, &names()))
-}
-
-fn no_choice(what: &str, word: &str, words: &[&str]) -> PyErr {
-    let words: Vec<_> = words.iter().map(|word| format!("'{word}'")).collect();
-    CaseError::new_err(format!("{what} is '{word}', but must be {}", words.join(" or ")))
+pub fn choose<T: Choice>(what: &str, word: &str) -> Answer<T> {
+    choice::parse(word).ok_or_else(|| {
+        let words: Vec<_> = choice::words::<T>().iter().map(|word| format!("'{word}'")).collect();
+        Failure::case(format!("{what} is '{word}', but must be {}", words.join(" or ")))
+    })
 }
 
 /// The grid of a field: a plane with two lengths, a line with one.
-pub fn grid_of(py: Python<'_>, (nx, ny): (usize, usize), size: &[f64]) -> PyResult<Grid> {
+pub fn grid_of((nx, ny): (usize, usize), size: &[f64]) -> Answer<Grid> {
     let grid = match *size {
         [length] if ny == 1 => Grid::line(nx, length),
         [lx, ly] => Grid::new([nx, ny], [lx, ly]),
         _ => {
-            return Err(CaseError::new_err(
-                "size needs two lengths, along x and y, or one for a line of cells",
-            ));
+            return Err(Failure::case("size needs two lengths, along x and y, or one for a line of cells"));
         }
     };
-    let grid = grid.map_err(|error| raised(py, error))?;
+    let grid = grid?;
     // Heights, and a copy of them.
     memory(&grid, 16 * grid.len())?;
     Ok(grid)
 }
 
 /// Refuses work on a grid that takes more memory than there is.
-pub fn memory(grid: &Grid, bytes: usize) -> PyResult<()> {
+pub fn memory(grid: &Grid, bytes: usize) -> Answer<()> {
     let [nx, ny] = grid.cells();
-    let refused = |reason: String| CaseError::new_err(format!("{reason}; take fewer cells"));
+    let refused = |reason: String| Failure::case(format!("{reason}; take fewer cells"));
     resources::check_memory(&format!("{nx} x {ny} cells"), bytes as u64).map_err(refused)
 }
 

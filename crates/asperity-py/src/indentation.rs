@@ -3,33 +3,29 @@
 use asperity::indentation::{
     IndentationOptions, IndentationRecord, Interval, SampleLayer, fit_indentation as fit,
 };
-use asperity::layer::Interface;
 use asperity::reference::MdrProfile;
 use asperity_io::choice;
-use numpy::{IntoPyArray, PyReadonlyArray1};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::raised;
-use crate::given::{choose, choose_among, entries};
+use crate::error::Answer;
+use crate::given::{Dict, List, choose, entries};
 use crate::wait::detached;
 
-fn sample((thickness, poisson, interface): (f64, f64, String)) -> PyResult<SampleLayer> {
-    let interfaces = [("bonded", Interface::Bonded), ("slip", Interface::Slip)];
-    Ok(SampleLayer { thickness, poisson, interface: choose_among("interface", &interface, &interfaces)? })
+fn sample((thickness, poisson, interface): (f64, f64, String)) -> Answer<SampleLayer> {
+    Ok(SampleLayer { thickness, poisson, interface: choose("interface", &interface)? })
 }
 
-/// Fits the contact relaxation modulus to a record; `profile` is "sphere" with its radius or "cone" with its slope. `thin` is
+/// Fits the contact relaxation modulus to a record; `profile` is "radius" of a sphere or "slope" of a cone, with its `number`. `thin` is
 /// thickness, Poisson's ratio and interface of a sample on a rigid base; `uncertainties` are those of the size of the profile, the thickness,
 /// the load and the sensitivity, over their values. Intervals are (value, low, high, determined).
 #[pyfunction]
-#[pyo3(signature = (times, loads, depths, profile, number, given, terms, long_time, fit_touch, thin, springs, limit, uncertainties, spring_constant))]
-#[allow(clippy::too_many_arguments)]
 pub fn fit_indentation<'py>(
     py: Python<'py>,
-    times: PyReadonlyArray1<'_, f64>,
-    loads: PyReadonlyArray1<'_, f64>,
-    depths: PyReadonlyArray1<'_, f64>,
+    times: List<'_>,
+    loads: List<'_>,
+    depths: List<'_>,
     profile: &str,
     number: f64,
     given: Option<&str>,
@@ -41,10 +37,12 @@ pub fn fit_indentation<'py>(
     limit: f64,
     uncertainties: [f64; 4],
     spring_constant: Option<f64>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> Answer<Dict<'py>> {
     let [times, loads, depths] = [times, loads, depths].map(|column| column.as_array().to_vec());
-    let profiles =
-        [("sphere", MdrProfile::Sphere { radius: number }), ("cone", MdrProfile::Cone { slope: number })];
+    let profile = match profile {
+        "radius" => MdrProfile::Sphere { radius: number },
+        _ => MdrProfile::Cone { slope: number },
+    };
     let [radius_uncertainty, thickness_uncertainty, load_uncertainty, sensitivity_uncertainty] =
         uncertainties;
     let options = IndentationOptions {
@@ -61,9 +59,8 @@ pub fn fit_indentation<'py>(
         springs,
         limit,
     };
-    let profile = choose_among("profile", profile, &profiles)?;
     let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };
-    let fit = detached(py, || fit(profile, &record, &options))?.map_err(|error| raised(py, error))?;
+    let fit = detached(py, || fit(profile, &record, &options))??;
     let interval = |x: Interval| (x.value, x.low, x.high, x.determined);
     let out = PyDict::new(py);
     out.set_item("equilibrium", interval(fit.equilibrium))?;

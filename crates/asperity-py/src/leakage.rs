@@ -10,22 +10,22 @@ use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, raised};
-use crate::given::entries;
+use crate::error::{Answer, Failure};
+use crate::given::{Dict, Plane, entries};
 use crate::wait::without_python;
 
 /// The leak of one state. `keys` are those of `[leakage]` as JSON.
 #[pyfunction]
 pub fn leakage<'py>(
     py: Python<'py>,
-    gap: PyReadonlyArray2<'_, f64>,
+    gap: Plane<'_>,
     contact: Option<PyReadonlyArray2<'_, u8>>,
     size: [f64; 2],
     keys: &str,
     temperatures: Vec<(f64, f64)>,
     time: f64,
-) -> PyResult<Bound<'py, PyDict>> {
-    let wrong = |error: &dyn std::fmt::Display| CaseError::new_err(format!("leakage: {error}"));
+) -> Answer<Dict<'py>> {
+    let wrong = |error: &dyn std::fmt::Display| Failure::case(format!("leakage: {error}"));
     let keys: LeakageKeys = serde_json::from_str(keys).map_err(|error| {
         // The last line is a code, with a place in a text that nobody wrote.
         let said = error.to_string();
@@ -39,7 +39,7 @@ pub fn leakage<'py>(
         let grid = Grid::new([nx, ny], size)?;
         leak.of_gap(&grid, gap, contact, time)
     })?;
-    let state = solved.map_err(|error| raised(py, error))?;
+    let state = solved?;
     let mut diagnostics = LeakDiagnostics::default();
     let resolved = diagnostics.see(&state.alone());
     let out = PyDict::new(py);

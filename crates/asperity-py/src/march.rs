@@ -10,12 +10,13 @@ use asperity::{Drive, drive, process, step};
 use asperity_io::case::{Case, CaseErrors, given};
 use asperity_io::session;
 use asperity_io::store::{FieldKind, SCALARS};
-use numpy::{IntoPyArray, PyReadonlyArray2};
+use ndarray::Array2;
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, raised};
-use crate::given::{choose, table};
+use crate::error::{self, Answer, Failure};
+use crate::given::{Dict, Plane, choose, table};
 use crate::wait::{detached, without_python};
 
 /// The march of one simulation, or its sweep over velocities.
@@ -40,10 +41,10 @@ impl March {
     #[new]
     fn new(
         py: Python<'_>,
-        keys: Bound<'_, PyDict>,
-        arrays: BTreeMap<String, PyReadonlyArray2<'_, f64>>,
+        keys: Dict<'_>,
+        arrays: BTreeMap<String, Plane<'_>>,
         include: Vec<f64>,
-    ) -> PyResult<March> {
+    ) -> Answer<March> {
         let keys = table(&keys)?;
         let arrays = arrays.into_iter().map(|(name, array)| (name, array.as_array().to_owned())).collect();
         let interrupt = Arc::new(AtomicBool::new(false));
@@ -69,15 +70,14 @@ impl March {
             };
             Ok(Ok((drive, diagnostics, found, setup)))
         })?;
-        let made = made.map_err(|errors| crate::error::given(&errors))?;
-        let (mut march, diagnostics, found, setup) = made.map_err(|error| raised(py, error))?;
+        let (mut march, diagnostics, found, setup) = made.map_err(error::given)??;
         march.interrupt_with(interrupt.clone());
         let march = Mutex::new(march);
         Ok(March { march, diagnostics, found, setup, last: None, settled: false, interrupt })
     }
 
     /// Goes on by one row; False at the end.
-    fn advance(&mut self, py: Python<'_>) -> PyResult<bool> {
+    fn advance(&mut self, py: Python<'_>) -> Answer<bool> {
         self.interrupt.store(false, Ordering::Relaxed);
         let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
         let (diagnostics, last, settled) = (&mut self.diagnostics, &mut self.last, &mut self.settled);
@@ -92,27 +92,23 @@ impl March {
             Ok(true)
         })?;
         done.map_err(|error| {
-            let raised = raised(py, error);
-            if raised.is_instance_of::<crate::error::ConvergenceError>(py) {
-                let march = &mut *march;
+            Failure::from(error).with_best(py, || {
+                let (best, march) = (PyDict::new(py), &mut *march);
                 let last = move || march.last().map(|step| (step.row(), step.pressure().to_owned()));
-                if let Ok(Some((row, pressure))) = detached(py, last) {
-                    let best = PyDict::new(py);
-                    let filled =
-                        fill(&best, &row).and_then(|()| best.set_item("pressure", pressure.into_pyarray(py)));
-                    let _ = filled.and_then(|()| raised.value(py).setattr("best", best));
-                }
-            }
-            raised
+                let Some((row, pressure)) = detached(py, last)? else { return Ok(py.None().into_bound(py)) };
+                fill(&best, &row)?;
+                best.set_item("pressure", pressure.into_pyarray(py))?;
+                Ok(best.into_any())
+            })
         })
     }
 
     /// From the last row on this is prescribed: the keys `control` and `history` of a stage.
-    fn prescribe(&mut self, py: Python<'_>, keys: Bound<'_, PyDict>) -> PyResult<()> {
+    fn prescribe(&mut self, keys: Dict<'_>) -> Answer<()> {
         let keys = table(&keys)?;
         let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let (control, course) = given::prescribed(keys, march.simulation()).map_err(crate::error::alone)?;
-        march.prescribe(control, course).map_err(|error| raised(py, error))
+        let (control, course) = given::prescribed(keys, march.simulation()).map_err(error::alone)?;
+        Ok(march.prescribe(control, course)?)
     }
 
     /// The run in numbers, as JSON: the attribute `setup` of its result.
@@ -171,22 +167,22 @@ impl March {
     }
 
     /// The numbers of the last row.
-    fn row<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn row<'py>(&self, py: Python<'py>) -> Answer<Dict<'py>> {
         let out = PyDict::new(py);
         let last = detached(py, || {
             let march = self.locked();
             let step = march.last()?;
-            let columns = step.columns().iter().map(|column| (column.quantity.name(), column.width() == 1));
-            let numbers = columns.zip(step.columns()).map(|((name, single), column)| {
-                (name, single, step.quantity(column.quantity).map(<[f64]>::to_vec).unwrap_or_default())
+            let numbers = step.columns().iter().map(|column| {
+                let numbers = step.quantity(column.quantity).map(<[f64]>::to_vec);
+                (column.quantity.name(), numbers.unwrap_or_default())
             });
             Some((self.last.unwrap_or_else(|| step.row()), numbers.collect::<Vec<_>>()))
         })?;
         if let Some((row, quantities)) = last {
             fill(&out, &row)?;
-            for (name, single, numbers) in quantities {
-                match (single, numbers.first()) {
-                    (true, Some(number)) => out.set_item(name, number)?,
+            for (name, numbers) in quantities {
+                match numbers[..] {
+                    [number] => out.set_item(name, number)?,
                     _ => out.set_item(name, numbers.into_pyarray(py))?,
                 }
             }
@@ -195,40 +191,39 @@ impl March {
     }
 
     /// A field of the last row, by its name in results.
-    fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    fn field<'py>(&self, py: Python<'py>, name: &str) -> Answer<Bound<'py, PyAny>> {
         let kind: FieldKind = choose("field", name)?;
         let found = detached(py, || {
             let march = self.locked();
             let step = march.last()?;
-            let shape = march.simulation().grid.shape();
-            if kind == FieldKind::Contact {
-                let mut states = ndarray::Array2::<u8>::zeros(shape);
-                step.contact_into(&mut states);
-                let boundary = march.simulation().boundary;
-                return Some(Map::Contact(process::in_contact_frame(
-                    states.view(),
-                    boundary,
-                    step.frame_shift(),
-                    0,
-                )));
-            }
-            let mut field = ndarray::Array2::zeros(shape);
-            kind.of_step(&step, &mut field);
-            let (shift, boundary) = (kind.shift(&step), march.simulation().boundary);
-            Some(Map::Real(process::in_contact_frame(field.view(), boundary, shift, kind.beyond())))
+            let (grid, boundary) = (march.simulation().grid, march.simulation().boundary);
+            // Of a contact that moves, in its frame.
+            let shift = kind.shift(&step);
+            Some(match kind {
+                FieldKind::Contact => {
+                    let mut states = Array2::zeros(grid.shape());
+                    step.contact_into(&mut states);
+                    Field::Contact(process::in_contact_frame(states.view(), boundary, shift, 0))
+                }
+                kind => {
+                    let mut field = Array2::zeros(grid.shape());
+                    kind.of_step(&step, &mut field);
+                    Field::Real(process::in_contact_frame(field.view(), boundary, shift, kind.beyond()))
+                }
+            })
         })?;
         match found {
-            Some(Map::Real(field)) => Ok(field.into_pyarray(py).into_any()),
-            Some(Map::Contact(states)) => Ok(states.into_pyarray(py).into_any()),
-            None => Err(CaseError::new_err("there is no row yet: advance first")),
+            Some(Field::Real(field)) => Ok(field.into_pyarray(py).into_any()),
+            Some(Field::Contact(states)) => Ok(states.into_pyarray(py).into_any()),
+            None => Err(Failure::case("there is no row yet: advance first")),
         }
     }
 }
 
 /// A field on its way to Python.
-enum Map {
-    Real(ndarray::Array2<f64>),
-    Contact(ndarray::Array2<u8>),
+enum Field {
+    Real(Array2<f64>),
+    Contact(Array2<u8>),
 }
 
 impl March {
@@ -238,7 +233,7 @@ impl March {
 }
 
 /// The numbers of a row by their names in results.
-pub fn fill(into: &Bound<'_, PyDict>, row: &step::Row) -> PyResult<()> {
+pub fn fill(into: &Dict<'_>, row: &step::Row) -> Answer<()> {
     for scalar in SCALARS {
         match scalar.is_count() {
             true => into.set_item(scalar.name, scalar.of(row) as u64)?,

@@ -4,18 +4,16 @@ use asperity::material::{Creep, Shift, VerticalShift};
 use asperity_io::case::{Pair, given};
 use asperity_io::choice;
 use asperity_io::curve::{ShiftRequest, VerticalRequest};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use toml::{Table, Value};
 
-use crate::error::{self, CaseError, raised};
-use crate::given::{choose, table};
-
-type Curve<'py> = Bound<'py, PyArray1<f64>>;
+use crate::error::{self, Answer, Failure};
+use crate::given::{Dict, List, Numbers, choose, table};
 
 /// The bodies of these keys (`body`, `temperature`).
-pub fn bodies(keys: &Bound<'_, PyDict>, window: Option<[f64; 2]>) -> PyResult<Pair> {
+pub fn bodies(keys: &Dict<'_>, window: Option<[f64; 2]>) -> Answer<Pair> {
     given::bodies(&table(keys)?, window).map_err(error::alone)
 }
 
@@ -31,12 +29,12 @@ impl Body {
     /// Of the keys of a `[[body]]`; a fractional model becomes a Prony sum over `window`.
     #[new]
     #[pyo3(signature = (keys, window=None))]
-    fn new(py: Python<'_>, keys: Bound<'_, PyDict>, window: Option<[f64; 2]>) -> PyResult<Body> {
+    fn new(py: Python<'_>, keys: Dict<'_>, window: Option<[f64; 2]>) -> Answer<Body> {
         let document = PyDict::new(py);
         document.set_item("body", [keys])?;
         let mut made = bodies(&document, window)?;
         let error = made.reports.pop().and_then(|report| report.error);
-        let inner = made.bodies.pop().ok_or_else(|| CaseError::new_err("there is no body"))?;
+        let inner = made.bodies.pop().ok_or_else(|| Failure::case("there is no body"))?;
         Ok(Body { inner, error })
     }
 
@@ -47,24 +45,14 @@ impl Body {
     }
 
     /// Creep compliance at times: 1/Pa, of the modulus `measure`.
-    fn creep<'py>(
-        &self,
-        py: Python<'py>,
-        times: PyReadonlyArray1<'_, f64>,
-        measure: &str,
-    ) -> PyResult<Curve<'py>> {
-        let creep = self.of(py, measure)?;
+    fn creep<'py>(&self, py: Python<'py>, times: List<'_>, measure: &str) -> Answer<Numbers<'py>> {
+        let creep = self.of(measure)?;
         Ok(map(py, times, |t| creep.value(t)))
     }
 
     /// Relaxation modulus `measure` at times: Pa.
-    fn relaxation<'py>(
-        &self,
-        py: Python<'py>,
-        times: PyReadonlyArray1<'_, f64>,
-        measure: &str,
-    ) -> PyResult<Curve<'py>> {
-        let relaxation = self.of(py, measure)?.to_relaxation().map_err(|error| raised(py, error))?;
+    fn relaxation<'py>(&self, py: Python<'py>, times: List<'_>, measure: &str) -> Answer<Numbers<'py>> {
+        let relaxation = self.of(measure)?.to_relaxation()?;
         Ok(map(py, times, |t| relaxation.value(t)))
     }
 
@@ -72,18 +60,18 @@ impl Body {
     fn complex<'py>(
         &self,
         py: Python<'py>,
-        omega: PyReadonlyArray1<'_, f64>,
+        omega: List<'_>,
         measure: &str,
-    ) -> PyResult<(Curve<'py>, Curve<'py>)> {
-        let creep = self.of(py, measure)?;
+    ) -> Answer<(Numbers<'py>, Numbers<'py>)> {
+        let creep = self.of(measure)?;
         let (storage, loss): (Vec<f64>, Vec<f64>) =
             omega.as_array().iter().map(|w| creep.modulus(*w)).unzip();
         Ok((storage.into_pyarray(py), loss.into_pyarray(py)))
     }
 
     /// Contact creep compliance against a rigid body at times: 1/Pa.
-    fn contact_creep<'py>(&self, py: Python<'py>, times: PyReadonlyArray1<'_, f64>) -> PyResult<Curve<'py>> {
-        let creep = self.inner.contact_creep().map_err(|error| raised(py, error))?;
+    fn contact_creep<'py>(&self, py: Python<'py>, times: List<'_>) -> Answer<Numbers<'py>> {
+        let creep = self.inner.contact_creep()?;
         Ok(map(py, times, |t| creep.value(t)))
     }
 
@@ -101,8 +89,8 @@ impl Body {
     }
 
     /// (equilibrium modulus, [(modulus, relaxation time)]).
-    fn relaxation_terms(&self, py: Python<'_>) -> PyResult<(f64, Vec<(f64, f64)>)> {
-        let relaxation = self.inner.material.relaxation().map_err(|error| raised(py, error))?;
+    fn relaxation_terms(&self) -> Answer<(f64, Vec<(f64, f64)>)> {
+        let relaxation = self.inner.material.relaxation()?;
         let terms = relaxation.terms.iter().map(|term| (term.modulus, term.relaxation_time)).collect();
         Ok((relaxation.equilibrium, terms))
     }
@@ -110,12 +98,12 @@ impl Body {
 
 impl Body {
     /// The creep function of the modulus `measure`.
-    fn of(&self, py: Python<'_>, measure: &str) -> PyResult<Creep> {
-        self.inner.creep(choose("measure", measure)?).map_err(|error| raised(py, error))
+    fn of(&self, measure: &str) -> Answer<Creep> {
+        Ok(self.inner.creep(choose("measure", measure)?)?)
     }
 }
 
-fn map<'py>(py: Python<'py>, at: PyReadonlyArray1<'_, f64>, f: impl Fn(f64) -> f64) -> Curve<'py> {
+fn map<'py>(py: Python<'py>, at: List<'_>, f: impl Fn(f64) -> f64) -> Numbers<'py> {
     at.as_array().iter().map(|v| f(*v)).collect::<Vec<f64>>().into_pyarray(py)
 }
 
@@ -123,10 +111,10 @@ fn map<'py>(py: Python<'py>, at: PyReadonlyArray1<'_, f64>, f: impl Fn(f64) -> f
 #[pyfunction]
 pub fn layer_compliance<'py>(
     py: Python<'py>,
-    waves: PyReadonlyArray1<'_, f64>,
-    keys: Bound<'_, PyDict>,
+    waves: List<'_>,
+    keys: Dict<'_>,
     time: f64,
-) -> PyResult<Curve<'py>> {
+) -> Answer<Numbers<'py>> {
     let made = bodies(&keys, None)?;
     let creep = made.creep.value(time);
     let of_wave = |q: &f64| match &made.waves {
@@ -134,11 +122,11 @@ pub fn layer_compliance<'py>(
         None => Ok(creep * made.kernel().symbol(*q, 0.0)),
     };
     let values: asperity::Result<Vec<f64>> = waves.as_array().iter().map(of_wave).collect();
-    Ok(values.map_err(|error| raised(py, error))?.into_pyarray(py))
+    Ok(values?.into_pyarray(py))
 }
 
 /// The shift of these keys, and how the moduli depend on temperature.
-pub fn shift(keys: &Bound<'_, PyDict>) -> PyResult<(ShiftRequest, VerticalRequest)> {
+pub fn shift(keys: &Dict<'_>) -> Answer<(ShiftRequest, VerticalRequest)> {
     given::shift(table(keys)?).map_err(error::alone)
 }
 
@@ -177,36 +165,32 @@ pub fn shift_keys(shift: &Shift, vertical: Option<&VerticalShift>) -> Table {
 
 /// Shift factors a_T at temperatures.
 #[pyfunction]
-pub fn shift_factor<'py>(
-    py: Python<'py>,
-    keys: Bound<'_, PyDict>,
-    temperatures: PyReadonlyArray1<'_, f64>,
-) -> PyResult<Curve<'py>> {
+pub fn shift_factor<'py>(py: Python<'py>, keys: Dict<'_>, temperatures: List<'_>) -> Answer<Numbers<'py>> {
     let (law, _) = law(&keys)?;
     let factors: asperity::Result<Vec<_>> = temperatures.as_array().iter().map(|t| law.factor(*t)).collect();
-    Ok(factors.map_err(|error| raised(py, error))?.into_pyarray(py))
+    Ok(factors?.into_pyarray(py))
 }
 
 /// Vertical shift factors b_T at temperatures; 1 where there is no vertical shift.
 #[pyfunction]
 pub fn vertical_shift_factor<'py>(
     py: Python<'py>,
-    keys: Bound<'_, PyDict>,
-    temperatures: PyReadonlyArray1<'_, f64>,
-) -> PyResult<Curve<'py>> {
+    keys: Dict<'_>,
+    temperatures: List<'_>,
+) -> Answer<Numbers<'py>> {
     let (_, vertical) = law(&keys)?;
     let factor = |t: &f64| vertical.as_ref().map_or(Ok(1.0), |vertical| vertical.factor(*t));
     let factors: asperity::Result<Vec<_>> = temperatures.as_array().iter().map(factor).collect();
-    Ok(factors.map_err(|error| raised(py, error))?.into_pyarray(py))
+    Ok(factors?.into_pyarray(py))
 }
 
 /// A shift that is known, and its vertical shift.
-fn law(keys: &Bound<'_, PyDict>) -> PyResult<(Shift, Option<VerticalShift>)> {
+fn law(keys: &Dict<'_>) -> Answer<(Shift, Option<VerticalShift>)> {
     match shift(keys)? {
         (ShiftRequest::Given(shift), vertical) => {
-            let vertical = vertical.known(shift.reference()).map_err(CaseError::new_err)?;
+            let vertical = vertical.known(shift.reference())?;
             Ok((shift, vertical))
         }
-        _ => Err(CaseError::new_err("the shift is to be estimated, and has no factors yet")),
+        _ => Err(Failure::case("the shift is to be estimated, and has no factors yet")),
     }
 }

@@ -7,19 +7,19 @@ use asperity::quantities::{Column, Quantity, RowNumber};
 use asperity::stress::Rolling;
 use asperity_io::store::{FieldKind, SCALARS, Series, StressSet, coordinates, leak_series};
 use asperity_io::stress::Ratio;
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 
-use crate::error::raised;
-use crate::given::choose;
+use crate::error::Answer;
+use crate::given::{List, Numbers, choose};
 
 /// Name, unit, unit on a line of cells, meaning, and kind: "real", "count", "vector" or "histogram".
 type Entry = (&'static str, &'static str, &'static str, &'static str, &'static str);
 
 /// All columns and fields by the part of a result that they belong to.
 #[pyfunction]
-pub fn registry(py: Python<'_>) -> PyResult<BTreeMap<&'static str, Vec<Entry>>> {
-    let line = Grid::line(2, 1.0).map_err(|error| raised(py, error))?;
+pub fn registry() -> Answer<BTreeMap<&'static str, Vec<Entry>>> {
+    let line = Grid::line(2, 1.0)?;
     let rows = SCALARS.iter().map(|scalar| {
         let kind = if scalar.is_count() { "count" } else { "real" };
         (scalar.name, scalar.units, line.units(scalar.units), scalar.long_name, kind)
@@ -54,8 +54,8 @@ pub fn registry(py: Python<'_>) -> PyResult<BTreeMap<&'static str, Vec<Entry>>> 
 
 /// Name, unit and unit on a line of cells of the numbers that a stage can wait for.
 #[pyfunction]
-pub fn waitable(py: Python<'_>) -> PyResult<Vec<(&'static str, &'static str, &'static str)>> {
-    let line = Grid::line(2, 1.0).map_err(|error| raised(py, error))?;
+pub fn waitable() -> Answer<Vec<(&'static str, &'static str, &'static str)>> {
+    let line = Grid::line(2, 1.0)?;
     let on_line = |number: RowNumber| match number {
         RowNumber::Column(column) => line.units(column.units),
         RowNumber::Quantity(quantity) => quantity.units_on(&line),
@@ -84,19 +84,19 @@ fn stress(line: bool) -> Vec<Series> {
 }
 
 /// Name, unit, meaning and numbers of a coordinate.
-type Coordinate<'py> = (&'static str, &'static str, &'static str, Bound<'py, PyArray1<f64>>);
+type Coordinate<'py> = (&'static str, &'static str, &'static str, Numbers<'py>);
 
 /// The coordinates of a histogram whose bins have these ends: the middles of its bins, and the ends.
 #[pyfunction]
 pub fn histogram_coordinates<'py>(
     py: Python<'py>,
     name: &str,
-    edges: PyReadonlyArray1<'_, f64>,
+    edges: List<'_>,
     line: bool,
-) -> PyResult<Vec<Coordinate<'py>>> {
+) -> Answer<Vec<Coordinate<'py>>> {
     let grid = if line { Grid::line(2, 1.0) } else { Grid::new([2, 2], [1.0, 1.0]) };
     let column = Column { quantity: choose("quantity", name)?, edges: edges.as_array().to_vec() };
-    let found = coordinates(&column, &grid.map_err(|error| raised(py, error))?);
+    let found = coordinates(&column, &grid?);
     Ok(found
         .into_iter()
         .map(|(s, numbers)| (s.name, s.units, s.long_name, numbers.into_pyarray(py)))

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use asperity_io::case::Case;
+use asperity_io::case::{Case, CaseErrors};
 use asperity_io::converge::{ConvergeError, ConvergeOptions};
 use asperity_io::session::{self, RunOptions};
 use asperity_io::store::Reader;
@@ -12,32 +12,29 @@ use asperity_report::page;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error;
-use crate::given::{entries, table};
+use crate::error::{Answer, Failure};
+use crate::given::{Dict, table};
 use crate::march::fill;
 use crate::wait::{detached, without_python};
 
 /// A case from its file; or from its text, whose relative paths begin at `path`.
-fn read(path: &Path, text: Option<&str>, overrides: &[String]) -> PyResult<Case> {
+fn read(path: &Path, text: Option<&str>, overrides: &[String]) -> Result<Case, CaseErrors> {
     match text {
         Some(text) => Case::parse(text, path, overrides),
         None => Case::read(path, overrides),
     }
-    .map_err(error::case)
 }
 
 /// A case given as keys, as the text of a case file.
 #[pyfunction]
-pub fn case_text(keys: Bound<'_, PyDict>) -> PyResult<String> {
-    toml::to_string(&table(&keys)?).map_err(error::file)
+pub fn case_text(keys: Dict<'_>) -> Answer<String> {
+    toml::to_string(&table(&keys)?).map_err(Failure::file)
 }
 
-/// Runs a case; `told` is called with (row, done, total) after each row. Returns a summary.
+/// Runs a case; `told` is called with (row, done, total) after each row. Returns the path of its result.
 #[pyfunction]
-#[pyo3(signature = (path, text, overrides, output, force, resume, told))]
-#[allow(clippy::too_many_arguments)]
-pub fn run<'py>(
-    py: Python<'py>,
+pub fn run(
+    py: Python<'_>,
     path: PathBuf,
     text: Option<String>,
     overrides: Vec<String>,
@@ -45,7 +42,7 @@ pub fn run<'py>(
     force: bool,
     resume: bool,
     told: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> Answer<PathBuf> {
     let case = read(&path, text.as_deref(), &overrides)?;
     let interrupt = Arc::new(AtomicBool::new(false));
     let options = RunOptions { output, force, resume, interrupt: interrupt.clone() };
@@ -67,66 +64,47 @@ pub fn run<'py>(
     };
     let ran = without_python(py, &interrupt, || session::run(&case, &options, observe))?;
     if let Some(error) = unheard {
-        return Err(error);
+        return Err(error.into());
     }
-    let summary = ran.map_err(|failed| error::run(py, failed))?;
-    let out = PyDict::new(py);
-    out.set_item("status", summary.status.as_str())?;
-    out.set_item("steps", summary.rows)?;
-    entries!(out, summary; wall_s convolutions iterations peak_memory_bytes result);
-    Ok(out)
+    Ok(ran?.result)
 }
 
 /// The answers of a case with their errors, as JSON.
 #[pyfunction]
-#[pyo3(signature = (path, text, overrides, refine))]
 pub fn converge(
     py: Python<'_>,
     path: PathBuf,
     text: Option<String>,
     overrides: Vec<String>,
     refine: bool,
-) -> PyResult<String> {
+) -> Answer<String> {
     let interrupt = Arc::new(AtomicBool::new(false));
     let options = ConvergeOptions { refine, interrupt: interrupt.clone() };
-    let of = |more: &[String]| {
-        let keys = [&overrides, more].concat();
-        match &text {
-            Some(text) => Case::parse(text, &path, &keys),
-            None => Case::read(&path, &keys),
-        }
-    };
+    let of = |more: &[String]| read(&path, text.as_deref(), &[&overrides, more].concat());
     let found =
         without_python(py, &interrupt, || asperity_io::converge::converge(&of, None, &options, &mut |_| {}))?;
     let found = found.map_err(|failed| match failed {
-        ConvergeError::Case(errors) => error::case(errors),
-        ConvergeError::Run { source, .. } => error::run(py, *source),
-        other => error::file(other),
+        ConvergeError::Case(errors) => errors.into(),
+        ConvergeError::Run { source, .. } => (*source).into(),
+        other => Failure::file(other),
     })?;
-    serde_json::to_string(&found.bars).map_err(error::file)
+    Ok(serde_json::to_string(&found.bars)?)
 }
 
 /// What a case will do, and what was found about it, as JSON.
 #[pyfunction]
-#[pyo3(signature = (path, text, overrides))]
-pub fn check(
-    py: Python<'_>,
-    path: PathBuf,
-    text: Option<String>,
-    overrides: Vec<String>,
-) -> PyResult<String> {
+pub fn check(py: Python<'_>, path: PathBuf, text: Option<String>, overrides: Vec<String>) -> Answer<String> {
     let case = read(&path, text.as_deref(), &overrides)?;
-    let examined = detached(py, || case.examine())?.map_err(error::case)?;
-    serde_json::to_string(&examined).map_err(error::file)
+    let examined = detached(py, || case.examine())??;
+    Ok(serde_json::to_string(&examined)?)
 }
 
 /// Writes the report of a stored result.
 #[pyfunction]
-#[pyo3(signature = (result, output, force, bytes))]
-pub fn report(py: Python<'_>, result: PathBuf, output: PathBuf, force: bool, bytes: usize) -> PyResult<()> {
+pub fn report(py: Python<'_>, result: PathBuf, output: PathBuf, force: bool, bytes: usize) -> Answer<()> {
     detached(py, || {
-        let reader = Reader::open(&result).map_err(error::file)?;
+        let reader = Reader::open(&result)?;
         let options = page::Options { force, bytes, ..page::Options::default() };
-        page::write(&reader, &output, &options).map_err(error::file)
+        page::write(&reader, &output, &options).map_err(Failure::file)
     })?
 }

@@ -4,16 +4,20 @@ use asperity::Grid;
 use asperity::reference::{self, Correction};
 use asperity::sliding::Direction;
 use asperity::surface::Surface;
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
-use crate::error::raised;
-use crate::given::choose_among;
+use crate::error::Answer;
+use crate::given::{Dict, List, Numbers, Plane};
 use crate::material::bodies;
 use crate::wait::detached;
 
-type Curve<'py> = Bound<'py, PyArray1<f64>>;
+/// A direction in the plane: an axis, 'x' or 'y', or an angle from x towards y \[rad\].
+#[derive(FromPyObject)]
+pub enum Along {
+    Axis(char),
+    Angle(f64),
+}
 
 /// Persson's theory for one surface, material and nominal pressure.
 #[pyclass(frozen)]
@@ -23,24 +27,23 @@ pub struct Persson {
 
 #[pymethods]
 impl Persson {
-    /// `direction` is "x", "y" or "angle", with its `angle` in rad; `keys` are `body` and `temperature`.
+    /// `keys` are `body` and `temperature`; the strain in partial contact may be `corrected` as by Yang and Persson.
     #[new]
-    #[pyo3(signature = (heights, size, keys, pressure, direction, angle, correction))]
-    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
-        heights: PyReadonlyArray2<'_, f64>,
+        heights: Plane<'_>,
         size: [f64; 2],
-        keys: Bound<'_, PyDict>,
+        keys: Dict<'_>,
         pressure: f64,
-        direction: &str,
-        angle: f64,
-        correction: &str,
-    ) -> PyResult<Self> {
-        let corrections = [("yang-persson", Correction::YangPersson), ("none", Correction::None)];
-        let correction = choose_among("correction", correction, &corrections)?;
-        let directions = [("x", Direction::X), ("y", Direction::Y), ("angle", Direction::Angle(angle))];
-        let direction = choose_among("direction", direction, &directions)?;
+        direction: Along,
+        corrected: bool,
+    ) -> Answer<Self> {
+        let correction = if corrected { Correction::YangPersson } else { Correction::None };
+        let direction = match direction {
+            Along::Axis('x') => Direction::X,
+            Along::Axis(_) => Direction::Y,
+            Along::Angle(angle) => Direction::Angle(angle),
+        };
         let creep = bodies(&keys, None)?.creep;
         let heights = heights.as_array().to_owned();
         let inner = detached(py, || {
@@ -48,17 +51,13 @@ impl Persson {
             let surface = Surface::new(Grid::new([nx, ny], size)?, heights)?;
             reference::Persson::of_surface(&surface, direction, &creep, pressure, correction)
         })?;
-        Ok(Persson { inner: inner.map_err(|error| raised(py, error))? })
+        Ok(Persson { inner: inner? })
     }
 
     /// Friction coefficients and contact fractions at velocities.
-    fn sweep<'py>(
-        &self,
-        py: Python<'py>,
-        velocities: PyReadonlyArray1<'_, f64>,
-    ) -> PyResult<(Curve<'py>, Curve<'py>)> {
+    fn sweep<'py>(&self, py: Python<'py>, velocities: List<'_>) -> Answer<(Numbers<'py>, Numbers<'py>)> {
         let velocities: Vec<f64> = velocities.as_array().to_vec();
-        let found = detached(py, || self.inner.sweep(&velocities))?.map_err(|error| raised(py, error))?;
+        let found = detached(py, || self.inner.sweep(&velocities))??;
         let (friction, contact): (Vec<f64>, Vec<f64>) =
             found.iter().map(|at| (at.friction_coefficient, at.contact_fraction)).unzip();
         Ok((friction.into_pyarray(py), contact.into_pyarray(py)))
@@ -69,9 +68,8 @@ impl Persson {
         &self,
         py: Python<'py>,
         velocity: f64,
-    ) -> PyResult<(Curve<'py>, Curve<'py>, Curve<'py>)> {
-        let curve =
-            detached(py, || self.inner.magnification(velocity))?.map_err(|error| raised(py, error))?;
+    ) -> Answer<(Numbers<'py>, Numbers<'py>, Numbers<'py>)> {
+        let curve = detached(py, || self.inner.magnification(velocity))??;
         Ok((
             curve.wave_number.into_pyarray(py),
             curve.contact_fraction.into_pyarray(py),

@@ -7,16 +7,16 @@ use std::sync::atomic::AtomicBool;
 use asperity_io::leakage;
 use asperity_io::store::{At, FieldKind, Reader, Row, SCALARS, Status, Writer};
 use asperity_io::stress::{self, StressPlan};
-use numpy::{IntoPyArray, PyArray1, PyArray2};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, file, of_path};
-use crate::given::choose;
+use crate::error::{Answer, Failure};
+use crate::given::{Dict, Map, Numbers, choose};
 use crate::wait::detached;
 
 /// The ends of the bins, and the numbers of all rows.
-type Histogram<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
+type Histogram<'py> = (Numbers<'py>, Map<'py>);
 
 /// A result on disk, read as it is asked for.
 #[pyclass(frozen)]
@@ -30,15 +30,15 @@ pub struct Store {
 impl Store {
     /// The reader. An error if another result has replaced the one that was opened: otherwise rows of one would be combined with
     /// fields of the other.
-    fn unchanged(&self) -> PyResult<&Reader> {
+    fn unchanged(&self) -> Answer<&Reader> {
         #[cfg(unix)]
         {
             use std::os::unix::fs::MetadataExt;
             let path = self.reader.path();
-            let (opened, here) = (self.directory.metadata().map_err(file)?, std::fs::metadata(path));
+            let (opened, here) = (self.directory.metadata()?, std::fs::metadata(path));
             if !here.is_ok_and(|here| (here.dev(), here.ino()) == (opened.dev(), opened.ino())) {
                 let path = path.display();
-                return Err(file(format!(
+                return Err(Failure::file(format!(
                     "{path} was replaced or removed since it was opened: open it again"
                 )));
             }
@@ -50,18 +50,18 @@ impl Store {
 #[pymethods]
 impl Store {
     #[new]
-    fn new(path: PathBuf) -> PyResult<Store> {
-        let reader = Reader::open(&path).map_err(|error| of_path(&path, error))?;
+    fn new(path: PathBuf) -> Answer<Store> {
+        let reader = Reader::open(&path).map_err(|error| Failure::of_path(&path, error))?;
         Ok(Store {
             #[cfg(unix)]
-            directory: std::fs::File::open(&path).map_err(file)?,
+            directory: std::fs::File::open(&path)?,
             reader,
         })
     }
 
     /// A number of every row; counts are integers.
-    fn series<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let numbers = self.reader.series(name).map_err(file)?;
+    fn series<'py>(&self, py: Python<'py>, name: &str) -> Answer<Bound<'py, PyAny>> {
+        let numbers = self.reader.series(name)?;
         if SCALARS.iter().any(|scalar| scalar.name == name && scalar.is_count()) {
             let counts: Vec<i64> = numbers.into_iter().map(|number| number as i64).collect();
             return Ok(counts.into_pyarray(py).into_any());
@@ -76,40 +76,39 @@ impl Store {
     }
 
     /// A histogram: the ends of its bins, and its rows.
-    fn histogram<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Histogram<'py>> {
-        let (edges, rows) = self.reader.histogram(choose("quantity", name)?).map_err(file)?;
+    fn histogram<'py>(&self, py: Python<'py>, name: &str) -> Answer<Histogram<'py>> {
+        let (edges, rows) = self.reader.histogram(choose("quantity", name)?)?;
         Ok((edges.into_pyarray(py), rows.into_pyarray(py)))
     }
 
     /// A field at a stored instant, by its number.
-    fn field<'py>(&self, py: Python<'py>, name: &str, index: usize) -> PyResult<Bound<'py, PyAny>> {
-        let kind = FieldKind::from_name(name).ok_or_else(|| file(format!("there is no field '{name}'")))?;
+    fn field<'py>(&self, py: Python<'py>, name: &str, index: usize) -> Answer<Bound<'py, PyAny>> {
+        let kind =
+            FieldKind::from_name(name).ok_or_else(|| Failure::file(format!("there is no field '{name}'")))?;
         let (reader, at) = (self.unchanged()?, At::Index(index));
         Ok(match kind {
-            FieldKind::Contact => {
-                detached(py, || reader.contact(at))?.map_err(file)?.into_pyarray(py).into_any()
-            }
-            kind => detached(py, || reader.field(kind, at))?.map_err(file)?.into_pyarray(py).into_any(),
+            FieldKind::Contact => detached(py, || reader.contact(at))??.into_pyarray(py).into_any(),
+            kind => detached(py, || reader.field(kind, at))??.into_pyarray(py).into_any(),
         })
     }
 
-    fn initial_gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn initial_gap<'py>(&self, py: Python<'py>) -> Answer<Map<'py>> {
         let reader = self.unchanged()?;
-        Ok(detached(py, || reader.initial_gap())?.map_err(file)?.into_pyarray(py))
+        Ok(detached(py, || reader.initial_gap())??.into_pyarray(py))
     }
 
     /// The stress below the surface, where it was computed: depth, and by name what each instant of the fields has, NaN where it
     /// was not computed; numbers have one dimension, profiles over depth two.
-    fn stress<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+    fn stress<'py>(&self, py: Python<'py>) -> Answer<Option<Dict<'py>>> {
         let Some(set) = self.reader.stress() else { return Ok(None) };
         let out = PyDict::new(py);
         out.set_item("depth", set.depths.clone().into_pyarray(py))?;
         for series in set.scalars() {
-            let numbers = self.reader.stress_series(series.name).map_err(file)?;
+            let numbers = self.reader.stress_series(series.name)?;
             out.set_item(series.name, numbers.into_pyarray(py))?;
         }
         for series in set.profiles() {
-            let profile = self.reader.stress_profile(series.name).map_err(file)?;
+            let profile = self.reader.stress_profile(series.name)?;
             out.set_item(series.name, profile.into_pyarray(py))?;
         }
         Ok(Some(out))
@@ -123,19 +122,14 @@ impl Store {
     }
 
     /// A stress field of the instant of number `index` at the depth of number `depth`.
-    fn stress_field<'py>(
-        &self,
-        py: Python<'py>,
-        name: &str,
-        index: usize,
-        depth: usize,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn stress_field<'py>(&self, py: Python<'py>, name: &str, index: usize, depth: usize) -> Answer<Map<'py>> {
         let fields = self.reader.stress().map(|set| set.fields()).unwrap_or_default();
         let found = fields.into_iter().find(|(_, series)| series.name == name);
-        let (quantity, _) = found.ok_or_else(|| file(format!("there is no stress field '{name}'")))?;
+        let (quantity, _) =
+            found.ok_or_else(|| Failure::file(format!("there is no stress field '{name}'")))?;
         let reader = self.unchanged()?;
         let read = || reader.stress_field(quantity, At::Index(index), depth);
-        Ok(detached(py, read)?.map_err(file)?.into_pyarray(py))
+        Ok(detached(py, read)??.into_pyarray(py))
     }
 
     /// Whether the pressure of the fluid is stored with the leaks.
@@ -171,18 +165,18 @@ impl Store {
     }
 
     /// Leaks over time by name, where they are stored; `conductance` as xx, xy, yx, yy of each time.
-    fn leaks<'py>(&self, py: Python<'py>) -> PyResult<HashMap<&'static str, Bound<'py, PyArray1<f64>>>> {
+    fn leaks<'py>(&self, py: Python<'py>) -> Answer<HashMap<&'static str, Numbers<'py>>> {
         let Some(leaks) = self.reader.leaks() else { return Ok(HashMap::new()) };
         let mut names: Vec<_> = leaks.series().into_iter().map(|series| series.name).collect();
         names.extend(self.reader.leak("conductance").is_ok().then_some("conductance"));
-        let read = |name| Ok((name, self.reader.leak(name).map_err(file)?.into_pyarray(py)));
+        let read = |name| Ok((name, self.reader.leak(name)?.into_pyarray(py)));
         names.into_iter().map(read).collect()
     }
 
     /// Pressure of the fluid at a leak, by its number.
-    fn fluid_pressure<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn fluid_pressure<'py>(&self, py: Python<'py>, index: usize) -> Answer<Map<'py>> {
         let reader = self.unchanged()?;
-        Ok(detached(py, || reader.fluid_pressure(index))?.map_err(file)?.into_pyarray(py))
+        Ok(detached(py, || reader.fluid_pressure(index))??.into_pyarray(py))
     }
 
     /// The attributes of the group, as JSON.
@@ -194,23 +188,21 @@ impl Store {
 
 /// Computes the stress and the leaks of the result at `source` again in its copy.
 #[pyfunction]
-pub fn derive_again(py: Python<'_>, source: PathBuf, copy: PathBuf) -> PyResult<()> {
+pub fn derive_again(py: Python<'_>, source: PathBuf, copy: PathBuf) -> Answer<()> {
     let never = AtomicBool::new(false);
-    let derived = || -> Result<(), String> {
-        let told = |error: &dyn std::fmt::Display| error.to_string();
-        let reader = Reader::open(&source).map_err(|error| told(&error))?;
+    detached(py, || {
+        let reader = Reader::open(&source)?;
         if let Some(set) = reader.stress() {
-            let mut writer = Writer::amend(&copy).map_err(|error| told(&error))?;
+            let mut writer = Writer::amend(&copy)?;
             let plan = StressPlan::of(set, &reader);
-            stress::evaluate(&mut writer, &plan, &never, |_, _| {}).map_err(|error| told(&error))?;
+            stress::evaluate(&mut writer, &plan, &never, |_, _| {})?;
         }
         if let Some(leak) = reader.leaks().and_then(|_| leakage::settings(&reader)) {
-            let beside = leakage::Beside::of_result(&reader).map_err(|error| told(&error))?;
-            leakage::store(&copy, &leak, beside, &never, |_, _| {}).map_err(|error| told(&error))?;
+            let beside = leakage::Beside::of_result(&reader)?;
+            leakage::store(&copy, &leak, beside, &never, |_, _| {})?;
         }
         Ok(())
-    };
-    detached(py, derived)?.map_err(file)
+    })?
 }
 
 /// How a run ended.
@@ -223,11 +215,11 @@ pub fn status_of(word: &str) -> Status {
 }
 
 /// A row of numbers by their names: the inverse of [`crate::march::fill`].
-pub fn row_of(numbers: &Bound<'_, PyDict>, axis: asperity::Axis) -> PyResult<Row> {
+pub fn row_of(numbers: &Dict<'_>, axis: asperity::Axis) -> Answer<Row> {
     let mut row = Row { coordinate: axis.at(0.0), ..Row::default() };
     for scalar in SCALARS {
         let found = numbers.get_item(scalar.name)?;
-        let found = found.ok_or_else(|| CaseError::new_err(format!("the row has no '{}'", scalar.name)))?;
+        let found = found.ok_or_else(|| Failure::case(format!("the row has no '{}'", scalar.name)))?;
         scalar.set(&mut row, found.extract()?);
     }
     Ok(row)

@@ -11,17 +11,17 @@ use asperity::stress::{
 use asperity::{Boundary, Error, Grid};
 use asperity_io::stress::ChangingRatio;
 use ndarray::{Array2, Array3};
-use numpy::{IntoPyArray, PyArray2, PyArray3, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{IntoPyArray, PyArray3, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, raised};
-use crate::given::{choose, entries, grid_of};
+use crate::error::{Answer, Failure};
+use crate::given::{Dict, Map, Plane, choose, entries, grid_of};
 use crate::wait::without_python;
 
 /// Where the Poisson's ratio changes with time, int nu(t - s) dp(s) \[Pa\] in each cell and the lateral pressure \[Pa\] that
 /// belongs to the mean pressure: [`SubsurfaceStress::set_transverse`].
-type Transverse<'py> = Option<(PyReadonlyArray2<'py, f64>, f64)>;
+type Transverse<'py> = Option<(Plane<'py>, f64)>;
 
 /// The stress below one pressure.
 #[pyclass(frozen)]
@@ -37,18 +37,16 @@ pub struct Stress {
 impl Stress {
     /// Of a pressure on a plane, or on a line, whose size is one length.
     #[new]
-    #[pyo3(signature = (pressure, size, boundary, poisson, transverse, tractions))]
     fn new(
-        py: Python<'_>,
-        pressure: PyReadonlyArray2<'_, f64>,
+        pressure: Plane<'_>,
         size: Vec<f64>,
         boundary: &str,
         poisson: f64,
         transverse: Transverse<'_>,
-        tractions: Option<[PyReadonlyArray2<'_, f64>; 2]>,
-    ) -> PyResult<Stress> {
+        tractions: Option<[Plane<'_>; 2]>,
+    ) -> Answer<Stress> {
         let boundary = choose("boundary", boundary)?;
-        let grid = grid_of(py, pressure.as_array().dim(), &size)?;
+        let grid = grid_of(pressure.as_array().dim(), &size)?;
         let pressure: Vec<f64> = pressure.as_array().iter().copied().collect();
         let planned = || -> Result<_, Error> {
             let mut stress = SubsurfaceStress::new(grid, boundary, poisson)?;
@@ -65,7 +63,7 @@ impl Stress {
             }
             Ok(Mutex::new(stress))
         };
-        let stress = planned().map_err(|error| raised(py, error))?;
+        let stress = planned()?;
         Ok(Stress { grid, boundary, pressure, stress })
     }
 
@@ -75,21 +73,16 @@ impl Stress {
     }
 
     /// Checks depths.
-    fn check_depths(&self, py: Python<'_>, depths: Vec<f64>) -> PyResult<()> {
-        check_depths(&self.grid, &depths).map_err(|error| raised(py, error))
+    fn check_depths(&self, depths: Vec<f64>) -> Answer<()> {
+        Ok(check_depths(&self.grid, &depths)?)
     }
 
     /// One field of shape (depth, x, y): a component ("xx", ...), "mises", "tresca", "tension" or "pressure".
-    fn field<'py>(
-        &self,
-        py: Python<'py>,
-        name: &str,
-        depths: Vec<f64>,
-    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    fn field<'py>(&self, py: Python<'py>, name: &str, depths: Vec<f64>) -> Answer<Bound<'py, PyArray3<f64>>> {
         let [nx, ny] = self.grid.cells();
         let mut field = vec![0.0; depths.len() * self.grid.len()];
         let quantity = StressQuantity::from_name(name)
-            .ok_or_else(|| CaseError::new_err(format!("there is no stress '{name}'")))?;
+            .ok_or_else(|| Failure::case(format!("there is no stress '{name}'")))?;
         self.solve(py, |stress| {
             let mut six = std::array::from_fn(|_| Vec::new());
             for (depth, out) in depths.iter().zip(field.chunks_mut(self.grid.len())) {
@@ -104,18 +97,17 @@ impl Stress {
             Ok(())
         })?;
         let field = Array3::from_shape_vec((depths.len(), nx, ny), field);
-        field.map(|field| field.into_pyarray(py)).map_err(|error| CaseError::new_err(error.to_string()))
+        Ok(field?.into_pyarray(py))
     }
 
     /// Maxima with their places, and the profile over depth.
-    #[pyo3(signature = (depths, threshold, rolling))]
     fn survey<'py>(
         &self,
         py: Python<'py>,
         depths: Vec<f64>,
         threshold: Option<f64>,
         rolling: Option<&str>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> Answer<Dict<'py>> {
         let rolling = rolling.map(|word| choose("rolling", word)).transpose()?;
         let options = SurveyOptions { threshold, rolling };
         let found = self.solve(py, |stress| survey(stress, &depths, &options))?;
@@ -147,9 +139,9 @@ impl Stress {
         &self,
         py: Python<'_>,
         work: impl FnOnce(&mut SubsurfaceStress) -> Result<T, Error> + Send,
-    ) -> PyResult<T> {
+    ) -> Answer<T> {
         let locked = || work(&mut self.stress.lock().unwrap_or_else(PoisonError::into_inner));
-        without_python(py, &AtomicBool::new(false), locked)?.map_err(|error| raised(py, error))
+        Ok(without_python(py, &AtomicBool::new(false), locked)??)
     }
 }
 
@@ -164,23 +156,22 @@ pub fn stress_transverse<'py>(
     stages: Vec<usize>,
     times: Vec<f64>,
     pressures: PyReadonlyArray3<'_, f64>,
-) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-    let unreadable = |error: serde_json::Error| CaseError::new_err(error.to_string());
-    let changing: ChangingRatio = serde_json::from_str(creep).map_err(unreadable)?;
-    let controls: Vec<Control> = serde_json::from_str(controls).map_err(unreadable)?;
+) -> Answer<(Map<'py>, f64)> {
+    let changing: ChangingRatio = serde_json::from_str(creep)?;
+    let controls: Vec<Control> = serde_json::from_str(controls)?;
     let (rows, nx, ny) = pressures.as_array().dim();
     if rows != times.len() {
-        return Err(CaseError::new_err(format!("{rows} pressures, but {} times", times.len())));
+        return Err(Failure::case(format!("{rows} pressures, but {} times", times.len())));
     }
-    let grid = Grid::new([nx, ny], [nx as f64, ny as f64]).map_err(|error| raised(py, error))?;
-    let mut history = changing.history(grid).map_err(|error| raised(py, error))?;
+    let grid = Grid::new([nx, ny], [nx as f64, ny as f64])?;
+    let mut history = changing.history(grid)?;
     let fields = pressures.as_array();
     for ((time, stage), pressure) in times.iter().zip(&stages).zip(fields.outer_iter()) {
         let cells: Vec<f64> = pressure.iter().copied().collect();
         let control = controls.get(*stage).copied().unwrap_or(Control::Load);
-        history.advance(*time, control, &cells).map_err(|error| raised(py, error))?;
+        history.advance(*time, control, &cells)?;
     }
     let field = Array2::from_shape_vec((nx, ny), history.transverse());
-    let field = field.map_err(|error| CaseError::new_err(error.to_string()))?;
+    let field = field?;
     Ok((field.into_pyarray(py), history.confined()))
 }

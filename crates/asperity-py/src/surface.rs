@@ -13,20 +13,18 @@ use asperity_io::case::{fragment, given};
 use asperity_io::preparation::{Step, prepare};
 use asperity_io::topography::{Format, ReadOptions, Topography, read, read_profile, write};
 use ndarray::Array2;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{self, CaseError, file, raised, topography as topography_error};
-use crate::given::{entries, grid_of, table};
+use crate::error::{self, Answer, Failure};
+use crate::given::{Dict, Map, Numbers, Plane, entries, grid_of, table};
 use crate::wait::detached;
-
-type Map<'py> = Bound<'py, PyArray2<f64>>;
 
 /// Heights of the shape or the synthetic roughness that the keys `domain` and `surface` describe; minus infinity where a shape
 /// cannot touch.
 #[pyfunction]
-pub fn heights<'py>(py: Python<'py>, keys: Bound<'_, PyDict>) -> PyResult<(Map<'py>, bool)> {
+pub fn heights<'py>(py: Python<'py>, keys: Dict<'_>) -> Answer<(Map<'py>, bool)> {
     let (grid, part, single) = given::surface(&table(&keys)?).map_err(error::alone)?;
     let made = detached(py, || match part {
         Part::SelfAffine(roughness) => roughness.heights(&grid),
@@ -38,28 +36,23 @@ pub fn heights<'py>(py: Python<'py>, keys: Bound<'_, PyDict>) -> PyResult<(Map<'
             Ok(Array2::from_shape_fn(grid.shape(), height))
         }
     })?;
-    Ok((made.map_err(|error| raised(py, error))?.into_pyarray(py), single))
+    Ok((made?.into_pyarray(py), single))
 }
 
 /// Reads a measured surface: heights, size, and what the file says.
 #[pyfunction]
-#[pyo3(signature = (path, size, height_unit, channel))]
 pub fn read_surface<'py>(
     py: Python<'py>,
     path: PathBuf,
     size: Option<Vec<f64>>,
     height_unit: Option<f64>,
     channel: Option<String>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> Answer<Dict<'py>> {
     let of_map = size.as_ref().is_some_and(|size| size.len() == 2);
     let lengths = size.as_ref().and_then(|size| Some([*size.first()?, size.get(1).copied().unwrap_or(1.0)]));
     let options = ReadOptions { size: lengths, height_unit, channel, ..ReadOptions::default() };
     let out = PyDict::new(py);
-    let profile = if of_map {
-        None
-    } else {
-        detached(py, || read_profile(&path, &options))?.map_err(topography_error)?
-    };
+    let profile = if of_map { None } else { detached(py, || read_profile(&path, &options))?? };
     if let Some(profile) = profile {
         out.set_item("format", "profile")?;
         out.set_item("size", profile.surface.grid().extents().to_vec())?;
@@ -68,11 +61,11 @@ pub fn read_surface<'py>(
         return Ok(out);
     }
     if size.is_some() && !of_map {
-        return Err(CaseError::new_err(
+        return Err(Failure::case(
             "size has one length, but the file holds no profile: it needs two, along x and y",
         ));
     }
-    let topography = detached(py, || read(&path, &options))?.map_err(topography_error)?;
+    let topography = detached(py, || read(&path, &options))??;
     out.set_item("format", topography.format.name())?;
     out.set_item("history", topography.history().collect::<Vec<_>>())?;
     entries!(out, topography; size channel channels metadata);
@@ -89,47 +82,43 @@ pub struct Heights {
 }
 
 /// A curve: places and values.
-type Curve<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+type Curve<'py> = (Numbers<'py>, Numbers<'py>);
 
 #[pymethods]
 impl Heights {
     #[new]
-    fn new(py: Python<'_>, heights: PyReadonlyArray2<'_, f64>, size: Vec<f64>) -> PyResult<Heights> {
+    fn new(heights: Plane<'_>, size: Vec<f64>) -> Answer<Heights> {
         let heights = heights.as_array().as_standard_layout().into_owned();
-        Ok(Heights { grid: grid_of(py, heights.dim(), &size)?, heights })
+        Ok(Heights { grid: grid_of(heights.dim(), &size)?, heights })
     }
 
     /// The undeformed gap, least value 0; a height of minus infinity cannot touch.
-    fn gap<'py>(&self, py: Python<'py>) -> PyResult<Map<'py>> {
+    fn gap<'py>(&self, py: Python<'py>) -> Answer<Map<'py>> {
         let part = Part::Heights { name: "surface".into(), heights: self.heights.clone() };
-        let gap = detached(py, || undeformed_gap(&self.grid, &[part]))?.map_err(|error| raised(py, error))?;
+        let gap = detached(py, || undeformed_gap(&self.grid, &[part]))??;
         Ok(gap.into_pyarray(py))
     }
 
     /// Writes the heights in the format of the path's ending, or of that name.
-    fn write(&self, py: Python<'_>, path: PathBuf, format: &str, history: Vec<String>) -> PyResult<()> {
-        let format = Format::from_str(format).map_err(|error| CaseError::new_err(error.to_string()))?;
+    fn write(&self, py: Python<'_>, path: PathBuf, format: &str, history: Vec<String>) -> Answer<()> {
+        let format = Format::from_str(format)?;
         let (heights, size) = (self.heights.clone(), self.grid.size());
         let mut topography =
             Topography { format, heights, size, channel: None, channels: vec![], metadata: vec![] };
         topography.record(history);
-        detached(py, || write(&path, &topography, format))?.map_err(file)
+        detached(py, || write(&path, &topography, format))?.map_err(Failure::file)
     }
 
     /// Steps of a preparation, each in words as `asperity surface process --op` takes them: heights, size, and one
     /// sentence per step.
-    fn process<'py>(
-        &self,
-        py: Python<'py>,
-        steps: Vec<String>,
-    ) -> PyResult<(Map<'py>, Vec<f64>, Vec<String>)> {
-        let steps = steps.iter().map(|words| fragment::step(words).map_err(CaseError::new_err));
-        let steps = steps.collect::<PyResult<Vec<Step>>>()?;
-        let surface = self.surface(py)?;
+    fn process<'py>(&self, py: Python<'py>, steps: Vec<String>) -> Answer<(Map<'py>, Vec<f64>, Vec<String>)> {
+        let steps = steps.iter().map(|words| fragment::step(words));
+        let steps = steps.collect::<Result<Vec<Step>, String>>()?;
+        let surface = self.surface()?;
         let prepared = detached(py, || prepare(surface, &steps, None))?.map_err(|error| {
             // There is no domain here.
             let reason = error.to_string();
-            CaseError::new_err(
+            Failure::case(
                 reason.replace("as `cells` of the step or as `domain.cells` of the case", "cells=(nx, ny)"),
             )
         })?;
@@ -138,13 +127,7 @@ impl Heights {
     }
 
     /// Statistics as `asperity surface info` prints them; `band` limits the fit of the Hurst exponent.
-    #[pyo3(signature = (periodic, band))]
-    fn describe<'py>(
-        &self,
-        py: Python<'py>,
-        periodic: bool,
-        band: Option<[f64; 2]>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    fn describe<'py>(&self, py: Python<'py>, periodic: bool, band: Option<[f64; 2]>) -> Answer<Dict<'py>> {
         let (summary, undefined) =
             self.found(py, |surface| Ok((Summary::of(&surface, extent(periodic))?, surface.undefined())))?;
         let out = PyDict::new(py);
@@ -161,7 +144,7 @@ impl Heights {
             out.set_item("lay_angle", waves.lay.angle)?;
             let banded =
                 band.map(|[longest, shortest]| SelfAffineFit::of(&waves.spectrum, longest, shortest));
-            if let Some(fit) = banded.transpose().map_err(|error| raised(py, error))?.or(waves.fit) {
+            if let Some(fit) = banded.transpose()?.or(waves.fit) {
                 entries!(out, fit; hurst roll_off plateau);
                 out.set_item("hurst_error", fit.error)?;
                 out.set_item("spectrum_misfit", fit.misfit)?;
@@ -173,8 +156,7 @@ impl Heights {
     }
 
     /// Parameters of a profile, less its Gaussian mean line where a cut-off is given.
-    #[pyo3(signature = (cutoff))]
-    fn profile_parameters<'py>(&self, py: Python<'py>, cutoff: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
+    fn profile_parameters<'py>(&self, py: Python<'py>, cutoff: Option<f64>) -> Answer<Dict<'py>> {
         let spacing = self.grid.spacing()[0];
         let found = self.found(py, |surface| {
             let heights: Vec<f64> = surface.into_heights().into_iter().collect();
@@ -187,19 +169,19 @@ impl Heights {
     }
 
     /// Heights and the share of points at or above each.
-    fn bearing_curve<'py>(&self, py: Python<'py>, levels: usize) -> PyResult<Curve<'py>> {
+    fn bearing_curve<'py>(&self, py: Python<'py>, levels: usize) -> Answer<Curve<'py>> {
         let curve = self.found(py, |surface| BearingCurve::of(&surface, levels))?;
         Ok((curve.heights.into_pyarray(py), curve.share.into_pyarray(py)))
     }
 
     /// Middles of bins of height and the density of points in them.
-    fn height_distribution<'py>(&self, py: Python<'py>, bins: usize) -> PyResult<Curve<'py>> {
+    fn height_distribution<'py>(&self, py: Python<'py>, bins: usize) -> Answer<Curve<'py>> {
         let (at, density) = self.found(py, |surface| height_distribution(&surface, bins))?;
         Ok((at.into_pyarray(py), density.into_pyarray(py)))
     }
 
     /// Wavenumbers and radially averaged power spectrum.
-    fn power_spectrum<'py>(&self, py: Python<'py>, per_decade: u32, periodic: bool) -> PyResult<Curve<'py>> {
+    fn power_spectrum<'py>(&self, py: Python<'py>, per_decade: u32, periodic: bool) -> Answer<Curve<'py>> {
         let rings = if per_decade == 0 { Rings::Linear } else { Rings::PerDecade(per_decade) };
         let spectrum =
             self.found(py, |surface| PowerSpectrum::within(&surface, extent(periodic))?.radial(rings))?;
@@ -211,7 +193,7 @@ impl Heights {
         &self,
         py: Python<'py>,
         periodic: bool,
-    ) -> PyResult<(Map<'py>, Option<f64>, Option<f64>)> {
+    ) -> Answer<(Map<'py>, Option<f64>, Option<f64>)> {
         let (values, length, aspect) = self.found(py, |surface| {
             let found = Autocorrelation::of(&surface, extent(periodic))?;
             let (length, aspect) = (found.length(), found.texture_aspect_ratio());
@@ -222,8 +204,8 @@ impl Heights {
 }
 
 impl Heights {
-    fn surface(&self, py: Python<'_>) -> PyResult<Surface> {
-        Surface::new(self.grid, self.heights.clone()).map_err(|error| raised(py, error))
+    fn surface(&self) -> Answer<Surface> {
+        Ok(Surface::new(self.grid, self.heights.clone())?)
     }
 
     /// What `find` finds of the surface while other threads of Python run.
@@ -231,9 +213,9 @@ impl Heights {
         &self,
         py: Python<'_>,
         find: impl FnOnce(Surface) -> asperity::Result<T> + Send,
-    ) -> PyResult<T> {
-        let surface = self.surface(py)?;
-        detached(py, || find(surface))?.map_err(|error| raised(py, error))
+    ) -> Answer<T> {
+        let surface = self.surface()?;
+        Ok(detached(py, || find(surface))??)
     }
 }
 

@@ -12,7 +12,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::error::CaseError;
+use crate::error::{Answer, Failure};
 
 /// How often Python is asked whether somebody pressed Ctrl-C.
 const PAUSE: Duration = Duration::from_millis(50);
@@ -60,10 +60,9 @@ fn pool() -> PyResult<Arc<ThreadPool>> {
 
 /// Sets the number of threads of this process; None: as many as there are processors.
 #[pyfunction]
-#[pyo3(signature = (number))]
-pub fn set_threads(number: Option<usize>) -> PyResult<()> {
+pub fn set_threads(number: Option<usize>) -> Answer<()> {
     if let Some(number) = number.filter(|n| *n == 0 || *n > MOST_THREADS) {
-        return Err(CaseError::new_err(format!(
+        return Err(Failure::case(format!(
             "number of threads is {number}, but must be from 1 to {MOST_THREADS}"
         )));
     }

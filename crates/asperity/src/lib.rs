@@ -49,7 +49,6 @@ pub mod operator;
 pub mod process;
 pub mod quantities;
 pub mod reference;
-mod roots;
 pub mod seal;
 mod set;
 pub mod simulation;

@@ -1,6 +1,7 @@
 """The compiled part."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Literal, final
 
 import numpy as np
@@ -160,9 +161,8 @@ class Persson:
         size: list[float],
         keys: _Keys,
         pressure: float,
-        direction: str,
-        angle: float,
-        correction: str,
+        direction: str | float,
+        corrected: bool,
     ) -> Persson: ...
     def sweep(self, velocities: _Floats) -> tuple[_Floats, _Floats]: ...
     def magnification(self, velocity: float) -> tuple[_Floats, _Floats, _Floats]: ...
@@ -233,7 +233,7 @@ def run(
     force: bool,
     resume: bool,
     told: Callable[[dict[str, Any], int, int], object] | None,
-) -> dict[str, Any]: ...
+) -> Path: ...
 def fit(
     kind: str, sweeps: list[tuple[float | None, _Floats, list[_Floats]]], options: dict[str, Any]
 ) -> dict[str, Any]: ...

@@ -230,7 +230,6 @@ def fit_indentation(
         raise CaseError(f"{what} goes with a model of an elastic sphere: give model, one of {', '.join(get_args(Model))}")
     times, loads, depths = columns(time=time, load=load, depth=depth)
     what, shape = one_of({"radius": radius, "slope": slope}, "give")
-    profile = "sphere" if what == "radius" else "cone"
     most = None if terms is None else count("terms", terms, 0)
     choice("interface", interface, Interface)
     if thickness is None and interface != "bonded":
@@ -240,7 +239,7 @@ def fit_indentation(
     spring, of_spring = cantilever(spring_constant, spring_constant_uncertainty, sensitivity_uncertainty)
     size = None if radius is None else number("radius", radius)
     shares = share("radius", radius_uncertainty, size), share("thickness", thickness_uncertainty, thin and thin[0]), *of_spring
-    found = _core.fit_indentation(times, loads, depths, profile, number(what, shape), *how, shares, spring)
+    found = _core.fit_indentation(times, loads, depths, what, number(what, shape), *how, shares, spring)
     # E = E* (1 - nu^2)
     factor = 1.0 - nu**2
     rows = np.asarray(found["rows"], dtype=np.int64)

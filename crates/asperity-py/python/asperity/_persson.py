@@ -105,11 +105,9 @@ def persson_friction(
     speeds = line("velocities", np.atleast_1d(array("velocities", velocities)))
     if speeds.size == 0:
         raise CaseError("velocities is empty, but must hold one velocity at least, in m/s")
-    along = direction_of(direction)
-    word, turned = (along, 0.0) if isinstance(along, str) else ("angle", along)
     keys: dict[str, Any] = {"body": [material._keys]}
     if temperature is not None:
         keys["temperature"] = {"history": {"kind": "constant", "value": number("temperature", temperature)}}
-    how = choice("correction", correction, Correction)
-    theory = _core.Persson(shape.heights, list(shape.size), keys, number("pressure", pressure), word, turned, how)
+    corrected = choice("correction", correction, Correction) != "none"
+    theory = _core.Persson(shape.heights, list(shape.size), keys, number("pressure", pressure), direction_of(direction), corrected)
     return PerssonFriction(theory, speeds)

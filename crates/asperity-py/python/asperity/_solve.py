@@ -359,7 +359,7 @@ def run(
             on_row(row, done, total)
 
     try:
-        summary = _core.run(*source(case), overrides(set), path_of("output", output), force, resume, told)
+        stored = _core.run(*source(case), overrides(set), path_of("output", output), force, resume, told)
     except BaseException as error:
         if output is not None and teller is not None:
             with contextlib.suppress(OSError, CaseError):
@@ -368,7 +368,7 @@ def run(
     finally:
         if teller is not None:
             teller.end()
-    result = open(summary["result"])
+    result = open(stored)
     warn(result.findings)
     return result
 

@@ -1,7 +1,7 @@
 //! The temperature at which a material sees its own friction: a fixed point x = T(x).
 
 use crate::error::{Error, Result};
-use crate::roots::bisected;
+use crate::numbers::bisect;
 
 /// Rounds, at most: two to halve the distance between too cold and too warm. Smooth friction needs two to ten.
 const ROUNDS: usize = 40;
@@ -46,7 +46,7 @@ pub(crate) fn settle(velocity: f64, start: f64, mut rise_at: impl FnMut(f64) -> 
             true => 0.5 * (cold + warm),
             false => {
                 let most = warm.min(2.0 * x.max(rise));
-                bisected([cold, most], 60, |y| rise * libm::exp(slope * (y - x)) - y > 0.0)[1]
+                bisect([cold, most], 60, |y| rise * libm::exp(slope * (y - x)) - y > 0.0)[1]
             }
         };
     }

@@ -5,7 +5,7 @@
 //! ```
 
 use super::{Conductance, Profile};
-use crate::roots::bisected;
+use crate::numbers::bisect;
 
 /// When a seal opens.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ fn falls(profile: &Profile, start: f64, level: f64) -> Option<f64> {
     for inlet in inlets.windows(2).flat_map(between) {
         if excess(inlet)? <= 0.0 {
             let [opens, _] =
-                bisected([low, inlet], 60, |inlet| excess(inlet).is_some_and(|excess| excess > 0.0));
+                bisect([low, inlet], 60, |inlet| excess(inlet).is_some_and(|excess| excess > 0.0));
             return Some(opens);
         }
         low = inlet;

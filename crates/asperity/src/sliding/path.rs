@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result, require};
 use crate::load::History;
-use crate::roots::bisected;
+use crate::numbers::bisect;
 
 /// Where the contact is over time.
 #[derive(Clone, Debug, PartialEq)]
@@ -202,7 +202,7 @@ impl Path {
                 turns.push(a);
             }
             if sign * just(b, -1.0, piece) < 0.0 {
-                let [a, b] = bisected([a, b], 80, |t| self.velocity(t) * sign > 0.0);
+                let [a, b] = bisect([a, b], 80, |t| self.velocity(t) * sign > 0.0);
                 turns.push(0.5 * (a + b));
             }
         }
@@ -212,7 +212,7 @@ impl Path {
     /// The instant in a piece without turns at which the position is `x`.
     fn reaches(&self, x: f64, from: f64, to: f64) -> f64 {
         let rising = self.position(to) > self.position(from);
-        let [from, to] = bisected([from, to], 80, |t| (self.position(t) < x) == rising);
+        let [from, to] = bisect([from, to], 80, |t| (self.position(t) < x) == rising);
         0.5 * (from + to)
     }
 }

@@ -23,8 +23,8 @@ use super::snapshot::{Loader, Saver, saved};
 use super::step_size::StepSizeControl;
 use crate::error::{Error, Result};
 use crate::load::{Control, Event, History, Stage};
+use crate::numbers::bisect;
 use crate::quantities::RowNumber;
-use crate::roots::bisected;
 use crate::simulation::Simulation;
 use crate::time::{Instant, SAME, SHORTEST, Span, Stop, TimeGrid, agree, stops};
 
@@ -274,7 +274,7 @@ impl Schedule {
             return rest;
         }
         // The temperature goes one way between two stops.
-        bisected([0.0, rest], 40, |dt| most(dt) <= drift)[1]
+        bisect([0.0, rest], 40, |dt| most(dt) <= drift)[1]
     }
 
     /// What to try after an attempt that found no equilibrium: the longest step with one is found to a thousandth. `None` where steps

@@ -9,7 +9,7 @@ use crate::error::Answer;
 /// What a number in the unit `text` is times in the SI unit `wanted`; None where the two differ in dimension.
 #[pyfunction]
 pub fn unit_factor(text: &str, wanted: &str) -> Answer<Option<f64>> {
-    let [given, wanted] = [text, wanted].map(|text| Unit::parse(text));
+    let [given, wanted] = [text, wanted].map(Unit::parse);
     let (given, wanted) = (given?, wanted?);
     let scale = |unit: &Unit| (unit.exponent, unit.numerator / unit.denominator);
     let ((exponent, factor), (base, of)) = (scale(&given), scale(&wanted));

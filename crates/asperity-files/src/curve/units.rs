@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use asperity::finding::celsius_meant;
 
 use super::role::{self, Role};
+use crate::quantity::range::Finite;
 use crate::quantity::unit::Unit;
 use crate::quantity::{Dimension, Prescribed, QuantityError, Temperature, dimension};
 
@@ -130,7 +131,7 @@ pub(super) fn kelvin(value: f64, unit: &str) -> Result<f64, String> {
 /// One unit in the SI unit of its dimension.
 fn scale(si: &str, unit: &str) -> Result<f64, String> {
     let one = Prescribed::Text(format!("1 {unit}"));
-    dimension::resolve(si, &one).map_err(|error| error.help.unwrap_or(error.expected))
+    dimension::resolve::<Finite>(si, &one).map_err(|error| error.help.unwrap_or(error.expected))
 }
 
 /// Radians of one unit of a phase angle, which is at most a right angle.

@@ -351,7 +351,7 @@ impl Range {
         let velocity = |k: usize| match (k, self.spacing) {
             (0, _) => from,
             (k, _) if k + 1 == count => to,
-            (k, RangeSpacing::Log) => from * (to / from).powf(share(k)),
+            (k, RangeSpacing::Log) => from * libm::pow(to / from, share(k)),
             (k, RangeSpacing::Linear) => from + (to - from) * share(k),
         };
         (0..count).map(velocity).collect()

@@ -138,7 +138,7 @@ fn sweep(item: &str, from: &str, to: &str, count: &str, log: bool) -> Result<Vec
     let at = |n: usize| {
         let share = n as f64 / (count - 1) as f64;
         match log {
-            true => first.value * (end / first.value).powf(share),
+            true => first.value * libm::pow(end / first.value, share),
             false => first.value + share * (end - first.value),
         }
     };

@@ -24,7 +24,7 @@ impl CreepTable {
     /// From increasing times \[s\] (0 may be the first) and compliances \[1/Pa\] that never decrease.
     ///
     /// # Errors
-    /// [`Error::Invalid`] naming the point: fewer than two points, times not in order or repeated, or a compliance that is
+    /// [`Error::Invalid`](crate::Error::Invalid) naming the point: fewer than two points, times not in order or repeated, or a compliance that is
     /// negative, not finite, or smaller than the previous one (noise must be smoothed or fitted first).
     pub fn new(times: &[f64], compliances: &[f64]) -> Result<Self> {
         check_abscissae(Kind::CREEP, times, true)?;

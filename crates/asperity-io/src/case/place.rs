@@ -10,6 +10,7 @@ use ndarray::Array2;
 use super::error::CaseError;
 use super::text::{MOST_ERRORS, Spot, Text, in_order, join};
 use super::words;
+use crate::digest::md5;
 use crate::quantity::QuantityError;
 use crate::resources::{open, why};
 use crate::{Code, choice};
@@ -229,6 +230,13 @@ impl<'c> Place<'c> {
     /// Keeps the MD5 of a file of numbers that the case names.
     pub fn note_file(&self, path: &str, digest: String) {
         self.checks.files.borrow_mut().push((path.to_owned(), digest));
+    }
+
+    /// Keeps the MD5 of a file that its reader does not give; one that cannot be read is told by its reader.
+    pub fn note_read(&self, path: &str, full: &Path) {
+        if let Ok(bytes) = std::fs::read(full) {
+            self.note_file(path, md5(&bytes));
+        }
     }
 
     /// The values, where each is larger than the one before.

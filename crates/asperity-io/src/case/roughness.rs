@@ -140,6 +140,7 @@ impl Distribution {
             (Some(path), None, None) => {
                 let at = at.key("path");
                 let full = at.file(path)?;
+                at.note_read(path, &full);
                 // Mean and rms come from the roughness: neither unit nor size matters.
                 let options =
                     ReadOptions { size: Some([1.0, 1.0]), height_unit: Some(1.0), ..ReadOptions::default() };

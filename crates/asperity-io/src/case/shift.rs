@@ -93,7 +93,9 @@ impl Shift {
                     None => material::Shift::Table { points: points.iter().flatten().map(point).collect() },
                     Some(path) => {
                         let at = at.key("path");
-                        let read = curve::read_shift_table(&at.file(path)?);
+                        let full = at.file(path)?;
+                        at.note_read(path, &full);
+                        let read = curve::read_shift_table(&full);
                         at.data(read, "a table of temperatures and shift factors")?
                     }
                 }

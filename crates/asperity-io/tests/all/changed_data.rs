@@ -21,7 +21,7 @@ poisson = 0.5
 model = "relaxation-table"
 path = "test.csv"
 modulus = "young"
-shift = { model = "arrhenius", energy = "120 kJ/mol", reference = "20 °C" }
+shift = { model = "table", path = "shift.csv" }
 [temperature]
 history = { kind = "file", path = "warm.csv" }
 [load]
@@ -46,6 +46,7 @@ fn a_changed_file_of_a_case_is_noticed_by_resume() {
     let test = "t [s], E [MPa]\n0.1, 3\n1, 2\n10, 1.5\n100, 1.2\n1000, 1.1\n";
     let files = [
         ("test.csv", test),
+        ("shift.csv", "T [°C], log aT\n10, 1\n20, 0\n40, -1\n"),
         ("warm.csv", "0 s, 20 °C\n10 s, 30 °C\n"),
         ("load.csv", "0, 0\n10, 0.1\n"),
         ("slide.csv", "0 s, 0.1 m/s\n10 s, 0.2 m/s\n"),

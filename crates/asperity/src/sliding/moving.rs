@@ -49,8 +49,12 @@ impl MovingGap {
         let middle = if boundary == Boundary::Free { Some(centre) } else { middle };
         let stays = || parts.iter().filter(|(_, moves)| !moves).map(|(part, _)| part);
         let still = gap_of(grid, stays())?;
-        let shapes_stay =
-            is_uneven(&gap_of(grid, stays().filter(|part| matches!(part, Part::Shape { .. })))?);
+        // A wave has no middle, as roughness.
+        let has_middle =
+            |part: &&Part| matches!(part, Part::Shape { shape, .. } if !matches!(shape, Shape::Wave { .. }));
+        let shapes_stay = is_uneven(&gap_of(grid, stays().filter(has_middle))?);
+        let mut goes = parts.iter().filter(|(_, moves)| *moves).map(|(part, _)| part);
+        let follows = goes.clone().any(|part| has_middle(&part)) || goes.next().is_some() && !shapes_stay;
         let [x0, y0] = grid.centre();
         let (mut shapes, mut rough) = (vec![], vec![]);
         for part in parts.iter().filter(|(_, moves)| *moves).map(|(part, _)| part) {
@@ -60,7 +64,6 @@ impl MovingGap {
             }
         }
         let heights = if rough.is_empty() { None } else { Some(-gap_of(grid, rough)?) };
-        let follows = !shapes.is_empty() || heights.is_some() && !shapes_stay;
         let heights = heights.map(|z| {
             let [x, y] = derivatives(grid, boundary, &z);
             [z, x, y]
@@ -98,7 +101,7 @@ impl MovingGap {
         [!self.shapes.is_empty() || self.heights.is_some(), is_uneven(&self.still)]
     }
 
-    /// Whether the contact goes with the moving parts: where a shape moves, or where parts move and no shape stays.
+    /// Whether the contact goes with the moving parts: where a shape with a middle moves, or where parts move and no such shape stays.
     pub fn follows(&self) -> bool {
         self.follows
     }
@@ -259,6 +262,20 @@ mod tests {
         let parts = [(Part::Heights { name: "punch".into(), heights }, true)];
         let refused = MovingGap::new(&grid, Boundary::Free, &parts).unwrap_err().to_string();
         assert!(refused.contains("flat punch"), "{refused}");
+    }
+
+    #[test]
+    fn the_contact_goes_with_a_shape_before_roughness_and_with_roughness_before_nothing() {
+        let grid = Grid::new([8, 8], [1.0, 1.0]).unwrap();
+        let shape = |shape| Part::Shape { shape, center: [0.0, 0.0] };
+        let ball = || shape(Shape::Sphere { radius: 1.0 });
+        let flat = || shape(Shape::Sphere { radius: f64::INFINITY });
+        let wave = || shape(Shape::Wave { amplitude: 0.1, wavelength: [0.5, 0.5] });
+        let follows =
+            |parts: &[(Part, bool)]| MovingGap::new(&grid, Boundary::Periodic, parts).unwrap().follows();
+        assert!(follows(&[(ball(), true), (wave(), false)]) && follows(&[(wave(), true)]));
+        assert!(follows(&[(flat(), false), (wave(), true)]));
+        assert!(!follows(&[(ball(), false), (wave(), true)]) && !follows(&[(ball(), false)]));
     }
 
     #[test]

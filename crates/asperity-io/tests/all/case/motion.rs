@@ -87,3 +87,30 @@ fn what_is_wrong_with_a_motion_is_named() {
         &[],
     );
 }
+
+#[test]
+fn what_does_not_go_with_a_moving_contact_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("map.txt"), "1e6 1e6 1e6 1e6\n".repeat(4)).unwrap();
+    let case = |boundary: &str, slider: &str, rest: &str| {
+        let body = "poisson = 0.5, material = { model = \"elastic\", shear = \"1 MPa\" }";
+        let text = format!(
+            r#"domain = {{ cells = [4, 4], size = ["1 mm", "1 mm"], boundary = "{boundary}" }}
+surface = [{{ kind = "sphere", radius = "5 mm" }}]
+body = [{{ {body} }}, {{ {body}{slider} }}]
+load = {{ control = "load", history = {{ kind = "step", value = "1 mN" }} }}
+time = {{ end = "1 s", steps = 2 }}
+motion = {{ velocity = "0.1 mm/s" }}
+{rest}"#
+        );
+        Case::parse(&text, directory.path(), &[]).map_err(|errors| errors.errors[0].key.clone())
+    };
+    let leak =
+        |more: &str| format!("leakage = {{ viscosity = \"1 mPa s\", pressure_drop = \"1 bar\"{more} }}");
+    let slow = case("periodic", "", &leak("")).unwrap();
+    assert!(slow.findings.iter().any(|finding| finding.code == "leak-in-motion"), "{:?}", slow.findings);
+    assert_eq!(case("free", "", &leak("")).unwrap_err(), "leakage");
+    assert_eq!(case("periodic", "", &leak(", opening = true")).unwrap_err(), "leakage.opening");
+    let map = ", hardness_file = { path = \"map.txt\" }";
+    assert_eq!(case("periodic", map, "").unwrap_err(), "body[1].hardness_file");
+}

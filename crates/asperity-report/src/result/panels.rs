@@ -115,8 +115,17 @@ fn says_nothing(reader: &Reader, panel: &RowPanel) -> Result<bool, StoreError> {
     Ok(true)
 }
 
+fn has_no_value(reader: &Reader, panel: &RowPanel) -> Result<bool, StoreError> {
+    for (_, name) in &panel.lines {
+        if reader.series(name)?.iter().any(|value| !value.is_nan()) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
 /// The quantities with one number per row: one panel for all energies, one for the areas of spots, one for each other. Of those that
-/// nobody has asked for, because every row with a fluid, an attraction or wear has them, the panels that say something.
+/// nobody has asked for, because every row with a fluid, an attraction, wear or a motion has them, the panels that say something.
 pub(crate) fn of_quantities(reader: &Reader) -> Result<Vec<RowPanel>, StoreError> {
     let mut panels: Vec<RowPanel> = vec![];
     let grid = &reader.header().grid;
@@ -131,11 +140,15 @@ pub(crate) fn of_quantities(reader: &Reader) -> Result<Vec<RowPanel>, StoreError
             (Some(panel), None) => add(&mut panels, panel, quantity.name(), quantity.states()),
         }
     }
-    let is_given =
-        |name: &str| Quantity::from_name(name).is_some_and(|own| own.is_of_traction() || own.is_of_wear());
     let mut silent = vec![];
     for panel in &panels {
-        if panel.lines.iter().all(|(_, name)| is_given(name)) && says_nothing(reader, panel)? {
+        let all = |is: fn(Quantity) -> bool| {
+            panel.lines.iter().all(|(_, name)| Quantity::from_name(name).is_some_and(is))
+        };
+        let is_given = all(|own| own.is_of_traction() || own.is_of_wear());
+        if is_given && says_nothing(reader, panel)?
+            || all(Quantity::is_of_motion) && has_no_value(reader, panel)?
+        {
             silent.push(panel.title);
         }
     }

@@ -35,6 +35,7 @@ pub(super) fn band() -> Result<Vec<Check>> {
             hysteresis: false,
             heated_for: None,
             feedback: None,
+            on_track: false,
         };
         let simulation =
             Simulation { flash: Some(Arc::new(flash)), ..Simulation::new(grid, Array2::zeros((cells, 1))) };

@@ -117,6 +117,7 @@ impl Flash {
             partition: self.partition,
             friction: self.friction.map_or(0.0, Number::get),
             hysteresis: self.hysteresis,
+            on_track: !motion.moves.contains(&true),
             heated_for: self.heated_for.map(Time::get),
             feedback,
         })

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use asperity::finding::{Finding, LeakDiagnostics, LeakState};
+use asperity::finding::{self, Finding, LeakDiagnostics, LeakState};
 use asperity::leakage::Sides;
 use serde_json::Value;
 use thiserror::Error;
@@ -219,5 +219,11 @@ fn evaluate(
         table.push(time, step, &state, resolved);
         observe(done + 1, instants.len());
     }
-    Ok(LeakHistory { leak: leak.clone(), table, findings: diagnostics.findings(), size: grid.size() })
+    let mut findings = diagnostics.findings();
+    // The findings of a case with [leakage] have it already.
+    let moving = finding::leak_in_motion();
+    if reader.header().moves_in_time() && reader.findings().iter().all(|found| found.code != moving.code) {
+        findings.push(moving);
+    }
+    Ok(LeakHistory { leak: leak.clone(), table, findings, size: grid.size() })
 }

@@ -161,7 +161,9 @@ fn is_of_its_row(reader: &Reader, index: usize, row: &Row) -> Result<()> {
                 }
                 let finite = || gap.iter().filter(|gap| gap.is_finite());
                 let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
-                let size = finite().fold(row.approach.abs(), |most, gap| most.max(gap.abs()));
+                let initial = reader.initial_gap()?;
+                let open = initial.iter().filter(|gap| gap.is_finite());
+                let size = finite().chain(open).fold(row.approach.abs(), |most, gap| most.max(gap.abs()));
                 (mean - row.mean_gap).abs() <= OF_GAP * size
             }
             FieldKind::Contact => {

@@ -5,7 +5,7 @@ use super::plausible::exceeded;
 use super::words::{digits, rows, si};
 use super::worst::{Watch, Worst, extend};
 use super::{FLASH_STATES, FLASH_STEADY, FLASH_WARM, Finding, UNLIKELY_UNIT};
-use crate::flash::{Flash, Partition};
+use crate::flash::Partition;
 use crate::numbers::bisect;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
@@ -126,7 +126,7 @@ impl Watch for Rows {
         }
         let width = if simulation.grid.is_line() { row.contact_area } else { row.contact_area.sqrt() };
         let speed = path.velocity(time).abs();
-        let still = Flash::still(simulation);
+        let still = flash.still();
         let only_other = flash.partition == [Partition::Track, Partition::Slider][still];
         let (way, duration, [lengths, times]) = match flash.heated_for {
             Some(heated) => (speed * heated, heated, [1.0; 2]),
@@ -178,7 +178,7 @@ impl Watch for Rows {
         };
         let early = self.early.map(|at| {
             let why = "they are upper bounds: the bodies have not slid for as long as the temperatures need, over a few contact lengths and for \
-                       the width of the contact squared over the diffusivity of the slider";
+                       the width of the contact squared over the diffusivity of the body in which the heat stands still";
             Finding::warning(FLASH_STEADY, self.length, f64::NAN, words(at, why)).at(at).as_note()
         });
         let uneven = self.uneven.map(|at| {

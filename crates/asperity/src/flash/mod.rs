@@ -30,7 +30,6 @@ pub use solver::{FlashRow, FlashSolver, Rise, Rubbing};
 use crate::error::{Of, Result, positive, require};
 use crate::grid::Boundary;
 use crate::material::Shift;
-use crate::process;
 use crate::simulation::Simulation;
 
 /// How a body conducts heat.
@@ -94,6 +93,8 @@ pub struct Flash {
     pub heated_for: Option<f64>,
     /// Whether the material of a steady state sees its own temperature.
     pub feedback: Option<Feedback>,
+    /// Whether no surface moves: the source then stands still in the track and moves over the slider.
+    pub on_track: bool,
 }
 
 impl Flash {
@@ -119,7 +120,7 @@ impl Flash {
             .of("heated_for")?;
         }
         let is_open = simulation.boundary == Boundary::Free;
-        let still = Flash::still(simulation);
+        let still = self.still();
         let [body, other] = if still == 0 { ["slider", "track"] } else { ["track", "slider"] };
         require(
             !(is_open && simulation.grid.is_line() && self.heats()[still]),
@@ -150,10 +151,9 @@ impl Flash {
         [self.partition != Partition::Track, self.partition != Partition::Slider]
     }
 
-    /// The body in which the source stands still: 0, the slider, which carries the surfaces that move, or 1, the track, where none moves.
-    pub(crate) fn still(simulation: &Simulation) -> usize {
-        let nothing_moves = |motion: &process::Motion| !motion.gap.moves_and_stands()[0];
-        usize::from(simulation.motion.as_ref().is_some_and(nothing_moves))
+    /// The body in which the source stands still: 0, the slider, or 1, the track.
+    pub(crate) fn still(&self) -> usize {
+        usize::from(self.on_track)
     }
 }
 

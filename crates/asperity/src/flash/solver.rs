@@ -75,8 +75,6 @@ pub struct FlashSolver {
     flash: Flash,
     cell: f64,
     conduction: Conduction,
-    /// The body in which the source stands still.
-    still: usize,
     /// Of slider and track, with the velocity of the source over it; `None` of one that takes no heat.
     spectra: [Option<(f64, Spectrum)>; 2],
     /// The temperatures found last.
@@ -90,7 +88,6 @@ impl FlashSolver {
         let conduction = Conduction::new(grid, simulation.boundary, direction, flash.heated_for);
         let cold = || vec![0.0; grid.len()];
         Some(FlashSolver {
-            still: Flash::still(simulation),
             spectra: [None, None],
             cell: grid.cell_area(),
             conduction,
@@ -118,7 +115,7 @@ impl FlashSolver {
         }
         let contact: Vec<usize> = (0..pressure.len()).filter(|cell| pressure[*cell] > 0.0).collect();
         // Of the source over slider and track.
-        let velocities = if self.still == 0 { [0.0, velocity] } else { [-velocity, 0.0] };
+        let velocities = if self.flash.still() == 0 { [0.0, velocity] } else { [-velocity, 0.0] };
         for (k, velocity) in velocities.into_iter().enumerate() {
             if self.flash.heats()[k] && self.spectra[k].as_ref().is_none_or(|(of, _)| *of != velocity) {
                 let spectrum = self.conduction.spectrum(self.flash.bodies[k], velocity);

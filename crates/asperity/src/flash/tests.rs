@@ -8,10 +8,7 @@ use ndarray::Array2;
 use super::conduction::Conduction;
 use super::*;
 use crate::grid::Grid;
-use crate::load::History;
-use crate::process::Motion;
-use crate::sliding::{Direction, MovingGap, Path};
-use crate::surface::{Part, Shape};
+use crate::sliding::Direction;
 
 const BODY: Conductor = Conductor { conductivity: 2.0, diffusivity: 0.5 };
 
@@ -201,7 +198,7 @@ fn warmed(flash: Flash, boundary: Boundary, velocity: f64) -> FlashSolver {
 fn flash(partition: Partition, heated_for: Option<f64>) -> Flash {
     let other = Conductor { conductivity: 0.3, diffusivity: 2.0 };
     let bodies = [other, BODY];
-    Flash { bodies, partition, friction: 0.4, hysteresis: false, heated_for, feedback: None }
+    Flash { bodies, partition, friction: 0.4, hysteresis: false, heated_for, feedback: None, on_track: false }
 }
 
 #[test]
@@ -247,22 +244,9 @@ fn nothing_is_warm_at_rest_and_the_motion_mirrors() {
 
 #[test]
 fn where_no_surface_moves_the_source_stands_still_in_the_track() {
-    let (grid, pressure) = patch();
     let rise_of = |moves: bool, bodies: [Conductor; 2], velocity: f64| {
-        let part = Part::Shape { shape: Shape::Sphere { radius: 1e4 }, center: [0.0, 0.0] };
-        let motion = Motion {
-            path: Path::of_velocity(History::Step { value: velocity }, 0.0).unwrap(),
-            direction: Direction::X,
-            gap: MovingGap::new(&grid, Boundary::Free, &[(part, moves)]).unwrap(),
-            cells_per_step: 1.0,
-            shear_stress: None,
-        };
-        let flash = Some(Arc::new(Flash { bodies, ..flash(Partition::Mean, None) }));
-        let simulation =
-            Simulation { flash, motion: Some(motion), ..Simulation::new(grid, Array2::zeros((32, 32))) };
-        let mut solver = FlashSolver::of(&simulation, Direction::X).unwrap();
-        solver.warm(Rubbing { velocity, pressure: &pressure, shear: 0.0, loss: 0.0 }).unwrap();
-        solver.rise.clone()
+        let flash = Flash { bodies, on_track: !moves, ..flash(Partition::Mean, None) };
+        warmed(flash, Boundary::Free, velocity).rise
     };
     let [a, b] = flash(Partition::Mean, None).bodies;
     // The same rubbing, seen from the other body.

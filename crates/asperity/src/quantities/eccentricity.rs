@@ -35,9 +35,8 @@ pub(crate) fn eccentricity(grid: &Grid, boundary: Boundary, pressure: ArrayView2
                         sum[1] += weight * libm::sin(phase);
                     }
                 }
-                let [[_, _], [cos, sin]] = sums;
-                let cells = touching().count() as f64;
-                if libm::hypot(cos, sin) < AROUND * cells {
+                let [cos, sin] = sums[1];
+                if libm::hypot(cos, sin) < AROUND * touching().count() as f64 {
                     return f64::NAN;
                 }
                 let [of_pressure, of_area] = sums.map(|[cos, sin]| libm::atan2(sin, cos));

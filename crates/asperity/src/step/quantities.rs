@@ -1,5 +1,7 @@
 //! The quantities of a row, taken when the row is solved: those of its state here, the others from the processes.
 
+use std::cell::LazyCell;
+
 use ndarray::CowArray;
 
 use super::{Step, UndeformedGap};
@@ -53,12 +55,13 @@ impl Step<'_> {
             .any(|column| column.quantity.is_of_spots())
             .then(|| Spots::of(grid, boundary, pressure, |p| *p > 0.0));
         let of_spots = |of: fn(&Spots) -> f64| spots.as_ref().map_or(f64::NAN, of);
-        // 1 along x, 2 along y, 3 both; on a line of cells nothing reaches along y. The borders are those of the stored fields.
+        // In the frame of the stored fields, whose borders count for percolation.
+        let framed = LazyCell::new(|| match self.frame_shift() {
+            [0, 0] => CowArray::from(pressure),
+            shift => CowArray::from(in_contact_frame(pressure, boundary, shift, 0.0)),
+        });
+        // 1 along x, 2 along y, 3 both; on a line of cells nothing reaches along y.
         let across = |on: fn(&f64) -> bool| {
-            let framed = match self.frame_shift() {
-                [0, 0] => CowArray::from(pressure),
-                shift => CowArray::from(in_contact_frame(pressure, boundary, shift, 0.0)),
-            };
             let [x, y] = spans(boundary, framed.view(), on);
             f64::from(u8::from(x) + 2 * u8::from(y && !grid.is_line()))
         };

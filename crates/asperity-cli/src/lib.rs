@@ -11,6 +11,7 @@ mod files;
 mod format;
 mod input;
 mod interrupt;
+mod launcher;
 mod messages;
 mod progress;
 mod serve;

@@ -1,7 +1,10 @@
 //! The threads of the whole command, started before anything else: a system that refuses them is told, where the first
 //! parallel loop would panic.
 
+use std::thread::available_parallelism;
+
 use crate::failure::Failure;
+use crate::launcher;
 use crate::verb::Threads;
 
 /// The limit of `--threads`, and of the variable `RAYON_NUM_THREADS`.
@@ -11,7 +14,10 @@ pub const MOST: u16 = 1024;
 pub fn start(threads: Threads) -> Result<(), Failure> {
     let threads = match threads {
         Threads::None => return Ok(()),
-        Threads::Default => of_variable(std::env::var("RAYON_NUM_THREADS").ok()),
+        Threads::Default => match of_variable(std::env::var("RAYON_NUM_THREADS").ok()) {
+            0 => of_cores(),
+            given => given,
+        },
         Threads::Number(number) => usize::from(number),
     };
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| {
@@ -22,7 +28,19 @@ pub fn start(threads: Threads) -> Result<(), Failure> {
     })
 }
 
-/// The number in the variable, at most [`MOST`]; 0, one per core, where it holds none.
+/// One per core that a launcher or the system (affinity, control group) gives this process; 0 where the system does not tell.
+fn of_cores() -> usize {
+    let Ok(cores) = available_parallelism() else { return 0 };
+    launcher::threads(cores.get(), online().unwrap_or(cores.get())).min(usize::from(MOST))
+}
+
+/// Cores of the machine (Linux).
+fn online() -> Option<usize> {
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    Some(text.lines().filter(|line| line.starts_with("processor")).count()).filter(|count| *count > 0)
+}
+
+/// The number in the variable, at most [`MOST`]; 0 where it holds none.
 fn of_variable(value: Option<String>) -> usize {
     value.and_then(|text| text.trim().parse::<usize>().ok()).unwrap_or(0).min(usize::from(MOST))
 }

@@ -33,7 +33,7 @@ pub trait Verb {
 pub enum Threads {
     /// It computes nothing.
     None,
-    /// As many as the variable `RAYON_NUM_THREADS` says, else one per core.
+    /// As many as the variable `RAYON_NUM_THREADS` says, else one per core that a launcher or the system gives the process.
     Default,
     /// As many as an option says.
     Number(u16),

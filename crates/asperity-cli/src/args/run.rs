@@ -73,7 +73,7 @@ pub struct Converge {
 
 #[derive(Debug, clap::Args)]
 pub struct Common {
-    /// Threads to use [default: one per core]; the results do not depend on it
+    /// Threads to use [default: one per core that the process may use]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Set a key of the case, e.g. --set domain.cells='[256, 256]' --set body.0.hardness='200 MPa'

@@ -30,7 +30,7 @@ pub struct Study {
     /// Runs side by side at most [default: one per thread, as many as memory allows]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
-    /// Only the K-th of every N runs, e.g. 3/16: one of N processes that share the folder
+    /// Only the K-th of every N runs, e.g. 3/16: one of N processes that share the folder [default: as srun, mpirun or an array of jobs says]
     #[arg(long, value_name = "K/N", value_parser = shard)]
     pub shard: Option<[usize; 2]>,
     /// Compute the errors of the answers of every run too; takes about as long again

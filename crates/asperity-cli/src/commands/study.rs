@@ -12,6 +12,7 @@ use super::answers::{note_unused, units};
 use crate::args::{self, StudyAction, StudyFolder};
 use crate::failure::{Failure, refuse};
 use crate::format::{columns, counted, duration};
+use crate::launcher;
 use crate::verb::{Threads, Verb};
 
 impl Verb for args::Study {
@@ -39,15 +40,18 @@ impl args::Study {
         let folder = self.output.clone().unwrap_or_else(|| usual(case, "study"));
         let zip = (self.zip || self.product).then_some(self.zip);
         let study = Study::new(case, &self.vary, zip, &self.common.set, &folder).map_err(failure)?;
+        let share = launcher::share(self.shard);
         let options = Options {
             jobs: self.jobs.map(usize::from),
             threads: None,
-            shard: self.shard,
+            shard: share.as_ref().map(|share| share.part),
+            neighbours: launcher::neighbours(),
             error_bars: self.error_bars,
             interrupt: crate::interrupt::flag(),
         };
         if !self.quiet {
-            crate::messages::message!("{} in {}", counted(study.runs.len(), "run"), folder.display());
+            let of = share.as_ref().map_or(String::new(), |share| format!("; {share}"));
+            crate::messages::message!("{} in {}{of}", counted(study.runs.len(), "run"), folder.display());
         }
         let mut tell = |event: &Event<'_>| {
             if !self.quiet {
@@ -55,6 +59,16 @@ impl args::Study {
             }
         };
         let Outcome { table, interrupted } = study.work(&options, &mut tell).map_err(failure)?;
+        if let Some(share) = share.filter(|_| !interrupted && !table.has_ended()) {
+            let left = counted(table.rows.len() - table.count("done") - table.count("failed"), "run");
+            if !self.quiet {
+                crate::messages::message!(
+                    "{share}: done. {left} of the other shares are left; whichever process ends last draws and prints the table"
+                );
+            }
+            // A launcher ends all processes when one of them ends with an error.
+            return if self.json { print(&study, &table, true, &units) } else { Ok(()) };
+        }
         draw(&study, &table, &units)?;
         print(&study, &table, self.json, &units)?;
         let (done, failed) = (table.count("done"), table.count("failed"));

@@ -164,6 +164,78 @@ fn processes_that_share_a_folder_make_the_whole_study() {
 }
 
 #[test]
+fn processes_of_a_launcher_divide_a_study_and_the_last_one_draws_it() {
+    let folder = folder();
+    let path = folder.path();
+    assert!(study(path, &["-o", "whole", "-q"]).status.success());
+    let all = ["study", "ball.toml", "--vary", LOADS, "--vary", SEEDS, "-o", "ranks"];
+    for rank in 0..3 {
+        let variables = [("SLURM_PROCID", rank.to_string()), ("SLURM_NTASKS", "3".to_owned())];
+        let output = command(path, &all).envs(variables).output().unwrap();
+        let [told, shown] =
+            [&output.stderr, &output.stdout].map(|text| String::from_utf8_lossy(text).into_owned());
+        assert!(output.status.success(), "{told}");
+        assert!(
+            told.contains(&format!("share {}/3, as Slurm says", rank + 1)) && told.contains("2/2"),
+            "{told}"
+        );
+        let is_last = rank == 2;
+        assert_eq!(
+            [!shown.is_empty(), path.join("ranks/study.png").exists()],
+            [is_last; 2],
+            "{rank}: {shown}"
+        );
+    }
+    assert_eq!(csv(path, "ranks"), csv(path, "whole"));
+}
+
+#[test]
+fn runs_of_a_killed_process_are_taken_up_by_the_next_launch() {
+    let folder = folder();
+    let path = folder.path();
+    assert!(study(path, &["-o", "whole", "-q"]).status.success());
+    let all = ["study", "ball.toml", "--vary", LOADS, "--vary", SEEDS, "-o", "ranks", "-q"];
+    let launch = |rank: usize, count: usize| {
+        let variables = [("OMPI_COMM_WORLD_RANK", rank), ("OMPI_COMM_WORLD_SIZE", count)];
+        let output =
+            command(path, &all).envs(variables.map(|(name, n)| (name, n.to_string()))).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    // Rank 1 of 3 never comes to its runs.
+    launch(0, 3);
+    launch(2, 3);
+    assert!(!path.join("ranks/study.zarr").exists());
+    launch(0, 2);
+    launch(1, 2);
+    assert_eq!(csv(path, "ranks"), csv(path, "whole"));
+    assert!(path.join("ranks/study.zarr").exists());
+}
+
+#[test]
+fn one_contact_on_several_processes_is_refused() {
+    let folder = folder();
+    let path = folder.path();
+    let run = |variables: &[(&str, &str)]| {
+        let variables = variables.iter().copied();
+        let output = command(path, &["run", "ball.toml", "--force", "-q"]).envs(variables).output().unwrap();
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (code, told) = run(&[("PMI_RANK", "1"), ("PMI_SIZE", "8")]);
+    assert_eq!(code, Some(2), "{told}");
+    assert!(
+        told.contains("MPICH has started 8 processes of it (PMI_SIZE=8)") && told.contains("asperity study"),
+        "{told}"
+    );
+    assert!(!path.join("ball.zarr").exists());
+    // One process, and a job of an array, are runs of their own.
+    assert_eq!(run(&[("PMI_RANK", "0"), ("PMI_SIZE", "1")]).0, Some(0));
+    assert_eq!(
+        run(&[("SLURM_ARRAY_TASK_ID", "3"), ("SLURM_ARRAY_TASK_MIN", "1"), ("SLURM_ARRAY_TASK_MAX", "8")]).0,
+        Some(0)
+    );
+}
+
+#[test]
 fn a_run_that_fails_does_not_stop_the_others() {
     let folder = folder();
     let path = folder.path();

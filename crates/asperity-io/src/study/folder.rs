@@ -82,9 +82,18 @@ impl Study {
         fs::create_dir_all(folder).map_err(failed("make", folder))?;
         let study = Study { folder: folder.to_owned(), plan, runs, base: Some(base), memory };
         let _held = study.lock();
-        match Stored::read(folder)? {
-            Some(old) => study.check(&old, &stored)?,
-            None => study.check_empty()?,
+        // Looked for first: where the file system has no locks, another process may write study.json and then its table meanwhile.
+        let foreign = study.foreign();
+        match (Stored::read(folder)?, foreign) {
+            (Some(old), _) => study.check(&old, &stored)?,
+            (None, Some(name)) => {
+                let message = format!(
+                    "{} has a {name}, but no study.json: it would be replaced; choose another folder with -o",
+                    folder.display()
+                );
+                return Err(StudyError::Input(message));
+            }
+            (None, None) => {}
         }
         let text = serde_json::to_string_pretty(&stored).unwrap_or_default();
         study.write(NAME, text.as_bytes())?;
@@ -165,16 +174,11 @@ impl Study {
         Ok(())
     }
 
-    /// Refuses to replace files that no study wrote.
-    fn check_empty(&self) -> Result<(), StudyError> {
-        let names = ["study.csv", dataset::NAME, "study.png", "study.html"];
-        match names.into_iter().find(|name| self.folder.join(name).exists()) {
-            Some(name) => Err(StudyError::Input(format!(
-                "{} has a {name}, but no study.json: it would be replaced; choose another folder with -o",
-                self.folder.display()
-            ))),
-            None => Ok(()),
-        }
+    /// A file that a study would replace.
+    fn foreign(&self) -> Option<&'static str> {
+        ["study.csv", dataset::NAME, "study.png", "study.html"]
+            .into_iter()
+            .find(|name| self.folder.join(name).exists())
     }
 
     /// The case of a run.
@@ -223,10 +227,17 @@ impl Study {
     /// # Errors
     /// [`StudyError::Io`].
     pub fn collect(&self) -> Result<Table, StudyError> {
+        self.collect_if(|_| true)
+    }
+
+    /// Writes `study.csv`, and `study.zarr` if it is time for that.
+    pub(super) fn collect_if(&self, is_time: impl Fn(&Table) -> bool) -> Result<Table, StudyError> {
         let _held = self.lock();
         let table = self.table(self.rows());
         self.write("study.csv", table.csv().as_bytes())?;
-        dataset::write(self, &table)?;
+        if is_time(&table) {
+            dataset::write(self, &table)?;
+        }
         Ok(table)
     }
 

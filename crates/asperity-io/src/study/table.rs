@@ -84,6 +84,11 @@ impl Table {
         self.rows.iter().filter(|row| row.state.word() == word).count()
     }
 
+    /// Whether every run is done or has failed.
+    pub fn has_ended(&self) -> bool {
+        self.rows.iter().all(|row| matches!(row.state, State::Done | State::Failed(_)))
+    }
+
     /// The codes of findings, with how many runs have each.
     pub fn runs_of_findings(&self) -> BTreeMap<&str, usize> {
         let mut runs_of: BTreeMap<&str, usize> = BTreeMap::new();

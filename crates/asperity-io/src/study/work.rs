@@ -27,6 +27,8 @@ pub struct Options {
     pub threads: Option<usize>,
     /// Only every n-th run, from the k-th on, k from 1: the share (k, n) of one process of several.
     pub shard: Option<[usize; 2]>,
+    /// Processes that work on this machine side by side, and share its memory; 0 counts as 1, this process alone.
+    pub neighbours: usize,
     /// Whether the errors of the answers are computed too, also of runs that are done without them.
     pub error_bars: bool,
     /// Stops all runs, within one iteration, when it becomes true.
@@ -116,7 +118,7 @@ impl Study {
             observe,
         });
         let changed = Condvar::new();
-        let budget = (SHARE * available_memory() as f64) as u64;
+        let budget = (SHARE * available_memory() as f64 / options.neighbours.max(1) as f64) as u64;
         thread::scope(|scope| {
             for worker in 0..jobs {
                 // The remainder goes to the first ones.
@@ -147,11 +149,12 @@ impl Study {
             }
         });
         let failure = shared.into_inner().unwrap_or_else(PoisonError::into_inner).failure;
-        // What is done stays in the table, whatever stops the study.
-        let table = self.collect();
+        // What is done stays in the table, whatever stops the study; of several processes the last one writes the dataset.
+        let interrupted = options.interrupt.load(Ordering::Relaxed);
+        let table = self.collect_if(|table| options.shard.is_none() || interrupted || table.has_ended());
         match failure {
             Some(failure) => Err(failure),
-            None => Ok(Outcome { table: table?, interrupted: options.interrupt.load(Ordering::Relaxed) }),
+            None => Ok(Outcome { table: table?, interrupted }),
         }
     }
 

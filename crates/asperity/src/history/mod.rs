@@ -49,9 +49,7 @@ pub(crate) trait History: Send {
     fn reopen(&mut self, step: &Interval, rigid: &[f64], gap: &mut [f64]) -> Result<Law>;
 
     /// The step under way has this end for good.
-    fn close(&mut self, _ends: &Ends<'_>) -> Result<()> {
-        Ok(())
-    }
+    fn close(&mut self, _ends: &Ends<'_>) {}
 
     /// g of the step under way.
     fn recalled(&self, g: &mut [f64]);

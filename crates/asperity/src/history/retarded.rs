@@ -108,7 +108,8 @@ impl Retarded {
         };
         self.memory.open(&step, &self.before, &self.rest, &mut self.recalled)?;
         let ends = [&self.before, &self.now];
-        self.memory.close(&Ends::unlimited(ends, loads, &self.recalled, &self.rest))
+        self.memory.close(&Ends::unlimited(ends, loads, &self.recalled, &self.rest));
+        Ok(())
     }
 
     /// The pressure at the last row.

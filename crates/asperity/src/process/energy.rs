@@ -57,8 +57,8 @@ saved! {
 }
 
 impl Process for Energy {
-    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
-        let Some(step) = row.exchange else { return Ok(()) };
+    fn accept(&mut self, row: &mut Solved<'_>) {
+        let Some(step) = row.exchange else { return };
         let cell_area = row.simulation.grid.cell_area();
         let overlap = cell_area * overlap_work(row);
         let flattened = match row.simulation.plasticity {
@@ -80,7 +80,6 @@ impl Process for Energy {
         self.potential = row.potential;
         self.work += row.other_work;
         self.power = if jump { 0.0 } else { (self.dissipated - before) / row.step.length() };
-        Ok(())
     }
 
     fn quantity(&self, quantity: Quantity) -> Option<f64> {

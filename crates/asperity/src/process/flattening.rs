@@ -28,7 +28,7 @@ impl Flattening {
 
 impl Process for Flattening {
     /// Makes the overlap of the row a part of the undeformed gap.
-    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+    fn accept(&mut self, row: &mut Solved<'_>) {
         let (c, w) = (row.compliance, row.now.approach);
         // The undeformed gap first: it is told by the gap as it was.
         let overlap = |p: f64, u: f64, gap: f64, hardness: f64| match w - (c * u + gap) {
@@ -44,7 +44,6 @@ impl Process for Flattening {
         });
         self.depth += depth;
         each(row.own_gap, (p, u, row.hardness), |gap, (p, u, most)| *gap += overlap(p, u, *gap, most));
-        Ok(())
     }
 
     fn quantity(&self, quantity: Quantity) -> Option<f64> {

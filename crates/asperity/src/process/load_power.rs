@@ -18,9 +18,8 @@ impl LoadPower {
 }
 
 impl Process for LoadPower {
-    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+    fn accept(&mut self, row: &mut Solved<'_>) {
         self.last = power(row);
-        Ok(())
     }
 
     fn preview(&mut self, quantity: Quantity, row: &mut Solved<'_>) -> Result<Option<f64>> {

@@ -1,7 +1,8 @@
 //! What changes the gap from step to step, or reads the state of each row.
 //!
 //! A process sees a step twice: before it is solved it may move the undeformed gap to where it is at the end of the step
-//! (`Process::open`, repeatable at any length), and once the row stands it takes it in (`Process::accept`). The quantities and
+//! (`Process::open`, repeatable at any length), and once the row stands it takes it in: first what can fail or be interrupted
+//! (`Process::prepare`, repeatable), then the rest, all or nothing (`Process::accept`). The quantities and
 //! fields that it adds to a row it declares by answering for them. Members: motion, stiffness, energies, power of
 //! the load, friction, wear, flattening.
 
@@ -59,8 +60,16 @@ pub(crate) trait Process: Send {
         Ok(())
     }
 
-    /// Takes in the row that was just solved.
-    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()>;
+    /// Finds what the row that was just solved needs and what can fail. Nothing that lasts changes, so it can be repeated.
+    ///
+    /// # Errors
+    /// Those of the process.
+    fn prepare(&mut self, _row: &mut Solved<'_>) -> Result<()> {
+        Ok(())
+    }
+
+    /// Takes in the row, once every process has prepared it.
+    fn accept(&mut self, row: &mut Solved<'_>);
 
     /// Estimated error of the stress that the step just solved adds because of this process, relative.
     fn error(&self, _ends: &Ends<'_>, _gap: &UndeformedGap, _compliance: f64) -> Option<f64> {

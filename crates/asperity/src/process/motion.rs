@@ -198,14 +198,13 @@ impl Moving {
     }
 
     /// Finds how warm the surfaces are after as long a time at the velocity of the row as they need.
-    fn warm(&mut self, row: &Solved<'_>) -> Result<()> {
+    fn warm(&mut self, row: &Solved<'_>, Friction { velocity, coefficient, .. }: Friction) -> Result<()> {
         let Some(flash) = &mut self.flash else { return Ok(()) };
-        let velocity = self.friction.velocity;
         flash.warm(Rubbing {
             velocity,
             pressure: row.contact,
             shear: self.motion.shear_stress.as_ref().map_or(0.0, |law| law.at(velocity, 1.0)),
-            loss: self.friction.coefficient * velocity.signum(),
+            loss: coefficient * velocity.signum(),
         })
     }
 
@@ -231,8 +230,16 @@ impl Process for Moving {
         (gone != 0.0).then(|| cells(self.motion.direction, self.spacing, gone_with))
     }
 
+    /// Finds how warm the row is.
+    fn prepare(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        if self.flash.is_some() {
+            self.warm(row, self.forces(row, 0.0, |error| error))?;
+        }
+        Ok(())
+    }
+
     /// Finds the forces at the end of the row.
-    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+    fn accept(&mut self, row: &mut Solved<'_>) {
         let time_error = row.time_error.unwrap_or(0.0);
         let (way, cell) = ([self.before, self.distance], self.motion.direction.cell(&row.simulation.grid));
         let mut swing = self.swing;
@@ -241,16 +248,13 @@ impl Process for Moving {
         let before = std::mem::replace(&mut self.before, self.distance);
         row.other_work += 0.5 * (self.friction.force + friction.force) * (self.distance - before);
         (self.friction, self.time_error) = (friction, time_error);
-        self.warm(row)
     }
 
     fn preview(&mut self, quantity: Quantity, row: &mut Solved<'_>) -> Result<Option<f64>> {
         if quantity.is_of_flash() {
-            let (friction, rise) = (self.friction, self.flash.as_ref().map(|flash| flash.rise.clone()));
-            self.friction = self.forces(row, 0.0, |error| error);
-            self.warm(row)?;
+            let rise = self.flash.as_ref().map(|flash| flash.rise.clone());
+            self.warm(row, self.forces(row, 0.0, |error| error))?;
             let found = self.rise().and_then(|rise| rise.row.quantity(quantity));
-            self.friction = friction;
             self.flash.iter_mut().zip(rise).for_each(|(flash, rise)| flash.rise = rise);
             return Ok(found);
         }

@@ -195,23 +195,16 @@ impl PartialSlip {
     }
 
     /// Where the cells are after the step: displacement, slip, work.
-    fn take_in(&mut self, row: &mut Solved<'_>, compliance: f64) {
+    fn take_in(&mut self, row: &Solved<'_>, compliance: f64) {
         let (d, area) = (self.slip.displacement, row.simulation.grid.cell_area());
         let (q, unit) = (&self.slip.traction[..], &self.slip.unit[..]);
-        let moved = |u: Vector, b: Vector| plus(times(compliance, u), b);
-        each(&mut self.displacement, (unit, &self.offset[..]), |to, (u, b)| *to = plus(*to, moved(u, b)));
-        each(&mut self.slips, (row.contact, q, &self.radius[..]), |slips, (p, q, radius)| {
-            *slips = p > 0.0 && length(q) >= radius * (1.0 - EDGE);
+        each(&mut self.displacement, (unit, &self.offset[..]), |to, (u, b)| {
+            *to = plus(*to, plus(times(compliance, u), b));
         });
-        // Where a cell sticks, what is left of the slip is the error of the solver.
-        let slip = |u: Vector, b: Vector, slips: bool| if slips { minus(moved(u, b), d) } else { [0.0; 2] };
+        let slip = |u: Vector, b: Vector, slips: bool| slip_of(compliance, d, (u, b, slips));
         let cells = (unit, &self.offset[..], &self.slips[..]);
         each(&mut self.slid, cells, |slid, (u, b, slips)| *slid = plus(*slid, slip(u, b, slips)));
         each(&mut self.path, cells, |path, (u, b, slips)| *path += length(slip(u, b, slips)));
-        if row.simulation.wear.is_some() {
-            row.slipped = zeros(unit.len());
-            each(&mut row.slipped, cells, |slipped, (u, b, slips)| *slipped = length(slip(u, b, slips)));
-        }
         let cells = (q, unit, &self.offset[..], &self.slips[..]);
         each(&mut self.heat, cells, |heat, (q, u, b, slips)| *heat -= inner(q, slip(u, b, slips)));
         let cells = (row.contact, q, unit, &self.offset[..], &self.slips[..]);
@@ -276,6 +269,11 @@ impl PartialSlip {
     }
 }
 
+/// c K q + g - u_n - (d - d_n) of a cell that slips; where it sticks, what is left of the slip is the error of the solver.
+fn slip_of(compliance: f64, d: Vector, (unit, offset, slips): (Vector, Vector, bool)) -> Vector {
+    if slips { minus(plus(times(compliance, unit), offset), d) } else { [0.0; 2] }
+}
+
 impl Process for PartialSlip {
     fn acts_back(&self) -> bool {
         self.coupled.is_some()
@@ -290,10 +288,27 @@ impl Process for PartialSlip {
         Ok(())
     }
 
-    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+    /// Finds tractions and slip.
+    fn prepare(&mut self, row: &mut Solved<'_>) -> Result<()> {
         if self.coupled.is_none() {
             self.solve(row, row.simulation.solver.tolerance)?;
         }
+        let (q, radius) = (&self.slip.traction[..], &self.radius[..]);
+        each(&mut self.slips, (row.contact, q, radius), |slips, (p, q, radius)| {
+            *slips = p > 0.0 && length(q) >= radius * (1.0 - EDGE);
+        });
+        if row.simulation.wear.is_some() {
+            row.slipped = zeros(q.len());
+            let (compliance, d) = (self.found.compliance, self.slip.displacement);
+            let cells = (&self.slip.unit[..], &self.offset[..], &self.slips[..]);
+            each(&mut row.slipped, cells, |slipped, (u, b, slips)| {
+                *slipped = length(slip_of(compliance, d, (u, b, slips)));
+            });
+        }
+        Ok(())
+    }
+
+    fn accept(&mut self, row: &mut Solved<'_>) {
         let Found { compliance, loads, outcome, .. } = std::mem::take(&mut self.found);
         self.load = loads[1];
         self.course = [self.course[1], self.law.at(row.step.instant.time)];
@@ -309,9 +324,8 @@ impl Process for PartialSlip {
                 each(&mut now.unit_displacement, &under_pressure[..], |to, u| *to += u[axis]);
             }
             let ends = [&self.before[axis], &self.now[axis]];
-            self.memories[axis].close(&Ends::unlimited(ends, loads, &self.recalled, &self.rest))?;
+            self.memories[axis].close(&Ends::unlimited(ends, loads, &self.recalled, &self.rest));
         }
-        Ok(())
     }
 
     fn slip(&self) -> Option<SlipFields<'_>> {

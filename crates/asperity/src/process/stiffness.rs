@@ -9,13 +9,15 @@ use crate::simulation::{Plasticity, Simulation};
 
 pub(super) struct Stiffness {
     solver: ContactStiffness,
+    /// Of the row that is prepared, and of the last one.
+    next: f64,
     last: f64,
 }
 
 impl Stiffness {
     pub(super) fn of(simulation: &Simulation, operator: &dyn Operator) -> Option<Self> {
         let wanted = simulation.takes(Quantity::ContactStiffness);
-        wanted.then(|| Stiffness { solver: ContactStiffness::new(operator), last: f64::NAN })
+        wanted.then(|| Stiffness { solver: ContactStiffness::new(operator), next: f64::NAN, last: f64::NAN })
     }
 
     fn of_row(&mut self, row: &mut Solved<'_>) -> Result<f64> {
@@ -34,9 +36,13 @@ impl Stiffness {
 }
 
 impl Process for Stiffness {
-    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
-        self.last = self.of_row(row)?;
+    fn prepare(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        self.next = self.of_row(row)?;
         Ok(())
+    }
+
+    fn accept(&mut self, _row: &mut Solved<'_>) {
+        self.last = self.next;
     }
 
     fn preview(&mut self, quantity: Quantity, row: &mut Solved<'_>) -> Result<Option<f64>> {

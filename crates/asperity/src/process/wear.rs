@@ -51,6 +51,8 @@ struct Numbers {
 
 struct After {
     solver: RecedingSolver,
+    /// What the row prepared recedes by because of its slip, and the contact that the worn surfaces make.
+    recession: Recession,
     state: ContactState,
 }
 
@@ -76,6 +78,7 @@ impl Wearing {
         let sliding = law.sliding(simulation);
         let after = (sliding == Sliding::Slip).then(|| After {
             solver: RecedingSolver::new(simulation.solver.method, operator),
+            recession: Recession::default(),
             state: ContactState::new(simulation.grid.len()),
         });
         Some(Wearing {
@@ -99,15 +102,15 @@ impl Wearing {
         [0, 1].map(|axis| near_whole(unit[axis] * gone / spacing[axis]))
     }
 
-    /// What the surfaces of a row recede by after it because of its slip, and the pressure that takes it off.
-    fn wear_by_slip(&mut self, row: &mut Solved<'_>) -> Result<Recession> {
-        let Some(After { solver, state }) = &mut self.after else { return Ok(Recession::default()) };
+    /// Finds what the surfaces of a row recede by after it because of its slip, and the pressure that takes it off.
+    fn wear_by_slip(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        let Some(After { solver, recession, state }) = &mut self.after else { return Ok(()) };
         let factor = self.law.total() * self.cycles.factor;
         let mut cells = std::mem::take(&mut row.slipped);
         each(&mut cells, factors(&self.law), |slip, map| *slip *= factor * map);
         let is_none = asperity_sweep::is_zero(&cells);
         let scale = if is_none { 0.0 } else { 1.0 };
-        let recession = Recession { scale, cells: Some(cells), threshold: self.law.threshold };
+        *recession = Recession { scale, cells: Some(cells), threshold: self.law.threshold };
         state.clone_from(row.now);
         if !is_none {
             let problem = Problem {
@@ -119,10 +122,9 @@ impl Wearing {
             let options = &self.simulation.solver;
             let (operator, interrupt) = (&mut *row.operator, row.interrupt);
             let task = Task { operator, problem: &problem, options, state, interrupt };
-            row.convolutions += solver.solve(Start::Pressure, &recession, task)?.convolutions;
-            recession.add(&state.pressure, row.undeformed.own_mut());
+            row.convolutions += solver.solve(Start::Pressure, recession, task)?.convolutions;
         }
-        Ok(recession)
+        Ok(())
     }
 
     /// The pressure of the last row where the contact is now.
@@ -198,14 +200,17 @@ impl Process for Wearing {
         Ok(())
     }
 
+    fn prepare(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        self.wear_by_slip(row)
+    }
+
     /// Takes in what the row has worn.
-    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
-        let ([volume, uncertain], damping) = if self.sliding == Sliding::Slip {
-            let recession = self.wear_by_slip(row)?;
-            let Some(After { state, .. }) = &self.after else { return Ok(()) };
-            let damping = self.damping(&recession, state, row.compliance);
-            row.worn_work = self.work(&recession, [&state.pressure, row.contact]);
-            (self.depth.add(&recession, &state.pressure, row.contact, self.offset), damping)
+    fn accept(&mut self, row: &mut Solved<'_>) {
+        let ([volume, uncertain], damping) = if let Some(After { recession, state, .. }) = &self.after {
+            recession.add(&state.pressure, row.undeformed.own_mut());
+            let damping = self.damping(recession, state, row.compliance);
+            row.worn_work = self.work(recession, [&state.pressure, row.contact]);
+            (self.depth.add(recession, &state.pressure, row.contact, self.offset), damping)
         } else {
             let recession = &row.undeformed.recession;
             let before = self.before(row);
@@ -229,7 +234,6 @@ impl Process for Wearing {
         numbers.rate = if length > 0.0 { volume / length } else { 0.0 };
         numbers.distance += distance;
         numbers.deepest = self.depth.largest();
-        Ok(())
     }
 
     fn error(&self, ends: &crate::history::Ends<'_>, gap: &UndeformedGap, compliance: f64) -> Option<f64> {

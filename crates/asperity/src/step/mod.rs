@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! attempt(step):   processes move the gap h0;  history gives c and g;  guess;  solve the contact of c, h0 + g
-//! accept:          history closes the step;  processes take in the row
+//! accept:          processes prepare the row;  history closes the step;  processes take in the row
 //! ```
 //!
 //! An attempt can be repeated at any length until one is accepted. The stepper knows the seams only: what the bodies remember is
@@ -45,7 +45,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::contact::Outcome;
 use crate::error::{Error, Result};
-use crate::history::{self, History, Law};
+use crate::history::{self, History, Law, ThirdState};
 use crate::operator::plan;
 use crate::process::{self, Process, Solved};
 use crate::quantities::Quantity;
@@ -64,6 +64,9 @@ pub(crate) struct Stepper {
     /// The step of the attempt; whether the history has it open, and the length of the attempt solved last.
     step: Option<Interval>,
     is_open: bool,
+    /// The state that is solved before the first attempt at the row, and whether the next attempt is the first one.
+    third: Option<ThirdState>,
+    is_first: bool,
     tried: Option<f64>,
     /// The work of all attempts at the row, and how good the last one is.
     outcome: Outcome,
@@ -86,6 +89,8 @@ impl Stepper {
             contact: StepContact::new(&simulation, operator),
             step: None,
             is_open: false,
+            third: None,
+            is_first: true,
             tried: None,
             outcome: Outcome::default(),
             simulation,
@@ -101,9 +106,10 @@ impl Stepper {
         self.history.first_step(piece)
     }
 
-    /// A new row: what was tried and spent for the last one is forgotten.
+    /// A new row, or one that was interrupted, from its first attempt on: what was spent before is forgotten.
     pub(crate) fn begin(&mut self) {
         self.outcome = Outcome::default();
+        self.is_first = true;
     }
 
     /// Solves the contact at the end of a step; can be repeated at other lengths.
@@ -111,8 +117,11 @@ impl Stepper {
     /// # Errors
     /// [`Error::NotConverged`] with the time, and the errors of the contact.
     pub(crate) fn attempt(&mut self, step: &Interval) -> Result<Summary> {
-        let third = if self.is_open { None } else { self.history.third_state(step) };
-        let Some(third) = third else { return self.solve(step) };
+        if !self.is_open {
+            self.third = self.history.third_state(step);
+        }
+        let is_first = std::mem::take(&mut self.is_first);
+        let Some(third) = self.third.filter(|_| is_first) else { return self.solve(step) };
         let first = self.solve(&step.share(third.at))?;
         if !self.is_apart() {
             self.history.keep_as_third(&self.state.ends(&self.contact));
@@ -239,13 +248,17 @@ impl Stepper {
         Ok(None)
     }
 
-    /// The attempt stands: the history closes the step, the processes take in the row.
+    /// The attempt stands: the history closes the step, the processes take in the row. All or nothing: what can fail runs first, and
+    /// an attempt that could not be taken in can be tried again.
     ///
     /// # Errors
     /// Those of the processes.
     pub(crate) fn accept(&mut self) -> Result<()> {
         let Some(step) = &self.step else { return Ok(()) };
-        self.history.close(&self.state.ends(&self.contact))?;
+        let mut row = solved(&self.simulation, step, &mut self.state, &mut self.contact);
+        self.processes.iter_mut().try_for_each(|process| process.prepare(&mut row))?;
+        self.outcome.convolutions += row.convolutions;
+        self.history.close(&self.state.ends(&self.contact));
         let exchange = self.history.exchange(&self.state.ends(&self.contact));
         self.contact.commit();
         let time_error = self.history.time_error();
@@ -254,8 +267,7 @@ impl Stepper {
             exchange,
             ..solved(&self.simulation, step, &mut self.state, &mut self.contact)
         };
-        self.processes.iter_mut().try_for_each(|process| process.accept(&mut row))?;
-        self.outcome.convolutions += row.convolutions;
+        self.processes.iter_mut().for_each(|process| process.accept(&mut row));
         let (length, touches) = (step.length(), self.touches());
         self.state.end(length, touches);
         self.is_open = false;
@@ -297,3 +309,6 @@ fn solved<'a>(
         convolutions: 0,
     }
 }
+
+#[cfg(test)]
+mod tests;

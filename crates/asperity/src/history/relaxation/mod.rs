@@ -280,7 +280,7 @@ impl History for Relaxation {
     }
 
     /// The load as a cell goes on to the end of the step.
-    fn close(&mut self, ends: &Ends<'_>) -> Result<()> {
+    fn close(&mut self, ends: &Ends<'_>) {
         self.add_error();
         let rules = Some(&self.rules).filter(|_| self.under_way == UnderWay::Contact);
         self.cell.close(ends.loads[1], rules);
@@ -292,7 +292,6 @@ impl History for Relaxation {
             self.dual.to_states(strains, &mut end.states);
             end.driver = strains.iter().sum();
         }
-        Ok(())
     }
 
     fn remembers(&self) -> bool {

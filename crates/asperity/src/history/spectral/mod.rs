@@ -182,7 +182,7 @@ impl History for Spectral {
     }
 
     /// The mean course goes on to the end of the step; the first load tells whose mean it is.
-    fn close(&mut self, ends: &Ends<'_>) -> Result<()> {
+    fn close(&mut self, ends: &Ends<'_>) {
         let load = ends.loads[1];
         match &mut self.mean {
             Some(mean) => mean.close(load),
@@ -190,13 +190,11 @@ impl History for Spectral {
                 let Spectrum(p) = self.torus.transform(&ends.now.pressure);
                 let values = self.waves.mean(&p, self.layers.frequencies.iter().copied());
                 // A mean of creep functions is one.
-                if let Some((creep, _)) = self.layers.fit(&values) {
-                    self.mean = Some(Mean::new(creep, self.length, load)?);
-                }
+                let mean = self.layers.fit(&values);
+                self.mean = mean.and_then(|(creep, _)| Mean::new(creep, self.length, load).ok());
             }
             None => {}
         }
-        Ok(())
     }
 
     fn recalled(&self, g: &mut [f64]) {

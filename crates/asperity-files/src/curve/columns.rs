@@ -9,7 +9,7 @@ use super::error::{Remedy, Result, fault};
 use super::role::{self, Role, unnumbered};
 use super::sweeps::{DYNAMIC, Pair};
 use super::table::{Heading, Table};
-use super::units::{convert, taken, tidy};
+use super::units::{convert, spelled, taken, tidy};
 use crate::quantity::unit::Unit;
 use crate::quantity::{Dimension, dimension};
 
@@ -95,6 +95,10 @@ pub struct Place {
 pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> {
     let places = places(table, form, said)?;
     let (kept, mut notes) = complete(table, &places)?;
+    let unread = table.unread.as_deref().filter(|_| table.is_named()).map(shown);
+    notes.extend(unread.as_ref().map(|line| {
+        format!("the line {line:?}, between the names of the columns and the points, is not read")
+    }));
     let (mut values, mut used) = (Values::new(), Vec::new());
     for (role, column) in places {
         let Heading { header, name, unit: own, base } = &table.headings[column];
@@ -107,6 +111,15 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
             (None, _) => tidy(role, name, header_unit),
         };
         let place = format!("column {}{}", column + 1, table.quoted(column));
+        if let (true, Some(line), false) =
+            (unit.is_empty(), &unread, matches!(role, Role::TanDelta | Role::Set))
+        {
+            return Err(fault(format!(
+                "{} ({place}) names no unit, and the line {line:?} above the points, which is not understood, may hold it",
+                role.name()
+            ))
+            .remedy(Remedy::Unit(role)));
+        }
         let numbers = match role {
             Role::Set => table.labels(column),
             _ => table.sparse(column)?.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect(),
@@ -135,6 +148,25 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();
     Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })
+}
+
+/// A line of the file as a message shows it.
+fn shown(line: impl AsRef<str>) -> String {
+    line.as_ref().chars().take(60).collect()
+}
+
+/// Whether a word of a line is a unit of time, frequency, temperature, modulus or compliance, as a heading has.
+fn holds_unit(line: &str) -> bool {
+    let parts = line.split(|c: char| c.is_whitespace() || ",;|[](){}".contains(c));
+    parts.filter(|word| word.chars().count() > 1).any(|word| {
+        let pressure = [-1, 1, -2, 0, 0];
+        let known = |unit: Unit| {
+            unit.powers == pressure
+                || unit.powers == pressure.map(|power| -power)
+                || [dimension::Time::POWERS, dimension::Frequency::POWERS].contains(&unit.powers)
+        };
+        matches!(word, "°C" | "°F" | "rad/s") || Unit::parse(&spelled(word)).is_ok_and(known)
+    })
 }
 
 /// Whether the unit of a ratio says nothing.
@@ -217,10 +249,10 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
         }
     }
     if places.keys().all(|role| form.optional.contains(role)) && said.columns.is_empty() {
-        if let Some(line) = table.unread.as_ref().filter(|line| line.contains("Pa") || line.contains("log")) {
-            let shown: String = line.chars().take(60).collect();
+        if let Some(line) = table.unread.as_ref().filter(|line| line.contains("log") || holds_unit(line)) {
             return Err(fault(format!(
-                "the line before the numbers, {shown:?}, does not name {} columns, and it may hold a unit",
+                "the line before the numbers, {:?}, does not name {} columns, and it may hold a unit",
+                shown(line),
                 table.headings.len()
             ))
             .remedy(Remedy::Header));

@@ -13,8 +13,9 @@
 use std::ops::Range;
 
 use super::error::{Result, fault};
+use super::names::split_unit;
 use super::role::{Role, unnumbered};
-use super::table::{Heading, MOST_ROWS, Row, Table, cells, is_missing, split_unit};
+use super::table::{Heading, MOST_ROWS, Row, Table, cells, is_missing};
 
 /// The columns that belong together, and the value that they were measured at.
 struct Block {

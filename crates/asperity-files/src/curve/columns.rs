@@ -9,7 +9,7 @@ use super::error::{Remedy, Result, fault};
 use super::role::{self, Role, unnumbered};
 use super::sweeps::{DYNAMIC, Pair};
 use super::table::{Heading, Table};
-use super::units::{convert, spelled, taken, tidy};
+use super::units::{convert, is_angular, spelled, taken, tidy};
 use crate::quantity::unit::Unit;
 use crate::quantity::{Dimension, dimension};
 
@@ -136,7 +136,9 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
         };
         let converted = convert(role, &unit, numbers).map_err(|(row, why)| {
             let line = row.map(|row| table.rows[kept[row]].line);
-            fault(format!("{} ({place}): {why}", role.name())).remedy(Remedy::Unit(role)).at(line)
+            let angular = role == Role::Frequency && unit.is_empty() && is_angular(name);
+            let remedy = if angular { Remedy::Radians } else { Remedy::Unit(role) };
+            fault(format!("{} ({place}): {why}", role.name())).remedy(remedy).at(line)
         })?;
         if unit.is_empty() && !matches!(role, Role::TanDelta | Role::Set) {
             notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));
@@ -334,6 +336,13 @@ fn one_pair(places: &mut BTreeMap<Role, usize>, form: Form, said: &Columns) -> O
             places.retain(|role, _| pair.contains(role) || !form.pairs().flatten().any(|r| r == role));
             None
         }
+        // A storage modulus alone can be fitted; the fit says what is missing.
+        None if form.pairs.iter().any(|(pair, _)| pair[0] == Role::Storage)
+            && places.contains_key(&Role::Storage) =>
+        {
+            places.retain(|role, _| *role == Role::Storage || !form.pairs().flatten().any(|r| r == role));
+            None
+        }
         // The other one of a pair that has one, else the first of all.
         None => {
             let half =
@@ -428,7 +437,13 @@ pub(super) fn is_dynamic(table: &Table) -> bool {
 pub(super) fn named(table: &Table, kind: Kind) -> bool {
     let form = Form::from(kind);
     form.needed.iter().all(|role| names(table, *role, form))
-        && (form.pairs.is_empty() || names_pair(table, form))
+        && (form.pairs.is_empty() || names_pair(table, form) || names(table, Role::Storage, form))
+}
+
+/// The column that is named as one of the role, among those of a kind.
+pub(super) fn named_column(table: &Table, role: Role, kind: Kind) -> Option<usize> {
+    let form = Form::from(kind);
+    (0..table.headings.len()).find(|column| means(table, *column, role, form))
 }
 
 fn names_pair(table: &Table, form: Form) -> bool {

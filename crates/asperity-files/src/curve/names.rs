@@ -79,7 +79,7 @@ fn is_unit_of(name: &str, unit: &str) -> bool {
         && match unit {
             "" | "-" | "1" | "%" | "d" | "g" | "day" | "days" | "cal" => false,
             // "temperature_C"
-            "C" | "c" | "F" | "f" => role::Role::Temperature.is_called(plain),
+            "C" | "c" | "F" | "f" => plain == "T" || role::Role::Temperature.is_called(plain),
             "min" | "h" => time,
             "s" | "K" | "N" | "m" => true,
             unit => is_unit(unit),

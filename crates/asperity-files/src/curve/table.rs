@@ -59,7 +59,12 @@ const LONGEST_LINE: usize = 1 << 20;
 impl Table {
     /// From the bytes of a text file.
     pub(super) fn parse(bytes: &[u8]) -> Result<Table> {
-        let text = to_text(bytes).ok_or_else(|| fault("the file is binary, not a text table"))?;
+        if bytes.iter().all(u8::is_ascii_whitespace) {
+            return Err(fault("the file is empty"));
+        }
+        let text = to_text(bytes).ok_or_else(|| {
+            fault("the file is binary, not a text table and not a spreadsheet (.xls, .xlsx); export the measured columns as text (csv)")
+        })?;
         if text.lines().nth(MOST_LINES).is_some() {
             return Err(fault(format!("the file has more than {MOST_LINES} lines")));
         }
@@ -138,7 +143,8 @@ impl Table {
                 cells.pop(); // a separator ends the line
             }
             // The last cells of a line with tabs may be empty.
-            if line.contains('\t') && separator.is_none() && (2..columns).contains(&cells.len()) {
+            let tabs = line.contains('\t') || ends_in_tab(&text, line);
+            if separator.is_none() && tabs && cells.len() < columns {
                 cells.resize(columns, "");
             }
             if cells.len() != columns {
@@ -244,8 +250,10 @@ impl Table {
 
 /// Without blanks at its ends; a tab before other cells stands for an empty cell.
 fn trim(line: &str) -> &str {
-    let line = line.trim_end();
-    match line.trim_start().contains('\t') {
+    let (line, rest) = (line.trim_end(), line.trim());
+    // "\t4.5" is the second of two cells.
+    let second = || line.starts_with('\t') && !rest.contains(char::is_whitespace);
+    match rest.contains('\t') || second() {
         true => line.trim_start_matches([' ', '\u{feff}']),
         false => line.trim_start(),
     }
@@ -279,6 +287,12 @@ fn columns(lines: &[&str], separator: Option<char>) -> usize {
     };
     let unnamed = || named.or_else(last_above).is_none_or(|named| ends(&named));
     point.len() - usize::from(ends(&point) && unnamed())
+}
+
+/// Whether a tab stands behind a line of the text, whose end is trimmed.
+fn ends_in_tab(text: &str, line: &str) -> bool {
+    let end = line.as_ptr() as usize - text.as_ptr() as usize + line.len();
+    text.get(end..).is_some_and(|rest| rest.trim_start_matches(' ').starts_with('\t'))
 }
 
 /// The lines that name the columns and their units, the last one first.
@@ -529,7 +543,7 @@ mod tests {
                 Table::parse(text.as_bytes()).and_then(|t| t.numbers(0).and(t.numbers(1))).unwrap_err();
             assert!(found.line == line && found.message.contains(words), "{text:?}: {found:?}");
         };
-        says("", None, "no line with two numbers");
+        says("", None, "the file is empty");
         says("t [s], E [MPa]\n", None, "no line with two numbers");
         says("t,E\n1,2\n2,3,4\n", Some(3), "3 cells, but 2");
         says("t,E\n1,2\n\n2,x\n", Some(4), "\"x\" is not a finite number (column 2, \"E\")");

@@ -40,11 +40,12 @@ pub(super) fn of(table: &Table, sheet: Option<&str>) -> Result<Option<Kind>> {
             let kind = if relaxation { Kind::Relaxation } else { Kind::Creep };
             match answered {
                 Some((by, why)) if by != kind && called != Some(kind) => Err(fault(format!(
-                    "{why}: it is one of {}, where the {} over time is not that of the material, but one over its {}; the file names no column of \
-                     that one",
+                    "{why}: a step of {}, in which the {} over time is not that of the material, but one over its {}; add a column of that, {} over {}",
                     name(by),
                     quantity(kind),
-                    quantity(by)
+                    quantity(by),
+                    if by == Kind::Creep { "strain" } else { "stress" },
+                    if by == Kind::Creep { "stress" } else { "strain" },
                 ))
                 .remedy(Remedy::Kind)),
                 _ => Ok(Some(kind)),

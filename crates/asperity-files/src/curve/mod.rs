@@ -159,9 +159,17 @@ impl Curves {
     /// # Errors
     /// [`CurveError`] if the file cannot be read, holds no table, or its header does not say what was measured.
     pub fn kind_of(path: &Path, sheet: Option<&str>) -> Result<Kind, CurveError> {
+        Curves::kind_of_bytes(path, &bytes(path)?, sheet)
+    }
+
+    /// What the bytes of a file that is called `path` in messages hold.
+    ///
+    /// # Errors
+    /// As [`kind_of`](Self::kind_of).
+    pub fn kind_of_bytes(path: &Path, bytes: &[u8], sheet: Option<&str>) -> Result<Kind, CurveError> {
         let kind = || -> Result<Kind, CurveError> {
             let (mut tables, mut refused) = (Vec::new(), None);
-            for sheet in workbook::sheets(&bytes(path)?, sheet)? {
+            for sheet in workbook::sheets(bytes, sheet)? {
                 match sheet.table {
                     Ok(table) => tables.push((sheet.name, table)),
                     Err(fault) => refused = refused.or(Some(fault)),

@@ -138,7 +138,7 @@ fn a_reciprocal_of_a_compliance_is_not_taken_for_a_relaxation_modulus() {
         format!("{t:e},5e4,{:e},{:e}", 5.0 * j, 1.0 / j)
     });
     let error = kind_of(&alone).unwrap_err();
-    assert!(error.message.contains("one of creep") && error.remedy == Some(Remedy::Kind), "{error}");
+    assert!(error.message.contains("a step of creep") && error.remedy == Some(Remedy::Kind), "{error}");
     // A relaxation test has a constant strain.
     let held = creep("Step time [s],Stress [Pa],Strain [%],Modulus [MPa],Compliance [1/MPa]", |t, j| {
         format!("{t:e},{:e},1.0,{:e},{j:e}", 1e4 / j, 1.0 / j)

@@ -302,4 +302,9 @@ fn pictures_and_containers_are_called_by_their_tags() {
     }
     let error = read_bytes(b"", &ReadOptions::default()).unwrap_err().to_string();
     assert!(error.contains("the file is empty"), "{error}");
+    // The names of the groups of JPK's fast scans.
+    let mut jpk = crate::samples::hdf5();
+    jpk.extend(b"Measurement_000 Channel_000");
+    let error = read_bytes(&jpk, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("JPK HDF5"), "{error}");
 }

@@ -418,13 +418,16 @@ fn indentation_of(
         format!("  [\"{time:.6e} s\", \"{value:.6e} {unit}\"],")
     };
     let points: Vec<String> = kept.iter().map(point).collect();
+    let [least, most] = extent(values.iter().copied());
+    let off = match error <= 1e-6 * (most - least) {
+        true => "on".to_owned(),
+        false => format!("within {} of", quantity(error, unit)),
+    };
     let thinned = match kept.len() > last {
         true => String::new(),
-        false => format!(
-            ", {} of them here: the others lie within {} of the straight lines between these",
-            kept.len(),
-            quantity(error, unit)
-        ),
+        false => {
+            format!(", {} of them here: the others lie {off} the straight lines between these", kept.len())
+        }
     };
     let deepest = record.depths.iter().copied().fold(0.0, f64::max).max(1e-9);
     if sticks && record.depths.iter().all(|depth| *depth >= 0.0) {

@@ -76,10 +76,9 @@ fn dynamic(curves: &mut Curves, moduli: Moduli, notes: &mut Vec<String>) -> Resu
         !(value.is_finite() && (value > 0.0 || (value == 0.0 && column == 1 && !several)))
     };
     if curves.sweeps.iter().any(|sweep| sweep.curves.len() < 2) && moduli != Moduli::Storage {
-        return Err(fault(
-            "no column is recognised as loss modulus, loss factor or phase angle, so that only the storage modulus can be fitted",
-        )
-        .remedy(Remedy::Moduli));
+        return Err(
+            fault("no column is recognised as loss modulus, loss factor or phase angle").remedy(Remedy::Loss)
+        );
     }
     for (column, name) in [(1, "loss"), (0, "storage")] {
         let at = |sweep: &Sweep, n: usize| {
@@ -126,9 +125,8 @@ fn dynamic(curves: &mut Curves, moduli: Moduli, notes: &mut Vec<String>) -> Resu
 /// Leaves out a stray point of a relaxation or creep test that is not greater than 0; many are noise, and need a window.
 fn above_noise(curves: &mut Curves, notes: &mut Vec<String>) -> Result<()> {
     let name = curves.kind.columns()[0];
-    for n in 0..curves.sweeps.len() {
-        let place = column_of(curves, name);
-        let sweep = &mut curves.sweeps[n];
+    let place = column_of(curves, name);
+    for sweep in &mut curves.sweeps {
         let Some(values) = sweep.curves.first() else { continue };
         let bad: Vec<usize> =
             (0..values.len()).filter(|n| !(values[*n].is_finite() && values[*n] > 0.0)).collect();
@@ -166,7 +164,7 @@ fn above_noise(curves: &mut Curves, notes: &mut Vec<String>) -> Result<()> {
             true => {
                 fault.remedy(Remedy::Window(format!("{start:.3e} s"), format!("{:.3e} s", sweep.x[end - 1])))
             }
-            false => fault.remedy(Remedy::Header),
+            false => fault,
         });
     }
     Ok(())

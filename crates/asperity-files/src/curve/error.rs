@@ -38,6 +38,8 @@ pub enum Remedy {
     Window(String, String),
     /// Say the unit of an angular frequency.
     Radians,
+    /// Say which column holds the loss modulus, or fit the storage modulus alone.
+    Loss,
     /// Say which of the sheets, named here, to read.
     Sheet(String),
 }
@@ -76,6 +78,14 @@ impl Remedy {
                 format!("window=(...) with {first} and {last} in s"),
             ]
             .map(|how| format!("fit the part before, as in {how}")),
+            Remedy::Loss => [
+                ("columns = { loss = 1 }", "say fit = { moduli = \"storage\" }"),
+                ("--column loss=1", "give --fit storage"),
+                ("columns={\"loss\": 1}", "say moduli=\"storage\""),
+            ]
+            .map(|(column, alone)| {
+                format!("name it as in {column} (or tan_delta, phase), or {alone} to fit the storage modulus alone")
+            }),
             Remedy::Radians => [
                 "say units = { frequency = \"rad/s\" }",
                 "give --unit frequency=rad/s",

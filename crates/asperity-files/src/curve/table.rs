@@ -158,17 +158,7 @@ impl Table {
             let start = line.as_ptr() as usize - text.as_ptr() as usize;
             rows.push(Row { line: n + 1, span: start..start + line.len() });
         }
-        let mut units = units.into_iter().flatten();
-        let heading = |header: String| {
-            let (base, quantity) = role::logarithm(&header);
-            let (name, own) = split_unit(quantity);
-            // A dash below a name takes nothing from the unit behind it.
-            let below =
-                units.next().filter(|unit| !matches!(unit.as_str(), "" | "-" | "1") || own.is_empty());
-            let (name, unit) = (name.to_owned(), below.unwrap_or_else(|| own.to_owned()));
-            Heading { header, name, unit, base }
-        };
-        let headings = headers.into_iter().map(heading).collect();
+        let headings = headings(headers, units);
         drop(lines);
         Ok(Table { headings, unread, rows, text, separator, decimal_comma })
     }
@@ -246,6 +236,20 @@ impl Table {
         };
         self.headings.iter().enumerate().take(20).map(name).collect::<Vec<_>>().join(", ")
     }
+}
+
+/// Name, unit and base of each column, from its header and the line of units.
+fn headings(headers: Vec<String>, units: Option<Vec<String>>) -> Vec<Heading> {
+    let mut units = units.into_iter().flatten();
+    let heading = |header: String| {
+        let (base, quantity) = role::logarithm(&header);
+        let (name, own) = split_unit(quantity);
+        // A dash below a name takes nothing from the unit behind it.
+        let below = units.next().filter(|unit| !matches!(unit.as_str(), "" | "-" | "1") || own.is_empty());
+        let (name, unit) = (name.to_owned(), below.unwrap_or_else(|| own.to_owned()));
+        Heading { header, name, unit, base }
+    };
+    headers.into_iter().map(heading).collect()
 }
 
 /// Without blanks at its ends; a tab before other cells stands for an empty cell.

@@ -23,7 +23,7 @@ pub fn thinned(times: &[f64], values: &[f64], most: usize) -> (Vec<usize>, f64) 
     let mut error = noise(times, values).max(ROUNDING * range);
     loop {
         let kept = corners(times, values, error);
-        if kept.len() <= most.max(2) || !(error < range) {
+        if kept.len() <= most.max(2) || error >= range || !range.is_finite() {
             let farthest =
                 kept.windows(2).map(|pair| farthest(times, values, [pair[0], pair[1]]).1).fold(0.0, f64::max);
             return (kept, farthest);
@@ -37,7 +37,7 @@ fn corners(times: &[f64], values: &[f64], error: f64) -> Vec<usize> {
     let count = times.len().min(values.len());
     let mut kept = vec![false; count];
     let mut open = Vec::new();
-    if let (Some(last), true) = (count.checked_sub(1), count > 0) {
+    if let Some(last) = count.checked_sub(1) {
         (kept[0], kept[last]) = (true, true);
         open.push([0, last]);
     }

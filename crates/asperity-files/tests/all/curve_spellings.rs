@@ -1,7 +1,7 @@
 //! Spellings of tables that were read wrongly or refused: the values follow from the numbers that the tests write.
 
-use asperity::material::{FitOptions, Moduli, Modulus, Relaxation};
-use asperity_files::curve::{Columns, CurveError, Curves, Kind, Remedy, Request, Role, Series};
+use asperity::material::{FitOptions, Moduli, Modulus, Relaxation, Shift};
+use asperity_files::curve::{Columns, CurveError, Curves, Kind, Remedy, Request, Role, Series, ShiftRequest};
 
 fn parse(text: &str, kind: Kind) -> Result<Curves, CurveError> {
     Curves::parse("x.csv".as_ref(), text.as_bytes(), kind, &Columns::default())
@@ -168,7 +168,7 @@ fn a_storage_modulus_alone_is_fitted_where_that_is_asked_for() {
     assert_eq!(kind_of(&text), Ok(Kind::Dma));
     let curves = read(&text, Kind::Dma);
     let error = Request::default().fit(&curves).unwrap_err();
-    assert!(error.message.contains("loss modulus") && error.remedy == Some(Remedy::Moduli), "{error}");
+    assert!(error.message.contains("loss modulus") && error.remedy == Some(Remedy::Loss), "{error}");
     let options = FitOptions { moduli: Moduli::Storage, ..FitOptions::default() };
     let fitted = Request { options, ..Request::default() }.fit(&curves).unwrap();
     assert!(fitted.misfit.max < 1e-3 && fitted.columns.len() == 1 && fitted.other().is_none());
@@ -201,6 +201,35 @@ fn a_negative_loss_modulus_is_left_out_and_named() {
     let options = FitOptions { moduli: Moduli::Storage, ..FitOptions::default() };
     let fitted = Request { options, ..Request::default() }.fit(&many).unwrap();
     assert!(fitted.misfit.max < 1e-3 && fitted.data.x.len() == 60);
+}
+
+/// The rubber at three temperatures by the WLF law about 20 °C; the coldest sweep holds nonsense.
+#[test]
+fn a_bad_isotherm_outside_the_window_is_not_judged() {
+    let shift = Shift::Wlf { c1: 8.86, c2: 101.6, reference: 293.15 };
+    let mut text = "T [°C],w [rad/s],E' [Pa],E'' [Pa]\n".to_owned();
+    for celsius in [-20.0, 20.0, 40.0] {
+        let factor = shift.factor(celsius + 273.15).unwrap();
+        for k in 0..20 {
+            let omega = 10f64.powf(-1.0 + 0.15 * f64::from(k));
+            let (storage, loss) = rubber().complex(omega * factor);
+            let sign = if celsius < 0.0 { -1.0 } else { 1.0 };
+            text += &format!("{celsius},{omega:e},{:e},{:e}\n", sign * storage, sign * loss);
+        }
+    }
+    let curves = read(&text, Kind::Dma);
+    let given = Request { shift: ShiftRequest::Given(shift), ..Request::default() };
+    let error = given.fit(&curves).unwrap_err();
+    assert!(error.message.contains("20 of 60 loss moduli (column 4") && error.line == Some(2), "{error}");
+    // a_T is 6e5 at -20 °C and 0.03 at 40 °C: below 30 rad/s there are points of the two others only.
+    let fitted = Request { window: Some([1e-2, 30.0]), ..given }.fit(&curves).unwrap();
+    assert!(
+        fitted.misfit.max < 1e-2 && fitted.data.x.len() > 25,
+        "{:?} {}",
+        fitted.misfit,
+        fitted.data.x.len()
+    );
+    assert!(fitted.notes.iter().any(|note| note.contains("1 of 3 temperatures")), "{:?}", fitted.notes);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use asperity_files::curve::{Columns, Curves, Kind};
 
 // Text tables and spreadsheets (.xls, .xlsx), as each kind of measurement.
 libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+    let _ = Curves::kind_of_bytes("curve".as_ref(), data, None);
     for kind in [Kind::Dma, Kind::Relaxation, Kind::Creep] {
         if let Ok(curves) = Curves::parse("curve".as_ref(), data, kind, &Columns::default()) {
             let numbers =

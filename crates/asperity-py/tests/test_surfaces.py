@@ -223,3 +223,54 @@ def test_a_format_that_is_not_read_is_named_or_left_to_another_package(tmp_path,
     surface = asp.Surface.read(path, channel=0)
     assert surface.cells == (3, 2) and surface.metadata["channels"] == ["Height"]
     assert calls == [(str(path), None, None, "0")]
+
+
+class _Reader:
+    """As a reader of SurfaceTopography: one channel of 4 x 4 points over 160 of a unit."""
+
+    channels: list = []
+    default_channel = None
+
+    def __init__(self, unit, fails=None):
+        from types import SimpleNamespace
+
+        self.fails, channel = fails, SimpleNamespace(name="Height", dim=2, physical_sizes=(160.0, 160.0))
+        self.channels, self.default_channel = [channel], channel
+        self.made = SimpleNamespace(
+            unit=unit, physical_sizes=(160.0, 160.0), nb_grid_pts=(4, 4), is_periodic=False, info={}, heights=lambda: np.zeros((4, 4))
+        )
+
+    def topography(self, **_):
+        if self.fails is not None:
+            raise self.fails
+        return self.made
+
+    def format(self):
+        return "nms"
+
+
+def _other(monkeypatch, reader):
+    from types import SimpleNamespace
+
+    units = SimpleNamespace(get_unit_conversion_factor=lambda unit, _: {"m": 1.0, "µm": 1e-6}[unit])
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", SimpleNamespace(open_topography=lambda path: reader, __version__="1"))
+    monkeypatch.setitem(sys.modules, "SurfaceTopography.Support", SimpleNamespace(UnitConversion=units))
+
+
+def test_what_another_reader_gives_is_looked_at(tmp_path, monkeypatch):
+    path = tmp_path / "scan.vk4"
+    path.write_bytes(b"VK4_" + bytes(100))
+    _other(monkeypatch, _Reader("µm"))
+    assert asp.Surface.read(path).size == pytest.approx((160e-6, 160e-6))
+    # 160 m for 160 um.
+    _other(monkeypatch, _Reader("m"))
+    with pytest.warns(UserWarning, match="160 m x 160 m.*unlikely-unit"):
+        asp.Surface.read(path)
+    # Mistakes of its readers are not shown.
+    _other(monkeypatch, _Reader("m", IndexError("list index out of range")))
+    with pytest.raises(OSError, match="its reader fails on this file") as raised:
+        asp.Surface.read(path)
+    assert "list index" not in str(raised.value)
+    _other(monkeypatch, _Reader("m", ValueError("the checksum is wrong")))
+    with pytest.raises(OSError, match="the checksum is wrong"):
+        asp.Surface.read(path)

@@ -9,7 +9,7 @@ use super::error::{Remedy, Result, fault};
 use super::role::{self, Role, unnumbered};
 use super::sweeps::{DYNAMIC, Pair};
 use super::table::{Heading, Table};
-use super::units::{convert, taken, tidy};
+use super::units::{convert, is_angular, spelled, taken, tidy};
 use crate::quantity::unit::Unit;
 use crate::quantity::{Dimension, dimension};
 
@@ -95,6 +95,10 @@ pub struct Place {
 pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> {
     let places = places(table, form, said)?;
     let (kept, mut notes) = complete(table, &places)?;
+    let unread = table.unread.as_deref().filter(|_| table.is_named()).map(shown);
+    notes.extend(unread.as_ref().map(|line| {
+        format!("the line {line:?}, between the names of the columns and the points, is not read")
+    }));
     let (mut values, mut used) = (Values::new(), Vec::new());
     for (role, column) in places {
         let Heading { header, name, unit: own, base } = &table.headings[column];
@@ -107,6 +111,15 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
             (None, _) => tidy(role, name, header_unit),
         };
         let place = format!("column {}{}", column + 1, table.quoted(column));
+        if let (true, Some(line), false) =
+            (unit.is_empty(), &unread, matches!(role, Role::TanDelta | Role::Set))
+        {
+            return Err(fault(format!(
+                "{} ({place}) names no unit, and the line {line:?} above the points, which is not understood, may hold it",
+                role.name()
+            ))
+            .remedy(Remedy::Unit(role)));
+        }
         let numbers = match role {
             Role::Set => table.labels(column),
             _ => table.sparse(column)?.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect(),
@@ -123,7 +136,9 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
         };
         let converted = convert(role, &unit, numbers).map_err(|(row, why)| {
             let line = row.map(|row| table.rows[kept[row]].line);
-            fault(format!("{} ({place}): {why}", role.name())).remedy(Remedy::Unit(role)).at(line)
+            let angular = role == Role::Frequency && unit.is_empty() && is_angular(name);
+            let remedy = if angular { Remedy::Radians } else { Remedy::Unit(role) };
+            fault(format!("{} ({place}): {why}", role.name())).remedy(remedy).at(line)
         })?;
         if unit.is_empty() && !matches!(role, Role::TanDelta | Role::Set) {
             notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));
@@ -135,6 +150,25 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();
     Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })
+}
+
+/// A line of the file as a message shows it.
+fn shown(line: impl AsRef<str>) -> String {
+    line.as_ref().chars().take(60).collect()
+}
+
+/// Whether a word of a line is a unit of time, frequency, temperature, modulus or compliance, as a heading has.
+fn holds_unit(line: &str) -> bool {
+    let parts = line.split(|c: char| c.is_whitespace() || ",;|[](){}".contains(c));
+    parts.filter(|word| word.chars().count() > 1).any(|word| {
+        let pressure = [-1, 1, -2, 0, 0];
+        let known = |unit: Unit| {
+            unit.powers == pressure
+                || unit.powers == pressure.map(|power| -power)
+                || [dimension::Time::POWERS, dimension::Frequency::POWERS].contains(&unit.powers)
+        };
+        matches!(word, "°C" | "°F" | "rad/s") || Unit::parse(&spelled(word)).is_ok_and(known)
+    })
 }
 
 /// Whether the unit of a ratio says nothing.
@@ -217,10 +251,10 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
         }
     }
     if places.keys().all(|role| form.optional.contains(role)) && said.columns.is_empty() {
-        if let Some(line) = table.unread.as_ref().filter(|line| line.contains("Pa") || line.contains("log")) {
-            let shown: String = line.chars().take(60).collect();
+        if let Some(line) = table.unread.as_ref().filter(|line| line.contains("log") || holds_unit(line)) {
             return Err(fault(format!(
-                "the line before the numbers, {shown:?}, does not name {} columns, and it may hold a unit",
+                "the line before the numbers, {:?}, does not name {} columns, and it may hold a unit",
+                shown(line),
                 table.headings.len()
             ))
             .remedy(Remedy::Header));
@@ -300,6 +334,13 @@ fn one_pair(places: &mut BTreeMap<Role, usize>, form: Form, said: &Columns) -> O
     match complete.clone().find(|pair| Some(told(pair)) == most) {
         Some(pair) => {
             places.retain(|role, _| pair.contains(role) || !form.pairs().flatten().any(|r| r == role));
+            None
+        }
+        // A storage modulus alone can be fitted; the fit says what is missing.
+        None if form.pairs.iter().any(|(pair, _)| pair[0] == Role::Storage)
+            && places.contains_key(&Role::Storage) =>
+        {
+            places.retain(|role, _| *role == Role::Storage || !form.pairs().flatten().any(|r| r == role));
             None
         }
         // The other one of a pair that has one, else the first of all.
@@ -396,7 +437,13 @@ pub(super) fn is_dynamic(table: &Table) -> bool {
 pub(super) fn named(table: &Table, kind: Kind) -> bool {
     let form = Form::from(kind);
     form.needed.iter().all(|role| names(table, *role, form))
-        && (form.pairs.is_empty() || names_pair(table, form))
+        && (form.pairs.is_empty() || names_pair(table, form) || names(table, Role::Storage, form))
+}
+
+/// The column that is named as one of the role, among those of a kind.
+pub(super) fn named_column(table: &Table, role: Role, kind: Kind) -> Option<usize> {
+    let form = Form::from(kind);
+    (0..table.headings.len()).find(|column| means(table, *column, role, form))
 }
 
 fn names_pair(table: &Table, form: Form) -> bool {

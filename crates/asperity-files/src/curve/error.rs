@@ -34,6 +34,12 @@ pub enum Remedy {
     KnownShift,
     /// Fit one of the two moduli of a DMA.
     Moduli,
+    /// Fit the part of a curve between these ends.
+    Window(String, String),
+    /// Say the unit of an angular frequency.
+    Radians,
+    /// Say which column holds the loss modulus, or fit the storage modulus alone.
+    Loss,
     /// Say which of the sheets, named here, to read.
     Sheet(String),
 }
@@ -66,6 +72,31 @@ impl Remedy {
                 ]
                 .map(|how| format!("name the unit in the header, as in \"{name} [{unit}]\", or {how}"))
             }
+            Remedy::Window(first, last) => [
+                format!("fit = {{ window = [\"{first}\", \"{last}\"] }}"),
+                format!("--window '{first}, {last}'"),
+                format!("window=(...) with {first} and {last} in s"),
+            ]
+            .map(|how| format!("fit the part before, as in {how}")),
+            Remedy::Loss => [
+                ("columns = { loss = 1 }", "say fit = { moduli = \"storage\" }"),
+                ("--column loss=1", "give --fit storage"),
+                ("columns={\"loss\": 1}", "say moduli=\"storage\""),
+            ]
+            .map(|(column, alone)| {
+                format!("name it as in {column} (or tan_delta, phase), or {alone} to fit the storage modulus alone")
+            }),
+            Remedy::Radians => [
+                "say units = { frequency = \"rad/s\" }",
+                "give --unit frequency=rad/s",
+                "say units={\"frequency\": \"rad/s\"}",
+            ]
+            .map(|how| {
+                format!(
+                    "an angular frequency is in rad/s, as in \"angular frequency [rad/s]\": name the unit in the header, or {how} (Hz only where \
+                     the column holds cycles per second)"
+                )
+            }),
             Remedy::Header => [
                 "say columns = { ... } and units = { ... }",
                 "give --column and --unit",

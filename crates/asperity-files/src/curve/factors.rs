@@ -7,8 +7,9 @@ use asperity::material::Shift;
 
 use super::bytes;
 use super::error::{CurveError, Remedy, fault};
+use super::names::split_unit;
 use super::role::{Role, bare};
-use super::table::{Heading, Table, split_unit};
+use super::table::{Heading, Table};
 use super::units::{kelvin, tidy};
 use super::workbook::{Sheet, sheets};
 use crate::topography::leading_number;

@@ -9,6 +9,7 @@ use asperity::material::{
     fit_relaxation, fit_wlf, master_curve,
 };
 
+use super::clean::cleaned;
 use super::error::{CurveError, Remedy, fault};
 use super::isotherms::{abscissa, at_isotherm, held, isotherms, point, shifted_by, snap};
 use super::sweeps::is_ramp;
@@ -230,7 +231,10 @@ impl Request {
     }
 
     fn fitted(&self, curves: &Curves) -> Result<Fitted, CurveError> {
+        let (curves, left_out_here) = cleaned(curves, self)?;
+        let curves = &curves;
         let mut notes = curves.notes.clone();
+        notes.extend(left_out_here);
         let temperatures: Vec<f64> = curves.sweeps.iter().filter_map(|sweep| sweep.temperature).collect();
         let reference = self.reference(curves);
         let corrected = vertical::corrected(curves, &self.vertical, reference)?;
@@ -251,12 +255,20 @@ impl Request {
                 return fault(unsure(message, &factors)).remedy(Remedy::Moduli);
             }
             let line = point(&message).and_then(|n| lines.get(n.checked_sub(1)?).copied());
-            fault(message).at(line)
+            let part =
+                message.contains("in a passive material").then(|| self.part(curves.kind, &data)).flatten();
+            CurveError { remedy: part, ..fault(message).at(line) }
         };
         let (options, none) = (&self.options, Vec::new());
         let curve = |n: usize| data.curves.get(n).unwrap_or(&none).as_slice();
         let (series, fit) = match curves.kind {
             Kind::Creep => taken(fit_creep(&data.x, curve(0), options).map_err(located)?, Series::Creep),
+            Kind::Dma if data.curves.len() == 1 => {
+                // The loss modulus is not fitted: any does, and its misfit means nothing.
+                let fit = fit_dma(&data.x, curve(0), &vec![0.0; data.x.len()], options);
+                let fit = fit.map_err(located)?;
+                taken(Fit { columns: fit.columns[..1].to_vec(), ..fit }, Series::Relaxation)
+            }
             Kind::Dma => {
                 let fit = fit_dma(&data.x, curve(0), curve(1), options);
                 taken(fit.map_err(located)?, Series::Relaxation)
@@ -296,6 +308,14 @@ impl Request {
             left_out: curves.left_out,
             notes,
         })
+    }
+
+    /// The half of the data with the larger values, as a part to fit: noise and slip are in the other one.
+    fn part(&self, kind: Kind, data: &MasterCurve) -> Option<Remedy> {
+        let half = data.x.len() / 2;
+        let (first, last) = (*data.x.first()?, *data.x.get(half)?);
+        let ends = kind == Kind::Relaxation && self.window.is_none() && first > 0.0 && last > first;
+        ends.then(|| Remedy::Window(format!("{first:.3e} s"), format!("{last:.3e} s")))
     }
 
     /// The shift of the material.

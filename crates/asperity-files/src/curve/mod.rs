@@ -24,16 +24,21 @@
 //! ```
 
 mod block;
+mod clean;
 mod columns;
 mod error;
 mod factors;
 mod fit;
 mod force;
+mod heading;
 mod indentation;
 mod isotherms;
+mod kind;
+mod names;
 mod role;
 mod sweeps;
 mod table;
+mod thin;
 mod units;
 mod vertical;
 mod wide;
@@ -48,6 +53,7 @@ pub use fit::{Fitted, Request, Series, ShiftRequest};
 pub use force::{Cantilever, ForceTable};
 pub use indentation::{Indentation, IndentationTest, MaterialOf, indentation_block};
 pub use role::Role;
+pub use thin::thinned;
 pub use units::angular_frequency;
 pub use vertical::{VerticalRequest, VerticalWord};
 
@@ -153,17 +159,28 @@ impl Curves {
     /// # Errors
     /// [`CurveError`] if the file cannot be read, holds no table, or its header does not say what was measured.
     pub fn kind_of(path: &Path, sheet: Option<&str>) -> Result<Kind, CurveError> {
+        Curves::kind_of_bytes(path, &bytes(path)?, sheet)
+    }
+
+    /// What the bytes of a file that is called `path` in messages hold.
+    ///
+    /// # Errors
+    /// As [`kind_of`](Self::kind_of).
+    pub fn kind_of_bytes(path: &Path, bytes: &[u8], sheet: Option<&str>) -> Result<Kind, CurveError> {
         let kind = || -> Result<Kind, CurveError> {
             let (mut tables, mut refused) = (Vec::new(), None);
-            for sheet in workbook::sheets(&bytes(path)?, sheet)? {
+            for sheet in workbook::sheets(bytes, sheet)? {
                 match sheet.table {
-                    Ok(table) => tables.push(table),
+                    Ok(table) => tables.push((sheet.name, table)),
                     Err(fault) => refused = refused.or(Some(fault)),
                 }
             }
-            if let Some(kind) = tables.iter().find_map(kind_of) {
-                return Ok(kind);
+            for (name, table) in &tables {
+                if let Some(kind) = kind::of(table, name.as_deref())? {
+                    return Ok(kind);
+                }
             }
+            let tables: Vec<Table> = tables.into_iter().map(|(_, table)| table).collect();
             let dynamic = tables.iter().find(|table| columns::is_dynamic(table));
             Err(match (dynamic, tables.first(), refused) {
                 (Some(table), ..) => fault(format!(
@@ -259,15 +276,6 @@ impl Curves {
 
 fn bytes(path: &Path) -> Result<Vec<u8>, CurveError> {
     crate::resources::bytes(path, MOST_BYTES).map_err(|why| fault(why).of(path))
-}
-
-/// What the header of a table says that it holds.
-fn kind_of(table: &Table) -> Option<Kind> {
-    // An instrument that gives storage and loss modulus also gives times.
-    if columns::is_dynamic(table) && !columns::named(table, Kind::Dma) {
-        return None;
-    }
-    [Kind::Dma, Kind::Relaxation, Kind::Creep].into_iter().find(|kind| columns::named(table, *kind))
 }
 
 /// The first sheet whose header names a curve of the kind, or the only one with a table; and a note on others like it.

@@ -15,8 +15,17 @@ pub use table::Role;
 impl Role {
     /// Whether a name means it.
     pub(super) fn is_called(self, name: &str) -> bool {
-        let name = bare(name);
-        self.names().any(|known| known == name)
+        let known = |name: &str| {
+            let name = bare(name);
+            self.names().any(|known| known == name)
+        };
+        // A name and its symbol: "Relaxation modulus, E", "Angular frequency (ω)", "Time, t".
+        let symbol = |text: &str| {
+            let text = text.trim_matches([' ', '(', ')', '[', ']', ',', ':', '=']);
+            known(text) || matches!((self, text), (Role::Time, "t") | (Role::Temperature, "T"))
+        };
+        let parts = || name.trim_end().rsplit_once([',', ' ', '(', ':']);
+        known(name) || parts().is_some_and(|(words, last)| known(words) && symbol(last))
     }
 
     /// Whether it is a modulus or a compliance.
@@ -136,7 +145,9 @@ pub(super) fn measure_of(name: &str) -> Option<Modulus> {
         return of(symbol);
     }
     // "Relaxation modulus E(t)"
-    for (end, measure) in [("et", 'e'), ("gt", 'g'), ("jt", 'j'), ("dt", 'd')] {
+    for (end, measure) in
+        [("et", 'e'), ("gt", 'g'), ("jt", 'j'), ("dt", 'd'), ("e", 'e'), ("g", 'g'), ("j", 'j'), ("d", 'd')]
+    {
         let words = name.strip_suffix(end).unwrap_or_default();
         if ["modulus", "modul", "compliance", "nachgiebigkeit"].iter().any(|word| words.ends_with(word)) {
             return of(measure);

@@ -149,7 +149,10 @@ fn dynamic(values: &Values) -> Vec<Vec<f64>> {
     let none = Vec::new();
     let of = |role: &Role| values.get(role).unwrap_or(&none);
     let held = DYNAMIC.iter().find(|(pair, _)| pair.iter().all(|role| values.contains_key(role)));
-    let Some(([first, second], moduli)) = held else { return vec![vec![], vec![]] };
+    let Some(([first, second], moduli)) = held else {
+        // A storage modulus alone.
+        return vec![of(&Role::Storage).clone()];
+    };
     let points = of(first).iter().zip(of(second)).zip(of(&Role::Frequency));
     let (storage, loss) = points.map(|((a, b), omega)| moduli(*a, *b, *omega)).unzip();
     vec![storage, loss]

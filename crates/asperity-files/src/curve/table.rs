@@ -9,8 +9,9 @@
 use std::ops::Range;
 
 use super::error::{CurveError, Result, fault};
-use super::{role, units, wide};
-use crate::quantity::unit::Unit;
+use super::heading::{self, Dialect};
+use super::names::{is_unit, split_unit, unquoted};
+use super::{role, wide};
 use crate::topography::{dialect, is_numbers, to_text};
 
 /// Columns of a file and its rows of cells.
@@ -18,7 +19,7 @@ use crate::topography::{dialect, is_numbers, to_text};
 pub(super) struct Table {
     /// One for each column.
     pub headings: Vec<Heading>,
-    /// The line before the numbers, where it does not name the columns.
+    /// A line before the points that is not understood: in place of names, or below them. It may hold units.
     pub unread: Option<String>,
     pub rows: Vec<Row>,
     text: String,
@@ -58,7 +59,12 @@ const LONGEST_LINE: usize = 1 << 20;
 impl Table {
     /// From the bytes of a text file.
     pub(super) fn parse(bytes: &[u8]) -> Result<Table> {
-        let text = to_text(bytes).ok_or_else(|| fault("the file is binary, not a text table"))?;
+        if bytes.iter().all(u8::is_ascii_whitespace) {
+            return Err(fault("the file is empty"));
+        }
+        let text = to_text(bytes).ok_or_else(|| {
+            fault("the file is binary, not a text table and not a spreadsheet (.xls, .xlsx); export the measured columns as text (csv)")
+        })?;
         if text.lines().nth(MOST_LINES).is_some() {
             return Err(fault(format!("the file has more than {MOST_LINES} lines")));
         }
@@ -82,28 +88,22 @@ impl Table {
     /// From text whose separator and decimal mark are known.
     pub(super) fn split(text: String, separator: Option<char>, decimal_comma: bool) -> Result<Table> {
         let lines: Vec<&str> = text.lines().map(trim).collect();
+        let dialect = Dialect { separator, decimal_comma };
         // "NaN" counts as a number; dashes may be anything.
         let number = |cell: &str| parse_number(cell, decimal_comma).is_some() || is_undefined(cell);
         let numbers = |line: &str| cells(line, separator).iter().filter(|cell| number(cell)).count();
-        let first = first_row(&lines, separator, &numbers).ok_or_else(|| {
+        let complete = first_row(&lines, dialect, &numbers).ok_or_else(|| {
             fault("there is no line with two numbers; a curve is a text table with one point per line")
         })?;
-        let cells_of_first = cells(lines[first], separator);
-        // An empty last cell belongs to a column that has a name; otherwise a separator ends the line.
-        let last_above = lines[..first].iter().rev().copied().find(|line| !is_blank(line, separator));
-        let unnamed = || {
-            let named = last_above.map(|line| cells(line, separator));
-            let named = named.filter(|named| named.len() == cells_of_first.len());
-            named.is_none_or(|named| named.last().is_some_and(|cell| cell.is_empty()))
-        };
-        let ended = cells_of_first.last().is_some_and(|cell| cell.is_empty()) && unnamed();
-        let columns = cells_of_first.len() - usize::from(ended);
+        let columns = columns(&lines[..=complete], separator);
         if columns > MOST_COLUMNS {
             return Err(fault(format!("the table has {columns} columns, but may have {MOST_COLUMNS}")));
         }
-        let (headers, units) = header(&lines[..first], separator, columns);
+        let heading::Heading { names: headers, units, first, unread } =
+            dialect.heading(&lines[..complete], columns);
         let is_named = units.is_some() || headers.iter().any(|header| !header.is_empty());
-        let unread = last_above.filter(|_| !is_named).map(str::to_owned);
+        let last_above = || lines[..first].iter().rev().copied().find(|line| !is_blank(line, separator));
+        let unread = if is_named { unread.map(|n| lines[n]) } else { last_above() }.map(str::to_owned);
         let lines_of_heading = usize::from(is_named) + usize::from(units.is_some());
         let named = heading(&lines[..first], separator, lines_of_heading);
         let is_row = |line: &str| {
@@ -119,7 +119,7 @@ impl Table {
             }
             if is_comment(line) {
                 let differs = n < last && !lines[..first].contains(line);
-                let named = header_cells(line, separator, columns).filter(|_| differs);
+                let named = heading::header_cells(line, separator, columns).filter(|_| differs);
                 if named.is_some_and(|cells| cells.iter().filter(|cell| names_column(cell)).count() >= 2) {
                     return Err(another_heading(line).at(n + 1));
                 }
@@ -143,7 +143,8 @@ impl Table {
                 cells.pop(); // a separator ends the line
             }
             // The last cells of a line with tabs may be empty.
-            if line.contains('\t') && separator.is_none() && (2..columns).contains(&cells.len()) {
+            let tabs = line.contains('\t') || ends_in_tab(&text, line);
+            if separator.is_none() && tabs && cells.len() < columns {
                 cells.resize(columns, "");
             }
             if cells.len() != columns {
@@ -157,14 +158,7 @@ impl Table {
             let start = line.as_ptr() as usize - text.as_ptr() as usize;
             rows.push(Row { line: n + 1, span: start..start + line.len() });
         }
-        let mut units = units.into_iter().flatten();
-        let heading = |header: String| {
-            let (base, quantity) = role::logarithm(&header);
-            let (name, own) = split_unit(quantity);
-            let (name, unit) = (name.to_owned(), units.next().unwrap_or_else(|| own.to_owned()));
-            Heading { header, name, unit, base }
-        };
-        let headings = headers.into_iter().map(heading).collect();
+        let headings = headings(headers, units);
         drop(lines);
         Ok(Table { headings, unread, rows, text, separator, decimal_comma })
     }
@@ -215,6 +209,11 @@ impl Table {
         self.rows.iter().map(label).collect()
     }
 
+    /// Whether the file names its columns.
+    pub(super) fn is_named(&self) -> bool {
+        self.headings.iter().any(|heading| !heading.header.is_empty())
+    }
+
     /// `, "f [Hz]"`, or nothing where the column has no name.
     pub(super) fn quoted(&self, column: usize) -> String {
         match self.headings[column].header.as_str() {
@@ -239,23 +238,65 @@ impl Table {
     }
 }
 
+/// Name, unit and base of each column, from its header and the line of units.
+fn headings(headers: Vec<String>, units: Option<Vec<String>>) -> Vec<Heading> {
+    let mut units = units.into_iter().flatten();
+    let heading = |header: String| {
+        let (base, quantity) = role::logarithm(&header);
+        let (name, own) = split_unit(quantity);
+        // A dash below a name takes nothing from the unit behind it.
+        let below = units.next().filter(|unit| !matches!(unit.as_str(), "" | "-" | "1") || own.is_empty());
+        let (name, unit) = (name.to_owned(), below.unwrap_or_else(|| own.to_owned()));
+        Heading { header, name, unit, base }
+    };
+    headers.into_iter().map(heading).collect()
+}
+
 /// Without blanks at its ends; a tab before other cells stands for an empty cell.
 fn trim(line: &str) -> &str {
-    let line = line.trim_end();
-    match line.trim_start().contains('\t') {
+    let (line, rest) = (line.trim_end(), line.trim());
+    // "\t4.5" is the second of two cells.
+    let second = || line.starts_with('\t') && !rest.contains(char::is_whitespace);
+    match rest.contains('\t') || second() {
         true => line.trim_start_matches([' ', '\u{feff}']),
         false => line.trim_start(),
     }
 }
 
-/// The first line of the table: with two numbers at least, and with as many cells as the next such line (exports begin with
-/// lines of other numbers); without such a pair, the first line with two numbers.
-fn first_row(lines: &[&str], separator: Option<char>, numbers: &dyn Fn(&str) -> usize) -> Option<usize> {
-    let width = |line: &str| cells(line, separator).len();
+/// The first complete point: the first line with two numbers at least, and with as many cells as the next such line, unless a
+/// heading follows it (exports begin with lines of other numbers); without such a pair, the first line with two numbers.
+fn first_row(lines: &[&str], dialect: Dialect, numbers: &dyn Fn(&str) -> usize) -> Option<usize> {
+    let width = |line: &str| cells(line, dialect.separator).len();
     let rows: Vec<usize> =
         (0..lines.len()).filter(|n| !is_comment(lines[*n]) && numbers(lines[*n]) >= 2).take(200).collect();
-    let pair = rows.windows(2).find(|pair| width(lines[pair[0]]) == width(lines[pair[1]]));
-    pair.map(|pair| pair[0]).or_else(|| rows.first().copied())
+    let is_heading = |n: usize| numbers(lines[n]) == 0 && dialect.names(lines[n], width(lines[n]));
+    let named = |range: Range<usize>| range.into_iter().any(is_heading);
+    let pairs = || rows.windows(2).filter(|pair| width(lines[pair[0]]) == width(lines[pair[1]]));
+    let follows = |pair: &&[usize]| named(0..pair[0]) || !named(pair[0]..pair[1]);
+    pairs().find(follows).or_else(|| pairs().next()).map(|pair| pair[0]).or_else(|| rows.first().copied())
+}
+
+/// The columns of a table, from its first complete point, the last of the lines. An empty last cell belongs to a column that has a name;
+/// otherwise a separator ends the line.
+fn columns(lines: &[&str], separator: Option<char>) -> usize {
+    let Some((line, above)) = lines.split_last() else { return 0 };
+    let point = cells(line, separator);
+    let ends = |cells: &[&str]| cells.last().is_some_and(|cell| cell.is_empty());
+    let named = above.iter().rev().map(|line| cells(line, separator)).find(|cells| {
+        cells.len() == point.len() && cells.iter().filter(|cell| names_column(cell)).count() >= 2
+    });
+    let last_above = || {
+        let line = above.iter().rev().find(|line| !is_blank(line, separator))?;
+        Some(cells(line, separator)).filter(|named| named.len() == point.len())
+    };
+    let unnamed = || named.or_else(last_above).is_none_or(|named| ends(&named));
+    point.len() - usize::from(ends(&point) && unnamed())
+}
+
+/// Whether a tab stands behind a line of the text, whose end is trimmed.
+fn ends_in_tab(text: &str, line: &str) -> bool {
+    let end = line.as_ptr() as usize - text.as_ptr() as usize + line.len();
+    text.get(end..).is_some_and(|rest| rest.trim_start_matches(' ').starts_with('\t'))
 }
 
 /// The lines that name the columns and their units, the last one first.
@@ -305,16 +346,19 @@ pub(super) fn doubtful(cell: &str) -> CurveError {
 }
 
 /// Whether a line holds separators only.
-fn is_blank(line: &str, separator: Option<char>) -> bool {
+pub(super) fn is_blank(line: &str, separator: Option<char>) -> bool {
     line.chars().all(|c| c.is_whitespace() || Some(c) == separator)
 }
 
-fn is_comment(line: &str) -> bool {
-    line.starts_with(['#', '%']) || line.starts_with("//")
+/// Whether a line is a remark; "#N/A" and "#DIV/0!" of spreadsheets are missing numbers.
+pub(super) fn is_comment(line: &str) -> bool {
+    let word = line.split([';', ',', '\t', ' ']).next().unwrap_or_default();
+    let is_error = word.starts_with('#') && (word.ends_with(['!', '?']) || is_undefined(word));
+    !is_error && (line.starts_with(['#', '%']) || line.starts_with("//"))
 }
 
 /// A finite number, with the file's decimal mark.
-fn parse_number(cell: &str, decimal_comma: bool) -> Option<f64> {
+pub(super) fn parse_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     let cell = cell.trim_matches('"');
     // "7,874.1" between quotes; "7,874" may have a decimal comma.
     let grouped = || is_grouped(cell) && (cell.contains('.') || cell.matches(',').count() > 1);
@@ -334,9 +378,14 @@ fn is_undefined(cell: &str) -> bool {
 
 /// Whether a cell says that there is no number.
 pub(super) fn is_missing(cell: &str) -> bool {
-    const MARKS: [&str; 12] = ["", "-", "--", "---", "–", "—", "*", "n.a.", "null", "none", "inf", "-inf"];
+    /// Also those of a range that was exceeded.
+    const WORDS: &str = "n.a. null none nil inf -inf +inf infinity -infinity ol o.l. ovl ovfl ovf overflow overload overrange over \
+                         err err. error invalid failed fail bad missing void";
     let bare = cell.trim_matches('"').trim();
-    is_undefined(bare) || bare.starts_with('#') || MARKS.iter().any(|mark| bare.eq_ignore_ascii_case(mark))
+    is_undefined(bare)
+        || bare.starts_with('#')
+        || bare.chars().all(|c| matches!(c, '-' | '–' | '—' | '*' | '?' | '.'))
+        || WORDS.split_whitespace().any(|word| bare.eq_ignore_ascii_case(word))
 }
 
 /// A number with a comma, where all of them look like thousands: "24,070".
@@ -396,165 +445,6 @@ pub(super) fn cells(line: &str, separator: Option<char>) -> Vec<&str> {
         ends
     };
     line.split(outside).map(str::trim).collect()
-}
-
-/// The header cells of the columns, and the units where a line of their own names them.
-fn header(lines: &[&str], separator: Option<char>, columns: usize) -> (Vec<String>, Option<Vec<String>>) {
-    let fitting = lines.iter().rev().copied().filter(|line| !is_blank(line, separator)).take(2);
-    let none = || vec![String::new(); columns];
-    if let (None, [units, names]) = (separator, fitting.clone().collect::<Vec<&str>>().as_slice())
-        && let Some(found) = counted(names, units, columns)
-    {
-        return found;
-    }
-    let mut found = fitting.map_while(|line| header_cells(line, separator, columns));
-    let Some(last) = found.next() else { return (none(), None) };
-    let before = found.next();
-    let only_units = last.iter().any(|cell| !cell.is_empty()) && last.iter().all(|cell| is_unit(cell));
-    let only_units = only_units || before.as_ref().is_some_and(|names| are_units(names, &last));
-    match (only_units, before) {
-        (true, Some(names)) => (names, Some(last.iter().map(|cell| bare_unit(cell).to_owned()).collect())),
-        (true, None) => (none(), Some(last.iter().map(|cell| bare_unit(cell).to_owned()).collect())),
-        (false, _) => (last, None),
-    }
-}
-
-/// Names and units where the first column counts the points, without a unit below it:
-///
-/// ```text
-///   Index          t          f
-///                [s]       [Hz]
-/// ```
-fn counted(names: &str, units: &str, columns: usize) -> Option<(Vec<String>, Option<Vec<String>>)> {
-    let names = header_cells(names, None, columns)?;
-    let units = cells(units, None);
-    let counts = ["index", "nr", "no", "point", "pt"].contains(&role::bare(&names[0]).as_str());
-    let bracketed = units.iter().all(|cell| cell.starts_with('[') && cell.ends_with(']'));
-    let units = std::iter::once("").chain(units.iter().map(|cell| bare_unit(cell)));
-    let units: Vec<String> = units.map(str::to_owned).collect();
-    (counts && bracketed && units.len() == columns).then_some((names, Some(units)))
-}
-
-/// Whether a line under a line of names holds their units, which may be single letters or unknown here: two of them at
-/// least are units for sure, and no more than a third of the cells are none; nor is the line above one of units.
-fn are_units(names: &[String], cells: &[String]) -> bool {
-    let sure = |cell: &&String| !matches!(bare_unit(cell), "" | "1") && is_unit(cell);
-    let letter = |cell: &str| {
-        matches!(bare_unit(cell), "C" | "N" | "m" | "F" | "%" | "°" | "deg" | "rad" | "C°" | "Grad")
-    };
-    let other = cells.iter().filter(|cell| !is_unit(cell) && !letter(cell)).count();
-    let certain = cells.iter().filter(sure).count() + cells.iter().filter(|cell| letter(cell)).count();
-    certain >= 2 && 3 * other <= cells.len() && names.iter().filter(sure).count() < 2
-}
-
-/// The cells of a header line, where it has as many as there are columns. Names may hold blanks: where these part
-/// the columns, two of them do.
-fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<Vec<String>> {
-    let line = line.trim_start_matches(['#', '%', '/']);
-    let line = if line.contains('\t') { line.trim_end() } else { line.trim() };
-    let clean = |cells: Vec<&str>| -> Vec<String> {
-        cells.iter().map(|cell| unquoted(cell.trim()).trim().replace("\"\"", "\"")).collect()
-    };
-    let spaced = clean(line.split("  ").filter(|cell| !cell.trim().is_empty()).collect());
-    let spaced = (separator.is_none() && spaced.len() == columns).then_some(spaced);
-    let mut plain = clean(cells(line, separator));
-    if plain.len() == columns + 1 && plain.last().is_some_and(String::is_empty) {
-        plain.pop();
-    }
-    if plain.len() > columns {
-        if spaced.is_some() {
-            return spaced;
-        }
-        plain = with_units(plain);
-    }
-    // The last cells of a line with tabs may be empty.
-    if separator.is_none() && line.contains('\t') && plain.len() < columns && plain.len() > columns / 2 {
-        plain.resize(columns, String::new());
-    }
-    if plain.len() == columns {
-        return Some(plain);
-    }
-    spaced
-}
-
-/// A cell without the quotes around it.
-fn unquoted(cell: &str) -> &str {
-    cell.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).unwrap_or(cell)
-}
-
-/// Cells that are nothing but a unit join the name before them: "E, MPa" in a file of commas.
-fn with_units(cells: Vec<String>) -> Vec<String> {
-    let mut joined: Vec<String> = Vec::with_capacity(cells.len());
-    for cell in cells {
-        match joined.last_mut() {
-            Some(name) if !cell.is_empty() && is_unit(&cell) && split_unit(name).1.is_empty() => {
-                *name = format!("{name} [{}]", bare_unit(&cell));
-            }
-            _ => joined.push(cell),
-        }
-    }
-    joined
-}
-
-/// "MPa" of "[MPa]" or "(MPa)".
-fn bare_unit(cell: &str) -> &str {
-    cell.trim_matches(['[', ']', '(', ')']).trim()
-}
-
-/// Whether a header cell is nothing but a unit (or says that there is none).
-fn is_unit(cell: &str) -> bool {
-    let unit = bare_unit(cell);
-    let unit = units::spelled(unit);
-    // One letter is rather a name: t, T, f.
-    matches!(&*unit, "" | "-" | "1" | "s" | "K" | "h" | "°C" | "degC" | "rad/s" | "mrad/s" | "mrad" | "°")
-        || (unit.chars().count() > 1 && Unit::parse(&unit).is_ok())
-}
-
-/// Name and unit of "load [mN]", "load (mN)", "load/mN", "load, mN", "load in mN", "load_mN" or "load mN".
-pub(super) fn split_unit(header: &str) -> (&str, &str) {
-    for (open, close) in [('[', ']'), ('(', ')')] {
-        // The last bracket: "E(t) (MPa)".
-        if let Some((name, rest)) = header.rsplit_once(open)
-            && !name.trim().is_empty()
-            && let Some((unit, "")) = rest.rsplit_once(close).map(|(unit, after)| (unit, after.trim()))
-        {
-            return match unit.trim() {
-                // A part of a name: "Re(E*)".
-                part if !is_unit(part)
-                    && role::bare(header) != role::bare(name)
-                    && role::Role::ALL.iter().any(|role| role.is_called(header)) =>
-                {
-                    (header.trim(), "")
-                }
-                // A function of something, not a quantity in a unit.
-                "t" | "w" | "f" | "T" | "ω" | "omega" | "delta" | "δ" => (header.trim(), ""),
-                unit => (name.trim(), unit),
-            };
-        }
-    }
-    if let Some((name, unit)) = header.rsplit_once([' ', ',', ';', '_'])
-        && is_unit_of(name, unit)
-    {
-        let name = name.trim_end_matches([' ', ',', ';', '_', '/']);
-        return (name.strip_suffix(" in").unwrap_or(name).trim(), unit);
-    }
-    match header.split_once('/') {
-        Some((name, unit)) if !name.trim().is_empty() => (name.trim(), bare_unit(unit.trim())),
-        _ => (header.trim(), ""),
-    }
-}
-
-/// Whether the word after a name is its unit, and not the second word of the name ("E min", "T g").
-fn is_unit_of(name: &str, unit: &str) -> bool {
-    let named = !name.trim_matches([' ', ',', ';', '_', '/']).is_empty();
-    let time = name.trim().to_lowercase().starts_with('t');
-    named
-        && match unit {
-            "" | "-" | "1" | "%" | "d" | "g" | "day" | "days" | "cal" => false,
-            "min" | "h" => time,
-            "s" | "K" | "N" | "m" => true,
-            unit => is_unit(unit),
-        }
 }
 
 #[cfg(test)]
@@ -657,7 +547,7 @@ mod tests {
                 Table::parse(text.as_bytes()).and_then(|t| t.numbers(0).and(t.numbers(1))).unwrap_err();
             assert!(found.line == line && found.message.contains(words), "{text:?}: {found:?}");
         };
-        says("", None, "no line with two numbers");
+        says("", None, "the file is empty");
         says("t [s], E [MPa]\n", None, "no line with two numbers");
         says("t,E\n1,2\n2,3,4\n", Some(3), "3 cells, but 2");
         says("t,E\n1,2\n\n2,x\n", Some(4), "\"x\" is not a finite number (column 2, \"E\")");

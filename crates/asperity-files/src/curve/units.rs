@@ -74,9 +74,11 @@ pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
     tidied.to_owned()
 }
 
-fn is_angular(name: &str) -> bool {
+/// Whether the name of a column says that it holds angular frequencies.
+pub(super) fn is_angular(name: &str) -> bool {
     let name = role::bare(name);
-    ["ang", "omega", "ω", "kreis", "winkel"].iter().any(|start| name.starts_with(start))
+    name == "w"
+        || ["ang", "omega", "ω", "kreis", "winkel", "reducedang"].iter().any(|start| name.starts_with(start))
 }
 
 /// The numbers in SI, or the row and why not.

@@ -13,8 +13,10 @@
 use std::ops::Range;
 
 use super::error::{Result, fault};
+use super::names::split_unit;
 use super::role::{Role, unnumbered};
-use super::table::{Heading, MOST_ROWS, Row, Table, cells, is_missing, split_unit};
+use super::table::{Heading, MOST_ROWS, Row, Table, cells, is_missing, parse_number};
+use super::units::tidy;
 
 /// The columns that belong together, and the value that they were measured at.
 struct Block {
@@ -80,7 +82,20 @@ fn repeated(table: &Table) -> Result<Option<Vec<Block>>> {
             let value = own.filter_map(|cell| value_in(cell)).find(|value| value.name() != "f")?;
             Some(Block { columns: of(block), value: Some(value) })
         };
-        (0..count).map(block).collect()
+        // "20,,25,,": one number above each block, in the unit of a label if there is one.
+        let unit = cells.iter().find_map(|cell| {
+            let (name, unit) = split_unit(cell);
+            is_temperature(name).then(|| tidy(Role::Temperature, "", unit))
+        });
+        let unit = ["°C", "K", "°F"].into_iter().find(|known| unit.as_deref() == Some(*known)).unwrap_or("");
+        let bare = |block: usize| {
+            let own = cells.get(block * period..)?.iter().take(period);
+            let mut numbers = own.filter_map(|cell| parse_number(cell, table.decimal_comma));
+            let number = numbers.next().filter(|_| numbers.next().is_none())?;
+            Some(Block { columns: of(block), value: Some(Value { number, unit, span: 0..0 }) })
+        };
+        let blocks = |of: &dyn Fn(usize) -> Option<Block>| (0..count).map(of).collect::<Option<Vec<Block>>>();
+        blocks(&block).or_else(|| blocks(&bare))
     };
     let found = table.above().rev().find_map(temperatures);
     found.map(Some).ok_or_else(|| {
@@ -157,7 +172,10 @@ fn stacked(table: &Table, headers: Vec<String>, blocks: &[Block]) -> Result<Tabl
     let named = blocks.first().and_then(|block| block.value.as_ref());
     let mut lines = vec![line(
         headers.iter().map(|header| plain(header)),
-        named.map(|value| format!("{} [{}]", value.name(), value.unit)),
+        named.map(|value| match value.unit {
+            "" => value.name().to_owned(),
+            unit => format!("{} [{unit}]", value.name()),
+        }),
     )];
     let mut places = Vec::new();
     for block in blocks {

@@ -99,11 +99,16 @@ pub(super) fn finish(format: Format, measured: Measured, options: &ReadOptions) 
             return Err(Problem::MissingHeightUnit { format, detail });
         }
     };
+    let mut told = None;
     let size = match (options.size, lateral) {
         (Some(size), _) => size,
         (None, Lateral::Metres(size)) => size,
         // Bare numbers throughout: one unit for all of them.
         (None, Lateral::Bare(size)) if options.height_unit.is_some() && !matches!(unit, Unit::Metres(_)) => {
+            let (x, y) = (size[0], size[1]);
+            told = Some(format!(
+                "x and y, {x} x {y} without a unit in the file, are taken in the unit given for the heights, {height_unit:e} m"
+            ));
             size.map(|length| length * height_unit)
         }
         (None, Lateral::Bare([x, y])) => {
@@ -125,7 +130,9 @@ pub(super) fn finish(format: Format, measured: Measured, options: &ReadOptions) 
     } else if heights.iter().any(|h| h.is_infinite()) {
         grid::replace(&mut heights, clean);
     }
-    Ok(Topography { format, heights, size, channel, channels, metadata })
+    let mut topography = Topography { format, heights, size, channel, channels, metadata };
+    topography.record(told);
+    Ok(topography)
 }
 
 fn check_options(options: &ReadOptions) -> Result<()> {

@@ -62,6 +62,9 @@ const BY_EXPORT: [(&[u8], &str, &str); 5] = [
 pub(super) fn unread(bytes: &[u8]) -> Problem {
     let groups =
         [(Way::SurfaceTopography, &BY_PACKAGE[..]), (Way::Gwyddion, &BY_GWYDDION), (Way::Export, &BY_EXPORT)];
+    if bytes.is_empty() {
+        return Problem::malformed("the file", "empty", "one of an instrument or a program");
+    }
     let known = groups.into_iter().find_map(|(way, starts)| {
         let (_, name, export) = starts.iter().find(|(start, ..)| bytes.starts_with(start))?;
         Some((*name, way, *export))
@@ -74,13 +77,18 @@ pub(super) fn is_known_by_end(head: &[u8]) -> bool {
     [&b"PK\x03\x04"[..], b"II*\0", b"MM\0*"].iter().any(|start| head.starts_with(start))
 }
 
-/// Files that look like another format: HDF5 of Zygo's Mx software.
+/// Files that look like another format: HDF5 of Zygo's Mx software and of JPK's fast scans.
 pub(super) fn refuse_look_alikes(bytes: &[u8]) -> Result<()> {
     // Its heights are phases with converters of their own; both names are in every file.
     let holds = |name: &[u8]| memchr::memmem::find(bytes, name).is_some();
     if holds(b"MetaData") && holds(b"Z Converter") {
         let export = "SUR, SDF or MetroPro DAT from Mx";
         return Err(foreign(("Zygo DATX (interferometer)", Way::SurfaceTopography, export)));
+    }
+    // Lines of both directions one after the other, scaled by entries of their own.
+    if holds(b"Measurement_000") && holds(b"Channel_0") {
+        let export = "an image of heights from JPK Data Processing";
+        return Err(foreign(("JPK HDF5 (atomic force microscope)", Way::Gwyddion, export)));
     }
     Ok(())
 }
@@ -128,20 +136,31 @@ const ARCHIVES: [(&[&str], bool, Known); 5] = [
 
 /// TIFF of instruments: texts near the start or the end of the file, and its format.
 const PICTURES: [(&[&[u8]], Known); 3] = [
-    (
-        &[b"jpk-data-file", b"JPK"],
-        ("JPK (atomic force microscope)", Way::SurfaceTopography, "text from JPK Data Processing"),
-    ),
-    (
-        &[b"TiffTagDescData", b"LEXT", b"OLS"],
-        ("Olympus LEXT (laser microscope)", Way::SurfaceTopography, LEXT),
-    ),
-    (&[b"PSIA", b"Park"], PARK),
+    (&[b"jpk-data-file", b"JPK Instruments"], JPK),
+    (&[b"TiffTagDescData", b"LEXT"], ("Olympus LEXT (laser microscope)", Way::SurfaceTopography, LEXT)),
+    (&[b"PSIA", b"Park Systems"], PARK),
 ];
+const JPK: Known =
+    ("JPK TIFF (atomic force microscope)", Way::SurfaceTopography, "text from JPK Data Processing");
 const PARK: Known =
     ("Park Systems TIFF (atomic force microscope)", Way::SurfaceTopography, "text from XEI or SmartAnalysis");
-/// Tags of Park's TIFF, for files without its texts.
-const PARK_TAGS: [u16; 2] = [50432, 50434];
+/// Ranges of the private tags of TIFF that tell an instrument.
+const TAGS: [(std::ops::RangeInclusive<u16>, Known); 2] = [(50432..=50441, PARK), (0x8000..=0x80ff, JPK)];
+
+/// The tags of the first directory of a TIFF file.
+fn tags(bytes: &[u8]) -> Vec<u16> {
+    let big = bytes.starts_with(b"MM");
+    let short = |at: usize| -> Option<u16> {
+        let two = [*bytes.get(at)?, *bytes.get(at.checked_add(1)?)?];
+        Some(if big { u16::from_be_bytes(two) } else { u16::from_le_bytes(two) })
+    };
+    let directory = || -> Option<Vec<u16>> {
+        let (first, second) = (usize::from(short(4)?), usize::from(short(6)?));
+        let start = if big { first << 16 | second } else { second << 16 | first };
+        (0..usize::from(short(start)?)).map(|n| short(start.checked_add(2 + 12 * n)?)).collect()
+    };
+    directory().unwrap_or_default()
+}
 
 /// Zip archives, TIFF and compound documents, which many instruments write.
 fn container(bytes: &[u8]) -> Option<Known> {
@@ -163,9 +182,14 @@ fn container(bytes: &[u8]) -> Option<Known> {
         let (start, end) = (&bytes[..bytes.len().min(NEAR)], &bytes[bytes.len().saturating_sub(NEAR)..]);
         let near = |word: &[u8]| [start, end].iter().any(|part| memchr::memmem::find(part, word).is_some());
         let named = PICTURES.iter().find(|(words, _)| words.iter().any(|word| near(word)));
-        let tagged = || PARK_TAGS.iter().all(|tag| near(&tag.to_le_bytes())).then_some(PARK);
+        let tags = tags(bytes);
+        let tagged = || {
+            let known =
+                TAGS.iter().find(|(range, _)| tags.iter().filter(|tag| range.contains(tag)).count() >= 2);
+            known.map(|(_, known)| *known)
+        };
         let other = ("TIFF", Way::Export, "the heights instead of a picture of them, as X3P, SDF or text");
-        return named.map(|(_, known)| *known).or_else(tagged).or(Some(other));
+        return tagged().or(named.map(|(_, known)| *known)).or(Some(other));
     }
     let export = "X3P, SDF or text from the program that wrote it";
     compound::is_compound(bytes).then_some((

@@ -11,7 +11,9 @@
 //!
 //! From version 9.2 on every number takes 4 bytes; B is ignored. Files before version 4.3 have other scales and are
 //! refused. (Digital Instruments, "Nanoscope command reference manual", and the readers of Gwyddion and
-//! SurfaceTopography.)
+//! SurfaceTopography.) How high an image is follows in [`extent`] from its scan size, aspect ratio and lines.
+
+mod extent;
 
 use super::cursor::Cursor;
 use super::entries::Entries;
@@ -19,7 +21,7 @@ use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::grid::{self, Layout};
 use super::request::check_channels;
 use super::sample::{Kind, Order};
-use super::unit::{LoneA, metres};
+use super::unit::LoneA;
 use super::{Problem, Reader, Request, Result};
 
 pub(super) const NANOSCOPE: Reader = Reader::new("di", is_nanoscope, read).also_called(&["spm", "nanoscope"]);
@@ -168,57 +170,34 @@ impl Header {
     fn plane(&self, image: &Entries) -> Result<Plane> {
         let stated = [image.whole("Samps/line")?, image.whole("Number of lines")?];
         let length = image.whole("Data length")?;
-        let global =
-            ["samps/line", "lines"].map(|key| self.get("scan list", key).and_then(|n| n.parse().ok()));
-        let global = match global {
-            [Some(x), Some(y)] => Some([x, y]),
-            _ => None,
-        };
+        let scan = self.scan_points();
         let count = |[x, y]: [u64; 2]| grid::points(x, y).map(|n| n as u64);
         let stated_count = count(stated)?;
         let bytes = bytes_per_number(image)?;
         let wide = self.version() >= VERSION_OF_32_BITS && length >= stated_count.saturating_mul(4);
         let (kind, width) = if wide || bytes == 4 { (Kind::I32, 4) } else { (Kind::I16, 2) };
-        let [mut sx, mut sy, unit] = size(image)?;
-        let slow = self.slow_axis();
-        if let Some([x, y]) = slow {
-            (sx, sy) = (x / unit, y / unit);
-        }
         // Some files state a wrong number of points for an image; the length of its data tells.
         let mut points = stated;
         if stated_count.saturating_mul(width) != length
-            && let Some(global) = global
-            && let Ok(global_count) = count(global)
+            && let Some(scan) = scan
+            && let Ok(scan_count) = count(scan)
         {
-            let needed = global_count.saturating_mul(width);
+            let needed = scan_count.saturating_mul(width);
             if length == needed || (stated_count.saturating_mul(width) > length && length >= needed) {
-                if slow.is_none() {
-                    (sx, sy) =
-                        (sx * global[0] as f64 / stated[0] as f64, sy * global[1] as f64 / stated[1] as f64);
-                }
-                points = global;
+                points = scan;
             }
-        } else if let (Some(_), Some([_, lines])) = (slow, global)
-            && stated[1] < lines
-            && image.get("aspect ratio").is_some_and(|aspect| aspect.trim() != "1:1")
-        {
-            // The scan was stopped early: the slow axis is that of the whole.
-            sy *= stated[1] as f64 / lines as f64;
         }
         let needed = count(points)?.saturating_mul(width);
         if needed > length {
             return Err(Problem::truncated("the \"Data length\" of the image", needed, length));
         }
-        Ok(Plane { points, kind, lateral: Lateral::Metres([sx * unit, sy * unit]) })
+        Ok(Plane { points, kind, lateral: self.lateral(image, stated, points)? })
     }
 
-    /// Lengths of the whole scan \[m\], where the slow axis has an entry of its own.
-    fn slow_axis(&self) -> Option<[f64; 2]> {
-        let length = |key: &str| {
-            let (number, unit) = self.get("scan list", key)?.split_once(char::is_whitespace)?;
-            Some(number.parse::<f64>().ok()? * metres(unit, LoneA::Angstrom)?)
-        };
-        Some([length("scan size")?, length("slow axis size")?])
+    /// Points along x and y of the whole scan.
+    fn scan_points(&self) -> Option<[u64; 2]> {
+        let count = |key: &str| self.get("scan list", key)?.parse().ok();
+        Some([count("samps/line")?, count("lines")?])
     }
 
     fn metadata(&self, image: &Entries) -> Vec<(String, String)> {
@@ -228,21 +207,6 @@ impl Header {
             .filter_map(|(title, key)| Some((key.to_owned(), self.get(title, key)?.to_owned())));
         global.chain(image.clone()).collect()
     }
-}
-
-/// "500 500 nm", "10 10 ~m" or, for a square, "500 nm": both lengths and metres per unit.
-fn size(image: &Entries) -> Result<[f64; 3]> {
-    let text = image.get("scan size").unwrap_or("missing");
-    let words: Vec<&str> = text.split_whitespace().collect();
-    let number = |i: usize| words.get(i).and_then(|w| w.parse::<f64>().ok());
-    let (x, y, label) = match (number(0), number(1)) {
-        (Some(x), Some(y)) => (x, y, words.get(2)),
-        (Some(x), None) => (x, x, words.get(1)),
-        _ => return Err(image.wrong("Scan Size", "like \"500 500 nm\"")),
-    };
-    let unit = label.and_then(|l| metres(l, LoneA::Angstrom));
-    let unit = unit.ok_or_else(|| image.wrong("Scan Size", "two lengths and a unit of length"))?;
-    Ok([x, y, unit])
 }
 
 /// How many of the second unit are one of the first: "mV" and "V" differ by a prefix.

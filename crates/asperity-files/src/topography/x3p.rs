@@ -3,7 +3,14 @@
 //! `main.xml` gives in Record1 the axes (type I: equally spaced by Increment from Offset; data type I = int16,
 //! L = int32, F = binary32, D = binary64), in Record3 the size of the matrix and either a link to the binary
 //! points (x runs fastest, little-endian) with a link to the bit mask of valid points, or the points as a list of
-//! `Datum`. Lengths are metres. Height = number x Increment + Offset of the z axis.
+//! `Datum`. Lengths are metres. The increment of the z axis belongs to integers and to incremental axes ("needed for incremental axis
+//! and integer data types", says the schema); other numbers are heights:
+//!
+//! ```text
+//! height = number x Increment + Offset   (axis type I, or data type I or L)        height = number + Offset   (else)
+//! ```
+//!
+//! Programs pack the archive from within its folder or with it; links are relative to `main.xml`.
 
 use ndarray::Array2;
 
@@ -16,7 +23,7 @@ use super::{HISTORY, Problem, Reader, Request, Result, write};
 use crate::xml::{Malformed, Piece, walk};
 
 pub(super) const X3P: Reader =
-    Reader::new("x3p", |bytes| holds_member(bytes, |name| name == "main.xml"), read)
+    Reader::new("x3p", |bytes| holds_member(bytes, |name| folder_of_main(name).is_some()), read)
         .written_by(write::x3p::encode);
 
 /// Elements nest five deep in the standard's schema.
@@ -26,8 +33,8 @@ const MOST_ELEMENTS: usize = 10_000;
 
 /// Reads the layer asked for.
 fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
-    let mut archive = Archive::open(bytes)?;
-    let xml = archive.member("main.xml")?;
+    let mut members = Members::open(bytes)?;
+    let xml = members.linked("main.xml")?;
     let main = Main::parse(&xml)?;
     let elements = &main.elements;
     check(elements, request)?;
@@ -45,10 +52,13 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let range = layer * count..(layer + 1) * count;
 
     let or = |path: &str, default| elements.get(path).map_or(Ok(default), |_| elements.number(path));
-    let (increment, offset) = (or("Record1/Axes/CZ/Increment", 1.0)?, or("Record1/Axes/CZ/Offset", 0.0)?);
+    let counts = elements.get("Record1/Axes/CZ/AxisType") == Some("I")
+        || matches!(elements.get("Record1/Axes/CZ/DataType"), Some("I" | "L"));
+    let increment = if counts { or("Record1/Axes/CZ/Increment", 1.0)? } else { 1.0 };
+    let offset = or("Record1/Axes/CZ/Offset", 0.0)?;
     let height = |v: f64| v * increment + offset;
     let heights = match elements.get("Record3/DataLink/PointDataLink") {
-        Some(link) => main.linked(&mut archive, link, [nx, ny], all, range, height)?,
+        Some(link) => main.linked(&mut members, link, [nx, ny], all, range, height)?,
         None if main.data.len() == all => {
             let lines: Vec<&[f64]> = main.data[range].chunks_exact(nx as usize).collect();
             grid::from_lines(nx as usize, &lines, height)
@@ -69,6 +79,58 @@ fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
 impl From<Malformed> for Problem {
     fn from(Malformed(why): Malformed) -> Self {
         Problem::malformed("main.xml", why, "well-formed XML")
+    }
+}
+
+/// The folder of a member that is called main.xml: "" or "scan/".
+fn folder_of_main(name: &str) -> Option<&str> {
+    let at = name.rfind(['/', '\\']).map_or(0, |at| at + 1);
+    name[at..].eq_ignore_ascii_case("main.xml").then_some(&name[..at])
+}
+
+/// The members of the archive, by their names below the folder of main.xml.
+struct Members<'a> {
+    archive: Archive<'a>,
+    names: Vec<String>,
+    folder: String,
+}
+
+impl<'a> Members<'a> {
+    fn open(bytes: &'a [u8]) -> Result<Self> {
+        let archive = Archive::open(bytes)?;
+        let names = archive.names();
+        let mut folders: Vec<&str> = names.iter().filter_map(|name| folder_of_main(name)).collect();
+        folders.sort_by_key(|folder| folder.len());
+        let folder = match folders.as_slice() {
+            [] => {
+                return Err(Problem::malformed("the zip archive", "without main.xml", "one of an X3P file"));
+            }
+            ["", ..] => String::new(),
+            [folder] => (*folder).to_owned(),
+            more => {
+                let several = format!("in {} folders ({})", more.len(), more[..more.len().min(5)].join(", "));
+                return Err(Problem::malformed(
+                    "main.xml of the zip archive",
+                    several,
+                    "there once; unpack the archive and pack one surface",
+                ));
+            }
+        };
+        Ok(Members { archive, names, folder })
+    }
+
+    /// A member that main.xml links to.
+    fn linked(&mut self, link: &str) -> Result<Vec<u8>> {
+        let plain = |name: &str| name.replace('\\', "/").to_lowercase();
+        let link = link.trim_start_matches("./").trim_start_matches(['/', '\\']);
+        let whole = format!("{}{link}", self.folder);
+        let wanted = plain(&whole);
+        let found = self
+            .names
+            .iter()
+            .find(|name| **name == whole)
+            .or_else(|| self.names.iter().find(|name| plain(name) == wanted));
+        self.archive.member(found.unwrap_or(&whole))
     }
 }
 
@@ -115,7 +177,7 @@ impl Main {
     /// The heights of one layer from a member of the archive; `all` is the number of points in all layers.
     fn linked(
         &self,
-        archive: &mut Archive,
+        members: &mut Members,
         link: &str,
         [nx, ny]: [u64; 2],
         all: usize,
@@ -129,13 +191,13 @@ impl Main {
             Some("D") => Kind::F64,
             _ => return Err(self.elements.wrong("Record1/Axes/CZ/DataType", "I, L, F or D")),
         };
-        let content = archive.member(link)?;
+        let content = members.linked(link)?;
         let needed = all as u64 * kind.width() as u64;
         Problem::check_length(&format!("the points in {link:?}"), needed, content.len())?;
         let bytes = &content[range.start * kind.width()..range.end * kind.width()];
         let mut heights = Layout::dense([nx, ny], kind, Order::Little).map(bytes, "the points", height)?;
         if let Some(link) = self.elements.get("Record3/DataLink/ValidPointsLink") {
-            let mask = archive.member(link)?;
+            let mask = members.linked(link)?;
             Problem::check_length(&format!("the mask in {link:?}"), all.div_ceil(8) as u64, mask.len())?;
             // One bit per point, the least significant first; 1 = valid.
             for ((x, y), height) in heights.indexed_iter_mut() {

@@ -1,6 +1,7 @@
 //! Any file is answered as a curve: by a fit or by a sentence, in time and within memory.
 
 use asperity::indentation::{IndentationOptions, IndentationRecord, fit_indentation};
+use asperity::material::{FitOptions, Moduli};
 use asperity::reference::MdrProfile;
 use asperity_files::curve::{Columns, Curves, Indentation, Kind, Request, ShiftRequest};
 use proptest::collection::vec;
@@ -8,6 +9,11 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 const KINDS: [Kind; 3] = [Kind::Relaxation, Kind::Creep, Kind::Dma];
+
+/// How often each property is tried; `ASPERITY_CASES` asks for more.
+fn cases() -> u32 {
+    std::env::var("ASPERITY_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(400)
+}
 
 /// Reads and fits the bytes in every way; nothing may panic.
 fn answer(bytes: &[u8]) {
@@ -19,10 +25,20 @@ fn answer(bytes: &[u8]) {
             Err(error) => assert!(!error.to_string().is_empty()),
         }
     }
+    match Curves::kind_of_bytes("any".as_ref(), bytes, None) {
+        Ok(kind) => assert!(!kind.name().is_empty()),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
     for kind in KINDS {
         let Ok(curves) = Curves::parse("any".as_ref(), bytes, kind, &Columns::default()) else { continue };
-        for shift in [ShiftRequest::None, ShiftRequest::Estimate(300.0)] {
-            match (Request { shift, ..Request::default() }).fit(&curves) {
+        let storage = FitOptions { moduli: Moduli::Storage, ..FitOptions::default() };
+        let window = Some([0.5, 500.0]);
+        for request in [
+            Request::default(),
+            Request { shift: ShiftRequest::Estimate(300.0), ..Request::default() },
+            Request { options: storage, window, ..Request::default() },
+        ] {
+            match request.fit(&curves) {
                 Ok(fitted) => assert!(fitted.misfit.max.is_finite() && !fitted.to_toml(&curves).is_empty()),
                 Err(error) => assert!(!error.to_string().is_empty()),
             }
@@ -33,10 +49,20 @@ fn answer(bytes: &[u8]) {
 const GOOD: &str = "# T [K]; f [Hz]; E' [MPa]; E'' [MPa]\n300; 0,1; 2,5; 0,5\n300; 1; 3; 0,7\n300; 10; 4; 0,6\n\
                     310; 0,1; 2,1; 0,3\n310; 1; 2,5; 0,5\n310; 10; 3; 0,7\n";
 
+/// Tables of other forms: points that lack numbers, blocks of columns, both functions of a step, values below 0.
+const FORMS: [&str; 6] = [
+    GOOD,
+    "Time [min];E [MPa];Strain [%]\n-;-;-\n0;;1\n0,1;4;1\n0,2;3;1\n0,4;2,5;1\n0,8;2,2;1\n1,6;2,1;1\n",
+    "20,,25,\nf [Hz],E' [MPa],f [Hz],E' [MPa]\n0.1,5,0.1,4\n1,6,1,5\n10,7,10,6\n",
+    "Step: creep\nt [s]\tStrain [%]\tJ [1/MPa]\tG [MPa]\n\t1\t\t\n0.1\t1\t1\t1\n1\t2\t2\t0.5\n10\t3\t3\t0.3333\n100\t4\t4\t0.25\n",
+    "freq_hz,temperature_C,G_storage_pa,G_loss_pa\n1,20,5e5,1e5\n2,20,6e5,-1e5\n4,20,7e5,1e5\n1,30,4e5,1e5\n2,30,5e5,1e5\n4,30,6e5,0\n",
+    "t [s],E [Pa]\n1,1e6\n2,5e5\n4,1e5\n8,1e4\n16,-2e3\n32,3e3\n64,-1e3\n",
+];
+
 proptest! {
     // A fixed seed: the same cases in every run.
     #![proptest_config(ProptestConfig {
-        cases: 400,
+        cases: cases(),
         failure_persistence: None,
         rng_seed: RngSeed::Fixed(1),
         ..ProptestConfig::default()
@@ -57,11 +83,15 @@ proptest! {
 
     #[test]
     fn a_mutated_table_is_answered(
-        place in 0..GOOD.len(), length in 0..6usize, put in "[0-9;,.\t\n#\\[\\]/'°eC-]{0,6}"
+        form in 0..FORMS.len(),
+        changes in vec((0.0..1.0f64, 0..6usize, "[0-9;,.\t\n#\\[\\]/'°eC-]{0,6}|OL|n/a|NaN|%|-1"), 1..4)
     ) {
-        let mut bytes = GOOD.as_bytes().to_vec();
-        let end = (place + length).min(bytes.len());
-        bytes.splice(place..end, put.bytes());
+        let mut bytes = FORMS[form].as_bytes().to_vec();
+        for (place, length, put) in changes {
+            let place = (place * bytes.len() as f64) as usize;
+            let end = (place + length).min(bytes.len());
+            bytes.splice(place..end, put.bytes());
+        }
         answer(&bytes);
     }
 }

@@ -2,6 +2,7 @@
 
 mod curve_files;
 mod curve_hostile;
+mod curve_spellings;
 mod samples;
 mod topography_formats;
 mod topography_hostile;

@@ -147,6 +147,69 @@ fn x3p_is_read_masked_as_a_list_and_in_layers() {
     assert_map(&channel(&layers, "layer 1"), Format::X3p, 2.0 * NM, size, false);
 }
 
+/// The members of an X3P file of 2 x 2 points below a folder: heights of 1, 2, 3, 4 um as `points`.
+fn x3p_members(folder: &str, axis: &str, points: Vec<u8>, link: &str) -> Vec<u8> {
+    let xml = format!(
+        "<p:ISO5436_2 xmlns:p=\"http://www.opengps.eu/2008/ISO5436_2\"><Record1><FeatureType>SUR</FeatureType><Axes>\
+         <CX><AxisType>I</AxisType><Increment>1e-6</Increment></CX><CY><AxisType>I</AxisType><Increment>1e-6</Increment></CY>\
+         <CZ>{axis}</CZ></Axes></Record1><Record3><MatrixDimension><SizeX>2</SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ></MatrixDimension>\
+         <DataLink><PointDataLink>{link}</PointDataLink></DataLink></Record3></p:ISO5436_2>"
+    );
+    let names = [format!("{folder}main.xml"), format!("{folder}bindata/data.bin")];
+    crate::samples::zip(&[(names[0].as_str(), xml.into_bytes()), (names[1].as_str(), points)])
+}
+
+/// The schema: "Increment: needed for incremental axis and integer data types".
+#[test]
+fn heights_of_x3p_are_multiplied_by_an_increment_only_where_they_count_it() {
+    let doubles = |unit: f64| [1.0, 2.0, 3.0, 4.0].map(|n: f64| (n * unit).to_le_bytes()).concat();
+    let floats = |unit: f32| [1.0, 2.0, 3.0, 4.0].map(|n: f32| (n * unit).to_le_bytes()).concat();
+    let ints = || [1i32, 2, 3, 4].map(i32::to_le_bytes).concat();
+    let shorts = || [1i16, 2, 3, 4].map(i16::to_le_bytes).concat();
+    let axis = |kind: &str, data: &str, rest: &str| {
+        format!("<AxisType>{kind}</AxisType><DataType>{data}</DataType>{rest}")
+    };
+    let step = "<Increment>1e-6</Increment><Offset>0</Offset>";
+    for (axis, points) in [
+        (axis("A", "D", step), doubles(1e-6)),
+        (axis("A", "F", step), floats(1e-6)),
+        (axis("A", "D", "<Increment>0</Increment>"), doubles(1e-6)),
+        (axis("A", "D", ""), doubles(1e-6)),
+        (axis("A", "L", step), ints()),
+        (axis("A", "I", step), shorts()),
+        (axis("I", "L", step), ints()),
+        (axis("I", "D", step), doubles(1.0)),
+    ] {
+        let surface = read(&x3p_members("", &axis, points, "bindata/data.bin"));
+        for (h, wanted) in surface.heights.iter().zip([1e-6, 3e-6, 2e-6, 4e-6]) {
+            // Seven digits of binary32.
+            assert!((h / wanted - 1.0).abs() < 1e-6, "{axis}: {h:e}");
+        }
+    }
+}
+
+#[test]
+fn an_x3p_archive_may_hold_its_folder() {
+    let axis = "<AxisType>A</AxisType><DataType>D</DataType>";
+    let points = || [1e-6, 2e-6, 3e-6, 4e-6].map(f64::to_le_bytes).concat();
+    let plain = read(&x3p_members("", axis, points(), "bindata/data.bin"));
+    for (folder, link) in [
+        ("scan/", "bindata/data.bin"),
+        ("a/b c/", "bindata/data.bin"),
+        ("scan\\", "bindata/data.bin"),
+        ("scan/", "bindata\\data.bin"),
+        ("", "./bindata/data.bin"),
+        ("scan/", "/bindata/data.bin"),
+        ("", "bindata/DATA.bin"),
+    ] {
+        let surface = read(&x3p_members(folder, axis, points(), link));
+        assert_eq!((surface.format, &surface.heights), (Format::X3p, &plain.heights), "{folder} {link}");
+    }
+    let two = crate::samples::zip(&[("a/main.xml", b"<a/>".to_vec()), ("b/main.xml", b"<a/>".to_vec())]);
+    let error = read_bytes(&two, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("2 folders (a/, b/)"), "{error}");
+}
+
 #[test]
 fn gwy_channels_of_heights_come_in_their_order_with_units_and_masks() {
     let bytes = crate::samples::gwy();

@@ -70,6 +70,46 @@ fn nanoscope_images_are_scaled_by_their_sensitivity_in_all_widths() {
     assert_eq!(read(&slow.file()).size.map(|l| (l / NM).round()), [4000.0, 5000.0]);
 }
 
+/// The scan of the sample has 3 x 2 points. Expected lengths follow from square cells, and from the share of the lines that were recorded.
+#[test]
+fn nanoscope_images_that_are_not_square_have_the_height_of_their_lines() {
+    let nm = |file: Nanoscope| read(&file.file()).size.map(|l| (l / NM * 1e3).round() / 1e3);
+    let square = Nanoscope { size: "3 3 ~m", ..Nanoscope::default() };
+    for aspect in ["3:2", "1.5:1", "0.666667", "1.50", "3 : 2"] {
+        let line: &'static str = Box::leak(format!("\\Aspect Ratio: {aspect}\r\n").into_boxed_str());
+        let scan: &'static str = Box::leak(format!("\\Scan Size: 3000 nm\r\n{line}").into_boxed_str());
+        for file in [
+            Nanoscope { aspect: line, scan, ..square },
+            // The image has the ratio of its scan, or the scan is not described.
+            Nanoscope { aspect: "", scan, ..square },
+            Nanoscope { aspect: line, scan: "\\Scan Size: 3000 nm\r\n", ..square },
+            Nanoscope { aspect: line, scan, size: "3 ~m", ..square },
+            Nanoscope { aspect: line, scan, size: "3 2 ~m", ..square },
+        ] {
+            assert_eq!(nm(file), [3000.0, 2000.0], "{aspect} {} {}", file.scan, file.size);
+        }
+    }
+    let stopped =
+        |scan: &'static str, aspect: &'static str, size| nm(Nanoscope { aspect, scan, size, ..square });
+    // Two of three lines of a square scan, and two of four of a scan of 3:4.
+    let square_scan = "\\Aspect Ratio: 1:1\r\n\\Lines: 3\r\n";
+    let high_scan = "\\Aspect Ratio: 3:4\r\n\\Lines: 4\r\n";
+    assert_eq!(stopped(square_scan, "\\Aspect Ratio: 3:2\r\n", "3 3 ~m"), [3000.0, 2000.0]);
+    assert_eq!(stopped(square_scan, "\\Aspect Ratio: 3:2\r\n", "3 2 ~m"), [3000.0, 2000.0]);
+    assert_eq!(stopped(high_scan, "\\Aspect Ratio: 3:2\r\n", "3 3 ~m"), [3000.0, 2000.0]);
+    assert_eq!(stopped(high_scan, "\\Aspect Ratio: 3:2\r\n", "3 4 ~m"), [3000.0, 2000.0]);
+    // Cells of a square scan need not be square.
+    assert_eq!(stopped("", "\\Aspect Ratio: 1:1\r\n", "3 3 ~m"), [3000.0, 3000.0]);
+    // What contradicts itself is asked for.
+    for (scan, aspect) in
+        [("\\Aspect Ratio: 3:2\r\n", "\\Aspect Ratio: 1:1\r\n"), ("", "\\Aspect Ratio: 8:1\r\n")]
+    {
+        let error =
+            read_bytes(&Nanoscope { scan, aspect, ..square }.file(), &ReadOptions::default()).unwrap_err();
+        assert!(error.to_string().contains("3 x 2 points; give the lengths"), "{error}");
+    }
+}
+
 #[test]
 fn nanoscope_channels_have_names_labels_and_numbers() {
     let file = Nanoscope::default().file();
@@ -228,4 +268,43 @@ fn numbers_in_two_or_three_columns_are_refused_with_a_way_that_works() {
         let error = read(line.into()).unwrap_err().to_string();
         assert!(error.contains("a profile") && error.contains("2 lines"), "{error}");
     }
+}
+
+/// A TIFF with the tags of its first directory, in either byte order.
+fn tiff(big: bool, tags: &[u16], rest: &[u8]) -> Vec<u8> {
+    let short = |n: u16| if big { n.to_be_bytes() } else { n.to_le_bytes() };
+    let long = |n: u32| if big { n.to_be_bytes() } else { n.to_le_bytes() };
+    let mut bytes = if big { b"MM\0*".to_vec() } else { b"II*\0".to_vec() };
+    bytes.extend(long(8));
+    bytes.extend(short(tags.len() as u16));
+    for tag in tags {
+        bytes.extend(short(*tag));
+        bytes.extend([0; 10]);
+    }
+    bytes.extend(long(0));
+    bytes.extend(rest);
+    bytes
+}
+
+#[test]
+fn pictures_and_containers_are_called_by_their_tags() {
+    let all: Vec<u8> = (0..=u16::MAX).flat_map(u16::to_le_bytes).collect();
+    for big in [false, true] {
+        for (tags, name) in [
+            (&[256, 257, 0x8000, 0x8001, 0x8030][..], "JPK TIFF"),
+            (&[256, 257, 50432, 50433, 50434][..], "Park Systems TIFF"),
+            (&[256, 257, 273][..], "format is not read: TIFF"),
+        ] {
+            // The numbers of a picture may be those of any tag.
+            let error = read_bytes(&tiff(big, tags, &all), &ReadOptions::default()).unwrap_err().to_string();
+            assert!(error.contains(name), "{error}");
+        }
+    }
+    let error = read_bytes(b"", &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("the file is empty"), "{error}");
+    // The names of the groups of JPK's fast scans.
+    let mut jpk = crate::samples::hdf5();
+    jpk.extend(b"Measurement_000 Channel_000");
+    let error = read_bytes(&jpk, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("JPK HDF5"), "{error}");
 }

@@ -1,7 +1,7 @@
 //! Text files as programs and people write them: headers, separators, decimal marks, lists of points.
 
 use asperity_files::topography::{
-    Format, Problem, ReadOptions, Topography, TopographyError, detect, read_bytes,
+    Format, Problem, ReadOptions, Topography, TopographyError, detect, profile_of, read_bytes, read_profile,
 };
 use ndarray::{Array2, array};
 
@@ -228,6 +228,78 @@ fn points_come_in_any_order_and_may_be_missing() {
     assert_eq!(read(&text).unwrap().channels, ["z", "other"]);
     let other = ReadOptions { channel: Some("other".into()), ..Default::default() };
     assert_eq!(read_bytes(text.as_bytes(), &other).unwrap().heights[[0, 0]], 7.0 * NM);
+}
+
+#[test]
+fn a_counter_of_points_is_no_coordinate() {
+    // 4 x 3 points, 5 x 10 um apart, behind a counter.
+    let list = |head: &str, separator: &str| -> String {
+        let point = |n: usize| {
+            [n as f64, 0.005 * (n % 4) as f64, 0.01 * (n / 4) as f64, n as f64]
+                .map(|v| v.to_string())
+                .join(separator)
+        };
+        format!("{head}\n{}\n", (0..12).map(point).collect::<Vec<_>>().join("\n"))
+    };
+    for (head, separator) in [
+        ("index,x in mm,y in mm,z in um", ","),
+        ("index;x [mm];y [mm];z [um]", ";"),
+        ("Nr\tX/mm\tY/mm\tZ/um", "\t"),
+        ("no,x_mm,y_mm,z_um", ","),
+        ("point,X coordinate (mm),Y coordinate (mm),Height (um)", ","),
+        ("index,pos_x [mm],pos_y [mm],z [um]", ","),
+        ("index x mm y mm z um", " "),
+        ("index x [mm] y [mm] z [um]", " "),
+    ] {
+        let options = ReadOptions { channel: None, ..Default::default() };
+        let surface =
+            read_bytes(list(head, separator).as_bytes(), &options).unwrap_or_else(|e| panic!("{head}: {e}"));
+        assert_eq!((surface.heights.dim(), surface.undefined()), ((4, 3), 0), "{head}");
+        assert_size(&surface, [20.0 * UM, 30.0 * UM]);
+        assert!((surface.heights[[1, 2]] - 9.0 * UM).abs() < 1e-18, "{head}");
+    }
+    // Without names of x and y the first columns are not taken, whatever else is given.
+    for options in [
+        ReadOptions { height_unit: Some(UM), ..Default::default() },
+        ReadOptions { height_unit: Some(UM), format: Some(Format::Xyz), ..Default::default() },
+    ] {
+        for head in ["index,a,b,c", "# list of points"] {
+            let error = read_bytes(list(head, ",").as_bytes(), &options).unwrap_err().to_string();
+            assert!(error.contains("x and y among them") || error.contains("--size"), "{head}: {error}");
+        }
+    }
+    // A counter in place of x, and a line across the surface.
+    for text in ["0 0 1\n1 0 2\n2 1 3\n3 1 4\n", "0 0 1\n1 1 2\n2 2 3\n3 3 4\n"] {
+        let error = with(text, None, Some(UM)).unwrap_err().to_string();
+        assert!(error.contains("the column taken for x"), "{error}");
+    }
+}
+
+#[test]
+fn lengths_without_a_unit_say_in_which_they_are_taken() {
+    let surface = with("0 0 1\n0 1 1\n1 0 1\n1 1 2\n", None, Some(UM)).unwrap();
+    assert!(surface.history().any(|step| step.contains("without a unit") && step.contains("1e-6 m")));
+    let stated = read("x [um] y [um] z [nm]\n0 0 1\n0 1 1\n1 0 1\n1 1 2\n").unwrap();
+    assert_eq!(stated.history().count(), 0);
+}
+
+#[test]
+fn rows_of_a_profile_may_end_in_several_separators() {
+    for end in ["", ",", ",,", ",,,", " , ,"] {
+        let text = format!(
+            "Scan Data\nLateral um,Raw Micrometer,\n0.000,0.5{end}\n0.156,1.5{end}\n0.312,0.25{end}\n"
+        );
+        let profile =
+            profile_of(text.as_bytes(), &ReadOptions::default()).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let heights: Vec<f64> =
+            profile.surface.heights().iter().map(|z| (z / UM * 100.0).round() / 100.0).collect();
+        assert_eq!(heights, [0.5, 1.5, 0.25], "{text}");
+        assert!((profile.surface.grid().size()[0] / (0.468 * UM) - 1.0).abs() < 1e-12, "{text}");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.csv");
+        std::fs::write(&path, &text).unwrap();
+        assert!(read_profile(&path, &ReadOptions::default()).unwrap().is_some(), "{text}");
+    }
 }
 
 #[test]

@@ -30,12 +30,14 @@ pub(super) fn header(case: &Case, simulation: &Simulation, steady: Option<&Stead
     }
 }
 
-/// Points of a course for pictures: all of them, or of many every second one, every third one and so on, and the last.
-fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+/// Points of a course for pictures, with its corners.
+fn course(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     const MOST: usize = 1000;
-    let every = points.len().div_ceil(MOST).max(1);
-    let is_kept = |n: usize| n.is_multiple_of(every) || n + 1 == points.len();
-    points.iter().enumerate().filter(|(n, _)| is_kept(*n)).map(|(_, point)| *point).collect()
+    let (times, values): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+    match points.len() > MOST {
+        true => crate::curve::thinned(&times, &values, MOST).0.into_iter().map(|n| points[n]).collect(),
+        false => points.to_vec(),
+    }
 }
 
 /// The case and its `simulation` in numbers, SI: the attribute `setup` of its result.
@@ -49,7 +51,7 @@ pub fn setup(case: &Case, simulation: &Simulation) -> Map<String, Value> {
         put("contact_creep_compliance_over_reduced_time", json!(parts));
     }
     if let Some(points) = &case.temperatures {
-        put("temperature_course", json!(thinned(points)));
+        put("temperature_course", json!(course(points)));
     }
     if !case.files.is_empty() {
         let files: Map<String, Value> =

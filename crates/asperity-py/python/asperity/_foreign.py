@@ -7,6 +7,10 @@ from typing import Any
 import numpy as np
 
 from ._core import CaseError
+from ._findings import warn_caller
+
+#: Cells of instruments that measure surfaces are smaller [m]: larger ones come from a unit that was taken for metres.
+LARGEST_CELL = 1e-2
 
 
 def read(path: str, size: list[float] | None, height_unit: float | None, channel: str | None, error: OSError) -> dict[str, Any]:
@@ -19,7 +23,7 @@ def read(path: str, size: list[float] | None, height_unit: float | None, channel
     try:
         reader = other.open_topography(path)
     except Exception as why:  # its readers raise errors of many kinds
-        raise OSError(f"{error}; the package SurfaceTopography does not read it either: {why}") from why
+        raise OSError(f"{error}; the package SurfaceTopography does not read it either: {_reason(why)}") from why
 
     names = [str(one.name) for one in reader.channels]
     index = _choose(names, reader.channels.index(reader.default_channel), channel, path)
@@ -33,7 +37,7 @@ def read(path: str, size: list[float] | None, height_unit: float | None, channel
     try:
         topography = reader.topography(channel_index=index, **options)
     except Exception as why:
-        raise OSError(f"{path}: the package SurfaceTopography cannot read it: {why}") from why
+        raise OSError(f"{path}: the package SurfaceTopography cannot read it: {_reason(why)}") from why
 
     unit: Any = UnitConversion.get_unit_conversion_factor(topography.unit, "m") if isinstance(topography.unit, str) else None
     if height_unit is None and unit is None:
@@ -42,11 +46,32 @@ def read(path: str, size: list[float] | None, height_unit: float | None, channel
         if unit is None:
             raise CaseError(f"{path}: the file holds no unit for its physical size; give the lengths along x and y (size=)")
         size = [float(length) * unit for length in topography.physical_sizes]
+        _check_cells(path, size, topography.nb_grid_pts)
     heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
     heights = np.ascontiguousarray(heights * (height_unit if height_unit is not None else unit))
     found = {"format": str(reader.format()), "reader": f"SurfaceTopography {other.__version__}", "history": [], "size": size}
     repeats = {"repeats": True} if topography.is_periodic else {}
     return {**told(topography), **repeats, **found, "channel": names[index], "channels": names, "heights": heights}
+
+
+def _check_cells(path: str, size: list[float], cells: Any) -> None:
+    """Warns of a surface that no instrument measures."""
+    cell = max(length / max(int(count), 1) for length, count in zip(size, cells))
+    if not cell < LARGEST_CELL:
+        shown = " x ".join(f"{length:.4g} m" for length in size)
+        warn_caller(
+            f"{path}: the package SurfaceTopography reads a size of {shown}, with cells of {cell:.2g} m, larger than those of any instrument: it "
+            "may have taken another unit for metres. Compare with the program of the instrument, and give the lengths [m] (size=). [unlikely-unit]"
+        )
+
+
+def _reason(why: Exception) -> str:
+    """What a reader says of a file; its own mistakes say nothing about that."""
+    mistakes = (LookupError, AttributeError, TypeError, ArithmeticError, AssertionError, NameError, NotImplementedError)
+    text = str(why).strip()
+    if isinstance(why, mistakes) or type(why).__module__ == "struct" or not text:
+        return "its reader fails on this file, which may be damaged, or of another version than it knows"
+    return text
 
 
 def told(topography: Any) -> dict[str, Any]:

@@ -22,6 +22,8 @@ pub fn isotherms(title: &str, measured: &Measured) -> Figure {
     let panels: &[Dynamic] = match measured.kind {
         Kind::Relaxation => &[("Relaxation", "relaxation modulus", "Pa", |[modulus, _]| modulus)],
         Kind::Creep => &[("Creep", "creep compliance", "1/Pa", |[compliance, _]| compliance)],
+        // A storage modulus alone.
+        Kind::Dma if measured.sweeps.iter().all(|sweep| sweep.curves.len() == 1) => &DYNAMIC[..1],
         Kind::Dma => &DYNAMIC,
     };
     let key = key(measured.sweeps.iter().filter_map(|sweep| sweep.temperature));

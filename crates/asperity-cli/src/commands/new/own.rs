@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::indentation::{Given, IndentationRecord, controlled};
 use asperity::material::{Modulus, Shift};
-use asperity_io::curve::{Columns, Curves, Indentation, Kind, Request, ShiftRequest};
+use asperity_io::curve::{Columns, Curves, Indentation, Kind, Request, ShiftRequest, thinned};
 use asperity_io::output::write_all;
 use asperity_io::topography::Topography;
 
@@ -400,8 +400,8 @@ fn indentation_of(
     folder: &Path,
     material: &Material,
 ) -> Result<String, Failure> {
-    /// Points of the history in the case.
-    const POINTS: usize = 40;
+    /// Points of the history in the case, at most.
+    const POINTS: usize = 5000;
     let columns = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
     let given = controlled(&columns).map_err(Failure::about(from.display()))?;
     let sticks = purpose == Purpose::Adhesion;
@@ -411,14 +411,24 @@ fn indentation_of(
         Given::Load => ("load", &record.loads, "N"),
     };
     let start = record.times.first().copied().unwrap_or_default();
-    let every = record.times.len().div_ceil(POINTS).max(1);
     let last = record.times.len().saturating_sub(1);
-    let peak = (0..=last).max_by(|a, b| values[*a].total_cmp(&values[*b]));
-    let mut points: Vec<String> = vec![];
-    for n in (0..=last).filter(|n| n % every == 0 || *n == last || Some(*n) == peak) {
-        let (time, value) = (record.times[n] - start, values[n].max(if sticks { f64::MIN } else { 0.0 }));
-        points.push(format!("  [\"{time:.6e} s\", \"{value:.6e} {unit}\"],"));
-    }
+    let (kept, error) = thinned(&record.times, values, POINTS);
+    let point = |n: &usize| {
+        let (time, value) = (record.times[*n] - start, values[*n].max(if sticks { f64::MIN } else { 0.0 }));
+        format!("  [\"{time:.6e} s\", \"{value:.6e} {unit}\"],")
+    };
+    let points: Vec<String> = kept.iter().map(point).collect();
+    let [least, most] = extent(values.iter().copied());
+    let off = match error <= 1e-6 * (most - least) {
+        true => "on".to_owned(),
+        false => format!("within {} of", quantity(error, unit)),
+    };
+    let thinned = match kept.len() > last {
+        true => String::new(),
+        false => {
+            format!(", {} of them here: the others lie {off} the straight lines between these", kept.len())
+        }
+    };
     let deepest = record.depths.iter().copied().fold(0.0, f64::max).max(1e-9);
     if sticks && record.depths.iter().all(|depth| *depth >= 0.0) {
         crate::messages::message!(
@@ -442,7 +452,7 @@ fn indentation_of(
         material.body(),
     );
     let after = format!(
-        "\n[load]                                # {} rows of the record, {} to {}, depth up to {}\ncontrol = \"{control}\"{}{by}\nhistory = {{ kind = \"table\", points = [\n{}\n] }}\n\n[time]\nend = \"{:.6e} s\"\nsteps = 80\n\n[output]\nfields = [\"pressure\", \"displacement\"]\nevery = 10\n",
+        "\n[load]                                # {} rows of the record, {} to {}, depth up to {}{thinned}\ncontrol = \"{control}\"{}{by}\nhistory = {{ kind = \"table\", points = [\n{}\n] }}\n\n[time]\nend = \"{:.6e} s\"\nsteps = 80\n\n[output]\nfields = [\"pressure\", \"displacement\"]\nevery = 10\n",
         record.times.len(),
         quantity(low, "N"),
         quantity(high, "N"),

@@ -69,12 +69,12 @@ roles! {
          w frequenz kreisfrequenz winkelfrequenz prüffrequenz messfrequenz";
     /// Storage modulus.
     Storage "storage" ["Pa", "MPa"]
-        "storage e' g' m' estor gstor estorage gstorage eprime gprime storagemodulus storagemoduluse' storagemodulusg'
+        "storage e' g' m' ep gp estor gstor estorage gstorage eprime gprime storagemodulus storagemoduluse' storagemodulusg'
          modulus' e1 g1 ree* reg* reale* realg* dynamicstoragemodulus shearstoragemodulus tensilestoragemodulus
          bendingstoragemodulus speichermodul speichermodule' speichermodulg'";
     /// Loss modulus.
     Loss "loss" ["Pa", "MPa"]
-        "loss e'' g'' m'' eloss gloss edoubleprime gdoubleprime lossmodulus lossmoduluse'' lossmodulusg'' modulus'' e2
+        "loss e'' g'' m'' epp gpp eloss gloss edoubleprime gdoubleprime lossmodulus lossmoduluse'' lossmodulusg'' modulus'' e2
          g2 ime* img* image* imagg* dynamiclossmodulus shearlossmodulus tensilelossmodulus bendinglossmodulus
          verlustmodul verlustmodule'' verlustmodulg''";
     /// Loss factor E''/E', in place of the loss modulus.

@@ -287,6 +287,17 @@ fn length(text: &str) -> Option<Length> {
     Some(Length { value, unit: unit.trim_matches(['[', ']', '(', ')']).to_owned() })
 }
 
+/// Name and unit of "x in mm", "x/mm", "x_mm", "x, mm" or "x mm".
+fn unbracketed(field: &str) -> (&str, Option<String>) {
+    let Some((name, unit)) = field.rsplit_once([' ', '/', '_', ',']) else { return (field, None) };
+    let name = name.trim_end_matches([' ', '/', '_', ',']);
+    let name = name.strip_suffix(" in").or(name.strip_suffix("_in")).unwrap_or(name).trim();
+    match !name.is_empty() && metres(unit, LoneA::Ampere).is_some() {
+        true => (name, Some(unit.to_owned())),
+        false => (field, None),
+    }
+}
+
 /// Names of columns ("x [mm]; y [mm]; z [µm]"), with a following row of units ("mm; mm; µm").
 fn columns(text: &str, before: &[Column]) -> Vec<Column> {
     let separator = [';', '\t', ','].into_iter().find(|s| text.contains(*s)).unwrap_or(' ');
@@ -297,13 +308,19 @@ fn columns(text: &str, before: &[Column]) -> Vec<Column> {
         let units = fields.iter().map(|f| Some(bare(f)));
         return before.iter().zip(units).map(|(c, unit)| Column { name: c.name.clone(), unit }).collect();
     }
+    let blanks = separator == ' ' && !text.contains([':', '=']);
     let mut columns: Vec<Column> = vec![];
     for field in fields.into_iter().take(1000) {
         let (name, unit) = match field.split_once(['[', '(']) {
             Some((name, unit)) => (name.trim(), Some(unit.trim_end_matches([']', ')']).trim().to_owned())),
-            None => (field, None),
+            None => unbracketed(field),
         };
         match columns.last_mut() {
+            // "x in mm y in mm"
+            Some(_) if blanks && field == "in" => {}
+            Some(last) if blanks && last.unit.is_none() && metres(field, LoneA::Ampere).is_some() => {
+                last.unit = Some(field.to_owned());
+            }
             // Blanks separate the names of columns, and a name from its unit.
             Some(last) if name.is_empty() && last.unit.is_none() => last.unit = unit,
             _ => columns.push(Column { name: name.to_owned(), unit }),

@@ -34,8 +34,16 @@ pub(super) fn columns(dialect: Dialect, data: &[u8]) -> usize {
         Separator::Byte(byte) => {
             let fields = first.split(|b| *b == byte).count();
             // A separator that ends every line stands after the last value, else before an undefined one.
-            let ends_lines = first.ends_with(&[byte]) && lines.take(100).all(|l| l.ends_with(&[byte]));
-            if ends_lines { fields - 1 } else { fields }
+            let trailing = |line: &[u8]| {
+                line.iter()
+                    .rev()
+                    .take_while(|b| **b == byte || b.is_ascii_whitespace())
+                    .filter(|b| **b == byte)
+                    .count()
+            };
+            let ends = lines.take(100).map(trailing).fold(trailing(first), usize::min);
+            // Rows of a profile may end in several.
+            if fields == ends + 2 { 2 } else { fields - ends.min(1) }
         }
     }
 }
@@ -176,11 +184,12 @@ fn delimited_line(
     loop {
         let stop = memchr(separator, &run[at..end]).map_or(end, |n| at + n);
         let field = run[at..stop].trim_ascii();
-        // A separator at the end of the line ends the last value.
-        if !(stop == end && field.is_empty() && columns == Some(found)) {
-            values.push(token(comma, field).ok_or(Fault::Number { at, length: stop - at })?);
-            found += 1;
+        // Separators at the end of the line end the last value.
+        if columns == Some(found) && run[at..end].iter().all(|b| *b == separator || is_blank(*b)) {
+            return Ok(());
         }
+        values.push(token(comma, field).ok_or(Fault::Number { at, length: stop - at })?);
+        found += 1;
         if stop == end {
             return Ok(());
         }

@@ -22,16 +22,16 @@ const HINT: &str = "three columns are taken for x, y and height; if this is a ma
 
 /// Positions of the x and y columns, where a row of names gives them.
 pub(super) fn named_columns(columns: &[Column]) -> Option<[usize; 2]> {
-    let axis = |letter: char| {
-        columns.iter().position(|c| {
-            let name = c.name.to_lowercase();
-            let tail = name.strip_prefix(letter);
-            tail.is_some_and(|t| {
-                t.is_empty() || ["coord", "pos", "-axis", " axis"].iter().any(|w| t.contains(w))
-            })
-        })
-    };
+    let axis = |letter: char| columns.iter().position(|column| is_axis(&column.name, letter));
     Some([axis('x')?, axis('y')?])
+}
+
+/// Whether a name is that of an axis: "x", "X coordinate", "pos_x".
+fn is_axis(name: &str, letter: char) -> bool {
+    let name = name.to_lowercase();
+    let says = |text: &str| ["coord", "pos", "axis"].iter().any(|word| text.contains(word));
+    let start = name.strip_suffix(letter).filter(|start| start.ends_with([' ', '_', '-', '.']));
+    name.strip_prefix(letter).is_some_and(|rest| rest.is_empty() || says(rest)) || start.is_some_and(says)
 }
 
 /// Reads points.
@@ -54,16 +54,41 @@ pub(super) fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     }
     let columns = header.columns();
     let named = named_columns(&columns).filter(|_| columns.len() == table.columns);
+    // Of more columns than three the first ones may be a counter and a time.
+    if named.is_none() && table.columns > 3 {
+        return Err(Problem::malformed(
+            format!("the line above the {} columns of points", table.columns),
+            if columns.is_empty() {
+                "missing".to_owned()
+            } else {
+                columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ")
+            },
+            "one name for each column, x and y among them, with their units, as in \"index, x [mm], y [mm], z [um]\"",
+        ));
+    }
     let [x, y] = named.unwrap_or([0, 1]);
     let heights: Vec<usize> = (0..table.columns).filter(|c| *c != x && *c != y).collect();
     let names: Vec<String> = match named {
         Some(_) => heights.iter().map(|c| columns[*c].name.clone()).collect(),
         None => heights.iter().map(|c| format!("column {}", c + 1)).collect(),
     };
-    let z = heights[request.choose(&names)?];
+    let z = heights[chosen(request, &columns, &heights, &names)?];
 
     let [x_axis, y_axis] = [(x, "x"), (y, "y")].map(|(column, name)| Axis::of(&table, column, name));
     let (x_axis, y_axis) = (x_axis?, y_axis?);
+    // Lines of a map share their coordinates; a counter and a line across the surface do not.
+    for (axis, name) in [(&x_axis, "x"), (&y_axis, "y")] {
+        if table.len() > 3 && axis.positions == table.len() {
+            return Err(Problem::malformed(
+                format!("the column taken for {name}"),
+                format!("another number in each of the {} points", table.len()),
+                format!(
+                    "a coordinate that the points of a line of the map share: a counter, or a line across the surface, is no map. Name the columns, as \
+                     in \"index, x [mm], y [mm], z [um]\"; {HINT}"
+                ),
+            ));
+        }
+    }
     let map = gridded(&table, [x, y, z], &x_axis, &y_axis, block.line)?;
     let size = [x_axis.size(), y_axis.size()];
     let (units, unit) = header.point_units([x, y, z]);
@@ -76,11 +101,25 @@ pub(super) fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     Ok(Measured { channel, channels, metadata, ..Measured::new(map, unit, lateral) })
 }
 
+/// The column of heights: the one asked for, else z, else one with a name or unit of heights.
+fn chosen(request: &Request, columns: &[Column], heights: &[usize], names: &[String]) -> Result<usize> {
+    let z = names.iter().position(|name| is_axis(name, 'z'));
+    match (request.channel, z) {
+        (None, Some(z)) => Ok(z),
+        _ => request.choose_heights(names, |n| {
+            let unit = columns.get(heights[n]).and_then(|column| column.unit.as_deref());
+            unit_of(unit.unwrap_or_default(), LoneA::Ampere)
+        }),
+    }
+}
+
 /// Equally spaced positions.
 struct Axis {
     first: f64,
     spacing: f64,
     points: usize,
+    /// Different coordinates in the file.
+    positions: usize,
 }
 
 impl Axis {
@@ -127,7 +166,8 @@ impl Axis {
         if !(steps >= 1.0 && steps < (MOST_CELLS_PER_POINT * sorted.len()) as f64) {
             return None;
         }
-        let axis = Axis { first, spacing: (last - first) / steps, points: steps as usize + 1 };
+        let (spacing, points) = ((last - first) / steps, steps as usize + 1);
+        let axis = Axis { first, spacing, points, positions: positions.len() };
         // Between grid points at most a tenth of the spacing: more is no rounding but another grid.
         let on_grid = |v: &f64| {
             let steps = (v - first) / axis.spacing;

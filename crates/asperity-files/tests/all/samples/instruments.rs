@@ -28,6 +28,8 @@ pub struct Nanoscope {
     /// As they are.
     pub width: usize,
     pub size: &'static str,
+    /// Of the image.
+    pub aspect: &'static str,
     /// Lines of the scan list.
     pub scan: &'static str,
 }
@@ -35,7 +37,15 @@ pub struct Nanoscope {
 impl Default for Nanoscope {
     fn default() -> Self {
         let size = "3 2 ~m";
-        Nanoscope { version: "0x07200000", bytes: 2, width: 2, size, scan: "\\Scan Size: 3000 nm\r\n" }
+        let aspect = "\\Aspect Ratio: 1:1\r\n";
+        Nanoscope {
+            version: "0x07200000",
+            bytes: 2,
+            width: 2,
+            size,
+            aspect,
+            scan: "\\Scan Size: 3000 nm\r\n",
+        }
     }
 }
 
@@ -61,11 +71,12 @@ impl Nanoscope {
         for (i, (name, scale)) in scales.iter().enumerate() {
             header += &format!(
                 "\\*Ciao image list\r\n\\Data offset: {}\r\n\\Data length: {length}\r\n\\Bytes/pixel: {}\r\n\
-                 \\Samps/line: 3\r\n\\Number of lines: 2\r\n\\Aspect Ratio: 1:1\r\n\\Scan Size: {}\r\n\
+                 \\Samps/line: 3\r\n\\Number of lines: 2\r\n{}\\Scan Size: {}\r\n\
                  \\Line Direction: Retrace\r\n\\@2:Image Data: S {name}\r\n\\@Z magnify: C [2:Z scale] 0.015\r\n\
                  \\@2:Z scale: V {scale}\r\n\\@2:Z offset: V [Sens. Zsens] (0.25 V/LSB) 7 V\r\n",
                 HEADER + i * length,
                 self.bytes,
+                self.aspect,
                 self.size
             );
         }

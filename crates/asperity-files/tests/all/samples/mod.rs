@@ -242,25 +242,25 @@ pub fn sdf_binary(data_type: u8) -> Vec<u8> {
 pub enum X3p {
     /// int16 with increment and offset, the last point masked.
     Masked,
-    /// A list of data, the last one empty.
+    /// A list of heights, the last one empty; the increment does not concern them.
     List,
-    /// Two layers of binary32; the second has twice the heights.
+    /// Two layers of binary32 on an incremental axis; the second has twice the heights.
     Layers,
 }
 
 /// Points 1 x 2 um apart; heights are (number - 10) nm where the type says so (`Masked`), else number nm.
 pub fn x3p(kind: X3p) -> Vec<u8> {
-    let (data_type, scale) = match kind {
-        X3p::Masked => ("I", "<Increment>1e-9</Increment><Offset>-1e-8</Offset>"),
-        X3p::List => ("D", "<Increment>1e-9</Increment>"),
-        X3p::Layers => ("F", "<Increment>1e-9</Increment>"),
+    let (axis, data_type, scale) = match kind {
+        X3p::Masked => ("A", "I", "<Increment>1e-9</Increment><Offset>-1e-8</Offset>"),
+        X3p::List => ("A", "D", "<Increment>1e-9</Increment>"),
+        X3p::Layers => ("I", "F", "<Increment>1e-9</Increment>"),
     };
     let list: String = NUMBERS
         .iter()
         .map(|n| match n {
             60 => "<Datum/>".to_owned(),
-            50 => "<Datum>1;1;50</Datum>".to_owned(),
-            n => format!("<Datum> {n}.0 </Datum>"),
+            50 => "<Datum>1;1;50e-9</Datum>".to_owned(),
+            n => format!("<Datum> {n}.0e-9 </Datum>"),
         })
         .collect();
     let data = match kind {
@@ -276,7 +276,7 @@ pub fn x3p(kind: X3p) -> Vec<u8> {
          <Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>\
          <CX><AxisType>I</AxisType><DataType>D</DataType><Increment>1e-6</Increment><Offset>0</Offset></CX>\
          <CY><AxisType>I</AxisType><DataType>D</DataType><Increment>2e-6</Increment><Offset>0</Offset></CY>\
-         <CZ><AxisType>A</AxisType><DataType>{data_type}</DataType>{scale}</CZ></Axes></Record1>\
+         <CZ><AxisType>{axis}</AxisType><DataType>{data_type}</DataType>{scale}</CZ></Axes></Record1>\
          <Record2><Comment>3 &lt; 4 &amp; 5</Comment></Record2>\
          <Record3><MatrixDimension><SizeX>3</SizeX><SizeY>2</SizeY><SizeZ>{layers}</SizeZ></MatrixDimension>{data}</Record3>\
          </p:ISO5436_2>"

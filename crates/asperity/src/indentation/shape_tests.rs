@@ -237,15 +237,16 @@ fn a_power_law_is_found_under_a_given_load_and_an_unknown_touch() {
 #[test]
 fn the_difference_of_ball_and_paraboloid_is_told_where_it_counts() {
     let note = |notes: &[String], word: &str| notes.iter().any(|note| note.contains(word));
-    let fit = |profile, deepest: f64| {
+    let fit_with = |profile, deepest: f64, options: IndentationOptions| {
         let [times, loads, depths] = record(BALL, SOLID, deepest, false, 301);
         let loads = noisy(&loads, 0.005, 1);
         let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };
-        let options = IndentationOptions { given: Some(Given::Depth), springs: 80, ..Default::default() };
         fit_indentation(profile, &record, &options).unwrap()
     };
+    let free = IndentationOptions { given: Some(Given::Depth), springs: 80, ..Default::default() };
+    let fit = |profile, deepest| fit_with(profile, deepest, free);
     let paraboloid = MdrProfile::Paraboloid { radius: RADIUS };
-    let wrong = fit(paraboloid, 0.3 * RADIUS);
+    let wrong = fit_with(paraboloid, 0.3 * RADIUS, solid_options());
     // 3 % less load of the ball than of the paraboloid (see MdrProfile::paraboloid_excess).
     assert!((wrong.equilibrium.value / 485.0 - 1.0).abs() < 0.01, "{}", wrong.equilibrium.value);
     assert!(note(&wrong.notes, "for a ball take the indenter `sphere`"), "{:?}", wrong.notes);

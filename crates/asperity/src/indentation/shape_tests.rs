@@ -194,8 +194,8 @@ fn intervals_of_a_power_law_hold_the_truth() {
                     ..IndentationOptions::default()
                 };
                 let fit = fit_power_law(profile, &record, &options).unwrap();
-                // Of two numbers from 121 rows with 1 %, the modulus is known to better than 1 %.
-                assert!(fit.modulus.high < 1.02 * fit.modulus.low, "{fit:?}");
+                // Two numbers from 121 rows with 1 % of the largest load, which falls to a quarter where the exponent is 0.4.
+                assert!(fit.modulus.high < 1.05 * fit.modulus.low, "{fit:?}");
                 [fit.modulus.holds(800.0), fit.exponent.holds(exponent)].map(usize::from)
             };
             let held: Vec<[usize; 2]> = (0..40).into_par_iter().map(held).collect();

@@ -5,9 +5,9 @@ import re
 TOPICS = {
     "Solve and run": "solve march run check elastic open study converge ErrorBar Step March Result Cycle ElasticContact ElasticCurve ConvergenceHistory".split(),
     "Surfaces": ["Surface", "Autocorrelation"],
-    "Materials": "Material Elastic Maxwell KelvinVoigt Zener StandardLinearSolid Burgers Prony Creep Springpot FractionalMaxwell FractionalZener Body Layer "
+    "Materials": "Material Elastic Maxwell KelvinVoigt Zener StandardLinearSolid Burgers Prony Creep Springpot PowerLaw FractionalMaxwell FractionalZener Body Layer "
     "layer_compliance CreepFunction Relaxation Spread".split(),
-    "Fits and shifts": "fit_relaxation fit_creep fit_dma fit_file fit_indentation read_force_curves fit_force_map Fit IndentationFit ForceFit ForceCurve ForceMap wlf arrhenius shift_table Shift".split(),
+    "Fits and shifts": "fit_relaxation fit_creep fit_dma fit_file fit_indentation read_force_curves fit_force_map Fit IndentationFit PowerLawFit ForceFit ForceCurve ForceMap wlf arrhenius shift_table Shift".split(),
     "Loads and times": "step ramp ramp_to hold triangle trapezoid sine table History Stage uniform log listed adaptive Times".split(),
     "Motion": "slide steady rubber_friction persson_friction PerssonFriction Magnification".split(),
     "Friction, wear and heat": "Friction tangential Tangential Wear Flash".split(),

@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use std::str::FromStr;
 
 use asperity_io::quantity::range::Range;
-use asperity_io::quantity::{Dimension, Quantity, Temperature};
+use asperity_io::quantity::{Angle, Dimension, Quantity, Temperature};
 use clap::builder::TypedValueParser;
 use clap::error::ErrorKind;
 use clap::{Arg, Command};
@@ -21,6 +21,11 @@ pub trait Measured: FromStr<Err: Display> + Clone + Send + Sync + 'static {
 
 impl<D: Dimension + Clone + 'static, R: Range + Clone + 'static> Measured for Quantity<D, R> {
     const UNIT: &'static str = D::SI;
+}
+
+impl Measured for Angle {
+    // It needs one.
+    const UNIT: &'static str = "";
 }
 
 impl Measured for Temperature {

@@ -1,7 +1,7 @@
 //! Modulus and work of adhesion from a force curve.
 
 use asperity::force_curve::{ForceOptions, ForceRecord, fit_force_curve as fit};
-use asperity::indentation::Interval;
+use asperity::indentation::{Indenter, Interval};
 use asperity_io::choice;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -11,13 +11,14 @@ use crate::error::Answer;
 use crate::given::{Dict, List, choose, entries};
 use crate::wait::detached;
 
-/// Fits a force curve of a sphere; uncertainties are standard ones over the value. Intervals are (value, low, high, determined).
+/// Fits a force curve; `size` is the radius or the half angle of the indenter, uncertainties are standard ones over the value. Intervals are (value, low, high, determined).
 #[pyfunction]
 pub fn fit_force_curve<'py>(
     py: Python<'py>,
     loads: List<'_>,
     depths: List<'_>,
-    radius: f64,
+    indenter: &str,
+    size: f64,
     model: &str,
     branch: &str,
     control: Option<&str>,
@@ -38,8 +39,9 @@ pub fn fit_force_curve<'py>(
         load_uncertainty,
         sensitivity_uncertainty,
     };
+    let profile = choose::<Indenter>("indenter", indenter)?.profile(size)?;
     let record = ForceRecord { loads: &loads, depths: &depths };
-    let fit = detached(py, || fit(radius, &record, &options))??;
+    let fit = detached(py, || fit(profile, &record, &options))??;
     let interval = |x: Interval| (x.value, x.low, x.high, x.determined);
     let out = PyDict::new(py);
     out.set_item("model", choice::word(&fit.model))?;

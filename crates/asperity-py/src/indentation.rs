@@ -1,9 +1,9 @@
 //! The material of a half-space, or of a thin sample, from a measured indentation.
 
 use asperity::indentation::{
-    IndentationOptions, IndentationRecord, Interval, SampleLayer, fit_indentation as fit,
+    IndentationOptions, IndentationRecord, Indenter, Interval, SampleLayer, fit_indentation as fit,
+    fit_power_law,
 };
-use asperity::reference::MdrProfile;
 use asperity_io::choice;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -17,7 +17,7 @@ fn sample((thickness, poisson, interface): (f64, f64, String)) -> Answer<SampleL
     Ok(SampleLayer { thickness, poisson, interface: choose("interface", &interface)? })
 }
 
-/// Fits the contact relaxation modulus to a record; `profile` is "radius" of a sphere or "slope" of a cone, with its `number`. `thin` is
+/// Fits the contact relaxation modulus to a record, as a Prony series or as a power law; `size` is the radius or the half angle of the indenter. `thin` is
 /// thickness, Poisson's ratio and interface of a sample on a rigid base; `uncertainties` are those of the size of the profile, the thickness,
 /// the load and the sensitivity, over their values. Intervals are (value, low, high, determined).
 #[pyfunction]
@@ -26,8 +26,9 @@ pub fn fit_indentation<'py>(
     times: List<'_>,
     loads: List<'_>,
     depths: List<'_>,
-    profile: &str,
-    number: f64,
+    power_law: bool,
+    indenter: &str,
+    size: f64,
     given: Option<&str>,
     terms: Option<usize>,
     long_time: &str,
@@ -39,10 +40,7 @@ pub fn fit_indentation<'py>(
     spring_constant: Option<f64>,
 ) -> Answer<Dict<'py>> {
     let [times, loads, depths] = [times, loads, depths].map(|column| column.as_array().to_vec());
-    let profile = match profile {
-        "radius" => MdrProfile::Sphere { radius: number },
-        _ => MdrProfile::Cone { slope: number },
-    };
+    let profile = choose::<Indenter>("indenter", indenter)?.profile(size)?;
     let [radius_uncertainty, thickness_uncertainty, load_uncertainty, sensitivity_uncertainty] =
         uncertainties;
     let options = IndentationOptions {
@@ -60,9 +58,20 @@ pub fn fit_indentation<'py>(
         limit,
     };
     let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };
-    let fit = detached(py, || fit(profile, &record, &options))??;
     let interval = |x: Interval| (x.value, x.low, x.high, x.determined);
     let out = PyDict::new(py);
+    if power_law {
+        let fit = detached(py, || fit_power_law(profile, &record, &options))??;
+        out.set_item("modulus", interval(fit.modulus))?;
+        out.set_item("exponent", interval(fit.exponent))?;
+        out.set_item("touch", interval(fit.touch))?;
+        out.set_item("given", choice::word(&fit.given))?;
+        out.set_item("predicted", fit.predicted.into_pyarray(py))?;
+        entries!(out, fit; rows rms relative_rms durbin_watson notes);
+        out.set_item("window", (fit.window[0], fit.window[1]))?;
+        return Ok(out);
+    }
+    let fit = detached(py, || fit(profile, &record, &options))??;
     out.set_item("equilibrium", interval(fit.equilibrium))?;
     out.set_item("instantaneous", interval(fit.instantaneous))?;
     let terms: Vec<_> =

@@ -183,4 +183,26 @@ def test_stated_uncertainties_are_in_the_intervals_of_a_relaxation():
         with pytest.raises(asp.CaseError, match=word):
             asp.fit_indentation(time, load, depth, **{**how, **given})
     with pytest.raises(asp.CaseError, match="give radius too"):
-        asp.fit_indentation(time, load, depth, poisson=0.5, slope=0.1, radius_uncertainty=1e-7)
+        asp.fit_indentation(time, load, depth, poisson=0.5, indenter="cone", angle=1.4, radius_uncertainty=1e-7)
+
+
+def test_tips_of_other_shapes_give_the_modulus_back_in_maps_too():
+    depth = np.linspace(5e-6, -2e-6, 300)
+    pressed = np.maximum(depth, 0.0)
+    # A ball of 5 um to its radius (Sneddon 1965): depth = a artanh(a/R), by Newton's method from above.
+    a = np.minimum(np.sqrt(5e-6 * pressed), 0.9 * 5e-6)
+    for _ in range(60):
+        s = a / 5e-6
+        a = a - np.where(s > 0, (a * np.arctanh(s) - pressed) / np.where(s > 0, np.arctanh(s) + s / (1 - s**2), 1.0), 0.0)
+    ball = (a**2 + 25e-12) * np.arctanh(a / 5e-6) - 5e-6 * a
+    pyramid = 0.7453 * np.tan(0.35) * pressed**2
+    for load, tip in ((ball, dict(radius=5e-6)), (pyramid, dict(indenter="pyramid", angle=0.35))):
+        fit = asp.fit_indentation(None, 1e3 / 0.75 * load, depth, poisson=0.5, model="hertz", **tip)
+        assert fit.young[0] == pytest.approx(1e3, rel=1e-3)
+        curves = [asp.ForceCurve(e / 0.75 * load, depth, metadata={"grid index x": n, "grid index y": 0}) for n, e in enumerate((1e3, 2e3))]
+        found = asp.fit_force_map(curves, poisson=0.5, model="hertz", **tip)
+        np.testing.assert_allclose(found.young[:, 0], [1e3, 2e3], rtol=1e-3)
+    with pytest.raises(asp.CaseError, match="hertz"):
+        asp.fit_indentation(None, pyramid, depth, poisson=0.5, model="jkr", indenter="pyramid", angle=0.35)
+    with pytest.raises(asp.CaseError, match="90 degrees"):
+        asp.fit_indentation(None, pyramid, depth, poisson=0.5, model="hertz", indenter="pyramid", angle=35.0)

@@ -272,7 +272,7 @@ def test_an_indentation_gives_the_material_back():
     assert short.material.relaxation_modulus(0.0) > 0.0 and sum(short.numbers_of_terms) == pytest.approx(1.0)
     t = np.arange(20.0)
     for change, words in (
-        (dict(radius=None), "one of them"), (dict(slope=0.1), "one of them"), (dict(poisson=0.6), "0.6"), (dict(radius=-1.0), "radius"),
+        (dict(radius=None), "radius is missing"), (dict(angle=0.1), "angle is 0.1"), (dict(indenter="cone"), "radius is 0.01"), (dict(indenter="ball"), "ball"), (dict(poisson=0.6), "0.6"), (dict(radius=-1.0), "radius"),
         (dict(given="both"), "'depth' or 'load'"), (dict(terms=50), "terms"), (dict(springs=1), "springs"), (dict(max_misfit=-1.0), "misfit|limit"),
     ):
         with pytest.raises(asp.CaseError, match=words):
@@ -301,6 +301,33 @@ def test_a_thin_sample_gives_its_material_back():
     for change, words in ((dict(thickness=-1.0), "thickness"), (dict(interface="slip"), "thickness"), (dict(thickness=1e-3, interface="glued"), "glued")):
         with pytest.raises(asp.CaseError, match=words):
             asp.fit_indentation(t, t, t * 1e-6, **{**dict(radius=0.01, poisson=0.5), **change})
+
+
+def test_a_power_law_is_its_springpot_and_comes_back_from_an_indentation():
+    law = asp.PowerLaw(young=1e3, alpha=0.2, window=(1e-2, 1e2), poisson=0.5)
+    t = np.geomspace(1e-2, 1e2, 9)
+    np.testing.assert_allclose(law.relaxation_modulus(t), 1e3 * t**-0.2, rtol=1.01 * law.error)
+    springpot = asp.Springpot(young=1e3 * math.gamma(0.8), time=1.0, order=0.2, window=(1e-2, 1e2), poisson=0.5)
+    assert law.relaxation_terms == springpot.relaxation_terms and pickle.loads(pickle.dumps(law)) == law
+    assert repr(law).startswith("PowerLaw(") and law.measure == "young"
+    later = asp.PowerLaw(shear=500.0, time=4.0, alpha=0.5, window=(1e-2, 1e2), poisson=0.5)
+    assert later.relaxation_modulus(1.0) == pytest.approx(1000.0, rel=2e-3)
+    for alpha in (0.0, 1.0, -0.1):
+        with pytest.raises(asp.CaseError, match="alpha"):
+            asp.PowerLaw(young=1e3, alpha=alpha, window=(1e-2, 1e2), poisson=0.5)
+    # W = (2/pi) tan E* 2 v^2 t^(2 - a)/((1 - a)(2 - a)) under a cone, by the integral of Lee and Radok.
+    time = np.linspace(0.0, 2.0, 201)
+    load = 2 / np.pi * np.tan(0.6) * 1e3 / 0.75 * 2e-12 * time**1.8 / (0.8 * 1.8)
+    load += 0.005 * load.max() * np.random.default_rng(2).standard_normal(time.size)
+    how = dict(indenter="cone", angle=0.6, poisson=0.5, model="power-law")
+    fit = asp.fit_indentation(time, load, 1e-6 * time, **how)
+    for (value, low, high), true in ((fit.modulus, 1e3), (fit.exponent, 0.2)):
+        assert low < true < high and low < value < high and high < 1.2 * low
+    assert fit.material.alpha == fit.exponent[0] and fit.material.window == fit.window and fit.given == "depth"
+    assert "PowerLawFit" in repr(fit) and "<table>" in fit._repr_html_() and pickle.loads(pickle.dumps(fit)).rms == fit.rms
+    for change, words in ((dict(terms=1), "terms"), (dict(long_time="solid"), "long_time"), (dict(range=1e-9), "range")):
+        with pytest.raises(asp.CaseError, match=words):
+            asp.fit_indentation(time, load, 1e-6 * time, **how, **change)
 
 
 def test_fractional_models_keep_their_tolerance():

@@ -41,7 +41,8 @@ pub(super) fn sphere_under_load() -> Result<Vec<Check>> {
         vec![(0.0, 0.0), (0.8, 0.6), (1.2, 0.1), (1.8, 1.0), (1.8, 0.4), (2.4, 0.4), (2.8, 0.0), (3.6, 0.8)];
     let loading = Loading { control: Control::Load, history: History::Table { points } };
     let size = 1.8;
-    let pairs = both(Shape::Sphere { radius: 1.0 }, MdrProfile::Sphere { radius: 1.0 }, size, loading, 3.6)?;
+    let pairs =
+        both(Shape::Sphere { radius: 1.0 }, MdrProfile::Paraboloid { radius: 1.0 }, size, loading, 3.6)?;
     let scale = largest(&pairs, |row, _| row.approach);
     let error = largest(&pairs, |row, state| (row.approach - state.approach).abs()) / scale;
     // (dx/a)^2 at the radii that matter, above 0.3, and the steps' second order.

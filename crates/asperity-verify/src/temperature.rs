@@ -60,7 +60,7 @@ pub(super) fn temperature_springs() -> Result<Vec<Check>> {
     let points = vec![(0.0, 0.0), (0.7, 0.9), (1.3, 0.3), (1.8, 0.3), (2.5, 1.0)];
     let history = History::Table { points };
     let times = TimeGrid::Uniform { end: 2.5, steps: 250 };
-    let mut springs = Mdr::new(MdrProfile::Sphere { radius: 1.0 }, &zener_relaxation(), 1.0, 2000)?;
+    let mut springs = Mdr::new(MdrProfile::Paraboloid { radius: 1.0 }, &zener_relaxation(), 1.0, 2000)?;
     springs.step(0.0, MdrTarget::Load(0.0))?;
     let mut approaches = vec![0.0];
     let mut last = 0.0;

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use asperity::force_curve::{Branch, ForceModel, PullOffControl};
-use asperity::indentation::Given;
+use asperity::indentation::{Given, Indenter};
 use asperity::layer::Interface;
 use asperity::material::{LongTime, Moduli, Modulus};
 use asperity_io::choice;
 use asperity_io::curve::{Kind, VerticalWord};
 use asperity_io::material_export::Program;
-use asperity_io::quantity::{Expansion, ForcePerLength, Length, Number, Time, range};
+use asperity_io::quantity::{Angle, Expansion, ForcePerLength, Length, Number, Time, range};
 use clap::Subcommand;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
@@ -185,12 +185,24 @@ pub struct FitOutput {
 
 /// What `fit-indentation` fits: the relaxation of the body, or an elastic body to a force curve by one of its models.
 #[derive(Clone, Copy, Debug)]
-pub struct Model(pub Option<ForceModel>);
+pub enum Model {
+    /// As a Prony series.
+    Viscoelastic,
+    /// As a power law.
+    PowerLaw,
+    Curve(ForceModel),
+}
 
 impl Model {
+    const RELAXATION: [&'static str; 2] = ["viscoelastic", "power-law"];
+
     fn parser() -> impl TypedValueParser<Value = Model> {
-        let words = ["viscoelastic"].into_iter().chain(choice::words::<ForceModel>().iter().copied());
-        PossibleValuesParser::new(words).map(|word| Model(choice::parse(&word)))
+        let words = Self::RELAXATION.into_iter().chain(choice::words::<ForceModel>().iter().copied());
+        PossibleValuesParser::new(words).map(|word| match choice::parse(&word) {
+            Some(curve) => Model::Curve(curve),
+            None if word == Self::RELAXATION[1] => Model::PowerLaw,
+            None => Model::Viscoelastic,
+        })
     }
 }
 
@@ -213,7 +225,8 @@ pub struct ForceCurve {
     /// Deflection of the cantilever per volt, where its column is in volts, e.g. '50 nm'
     #[arg(long, value_name = "LENGTH", requires = "spring_constant", value_parser = quantity::<Length<range::Positive>>())]
     pub sensitivity: Option<Length<range::Positive>>,
-    /// Standard uncertainty of the radius (one standard deviation), e.g. '0.2 um' or '2 %', with any model
+    /// Standard uncertainty of the radius (one standard deviation), e.g. '0.2 um' or '2 %', with any model; of a cone or pyramid in %, that of the
+    /// cotangent of the half angle
     #[arg(long, value_name = "LENGTH")]
     pub radius_uncertainty: Option<String>,
     /// Standard uncertainty of the spring constant, e.g. '0.01 N/m' or '5 %'; of records of load, with any model, '5 %' of the load
@@ -228,14 +241,17 @@ pub struct ForceCurve {
 pub struct FitIndentation {
     /// The record: a text table with columns of time, load and depth, or of height and deflection with --spring-constant
     pub record: PathBuf,
-    /// Radius of the sphere, e.g. '5 mm'
-    #[arg(long, value_name = "LENGTH", required_unless_present = "cone", conflicts_with = "cone", value_parser = quantity::<Length<range::Positive>>())]
+    /// The indenter: a ball (sphere), the paraboloid that a ball is near its apex, a cone, or a square pyramid
+    #[arg(long, value_parser = words::<Indenter>(), default_value = "sphere")]
+    pub indenter: Indenter,
+    /// Radius of the sphere or paraboloid, e.g. '5 mm'
+    #[arg(long, value_name = "LENGTH", value_parser = quantity::<Length<range::Positive>>())]
     pub radius: Option<Length<range::Positive>>,
-    /// Slope of a cone instead: rise per length, the cotangent of its half angle
-    #[arg(long, value_name = "SLOPE", value_parser = quantity::<Number<range::Positive>>())]
-    pub cone: Option<Number<range::Positive>>,
-    /// What is fitted: the relaxation of the body (viscoelastic), or an elastic body to a force curve, without adhesion (hertz) or with it
-    /// (dmt, jkr, maugis); force curves need no column of time
+    /// Half angle of the cone or pyramid, e.g. '20 deg': from the axis to the flank of a cone, to a face (not an edge) of a pyramid
+    #[arg(long, value_name = "ANGLE", value_parser = quantity::<Angle>())]
+    pub angle: Option<Angle>,
+    /// What is fitted: the relaxation of the body as a Prony series (viscoelastic) or as a power law of time (power-law), or an elastic body to a
+    /// force curve, without adhesion (hertz) or with it (dmt, jkr, maugis); force curves need no column of time
     #[arg(long, value_parser = Model::parser(), default_value = "viscoelastic")]
     pub model: Model,
     /// The options of force curves

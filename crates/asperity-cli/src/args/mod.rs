@@ -17,7 +17,7 @@ use clap_complete::Shell;
 
 pub use app::App;
 pub use leak::{FluidOptions, Leak};
-pub use material::{Data, Fit, FitIndentation, FitOutput, Material, MaterialExport, Show};
+pub use material::{Data, Fit, FitIndentation, FitOutput, Material, MaterialExport, Model as FitModel, Show};
 pub use result::{Compare, Export, Labels, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
 pub use run::{Check, Converge, New, Purpose, Run, Verify};
 pub use seal::Seal;

@@ -1,20 +1,22 @@
 //! `asperity fit-indentation`: the material of a body from a measured indentation.
 
 use asperity::indentation::{
-    Given, IndentationFit, IndentationOptions, IndentationRecord, Interval, SampleLayer, fit_indentation,
+    Given, IndentationFit, IndentationOptions, IndentationRecord, Interval, PowerLawFit, SampleLayer,
+    fit_indentation, fit_power_law,
 };
 use asperity::layer::Interface;
-use asperity::material::Modulus;
+use asperity::material::{LongTime, Modulus};
 use asperity::reference::MdrProfile;
-use asperity_io::curve::{Indentation, IndentationTest, MaterialOf, indentation_block};
+use asperity_io::choice;
+use asperity_io::curve::{Indentation, IndentationTest, MaterialOf, indentation_block, power_law_block};
 use asperity_io::quantity::Quantity;
 use asperity_io::quantity::dimension::{ForcePerLength, Length};
-use asperity_report::material::indentation as picture;
+use asperity_report::material as picture;
 use serde_json::{Value, json};
 
 use super::force_curve::share;
 use super::material::{columns, refused};
-use crate::args::FitIndentation;
+use crate::args::{FitIndentation, FitModel};
 use crate::failure::{Failure, refuse};
 use crate::files::Files;
 use crate::format::quantity;
@@ -27,87 +29,186 @@ impl Verb for FitIndentation {
 
     /// Fits a record.
     fn run(&self) -> Result<(), Failure> {
-        if let Some(model) = self.model.0 {
-            return super::force_curve::fit(self, model);
-        }
+        let profile = profile(self)?;
+        let power_law = match self.model {
+            FitModel::Curve(model) => return super::force_curve::fit(self, model, profile),
+            FitModel::PowerLaw => true,
+            FitModel::Viscoelastic => false,
+        };
         super::force_curve::not_given(self)?;
-        let profile = match (self.radius, self.cone) {
-            (_, Some(slope)) => MdrProfile::Cone { slope: slope.get() },
-            (Some(radius), None) => MdrProfile::Sphere { radius: radius.get() },
-            (None, None) => refuse!("--radius or --cone is needed"),
-        };
-        let (poisson, interface) = (self.poisson.get(), self.interface);
-        let layer = self.thickness.map(|depth| SampleLayer { thickness: depth.get(), poisson, interface });
-        let of = MaterialOf { modulus: self.modulus, poisson };
+        let options = options(self)?;
+        let of = MaterialOf { modulus: self.modulus, poisson: self.poisson.get() };
         let columns = columns(&self.column, &self.unit)?;
-        let [radius, thickness] = [self.radius, self.thickness].map(|x| x.map(Quantity::get));
-        let stiffness = &self.curve.spring_constant_uncertainty;
-        let options = IndentationOptions {
-            radius_uncertainty: share::<Length>(
-                "--radius-uncertainty",
-                &self.curve.radius_uncertainty,
-                radius,
-            )?,
-            thickness_uncertainty: share::<Length>(
-                "--thickness-uncertainty",
-                &self.thickness_uncertainty,
-                thickness,
-            )?,
-            load_uncertainty: share::<ForcePerLength>("--spring-constant-uncertainty", stiffness, None)?,
-            given: self.given,
-            terms: self.terms,
-            long_time: self.long_time,
-            fit_touch: self.fit_touch,
-            layer,
-            ..IndentationOptions::default()
-        };
         let record = Indentation::read(&self.record, &columns).map_err(refused)?;
         let taken = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
-        let fit =
-            fit_indentation(profile, &taken, &options).map_err(Failure::about(self.record.display()))?;
-        let block = indentation_block(&record, &IndentationTest { profile, layer }, &fit, of);
-        let object = || {
-            let mut object = json_of(&fit, of);
-            object["notes"] = json!(record.notes.iter().chain(&fit.notes).collect::<Vec<_>>());
+        let deepest = record.depths.iter().copied().fold(0.0, f64::max);
+        let test = IndentationTest { profile, layer: options.layer, deepest };
+        let title = super::title(&self.record);
+        let about = Failure::about(self.record.display());
+        let told = |mut object: Value, notes: &[String]| {
+            object["indenter"] = json!(self.indenter);
+            object["notes"] = json!(record.notes.iter().chain(notes).collect::<Vec<_>>());
             object
         };
-        let title = super::title(&self.record);
+        if power_law {
+            let fit = fit_power_law(profile, &taken, &options).map_err(about)?;
+            return self.to.deliver(
+                &power_law_block(&record, &test, &fit, of),
+                || Ok(picture::power_law(&title, &record, &fit)),
+                || told(json_of_power_law(&fit, of), &fit.notes),
+                || report_power_law(self, &record, &fit, of),
+            );
+        }
+        let fit = fit_indentation(profile, &taken, &options).map_err(about)?;
         self.to.deliver(
-            &block,
-            || Ok(picture(&title, &record, &fit)),
-            object,
+            &indentation_block(&record, &test, &fit, of),
+            || Ok(picture::indentation(&title, &record, &fit)),
+            || told(json_of(&fit, of), &fit.notes),
             || report(self, &record, &fit, of),
         )
     }
 }
 
-fn given(fit: &IndentationFit) -> (&'static str, &'static str, &'static str) {
-    match fit.given {
+/// The indenter of the options.
+fn profile(args: &FitIndentation) -> Result<MdrProfile, Failure> {
+    let word = choice::word(&args.indenter);
+    let (wanted, size, other, unwanted) = match args.indenter.is_round() {
+        true => ("--radius", args.radius.map(Quantity::get), "--angle", args.angle.is_some()),
+        false => ("--angle", args.angle.map(|angle| angle.get()), "--radius", args.radius.is_some()),
+    };
+    if unwanted {
+        refuse!(
+            "{other} is given, but --indenter {word} has none; {}",
+            if args.indenter.is_round() { "say --indenter cone or pyramid" } else { "leave it out" }
+        );
+    }
+    let size = size.ok_or_else(|| Failure::input(format!("{wanted} is needed for --indenter {word}")))?;
+    args.indenter.profile(size).map_err(|error| Failure::input(format!("--angle: {error}")))
+}
+
+fn options(args: &FitIndentation) -> Result<IndentationOptions, Failure> {
+    let (poisson, interface) = (args.poisson.get(), args.interface);
+    let layer = args.thickness.map(|depth| SampleLayer { thickness: depth.get(), poisson, interface });
+    let [radius, thickness] = [args.radius, args.thickness].map(|x| x.map(Quantity::get));
+    let stiffness = &args.curve.spring_constant_uncertainty;
+    if matches!(args.model, FitModel::PowerLaw) {
+        for (option, given) in
+            [("--terms", args.terms.is_some()), ("--long-time", args.long_time != LongTime::Free)]
+        {
+            if given {
+                refuse!(
+                    "{option} goes with --model viscoelastic: a power law has no terms and no end; leave it out"
+                );
+            }
+        }
+    }
+    Ok(IndentationOptions {
+        radius_uncertainty: share::<Length>("--radius-uncertainty", &args.curve.radius_uncertainty, radius)?,
+        thickness_uncertainty: share::<Length>(
+            "--thickness-uncertainty",
+            &args.thickness_uncertainty,
+            thickness,
+        )?,
+        load_uncertainty: share::<ForcePerLength>("--spring-constant-uncertainty", stiffness, None)?,
+        given: args.given,
+        terms: args.terms,
+        long_time: args.long_time,
+        fit_touch: args.fit_touch,
+        layer,
+        ..IndentationOptions::default()
+    })
+}
+
+fn given(given: Given) -> (&'static str, &'static str, &'static str) {
+    match given {
         Given::Depth => ("depth", "load", "N"),
         Given::Load => ("load", "depth", "m"),
     }
 }
 
-fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of: MaterialOf) -> String {
+/// The size of the indenter in words.
+pub(super) fn indenter(args: &FitIndentation) -> String {
+    let word = choice::word(&args.indenter);
+    match (args.radius, args.angle) {
+        (Some(radius), _) => format!("{word}, radius {}", quantity(radius.get(), "m")),
+        (None, Some(angle)) => format!("{word}, half angle {:.4} deg", angle.get().to_degrees()),
+        (None, None) => word.to_owned(),
+    }
+}
+
+/// The lines about the record.
+fn head(
+    args: &FitIndentation,
+    record: &Indentation,
+    used: usize,
+    of: Given,
+    [step, length]: [f64; 2],
+) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| text += &format!("{name:<12}{value}\n");
-    let (taken, fitted, unit) = given(fit);
+    let (taken, fitted, _) = given(of);
     line("record", args.record.display().to_string());
     let rows = record.times.len();
-    let means = if fit.rows.len() < rows {
-        format!(", averaged to {} points", fit.rows.len())
-    } else {
-        String::new()
-    };
+    let means = if used < rows { format!(", averaged to {used} points") } else { String::new() };
     line("rows", format!("{rows}{means}"));
+    line("indenter", indenter(args));
     line("given", format!("{taken}; the {fitted} is fitted"));
     if let Some(thickness) = &args.thickness {
         let interface = if args.interface == Interface::Bonded { "bonded to" } else { "slipping on" };
         let thickness = quantity(thickness.get(), "m");
         line("sample", format!("{thickness} thick, {interface} a rigid base"));
     }
-    let [step, length] = fit.window;
     line("times", format!("steps from {}, {} in all", quantity(step, "s"), quantity(length, "s")));
+    text
+}
+
+fn misfit(rms: f64, relative: f64, of: Given) -> String {
+    let (_, fitted, unit) = given(of);
+    format!("{} rms, {:.3} % of the largest {fitted}", quantity(rms, unit), 100.0 * relative)
+}
+
+fn report_power_law(
+    args: &FitIndentation,
+    record: &Indentation,
+    fit: &PowerLawFit,
+    of: MaterialOf,
+) -> String {
+    let mut text = head(args, record, fit.rows.len(), fit.given, fit.window);
+    let mut line = |name: &str, value: String| text += &format!("{name:<12}{value}\n");
+    let symbol = if of.modulus == Modulus::Young { "E" } else { "G" };
+    line("model", format!("power law, {symbol}(t) = {symbol}_1 (t/1 s)^-alpha"));
+    line("misfit", misfit(fit.rms, fit.relative_rms, fit.given));
+    line("", format!("{:<12}95 % interval", "value"));
+    line(&format!("{symbol}_1"), interval_in_words(of.of(fit.modulus), "Pa"));
+    line("alpha", interval_in_words(fit.exponent, ""));
+    if args.fit_touch {
+        line("touch", interval_in_words(fit.touch, "m"));
+    }
+    record.notes.iter().chain(&fit.notes).for_each(|note| line("note", note.clone()));
+    text
+}
+
+fn json_of_power_law(fit: &PowerLawFit, of: MaterialOf) -> Value {
+    json!({
+        "model": "power-law",
+        "given": given(fit.given).0,
+        "rows": fit.rows.len(),
+        "window": fit.window,
+        "modulus": of.modulus,
+        "poisson": of.poisson,
+        "modulus_at_1_s": interval(of.of(fit.modulus)),
+        "exponent": interval(fit.exponent),
+        "touch": interval(fit.touch),
+        "confidence": 0.95,
+        "rms": fit.rms,
+        "relative_rms": fit.relative_rms,
+        "durbin_watson": fit.durbin_watson,
+    })
+}
+
+fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of: MaterialOf) -> String {
+    let mut text = head(args, record, fit.rows.len(), fit.given, fit.window);
+    let mut line = |name: &str, value: String| text += &format!("{name:<12}{value}\n");
     let reason = match args.terms {
         Some(_) => "as asked for".to_owned(),
         None => format!(
@@ -151,9 +252,9 @@ pub(super) fn interval(x: Interval) -> Value {
 
 fn json_of(fit: &IndentationFit, of: MaterialOf) -> Value {
     let modulus = |x: Interval| interval(of.of(x));
-    let (taken, ..) = given(fit);
     json!({
-        "given": taken,
+        "model": "viscoelastic",
+        "given": given(fit.given).0,
         "rows": fit.rows.len(),
         "window": fit.window,
         "modulus": of.modulus,

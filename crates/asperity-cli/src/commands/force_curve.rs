@@ -3,6 +3,7 @@
 use asperity::force_curve::{ForceFit, ForceModel, ForceOptions, ForceRecord, fit_force_curve};
 use asperity::layer::Interface;
 use asperity::material::{LongTime, Modulus};
+use asperity::reference::MdrProfile;
 use asperity_io::choice;
 use asperity_io::curve::{Cantilever, ForceTable, MaterialOf};
 use asperity_io::quantity::dimension::{ForcePerLength, Length};
@@ -33,7 +34,7 @@ pub fn not_given(args: &FitIndentation) -> Result<(), Failure> {
 }
 
 /// Fits a force curve.
-pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
+pub fn fit(args: &FitIndentation, model: ForceModel, profile: MdrProfile) -> Result<(), Failure> {
     let word = choice::word(&model);
     if args.thickness.is_some() {
         refuse!(
@@ -42,7 +43,6 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
         );
     }
     for (option, given) in [
-        ("--cone", args.cone.is_some()),
         ("--interface", args.interface != Interface::Bonded),
         ("--given", args.given.is_some()),
         ("--terms", args.terms.is_some()),
@@ -51,12 +51,16 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
     ] {
         if given {
             refuse!(
-                "{option} goes with --model viscoelastic, but the model is {word}, a sphere on an elastic half-space: leave it out"
+                "{option} goes with --model viscoelastic, but the model is {word}, an elastic half-space: leave it out"
             );
         }
     }
-    let radius =
-        args.radius.ok_or_else(|| Failure::input(format!("--radius is needed for --model {word}")))?.get();
+    if model != ForceModel::Hertz && !args.indenter.is_round() {
+        refuse!(
+            "--indenter {} goes with --model hertz, but the model is {word}: the models of adhesion are those of a sphere",
+            choice::word(&args.indenter)
+        );
+    }
     let curve = &args.curve;
     let spring = curve.spring_constant.map(Quantity::get);
     let cantilever = spring.map(|spring_constant| Cantilever {
@@ -68,7 +72,11 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
         branch: curve.branch.unwrap_or_default(),
         control: curve.control,
         range: curve.range.map(Quantity::get),
-        radius_uncertainty: share::<Length>("--radius-uncertainty", &curve.radius_uncertainty, Some(radius))?,
+        radius_uncertainty: share::<Length>(
+            "--radius-uncertainty",
+            &curve.radius_uncertainty,
+            args.radius.map(Quantity::get),
+        )?,
         spring_constant: spring,
         load_uncertainty: share::<ForcePerLength>(
             "--spring-constant-uncertainty",
@@ -79,11 +87,12 @@ pub fn fit(args: &FitIndentation, model: ForceModel) -> Result<(), Failure> {
     };
     let table = ForceTable::read(&args.record, &columns(&args.column, &args.unit)?, cantilever)?;
     let record = ForceRecord { loads: &table.loads, depths: &table.depths };
-    let fit = fit_force_curve(radius, &record, &options).map_err(Failure::about(args.record.display()))?;
+    let fit = fit_force_curve(profile, &record, &options).map_err(Failure::about(args.record.display()))?;
     let of = MaterialOf { modulus: args.modulus, poisson: args.poisson.get() };
     let block = block(args, &fit, of);
     let object = || {
         let mut object = json_of(&fit, of);
+        object["indenter"] = json!(args.indenter);
         object["notes"] = json!(table.notes.iter().chain(&fit.notes).collect::<Vec<_>>());
         object
     };
@@ -116,6 +125,7 @@ fn report(args: &FitIndentation, table: &ForceTable, fit: &ForceFit, of: Materia
     line("record", args.record.display().to_string());
     let [contact, free] = fit.used;
     line("rows", format!("{}: {contact} fitted in contact, {free} of the free sphere", table.loads.len()));
+    line("indenter", super::fit_indentation::indenter(args));
     line("model", choice::word(&fit.model).to_owned());
     line("misfit", format!("{:.3} % of the range (rms)", 100.0 * fit.relative_rms));
     line("", format!("{:<12}95 % interval", "value"));

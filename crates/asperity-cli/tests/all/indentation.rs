@@ -173,7 +173,12 @@ fn a_force_curve_gives_modulus_and_work() {
         (&spring[..], "volt"),
         (&["--radius", "10 um", "--model", "jkr", "--terms", "1"], "--terms"),
         (&["--radius", "10 um", "--range", "1 nm"], "--range"),
-        (&["--cone", "0.1", "--model", "dmt"], "--cone"),
+        (&["--indenter", "cone", "--angle", "84 deg", "--model", "dmt"], "--indenter cone"),
+        (&["--indenter", "cone", "--angle", "84"], "84 deg"),
+        (&["--indenter", "pyramid", "--radius", "10 um"], "--radius"),
+        (&["--indenter", "pyramid"], "--angle is needed"),
+        (&["--indenter", "cone", "--angle", "90 deg"], "less than 90 degrees"),
+        (&["--radius", "10 um", "--model", "power-law", "--terms", "2"], "--terms"),
         (&["--radius", "10 um", "--model", "jkr", "--radius-uncertainty", "2 N"], "--radius-uncertainty"),
         (&["--radius", "10 um", "--model", "jkr", "--thickness", "5 um"], "half-space"),
         (&["--radius", "10 um", "--spring-constant-uncertainty", "0.1 N/m"], "state it in %"),
@@ -199,4 +204,123 @@ fn intervals_of_a_relaxation_contain_stated_uncertainties() {
     let stated = half(&["--radius-uncertainty", "0.4 mm", "--spring-constant-uncertainty", "3 %"]);
     // Half of 8 %, and 3 %; the search ends where the sum of squares falls by 1e-4 or less.
     assert!(((stated.powi(2) - half(&[]).powi(2)).sqrt() - 0.05).abs() < 2e-3, "{stated}");
+}
+
+/// A power law under a cone, W = (2/π) tan α E* 2 v² t^(2 - a)/((1 - a)(2 - a)), as a text table; it becomes the material of a case.
+#[test]
+fn a_power_law_under_a_cone_becomes_a_material() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("cell.csv");
+    let (young, a) = (1e3, 0.2);
+    let mut table = "t [s],load [nN],depth [nm]\n".to_owned();
+    for k in 0..=200 {
+        let t = 0.01 * f64::from(k);
+        let unit = std::f64::consts::FRAC_2_PI * 35f64.to_radians().tan() * 2e-12;
+        let load = unit * young / 0.75 * t.powf(2.0 - a) / ((1.0 - a) * (2.0 - a));
+        table += &format!("{t:e},{:e},{:e}\n", load * 1e9, 1e3 * t);
+    }
+    std::fs::write(&path, table).unwrap();
+    let cone = ["--indenter", "cone", "--angle", "35 deg", "--model", "power-law"];
+    let output =
+        fit(dir.path(), &path, &[&cone[..], &["--json", "-o", "cell.toml", "--plot", "cell.svg"]].concat());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let found: Value = serde_json::from_str(&text(&output.stdout)).unwrap();
+    // 150 springs and a sum that is exact to 1e-4.
+    assert!((found["modulus_at_1_s"][0].as_f64().unwrap() / young - 1.0).abs() < 1e-3, "{found}");
+    assert!((found["exponent"][0].as_f64().unwrap() - a).abs() < 1e-3, "{found}");
+    assert_eq!((found["indenter"].as_str(), found["model"].as_str()), (Some("cone"), Some("power-law")));
+    assert!(dir.path().join("cell.svg").exists());
+    let words = text(&fit(dir.path(), &path, &cone).stdout);
+    for word in ["E_1 ", "alpha", "cone, half angle 35 deg", "springpot"] {
+        assert!(words.contains(word), "{words}");
+    }
+    // The relaxation modulus of the file is the power law: 2^(1/0.2) = 32 times as late it is half.
+    let run = |words: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_asperity"));
+        let output = command.args(words).current_dir(dir.path()).output().unwrap();
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    let shown: Value = serde_json::from_str(&run(&[
+        "material",
+        "show",
+        "cell.toml",
+        "--from",
+        "1 s",
+        "--to",
+        "10 s",
+        "--json",
+    ]))
+    .unwrap();
+    let first = shown[0]["relaxation_modulus"][0].as_f64().unwrap();
+    assert!((first / young - 1.0).abs() < 3e-3, "{shown}");
+    run(&["new", "--from", "cell.csv", "--material", "cell.toml", "--for", "indentation", "own.toml"]);
+    let own = std::fs::read_to_string(dir.path().join("own.toml")).unwrap();
+    // cot 35°.
+    assert!(own.contains("kind = \"cone\"\nslope = 1.428"), "{own}");
+    run(&["check", "own.toml"]);
+}
+
+/// The ball pressed to its radius, by Sneddon's closed form, in a force curve and over time; a pyramid by Bilodeau's.
+#[test]
+fn indenters_of_other_shapes_give_the_modulus_back() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("curve.csv");
+    let contact = 1e3 / 0.75;
+    let write = |load: &dyn Fn(f64) -> f64| {
+        let mut table = "t [s],load [nN],depth [nm]\n".to_owned();
+        for k in 0..=200 {
+            let depth = 5e-6 * (1.0 - f64::from(k) / 150.0);
+            let load = if depth > 0.0 { contact * load(depth) } else { 0.0 };
+            table += &format!("{},{:e},{:e}\n", 0.01 * f64::from(k), load * 1e9, depth * 1e9);
+        }
+        std::fs::write(&path, table).unwrap();
+    };
+    let young = |arguments: &[&str]| {
+        let output = fit(
+            dir.path(),
+            &path,
+            &[&["--model", "hertz", "--json", "--plot", "f.svg", "--force"], arguments].concat(),
+        );
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let found: Value = serde_json::from_str(&text(&output.stdout)).unwrap();
+        (found["young"][0].as_f64().unwrap() / 1e3, found["notes"].to_string())
+    };
+    let ball = |depth: f64| {
+        let r = 5e-6_f64;
+        let (mut low, mut high) = (0.0, r);
+        for _ in 0..100 {
+            let a: f64 = 0.5 * (low + high);
+            if 0.5 * a * ((r + a) / (r - a)).ln() < depth { low = a } else { high = a }
+        }
+        0.5 * (low * low + r * r) * ((r + low) / (r - low)).ln() - low * r
+    };
+    write(&ball);
+    let (found, notes) = young(&["--radius", "5 um"]);
+    // Twelve digits in the file; the fit takes 1e-7 of the ranges as noise.
+    assert!((found - 1.0).abs() < 1e-4 && notes.contains("as wide as the ball"), "{found} {notes}");
+    let (paraboloid, notes) = young(&["--radius", "5 um", "--indenter", "paraboloid"]);
+    assert!(paraboloid < 0.97 && notes.contains("take the indenter `sphere`"), "{paraboloid} {notes}");
+    write(&|depth: f64| 0.7453 * 20f64.to_radians().tan() * depth * depth);
+    let (pyramid, _) = young(&["--indenter", "pyramid", "--angle", "20 deg"]);
+    assert!((pyramid - 1.0).abs() < 1e-4, "{pyramid}");
+    // 5 % of the slope are 5 % of the modulus.
+    let output = fit(
+        dir.path(),
+        &path,
+        &[
+            "--indenter",
+            "pyramid",
+            "--angle",
+            "20 deg",
+            "--model",
+            "hertz",
+            "--radius-uncertainty",
+            "5 %",
+            "--json",
+        ],
+    );
+    let stated: Value = serde_json::from_str(&text(&output.stdout)).unwrap();
+    let half = (stated["young"][2].as_f64().unwrap() / stated["young"][0].as_f64().unwrap()).ln() / 1.959_964;
+    assert!((half - 0.05).abs() < 1e-4, "{half}");
 }

@@ -11,7 +11,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use asperity::indentation::{IndentationFit, Interval, SampleLayer};
+use asperity::indentation::{IndentationFit, Interval, PowerLawFit, SampleLayer};
 use asperity::material::Modulus;
 use asperity::reference::MdrProfile;
 
@@ -112,16 +112,36 @@ pub struct IndentationTest {
     pub profile: MdrProfile,
     /// The thin sample, if it is not as deep as a half-space.
     pub layer: Option<SampleLayer>,
+    /// The largest depth \[m\].
+    pub deepest: f64,
 }
 
 impl IndentationTest {
     /// The test in remarks, with the keys of a case, and the key `thickness` of a thin sample.
     fn written(&self) -> String {
         let indenter = match self.profile {
-            MdrProfile::Sphere { radius } => format!("kind = \"sphere\", radius = \"{radius:e} m\""),
-            MdrProfile::Cone { slope } => format!("kind = \"cone\", slope = {slope:?}"),
+            MdrProfile::Sphere { radius } | MdrProfile::Paraboloid { radius } => {
+                format!("kind = \"sphere\", radius = \"{radius:e} m\"")
+            }
+            profile => format!("kind = \"cone\", slope = {:?}", profile.cone().unwrap_or(1.0)),
         };
         let mut text = format!("# Indenter of the test, as [[surface]]: {indenter}.\n");
+        match self.profile {
+            MdrProfile::Sphere { .. } => {
+                let percent = 100.0 * self.profile.paraboloid_excess(self.deepest).unwrap_or_default();
+                if percent > 0.1 {
+                    let _ = writeln!(
+                        text,
+                        "# The sphere of a case is the paraboloid r^2/(2 R): at the largest depth of this test it carries {percent:.1} % more load \
+                         than the ball that was fitted."
+                    );
+                }
+            }
+            MdrProfile::Pyramid { .. } => {
+                text += "# The indenter was a pyramid; this is the cone with its load at every depth.\n";
+            }
+            MdrProfile::Paraboloid { .. } | MdrProfile::Cone { .. } => {}
+        }
         match &self.layer {
             None => {
                 text += "# The sample was taken as much thicker than the contact is wide: a half-space.\n"
@@ -140,6 +160,49 @@ impl IndentationTest {
     }
 }
 
+/// Where a fit comes from.
+fn head(record: &Indentation, rows: usize, misfit: f64, [step, length]: [f64; 2]) -> String {
+    format!(
+        "# From the indentation {}: {rows} rows, misfit {:.2} % rms of the largest value; steps from {step:.3e} s, {length:.3e} s in \
+         all.\n# Behind each line: 95 % intervals.\n",
+        file_name(&record.path),
+        100.0 * misfit,
+    )
+}
+
+/// An interval behind a line.
+fn interval(x: Interval, unit: &str) -> String {
+    let open = if x.determined { "" } else { "not determined by this record, " };
+    format!("{open}{:.3e} to {:.3e} {unit}", x.low, x.high)
+}
+
+/// The same of a power law: a springpot, whose relaxation modulus is modulus (t/time)^-order/Γ(1 - order), known over the times of the record.
+pub fn power_law_block(
+    record: &Indentation,
+    test: &IndentationTest,
+    fit: &PowerLawFit,
+    of: MaterialOf,
+) -> String {
+    let modulus = of.of(fit.modulus);
+    let [step, length] = fit.window;
+    head(record, fit.rows.len(), fit.relative_rms, fit.window)
+        + &test.written()
+        + &format!(
+            "# {} relaxation modulus 1 s after a step {:e} Pa, {}; exponent {}.\n",
+            if of.modulus == Modulus::Young { "Young's" } else { "Shear" },
+            modulus.value,
+            interval(modulus, "Pa"),
+            interval(fit.exponent, "").trim_end(),
+        )
+        + &format!(
+            "poisson = {:?}\nmaterial = {{ model = \"springpot\", {} = \"{:e} Pa\", time = \"1 s\", order = {:?}, window = [\"{step:e} s\", \"{length:e} s\"] }}\n",
+            of.poisson,
+            choice::word(&of.modulus),
+            modulus.value * libm::tgamma(1.0 - fit.exponent.value),
+            fit.exponent.value,
+        )
+}
+
 /// `poisson = ...` and `material = { ... }` in full precision, to stand under a `[[body]]` of a case file, with intervals
 /// behind the terms; the test in remarks, and `thickness = ...` where the sample was thin.
 pub fn indentation_block(
@@ -148,19 +211,8 @@ pub fn indentation_block(
     fit: &IndentationFit,
     of: MaterialOf,
 ) -> String {
-    let [step, length] = fit.window;
-    let mut text = format!(
-        "# From the indentation {}: {} rows, misfit {:.2} % rms of the largest value; steps from {step:.3e} s, {length:.3e} s in \
-         all.\n# Behind each line: 95 % intervals.\n",
-        file_name(&record.path),
-        fit.rows.len(),
-        100.0 * fit.relative_rms,
-    );
+    let mut text = head(record, fit.rows.len(), fit.relative_rms, fit.window);
     let measure = choice::word(&of.modulus);
-    let interval = |x: Interval, unit: &str| {
-        let open = if x.determined { "" } else { "not determined by this record, " };
-        format!("{open}{:.3e} to {:.3e} {unit}", x.low, x.high)
-    };
     let equilibrium = of.of(fit.equilibrium);
     text += &test.written();
     let _ = writeln!(text, "poisson = {:?}", of.poisson);

@@ -51,7 +51,7 @@ pub use error::{CurveError, Remedy};
 pub use factors::{HeldShift, read_shift_table};
 pub use fit::{Fitted, Request, Series, ShiftRequest};
 pub use force::{Cantilever, ForceTable};
-pub use indentation::{Indentation, IndentationTest, MaterialOf, indentation_block};
+pub use indentation::{Indentation, IndentationTest, MaterialOf, indentation_block, power_law_block};
 pub use role::Role;
 pub use thin::thinned;
 pub use units::angular_frequency;

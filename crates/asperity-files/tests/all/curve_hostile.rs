@@ -20,7 +20,7 @@ fn answer(bytes: &[u8]) {
     if let Ok(record) = Indentation::parse("any".as_ref(), bytes, &Columns::default()) {
         let taken = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
         let options = IndentationOptions { springs: 20, terms: Some(1), ..IndentationOptions::default() };
-        match fit_indentation(MdrProfile::Sphere { radius: 1.0 }, &taken, &options) {
+        match fit_indentation(MdrProfile::Paraboloid { radius: 1.0 }, &taken, &options) {
             Ok(fit) => assert!(fit.rms.is_finite()),
             Err(error) => assert!(!error.to_string().is_empty()),
         }

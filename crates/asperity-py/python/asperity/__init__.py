@@ -32,7 +32,7 @@ from ._fit import CreepFunction as CreepFunction, Fit as Fit, Relaxation as Rela
 from ._force_curves import ForceCurve as ForceCurve, ForceFit as ForceFit, read_force_curves as read_force_curves
 from ._force_maps import ForceMap as ForceMap, fit_force_map as fit_force_map
 from ._histories import *
-from ._indentation import IndentationFit as IndentationFit, fit_indentation as fit_indentation
+from ._indentation import IndentationFit as IndentationFit, PowerLawFit as PowerLawFit, fit_indentation as fit_indentation
 from ._leakage import Leakage as Leakage, leakage as leakage
 from ._layers import Body as Body, Layer as Layer, layer_compliance as layer_compliance
 from ._materials import *

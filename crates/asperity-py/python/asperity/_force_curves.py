@@ -1,4 +1,4 @@
-"""Force curves of spheres: modulus and work of adhesion, and curves from the files of instruments."""
+"""Force curves: modulus and work of adhesion, and curves from the files of instruments."""
 
 from __future__ import annotations
 
@@ -85,17 +85,16 @@ def table(lines: list[tuple[str, Interval]]) -> str:
     return _html.table(rows, ("", "value", "95 % from", "to"))
 
 
-def fit_force_curve(load: Any, depth: Any, radius: Any, poisson: float, model: str, how: dict[str, Any]) -> ForceFit:
+def fit_force_curve(load: Any, depth: Any, size: float, poisson: float, model: str, how: dict[str, Any]) -> ForceFit:
     """What :func:`fit_indentation` does with a `model`."""
     loads, depths = columns(load=load, depth=depth)
     choice("branch", how["branch"], Branch)
     if how["control"] is not None:
         choice("control", how["control"], Control)
-    size = number("radius", radius)
     spring, of_spring = cantilever(*(how[name] for name in ("spring_constant", "spring_constant_uncertainty", "sensitivity_uncertainty")))
-    shares = share("radius", how["radius_uncertainty"], size), *of_spring
+    shares = share("radius", how["radius_uncertainty"], None if how["radius"] is None else size), *of_spring
     reach = None if how["range"] is None else number("range", how["range"])
-    found = _core.fit_force_curve(loads, depths, size, model, how["branch"], how["control"], reach, spring, *shares)
+    found = _core.fit_force_curve(loads, depths, how["indenter"], size, model, how["branch"], how["control"], reach, spring, *shares)
     modulus = interval(found.pop("contact_modulus"), 1.0 - poisson**2)
     own = {name: found[name] and interval(found[name]) for name in ("work", "transition", "range", "touch", "baseline")}
     rows = np.asarray(found["rows"], dtype=np.int64)

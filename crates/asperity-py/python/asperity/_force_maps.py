@@ -69,7 +69,7 @@ class ForceMap(ReadOnlyArrays):
         return force_map(self, quantity, ax, style)
 
 
-def fit_force_map(curves: Iterable[ForceCurve], /, *, radius: float, poisson: float, model: str, **how: Any) -> ForceMap:
+def fit_force_map(curves: Iterable[ForceCurve], /, *, poisson: float, model: str, **how: Any) -> ForceMap:
     """Fits each of the force curves of a grid, such as those of one file of :func:`read_force_curves`.
 
     A curve that cannot be fitted leaves its pixel without a value and is named in `failures`.
@@ -78,10 +78,9 @@ def fit_force_map(curves: Iterable[ForceCurve], /, *, radius: float, poisson: fl
     ----------
     curves : with the place of each in its `metadata`: "grid index x", "grid index y", and, of the grid, "grid shape x", "grid shape y" and
         "grid size x", "grid size y" [m] where they are known
-    radius : of the sphere [m]
     poisson : Poisson's ratio
     model : "hertz", "dmt", "jkr" or "maugis"
-    **how : further arguments of :func:`fit_indentation`
+    **how : further arguments of :func:`fit_indentation`: `radius`, or `indenter` and `angle`, and others
 
     Raises
     ------
@@ -98,8 +97,8 @@ def fit_force_map(curves: Iterable[ForceCurve], /, *, radius: float, poisson: fl
     >>> found.young.shape, (found.young / 1e6).round(2).tolist()
     ((2, 1), [[1.0], [2.0]])
     """
-    if model == "viscoelastic":
-        raise CaseError('model is "viscoelastic", but a force map takes one of an elastic sphere: hertz, dmt, jkr or maugis')
+    if model in ("viscoelastic", "power-law"):
+        raise CaseError(f'model is "{model}", but a force map takes one of an elastic body: hertz, dmt, jkr or maugis')
     placed: dict[tuple[int, int], ForceCurve] = {}
     for n, curve in enumerate(curves):
         if not isinstance(curve, ForceCurve):
@@ -113,7 +112,7 @@ def fit_force_map(curves: Iterable[ForceCurve], /, *, radius: float, poisson: fl
     fits, failures = {}, {}
     for place, curve in placed.items():
         try:
-            fits[place] = fit_indentation(None, curve.force, curve.depth, radius=radius, poisson=poisson, model=model, **how)  # type: ignore[call-overload]
+            fits[place] = fit_indentation(None, curve.force, curve.depth, poisson=poisson, model=model, **how)  # type: ignore[call-overload]
         except CaseError as error:
             failures[place] = str(error)
     if not fits:

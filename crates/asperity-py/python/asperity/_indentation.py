@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, get_args, overload
 import numpy as np
 
 from . import _core
-from ._arrays import Counts, Floats, choice, columns, count, number
+from ._arrays import Counts, Floats, angle as radians, choice, columns, count, number
 from ._core import CaseError
 from ._force_curves import ForceFit, Interval, cantilever, fit_force_curve, interval, share, table
-from ._histories import one_of
-from ._materials import Prony
+from ._materials import PowerLaw, Prony
 from ._sealed import ReadOnlyArrays
-from ._words import Branch, Control, Interface, LongTime, Model
+from ._words import Branch, Control, Indenter, Interface, LongTime, Model
 from .plot import recorded
 
 if TYPE_CHECKING:
@@ -81,8 +80,55 @@ class IndentationFit(ReadOnlyArrays):
         return table(lines)
 
 
+@dataclass(frozen=True, eq=False)
+class PowerLawFit(ReadOnlyArrays):
+    """A power law E(t) = modulus (t/1 s)^-exponent fitted to a record of load and depth; moduli are Young's. Made by
+    :func:`fit_indentation` with ``model="power-law"``."""
+
+    #: Relaxation modulus 1 s after a step [Pa], and the exponent (0 of an elastic body, 1 of a liquid), as (value, low, high).
+    modulus: Interval
+    exponent: Interval
+    #: Depth of first touch [m], as (value, low, high); 0 where it was not fitted.
+    touch: Interval
+    #: "depth" or "load": the channel that the test controlled.
+    given: str
+    #: Times [s], load [N] and depth [m] of the record, and model of the other channel [N or m], at the rows that were used.
+    time: Floats
+    load: Floats
+    depth: Floats
+    predicted: Floats
+    #: Numbers of these rows.
+    rows: Counts
+    #: Root of the mean square of model less measurement [N or m], and the same over the largest value.
+    rms: float
+    relative_rms: float
+    #: Near 2 for independent errors; well below where the model bends away from the record or the noise is not white.
+    durbin_watson: float
+    #: Step and length of the record [s].
+    window: tuple[float, float]
+    #: What should be known before the numbers are believed.
+    notes: list[str]
+    #: The material of the best fit, over the times of the record.
+    material: PowerLaw
+
+    def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
+        """As :meth:`IndentationFit.plot`."""
+        name, measured = ("load", self.load) if self.given == "depth" else ("depth", self.depth)
+        return recorded(("time", "s", self.time), name, measured, self.predicted, ax, style)
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name} {value:.4g} ({low:.4g} to {high:.4g})" for name, (value, low, high) in self._lines())
+        return f"<PowerLawFit of {len(self.rows)} rows: {told}, misfit {100 * self.relative_rms:.2g} % of the largest value>"
+
+    def _lines(self) -> list[tuple[str, Interval]]:
+        return [("E(1 s) [Pa]", self.modulus), ("exponent", self.exponent)]
+
+    def _repr_html_(self) -> str:
+        return table(self._lines())
+
+
 class _OfCurve(TypedDict, total=False):
-    """What goes with a model of an elastic sphere alone."""
+    """What goes with a model of an elastic body alone."""
 
     branch: Branch
     control: Control | None
@@ -92,6 +138,9 @@ class _OfCurve(TypedDict, total=False):
 class _OfBoth(TypedDict, total=False):
     """What goes with any model."""
 
+    indenter: Indenter
+    radius: float | None
+    angle: float | None
     spring_constant: float | None
     radius_uncertainty: float
     spring_constant_uncertainty: float
@@ -101,7 +150,6 @@ class _OfBoth(TypedDict, total=False):
 class _OfRecord(TypedDict, total=False):
     """What goes with the relaxation alone."""
 
-    slope: float | None
     given: str | None
     terms: int | None
     long_time: LongTime
@@ -116,13 +164,11 @@ class _OfRecord(TypedDict, total=False):
 
 
 class _OfForces(_OfCurve, _OfBoth, total=False):
-    """What goes with a model of an elastic sphere."""
+    """What goes with a model of an elastic body."""
 
 
 class _OfRelaxation(_OfRecord, _OfBoth, total=False):
     """What goes with the relaxation."""
-
-    radius: float | None
 
 
 @overload
@@ -130,22 +176,28 @@ def fit_indentation(
     time: Any, load: Any, depth: Any, /, *, poisson: float, model: Literal["viscoelastic"] = "viscoelastic", **how: Unpack[_OfRelaxation]
 ) -> IndentationFit: ...
 @overload
-def fit_indentation(time: Any, load: Any, depth: Any, /, *, radius: float, poisson: float, model: Model, **how: Unpack[_OfForces]) -> ForceFit: ...
 def fit_indentation(
-    time: Any, load: Any, depth: Any, /, *, radius: float | None = None, slope: float | None = None, poisson: float,
+    time: Any, load: Any, depth: Any, /, *, poisson: float, model: Literal["power-law"], **how: Unpack[_OfRelaxation]
+) -> PowerLawFit: ...
+@overload
+def fit_indentation(time: Any, load: Any, depth: Any, /, *, poisson: float, model: Model, **how: Unpack[_OfForces]) -> ForceFit: ...
+def fit_indentation(
+    time: Any, load: Any, depth: Any, /, *, indenter: str = "sphere", radius: float | None = None, angle: float | None = None, poisson: float,
     given: str | None = None, terms: int | None = None, long_time: LongTime = "free", fit_touch: bool = False,
     thickness: float | None = None, interface: Interface = "bonded", hardness: float | None = None, name: str | None = None,
     springs: int = 150, max_misfit: float = 0.1, model: str = "viscoelastic", branch: str = "retraction",
     control: str | None = None, range: float | None = None, spring_constant: float | None = None, radius_uncertainty: float = 0.0,
     thickness_uncertainty: float = 0.0, spring_constant_uncertainty: float = 0.0, sensitivity_uncertainty: float = 0.0
-) -> IndentationFit | ForceFit:
-    """Fits the relaxation modulus of a half-space, or of a thin sample, to a record of its indentation by a rigid sphere or cone; or, with
-    a `model` of an elastic sphere, its modulus and work of adhesion to a force curve.
+) -> IndentationFit | PowerLawFit | ForceFit:
+    """Fits the relaxation modulus of a half-space, or of a thin sample, to a record of its indentation by a rigid indenter; or, with
+    a `model` of an elastic body, its modulus and work of adhesion to a force curve.
 
     Parameters
     ----------
     time, load, depth : the record [s], [N], [m]; the body is undisturbed before its first row, depths count from first touch
-    radius : of the sphere [m]; or `slope` of the cone, rise per length
+    indenter : "sphere" (a ball, to any depth up to its radius), "paraboloid" (which a ball is near its apex: Hertz), "cone" or "pyramid" (square)
+    radius : of the sphere or paraboloid [m]
+    angle : of the cone or pyramid [rad], from the axis to the flank of a cone, to a face (not an edge) of a pyramid
     poisson : Poisson's ratio, constant in time
     given : "depth" or "load": the channel that the test controlled; by default the one that fewer straight pieces (ramps and
         holds) describe
@@ -158,9 +210,10 @@ def fit_indentation(
     hardness, name : of the material
     springs : of the one-dimensional model
     max_misfit : largest rms misfit over the largest value before the record is refused
-    model : "viscoelastic", or "hertz", "dmt", "jkr" or "maugis": an elastic half-space with the adhesion of that model. The times are
-        then not used and may be None; baseline and contact point are fitted; the options above, `radius` and `poisson` aside, do
-        not go with it, and `branch`, `control` and `range` go with it alone
+    model : "viscoelastic" (a Prony series), "power-law" (E(t) = E1 (t/1 s)^-alpha: cells, soft glasses; without `terms` and `long_time`), or
+        "hertz", "dmt", "jkr" or "maugis": an elastic half-space with the adhesion of that model, which takes a sphere as a paraboloid. The
+        times are then not used and may be None; baseline and contact point are fitted; the options above, those of the indenter and
+        `poisson` aside, do not go with it, and `branch`, `control` and `range` go with it alone
     branch : "retraction" (from the largest load on) or "approach"
     control : "load" or "displacement", where the sphere comes off; by default that of the spring, where its constant is given, else displacement
     range : of the attraction [m], for "maugis" in place of a fitted transition, and for Tabor's number of the other models
@@ -171,7 +224,7 @@ def fit_indentation(
 
     Returns
     -------
-    IndentationFit, or ForceFit with a `model` of an elastic sphere
+    IndentationFit, PowerLawFit with "power-law", or ForceFit with a `model` of an elastic body
 
     Raises
     ------
@@ -208,14 +261,23 @@ def fit_indentation(
     >>> pulled = asp.fit_indentation(None, force, depth, radius=10e-6, poisson=0.5, model="dmt", range=1e-6)
     >>> round(pulled.young[0] / 1e6, 3), round(pulled.work[0] * 1e3, 3)
     (1.0, 5.0)
+
+    A cell under a cone of 35 degrees that goes in with v = 1 um/s: load = (2/pi) tan(35 deg) E1/(1 - nu^2) 2 v^2 t^(2 - a)/((1 - a)(2 - a)).
+
+    >>> t = np.linspace(0.0, 2.0, 201)
+    >>> load = 2 / np.pi * np.tan(np.radians(35)) * 1e3 / 0.75 * 2e-12 * t**1.8 / (0.8 * 1.8)
+    >>> cell = asp.fit_indentation(t, load, 1e-6 * t, indenter="cone", angle=np.radians(35), poisson=0.5, model="power-law")
+    >>> round(cell.modulus[0] / 1e3, 2), round(cell.exponent[0], 2), round(cell.material.alpha, 2)
+    (1.0, 0.2, 0.2)
     """
     told = dict(locals())
     usual = {name: one.default for name, one in inspect.signature(fit_indentation).parameters.items()}
-    choice("model", model, ("viscoelastic", *get_args(Model)))
+    choice("model", model, ("viscoelastic", "power-law", *get_args(Model)))
     nu = number("poisson", poisson)
     if not -1.0 < nu <= 0.5:
         raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
-    if model != "viscoelastic":
+    size = _size(indenter, radius, angle)
+    if model in get_args(Model):
         if thickness is not None:
             raise CaseError(
                 f"thickness is {thickness}, but the model {model!r} has the closed form of a half-space, and there is none for adhesion on a thin"
@@ -223,13 +285,15 @@ def fit_indentation(
             )
         for what in (name for name in _OfRecord.__annotations__ if told[name] != usual[name]):
             raise CaseError(f"{what} goes with the model \"viscoelastic\", but model is {model!r}: leave it out")
-        if radius is None:
-            raise CaseError("radius is missing: the models of force curves are those of a sphere")
-        return fit_force_curve(load, depth, radius, nu, model, {name: told[name] for name in _OfForces.__annotations__})
+        if model != "hertz" and radius is None:
+            raise CaseError(f'indenter is {indenter!r}, but the models of adhesion are those of a sphere: use the model "hertz"')
+        return fit_force_curve(load, depth, size, nu, model, {name: told[name] for name in _OfForces.__annotations__})
     for what in (name for name in _OfCurve.__annotations__ if told[name] != usual[name]):
-        raise CaseError(f"{what} goes with a model of an elastic sphere: give model, one of {', '.join(get_args(Model))}")
+        raise CaseError(f"{what} goes with a model of an elastic body: give model, one of {', '.join(get_args(Model))}")
+    power_law = model == "power-law"
+    for what in (name for name in ("terms", "long_time") if power_law and told[name] != usual[name]):
+        raise CaseError(f"{what} goes with the model \"viscoelastic\": a power law has no terms and no end; leave it out")
     times, loads, depths = columns(time=time, load=load, depth=depth)
-    what, shape = one_of({"radius": radius, "slope": slope}, "give")
     most = None if terms is None else count("terms", terms, 0)
     choice("interface", interface, Interface)
     if thickness is None and interface != "bonded":
@@ -237,16 +301,31 @@ def fit_indentation(
     thin = None if thickness is None else (number("thickness", thickness), nu, interface)
     how = given, most, long_time, bool(fit_touch), thin, count("springs", springs), number("max_misfit", max_misfit)
     spring, of_spring = cantilever(spring_constant, spring_constant_uncertainty, sensitivity_uncertainty)
-    size = None if radius is None else number("radius", radius)
-    shares = share("radius", radius_uncertainty, size), share("thickness", thickness_uncertainty, thin and thin[0]), *of_spring
-    found = _core.fit_indentation(times, loads, depths, what, number(what, shape), *how, shares, spring)
+    of_radius = share("radius", radius_uncertainty, None if radius is None else size)
+    shares = of_radius, share("thickness", thickness_uncertainty, thin and thin[0]), *of_spring
+    found = _core.fit_indentation(times, loads, depths, power_law, indenter, size, *how, shares, spring)
     # E = E* (1 - nu^2)
     factor = 1.0 - nu**2
     rows = np.asarray(found["rows"], dtype=np.int64)
-    own = {name: interval(found[name], factor) for name in ("equilibrium", "instantaneous")} | {"touch": interval(found["touch"])}
+    record = {"rows": rows, "time": times[rows], "load": loads[rows], "depth": depths[rows], "touch": interval(found["touch"])}
+    of_body = dict(poisson=nu, hardness=hardness, name=name, window=found["window"])
+    if power_law:
+        law = PowerLaw(young=factor * found["modulus"][0], alpha=found["exponent"][0], **of_body)
+        numbers = {"modulus": interval(found["modulus"], factor), "exponent": interval(found["exponent"])}
+        return PowerLawFit(**{**found, **numbers, **record}, material=law)
+    own = {name: interval(found[name], factor) for name in ("equilibrium", "instantaneous")}
     fitted = [(interval(modulus, factor), interval(relaxation)) for modulus, relaxation in found["terms"]]
     series = [(factor * modulus[0], relaxation[0]) for modulus, relaxation in found["terms"]]
-    of_body = dict(poisson=nu, hardness=hardness, name=name, window=found["window"])
     material = Prony(equilibrium=factor * found["equilibrium"][0], terms=series, **of_body)
-    record = {"terms": fitted, "rows": rows, "time": times[rows], "load": loads[rows], "depth": depths[rows]}
-    return IndentationFit(**{**found, **own, **record}, material=material)
+    return IndentationFit(**{**found, **own, **record, "terms": fitted}, material=material)
+
+
+def _size(indenter: str, radius: Any, angle: Any) -> float:
+    """Radius [m] or half angle [rad] of the indenter."""
+    choice("indenter", indenter, Indenter)
+    wanted, size, other, unwanted = ("radius", radius, "angle", angle) if indenter in ("sphere", "paraboloid") else ("angle", angle, "radius", radius)
+    if unwanted is not None:
+        raise CaseError(f"{other} is {unwanted}, but the indenter {indenter!r} has none: leave it out, or give indenter")
+    if size is None:
+        raise CaseError(f"{wanted} is missing: the indenter is {indenter!r}")
+    return radians("angle", size) if wanted == "angle" else number("radius", size)

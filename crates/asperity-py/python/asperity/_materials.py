@@ -16,6 +16,7 @@ Mechanics (1985), section 3.2, for the contact compliance.
 from __future__ import annotations
 
 import functools
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
@@ -35,7 +36,7 @@ from ._words import Measure
 if TYPE_CHECKING:
     from ._fit import Fit
 
-__all__ = ["Burgers", "Creep", "Elastic", "FractionalMaxwell", "FractionalZener", "KelvinVoigt", "Material", "Maxwell", "Prony", "Springpot", "StandardLinearSolid", "Zener"]
+__all__ = ["Burgers", "Creep", "Elastic", "FractionalMaxwell", "FractionalZener", "KelvinVoigt", "Material", "Maxwell", "PowerLaw", "Prony", "Springpot", "StandardLinearSolid", "Zener"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -359,19 +360,21 @@ def _terms(amount: str, terms: Sequence[tuple[float, float]]) -> list[dict[str, 
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class _Fractional(Material):
+class _Summed(Material):
     """A model that becomes a Prony sum."""
 
-    time: float
-    order: float
     window: tuple[float, float]
     tolerance: float = 1e-3
 
     #: The sum of its model alone.
     _sum: _core.Body = field(init=False)
 
+    def _model(self) -> dict[str, Any]:
+        """The keys of its `material` in a case."""
+        return super()._material()
+
     def _material(self) -> dict[str, Any]:
-        own = super()._material()
+        own = self._model()
         # The sum stands for the model where it was fitted.
         known: dict[str, Any] = {key: own.pop(key) for key in ("window", "shift", "temperature") if key in own}
         self._hold(_sum=_core.Body({"poisson": 0.5, "material": own}, known["window"]))
@@ -383,6 +386,14 @@ class _Fractional(Material):
     def error(self) -> float | None:
         """Largest relative error of the Prony sum, in its window."""
         return self._sum.error
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class _Fractional(_Summed):
+    """A model of a time and an order."""
+
+    time: float
+    order: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -407,3 +418,33 @@ class FractionalMaxwell(_Fractional, _OneModulus):
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FractionalZener(_Fractional, _EndModuli):
     """A spring in parallel with a fractional Maxwell element, as a Prony sum; see :class:`Springpot`."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class PowerLaw(_Summed, _OneModulus):
+    """Relaxation modulus (t/time)^-alpha, `young` or `shear` [Pa] at `time` [s]: cells and soft glasses; what :func:`fit_indentation` with
+    ``model="power-law"`` gives.
+
+    The :class:`Springpot` of order `alpha`, between 0 and 1, whose modulus is larger by Gamma(1 - alpha). As a Prony sum over `window`.
+
+    >>> import asperity as asp
+    >>> cell = asp.PowerLaw(young=1e3, alpha=0.2, window=(1e-3, 1e2), poisson=0.5)
+    >>> [round(float(cell.relaxation_modulus(t))) for t in (0.01, 1.0, 32.0)]     # a factor of 2 in a factor of 32
+    [2512, 1000, 500]
+    """
+
+    alpha: float
+    time: float = 1.0
+
+    def __post_init__(self) -> None:
+        alpha = number("alpha", self.alpha)
+        if not 0.0 < alpha < 1.0:
+            raise CaseError(f"alpha is {self.alpha}, but must be greater than 0 (an elastic body) and less than 1 (a liquid)")
+        super().__post_init__()
+
+    def _model(self) -> dict[str, Any]:
+        own = super()._model()
+        alpha = own.pop("alpha")
+        for measure in {"young", "shear"} & own.keys():
+            own[measure] *= math.gamma(1.0 - alpha)
+        return {**own, "model": "springpot", "order": alpha}

@@ -11,7 +11,7 @@ use asperity::material::{Material, Modulus};
 use asperity_io::case::WaveReport;
 
 pub use self::force_curve::force_curve;
-pub use self::indentation::indentation;
+pub use self::indentation::{indentation, power_law};
 pub use self::measured::{fit, isotherms};
 pub use self::shift::{Factors, shift_factors};
 use crate::figure::{Axis, Curves, Figure, Series, Style};

@@ -1,6 +1,7 @@
-//! Force curves: modulus and work of adhesion from load and depth of a sphere that touches an elastic body and is pulled off.
+//! Force curves: modulus and work of adhesion from load and depth of an indenter that touches an elastic body and is pulled off.
 //!
-//! The model is one curve of load over depth, [`crate::reference::AdhesiveSphere`], shifted by the load of the free sphere (baseline) and the
+//! The model is one curve of load over depth, without adhesion that of [`crate::reference::MdrProfile`] (ball, paraboloid, cone or pyramid), with
+//! it that of [`crate::reference::AdhesiveSphere`], shifted by the load of the free sphere (baseline) and the
 //! depth of first touch. Both channels have noise, and near pull-off the curve is steep. A row therefore counts with its distance
 //! from the nearest point of the stable branch, in units of the noise of both channels:
 //!
@@ -12,8 +13,8 @@
 //! Of more than a thousand rows the fit takes means of neighbours, with their smaller noise.
 //!
 //! **Intervals.** 95 %. The scatter of the rows gives the covariance of the logarithms, wider where neighbouring residuals are alike.
-//! Stated uncertainties are added in squares. They follow from scaling: the same curve belongs to E* ∝ R^(-1/2), w ∝ 1/R, and
-//! to E*, w ∝ the unit of load; λ and the range of the attraction depend on neither. An error of the deflection's scale
+//! Stated uncertainties are added in squares. They follow from scaling: the same curve belongs to E* ∝ R^(-1/2), w ∝ 1/R (of a deep ball and of
+//! cones E* follows the load at the largest depth), and to E*, w ∝ the unit of load; λ and the range of the attraction depend on neither. An error of the deflection's scale
 //! changes load and depth together, so the fit is repeated with it. Records seldom determine λ well, and then the sum of squares is far
 //! from quadratic in it: its interval is that of the profile likelihood, and those of the other numbers are of all λ inside.
 
@@ -25,7 +26,7 @@ mod tests;
 
 use crate::error::{Error, Result, positive, require};
 use crate::indentation::{Interval, SENSITIVITY, WIDTH, check_shares};
-use crate::reference::{AdhesiveModel, AdhesiveSphere, carpick_alpha, maugis_lambda, tabor};
+use crate::reference::{AdhesiveModel, AdhesiveSphere, MdrProfile, carpick_alpha, maugis_lambda, tabor};
 use rows::Rows;
 use search::{Found, Problem};
 
@@ -85,7 +86,7 @@ pub struct ForceOptions {
     pub control: Option<PullOffControl>,
     /// Range of the attraction w/s0 \[m\]. Maugis' λ then follows from E* and w; by default it is fitted.
     pub range: Option<f64>,
-    /// Standard uncertainty of the radius over the radius, default 0.
+    /// Standard uncertainty of the radius over the radius, or of the slope of a cone or pyramid over the slope; default 0.
     pub radius_uncertainty: f64,
     /// Spring constant of the cantilever whose deflection is the load \[N/m\].
     pub spring_constant: Option<f64>,
@@ -143,11 +144,11 @@ const CHANGE: f64 = 1e-3;
 /// Largest relative distance from the curve.
 const MISFIT: f64 = 0.1;
 
-/// Fits a force curve of a sphere of this radius \[m\].
+/// Fits a force curve. Without adhesion the indenter is any; with it, it is a sphere, which the models take as a paraboloid.
 ///
 /// ```
 /// use asperity::force_curve::{ForceModel, ForceOptions, ForceRecord, fit_force_curve};
-/// use asperity::reference::{AdhesiveModel, AdhesiveSphere};
+/// use asperity::reference::{AdhesiveModel, AdhesiveSphere, MdrProfile};
 /// // A sphere of 10 um on 1 MPa (E*) with 50 mJ/m², pulled off from 1.2 um on.
 /// let truth = AdhesiveSphere::new(AdhesiveModel::Jkr, 10e-6, 1e6, 0.05)?;
 /// let depths: Vec<f64> = (0..300).map(|k| 1.2e-6 - 6e-9 * f64::from(k)).collect();
@@ -156,20 +157,26 @@ const MISFIT: f64 = 0.1;
 ///     loads.push(truth.at_approach(*depth)?.map_or(0.0, |point| point.load));
 /// }
 /// let options = ForceOptions { model: ForceModel::Jkr, ..ForceOptions::default() };
-/// let fit = fit_force_curve(10e-6, &ForceRecord { loads: &loads, depths: &depths }, &options)?;
+/// let sphere = MdrProfile::Sphere { radius: 10e-6 };
+/// let fit = fit_force_curve(sphere, &ForceRecord { loads: &loads, depths: &depths }, &options)?;
 /// assert!((fit.contact_modulus.value / 1e6 - 1.0).abs() < 1e-3 && (fit.work.value / 0.05 - 1.0).abs() < 1e-3);
 /// # Ok::<(), asperity::Error>(())
 /// ```
 ///
 /// # Errors
 /// [`Error::Invalid`] if the columns differ in length or have fewer than 20 rows on the chosen branch, a number is not finite, the record shows no
-/// contact or, for a model with adhesion, no attraction, or no curve of the model comes near it.
-pub fn fit_force_curve(radius: f64, record: &ForceRecord, options: &ForceOptions) -> Result<ForceFit> {
-    check(radius, options)?;
+/// contact or, for a model with adhesion, no attraction or the indenter is no sphere, or no curve of the model comes near it.
+pub fn fit_force_curve(
+    profile: MdrProfile,
+    record: &ForceRecord,
+    options: &ForceOptions,
+) -> Result<ForceFit> {
+    check(profile, options)?;
+    let radius = profile.radius().unwrap_or(1.0);
     let rows = Rows::new(record, options)?;
     let fitted = rows.averaged();
-    let problem = Problem::new(radius, &fitted, options);
-    let whole = Problem::new(radius, &rows, options);
+    let problem = Problem::new(profile, &fitted, options);
+    let whole = Problem::new(profile, &rows, options);
     let found = problem.solve()?;
     let misfit = whole.misfit(&found.at);
     require(
@@ -177,7 +184,7 @@ pub fn fit_force_curve(radius: f64, record: &ForceRecord, options: &ForceOptions
         "misfit of the force curve",
         format!("{:.1} % of its range (rms)", 100.0 * misfit),
         format!(
-            "at most {:.0} %: check radius, units, the signs of load and depth, and the model",
+            "at most {:.0} %: check indenter, units, the signs of load and depth, and the model",
             100.0 * MISFIT
         ),
     )?;
@@ -185,7 +192,7 @@ pub fn fit_force_curve(radius: f64, record: &ForceRecord, options: &ForceOptions
     let by_deflection = match (options.spring_constant, options.sensitivity_uncertainty > 0.0) {
         (Some(stiffness), true) => {
             let changed = fitted.with_deflection(CHANGE, stiffness);
-            let moved = Problem::new(radius, &changed, options).solve_from(&found.at)?;
+            let moved = Problem::new(profile, &changed, options).solve_from(&found.at)?;
             [0, 1].map(|k| (moved.logarithms()[k] - found.logarithms()[k]) / CHANGE)
         }
         _ => [0.0; 2],
@@ -221,14 +228,24 @@ pub fn fit_force_curve(radius: f64, record: &ForceRecord, options: &ForceOptions
         let own: f64 = direction.iter().zip(&found.at).map(|(x, at)| x * at).sum();
         logarithmic(value, [low - own, high - own])
     };
-    let contact_modulus = interval(modulus, &[1.0], stated(0.5, 1.0, by_deflection[0]));
+    // Of ln E* for one of the size of the indenter; with adhesion by scaling.
+    let deepest = rows.depths[1] - problem.shifts(&found.at)[0];
+    let by_size = match adhesive {
+        true => 0.5,
+        false => {
+            let [more, less] =
+                [1.0 + CHANGE, 1.0 - CHANGE].map(|times| profile.scaled(times).unit_load(deepest));
+            (more / less).ln() / (2.0 * CHANGE)
+        }
+    };
+    let contact_modulus = interval(modulus, &[1.0], stated(by_size, 1.0, by_deflection[0]));
     let work = match adhesive {
         true => interval(work, &[0.0, 1.0], stated(1.0, 1.0, by_deflection[1])),
         false => Interval::exact(0.0),
     };
     let model = problem.model(&found.at);
     let (mut lambda, mut range, mut alpha) = (None, None, None);
-    if let AdhesiveModel::Maugis { lambda: value } = model {
+    if let Some(AdhesiveModel::Maugis { lambda: value }) = model {
         // λ ∝ (w/E*)^(2/3)/range, and neither λ nor the range depends on the scales of radius and load.
         let of = maugis_lambda(radius, modulus, work.value, 1.0) / value;
         let open = |x: Interval, [below, above]: [bool; 2]| {
@@ -252,7 +269,7 @@ pub fn fit_force_curve(radius: f64, record: &ForceRecord, options: &ForceOptions
     };
     let [touch, baseline] = problem.shifts(&found.at);
     let [touch_deviation, baseline_deviation] = problem.shift_deviations(&found);
-    let sphere = AdhesiveSphere::of(model, radius, modulus, problem.work(&found.at));
+    let sphere = model.map(|model| AdhesiveSphere::of(model, radius, modulus, problem.work(&found.at)));
     let nearest = whole.nearest(&found.at);
     let smallest_load = rows.smallest_load() - baseline;
     let mut fit = ForceFit {
@@ -264,12 +281,12 @@ pub fn fit_force_curve(radius: f64, record: &ForceRecord, options: &ForceOptions
         alpha,
         touch: linear(touch, touch_deviation),
         baseline: linear(baseline, baseline_deviation),
-        pull_off_force: sphere.pull_off(options.stiffness()).load,
+        pull_off_force: sphere.map_or(0.0, |sphere| sphere.pull_off(options.stiffness()).load),
         smallest_load,
-        tabor: match (model, adhesive) {
-            (AdhesiveModel::Maugis { lambda }, _) => lambda / maugis_lambda(1.0, 1.0, 1.0, 1.0),
-            (_, true) => tabor(radius, modulus, work.value, options.range.unwrap_or(ATOMIC)),
-            _ => 0.0,
+        tabor: match model {
+            Some(AdhesiveModel::Maugis { lambda }) => lambda / maugis_lambda(1.0, 1.0, 1.0, 1.0),
+            Some(_) => tabor(radius, modulus, work.value, options.range.unwrap_or(ATOMIC)),
+            None => 0.0,
         },
         contact_radius: nearest.contact_radius,
         used: [rows.contact.len(), rows.free.len()],
@@ -279,7 +296,7 @@ pub fn fit_force_curve(radius: f64, record: &ForceRecord, options: &ForceOptions
         durbin_watson: found.durbin_watson,
         notes: vec![],
     };
-    fit.notes = notes::notes(&fit, radius, &rows, options);
+    fit.notes = notes::notes(&fit, profile, deepest, &rows, options);
     Ok(fit)
 }
 
@@ -294,8 +311,14 @@ impl ForceOptions {
     }
 }
 
-fn check(radius: f64, options: &ForceOptions) -> Result<()> {
-    positive("radius", radius, "m")?;
+fn check(profile: MdrProfile, options: &ForceOptions) -> Result<()> {
+    profile.validate()?;
+    require(
+        options.model == ForceModel::Hertz || profile.radius().is_some(),
+        "indenter of a model with adhesion",
+        "a cone or a pyramid",
+        "a sphere; without adhesion use the model `hertz`",
+    )?;
     for (what, value, unit) in
         [("range", options.range, "m"), ("spring constant", options.spring_constant, "N/m")]
     {

@@ -2,7 +2,8 @@
 
 use super::rows::Rows;
 use super::{ATOMIC, Branch, ForceFit, ForceModel, ForceOptions};
-use crate::indentation::{ALIKE, unlikely_radius};
+use crate::indentation::{ALIKE, of_indenter, unlikely_radius};
+use crate::reference::MdrProfile;
 
 /// Noise of the depth over its range beyond which the rows are no longer near their points of the curve.
 const NOISY: f64 = 0.02;
@@ -19,7 +20,14 @@ const PULL: f64 = 0.1;
 /// Spring constant over contact stiffness: outside, one of deflection and depth is a small difference or below its noise.
 const CANTILEVER: [f64; 2] = [0.01, 100.0];
 
-pub(super) fn notes(fit: &ForceFit, radius: f64, rows: &Rows, options: &ForceOptions) -> Vec<String> {
+/// `deepest`: the largest depth from first touch \[m\].
+pub(super) fn notes(
+    fit: &ForceFit,
+    profile: MdrProfile,
+    deepest: f64,
+    rows: &Rows,
+    options: &ForceOptions,
+) -> Vec<String> {
     let mut notes = vec![];
     let adhesive = fit.model != ForceModel::Hertz;
     let numbers = [("the modulus", &fit.contact_modulus), ("the work of adhesion", &fit.work)];
@@ -95,11 +103,19 @@ pub(super) fn notes(fit: &ForceFit, radius: f64, rows: &Rows, options: &ForceOpt
             ));
         }
     }
-    if fit.contact_radius > WIDE * radius {
-        notes.push(format!(
-            "the contact is {:.2} times as wide as the sphere: the model takes the sphere as a paraboloid, good below {WIDE}",
-            fit.contact_radius / radius
-        ));
+    match profile.radius() {
+        Some(radius) if adhesive => {
+            notes.extend(unlikely_radius(radius));
+            if fit.contact_radius > WIDE * radius {
+                notes.push(format!(
+                    "the contact is {:.2} times as wide as the sphere: the model takes the sphere as a paraboloid, good below {WIDE}, whose load \
+                     without adhesion is {:.1} % larger at this depth",
+                    fit.contact_radius / radius,
+                    100.0 * profile.paraboloid_excess(deepest.max(0.0)).unwrap_or_default()
+                ));
+            }
+        }
+        _ => notes.extend(of_indenter(profile, deepest, fit.relative_rms, false)),
     }
     if fit.durbin_watson < ALIKE {
         notes.push(format!(
@@ -125,6 +141,5 @@ pub(super) fn notes(fit: &ForceFit, radius: f64, rows: &Rows, options: &ForceOpt
             ));
         }
     }
-    notes.extend(unlikely_radius(radius));
     notes
 }

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::indentation::{covariance, damped_step, durbin_watson};
 use crate::material::dot;
 use crate::numbers::bisect;
-use crate::reference::{AdhesiveModel, AdhesiveSphere, BarPoint, maugis_lambda};
+use crate::reference::{AdhesiveModel, AdhesiveSphere, BarPoint, MdrProfile, maugis_lambda};
 
 /// Points of the curve among which the nearest is looked for first.
 const POINTS: usize = 64;
@@ -37,6 +37,8 @@ const CHI: f64 = 3.841_459;
 /// the spans of the record.
 #[derive(Clone, Copy)]
 pub(super) struct Problem<'a> {
+    profile: MdrProfile,
+    /// Of the sphere, with adhesion.
     radius: f64,
     rows: &'a Rows,
     options: &'a ForceOptions,
@@ -90,11 +92,44 @@ pub(super) struct Nearest {
     pub(super) contact_radius: f64,
 }
 
+/// A curve of load over depth in bars, by a parameter that grows with the depth.
+#[derive(Clone, Copy, PartialEq)]
+enum Law {
+    /// An elastic contact without adhesion; the parameter is the depth, in the unit of length `unit` \[m\].
+    Elastic { profile: MdrProfile, unit: f64 },
+    /// A sphere that adheres.
+    Adhesive(AdhesiveModel),
+}
+
+impl Law {
+    fn at(self, u: f64) -> BarPoint {
+        match self {
+            Law::Elastic { profile, unit } => {
+                let depth = (u * unit).max(0.0);
+                let radius = profile.reach(depth) / unit;
+                let load = profile.unit_load(depth) / (unit * unit);
+                BarPoint { radius, load, depth: u, load_slope: 2.0 * radius, depth_slope: 1.0 }
+            }
+            Law::Adhesive(model) => model.at(u),
+        }
+    }
+
+    /// The ends of the part of the curve between these depths; it ends where the sphere comes off under any control.
+    fn between(self, [smallest, deepest]: [f64; 2]) -> [f64; 2] {
+        match self {
+            Law::Elastic { .. } => [smallest.min(0.0) - 1.0, deepest.max(0.0) + 1.0],
+            Law::Adhesive(model) => [model.end(f64::INFINITY), model.beyond(deepest)],
+        }
+    }
+}
+
 /// Where the curve lies in the units of the record.
 #[derive(Clone, Copy)]
 struct Frame {
-    model: AdhesiveModel,
+    law: Law,
     units: [f64; 2],
+    /// Unit of the radius of the contact \[m\].
+    width: f64,
     shifts: [f64; 2],
     noise: [f64; 2],
 }
@@ -131,7 +166,7 @@ struct Foot {
 
 impl Curve {
     fn nearest(&self, row: [f64; 2]) -> Foot {
-        let Frame { model, .. } = self.frame;
+        let Frame { law, .. } = self.frame;
         let distance = |point: &BarPoint| {
             let [x, y] = self.frame.apart(row, point);
             x * x + y * y
@@ -143,7 +178,7 @@ impl Curve {
                 (u, least) = (*there, distance);
             }
         }
-        let mut point = model.at(u);
+        let mut point = law.at(u);
         'steps: for _ in 0..40 {
             let (apart, along) = (self.frame.apart(row, &point), self.frame.along(&point));
             let mut step = inner(apart, along) / inner(along, along);
@@ -152,7 +187,7 @@ impl Curve {
                 if (next - u).abs() <= NEAR * (1.0 + u.abs()) {
                     break 'steps;
                 }
-                let there = model.at(next);
+                let there = law.at(next);
                 let distance = distance(&there);
                 if distance <= least {
                     (u, point, least) = (next, there, distance);
@@ -170,8 +205,8 @@ fn inner([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
 }
 
 impl<'a> Problem<'a> {
-    pub(super) fn new(radius: f64, rows: &'a Rows, options: &'a ForceOptions) -> Self {
-        Problem { radius, rows, options, held: false }
+    pub(super) fn new(profile: MdrProfile, rows: &'a Rows, options: &'a ForceOptions) -> Self {
+        Problem { profile, radius: profile.radius().unwrap_or(1.0), rows, options, held: false }
     }
 
     fn adhesive(&self) -> bool {
@@ -189,9 +224,10 @@ impl<'a> Problem<'a> {
         (0..5).filter(|k| wanted[*k]).collect()
     }
 
-    pub(super) fn model(&self, at: &[f64]) -> AdhesiveModel {
-        match self.options.model {
-            ForceModel::Hertz => AdhesiveModel::Hertz,
+    /// The model of adhesion; `None` without.
+    pub(super) fn model(&self, at: &[f64]) -> Option<AdhesiveModel> {
+        Some(match self.options.model {
+            ForceModel::Hertz => return None,
             ForceModel::Dmt => AdhesiveModel::Dmt,
             ForceModel::Jkr => AdhesiveModel::Jkr,
             ForceModel::Maugis => {
@@ -201,7 +237,7 @@ impl<'a> Problem<'a> {
                     .map(|range| maugis_lambda(self.radius, at[0].exp(), at[1].exp(), range));
                 AdhesiveModel::Maugis { lambda: own.unwrap_or(at[2].exp()).clamp(LAMBDA[0], LAMBDA[1]) }
             }
-        }
+        })
     }
 
     pub(super) fn work(&self, at: &[f64]) -> f64 {
@@ -219,29 +255,33 @@ impl<'a> Problem<'a> {
     }
 
     fn frame(&self, at: &[f64]) -> Frame {
-        let model = self.model(at);
-        let units = AdhesiveSphere::of(model, self.radius, at[0].exp(), at[1].exp()).units();
         let [touch, baseline] = self.shifts(at);
-        Frame { model, units, shifts: [touch, baseline], noise: self.rows.noise }
+        let modulus = at[0].exp();
+        let (law, units, width) = match self.model(at) {
+            None => {
+                let unit = self.rows.spans[1];
+                (Law::Elastic { profile: self.profile, unit }, [modulus * unit * unit, unit], unit)
+            }
+            Some(model) => {
+                let units = AdhesiveSphere::of(model, self.radius, modulus, self.work(at)).units();
+                (Law::Adhesive(model), units, (units[1] * self.radius).sqrt())
+            }
+        };
+        Frame { law, units, width, shifts: [touch, baseline], noise: self.rows.noise }
     }
 
     fn curve(&self, at: &[f64]) -> Curve {
         let frame = self.frame(at);
-        let Frame { model, units, shifts: [touch, _], .. } = frame;
+        let Frame { law, units, shifts: [touch, _], .. } = frame;
         let [smallest, largest] = self.rows.depths;
-        let deepest = (largest - touch) / units[1];
-        let last = model.beyond(deepest + 0.05 * self.rows.spans[1] / units[1]);
-        let first = match model {
-            AdhesiveModel::Hertz => ((smallest - touch) / units[1]).min(0.0) - 1.0,
-            // Any control comes off before the smallest depth, or there.
-            _ => model.end(f64::INFINITY),
-        };
+        let deepest = largest + 0.05 * self.rows.spans[1];
+        let [first, last] = law.between([smallest, deepest].map(|depth| (depth - touch) / units[1]));
         let last = last.max(first + 1e-6);
         let point = |k: usize| {
             // Closer where the curve bends, at its lower end.
             let x = k as f64 / (POINTS - 1) as f64;
-            let u = first + (last - first) * if model == AdhesiveModel::Hertz { x } else { x * x };
-            (u, model.at(u))
+            let u = first + (last - first) * if self.adhesive() { x * x } else { x };
+            (u, law.at(u))
         };
         Curve { frame, ends: [first, last], table: (0..POINTS).map(point).collect() }
     }
@@ -261,11 +301,10 @@ impl<'a> Problem<'a> {
 
     pub(super) fn nearest(&self, at: &[f64]) -> Nearest {
         let (frame, feet) = (self.frame(at), self.feet(at));
-        let unit = (frame.units[1] * self.radius).sqrt();
         let loads = feet.iter().map(|foot| frame.shifts[1] + frame.units[0] * foot.point.load);
         Nearest {
             loads: loads.chain(self.rows.free.iter().map(|_| frame.shifts[1])).collect(),
-            contact_radius: unit * feet.iter().map(|foot| foot.point.radius).fold(0.0, f64::max),
+            contact_radius: frame.width * feet.iter().map(|foot| foot.point.radius).fold(0.0, f64::max),
         }
     }
 
@@ -293,19 +332,20 @@ impl<'a> Problem<'a> {
             return None;
         }
         if !self.adhesive() {
-            // W ∝ depth^(3/2): a quarter of the load is at 0.397 of the depth.
+            // W ∝ depth^(3/2) of a paraboloid, depth² of a cone: a quarter of the load is at 0.397 or 0.5 of the depth.
             let quarter = rows.iter().rev().find(|row| row[0] - rest > 0.25 * largest)?;
-            let depth = (top[1] - quarter[1]) / (1.0 - 0.25f64.powf(2.0 / 3.0));
+            let share = if self.profile.radius().is_some() { 0.25f64.powf(2.0 / 3.0) } else { 0.5 };
+            let depth = (top[1] - quarter[1]) / (1.0 - share);
             if depth <= 0.0 {
                 return None;
             }
-            let modulus = 0.75 * largest / (self.radius.sqrt() * depth.powf(1.5));
-            return Some(shift([modulus.ln(), (largest / (PI * self.radius)).ln()], top[1] - depth));
+            let modulus = largest / self.profile.unit_load(depth);
+            return Some(shift([modulus.ln(), 0.0], top[1] - depth));
         }
         let lowest = rows.iter().min_by(|a, b| a[0].total_cmp(&b[0]))?;
         let model = match self.options.model {
             ForceModel::Maugis => AdhesiveModel::Maugis { lambda },
-            _ => self.model(&[0.0; 5]),
+            _ => self.model(&[0.0; 5])?,
         };
         let end = model.at(model.end(0.0));
         let unit = (rest - lowest[0]) / -end.load;
@@ -452,15 +492,15 @@ impl<'a> Problem<'a> {
                 there[*k] += step;
                 self.frame(&there)
             });
-            let bends = up.model != down.model;
+            let bends = up.law != down.law;
             let [high, low] = match bends && feet.iter().any(|foot| foot.last) {
-                true => sides.map(|side| side.model.end(f64::INFINITY)),
+                true => sides.map(|side| side.law.between([0.0; 2])[0]),
                 false => [0.0; 2],
             };
             let end = (high - low) / (2.0 * STEP);
             let row = |(row, foot): (&[f64; 2], &Foot)| {
                 let [up, down] = sides.map(|side| match bends {
-                    true => side.apart(*row, &side.model.at(foot.u)),
+                    true => side.apart(*row, &side.law.at(foot.u)),
                     false => side.apart(*row, &foot.point),
                 });
                 let moved = [0, 1].map(|k| (up[k] - down[k]) / (2.0 * STEP));
@@ -502,7 +542,8 @@ mod tests {
             let options = ForceOptions { model, range, control, ..Default::default() };
             let mut rows = Rows::new(&ForceRecord { loads: &loads, depths: &depths }, &options).unwrap();
             rows.noise = [2e-9, 2e-9];
-            let problem = Problem::new(10e-6, &rows, &options);
+            let profile = MdrProfile::Paraboloid { radius: 10e-6 };
+            let problem = Problem::new(profile, &rows, &options);
             let at = vec![1.1e6f64.ln(), 4.7e-3f64.ln(), 0.7f64.ln(), 0.01, 0.003];
             let squares = |at: &[f64]| {
                 let residuals = problem.residuals(at, &problem.feet(at));

@@ -22,7 +22,7 @@ use super::check::MOST_TERMS;
 use super::least_squares::Solution;
 use super::model::Model;
 use super::nested::{self, add_logarithms};
-use super::parameters::Parameters;
+use super::parameters::{Law, Parameters};
 use super::spectrum::Spectrum;
 use super::{IndentationOptions, Interval};
 use crate::error::Result;
@@ -36,6 +36,8 @@ const STIFFEST: [f64; 2] = [4.0, 2.0];
 const MORE: usize = 2;
 /// Prior range of the depth of first touch: this many standard deviations from its best value, over the largest depth.
 const TOUCH: f64 = 6.0;
+/// Probability of a number of terms below which another one takes its place.
+pub(super) const EXCLUDED: f64 = 0.05;
 /// Fractions of the draws below and above an interval: less than 2.5 %, because the noise itself is only known approximately.
 const TAIL: f64 = 0.015;
 
@@ -107,6 +109,13 @@ impl Average {
             shares[draw.terms.len()] += draw.weight.exp();
         }
         shares
+    }
+
+    /// The most probable number of terms in place of one that is practically excluded.
+    pub(super) fn instead_of(&self, terms: usize) -> Option<usize> {
+        let numbers = self.numbers();
+        let likeliest = (0..numbers.len()).max_by(|a, b| numbers[*a].total_cmp(&numbers[*b]))?;
+        (numbers[terms] < EXCLUDED && likeliest != terms).then_some(likeliest)
     }
 
     /// The modulus (part 0) or time (part 1) of a term of the best fit. If a draw has more terms, its largest ones are used.

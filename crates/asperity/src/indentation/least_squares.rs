@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::model::Model;
-use super::parameters::Parameters;
+use super::parameters::{Law, Parameters};
 use crate::error::{Result, require};
 use crate::material::{Relaxation, dot};
 
@@ -20,8 +20,8 @@ const LONGEST: f64 = 1.0;
 const MOST_ITERATIONS: usize = 60;
 
 /// The parameters that fit best.
-pub(super) struct Solution {
-    pub(super) parameters: Parameters,
+pub(super) struct Solution<L = Parameters> {
+    pub(super) parameters: L,
     pub(super) at: Vec<f64>,
     /// Weighted, over the largest measured value.
     pub(super) residuals: Vec<f64>,
@@ -30,12 +30,14 @@ pub(super) struct Solution {
 }
 
 impl Solution {
-    pub(super) fn rms(&self) -> f64 {
-        (squares(&self.residuals) / self.residuals.len() as f64).sqrt()
-    }
-
     pub(super) fn relaxation(&self) -> Relaxation {
         self.parameters.relaxation(&self.at)
+    }
+}
+
+impl<L: Law> Solution<L> {
+    pub(super) fn rms(&self) -> f64 {
+        (squares(&self.residuals) / self.residuals.len() as f64).sqrt()
     }
 
     /// The depth of first touch over the largest depth.
@@ -45,12 +47,12 @@ impl Solution {
 }
 
 /// Minimises the residuals from `start`.
-pub(super) fn solve(model: &Model, parameters: Parameters, start: Vec<f64>) -> Result<Solution> {
+pub(super) fn solve<L: Law>(model: &Model, parameters: L, start: Vec<f64>) -> Result<Solution<L>> {
     require(
         model.compared() >= 2 * parameters.len() + 2,
         "number of rows of the record",
         format!("{} with load", model.compared()),
-        format!("at least {} for {} terms", 2 * parameters.len() + 2, parameters.terms),
+        format!("at least {} to fit {} numbers", 2 * parameters.len() + 2, parameters.len()),
     )?;
     let mut at = start;
     let mut residuals = model.residuals(parameters, &at)?;
@@ -99,7 +101,7 @@ pub(super) fn solve(model: &Model, parameters: Parameters, start: Vec<f64>) -> R
 }
 
 /// Columns of dr/dx by one-sided differences, for the search.
-fn slopes(model: &Model, parameters: Parameters, at: &[f64], residuals: &[f64]) -> Result<Vec<Vec<f64>>> {
+fn slopes<L: Law>(model: &Model, parameters: L, at: &[f64], residuals: &[f64]) -> Result<Vec<Vec<f64>>> {
     let column = |k: usize| {
         let moved = |by: f64| moved(model, parameters, at, k, by).map(|there| (there, by));
         let (there, by) = moved(SIDESTEP).or_else(|_| moved(-SIDESTEP))?;
@@ -109,7 +111,7 @@ fn slopes(model: &Model, parameters: Parameters, at: &[f64], residuals: &[f64]) 
 }
 
 /// Columns of dr/dx by central differences; one-sided if the model fails on one side.
-fn jacobian(model: &Model, parameters: Parameters, at: &[f64]) -> Result<Vec<Vec<f64>>> {
+fn jacobian<L: Law>(model: &Model, parameters: L, at: &[f64]) -> Result<Vec<Vec<f64>>> {
     let column = |k: usize| {
         let moved = |by: f64| moved(model, parameters, at, k, by);
         let (ends, length) = match (moved(STEP), moved(-STEP)) {
@@ -124,7 +126,7 @@ fn jacobian(model: &Model, parameters: Parameters, at: &[f64]) -> Result<Vec<Vec
 }
 
 /// The residuals with parameter `k` changed by `by`.
-fn moved(model: &Model, parameters: Parameters, at: &[f64], k: usize, by: f64) -> Result<Vec<f64>> {
+fn moved<L: Law>(model: &Model, parameters: L, at: &[f64], k: usize, by: f64) -> Result<Vec<f64>> {
     let mut there = at.to_vec();
     there[k] += by;
     model.residuals(parameters, &there)

@@ -1,6 +1,6 @@
 //! Indentation in reverse: the relaxation function of a half-space from a record of load and depth over time.
 //!
-//! A rigid sphere (or cone) is pressed into the body, held, retracted, in any order. The relation between depth and load is the
+//! A rigid sphere, cone or pyramid is pressed into the body, held, retracted, in any order. The relation between depth and load is the
 //! exact one-dimensional equivalent of [`crate::reference::Mdr`], including unloading and reloading. One channel is taken as
 //! given, the one that the test controlled; the model is fitted to the other by least squares:
 //!
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! **Start.** While the contact grows the problem is linear (E. H. Lee & J. R. M. Radok, J. Appl. Mech. 27 (1960) 438):
-//! with φ(d) the load at the depth d for E* = 1 (sphere (4/3) sqrt(R) d^(3/2))
+//! with φ(d) the load at the depth d for E* = 1 ([`crate::reference::MdrProfile`])
 //!
 //! ```text
 //! W = ∫ E*(t - s) dφ(s)        φ = ∫ C(t - s) dW(s)
@@ -28,33 +28,41 @@ mod average;
 mod blocks;
 mod check;
 mod control;
+mod indenter;
+mod judged;
 mod least_squares;
 mod model;
 mod nested;
 pub(crate) mod noise;
 mod notes;
 mod parameters;
+mod power_law;
 mod select;
+#[cfg(test)]
+mod shape_tests;
 mod spectrum;
 mod start;
 mod stated;
 #[cfg(test)]
 mod tests;
 
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Result};
 use crate::layer::Interface;
 use crate::material::{LongTime, Relaxation, RelaxationTerm};
 use crate::reference::MdrProfile;
 
 pub(crate) use least_squares::{covariance, damped_step};
-pub(crate) use notes::{ALIKE, unlikely_radius};
+pub(crate) use notes::{ALIKE, of_indenter, unlikely_radius};
 pub(crate) use spectrum::durbin_watson;
 #[cfg(test)]
 pub(crate) use tests::Noise as TestNoise;
 
+pub use indenter::Indenter;
+pub use power_law::{PowerLawFit, fit_power_law};
+
 use average::Average;
+use judged::Test;
 use least_squares::Solution;
-use model::Model;
 use stated::Stated;
 pub(crate) use stated::{SENSITIVITY, check_shares};
 
@@ -99,7 +107,7 @@ pub struct IndentationOptions {
     pub layer: Option<SampleLayer>,
     /// Largest misfit (rms, over the largest value) before a record is refused, default 0.1.
     pub limit: f64,
-    /// Standard uncertainty of the radius over the radius, or of the slope of a cone over the slope; default 0. The intervals contain this and
+    /// Standard uncertainty of the radius over the radius, or of the slope of a cone or pyramid over the slope; default 0. The intervals contain this and
     /// the other uncertainties.
     pub radius_uncertainty: f64,
     /// Standard uncertainty of the thickness of a thin sample over the thickness, default 0.
@@ -234,14 +242,14 @@ pub fn controlled(record: &IndentationRecord) -> Result<Given> {
     Ok(control::controlled(record.times, record.loads, record.depths))
 }
 
-/// Fits the contact relaxation modulus of a half-space to a record of its indentation by a rigid body of revolution.
+/// Fits the contact relaxation modulus of a half-space, as a Prony series, to a record of its indentation by a rigid indenter.
 ///
 /// ```
 /// use asperity::indentation::{IndentationOptions, IndentationRecord, fit_indentation};
 /// use asperity::material::Relaxation;
 /// use asperity::reference::{Mdr, MdrProfile, MdrTarget};
 /// // A sphere of 5 mm pressed 0.1 mm deep in 1 s, held until 20 s.
-/// let profile = MdrProfile::Sphere { radius: 5e-3 };
+/// let profile = MdrProfile::Paraboloid { radius: 5e-3 };
 /// let truth = Relaxation::absolute(2e6, &[(3e6, 4.0)])?;
 /// let mut springs = Mdr::new(profile, &truth, 1e-3, 300)?;
 /// let times: Vec<f64> = (0..=200).map(|k| 0.1 * k as f64).collect();
@@ -267,40 +275,39 @@ pub fn fit_indentation(
     record: &IndentationRecord,
     options: &IndentationOptions,
 ) -> Result<IndentationFit> {
-    check::options(options)?;
-    check::record(record)?;
-    let [times, loads, depths] = [record.times, record.loads, record.depths].map(<[f64]>::to_vec);
-    let given = options.given.unwrap_or_else(|| control::controlled(&times, &loads, &depths));
-    let whole = Model::new(profile, times, loads, depths, given, options)?;
-    let (model, rows) = whole.averaged();
-    let best = select::select(&model, options.terms, options.long_time)?;
-    // The means of a long record are fitted; the fit is judged by all its rows.
-    let prediction = whole.predict(best.parameters, &best.at)?;
-    let apart = prediction.values.iter().zip(whole.measured()).map(|(model, measured)| model - measured);
-    let apart = apart.collect::<Vec<f64>>();
-    let residuals = apart.iter().zip(whole.weights(&prediction)).map(|(apart, w)| apart * w);
-    let residuals = whole.of_compared(&residuals.collect::<Vec<f64>>());
-    let apart = whole.of_compared(&apart);
-    let rms = (apart.iter().map(|x| x * x).sum::<f64>() / apart.len() as f64).sqrt();
-    require_fit(rms / model.scale, options.limit)?;
+    let test = Test::new(profile, record, options)?;
+    let model = &test.model;
+    let mut best = select::select(model, options.terms, options.long_time)?;
+    let mut judged = test.judge(&best, options.limit)?;
     if options.terms.is_some() {
         require_known(&best)?;
     }
-    let average = Average::new(&model, &best, &residuals, options)?;
-
-    let stated = Stated::new(&model, &best, profile, options)?;
+    let mut average = Average::new(model, &best, &judged.residuals, options)?;
+    // A number of terms that is practically excluded gives way to the most probable one, if the record determines that.
+    if options.terms.is_none()
+        && let Some(terms) = average.instead_of(best.parameters.terms)
+        && let Ok(other) = select::best_of(model, terms, options.long_time)
+        && select::is_known(&other)
+        && let Ok(beside) = test.judge(&other, options.limit)
+    {
+        let again = Average::new(model, &other, &beside.residuals, options)?;
+        if again.numbers()[terms] > average.numbers()[best.parameters.terms] {
+            (best, judged, average) = (other, beside, again);
+        }
+    }
+    let stated = Stated::new(model, &best, options)?;
 
     let relaxation = best.relaxation();
     let instantaneous = average.interval(relaxation.instantaneous(), |draw| Some(draw.instantaneous()));
-    let instantaneous = stated.widen(instantaneous, Relaxation::instantaneous);
+    let instantaneous = stated.widen(instantaneous, |fitted| fitted.relaxation.instantaneous());
     let equilibrium = average.interval(relaxation.equilibrium, |draw| Some(draw.equilibrium));
     let mut equilibrium = stated.widen_equilibrium(equilibrium);
     equilibrium.determined |= equilibrium.high <= NEGLIGIBLE * instantaneous.value;
     let term = |(k, term): (usize, &RelaxationTerm)| {
         [
-            stated.widen(average.term(term.modulus, k, 0), |relaxation| relaxation.terms[k].modulus),
-            stated.widen(average.term(term.relaxation_time, k, 1), |relaxation| {
-                relaxation.terms[k].relaxation_time
+            stated.widen(average.term(term.modulus, k, 0), |fitted| fitted.relaxation.terms[k].modulus),
+            stated.widen(average.term(term.relaxation_time, k, 1), |fitted| {
+                fitted.relaxation.terms[k].relaxation_time
             }),
         ]
     };
@@ -315,39 +322,29 @@ pub fn fit_indentation(
         false => Interval::exact(0.0),
     };
     let [value, low, high] = [touch.value, touch.low, touch.high].map(|x| model.depth_scale() * x);
+    let touch = Interval { value, low, high, determined: true };
     let mut fit = IndentationFit {
         terms,
         relaxation,
         equilibrium,
         instantaneous,
-        touch: stated.widen_touch(Interval { value, low, high, determined: true }),
-        given,
-        predicted: rows.iter().map(|row| prediction.values[*row]).collect(),
-        rows,
-        rms,
-        relative_rms: rms / model.scale,
-        durbin_watson: spectrum::durbin_watson(&residuals),
+        touch: stated.widen_both_ways(touch, |fitted| fitted.touch),
+        given: test.given,
+        predicted: judged.predicted,
+        rms: judged.rms,
+        relative_rms: judged.relative_rms,
+        durbin_watson: judged.durbin_watson,
         numbers: average.numbers(),
         window: model.window(),
         notes: vec![],
+        rows: test.rows.clone(),
     };
     fit.notes = notes::notes(&fit, options);
-    if let MdrProfile::Sphere { radius } = profile {
-        fit.notes.extend(unlikely_radius(radius));
-    }
+    let exponent = if best.parameters.terms > 0 { power_law::better(model, &best) } else { None };
+    fit.notes.extend(exponent.map(|exponent| notes::of_better(&fit, exponent)));
+    let layered = options.layer.is_some();
+    fit.notes.extend(notes::of_indenter(profile, model.depth_scale(), fit.relative_rms, layered));
     Ok(fit)
-}
-
-fn require_fit(relative_rms: f64, limit: f64) -> Result<()> {
-    require(
-        relative_rms <= limit,
-        "misfit of the record",
-        format!("{:.1} % of the largest value (rms)", 100.0 * relative_rms),
-        format!(
-            "at most {:.1} %: check radius, units and the depth of first touch, and whether the body is as thick as assumed",
-            100.0 * limit
-        ),
-    )
 }
 
 /// Refuses more terms than the record determines.

@@ -13,7 +13,7 @@
 use super::blocks::{blocks, means};
 use super::check::LARGEST;
 use super::noise;
-use super::parameters::Parameters;
+use super::parameters::Law;
 use super::{Given, IndentationOptions, SampleLayer};
 use crate::error::{Error, Result, require};
 use crate::material::Relaxation;
@@ -22,6 +22,9 @@ use crate::reference::{LayerContact, Mdr, MdrProfile, MdrTarget, SpringProfile};
 /// Steps between two rows if the load is given: the response is of second order in the step (under a given depth one step is
 /// exact).
 const SUBSTEPS: usize = 2;
+
+/// Largest depth of a sphere over its radius: noise may pass the radius, and deeper the sphere is below the surface.
+const DEEPEST: f64 = 1.1;
 
 /// If the load is given, loads below this fraction of the largest count as no load.
 const LOADED: f64 = 0.02;
@@ -79,13 +82,13 @@ impl Model {
         options: &IndentationOptions,
     ) -> Result<Self> {
         profile.validate()?;
-        if let MdrProfile::Sphere { radius } = profile
-            && let Some(depth) = depths.iter().find(|depth| **depth > radius)
+        if let Some(radius) = profile.radius()
+            && let Some(depth) = depths.iter().find(|depth| **depth > DEEPEST * radius)
         {
             return Err(Error::invalid(
                 "depth",
                 format!("{depth:e} m"),
-                format!("less than the radius of the sphere, {radius:e} m (check their units)"),
+                format!("at most {DEEPEST} times the radius of the sphere, {radius:e} m (check their units)"),
             ));
         }
         let start = times[0];
@@ -234,7 +237,7 @@ impl Model {
 
     /// Model minus measurement at each row where they are compared, over the largest measured value, and weighted: rows with more
     /// noise than the mean of the fitted channel have less weight, the mean of n rows has sqrt(n) times that of one.
-    pub(super) fn residuals(&self, parameters: Parameters, at: &[f64]) -> Result<Vec<f64>> {
+    pub(super) fn residuals<L: Law>(&self, parameters: L, at: &[f64]) -> Result<Vec<f64>> {
         let predicted = self.predict(parameters, at)?;
         let apart = predicted.values.iter().zip(self.measured()).map(|(model, measured)| model - measured);
         let weighted: Vec<f64> = apart.zip(self.weights(&predicted)).map(|(apart, w)| apart * w).collect();
@@ -255,15 +258,32 @@ impl Model {
         column.iter().zip(&self.compared).filter(|(_, compared)| **compared).map(|(x, _)| *x).collect()
     }
 
+    /// The same rows without a comparison at the first one.
+    pub(super) fn without_first(&self) -> Self {
+        let mut model = self.clone();
+        model.compared.iter_mut().take(1).for_each(|compared| *compared = false);
+        model
+    }
+
+    /// The same rows with another number of springs.
+    pub(super) fn with_springs(&self, springs: usize) -> Self {
+        Model { springs, ..self.clone() }
+    }
+
+    /// The profile of the indenter.
+    pub(super) fn profile(&self) -> MdrProfile {
+        self.profile
+    }
+
     /// Number of rows where model and measurement are compared.
     pub(super) fn compared(&self) -> usize {
         self.compared.iter().filter(|compared| **compared).count()
     }
 
     /// The channel that is not given, at each row.
-    pub(super) fn predict(&self, parameters: Parameters, at: &[f64]) -> Result<Prediction> {
+    pub(super) fn predict<L: Law>(&self, parameters: L, at: &[f64]) -> Result<Prediction> {
         let touch = self.depth_scale() * parameters.touch(at);
-        self.respond(&parameters.relaxation(at), touch, self.taken(), self.springs)
+        self.respond(&parameters.body(at)?, touch, self.taken(), self.springs)
     }
 
     /// The response of a body to a history of the given channel, with the surface at the depth `touch`.

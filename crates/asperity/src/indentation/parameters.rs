@@ -1,7 +1,23 @@
 //! The fitted numbers as a vector for the least squares. Moduli and times are represented by their logarithms, so that they
 //! remain positive and their errors are factors.
 
+use crate::error::Result;
 use crate::material::{Relaxation, RelaxationTerm};
+
+/// A relaxation function of some fitted numbers, the last of which is the depth of first touch where it is fitted.
+pub(super) trait Law: Copy + Sync {
+    /// Number of the numbers.
+    fn len(&self) -> usize;
+    /// Whether the depth of first touch is fitted.
+    fn fits_touch(&self) -> bool;
+    /// The relaxation function; an error where the law has none.
+    fn body(&self, at: &[f64]) -> Result<Relaxation>;
+
+    /// The depth of first touch over the largest depth; 0 if it is not fitted.
+    fn touch(&self, at: &[f64]) -> f64 {
+        if self.fits_touch() { at[self.len() - 1] } else { 0.0 }
+    }
+}
 
 /// The numbers that are fitted: \[ln E∞\], ln E_i, ln τ_i, \[depth of first touch over the largest depth\].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,16 +27,21 @@ pub(super) struct Parameters {
     pub(super) touch: bool,
 }
 
-impl Parameters {
-    pub(super) fn len(&self) -> usize {
+impl Law for Parameters {
+    fn len(&self) -> usize {
         usize::from(self.solid) + 2 * self.terms + usize::from(self.touch)
     }
 
-    /// The depth of first touch over the largest depth; 0 if it is not fitted.
-    pub(super) fn touch(&self, at: &[f64]) -> f64 {
-        if self.touch { at[self.len() - 1] } else { 0.0 }
+    fn fits_touch(&self) -> bool {
+        self.touch
     }
 
+    fn body(&self, at: &[f64]) -> Result<Relaxation> {
+        Ok(self.relaxation(at))
+    }
+}
+
+impl Parameters {
     pub(super) fn relaxation(&self, at: &[f64]) -> Relaxation {
         let first = usize::from(self.solid);
         let term = |k: usize| RelaxationTerm {

@@ -3,7 +3,7 @@
 use super::check::MOST_TERMS;
 use super::least_squares::{Solution, solve};
 use super::model::Model;
-use super::parameters::Parameters;
+use super::parameters::{Law, Parameters};
 use super::start;
 use crate::error::{Error, Result};
 use crate::material::LongTime;
@@ -21,8 +21,13 @@ pub(super) fn select(model: &Model, terms: Option<usize>, long_time: LongTime) -
     }
 }
 
+/// Whether the record determines each number of a fit.
+pub(super) fn is_known(solution: &Solution) -> bool {
+    solution.parameters.worst(&solution.deviations).is_none_or(|(_, deviation)| deviation <= UNKNOWN)
+}
+
 /// Fits with `terms` terms: a solid, a fluid, or the better of both.
-fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<Solution> {
+pub(super) fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<Solution> {
     let solids = match (long_time, terms) {
         (LongTime::Solid, _) | (_, 0) => &[true][..],
         (LongTime::Fluid, _) => &[false],
@@ -60,9 +65,7 @@ fn as_many_as_needed(model: &Model, long_time: LongTime) -> Result<Solution> {
     let mut best = best_of(model, usize::from(long_time == LongTime::Fluid), long_time)?;
     for terms in best.parameters.terms + 1..=MOST_TERMS {
         let Ok(next) = best_of(model, terms, long_time) else { break };
-        let worst = next.parameters.worst(&next.deviations);
-        let known = worst.is_none_or(|(_, deviation)| deviation <= UNKNOWN);
-        if !known || information(model, &next) >= information(model, &best) {
+        if !is_known(&next) || information(model, &next) >= information(model, &best) {
             break;
         }
         best = next;
@@ -71,7 +74,7 @@ fn as_many_as_needed(model: &Model, long_time: LongTime) -> Result<Solution> {
 }
 
 /// Bayesian information criterion of m residuals, means of n rows in all: m ln(Σ r²/m) + k ln n.
-fn information(model: &Model, solution: &Solution) -> f64 {
+pub(super) fn information<L: Law>(model: &Model, solution: &Solution<L>) -> f64 {
     let mean = solution.rms().powi(2).max(MODEL_ERROR * MODEL_ERROR);
     solution.residuals.len() as f64 * mean.ln() + solution.parameters.len() as f64 * model.rows().ln()
 }

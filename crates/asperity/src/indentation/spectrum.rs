@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use super::blocks::smoothed;
 use super::least_squares::Solution;
 use super::model::Model;
-use super::parameters::Parameters;
+use super::parameters::Law;
 use super::select::MODEL_ERROR;
 use crate::error::Result;
 use crate::material::{Relaxation, RelaxationTerm, dot};
@@ -67,7 +67,7 @@ impl Spectrum {
         };
         let small = SMALL * relaxation.instantaneous();
         let base = respond(&relaxation, touch)?;
-        let sd = deviation(&best.residuals, parameters).max(deviation(whole, parameters));
+        let sd = deviation(&best.residuals, parameters.len()).max(deviation(whole, parameters.len()));
         let weights: Vec<f64> =
             model.weights(&model.predict(best.parameters, &best.at)?).iter().map(|w| w / sd).collect();
         let column = |changed: Vec<f64>, by: f64| {
@@ -142,10 +142,10 @@ fn add(to: &mut [f64], factor: f64, column: &[f64]) {
     to.iter_mut().zip(column).for_each(|(t, c)| *t += factor * c);
 }
 
-/// Standard deviation of a weighted residual. Correlated neighbours contain less information than independent ones: with the
+/// Standard deviation of a weighted residual, where this many numbers were fitted. Correlated neighbours contain less information than independent ones: with the
 /// correlation ρ of one row with the next, n rows are equivalent to n (1 - ρ)/(1 + ρ) independent ones.
-fn deviation(residuals: &[f64], parameters: Parameters) -> f64 {
-    let k = parameters.len() as f64;
+pub(super) fn deviation(residuals: &[f64], parameters: usize) -> f64 {
+    let k = parameters as f64;
     let alike = (1.0 - 0.5 * durbin_watson(residuals)).clamp(0.0, MOST_ALIKE);
     let variance = dot(residuals, residuals) / (residuals.len() as f64 - k) * (1.0 + alike) / (1.0 - alike);
     variance.sqrt().max(MODEL_ERROR)

@@ -8,6 +8,7 @@
 
 use super::least_squares::{Solution, solve};
 use super::model::Model;
+use super::parameters::Law;
 use super::{IndentationOptions, Interval, WIDTH};
 use crate::error::{Result, non_negative, require};
 use crate::material::Relaxation;
@@ -16,8 +17,12 @@ use crate::reference::MdrProfile;
 /// A change for its effect on the result: large compared with where the search ends, and the effect is linear to its square.
 const CHANGE: f64 = 1e-2;
 
-/// A material and the depth of first touch.
-type Fitted = (Relaxation, f64);
+/// The fit of a changed test: the numbers of its law, its relaxation function, and the depth of first touch.
+pub(super) struct Fitted {
+    pub(super) at: Vec<f64>,
+    pub(super) relaxation: Relaxation,
+    pub(super) touch: f64,
+}
 
 /// The fit with a quantity that many times as large.
 type Refit<'a> = &'a dyn Fn(f64) -> Result<Fitted>;
@@ -71,25 +76,20 @@ pub(crate) fn check_shares(sources: &[(&str, f64)], spring_constant: Option<f64>
 
 impl Stated {
     /// Fits again, from the best fit on.
-    pub(super) fn new(
+    pub(super) fn new<L: Law>(
         model: &Model,
-        best: &Solution,
-        profile: MdrProfile,
+        best: &Solution<L>,
         options: &IndentationOptions,
     ) -> Result<Stated> {
+        let profile = model.profile();
         let fit = |profile: MdrProfile, options: &IndentationOptions, columns: [Vec<f64>; 2]| {
             let changed = model.with(profile, options, columns)?;
             let found = solve(&changed, best.parameters, best.at.clone())?;
-            Ok((found.relaxation(), found.touch() * changed.depth_scale()))
+            let touch = found.touch() * changed.depth_scale();
+            Ok(Fitted { relaxation: found.parameters.body(&found.at)?, touch, at: found.at })
         };
         let columns = || [model.loads.clone(), model.depths.clone()];
-        let of_radius = |times: f64| {
-            let profile = match profile {
-                MdrProfile::Sphere { radius } => MdrProfile::Sphere { radius: times * radius },
-                MdrProfile::Cone { slope } => MdrProfile::Cone { slope: times * slope },
-            };
-            fit(profile, options, columns())
-        };
+        let of_radius = |times: f64| fit(profile.scaled(times), options, columns());
         let of_thickness = |times: f64| {
             let mut changed = *options;
             changed.layer.iter_mut().for_each(|layer| layer.thickness *= times);
@@ -128,12 +128,12 @@ impl Stated {
     }
 
     /// The interval of a positive number with its part.
-    pub(super) fn widen(&self, interval: Interval, of: impl Fn(&Relaxation) -> f64) -> Interval {
+    pub(super) fn widen(&self, interval: Interval, of: impl Fn(&Fitted) -> f64) -> Interval {
         if self.0.is_empty() {
             return interval;
         }
         let Interval { value, low, high, .. } = interval;
-        let half = WIDTH * self.deviation(|(relaxation, _)| of(relaxation).ln());
+        let half = WIDTH * self.deviation(|fitted| of(fitted).ln());
         let apart = |ratio: f64| ratio.ln().hypot(half).exp();
         Interval::new(value, [value / apart(value / low), value * apart(high / value)])
     }
@@ -141,17 +141,21 @@ impl Stated {
     /// The equilibrium modulus, whose upper bound alone has a part where it is 0.
     pub(super) fn widen_equilibrium(&self, interval: Interval) -> Interval {
         match interval.value > 0.0 {
-            true => self.widen(interval, |relaxation| relaxation.equilibrium),
+            true => self.widen(interval, |fitted| fitted.relaxation.equilibrium),
             false => {
-                let half = WIDTH * self.deviation(|(relaxation, _)| relaxation.instantaneous().ln());
+                let half = WIDTH * self.deviation(|fitted| fitted.relaxation.instantaneous().ln());
                 Interval { high: interval.high * half.exp(), ..interval }
             }
         }
     }
 
-    /// The interval of the depth of first touch.
-    pub(super) fn widen_touch(&self, Interval { value, low, high, determined }: Interval) -> Interval {
-        let half = WIDTH * self.deviation(|(_, touch)| *touch);
+    /// The interval of a number of any sign with its part.
+    pub(super) fn widen_both_ways(
+        &self,
+        Interval { value, low, high, determined }: Interval,
+        of: impl Fn(&Fitted) -> f64,
+    ) -> Interval {
+        let half = WIDTH * self.deviation(of);
         Interval {
             value,
             low: value - (value - low).hypot(half),

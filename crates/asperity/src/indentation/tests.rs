@@ -15,7 +15,7 @@ impl Noise {
     }
 }
 
-const SPHERE: MdrProfile = MdrProfile::Sphere { radius: 5e-3 };
+const SPHERE: MdrProfile = MdrProfile::Paraboloid { radius: 5e-3 };
 
 /// Pressed within 1 s, held until 15 s, retracted until 17 s, then free until 20 s.
 fn trapezoid(t: f64) -> f64 {
@@ -255,7 +255,7 @@ fn what_tells_nothing_is_refused_with_the_reason() {
         IndentationOptions { given: Some(Given::Depth), ..default },
     );
     assert!(wild.contains("misfit"), "{wild}");
-    let flat = fit_of(MdrProfile::Sphere { radius: 0.0 }, (&times, &loads, &depths), default);
+    let flat = fit_of(MdrProfile::Paraboloid { radius: 0.0 }, (&times, &loads, &depths), default);
     assert!(flat.unwrap_err().to_string().contains("radius"));
 }
 
@@ -286,7 +286,7 @@ fn any_numbers_are_answered() {
         };
         let profile = match round % 7 {
             0 => MdrProfile::Cone { slope: wild[(round / 7) % wild.len()] },
-            1 => MdrProfile::Sphere { radius: wild[(round / 7) % wild.len()] },
+            1 => MdrProfile::Paraboloid { radius: wild[(round / 7) % wild.len()] },
             _ => SPHERE,
         };
         match fit_of(profile, (&times, &loads, &depths), options) {

@@ -8,7 +8,7 @@
 //! φ(t) + (2/π) ∫_0^a φ(s) ∫_0^∞ G(q) cos(q t) cos(q s) dq ds = (2/(π c)) (δ - g(t)),   G = q C(q)/c - 1,  c = lim q C(q)
 //! ```
 //!
-//! g is the equivalent plane profile of the shape (sphere t²/R, cone (π/2) slope t) and δ is the depth, which follows from
+//! g is the equivalent plane profile of the shape ([`MdrProfile`]) and δ is the depth, which follows from
 //! φ(a) = 0. G decays as exp(-2 q d). With φ_1 the solution for the right-hand side 1, the stiffness of the contact is dW/dδ = 2 E* ∫
 //! φ_1 dt = 2 E* ρ. The layer therefore responds like a half-space of the same E* = 2/c with a contact of radius ρ. (The
 //! stiffness of a growing contact is that of the flat punch of its radius.)
@@ -26,6 +26,8 @@ use crate::numbers::bisect;
 const RADII: usize = 48;
 /// Largest radius of the contact over the thickness.
 const WIDEST: f64 = 30.0;
+/// Widest contact of a sphere over its diameter.
+const BALL: f64 = 0.9;
 /// q d from which on G < 1e-16.
 const LAST: f64 = 20.0;
 /// Points of a panel of the integral over q.
@@ -33,14 +35,14 @@ const PANEL: usize = 12;
 /// Number of heights of the profile of springs.
 const FINE: usize = 2000;
 
-/// A rigid sphere or cone on an elastic layer that lies on a rigid base, in units of E* = 1: E* = 2 G/(1 - ν) of the layer.
+/// A rigid indenter on an elastic layer that lies on a rigid base, in units of E* = 1: E* = 2 G/(1 - ν) of the layer.
 ///
 /// ```
 /// use asperity::layer::Interface;
 /// use asperity::reference::{LayerContact, MdrProfile};
 /// // An incompressible layer under a contact 0.3 times as wide as it is thick: 1.02 times the load of the half-space at that
 /// // radius, at a depth of 0.79 of its.
-/// let profile = MdrProfile::Sphere { radius: 1.0 };
+/// let profile = MdrProfile::Paraboloid { radius: 1.0 };
 /// let layer = LayerContact::new(profile, 0.1, 0.5, Interface::Bonded, 1e-3)?;
 /// let a = 0.03;
 /// assert!((layer.depth(a) / (a * a) - 0.794467).abs() < 2e-6);
@@ -113,11 +115,15 @@ impl LayerContact {
         positive("thickness", thickness, "m")?;
         let layer = Layer { thickness: 1.0, shear: 1.0, poisson, interface };
         let stack = Stack::new(vec![layer], Base::Rigid)?;
-        // On a layer the contact of a sphere is at most twice as wide as on a half-space at the same depth: its depth is at least
-        // a²/(4 R), and that of a cone at least slope a/2.
+        // On a layer the contact of a paraboloid is at most twice as wide as on a half-space at the same depth: its depth is at least
+        // a²/(4 R), and that of a cone at least slope a/2. A sphere is steeper than its paraboloid.
+        let widest = match profile.apex() {
+            MdrProfile::Paraboloid { radius } => 2.0 * (radius * deepest).sqrt(),
+            cone => PI * cone.reach(deepest),
+        };
         let widest = match profile {
-            MdrProfile::Sphere { radius } => 2.0 * (radius * deepest).sqrt(),
-            MdrProfile::Cone { slope } => 2.0 * deepest / slope,
+            MdrProfile::Sphere { radius } => widest.min(BALL * radius),
+            _ => widest,
         };
         require(
             widest <= WIDEST * thickness,
@@ -126,12 +132,21 @@ impl LayerContact {
             format!("at most {WIDEST} times its thickness, {thickness:e} m"),
         )?;
         let spacing = widest / RADII as f64;
-        let rows: Vec<[f64; 3]> =
-            (1..=RADII + 3).map(|n| solve(&stack, profile, spacing * n as f64 / thickness)).collect();
+        let rows: Vec<[f64; 3]> = (1..=RADII + 3)
+            .map(|n| solve(&stack, profile, thickness, spacing * n as f64 / thickness))
+            .collect();
         // Even functions; for a half-space they are 1.
         let column = |k: usize| std::iter::once(1.0).chain(rows.iter().map(|row| row[k])).collect();
         let table = Table { spacing, depth: column(0), stiffness: column(1), load: column(2) };
-        Ok(LayerContact { profile, table: Arc::new(table) })
+        let layer = LayerContact { profile, table: Arc::new(table) };
+        let most = layer.depth(widest);
+        require(
+            most >= deepest || !matches!(profile, MdrProfile::Sphere { .. }),
+            "largest depth of the sphere on the layer",
+            format!("{deepest:e} m"),
+            format!("at most {most:e} m, where the contact is {BALL} times as wide as the sphere"),
+        )?;
+        Ok(layer)
     }
 
     /// Depth δ \[m\] at which the contact has the radius `a` \[m\].
@@ -165,15 +180,17 @@ impl LayerContact {
     /// independent, as on a half-space.
     pub(crate) fn springs(&self) -> SpringProfile {
         let last = self.stiffness(self.table.spacing * RADII as f64);
+        // ρ may exceed the radius of a sphere.
+        let apex = self.profile.apex();
         let ratio = |n: usize| match n {
             0 => 1.0,
             _ => {
                 let rho = last * n as f64 / FINE as f64;
-                self.depth(self.inverse(rho, |a| self.stiffness(a))) / self.profile.height(rho)
+                self.depth(self.inverse(rho, |a| self.stiffness(a))) / apex.height(rho)
             }
         };
         SpringProfile {
-            profile: self.profile,
+            profile: apex,
             spacing: last / FINE as f64,
             ratios: (0..=FINE).map(ratio).collect::<Vec<f64>>().into(),
         }
@@ -207,7 +224,7 @@ fn inverse(high: f64, value: f64, f: impl Fn(f64) -> f64) -> f64 {
 
 /// δ/g(a), ρ/a and the load over that of the half-space at the depth δ, for a contact radius of `x` times the thickness of the
 /// layer.
-fn solve(stack: &Stack, profile: MdrProfile, x: f64) -> [f64; 3] {
+fn solve(stack: &Stack, profile: MdrProfile, thickness: f64, x: f64) -> [f64; 3] {
     let count = 16 + (6.0 * x) as usize;
     let rule = gauss(count);
     let nodes: Vec<(f64, f64)> = rule.iter().map(|(t, w)| (0.5 * x * (1.0 + t), 0.5 * x * w)).collect();
@@ -228,10 +245,8 @@ fn solve(stack: &Stack, profile: MdrProfile, x: f64) -> [f64; 3] {
         FRAC_2_PI * a.iter().zip(b).zip(&waves).map(|((a, b), (_, w))| a * b * w).sum::<f64>()
     };
     // The profile over its value at the edge.
-    let shape = |t: f64| match profile {
-        MdrProfile::Sphere { .. } => (t / x).powi(2),
-        MdrProfile::Cone { .. } => t / x,
-    };
+    let at_the_edge = profile.height(x * thickness);
+    let shape = |t: f64| profile.height(t * thickness) / at_the_edge;
     let mut rows: Vec<Vec<f64>> = vec![vec![0.0; count + 2]; count];
     for i in 0..count {
         for j in 0..=i {
@@ -252,10 +267,7 @@ fn solve(stack: &Stack, profile: MdrProfile, x: f64) -> [f64; 3] {
     let integral = |of: &[f64]| of.iter().zip(&nodes).map(|(f, (_, w))| f * w).sum::<f64>();
     // W = 2 E* ∫ (δ φ_1 - φ_g) dt.
     let load = 2.0 * (depth * integral(&ones) - integral(&shapes));
-    let half_space = match profile {
-        MdrProfile::Sphere { .. } => 4.0 / 3.0 * depth * x * depth.sqrt(),
-        MdrProfile::Cone { .. } => depth * x * depth,
-    };
+    let half_space = profile.unit_load(depth * at_the_edge) / (at_the_edge * thickness);
     [depth, integral(&ones) / x, load / half_space]
 }
 
@@ -330,7 +342,7 @@ mod tests {
     fn depth_and_load_of_a_sphere_are_those_of_the_tables() {
         for Family(poisson, interface, rows) in FAMILIES {
             for [x, depth, load] in rows {
-                let profile = MdrProfile::Sphere { radius: 1.0 };
+                let profile = MdrProfile::Paraboloid { radius: 1.0 };
                 let thickness = 1e-2;
                 let a = x * thickness;
                 let layer =
@@ -345,7 +357,7 @@ mod tests {
 
     #[test]
     fn the_stiffness_is_the_slope_of_the_load() {
-        for profile in [MdrProfile::Sphere { radius: 1.0 }, MdrProfile::Cone { slope: 0.1 }] {
+        for profile in [MdrProfile::Paraboloid { radius: 1.0 }, MdrProfile::Cone { slope: 0.1 }] {
             let layer = LayerContact::new(profile, 0.02, 0.45, Interface::Bonded, 4e-3).unwrap();
             for depth in [1e-4, 1e-3, 3e-3] {
                 let h = 1e-3 * depth;

@@ -47,7 +47,7 @@ struct Kind {
     follows: f64,
 }
 
-const SPHERE: MdrProfile = MdrProfile::Sphere { radius: 5e-3 };
+const SPHERE: MdrProfile = MdrProfile::Paraboloid { radius: 5e-3 };
 
 fn hold(t: f64) -> f64 {
     t.min(1.0)

@@ -59,7 +59,7 @@ fn a_sphere_that_is_loaded_unloaded_opened_and_loaded_again() {
         (4.6, 0.9),
     ];
     let loading = Loading { control: Control::Load, history: History::Table { points } };
-    let profile = MdrProfile::Sphere { radius: 1.0 };
+    let profile = MdrProfile::Paraboloid { radius: 1.0 };
     let pairs = both(Shape::Sphere { radius: 1.0 }, 1.8, profile, loading, 4.6, 230);
     let largest = pairs.iter().map(|(row, _)| row.approach).fold(0.0, f64::max);
     for (row, state) in &pairs {
@@ -121,7 +121,7 @@ fn random_history(seed: u64, largest: f64, least: f64) -> Vec<(f64, f64)> {
 #[test]
 fn random_loads_and_approaches_follow_the_springs() {
     // Sphere and cone, load and approach; histories that would open the contact from within the springs refuse.
-    let sphere = (Shape::Sphere { radius: 1.0 }, MdrProfile::Sphere { radius: 1.0 });
+    let sphere = (Shape::Sphere { radius: 1.0 }, MdrProfile::Paraboloid { radius: 1.0 });
     let cone = (Shape::Cone { slope: 0.3 }, MdrProfile::Cone { slope: 0.3 });
     let mut compared = 0;
     for (shape, profile) in [sphere, cone] {

@@ -85,7 +85,7 @@ fn pressed_under_a_load_then_held_the_load_relaxes_as_the_material_does() {
 fn beside_springs(simulation: Simulation, relaxation: &Relaxation) -> Vec<(Row, [f64; 2])> {
     let controls: Vec<Control> = simulation.loading.stages.iter().map(|stage| stage.control).collect();
     let rows = rows(simulation);
-    let mut springs = Mdr::new(MdrProfile::Sphere { radius: 1.0 }, relaxation, 0.8, 2000).unwrap();
+    let mut springs = Mdr::new(MdrProfile::Paraboloid { radius: 1.0 }, relaxation, 0.8, 2000).unwrap();
     let mut out = vec![];
     let mut last = Row::default();
     for row in rows {

@@ -43,7 +43,7 @@ fn record(thickness: f64, poisson: f64, interface: Interface) -> [Vec<f64>; 3] {
 
 #[test]
 fn the_modulus_of_a_thin_sample_comes_back() {
-    let profile = MdrProfile::Sphere { radius: 1.0 };
+    let profile = MdrProfile::Paraboloid { radius: 1.0 };
     for (thickness, poisson, interface) in
         [(0.1, 0.5, Interface::Bonded), (0.03, 0.3, Interface::Bonded), (0.05, 0.5, Interface::Slip)]
     {
@@ -79,7 +79,7 @@ fn stated_uncertainties_of_radius_and_thickness_widen_the_intervals() {
             thickness_uncertainty,
             ..IndentationOptions::default()
         };
-        fit_indentation(MdrProfile::Sphere { radius }, &record, &options).unwrap().instantaneous
+        fit_indentation(MdrProfile::Paraboloid { radius }, &record, &options).unwrap().instantaneous
     };
     let plain = fit(1.0, 0.05, [0.0; 2]);
     let variance = |x: asperity::indentation::Interval| ((x.high / x.value).ln() / 1.959_964).powi(2);
@@ -91,5 +91,5 @@ fn stated_uncertainties_of_radius_and_thickness_widen_the_intervals() {
         assert!((told / by - 1.0).abs() < 0.15, "{told} {by}");
     }
     let options = IndentationOptions { thickness_uncertainty: 0.1, ..IndentationOptions::default() };
-    assert!(fit_indentation(MdrProfile::Sphere { radius: 1.0 }, &record, &options).is_err());
+    assert!(fit_indentation(MdrProfile::Paraboloid { radius: 1.0 }, &record, &options).is_err());
 }

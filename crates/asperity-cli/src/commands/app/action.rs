@@ -39,10 +39,11 @@ pub const FIT: &[Choice] = &[
 /// Of `asperity fit-indentation`.
 pub const INDENTATION: &[Choice] = &[
     ("radius", "radius of the sphere", "5 mm"),
-    ("cone", "or slope of a cone", "0.5"),
+    ("indenter", "sphere, paraboloid, cone or pyramid", "sphere"),
+    ("angle", "half angle of a cone or pyramid", "20 deg"),
     ("poisson", "Poisson's ratio", "0.5"),
     ("thickness", "thickness of a thin sample on a rigid base", "1 mm"),
-    ("model", "viscoelastic, or of a force curve hertz, dmt, jkr, maugis", "viscoelastic"),
+    ("model", "viscoelastic or power-law, or of a force curve hertz, dmt, jkr, maugis", "viscoelastic"),
     ("spring-constant", "of a force curve: spring constant", "0.2 N/m"),
     ("long-time", "after the record: free, solid or fluid", "solid"),
     ("terms", "number of terms", "2"),
@@ -404,7 +405,7 @@ mod tests {
     fn every_action_is_a_command_line() {
         let options = |known: &[Choice]| -> Given {
             // What excludes other options.
-            let skip = ["cone", "wlf", "window", "arrhenius", "shift-table", "misfit"];
+            let skip = ["angle", "wlf", "window", "arrhenius", "shift-table", "misfit"];
             known
                 .iter()
                 .filter(|c| !skip.contains(&c.0))

@@ -167,6 +167,9 @@ impl Material {
         let indenter = text.lines().find_map(|line| line.strip_prefix(INDENTER)).map(|line| {
             line.trim_end_matches('.').split(", ").map(|key| format!("{key}\n")).collect::<String>()
         });
+        if let Some(differs) = text.lines().find_map(|line| line.strip_prefix(BALL)) {
+            crate::messages::message!("note: the sphere of a case{differs}");
+        }
         let seconds = |text: &str| text.trim_matches(['"', ' ']).trim_end_matches(" s").parse::<f64>().ok();
         let times = text.split_once("window = [").and_then(|(_, rest)| {
             let (first, last) = rest.split(']').next()?.split_once(',')?;
@@ -202,6 +205,9 @@ impl Material {
 
 /// How the line begins in which `fit-indentation` keeps the indenter of the test.
 const INDENTER: &str = "# Indenter of the test, as [[surface]]: ";
+
+/// How the line begins in which it says how the ball of the test differs from the sphere of a case.
+const BALL: &str = "# The sphere of a case";
 
 /// The text in quotes behind the first `key`.
 fn quoted<'a>(text: &'a str, key: &str) -> Option<&'a str> {

@@ -65,7 +65,7 @@ pub enum MdrTarget {
 /// use asperity::reference::{Mdr, MdrProfile, MdrTarget};
 /// // E*(t) = 2 + 2 exp(-t/0.5), a sphere of radius 1 held at the approach 0.04: W ~ E*(t).
 /// let relaxation = Relaxation::absolute(2.0, &[(2.0, 0.5)])?;
-/// let mut springs = Mdr::new(MdrProfile::Sphere { radius: 1.0 }, &relaxation, 0.3, 500)?;
+/// let mut springs = Mdr::new(MdrProfile::Paraboloid { radius: 1.0 }, &relaxation, 0.3, 500)?;
 /// let first = springs.step(0.0, MdrTarget::Approach(0.04))?;
 /// let later = springs.step(1.0, MdrTarget::Approach(0.04))?;
 /// assert!((first.load - 0.042666666666666665).abs() < 1e-14);
@@ -136,7 +136,7 @@ impl Mdr {
         largest_radius: f64,
         springs: usize,
     ) -> Result<Self> {
-        let row = Mdr::new(MdrProfile::Sphere { radius: 1.0 }, relaxation, largest_radius, springs)?;
+        let row = Mdr::new(MdrProfile::Paraboloid { radius: 1.0 }, relaxation, largest_radius, springs)?;
         Ok(Mdr { layer: Some(layer), ..row })
     }
 

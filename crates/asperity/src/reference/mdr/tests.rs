@@ -5,7 +5,7 @@ use super::{Mdr, MdrOptions, MdrProfile, MdrState, MdrTarget};
 use crate::load::{Control, History, Loading};
 use crate::material::Relaxation;
 
-const SPHERE: MdrProfile = MdrProfile::Sphere { radius: 1.0 };
+const SPHERE: MdrProfile = MdrProfile::Paraboloid { radius: 1.0 };
 const CONE: MdrProfile = MdrProfile::Cone { slope: 0.1 };
 
 /// E*(t) = 2 + 2 exp(-t/0.5); C(t) = 1/4 + (1 - exp(-t))/4.
@@ -257,4 +257,53 @@ fn absurd_numbers_are_named() {
     let mut row = Mdr::new(SPHERE, &zener(), 1.0, 10).unwrap();
     assert!(row.step(-1.0, MdrTarget::Load(1.0)).is_err());
     assert!(row.step(1.0, MdrTarget::Approach(f64::NAN)).is_err());
+}
+
+#[test]
+fn the_ball_has_sneddons_numbers() {
+    // (d, a, W/E*) of R = 1: a from d = (a/2) ln((1 + a)/(1 - a)) by bracketing, W = ((1 + a²)/2) ln((1 + a)/(1 - a)) - a, in another program.
+    for (depth, a, load) in [
+        (1e-3, 0.031617506051082836, 4.2159485714954315e-05),
+        (0.1, 0.31094923331193713, 0.041741594710428875),
+        (0.3, 0.520235228514488, 0.2124975565849313),
+        (1.0, 0.8335565596009646, 1.1996786402577333),
+    ] {
+        let ball = MdrProfile::Sphere { radius: 1.0 };
+        // The bracketing ends at 2e-12; the closed form of the load at 1e-3 cancels four digits in that program.
+        assert!(near(ball.reach(depth), a, 1e-11) && near(ball.unit_load(depth), load, 1e-10), "{depth}");
+        // A row of springs, exact but for Gauss' rule over cells.
+        let elastic = Relaxation::absolute(3.0, &[]).unwrap();
+        let mut row = Mdr::new(ball, &elastic, 0.9, 900).unwrap();
+        let state = row.step(0.0, MdrTarget::Approach(depth)).unwrap();
+        assert!(near(state.load, 3.0 * load, 1e-9) && near(state.contact_radius, a, 1e-9), "{state:?}");
+        let again =
+            Mdr::new(ball, &elastic, 0.9, 900).unwrap().step(0.0, MdrTarget::Load(3.0 * load)).unwrap();
+        assert!(near(again.approach, depth, 1e-9), "{again:?}");
+        // The pressure carries the load, and below the ball the surface has its shape.
+        if depth > 0.01 {
+            let n = 4000;
+            let ring = |k: usize| {
+                let r = a * ((k as f64 + 0.5) / n as f64).sqrt();
+                row.pressure(r) * std::f64::consts::PI * a * a / n as f64
+            };
+            let carried: f64 = (0..n).map(ring).sum();
+            // The pressure falls as a root at the edge: rings of 1/4000 of the area.
+            assert!(near(carried, state.load, 1e-4), "{carried} {state:?}");
+            for share in [0.2, 0.7, 0.95] {
+                let r = share * a;
+                let shape = depth - (1.0 - (1.0 - r * r).sqrt());
+                assert!((row.displacement(r) - shape).abs() < 1e-5 * depth, "{share}");
+            }
+        }
+    }
+    // A deep ball follows its profile beyond the equator without a break.
+    let ball = MdrProfile::Sphere { radius: 2.0 };
+    for depth in [7.5, 7.7, 9.0] {
+        let (h, slope) = (1e-6, 2.0 * ball.reach(depth));
+        assert!(
+            near((ball.unit_load(depth + h) - ball.unit_load(depth - h)) / (2.0 * h), slope, 1e-5),
+            "{depth}"
+        );
+        assert!(near(ball.height(ball.reach(depth)), depth, 1e-12), "{depth}");
+    }
 }

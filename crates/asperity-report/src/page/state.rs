@@ -220,9 +220,9 @@ fn status(reader: &Reader) -> String {
 
 /// The answers of the result, and the row that they belong to.
 fn headline(answers: &[Answer], units: &Units, bars: &[ErrorBar], last: Option<&Row>) -> Vec<[String; 2]> {
-    let words = |answer: &Answer| match bars.iter().find(|bar| bar.name == answer.name) {
-        Some(bar) => units.plus_minus(bar),
-        None => answer.words(units),
+    let words = |answer: &Answer| {
+        let bar = bars.iter().find(|bar| bar.name == answer.name);
+        answer.validity.mark(bar.map_or_else(|| answer.words(units), |bar| units.plus_minus(bar)))
     };
     let note = |answer: &Answer| match answer.note.as_str() {
         "" => String::new(),

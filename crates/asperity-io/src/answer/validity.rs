@@ -50,6 +50,15 @@ impl Validity {
         }
     }
 
+    /// The same on a card: the number, and below it what must be known.
+    pub fn card(&self, words: String) -> [String; 2] {
+        match self {
+            Validity::Holds => [words, String::new()],
+            Validity::See(codes) => [words, format!(" [see {}]", codes.join(", "))],
+            Validity::TakenBack { code, why } => ["not valid".to_owned(), format!(": {why} [{code}]")],
+        }
+    }
+
     /// What these findings say of the answer `name`.
     pub fn of<'f>(name: &str, findings: impl Iterator<Item = &'f Finding> + Clone) -> Validity {
         let is_of = |rule: &Rule, finding: &Finding| {

@@ -142,7 +142,8 @@ pub fn answers(readers: &[Reader], units: &Units) -> Result<Vec<Answers>, StoreE
 /// How far a result is that is not complete: "interrupted, 12 of 40 rows".
 pub fn unfinished(reader: &Reader) -> Option<String> {
     let of = reader.header().rows_expected.map_or(String::new(), |total| format!(" of {total}"));
-    (reader.status() != Status::Complete).then(|| format!("{}, {}{of} rows", reader.state(), reader.len()))
+    let status = reader.status();
+    (status != Status::Complete).then(|| format!("{}, {}{of} rows", status.as_str(), reader.len()))
 }
 
 /// Keys that say how a case is called and what is kept, not what is computed.

@@ -195,7 +195,7 @@ const RULES: &[Rule] = &[
     see(FLUID_CHATTER, FLUID),
     see(FLUID_APPROACH_HELD, FLUID),
     see(POCKET_TENSION, FLUID),
-    takes(SEAL_LIFTED, SEAL, 0.0, "the fluid lifts the seal"),
+    takes(SEAL_LIFTED, SEAL_LEAK, 0.0, "the fluid lifts the seal"),
     takes(SEAL_BEYOND_SWEEP, SEAL, 0.0, "the sweep ends below the pressure in the seal"),
     takes(SEAL_BELOW_SWEEP, SEAL_LEAK, 50.0, "the sweep begins above the pressure in the seal"),
     see(SEAL_BELOW_SWEEP, SEAL),

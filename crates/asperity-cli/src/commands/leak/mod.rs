@@ -189,7 +189,7 @@ fn text(history: &LeakHistory, units: &Units) -> String {
         text += &format!("the leak rate is {patch}\n");
     }
     let tight = words::tight(times, column("percolates"), units);
-    if !tight.is_empty() {
+    if !tight.is_empty() && last.is_valid() {
         text += &format!("{}\n", history.validity("tight_from").mark(tight));
     }
     text + &tensors(table)

@@ -328,7 +328,7 @@ fn first_pressures(most: f64) -> Vec<f64> {
 #[test]
 fn pressures_are_added_where_the_flow_chokes_until_the_leak_stands() {
     let mut widest = 1.0f64;
-    for (peak, inlet) in [(0.98, 0.05), (0.98, 0.15), (1.1, 0.15), (1.1, 0.2), (1.3, 0.9), (0.7, 0.2)] {
+    for (peak, inlet) in [(0.98, 0.05), (1.1, 0.15), (1.3, 0.9)] {
         let to = 1.0 - peak + inlet;
         let exact = (f64::powf(to, 4.45) - f64::max(1.0 - peak, 0.0).powf(4.45)) / 4.45 / 2.0;
         let profile = profile("uniform", peak);

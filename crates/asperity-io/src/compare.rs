@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use asperity::quantities::Quantity;
 use serde::Serialize;
 
-use crate::answer::{self, Answer, Units};
+use crate::answer::{self, Answer, Units, Validity};
 use crate::converge::ErrorBar;
 use crate::readable::quantity;
-use crate::store::{At, FieldKind, Reader, StoreError};
+use crate::store::{At, FieldKind, Reader, Status, StoreError};
 
 /// The differences of a second result from a first one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -48,8 +48,11 @@ pub struct Answers {
     pub values: Vec<f64>,
     /// Its error in each result, SI; NaN (in JSON null) where that is not known.
     pub errors: Vec<f64>,
-    /// Each value over that of the first result, less 1; NaN (in JSON null) where that says nothing.
+    /// Each value over that of the first result, less 1; NaN (in JSON null) where that says nothing, a finding takes one of them back, or a
+    /// result is not complete.
     pub changes: Vec<f64>,
+    /// What the findings of each result say of it.
+    pub validity: Vec<Validity>,
 }
 
 impl Answers {
@@ -61,11 +64,11 @@ impl Answers {
     /// Its value in a result, with a unit that suits it and its error, and, of all but the first, the change and whether that is larger
     /// than the errors: "43 % ± 1 (+2.1 %, within the errors)".
     pub fn words(&self, n: usize, units: &Units) -> String {
-        let Answers { values, changes, .. } = self;
+        let Answers { values, changes, validity, .. } = self;
         if values[n].is_nan() {
             return "-".to_owned();
         }
-        let value = self.with_error(n, units);
+        let value = validity[n].cell(self.with_error(n, units));
         let change = match changes[n] {
             change if n == 0 || !change.is_finite() => return value,
             0.0 => "same".to_owned(),
@@ -108,27 +111,39 @@ pub fn answers(readers: &[Reader], units: &Units) -> Result<Vec<Answers>, StoreE
     let mut all: Vec<Answers> = vec![];
     for (n, reader) in readers.iter().enumerate() {
         let bars = reader.error_bars();
-        for Answer { name, value, unit, .. } in answer::of(reader, &Units::of(reader, units))? {
+        for Answer { name, value, unit, validity, .. } in answer::of(reader, &Units::of(reader, units))? {
             let error = bars.iter().find(|bar| bar.name == name).and_then(|bar| bar.error);
             let place = all.iter().position(|known| known.name == name && known.unit == unit);
             let place = place.unwrap_or_else(|| {
                 let none = vec![f64::NAN; readers.len()];
-                all.push(Answers { name, unit, values: none.clone(), errors: none.clone(), changes: none });
+                let validity = vec![Validity::Holds; readers.len()];
+                let (values, errors) = (none.clone(), none.clone());
+                all.push(Answers { name, unit, values, errors, changes: none, validity });
                 all.len() - 1
             });
+            all[place].validity[n] = validity;
             all[place].values[n] = value;
             all[place].errors[n] = error.unwrap_or(f64::NAN);
         }
     }
-    for Answers { values, changes, .. } in &mut all {
+    let complete: Vec<bool> = readers.iter().map(|reader| reader.status() == Status::Complete).collect();
+    for Answers { values, changes, validity, .. } in &mut all {
         let first = values[0];
-        let change = |value: &f64| {
+        let holds = |n: usize| complete[n] && validity[n].is_valid();
+        let change = |(n, value): (usize, &f64)| {
             let change = if *value == first { 0.0 } else { value / first - 1.0 };
-            if change.is_finite() { change } else { f64::NAN }
+            if change.is_finite() && (n == 0 || holds(0) && holds(n)) { change } else { f64::NAN }
         };
-        *changes = values.iter().map(change).collect();
+        *changes = values.iter().enumerate().map(change).collect();
     }
     Ok(all)
+}
+
+/// How far a result is that is not complete: "interrupted, 12 of 40 rows".
+pub fn unfinished(reader: &Reader) -> Option<String> {
+    let of = reader.header().rows_expected.map_or(String::new(), |total| format!(" of {total}"));
+    let status = reader.status();
+    (status != Status::Complete).then(|| format!("{}, {}{of} rows", status.as_str(), reader.len()))
 }
 
 /// Keys that say how a case is called and what is kept, not what is computed.
@@ -323,7 +338,8 @@ mod tests {
     fn changes_have_four_digits() {
         let (values, changes) = (vec![1.0; 5], vec![0.0, 0.0, 0.12345678, -0.5, 66.54321]);
         let errors = vec![f64::NAN; 5];
-        let answers = Answers { name: "max_pressure".into(), unit: "Pa", values, errors, changes };
+        let validity = vec![Validity::Holds; 5];
+        let answers = Answers { name: "max_pressure".into(), unit: "Pa", values, errors, changes, validity };
         let words: Vec<String> = (0..5).map(|n| answers.words(n, &Units::default())).collect();
         assert_eq!(words, ["1 Pa", "1 Pa (same)", "1 Pa (+12.35 %)", "1 Pa (-50 %)", "1 Pa (67.54 times)"]);
     }
@@ -333,7 +349,8 @@ mod tests {
         let (values, changes) = (vec![1.0, 1.3, 1.4, 1.0], vec![0.0, 0.3, 0.4, 0.0]);
         // Both errors together are 0.35 Pa.
         let errors = vec![0.2, 0.15, 0.15, f64::NAN];
-        let answers = Answers { name: "max_pressure".into(), unit: "Pa", values, errors, changes };
+        let validity = vec![Validity::Holds; 4];
+        let answers = Answers { name: "max_pressure".into(), unit: "Pa", values, errors, changes, validity };
         let words: Vec<String> = (0..4).map(|n| answers.words(n, &Units::default())).collect();
         let expected = [
             "1.00 Pa ± 0.20",

@@ -36,8 +36,11 @@ def test_a_seal_has_the_numbers_of_the_command(tmp_path):
     assert seal.fluid_pressure.shape == (1, seal.x.size) and (np.diff(seal.fluid_pressure) <= 0).all()
     assert "leaks" in repr(seal) and any(found.code == "seal-never-tight" for found in seal.findings)
     data = seal.to_xarray()
-    # A patch that is tight nowhere needs no pressures where it closes: a quarter of the eight.
-    assert dict(data.sizes) == {"inlet": 24, "time": 2, "x": 400, "seed": 1, "pressure": 6}
+    # A patch that is tight nowhere needs no pressures where it closes, a quarter of the eight; up to eight are added until the leak stands.
+    assert 6 <= data.sizes["pressure"] <= 14 and dict(data.sizes, pressure=6) == {"inlet": 24, "time": 2, "x": 400, "seed": 1, "pressure": 6}
+    low, high = seal.leak_bounds
+    assert low <= seal.leak.mean <= high <= 1.1 * low
+    assert seal.answers[0] == {"name": "seal_leak", "value": seal.leak.mean, "unit": "m3/s"}
     assert float(data.leak_time[-1]) == seal.leak.mean and data.leak_inlet.attrs["units"] == "m^3/s"
     # The conductance of valleys falls with the pressure, and the leak grows with the inlet pressure.
     assert (np.diff(data.conductance.isel(seed=0, time=-1)) < 0).all() and (np.diff(data.leak_inlet) > 0).all()
@@ -53,9 +56,11 @@ def test_another_length_and_pressure_take_the_same_runs_and_a_lifted_seal_has_no
     wide = asp.seal(CASE, directory=tmp_path / "seal", set={"seal.width": "2 mm"}, progress=False)
     assert wide.leak.mean == pytest.approx(0.5 * seal.leak.mean, rel=1e-9)  # the march arrives within 1e-12 of the drop
     tenth = asp.seal(CASE, directory=tmp_path / "seal", set={"leakage.pressure_drop": "11 kPa"}, progress=False)
-    assert tenth.leak.mean == pytest.approx(seal.answer["leak_growth"] * seal.leak.mean, rel=1e-9)
+    # The sweep may have got further pressures for it.
+    assert tenth.leak.mean == pytest.approx(seal.answer["leak_growth"] * seal.leak.mean, rel=0.05)
     with pytest.warns(asp.ResultWarning, match="lifts"):
         lifted = asp.seal(CASE, directory=tmp_path / "seal", set={"leakage.pressure_drop": "20 kPa"}, progress=False)
+    assert lifted.answers[0]["why"] == "seal-lifted: the fluid lifts the seal" and lifted.answers[0]["valid"] is False
     assert lifted.states == ["lifted"] and np.isnan(lifted.leak.mean) and lifted.usual.keys() == {"ml/year"}
     assert before and before == {run: os.stat(run / "zarr.json").st_mtime_ns for run in before}
 

@@ -17,11 +17,11 @@ pub fn line(name: &str, value: impl std::fmt::Display) -> String {
     format!("{name:<WIDTH$} {value}\n")
 }
 
-/// Name and words of each answer, with its error where one of `bars` has it.
+/// Name and words of each answer, with its error where one of `bars` has it, and with what the findings say of it.
 pub fn lines(answers: &[Answer], bars: &[ErrorBar], units: &Units) -> Vec<[String; 2]> {
-    let words = |answer: &Answer| match bars.iter().find(|bar| bar.name == answer.name) {
-        Some(bar) => with_error(answer, bar, units),
-        None => alone(answer, units),
+    let words = |answer: &Answer| {
+        let bar = bars.iter().find(|bar| bar.name == answer.name);
+        answer.validity.mark(bar.map_or_else(|| alone(answer, units), |bar| with_error(answer, bar, units)))
     };
     units.without_second_rate(answers).map(|answer| [answer.label(), words(answer)]).collect()
 }

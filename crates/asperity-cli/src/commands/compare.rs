@@ -2,7 +2,7 @@
 
 use asperity::Axis;
 use asperity_io::answer::Units;
-use asperity_io::compare::{self, Answers, Comparison, FACTOR, answers, cases};
+use asperity_io::compare::{self, Answers, Comparison, FACTOR, answers, cases, unfinished};
 use asperity_io::store::Reader;
 use serde_json::json;
 
@@ -35,7 +35,7 @@ impl Verb for args::Compare {
             );
         }
         let units = super::answers::units_of(&self.unit, &readers)?;
-        let labels = super::labels::of(&self.labels, &readers)?;
+        let labels = marked(super::labels::of(&self.labels, &readers)?, &readers);
         let answers = answers(&readers, &units)?;
         let others = readers[1..].iter().map(|other| compare::compare(first, other));
         let found = others.collect::<Result<Vec<Comparison>, _>>()?;
@@ -43,10 +43,19 @@ impl Verb for args::Compare {
             return crate::print(&format!("{}\n", object(&readers, &labels, &answers, &found)?));
         }
         crate::print(&match &found[..] {
-            [found] => case(found) + &side_by_side(&answers, &labels, &units) + &text(found, first),
+            [found] => case(found) + &side_by_side(&answers, &labels, &units) + &text(found, &readers),
             _ => cases_of(&readers, &labels) + &side_by_side(&answers, &labels, &units),
         })
     }
+}
+
+/// The labels, with how far a result is that is not complete.
+pub fn marked(labels: Vec<String>, readers: &[Reader]) -> Vec<String> {
+    let mark = |(label, reader): (String, &Reader)| match unfinished(reader) {
+        Some(how) => format!("{label} ({how})"),
+        None => label,
+    };
+    labels.into_iter().zip(readers).map(mark).collect()
 }
 
 /// Of two results the comparison, of more each with the first.
@@ -62,6 +71,7 @@ fn object(
     };
     object["results"] = readers.iter().map(|reader| reader.path().to_string_lossy()).collect();
     object["labels"] = json!(labels);
+    object["states"] = readers.iter().map(Reader::state).collect();
     object["answers"] = json!(answers);
     Ok(object)
 }
@@ -111,15 +121,17 @@ fn case(found: &Comparison) -> String {
 }
 
 /// The last rows of two, and what differs at the times that both have.
-fn text(found: &Comparison, first: &Reader) -> String {
+fn text(found: &Comparison, readers: &[Reader]) -> String {
+    let incomplete = readers.iter().any(|reader| unfinished(reader).is_some());
     let mut text =
         format!("\n{:<28}{:<16}{:<16}{:<16}largest difference\n", "at the end", "first", "second", "change");
-    let axis = first.header().axis();
+    let axis = readers[0].header().axis();
     for number in &found.numbers {
         let units = if number.units == "1" { "" } else { number.units.as_str() };
         let [a, b] = number.last;
         let change = match b / a - 1.0 {
             _ if a == b => "none".to_owned(),
+            _ if incomplete => "not complete".to_owned(),
             _ if a == 0.0 => "from 0".to_owned(),
             change if change >= FACTOR => format!("{:.4} times ", 1.0 + change),
             change if change.is_finite() => format!("{:+.3} %", 100.0 * change),

@@ -10,7 +10,7 @@ use asperity_report::page::{Options, write};
 use asperity_report::result::{self, Plot, together};
 use asperity_report::sheet::Sheet;
 
-use super::compare::rows_of;
+use super::compare::{marked, rows_of};
 use crate::args::Report;
 use crate::failure::Failure;
 use crate::files::Files;
@@ -49,7 +49,7 @@ impl Verb for Report {
 fn sheet(readers: Vec<Reader>, labels: &[String]) -> Result<Sheet, Failure> {
     let mut sheet = Sheet::new(counted(readers.len(), "result"));
     let units = Units::of(&readers[0], &Units::default());
-    let rows = rows_of("", &answers(&readers, &units)?, labels, &units);
+    let rows = rows_of("", &answers(&readers, &units)?, &marked(labels.to_vec(), &readers), &units);
     sheet = sheet.table("Answers", &rows).note("In brackets: the change against the first result.");
     let mut rows = vec![[&["key".to_owned()], labels].concat()];
     for (key, values) in cases(&readers.iter().collect::<Vec<_>>()) {

@@ -102,7 +102,8 @@ pub(super) fn told(event: &Event<'_>, units: &Units, is_shown: impl Fn(&Answer) 
     let came = match &event.row.state {
         State::Done => {
             let shown = event.row.answers.iter().find(|answer| is_shown(answer));
-            shown.map_or("done".into(), |answer| format!("{} {}", answer.label(), answer.words(units)))
+            let words = |answer: &Answer| answer.validity.cell(answer.words(units));
+            shown.map_or("done".into(), |answer| format!("{} {}", answer.label(), words(answer)))
         }
         State::Failed(why) => format!("failed: {why}"),
         state => state.word().to_owned(),
@@ -169,6 +170,7 @@ fn object(study: &Study, table: &Table) -> Value {
             "error_bars": row.bars,
             "findings": row.findings.len(),
             "finding_codes": row.codes(),
+            "not_valid": row.not_valid(),
             "error": error,
             "result": study.result(&row.run).to_string_lossy(),
         })
@@ -217,11 +219,9 @@ fn lines(study: &Study, table: &Table, units: &Units, most: usize) -> Vec<Vec<St
             _ => line.extend(shown.iter().map(|name| {
                 let answer = row.answers.iter().find(|answer| answer.name == *name);
                 let bar = row.bars.iter().find(|bar| bar.name == *name);
-                match (answer, bar) {
-                    (None, _) => "-".to_owned(),
-                    (Some(_), Some(bar)) => units.plus_minus(bar),
-                    (Some(answer), None) => answer.words(&units),
-                }
+                let Some(answer) = answer else { return "-".to_owned() };
+                let words = bar.map_or_else(|| answer.words(&units), |bar| units.plus_minus(bar));
+                answer.validity.cell(words)
             })),
         }
         lines.push(line);

@@ -15,6 +15,7 @@ mod seal;
 mod stress;
 mod study;
 mod surface;
+mod validity;
 
 use std::path::Path;
 use std::process::{Command, Output};

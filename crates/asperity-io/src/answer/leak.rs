@@ -33,3 +33,8 @@ pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     }
     Ok(answers)
 }
+
+/// The row of the last leak.
+pub(super) fn last_row(reader: &Reader) -> Result<Option<usize>> {
+    Ok(LeakHistory::of(reader)?.and_then(|leaks| Some(*leaks.column("leak_step").last()? as usize)))
+}

@@ -15,7 +15,8 @@
 //! | with stress | `max_mises`, `max_mises_depth`, `first_yield_load` |
 //!
 //! They are those of the last row; if nothing touches there, of the row with the largest load, of surfaces that adhere with the largest approach; of a sweep, of the velocity with the largest
-//! friction. Summaries, comparisons, reports, error bars and studies all read them here.
+//! friction. Summaries, comparisons, reports, error bars and studies all read them here, with what the findings of the result say of them
+//! ([`Validity`]).
 
 mod adhesion;
 mod contact;
@@ -26,6 +27,7 @@ mod motion;
 mod stress;
 mod tangential;
 mod units;
+mod validity;
 mod wear;
 
 use asperity::quantities::Quantity;
@@ -37,6 +39,7 @@ use crate::cycles;
 use crate::store::{Reader, Result};
 
 pub use units::{MBAR_LITRE, UnitError, Units};
+pub use validity::Validity;
 pub use wear::course as wear_course;
 
 /// A number that a result was made for.
@@ -51,6 +54,9 @@ pub struct Answer {
     /// The row that it belongs to.
     #[serde(skip)]
     pub at: Option<Coordinate>,
+    /// What the findings of the result say of it.
+    #[serde(flatten)]
+    pub validity: Validity,
     /// What a reader must know besides, in a few words.
     #[serde(skip)]
     pub note: String,
@@ -70,7 +76,8 @@ const SHARES: [&str; 3] = ["contact_fraction", "relaxation", "slip_share"];
 
 impl Answer {
     pub(crate) fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Answer {
-        Answer { name: name.into(), value, unit, at: None, note: String::new(), resolution: 0.0 }
+        let (name, note, validity) = (name.into(), String::new(), Validity::Holds);
+        Answer { name, value, unit, at: None, validity, note, resolution: 0.0 }
     }
 
     fn at(self, row: &Row) -> Answer {
@@ -119,6 +126,7 @@ pub fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     answers.extend(last_cycle(reader)?);
     answers.extend(contact::of(reader, &rows, decisive)?);
     answers.extend(stress::of(reader)?);
+    validity::mark(&mut answers, reader.findings(), &rows, leak::last_row(reader)?);
     Ok(answers)
 }
 

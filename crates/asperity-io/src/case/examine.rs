@@ -1,7 +1,9 @@
 //! What `asperity check` says of a case: what was read, what is to be expected, and what may be off.
 
 use asperity::contact::Prescribed;
-use asperity::finding::{Contact, Diagnostics, Expected, Finding, Known, thin_body};
+use asperity::finding::{
+    Contact, Diagnostics, Expected, Finding, Known, LeakDiagnostics, LeakState, thin_body,
+};
 use asperity::material::Modulus;
 use asperity::sliding::Streaming;
 use asperity::surface::statistics::{HeightStatistics, SlopeStatistics};
@@ -104,7 +106,8 @@ impl Case {
         };
         let of_case = self.findings.iter().chain(diagnostics.known()).cloned();
         let to_come = expected.iter().flat_map(|expected| expected.findings(&simulation));
-        let findings = of_case.chain(to_come).chain(self.thin(expected.as_ref())).collect();
+        let findings = of_case.chain(to_come).chain(self.thin(expected.as_ref()));
+        let findings = findings.chain(self.uncoupled(&simulation, expected.as_ref())).collect();
         Ok(Examination {
             inputs: self.inputs(&simulation, &parts, expected),
             findings,
@@ -120,6 +123,26 @@ impl Case {
             }
             _ => None,
         }
+    }
+
+    /// Whether a fluid that is left out would push the surfaces apart under the largest load. `asperity seal` takes it into account.
+    fn uncoupled(&self, simulation: &Simulation, expected: Option<&Expected>) -> Vec<Finding> {
+        let mut diagnostics = LeakDiagnostics::default();
+        if let (Some(leak), Some(Prescribed::Load(load)), None) =
+            (&self.leakage, expected.map(|expected| expected.largest), &self.seal)
+        {
+            diagnostics.see(&LeakState {
+                row: None,
+                constriction: None,
+                gap_error: 0.0,
+                pressure_drop: leak
+                    .fluid
+                    .filter(|_| leak.coupling.is_none())
+                    .map(|fluid| fluid.pressure_drop()),
+                mean_pressure: load / simulation.grid.area(),
+            });
+        }
+        diagnostics.findings()
     }
 
     fn inputs(&self, simulation: &Simulation, parts: &[Part], expected: Option<Expected>) -> Inputs {

@@ -9,7 +9,7 @@ use serde_json::Value;
 use thiserror::Error;
 
 use super::{Beside, Fluid, Leak, LeakDirection, words};
-use crate::answer::Units;
+use crate::answer::{Units, Validity};
 use crate::instants;
 use crate::readable::quantity;
 use crate::store::{At, FieldKind, LeakTable, LeakWriter, Reader, StoreError};
@@ -74,8 +74,22 @@ impl LeakHistory {
         self.column(name).last().copied().unwrap_or(f64::NAN)
     }
 
-    /// The last leak and when the seal is tight, in a sentence without its full stop.
+    /// The last leak and when the seal is tight, in a sentence without its full stop, with what the findings say of it.
     pub fn sentence(&self, units: &Units) -> String {
+        let [last, tight] = ["leak_rate", "tight_from"].map(|name| self.validity(name));
+        (if last.is_valid() { tight } else { last }).mark(self.unmarked(units))
+    }
+
+    /// What the findings say of an answer about the last leak.
+    pub fn validity(&self, name: &str) -> Validity {
+        let last = self.last("leak_step") as usize;
+        let concerns = |finding: &&Finding| {
+            name == "tight_from" || finding.rows.is_none_or(|[from, to]| from <= last && last <= to)
+        };
+        Validity::of(name, self.findings.iter().filter(concerns))
+    }
+
+    fn unmarked(&self, units: &Units) -> String {
         if self.last("percolates") == 0.0 {
             let tight = words::tight(self.column("leak_time"), self.column("percolates"), units);
             return format!("{tight} ({})", self.leak.fluid_words());
@@ -92,11 +106,10 @@ impl LeakHistory {
         format!("{} at t = {time} ({}){tight}", units.number(self.last(name), unit), self.note(units))
     }
 
-    /// What must be known beside the last leak: the fluid, of which patch it is, and whether the leak is resolved.
+    /// What must be known beside the last leak: the fluid, and of which patch it is.
     pub fn note(&self, units: &Units) -> String {
-        let doubt = if self.last("leak_resolved") == 0.0 { "; not resolved: see the findings" } else { "" };
         let patch = self.patch(units).map_or(String::new(), |words| format!("; {words}"));
-        format!("{}{patch}{doubt}", self.leak.fluid_words())
+        format!("{}{patch}", self.leak.fluid_words())
     }
 
     /// That the leak is one of the patch that was computed, and, where the seal goes on beyond its sides, the last leak Q over the width w

@@ -1,11 +1,12 @@
 //! The answers about a seal: leak, opening pressure, pressure inside, over the inlet pressure and over time.
 
 use asperity::finding::Finding;
-use asperity::seal::{CELLS, Conductance, Opens, SealFlow, SealState, flow, opening};
+use asperity::seal::{CELLS, Conductance, Opens, SealFlow, SealState, bounds, flow, opening};
 use rayon::prelude::*;
 
 use super::sweep::{SealError, SealSweep};
 use super::{SealPlan, findings};
+use crate::answer::{Answer, Validity};
 
 /// Inlet pressures of the curve.
 const INLETS: usize = 24;
@@ -53,13 +54,20 @@ pub struct Over {
     pub leak: Spread,
     /// The mean leak if the fluid did not open the contact.
     pub one_way: f64,
+    /// The least and the largest mean leak that the pressures of the sweep allow.
+    pub bounds: [f64; 2],
 }
 
 impl Over {
     /// The same with leaks times a factor.
     #[must_use]
     pub fn times(&self, factor: f64) -> Over {
-        Over { at: self.at, leak: self.leak.times(factor), one_way: factor * self.one_way }
+        Over {
+            at: self.at,
+            leak: self.leak.times(factor),
+            one_way: factor * self.one_way,
+            bounds: self.bounds.map(|leak| factor * leak),
+        }
     }
 }
 
@@ -76,6 +84,8 @@ pub struct SealAnswer {
     pub leak: Spread,
     /// The same if the fluid did not open the contact.
     pub one_way: Spread,
+    /// The least and the largest mean leak that the pressures of the sweep allow.
+    pub bounds: [f64; 2],
     /// When each seed opens.
     pub opens: Vec<Opens>,
     /// Largest inlet pressure \[Pa\] at which the seed is tight for certain; `None` unless that is known of all.
@@ -104,13 +114,17 @@ impl SealAnswer {
             (0..sweep.seeds.len()).map(|seed| sweep.conductance(plan, seed, time)).collect()
         };
         let all = |inlet: f64, time: usize| -> asperity::Result<(Vec<SealFlow>, Over)> {
-            let flows: asperity::Result<Vec<SealFlow>> =
-                sigmas(time)?.iter().map(|sigma| flow(sigma, &plan.profile, [inlet, outlet])).collect();
-            let flows = flows?;
+            let (mut flows, mut open) = (vec![], vec![]);
+            for sigma in sigmas(time)? {
+                flows.push(flow(&sigma, &plan.profile, [inlet, outlet])?);
+                open.push(bounds(&sigma, &plan.profile, [inlet, outlet])?);
+            }
             let rate = plan.leak_of_flow(sweep.times[time])?;
             let leak = spread(&flows, |flow| rate * flow.flow);
             let one_way = spread(&flows, |flow| rate * flow.one_way).mean;
-            Ok((flows, Over { at: inlet, leak, one_way }))
+            let bounds =
+                [0, 1].map(|end| rate * open.iter().map(|ends| ends[end]).sum::<f64>() / open.len() as f64);
+            Ok((flows, Over { at: inlet, leak, one_way, bounds }))
         };
         let (flows, now) = all(inlet, last)?;
         let rate = plan.leak_of_flow(sweep.times[last])?;
@@ -134,10 +148,11 @@ impl SealAnswer {
         let known: Option<Vec<f64>> = opens.iter().map(|opens| pressure(opens, outlet)).collect();
         let knudsen = flows.iter().zip(&sigmas).filter_map(|(flow, sigma)| knudsen(sigma, flow));
         let knudsen = knudsen.fold(f64::NAN, f64::max);
-        let findings = findings::of(plan, &sweep, &sigmas, &flows)?;
+        let findings = findings::of(plan, &sweep, &sigmas, &flows, &now)?;
         Ok(SealAnswer {
             plan: plan.clone(),
             leak: now.leak,
+            bounds: now.bounds,
             one_way,
             opening: known.map(|known| Spread::of(&known)),
             growth,
@@ -149,6 +164,31 @@ impl SealAnswer {
             findings,
             sweep,
         })
+    }
+
+    /// The answers as those of a run: means of all seeds, the leak first, with what the findings say of them.
+    pub fn answers(&self) -> Vec<Answer> {
+        let [rate, per_metre] = if self.plan.is_gas() { ["kg/s", "kg/(m s)"] } else { ["m3/s", "m2/s"] };
+        let leak = self.leak.mean;
+        let standard = self.plan.standard().map(|factor| ("seal_leak_standard", factor * leak, "Pa m3/s"));
+        let opening = self.opening.map_or(f64::NAN, |opening| opening.mean);
+        let numbers = [
+            ("seal_leak", leak, rate),
+            ("seal_leak_per_metre", leak / self.plan.length, per_metre),
+            ("seal_leak_one_way", self.one_way.mean, rate),
+            ("seal_opening_pressure", opening, "Pa"),
+            ("leak_growth", self.growth, "1"),
+        ];
+        let answer = |(name, value, unit): (&str, f64, &'static str)| Answer {
+            validity: self.validity(name),
+            ..Answer::new(name, value, unit)
+        };
+        standard.into_iter().chain(numbers).map(answer).collect()
+    }
+
+    /// What the findings say of an answer.
+    pub fn validity(&self, name: &str) -> Validity {
+        Validity::of(name, self.findings.iter())
     }
 
     /// Whether every seed is in this state.

@@ -2,11 +2,11 @@
 
 use asperity::finding::{
     Finding, SEAL_BELOW_SWEEP, SEAL_BEYOND_SWEEP, SEAL_LIFTED, SEAL_NARROW, SEAL_NEVER_TIGHT,
-    SEAL_PATCH_SMALL,
+    SEAL_PATCH_SMALL, SEAL_SWEEP_COARSE,
 };
 use asperity::seal::{Conductance, SealFlow, SealState, flow};
 
-use super::{SealPlan, SealSweep};
+use super::{Over, SealPlan, SealSweep, refine};
 use crate::readable::quantity;
 
 /// Patches across the seal, at least.
@@ -15,6 +15,8 @@ const PATCHES: f64 = 4.0;
 const WAVES: f64 = 2.0;
 /// Largest share of the leak that pressures below the sweep may change.
 const UNKNOWN: f64 = 0.02;
+/// Largest share of the leak that the pressures of the sweep may leave open.
+const OPEN: f64 = 0.1;
 /// What the conductance below the sweep may be, times that at its first pressure.
 const BELOW: f64 = 100.0;
 
@@ -23,6 +25,7 @@ pub(super) fn of(
     sweep: &SealSweep,
     sigmas: &[Conductance],
     flows: &[SealFlow],
+    now: &Over,
 ) -> asperity::Result<Vec<Finding>> {
     let mut found = vec![];
     let [inlet, _] = plan.ends;
@@ -71,6 +74,17 @@ pub(super) fn of(
             100.0 * share
         );
         found.push(Finding::warning(SEAL_BELOW_SWEEP, share, UNKNOWN, text));
+    }
+    let open = refine::share([now.bounds].into_iter());
+    if open > OPEN {
+        let unit = plan.unit();
+        let [low, high] = now.bounds.map(|leak| quantity(leak, unit));
+        let text = format!(
+            "Between the pressures of the sweep the conductance of the patch is not known well enough: the leak may be anything from {low} to \
+             {high}. The same command again adds pressures; where the fluid leaves the contact about the pressure that closes the patch, the \
+             leak stays uncertain."
+        );
+        found.push(Finding::warning(SEAL_SWEEP_COARSE, open, OPEN, text));
     }
     if sigmas.iter().any(|sigma| sigma.sealing_pressure().is_none()) {
         let most = sigmas.iter().filter_map(Conductance::last_leaking).fold(0.0, f64::max);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! sweep/       a study of the patch: mean pressures that are equally far apart in their logarithm, each with every seed
-//! refined/     the same between the pressures at which the patch closes
+//! refined/     the same at further pressures: where the patch closes, and where the leak needs them
 //! seal.json    the answers, the pressure in the seal and the sweep; SI
 //! seal.csv     the leak over the inlet pressure; SI
 //! ```
@@ -10,6 +10,7 @@
 mod answer;
 mod findings;
 mod fluid;
+mod refine;
 mod store;
 mod sweep;
 
@@ -17,7 +18,7 @@ use asperity::seal::Profile;
 
 pub use answer::{Over, SealAnswer, Spread};
 pub use store::yearly;
-pub use sweep::{SealError, SealSweep, SeedSweep, State, sweep};
+pub use sweep::{PatchFinding, SealError, SealSweep, SeedSweep, State, sweep};
 
 use crate::leakage::Leak;
 
@@ -28,7 +29,7 @@ pub struct SealPlan {
     pub profile: Profile,
     /// Length across the flow \[m\].
     pub length: f64,
-    /// Mean pressures of the sweep.
+    /// Mean pressures of the sweep, a quarter of them where the patch closes; up to so many more are added until the leak stands.
     pub pressures: usize,
     /// Seeds of the roughness.
     pub seeds: usize,
@@ -56,7 +57,33 @@ pub struct Rough {
 /// The answers show inlet pressures up to so many times the pressure drop.
 const REACH: f64 = 1.5;
 
+/// The sweep begins at the largest pressure over this.
+pub(crate) const RANGE: f64 = 300.0;
+/// The share of the pressures that lies where the patch closes.
+const CLOSING: usize = 4;
+
 impl SealPlan {
+    /// Pressures with which the sweep begins.
+    pub fn first_pressures(&self) -> usize {
+        self.pressures - self.closing_pressures()
+    }
+
+    /// The ratio of two neighbours of them.
+    pub(crate) fn first_ratio(&self) -> f64 {
+        RANGE.powf(1.0 / (self.first_pressures() - 1) as f64)
+    }
+
+    /// Pressures where the patch closes.
+    pub(crate) fn closing_pressures(&self) -> usize {
+        self.pressures / CLOSING
+    }
+
+    /// Runs of the patch, at least and at most.
+    pub fn runs(&self) -> [usize; 2] {
+        [self.first_pressures(), self.first_pressures() + self.pressures]
+            .map(|pressures| self.seeds * pressures)
+    }
+
     /// The largest inlet pressure that the answers show \[Pa\].
     pub fn reach(&self) -> f64 {
         let [inlet, outlet] = self.ends;

@@ -16,7 +16,7 @@ impl SealAnswer {
     pub fn object(&self) -> Value {
         let (x, p0, fluid) = self.inside();
         let over = |name: &str, list: &[Over]| {
-            let one = |over: &Over| json!({ name: over.at, "seal_leak": over.leak, "one_way": over.one_way });
+            let one = |over: &Over| json!({ name: over.at, "seal_leak": over.leak, "seal_leak_bounds": over.bounds, "one_way": over.one_way });
             list.iter().map(one).collect::<Vec<_>>()
         };
         let seeds = self.sweep.seeds.iter().zip(&self.flows).zip(&self.opens).zip(&fluid).map(
@@ -46,9 +46,11 @@ impl SealAnswer {
             },
         );
         let mut object = json!({
+            "answers": self.answers(),
             "fluid": if self.plan.is_gas() { "gas" } else { "liquid" },
             "unit": self.plan.unit(),
             "seal_leak": self.leak,
+            "seal_leak_bounds": self.bounds,
             "seal_leak_per_metre": self.leak.times(1.0 / self.plan.length),
             "seal_leak_one_way": self.one_way,
             "seal_opening_pressure": self.opening,
@@ -62,6 +64,7 @@ impl SealAnswer {
             "time": self.sweep.times,
             "seeds": seeds.collect::<Vec<_>>(),
             "findings": finding::list(&self.findings),
+            "patch_findings": self.sweep.findings,
         });
         for (name, factor) in usual(&self.plan) {
             object[name] = json!(self.leak.times(factor));
@@ -76,11 +79,11 @@ impl SealAnswer {
     pub fn csv(&self) -> String {
         let line = |over: &Over| {
             let Spread { mean, least, largest } = over.leak;
-            [over.at, mean, least, largest, over.one_way]
+            [over.at, mean, least, largest, over.one_way, over.bounds[0], over.bounds[1]]
                 .map(|x| if x.is_finite() { format!("{x:e}") } else { String::new() })
                 .join(",")
         };
-        let columns = ["seal_leak", "least", "largest", "one_way"];
+        let columns = ["seal_leak", "least", "largest", "one_way", "sweep_low", "sweep_high"];
         let head = columns.map(|name| format!("{name} [{}]", self.plan.unit())).join(",");
         [format!("inlet [Pa],{head}")]
             .into_iter()

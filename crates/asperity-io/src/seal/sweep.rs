@@ -1,20 +1,22 @@
 //! The sweep of the patch: two studies of the case, and the conductance that each of their runs has stored.
+//!
+//! ```text
+//! pressures from the largest down to 1/300 of it
+//! repeat: add the pressure that refine names, with all seeds, until the leak stands
+//! ```
 
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
-use asperity::finding::FLUID_UNCOUPLED;
+use asperity::finding::{FLUID_UNCOUPLED, Finding};
 use asperity::seal::{Conductance, Shape};
 
-use super::SealPlan;
+use super::{RANGE, SealPlan, refine};
 use crate::case::{Case, CaseErrors};
+use crate::readable::counted;
 use crate::store::{Reader, StoreError};
 use crate::study::{self, Event, Options, Row, Study, StudyError};
 
-/// The sweep begins at the largest pressure over this.
-const RANGE: f64 = 300.0;
-/// The share of the pressures that lies where the patch closes.
-const REFINED: usize = 4;
 /// A mean pressure is the one asked for, and a time the same, within this share.
 const SAME: f64 = 1e-3;
 
@@ -51,10 +53,37 @@ pub struct SealSweep {
     pub times: Vec<f64>,
     /// One sweep for each seed.
     pub seeds: Vec<SeedSweep>,
-    /// Which runs have findings, in words.
-    pub findings: Vec<String>,
+    /// The findings of the runs, each code once.
+    pub findings: Vec<PatchFinding>,
     /// Sides of the patch \[m\].
     pub size: [f64; 2],
+}
+
+/// A finding of runs of the patch.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct PatchFinding {
+    /// That of the first run that has it.
+    #[serde(flatten)]
+    pub finding: Finding,
+    /// What tells this run from the others.
+    pub run: String,
+    /// So many runs have it.
+    pub runs: usize,
+    /// All runs.
+    pub of: usize,
+}
+
+impl std::fmt::Display for PatchFinding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let PatchFinding { finding, run, runs, of } = self;
+        write!(
+            f,
+            "{}: {runs} of {} of the patch, first with {run}: ",
+            finding.severity,
+            counted(*of, "run")
+        )?;
+        write!(f, "{} [{}]", finding.text, finding.code)
+    }
 }
 
 /// The sweep of a seed.
@@ -92,8 +121,17 @@ impl State {
     const UNKNOWN: State = State { sigma: f64::NAN, critical_gap: f64::NAN, leak_rate: f64::NAN };
 }
 
-/// One run: pressure, seed, (time, state).
-type Run = (f64, Option<u64>, Vec<(f64, State)>);
+/// One run of the patch.
+#[derive(Clone)]
+struct Run {
+    pressure: f64,
+    seed: Option<u64>,
+    /// What tells it from the others.
+    label: String,
+    /// Times and states.
+    states: Vec<(f64, State)>,
+    findings: Vec<Finding>,
+}
 
 /// Runs the patch of a case; runs that are done in the folder already stay.
 ///
@@ -124,29 +162,62 @@ pub fn sweep(
         (known && liquid, "leakage.pressure_drop=1 Pa"),
     ];
     set.extend(keys.into_iter().filter(|(is_set, _)| *is_set).map(|(_, key)| key.to_owned()));
-    let refined = plan.pressures / REFINED;
     let most = plan.largest();
-    let values =
-        |from: f64, to: f64, count: usize| format!("{} Pa:{} Pa:{count}:log", short(from), short(to));
-    let vary = values(most / RANGE, up(most), plan.pressures - refined);
-    let (mut runs, first) = swept(path, &set, plan, &folder.join("sweep"), &vary, options, observe)?;
-    let mut findings = Vec::from_iter(first);
-    let found = SealSweep { times: times(&runs), seeds: seeds(&runs), findings: vec![], size: [0.0; 2] };
-    if found.times.is_empty() {
+    let vary = format!("{} Pa:{} Pa:{}:log", short(most / RANGE), short(up(most)), plan.first_pressures());
+    let first = swept(path, &set, plan, &folder.join("sweep"), &vary, options, observe)?;
+    let size = Case::read(path, &set)?.conditions.grid.size();
+    if times(&first).is_empty() {
         let message = "the runs of the sweep have no stored time in common; give [output] times, or steps that do not adapt";
         return Err(SealError::Input(message.into()));
     }
-    if let Some([from, to]) = closing(&found)? {
-        // The ends are known already.
-        let step = (to / from).powf(1.0 / (refined + 1) as f64);
-        let vary = values(from * step, to / step, refined);
-        let (more, second) = swept(path, &set, plan, &folder.join("refined"), &vary, options, observe)?;
-        runs.extend(more);
-        findings.extend(second);
+    let refined = folder.join("refined");
+    let mut pressures = stored(&refined)?;
+    let most = pressures.len() + plan.pressures;
+    loop {
+        let mut runs = first.clone();
+        if !pressures.is_empty() {
+            runs.extend(swept(path, &set, plan, &refined, &pressures.join(", "), options, observe)?);
+        }
+        runs.sort_by(|a, b| a.pressure.total_cmp(&b.pressure));
+        let sweep = SealSweep { times: times(&runs), seeds: seeds(&runs), findings: findings(&runs), size };
+        let next = if pressures.len() < most { refine::next(plan, &sweep, pressures.len())? } else { None };
+        let Some(next) = next else { return Ok(sweep) };
+        pressures.push(format!("{} Pa", short(next)));
     }
-    runs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let case = Case::read(path, &set)?;
-    Ok(SealSweep { times: times(&runs), seeds: seeds(&runs), findings, size: case.conditions.grid.size() })
+}
+
+/// The findings of the runs, each code once.
+fn findings(runs: &[Run]) -> Vec<PatchFinding> {
+    let mut found: Vec<PatchFinding> = vec![];
+    for run in runs {
+        let mut codes: Vec<&str> = vec![];
+        for finding in &run.findings {
+            if codes.contains(&finding.code.as_ref()) {
+                continue;
+            }
+            codes.push(&finding.code);
+            match found.iter_mut().find(|known| known.finding.code == finding.code) {
+                Some(known) => known.runs += 1,
+                None => found.push(PatchFinding {
+                    finding: finding.clone(),
+                    run: run.label.clone(),
+                    runs: 1,
+                    of: runs.len(),
+                }),
+            }
+        }
+    }
+    found
+}
+
+/// The pressures of a study that is there already, as they are written.
+fn stored(folder: &Path) -> Result<Vec<String>, SealError> {
+    if !folder.join("study.json").exists() {
+        return Ok(vec![]);
+    }
+    let study = Study::open(folder)?;
+    let pressures = study.plan.vary.first().map_or(&[][..], |varied| &varied.values);
+    Ok(pressures.iter().map(|value| value.source().to_owned()).collect())
 }
 
 /// Seven digits.
@@ -160,20 +231,7 @@ fn up(pressure: f64) -> f64 {
     (pressure / digit).ceil() * digit
 }
 
-/// The pressures between which the patch closes, of all seeds, at the last time; `None` where nothing is to be refined.
-fn closing(sweep: &SealSweep) -> Result<Option<[f64; 2]>, SealError> {
-    let last = sweep.times.len() - 1;
-    let (mut from, mut to) = (f64::INFINITY, 0.0f64);
-    for seed in &sweep.seeds {
-        let sigma = seed.conductance(last)?;
-        if let (Some(leaking), Some(tight)) = (sigma.last_leaking(), sigma.sealing_pressure()) {
-            (from, to) = (from.min(leaking), to.max(tight));
-        }
-    }
-    Ok((from < to).then_some([from, to]))
-}
-
-/// The runs of one of the two studies, and which of them have findings, in words.
+/// The runs of one of the two studies.
 fn swept(
     path: &Path,
     set: &[String],
@@ -182,7 +240,7 @@ fn swept(
     values: &str,
     options: &Options,
     observe: &mut (dyn FnMut(&Event<'_>) + Send),
-) -> Result<(Vec<Run>, Option<String>), SealError> {
+) -> Result<Vec<Run>, SealError> {
     let mut vary = vec![format!("load.history.value={values}")];
     if let Some(rough) = &plan.rough {
         let last = rough.seed.saturating_add(plan.seeds as u64 - 1);
@@ -197,10 +255,7 @@ fn swept(
     if options.interrupt.load(Ordering::Relaxed) {
         return Err(SealError::Interrupted);
     }
-    let mut table = outcome.table;
-    for row in &mut table.rows {
-        // The fluid is taken into account here.
-        row.findings.retain(|code| code != FLUID_UNCOUPLED);
+    for row in &outcome.table.rows {
         if row.state != study::State::Done {
             let why =
                 if let study::State::Failed(why) = &row.state { why.as_str() } else { row.state.word() };
@@ -211,8 +266,7 @@ fn swept(
             return Err(SealError::Failed(message));
         }
     }
-    let runs = table.rows.iter().map(|row| run(&study, row, plan.rough.is_some()));
-    Ok((runs.collect::<Result<_, _>>()?, table.findings()))
+    outcome.table.rows.iter().map(|row| run(&study, row, plan.rough.is_some())).collect()
 }
 
 /// The conductance that a run has stored, at the times at which it has the pressure asked for.
@@ -233,9 +287,13 @@ fn run(study: &Study, row: &Row, rough: bool) -> Result<Run, SealError> {
         critical_gap: critical[n],
         leak_rate: rates[n],
     };
-    let leaks: Vec<(f64, State)> = (0..times.len()).filter(held).map(|n| (times[n], state(n))).collect();
-    match leaks.is_empty() {
-        false => Ok((pressure, seed, leaks)),
+    let states: Vec<(f64, State)> = (0..times.len()).filter(held).map(|n| (times[n], state(n))).collect();
+    let label = study.plan.label(&row.run);
+    // The fluid is taken into account here.
+    let findings =
+        reader.findings().iter().filter(|finding| finding.code != FLUID_UNCOUPLED).cloned().collect();
+    match states.is_empty() {
+        false => Ok(Run { pressure, seed, label, states, findings }),
         true => Err(SealError::Input(format!(
             "the leak is stored at no time at which the mean pressure is that of the history, {pressure} Pa; \
              hold the pressure to the end (kind = \"step\" or \"ramp\") and store a row there (output.every)"
@@ -249,17 +307,17 @@ fn is_same(a: f64, b: f64) -> bool {
 
 /// The times that all runs have.
 fn times(runs: &[Run]) -> Vec<f64> {
-    let Some((_, _, first)) = runs.first() else { return vec![] };
-    let in_all = |time: &f64| runs.iter().all(|run| run.2.iter().any(|leak| is_same(leak.0, *time)));
-    first.iter().map(|leak| leak.0).filter(in_all).collect()
+    let Some(first) = runs.first() else { return vec![] };
+    let in_all = |time: &f64| runs.iter().all(|run| run.states.iter().any(|state| is_same(state.0, *time)));
+    first.states.iter().map(|leak| leak.0).filter(in_all).collect()
 }
 
 fn seeds(runs: &[Run]) -> Vec<SeedSweep> {
     let times = times(runs);
     let mut seeds: Vec<SeedSweep> = vec![];
-    for (pressure, seed, leaks) in runs {
+    for Run { pressure, seed, states, .. } in runs {
         let at = |time: &f64| {
-            leaks.iter().find(|leak| is_same(leak.0, *time)).map_or(State::UNKNOWN, |leak| leak.1)
+            states.iter().find(|leak| is_same(leak.0, *time)).map_or(State::UNKNOWN, |leak| leak.1)
         };
         let point = (*pressure, times.iter().map(at).collect());
         match seeds.iter_mut().find(|known| known.seed == *seed) {

@@ -118,6 +118,12 @@ fn arrays(study: &Study, table: &Table) -> Vec<Array> {
     add("findings".into(), Data::Counts(findings), words);
     let codes = rows().map(super::Row::codes).collect();
     add("finding_codes".into(), Data::Texts(codes), json!({ "long_name": "codes of the findings" }));
+    let taken = rows().map(super::Row::not_valid).collect();
+    add(
+        "not_valid".into(),
+        Data::Texts(taken),
+        json!({ "long_name": "answers that the findings take back" }),
+    );
     let status = rows().map(|row| row.state.word().to_owned()).collect();
     add("status".into(), Data::Texts(status), json!({ "long_name": "how far the run is" }));
     let error =

@@ -53,6 +53,12 @@ pub struct Row {
 }
 
 impl Row {
+    /// The names of its answers that its findings take back.
+    pub fn not_valid(&self) -> String {
+        let taken = self.answers.iter().filter(|answer| !answer.validity.is_valid());
+        taken.map(|answer| answer.name.as_str()).collect::<Vec<_>>().join(" ")
+    }
+
     /// The codes of its findings, each once.
     pub fn codes(&self) -> String {
         let codes: BTreeSet<&str> = self.findings.iter().map(String::as_str).collect();

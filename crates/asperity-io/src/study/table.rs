@@ -117,7 +117,7 @@ impl Table {
             let error = column.has_errors().then(|| named(&format!("{}_error", column.name), column.unit));
             [named(&column.name, column.unit)].into_iter().chain(error)
         });
-        let ends = ["findings", "finding_codes", "error", "path"].map(str::to_owned);
+        let ends = ["findings", "finding_codes", "not_valid", "error", "path"].map(str::to_owned);
         let mut text = line(keys.chain(["status".to_owned()]).chain(answers).chain(ends));
         for (n, row) in self.rows.iter().enumerate() {
             let values = (0..self.keys.len()).map(|key| match self.number(n, key) {
@@ -132,7 +132,7 @@ impl Table {
                 if let State::Failed(why) = &row.state { why.replace('\n', " ") } else { String::new() };
             let is_done = row.state == State::Done;
             let findings = if is_done { row.findings.len().to_string() } else { String::new() };
-            let ends = [findings, row.codes(), error, row.run.name.clone()];
+            let ends = [findings, row.codes(), row.not_valid(), error, row.run.name.clone()];
             text += &line(values.chain([row.state.word().to_owned()]).chain(answers).chain(ends));
         }
         text

@@ -36,7 +36,9 @@ class Seal(Sealed):
 
     #: Leak of the whole seal [m^3/s; of a gas kg/s].
     leak: Spread
-    #: The same per metre of its length.
+    #: The least and the largest mean leak that the pressures of the sweep allow; NaN where it has no bound.
+    leak_bounds: tuple[float, float]
+    #: The leak per metre of its length.
     leak_per_metre: Spread
     #: The leak of the contact that the fluid does not open.
     leak_one_way: Spread
@@ -58,7 +60,8 @@ class Seal(Sealed):
         self._found = found
         spreads = {name: found[f"seal_{name}"] and _spread(found[f"seal_{name}"]) for name in ("leak", "leak_per_metre", "leak_one_way", "opening_pressure")}
         usual = {unit: _spread(found[f"seal_leak_{name}"]) for unit, name in _USUAL.items() if f"seal_leak_{name}" in found}
-        self._hold(**spreads, usual=usual, inlet=found["inlet"], outlet=found["outlet"], states=[seed["state"] for seed in found["seeds"]])
+        low, high = _numbers(found["seal_leak_bounds"])
+        self._hold(**spreads, leak_bounds=(float(low), float(high)), usual=usual, inlet=found["inlet"], outlet=found["outlet"], states=[seed["state"] for seed in found["seeds"]])
         pressures = _numbers([seed["seal_pressure"] for seed in found["seeds"]])
         self._hold(x=np.array(found["x"]), contact_pressure=np.array(found["contact_pressure"]), fluid_pressure=pressures)
 
@@ -66,6 +69,11 @@ class Seal(Sealed):
     def findings(self) -> list[Finding]:
         """What must be known before the numbers are used (docs/findings.md)."""
         return findings_of(self._found["findings"], of_case=True)
+
+    @property
+    def answers(self) -> list[dict[str, Any]]:
+        """The answers, each with `name`, `value`, `unit`, and `valid`: False and `why` where a finding takes it back (docs/results.md)."""
+        return self._found["answers"]
 
     @property
     def answer(self) -> dict[str, Any]:

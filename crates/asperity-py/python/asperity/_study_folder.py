@@ -58,7 +58,7 @@ def _dataset(found: dict[str, Any]) -> xarray.Dataset:
     columns = {name: array(values, words, unit) for (name, unit, words), values in numbers.items()}
     findings = [run["findings"] if run["status"] == "done" else -1 for run in runs]
     columns["findings"] = array(findings, "number of findings, -1 of runs that are not done")
-    texts = {"finding_codes": "codes of the findings", "status": "how far the run is", "error": "why the run failed", "result": "path of the result"}
+    texts = {"finding_codes": "codes of the findings", "not_valid": "answers that the findings take back", "status": "how far the run is", "error": "why the run failed", "result": "path of the result"}
     for name, words in texts.items():
         columns["path" if name == "result" else name] = array([run[name] or "" for run in runs], words)
     places = {key["key"]: ("run" if zipped else key["key"], *_place_of(key)) for key in keys}

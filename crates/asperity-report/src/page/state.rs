@@ -220,15 +220,18 @@ fn status(reader: &Reader) -> String {
 
 /// The answers of the result, and the row that they belong to.
 fn headline(answers: &[Answer], units: &Units, bars: &[ErrorBar], last: Option<&Row>) -> Vec<[String; 2]> {
-    let words = |answer: &Answer| match bars.iter().find(|bar| bar.name == answer.name) {
-        Some(bar) => units.plus_minus(bar),
-        None => answer.words(units),
+    let words = |answer: &Answer| {
+        let bar = bars.iter().find(|bar| bar.name == answer.name);
+        bar.map_or_else(|| answer.words(units), |bar| units.plus_minus(bar))
     };
     let note = |answer: &Answer| match answer.note.as_str() {
         "" => String::new(),
         note => format!(" ({note})"),
     };
-    let line = |answer: &Answer| [answer.label() + &note(answer), words(answer)];
+    let line = |answer: &Answer| {
+        let [value, known] = answer.validity.card(words(answer));
+        [answer.label() + &known + &note(answer), value]
+    };
     let mut lines: Vec<[String; 2]> = units.without_second_rate(answers).map(line).collect();
     let mut at: Vec<(Coordinate, String)> = vec![];
     for answer in answers {

@@ -243,6 +243,8 @@ codes! {
     SEAL_BELOW_SWEEP = "seal-below-sweep";
     /// A seal is pressed more than a sweep of its patch goes, which leaks to its end.
     SEAL_BEYOND_SWEEP = "seal-beyond-sweep";
+    /// The pressures of a sweep leave the leak of a seal open.
+    SEAL_SWEEP_COARSE = "seal-sweep-coarse";
     /// The patch of a seal is tight at no pressure of the sweep.
     SEAL_NEVER_TIGHT = "seal-never-tight";
     /// A seal is not wide against its patch.

@@ -2,7 +2,8 @@
 //!
 //! Between the last pressure of a sweep that leaks, p_a, and the first one that is tight, p_s, sigma falls as (p_s - p)^3.45 (Dapp and
 //! Mueser, EPL 109, 44001, 2015). Nothing is extrapolated: outside of the sweep sigma is held, and [`Conductance::ends`] says where that
-//! begins.
+//! begins. What the sweep leaves open between its pressures is known: [`Conductance::low`] and [`Conductance::high`] are the least and the
+//! largest sigma that its points allow.
 
 use super::curve::Curve;
 use super::gas::SealGas;
@@ -22,6 +23,16 @@ pub struct Conductance {
     tight: Option<f64>,
     /// The gas that flows; `None` for a liquid.
     gas: Option<SealGas>,
+    /// Which sigma of those that the points allow.
+    choice: Choice,
+}
+
+/// A sigma of those that the points of a sweep allow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Choice {
+    Low,
+    Likely,
+    High,
 }
 
 impl Conductance {
@@ -47,7 +58,13 @@ impl Conductance {
         let last = sweep.iter().rposition(|(_, sigma)| *sigma > 0.0);
         let tight = sweep.get(last.map_or(0, |last| last + 1)).map(|point| point.0);
         let leaking: Vec<(f64, f64)> = sweep.iter().copied().filter(|point| point.1 > 0.0).collect();
-        Ok(Conductance { sigma: Curve::through(&leaking), below: 1.0, tight, gas: None })
+        Ok(Conductance {
+            sigma: Curve::through(&leaking),
+            below: 1.0,
+            tight,
+            gas: None,
+            choice: Choice::Likely,
+        })
     }
 
     /// The same for a gas.
@@ -60,6 +77,19 @@ impl Conductance {
     #[must_use]
     pub fn with_below(&self, factor: f64) -> Self {
         Conductance { below: factor, ..self.clone() }
+    }
+
+    /// The least sigma that the sweep allows: the last path closes right above the last pressure that leaks.
+    #[must_use]
+    pub fn low(&self) -> Self {
+        let tight = self.last_leaking().filter(|_| self.tight.is_some()).or(self.tight);
+        Conductance { tight, choice: Choice::Low, ..self.clone() }
+    }
+
+    /// The largest sigma that the sweep allows: up to the first pressure that is tight it falls as it does before.
+    #[must_use]
+    pub fn high(&self) -> Self {
+        Conductance { choice: Choice::High, ..self.clone() }
     }
 
     /// The first pressure that is tight \[Pa\]; `None` where all of the sweep leaks.
@@ -82,16 +112,27 @@ impl Conductance {
     /// sigma \[m^3\] at a pressure \[Pa\].
     pub fn at(&self, pressure: f64) -> f64 {
         let [first, _] = self.ends();
-        let held = self.sigma.at(pressure);
-        match (self.tight, self.last_leaking()) {
-            (_, None) => 0.0,
-            _ if pressure < first => self.below * held,
-            (Some(tight), Some(_)) if pressure >= tight => 0.0,
-            (Some(tight), Some(last)) if pressure > last => {
-                held * ((tight - pressure) / (tight - last)).powf(CLOSING)
-            }
-            _ => held,
+        let Some(last) = self.last_leaking() else { return 0.0 };
+        let held = || match self.choice {
+            Choice::Low => self.sigma.bounds(pressure)[0],
+            Choice::Likely => self.sigma.at(pressure),
+            Choice::High => self.sigma.bounds(pressure)[1],
+        };
+        match self.tight {
+            _ if pressure < first => self.below * held(),
+            Some(tight) if pressure >= tight => 0.0,
+            Some(_) if pressure > last && self.choice == Choice::High => self.sigma.beyond(pressure),
+            Some(tight) if pressure > last => held() * ((tight - pressure) / (tight - last)).powf(CLOSING),
+            _ => held(),
         }
+    }
+
+    /// The pressures of the sweep around this one \[Pa\], between which sigma is not known; `None` outside of it.
+    pub fn around(&self, pressure: f64) -> Option<[f64; 2]> {
+        let known = &self.sigma.pressures;
+        let after = known.partition_point(|known| *known <= pressure);
+        let to = known.get(after).copied().or(self.tight.filter(|tight| pressure < *tight))?;
+        Some([*known.get(after.checked_sub(1)?)?, to])
     }
 
     /// The surface where it is pressed with `pressed` \[Pa\].

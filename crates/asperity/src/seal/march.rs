@@ -7,6 +7,8 @@
 //! is exact. P rises in each cell, so a cell that chokes the flow is no stiff step: there P jumps to where sigma begins. F is the flow
 //! with which the march arrives at the inlet pressure.
 
+use std::ops::Range;
+
 use super::conductance::Pressed;
 use super::{Conductance, Profile};
 use crate::error::{Error, Result};
@@ -65,51 +67,86 @@ pub struct Choke {
 ///
 /// # Errors
 /// [`Error::Invalid`]: an inlet pressure that is not above the outlet pressure, or one that the profile has no table for.
-pub fn flow(sigma: &Conductance, profile: &Profile, [inlet, outlet]: [f64; 2]) -> Result<SealFlow> {
-    if !(inlet > outlet && outlet.is_finite() && inlet.is_finite()) {
-        let expected = format!("a pressure above that of the outlet, {outlet} Pa");
-        return Err(Error::invalid("the pressure at the inlet", inlet, expected).of("inlet"));
+pub fn flow(sigma: &Conductance, profile: &Profile, ends: [f64; 2]) -> Result<SealFlow> {
+    let seal = Opened::new(sigma, profile, ends)?;
+    let largest = profile.largest(ends[0]).unwrap_or(f64::NAN);
+    Ok(SealFlow { one_way: one_way(sigma, &seal.p0, largest, seal.dx, ends), ..seal.flow })
+}
+
+/// The least and the largest flow that the points of the sweep allow ([`Conductance::low`], [`Conductance::high`]).
+///
+/// # Errors
+/// As [`flow`].
+pub fn bounds(sigma: &Conductance, profile: &Profile, ends: [f64; 2]) -> Result<[f64; 2]> {
+    let of = |sigma: Conductance| Opened::new(&sigma, profile, ends).map(|seal| seal.flow.flow);
+    Ok([of(sigma.low())?, of(sigma.high())?])
+}
+
+/// A seal that the fluid opens.
+pub(super) struct Opened {
+    /// Contact pressure in the cells.
+    pub(super) p0: Vec<f64>,
+    pub(super) dx: f64,
+    /// The flow, without that of the contact which is not opened.
+    pub(super) flow: SealFlow,
+}
+
+impl Opened {
+    pub(super) fn new(sigma: &Conductance, profile: &Profile, [inlet, outlet]: [f64; 2]) -> Result<Opened> {
+        if !(inlet > outlet && outlet.is_finite() && inlet.is_finite()) {
+            let expected = format!("a pressure above that of the outlet, {outlet} Pa");
+            return Err(Error::invalid("the pressure at the inlet", inlet, expected).of("inlet"));
+        }
+        profile.validate()?;
+        let (Some(p0), Some(largest)) = (profile.pressures(CELLS, inlet), profile.largest(inlet)) else {
+            let [from, to] = profile.inlets().unwrap_or_default();
+            let expected = format!("a pressure from {from} Pa to {to} Pa, as the profile has");
+            return Err(Error::invalid("the pressure at the inlet", inlet, expected).of("inlet"));
+        };
+        let dx = profile.width() / CELLS as f64;
+        let flow = opened(sigma, &p0, largest, dx, [inlet, outlet]);
+        Ok(Opened { p0, dx, flow })
     }
-    profile.validate()?;
-    let (Some(p0), Some(largest)) = (profile.pressures(CELLS, inlet), profile.largest(inlet)) else {
-        let [from, to] = profile.inlets().unwrap_or_default();
-        let expected = format!("a pressure from {from} Pa to {to} Pa, as the profile has");
-        return Err(Error::invalid("the pressure at the inlet", inlet, expected).of("inlet"));
-    };
-    let dx = profile.width() / CELLS as f64;
-    let ends = [inlet, outlet];
+
+    /// The cells in contact that the fluid flows through: it moves the edges of the contact to where it is pressed.
+    pub(super) fn contact(p0: &[f64], [inlet, outlet]: [f64; 2]) -> Option<Range<usize>> {
+        let start = p0.iter().position(|p0| *p0 > inlet)?;
+        Some(start..p0.iter().rposition(|p0| *p0 > outlet).map_or(p0.len(), |last| last + 1))
+    }
+}
+
+/// The flow that opens the contact.
+fn opened(sigma: &Conductance, p0: &[f64], largest: f64, dx: f64, [inlet, outlet]: [f64; 2]) -> SealFlow {
     let ended = |state, flow, pressure, pressed| SealFlow {
         state,
         flow,
-        one_way: one_way(sigma, &p0, largest, dx, ends),
+        one_way: f64::NAN,
         pressure,
         choke: None,
         pressed,
     };
-    // The fluid moves the edges of the contact to where it is pressed.
-    let Some(start) = p0.iter().position(|p0| *p0 > inlet) else {
-        return Ok(ended(SealState::Lifted, f64::INFINITY, vec![inlet; CELLS + 1], [0.0; 2]));
+    let Some(cells) = Opened::contact(p0, [inlet, outlet]) else {
+        return ended(SealState::Lifted, f64::INFINITY, vec![inlet; CELLS + 1], [0.0; 2]);
     };
-    let end = p0.iter().rposition(|p0| *p0 > outlet).map_or(CELLS, |last| last + 1);
     if let Some(tight) = sigma.sealing_pressure() {
         if largest - inlet >= tight {
             let top = || (0..CELLS).max_by(|a, b| p0[*a].total_cmp(&p0[*b])).unwrap_or(0);
             let closed = p0.iter().position(|p0| p0 - inlet >= tight).unwrap_or_else(top);
             let pressure = (0..=CELLS).map(|n| if n <= closed { inlet } else { outlet }).collect();
-            return Ok(ended(SealState::Tight, 0.0, pressure, [tight, largest - outlet]));
+            return ended(SealState::Tight, 0.0, pressure, [tight, largest - outlet]);
         }
         if sigma.last_leaking().is_none() {
             let pressed = [largest - inlet, tight];
-            return Ok(ended(SealState::Unknown, f64::NAN, vec![f64::NAN; CELLS + 1], pressed));
+            return ended(SealState::Unknown, f64::NAN, vec![f64::NAN; CELLS + 1], pressed);
         }
     }
-    let march = March { sigma, p0: &p0[start..end], dx, ends, opens: true };
+    let march = March { sigma, p0: &p0[cells.clone()], dx, ends: [inlet, outlet], opens: true };
     let flow = march.flow();
-    let mut pressure = vec![inlet; start];
+    let mut pressure = vec![inlet; cells.start];
     pressure.extend(march.pressures(flow));
-    pressure[start] = inlet;
+    pressure[cells.start] = inlet;
     pressure.resize(CELLS + 1, outlet);
-    let steepest = (start..end).max_by(|a, b| {
+    let steepest = cells.clone().max_by(|a, b| {
         let drop = |n: usize| pressure[n] - pressure[n + 1];
         drop(*a).total_cmp(&drop(*b))
     });
@@ -119,9 +156,9 @@ pub fn flow(sigma: &Conductance, profile: &Profile, [inlet, outlet]: [f64; 2]) -
         fluid: pressure[n],
     });
     let pressed = |n: usize| p0[n] - 0.5 * (pressure[n] + pressure[n + 1]);
-    let all = (start..end).map(pressed);
+    let all = cells.map(pressed);
     let pressed = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
-    Ok(SealFlow { choke, ..ended(SealState::Leaks, flow, pressure, pressed) })
+    SealFlow { choke, ..ended(SealState::Leaks, flow, pressure, pressed) }
 }
 
 /// F where the fluid does not open the contact.
@@ -134,14 +171,14 @@ fn one_way(sigma: &Conductance, p0: &[f64], largest: f64, dx: f64, ends: [f64; 2
 }
 
 /// A march over cells in which something flows at every pressure above that at which the seal closes.
-struct March<'a> {
-    sigma: &'a Conductance,
+pub(super) struct March<'a> {
+    pub(super) sigma: &'a Conductance,
     /// Contact pressure in the cells.
-    p0: &'a [f64],
-    dx: f64,
-    ends: [f64; 2],
+    pub(super) p0: &'a [f64],
+    pub(super) dx: f64,
+    pub(super) ends: [f64; 2],
     /// Whether the fluid opens the contact.
-    opens: bool,
+    pub(super) opens: bool,
 }
 
 impl March<'_> {
@@ -200,7 +237,7 @@ impl March<'_> {
 }
 
 /// A cell of a march.
-struct Cell<'a> {
+pub(super) struct Cell<'a> {
     march: &'a March<'a>,
     p0: f64,
     /// The surface, where the fluid does not open it.
@@ -208,12 +245,12 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    fn new(march: &'a March<'a>, p0: f64) -> Self {
+    pub(super) fn new(march: &'a March<'a>, p0: f64) -> Self {
         Cell { march, p0, held: (!march.opens).then(|| march.sigma.pressed(p0)) }
     }
 
     /// k at a pressure of the fluid.
-    fn k(&self, fluid: f64) -> f64 {
+    pub(super) fn k(&self, fluid: f64) -> f64 {
         self.held.unwrap_or_else(|| self.march.sigma.pressed(self.p0 - fluid)).flux(fluid)
     }
 
@@ -225,9 +262,13 @@ impl<'a> Cell<'a> {
 
     /// The integral of k over the pressure of the fluid.
     fn through(&self, from: f64, to: f64) -> f64 {
-        let breaks = self.breaks(from).take_while(|fluid| *fluid < to).chain([to]);
-        let part = |low: &mut f64, high: f64| Some(self.integral(std::mem::replace(low, high), high));
-        breaks.scan(from, part).sum()
+        self.parts(from, to).map(|[from, to]| self.integral(from, to)).sum()
+    }
+
+    /// The parts between two pressures of the fluid in which k is smooth.
+    pub(super) fn parts(&self, from: f64, to: f64) -> impl Iterator<Item = [f64; 2]> {
+        let ends = self.breaks(from).take_while(move |fluid| *fluid < to).chain([to]);
+        ends.scan(from, |low, high| Some([std::mem::replace(low, high), high]))
     }
 
     /// The pressure of the fluid from which the integral of k down to `from` is `amount`.

@@ -15,6 +15,7 @@
 //! | `profile` | the contact pressure p0(x) |
 //! | `march` | the pressure of the fluid, the flow, where the seal is choked |
 //! | `opening` | the inlet pressure at which the seal opens |
+//! | `refine` | the pressure at which sigma would tell most about the flow |
 //!
 //! ```
 //! use asperity::seal::{Conductance, Profile, Shape, flow};
@@ -33,12 +34,14 @@ mod gas;
 mod march;
 mod opening;
 mod profile;
+mod refine;
 
 pub use conductance::Conductance;
 pub use gas::{GasPoint, SealGas};
-pub use march::{CELLS, Choke, SealFlow, SealState, flow};
+pub use march::{CELLS, Choke, SealFlow, SealState, bounds, flow};
 pub use opening::{Opens, opening};
 pub use profile::{Profile, Shape, Table};
+pub use refine::refinement;
 
 #[cfg(test)]
 mod tests;

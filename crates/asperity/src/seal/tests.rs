@@ -308,3 +308,80 @@ fn a_rarefied_gas_leaks_as_between_plates() {
         assert!((leak(found.one_way) / exact - 1.0).abs() < 1e-5, "{law:?}: {} {exact}", leak(found.one_way));
     }
 }
+
+/// (1 - p)^3.45 as a sweep knows it.
+fn closing(pressures: &[f64]) -> Conductance {
+    let mut pressures = pressures.to_vec();
+    pressures.sort_by(f64::total_cmp);
+    Conductance::new(&pressures.into_iter().map(|p| (p, (1.0 - p).max(0.0).powf(3.45))).collect::<Vec<_>>())
+        .unwrap()
+}
+
+/// Twelve pressures equally far apart in their logarithm, as a sweep begins.
+fn first_pressures(most: f64) -> Vec<f64> {
+    (0..12).map(|n| most / 300f64.powf(1.0 - f64::from(n) / 11.0)).collect()
+}
+
+/// The power law, which chokes near its sealing pressure, is known in closed form under a uniform contact pressure: the integral of sigma,
+/// [(1 - p)^4.45/4.45]. A sweep of twelve pressures leaves the leak open by orders of magnitude; the bounds contain it, and a dozen
+/// further pressures leave 5 % of it open.
+#[test]
+fn pressures_are_added_where_the_flow_chokes_until_the_leak_stands() {
+    let mut widest = 1.0f64;
+    for (peak, inlet) in [(0.98, 0.05), (1.1, 0.15), (1.3, 0.9)] {
+        let to = 1.0 - peak + inlet;
+        let exact = (f64::powf(to, 4.45) - f64::max(1.0 - peak, 0.0).powf(4.45)) / 4.45 / 2.0;
+        let profile = profile("uniform", peak);
+        let mut pressures = first_pressures(peak);
+        let mut more = 0;
+        loop {
+            let sigma = closing(&pressures);
+            let [low, high] = bounds(&sigma, &profile, [inlet, 0.0]).unwrap();
+            let likely = flow(&sigma, &profile, [inlet, 0.0]).unwrap().flow;
+            // Rounding, and the quadrature of eight points where the bounds bend.
+            assert!(
+                low <= exact * 1.001 && exact <= high * 1.001,
+                "{peak} {inlet} {more}: {low} {exact} {high}"
+            );
+            assert!(low <= likely * 1.001 && likely <= high * 1.001, "{peak} {inlet}: {low} {likely} {high}");
+            widest = widest.max(high / low);
+            if low > 0.95 * high {
+                break;
+            }
+            pressures.push(refinement(&sigma, &profile, [inlet, 0.0]).unwrap().unwrap());
+            more += 1;
+            assert!(more <= 16, "{peak} {inlet}: {low} {exact} {high}");
+        }
+    }
+    assert!(widest > 10.0, "the first pressures leave little open: {widest}");
+}
+
+/// A passage closes at once between two pressures of the sweep: the bounds contain every place where it may.
+#[test]
+fn the_bounds_contain_a_step_between_two_pressures() {
+    for step in [0.61, 0.7, 0.79] {
+        let sigma = |p: f64| (-2.0 * p).exp() * if p > step { 0.05 } else { 1.0 };
+        let sweep: Vec<_> = (1..=10).map(|n| 0.2 * f64::from(n)).map(|p| (p, sigma(p))).collect();
+        let known = Conductance::new(&sweep).unwrap();
+        for p in (0..200).map(|n| 0.2 + 0.009 * f64::from(n)) {
+            let [low, high] = [known.low().at(p), known.high().at(p)];
+            // Rounding.
+            assert!(
+                low <= sigma(p) * (1.0 + 1e-9) && sigma(p) <= high * (1.0 + 1e-9),
+                "{step} {p}: {low} {high}"
+            );
+            assert!(low <= known.at(p) * (1.0 + 1e-9) && known.at(p) <= high * (1.0 + 1e-9), "{step} {p}");
+        }
+    }
+}
+
+#[test]
+fn a_tight_or_lifted_seal_needs_no_further_pressure() {
+    let sigma = closing(&[0.1, 0.5, 0.9, 0.99, 1.0]);
+    let next = |peak: f64, inlet: f64| refinement(&sigma, &profile("uniform", peak), [inlet, 0.0]).unwrap();
+    assert_eq!((next(1.2, 0.1), next(0.5, 0.6)), (None, None));
+    assert_eq!(bounds(&sigma, &profile("uniform", 1.2), [0.1, 0.0]).unwrap(), [0.0, 0.0]);
+    // Between the last pressure that leaks and the first tight one it may be tight.
+    let [low, high] = bounds(&sigma, &profile("uniform", 1.2), [0.205, 0.0]).unwrap();
+    assert!(low == 0.0 && high > 0.0);
+}

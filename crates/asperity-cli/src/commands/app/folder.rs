@@ -271,7 +271,8 @@ fn of_result(path: &Path) -> Value {
         "tight_from" => format!("{} ({})", answer.words(&units), answer.note),
         _ => answer.words(&units),
     };
-    let words = answers.iter().take(ANSWERS).map(|answer| json!([answer.label(), words(answer)]));
+    let words = |answer: &answer::Answer| json!([answer.label(), answer.validity.mark(words(answer))]);
+    let words = answers.iter().take(ANSWERS).map(words);
     json!({
         "title": reader.header().title,
         "state": reader.state(),

@@ -451,6 +451,16 @@ fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>, error_bars:
         let seconds = seconds.map_or(String::new(), |s| format!(", roughly {} after the run", roughly(s)));
         line("leakage", format!("{}, at {times}, up to {memory} of memory{seconds}", leak.words()));
     }
+    if let Some(seal) = &case.seal {
+        let [least, most] = seal.runs();
+        let seeds = counted(seal.seeds, "seed");
+        line(
+            "whole seal",
+            format!(
+                "asperity seal runs this patch {least} times at least and {most} at most, {seeds} included"
+            ),
+        );
+    }
     line("memory", format!("about {}", bytes(d.memory_bytes as f64)));
     if let Some(cost) = cost {
         let threads = counted(rayon::current_num_threads(), "thread");

@@ -131,6 +131,10 @@ fn object(path: &Path, history: &LeakHistory) -> String {
     object.insert("leakage".into(), serde_json::to_value(&history.leak).unwrap_or_default());
     object.insert("findings".into(), finding::list(&history.findings));
     object.insert("result".into(), json!(path.to_string_lossy()));
+    // What the findings say of the last leak.
+    if let Value::Object(marks) = json!(history.validity("leak_rate")) {
+        object.extend(marks);
+    }
     format!("{}\n", Value::Object(object))
 }
 
@@ -177,12 +181,16 @@ fn text(history: &LeakHistory, units: &Units) -> String {
     if column("leak_resolved").contains(&0.0) {
         text += "? see the findings\n";
     }
+    let last = history.validity("leak_rate");
+    if !last.is_valid() {
+        text += &format!("the last leak is {}\n", last.mark(String::new()));
+    }
     if let Some(patch) = history.patch(units) {
         text += &format!("the leak rate is {patch}\n");
     }
     let tight = words::tight(times, column("percolates"), units);
-    if !tight.is_empty() {
-        text += &format!("{tight}\n");
+    if !tight.is_empty() && last.is_valid() {
+        text += &format!("{}\n", history.validity("tight_from").mark(tight));
     }
     text + &tensors(table)
 }

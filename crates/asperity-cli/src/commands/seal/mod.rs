@@ -43,9 +43,9 @@ impl Verb for args::Seal {
             ..Options::default()
         };
         if !self.quiet {
+            let [least, most] = plan.runs();
             message!(
-                "{} pressures and {} in {}",
-                plan.pressures,
+                "{least} to {most} runs of the patch, {}, in {}",
                 counted(plan.seeds, "seed"),
                 folder.display()
             );
@@ -57,8 +57,8 @@ impl Verb for args::Seal {
         };
         let swept =
             sweep(&self.case, &self.common.set, plan, &folder, &options, &mut tell).map_err(failure)?;
-        for words in swept.findings.iter().filter(|_| !self.quiet) {
-            message!("patch: {words}");
+        for finding in swept.findings.iter().filter(|_| !self.quiet) {
+            message!("{finding}");
         }
         let answer = SealAnswer::of(plan, swept).map_err(failure)?;
         answer.write(&folder)?;
@@ -93,7 +93,7 @@ fn sheet(
         [["answer".to_owned(), "value".to_owned()]].iter().chain(rows).map(|row| row.to_vec()).collect();
     let sheet = Sheet::new(title).table("Seal", &table);
     let sheet = answer.findings.iter().fold(sheet, |sheet, finding| sheet.note(&finding.to_string()));
-    let sheet = answer.sweep.findings.iter().fold(sheet, |sheet, words| sheet.note(words));
+    let sheet = answer.sweep.findings.iter().fold(sheet, |sheet, finding| sheet.note(&finding.to_string()));
     sheet.figure("Leak and pressure", figure)
 }
 

@@ -13,12 +13,14 @@ const SCCM: &str = "cm³/min at 0 °C and 1 atm (sccm)";
 /// Name and words of each answer, the leak first.
 pub(super) fn lines(answer: &SealAnswer, units: &Units) -> Vec<[String; 2]> {
     let words = Words { answer, units };
+    let leak = |text: String| answer.validity("seal_leak").mark(text);
     let rows = [
-        ("leak of the seal", Some(words.leak())),
-        ("per metre", words.per_metre()),
-        ("as a volume", words.volume()),
-        ("in a year", words.in_a_year()),
-        ("opening pressure", Some(words.opening())),
+        ("leak of the seal", Some(leak(words.leak()))),
+        ("by the sweep", words.by_the_sweep()),
+        ("per metre", words.per_metre().map(leak)),
+        ("as a volume", words.volume().map(leak)),
+        ("in a year", words.in_a_year().map(leak)),
+        ("opening pressure", Some(answer.validity("seal_opening_pressure").mark(words.opening()))),
         ("at", Some(words.at())),
         ("narrowest", words.narrowest()),
         ("Knudsen number", words.knudsen()),
@@ -56,6 +58,14 @@ impl Words<'_> {
         with_spread(leak, |leak| self.units.rate(leak, standard.map(|standard| standard * leak)))
     }
 
+    /// "1.8e-15 m³/s to 1.9e-15 m³/s: what its pressures leave open".
+    fn by_the_sweep(&self) -> Option<String> {
+        let standard = self.answer.plan.standard();
+        let [low, high] =
+            self.answer.bounds.map(|leak| self.units.rate(leak, standard.map(|one| one * leak)));
+        self.leaks().then(|| format!("{low} to {high}: what its pressures leave open"))
+    }
+
     fn per_metre(&self) -> Option<String> {
         self.leaks().then(|| self.rate(&self.answer.leak.times(1.0 / self.answer.plan.length)))
     }
@@ -70,7 +80,7 @@ impl Words<'_> {
         self.leaks().then(|| format!("{} {unit}", with_spread(&self.answer.leak.times(factor), number)))
     }
 
-    /// "2 bar (1.8 bar to 2.2 bar); all of them leak at 2.5 bar".
+    /// "2 bar (1.8 bar to 2.2 bar); all seeds leak from 2.5 bar on".
     fn opening(&self) -> String {
         let opens = &self.answer.opens;
         let every = |is: Opens| opens.iter().all(|opens| *opens == is);
@@ -85,7 +95,11 @@ impl Words<'_> {
             _ if every(Opens::Never) => "none: the seal is tight at every pressure".into(),
             None => "not known of every seed: see the findings".into(),
             Some(opening) if all_leak.is_finite() => {
-                format!("{}; {} at {}", with_spread(&opening, pa), self.they("leak"), pa(all_leak))
+                let leaks = format!("{} from {} on", self.they("leak"), pa(all_leak));
+                match opening.largest > self.answer.plan.ends[1] {
+                    true => format!("{}; {leaks}", with_spread(&opening, pa)),
+                    false => format!("not known: {leaks}, below that the sweep does not tell"),
+                }
             }
             Some(opening) => with_spread(&opening, pa),
         }

@@ -123,7 +123,12 @@ pub fn answers(readers: &[Reader], units: &Units) -> Result<Vec<Answers>, StoreE
     for Answers { values, changes, .. } in &mut all {
         let first = values[0];
         let change = |value: &f64| {
-            let change = if *value == first { 0.0 } else { value / first - 1.0 };
+            let change = match *value == first {
+                true => 0.0,
+                // Of a change of sign a share says nothing.
+                false if value * first < 0.0 => f64::NAN,
+                false => value / first - 1.0,
+            };
             if change.is_finite() { change } else { f64::NAN }
         };
         *changes = values.iter().map(change).collect();

@@ -35,6 +35,56 @@ viscosity = "1 mPa s"
 every = 1
 "#;
 
+/// A sealed, creeping seal whose inlet goes up and down.
+const SEALED: &str = r#"
+[domain]
+cells = [32, 32]
+size = ["0.2 mm", "0.2 mm"]
+boundary = "periodic"
+[[surface]]
+kind = "self-affine"
+rms_height = "0.5 um"
+hurst = 0.8
+longest = "0.1 mm"
+shortest = "25 um"
+seed = 3
+[[body]]
+poisson = 0.5
+material = { model = "zener", shear = "3 MPa", shear_kelvin = "3 MPa", retardation_time = "1 s" }
+[load]
+control = "pressure"
+history = { kind = "ramp", value = "0.25 MPa", duration = "2 s" }
+[time]
+end = "4 s"
+steps = 10
+[output]
+every = 1
+[leakage]
+viscosity = "1 mPa s"
+inlet = { kind = "table", points = [["0 s", "1 bar"], ["2 s", "2 bar"], ["4 s", "1.5 bar"]] }
+outlet = "1 bar"
+coupling = "two-way"
+pockets = "sealed"
+bulk_modulus = "2 GPa"
+"#;
+
+#[test]
+fn the_stored_gap_is_open_where_it_was_to_the_fluid() {
+    let directory = tempfile::tempdir().unwrap();
+    let case = Case::parse(SEALED, Path::new("."), &[]).unwrap();
+    let output = Some(directory.path().join("sealed.zarr"));
+    let summary = run(&case, &RunOptions { output, ..RunOptions::default() }, |_| ()).unwrap();
+    let reader = Reader::open(&summary.result).unwrap();
+    let leaks = LeakHistory::of(&reader).unwrap().unwrap();
+    let pockets = reader.series("pocket_area").unwrap();
+    assert_eq!(leaks.column("percolates"), reader.series("connected").unwrap());
+    let trapped = leaks.column("trapped_area");
+    assert!(trapped.iter().any(|area| *area > 0.0));
+    // The same number of cells, in sums of another order.
+    let same = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-12 * a.abs();
+    assert!(trapped.iter().zip(&pockets).all(same), "{trapped:?} {pockets:?}");
+}
+
 #[test]
 fn a_run_that_stops_before_its_leakage_says_so_and_is_resumed_to_the_same_numbers() {
     let directory = tempfile::tempdir().unwrap();

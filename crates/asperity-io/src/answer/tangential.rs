@@ -16,6 +16,8 @@ const CLOSED: f64 = 1e-2;
 const AWAY: f64 = 0.1;
 /// Fewer rows than this are few for a loop.
 const FEW: usize = 20;
+/// With fewer rows than this a loop of bodies that relax says nothing of its area.
+const LEAST: usize = 8;
 /// Smaller steps than this share of the range are none.
 const ROUNDING: f64 = 1e-9;
 
@@ -61,9 +63,13 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         };
         let few = if to - from < FEW { ", which are few" } else { "" };
         let note = format!("in the loop from {} to {}, {} rows{few}{of}", times[0], times[1], to - from);
-        let lines = if is_elastic(reader) { 0.0 } else { of_lines(to - from) };
+        let lines = match to - from {
+            _ if is_elastic(reader) => 0.0,
+            rows if rows < LEAST => f64::INFINITY,
+            rows => of_lines(rows) * energy.abs(),
+        };
         let answer = Answer::new("loop_energy", energy, grid.units("J")).with_note(note);
-        answers.push(Answer { of_rows: lines * energy.abs(), ..answer });
+        answers.push(Answer { of_rows: lines, ..answer });
     }
     let has_limit = is_elastic(reader) || !turns(&displacement);
     let stiffest = (0..stiffness.len())

@@ -34,6 +34,9 @@ const APART: f64 = 1.5;
 /// goes with the logarithm of the cells.
 const GROWS: [f64; 2] = [0.05, 0.9];
 
+/// Rounding of an answer, relative.
+const ROUNDING: f64 = 1e-12;
+
 /// The answers of the variations.
 pub(super) struct Runs {
     pub half: Option<Vec<Answer>>,
@@ -105,7 +108,7 @@ pub(super) fn bar(answer: &Answer, singular: Option<&str>, runs: &Runs, extrapol
     } else if time.is_none() && note.is_empty() {
         note = "the steps were not varied: their error is not known".into();
     }
-    let solver = moved(runs.loose.as_ref());
+    let solver = moved(runs.loose.as_ref()).map(|solver| solver.max(ROUNDING * own.abs()));
     let error = match (grid, time, solver) {
         (Some(grid), Some(time), Some(solver)) => Some((grid * grid + time * time + solver * solver).sqrt()),
         _ => None,

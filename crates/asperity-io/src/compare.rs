@@ -131,7 +131,12 @@ pub fn answers(readers: &[Reader], units: &Units) -> Result<Vec<Answers>, StoreE
         let first = values[0];
         let holds = |n: usize| complete[n] && validity[n].is_valid();
         let change = |(n, value): (usize, &f64)| {
-            let change = if *value == first { 0.0 } else { value / first - 1.0 };
+            let change = match *value == first {
+                true => 0.0,
+                // Of a change of sign a share says nothing.
+                false if value * first < 0.0 => f64::NAN,
+                false => value / first - 1.0,
+            };
             if change.is_finite() && (n == 0 || holds(0) && holds(n)) { change } else { f64::NAN }
         };
         *changes = values.iter().enumerate().map(change).collect();

@@ -66,7 +66,7 @@ pub fn judge_leaks(states: Vec<State>) -> (Vec<bool>, String) {
     let mut diagnostics = LeakDiagnostics::default();
     let resolved = states.into_iter().map(|(row, gap, width, gap_error, pressure_drop, mean_pressure)| {
         let constriction = gap.map(|gap| (gap, width));
-        diagnostics.see(&LeakState { row, constriction, gap_error, pressure_drop, mean_pressure })
+        diagnostics.see(&LeakState { row, constriction, gap_error, closed: 0, pressure_drop, mean_pressure })
     });
     let resolved = resolved.collect();
     (resolved, asperity_io::finding::list(&diagnostics.findings()).to_string())

@@ -85,6 +85,16 @@ def test_contact_closes_cells_and_both_directions_have_a_tensor() -> None:
     assert asp.leakage(gap, contact, size=(1e-4, 1e-4)).gas_leak_rate(inlet=2e5, outlet=1e5, gas="air") == 0.0
 
 
+def test_the_noise_of_a_contact_is_closed() -> None:
+    # Nine tenths of the cells touch, with gaps that are off to both sides, around channels that end.
+    errors = 1e-12 * np.random.default_rng(1).uniform(-1, 1, (40, 40))
+    gap = errors.copy()
+    gap[:36, 3::10] = 1e-6
+    leak = asp.leakage(gap, size=(1e-3, 1e-3))
+    assert not leak.percolates and leak.open_fraction < 0.1
+    assert [finding.code for finding in leak.findings] == ["gaps-below-error"]
+
+
 def test_wrong_input_is_named() -> None:
     gap = np.full((4, 4), 1e-6)
     leak = asp.leakage(gap, size=(1e-4, 1e-4))

@@ -1,8 +1,20 @@
 //! The leak of a seal, and from when on it is tight.
 
+use asperity::quantities::Quantity;
+
 use super::{Answer, Units};
 use crate::leakage::{LeakHistory, words};
 use crate::store::{Reader, Result};
+
+/// The spread of the last leak over the passes of the solver, relative, where cells without a steady access to the fluid are held.
+fn spread(reader: &Reader, leaks: &LeakHistory) -> Result<f64> {
+    let name = Quantity::LeakSpread.name();
+    if reader.scalars().iter().all(|series| series.name != name) {
+        return Ok(0.0);
+    }
+    let step = leaks.last("leak_step");
+    Ok(reader.series(name)?.get(step as usize).copied().filter(|spread| spread.is_finite()).unwrap_or(0.0))
+}
 
 /// The leaks at the last of their times; none where the result holds none.
 pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
@@ -17,6 +29,12 @@ pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
         .filter(|series| ["leak_rate", "leak_rate_standard", "hydraulic_gap"].contains(&series.name))
         .map(|series| Answer::new(series.name, leaks.last(series.name), series.units))
         .collect();
+    let spread = spread(reader, &leaks)?;
+    for answer in &mut answers {
+        // A leak goes with the cube of its hydraulic gap.
+        let share = if answer.name == "hydraulic_gap" { spread / 3.0 } else { spread };
+        answer.of_cells = share * answer.value.abs();
+    }
     // The rate that is counted at 0 °C is the usual one of a gas.
     answers.sort_by_key(|answer| answer.name != "leak_rate_standard");
     // Of the two rates of a gas one is shown.
@@ -27,9 +45,9 @@ pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     if let Some(tight) = times.get(first) {
         let between = words::tight(times, percolates, units);
         // Between the last time at which it leaks and the next one nothing is known.
-        let resolution = open.map_or(0.0, |open| tight - times[open]);
+        let of_rows = open.map_or(0.0, |open| tight - times[open]);
         let answer = Answer::new("tight_from", *tight, "s").with_note(between);
-        answers.push(Answer { resolution, ..answer });
+        answers.push(Answer { of_rows, ..answer });
     }
     Ok(answers)
 }

@@ -60,10 +60,14 @@ pub struct Answer {
     /// What a reader must know besides, in a few words.
     #[serde(skip)]
     pub note: String,
-    /// How much of it the whole cells at the edge of the contact leave open, or the distance of the rows of a time or a velocity; SI, 0
-    /// where neither limits it.
+    /// How much of it the cells leave open, as the run itself knows: whole cells at the edge of the contact, two ways to compute a force;
+    /// SI, 0 where nothing is known.
     #[serde(skip)]
-    pub resolution: f64,
+    pub of_cells: f64,
+    /// How much of it the rows leave open: their distance in time or velocity, the lines between them; SI, 0 where they do not limit it,
+    /// infinite where it has no value for ever shorter steps.
+    #[serde(skip)]
+    pub of_rows: f64,
 }
 
 /// A contact has shaken down where a cycle flattens less than this share of what the first one did.
@@ -77,7 +81,7 @@ const SHARES: [&str; 3] = ["contact_fraction", "relaxation", "slip_share"];
 impl Answer {
     pub(crate) fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Answer {
         let (name, note, validity) = (name.into(), String::new(), Validity::Holds);
-        Answer { name, value, unit, at: None, validity, note, resolution: 0.0 }
+        Answer { name, value, unit, at: None, validity, note, of_cells: 0.0, of_rows: 0.0 }
     }
 
     fn at(self, row: &Row) -> Answer {
@@ -183,6 +187,7 @@ fn flattening_per_cycle(reader: &Reader, part: &cycles::Cyclic) -> Result<Option
     let (first, last) = (grows(0), grows(count - 1));
     let note = match count {
         1 => "of the first cycle".to_owned(),
+        _ if first <= 0.0 => format!("of cycle {count}; the first one flattens nothing"),
         _ if last <= SHAKEN_DOWN * first => format!("of cycle {count}: the contact has shaken down"),
         _ => format!("of cycle {count}, {:.1} % of that of the first", 100.0 * last / first),
     };

@@ -16,6 +16,13 @@ pub(super) fn coefficients(reader: &Reader) -> Result<Vec<f64>> {
     Ok(reader.frictions()?.iter().map(Friction::of_all).collect())
 }
 
+/// What the row itself leaves open of its friction, whose bulk part is `bulk`.
+fn known_to(friction: &Friction, bulk: f64) -> f64 {
+    let off = friction.uncertainty * bulk.abs();
+    // Nothing of nothing.
+    if off.is_nan() { 0.0 } else { off }
+}
+
 /// The answers of the row `n`; none where nothing moves.
 pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>> {
     let frictions = reader.frictions()?;
@@ -26,8 +33,16 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
     let largest = if sweep && rows.len() > 1 { "the largest of the sweep; " } else { "" };
     let error = quantity(100.0 * friction.uncertainty, "");
     let note = format!("{largest}the force is known to {error} %");
-    let force = |name: &str, newton: f64| Answer::new(name, newton, reader.header().grid.units("N")).at(row);
-    let mut answers = vec![Answer::new("friction_coefficient", coefficients[n], "1").at(row).with_note(note)];
+    let unit = reader.header().grid.units("N");
+    let force = |name: &str, newton: f64| {
+        let answer = Answer::new(name, newton, unit).at(row);
+        Answer { of_cells: known_to(friction, friction.force), ..answer }
+    };
+    let coefficient = |name: String, row: usize| {
+        let answer = Answer::new(name, coefficients[row], "1");
+        Answer { of_cells: known_to(&frictions[row], frictions[row].coefficient), ..answer }
+    };
+    let mut answers = vec![coefficient("friction_coefficient".into(), n).at(row).with_note(note)];
     if friction.total.is_nan() {
         answers.push(force("friction_force", friction.force));
     } else {
@@ -38,17 +53,23 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
         let velocity = |n: usize| rows.get(n).map(|row| row.coordinate.value());
         let own = row.coordinate.value();
         let neighbours = [n.checked_sub(1).and_then(velocity), velocity(n + 1)];
-        let resolution = neighbours.iter().flatten().map(|v| (v - own).abs()).fold(0.0, f64::max);
+        // Where the friction differs by less than it is known to, the largest may be too, or at the row beyond.
+        let off = |row: usize| known_to(&frictions[row], frictions[row].coefficient);
+        let may_be_largest = |row: usize| coefficients[row] + off(row) >= coefficients[n] - off(n);
+        let first = (0..n).rev().take_while(|row| may_be_largest(*row)).last().unwrap_or(n);
+        let last = (n..rows.len()).take_while(|row| may_be_largest(*row)).last().unwrap_or(n);
+        let ends = [first.saturating_sub(1), (last + 1).min(rows.len() - 1)];
+        let of_rows = ends.into_iter().filter_map(velocity).map(|v| (v - own).abs()).fold(0.0, f64::max);
         let note = match neighbours {
             [Some(_), Some(_)] => "",
             _ => "at the end of the sweep: the friction may be larger beyond it",
         };
         let answer = Answer::new("velocity_of_largest_friction", own, "m/s").with_note(note);
-        answers.push(Answer { resolution, ..answer });
-        let few = rows.iter().zip(&coefficients).filter(|_| rows.len() <= FEW);
-        answers.extend(few.map(|(row, coefficient)| {
+        answers.push(Answer { of_rows, ..answer });
+        let few = rows.iter().enumerate().filter(|_| rows.len() <= FEW);
+        answers.extend(few.map(|(n, row)| {
             let name = format!("friction_coefficient_at_{}", quantity(row.coordinate.value(), "m/s"));
-            Answer::new(name.replace(' ', "_"), *coefficient, "1")
+            coefficient(name.replace(' ', "_"), n)
         }));
     }
     Ok(answers)

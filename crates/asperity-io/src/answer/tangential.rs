@@ -16,6 +16,8 @@ const CLOSED: f64 = 1e-2;
 const AWAY: f64 = 0.1;
 /// Fewer rows than this are few for a loop.
 const FEW: usize = 20;
+/// With fewer rows than this a loop of bodies that relax says nothing of its area.
+const LEAST: usize = 8;
 /// Smaller steps than this share of the range are none.
 const ROUNDING: f64 = 1e-9;
 
@@ -61,14 +63,30 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         };
         let few = if to - from < FEW { ", which are few" } else { "" };
         let note = format!("in the loop from {} to {}, {} rows{few}{of}", times[0], times[1], to - from);
-        answers.push(Answer::new("loop_energy", energy, grid.units("J")).with_note(note));
+        let lines = match to - from {
+            _ if is_elastic(reader) => 0.0,
+            rows if rows < LEAST => f64::INFINITY,
+            rows => of_lines(rows) * energy.abs(),
+        };
+        let answer = Answer::new("loop_energy", energy, grid.units("J")).with_note(note);
+        answers.push(Answer { of_rows: lines, ..answer });
     }
+    let has_limit = is_elastic(reader) || !turns(&displacement);
     let stiffest = (0..stiffness.len())
         .filter(|row| stiffness[*row].is_finite())
         .max_by(|a, b| stiffness[*a].total_cmp(&stiffness[*b]));
     answers.extend(stiffest.map(|row| {
-        let note = format!("the largest of a step, to {}", quantity(rows[row].coordinate.value(), "s"));
-        Answer::new(Quantity::TangentialStiffness.name(), stiffness[row], grid.units("N/m")).with_note(note)
+        let to = quantity(rows[row].coordinate.value(), "s");
+        let (why, of_rows) = match has_limit {
+            true => ("", 0.0),
+            false => (
+                "; where the displacement turns while the bodies relax it grows as steps become shorter",
+                f64::INFINITY,
+            ),
+        };
+        let note = format!("the largest of a step, to {to}{why}");
+        let answer = Answer::new(Quantity::TangentialStiffness.name(), stiffness[row], grid.units("N/m"));
+        Answer { of_rows, ..answer.with_note(note) }
     }));
     let share = slip[pulled] / (stick[pulled] + slip[pulled]);
     answers.extend([
@@ -80,6 +98,20 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         ),
     ]);
     Ok(answers)
+}
+
+/// What straight lines between so many rows leave open of the area of a loop, relative, twice that of an ellipse:
+/// 2 (1 - sin(a)/a) with a = 2 pi/rows, about a²/3.
+fn of_lines(rows: usize) -> f64 {
+    let angle = std::f64::consts::TAU / rows.max(1) as f64;
+    angle * angle / 3.0
+}
+
+/// Whether a course turns back: a step against the one before.
+fn turns(course: &[[f64; 2]]) -> bool {
+    let steps = course.windows(2).map(|pair| [0, 1].map(|axis| pair[1][axis] - pair[0][axis]));
+    let moves: Vec<[f64; 2]> = steps.filter(|[x, y]| *x != 0.0 || *y != 0.0).collect();
+    moves.windows(2).any(|pair| pair[0][0] * pair[1][0] + pair[0][1] * pair[1][1] < 0.0)
 }
 
 /// Whether the bodies have no retardation times.

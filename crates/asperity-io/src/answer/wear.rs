@@ -53,7 +53,8 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
     let of_track = |track| Answer::new("counterbody_wear_volume", track, grid.units("m3")).with_note("of it");
     answers.extend(track.map(of_track));
     let note = format!("{} % of the volume may be in another place", quantity(100.0 * error, ""));
-    answers.push(Answer::new("wear_depth_max", depth[last], "m").with_note(note));
+    let depth_max = Answer::new("wear_depth_max", depth[last], "m").with_note(note);
+    answers.push(Answer { of_rows: error.max(0.0) * depth[last], ..depth_max });
     if let Some(limit) = number(reader, Header::WEAR, "depth_limit") {
         // Slip is fastest in the middle of a way, so the rate is that of the last computed cycle.
         let period = number(reader, Header::FRICTION, "period");

@@ -3,8 +3,8 @@
 //! Three things limit an answer Q: the size of the cells h, the length of the steps, and the tolerance of the solver. Each is made
 //! coarser on its own, and an answer's error is estimated from how much it moves:
 //!
-//! - **grid**: half and, where possible, a quarter of the cells along each side. Where the cells cannot be halved (roughness whose
-//!   shortest wave has too few cells then) the grid is refined instead.
+//! - **grid**: half and a quarter of the cells along each side; where a quarter is not possible, three quarters. Where the cells cannot be
+//!   halved (roughness whose shortest wave has too few cells then) the grid is refined instead.
 //! - **time**: steps twice as long; where that is not possible, half as long. Elastic contacts at rest that do not wear have no such error.
 //! - **solver**: ten times the tolerance.
 //!
@@ -18,7 +18,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use asperity::finding::Finding;
+use asperity::Coordinate;
+use asperity::finding::{CONTACT_AT_BORDER, Finding};
 use asperity::step::Row;
 use serde::{Deserialize, Serialize};
 
@@ -26,9 +27,9 @@ use crate::answer::{self, Answer, Units};
 use crate::case::{Case, CaseErrors};
 use crate::session::{RunError, RunOptions, run};
 use crate::store::{Reader, Status, StoreError};
-use estimate::{Runs, Steps, bars};
+use estimate::{Runs, Steps, bar};
 pub use variation::Change;
-use variation::{has_singular_pressure, steps_matter};
+use variation::{has_singular_pressure, is_limited, steps_matter};
 
 /// An answer with its error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -149,7 +150,8 @@ struct Work<'a> {
 /// What a run answers, and what it took.
 struct Solved {
     answers: Vec<Answer>,
-    rows: usize,
+    /// Where its rows are, and the last of them.
+    at: Vec<Coordinate>,
     last: Option<Row>,
     findings: Vec<Finding>,
     convolutions: u64,
@@ -181,6 +183,11 @@ pub fn converge(
         Some(_) => work.vary(&[Change::QuarterCells], &mut vec![])?,
         None => None,
     };
+    // Two grids may agree by chance: another one between them.
+    let three_quarters = match quarter {
+        Some(_) => None,
+        None => work.vary(&[Change::ThreeQuartersOfCells], &mut vec![])?,
+    };
     let double = match options.refine || half.is_none() {
         true => work.vary(&[Change::DoubleCells], &mut notes)?,
         false => None,
@@ -199,15 +206,42 @@ pub fn converge(
     let runs = Runs {
         half: answers(half),
         quarter: answers(quarter),
+        three_quarters: answers(three_quarters),
         double: answers(double),
         steps,
         loose: answers(loose),
-        is_singular: has_singular_pressure(&case),
     };
     let cost = work.spent / (base.convolutions.max(1) as f64);
-    let bars = bars(&base.answers, &runs, options.refine);
-    let Solved { answers, rows, last, findings, .. } = base;
-    Ok(Convergence { answers, bars, rows, last, findings, notes, cost })
+    let of = |answer: &Answer| bar(answer, base.why_singular(&case, answer), &runs, options.refine);
+    let bars = base.answers.iter().map(of).collect();
+    let Solved { answers, at, last, findings, .. } = base;
+    Ok(Convergence { answers, bars, rows: at.len(), last, findings, notes, cost })
+}
+
+/// Answers that have no value on ever finer grids where the pressure is singular, by how their names begin.
+const OF_LARGEST_PRESSURE: [&str; 3] = ["max_pressure", "max_mises", "first_yield"];
+
+impl Solved {
+    /// Why an answer has no value on ever finer grids; `None` where nothing is known to say so.
+    fn why_singular(&self, case: &Case, answer: &Answer) -> Option<&'static str> {
+        let is_largest = OF_LARGEST_PRESSURE.iter().any(|begin| answer.name.starts_with(begin));
+        if !is_largest || is_limited(case) {
+            return None;
+        }
+        if has_singular_pressure(case) {
+            return Some("at a sharp edge or tip the pressure grows without end as the cells shrink");
+        }
+        let border = self.findings.iter().find(|finding| finding.code == CONTACT_AT_BORDER)?;
+        // An answer of no row is one of all rows.
+        let is_within = border.rows.zip(answer.at).is_none_or(|([first, last], at)| {
+            let mut rows = self.at.iter().enumerate().filter(|(_, own)| **own == at);
+            rows.any(|(row, _)| (first..=last).contains(&row))
+        });
+        is_within.then_some(
+            "where the contact reaches the border of the free domain the body ends in a sharp edge, at which the pressure grows without end \
+             as the cells shrink",
+        )
+    }
 }
 
 /// What the error bars of a case take, about, over what the case itself takes.
@@ -220,8 +254,8 @@ pub fn expected_cost(case: &Case, read: &Read<'_>) -> f64 {
     };
     // A looser tolerance takes less, but never more.
     match is_possible(Change::HalfCells) {
-        true => 0.25 * (2.0 + steps) + if is_possible(Change::QuarterCells) { 0.0625 } else { 0.0 },
-        false => 4.0 + 1.0 + steps,
+        true => 0.25 * (2.0 + steps) + if is_possible(Change::QuarterCells) { 0.0625 } else { 0.5625 },
+        false => 4.0 + 1.0 + steps + if is_possible(Change::ThreeQuartersOfCells) { 0.5625 } else { 0.0 },
     }
 }
 
@@ -235,7 +269,7 @@ impl Work<'_> {
     ) -> Result<Steps, ConvergeError> {
         let mut why = vec![];
         if let Some(long) = self.vary(&[coarse, &[Change::LongSteps]].concat(), &mut why)? {
-            if long.rows < before.rows {
+            if long.at.len() < before.at.len() {
                 return Ok(Steps::Varied { answers: long.answers, factor: 1.0 });
             }
             why.push(
@@ -247,7 +281,7 @@ impl Work<'_> {
         // Breaks of the history may lie where steps of half the length end.
         for change in [Change::HalfSteps, Change::QuarterSteps] {
             let Some(short) = self.vary(&[coarse, &[change]].concat(), notes)? else { break };
-            if short.rows > before.rows {
+            if short.at.len() > before.at.len() {
                 let name = change.name();
                 notes.push(format!("{name} instead: their error is twice what they move an answer"));
                 return Ok(Steps::Varied { answers: short.answers, factor: 2.0 });
@@ -316,6 +350,8 @@ impl Work<'_> {
 fn solved(reader: &Reader) -> Result<Solved, ConvergeError> {
     let answers = answer::of(reader, &Units::default())?;
     let findings = reader.findings().to_vec();
-    let last = reader.rows()?.pop();
-    Ok(Solved { answers, rows: reader.len(), last, findings, convolutions: reader.work().convolutions })
+    let rows = reader.rows()?;
+    let at = rows.iter().map(|row| row.coordinate).collect();
+    let last = rows.last().copied();
+    Ok(Solved { answers, at, last, findings, convolutions: reader.work().convolutions })
 }

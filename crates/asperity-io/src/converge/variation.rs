@@ -14,6 +14,8 @@ pub enum Change {
     HalfCells,
     /// A quarter of them.
     QuarterCells,
+    /// Three quarters of them.
+    ThreeQuartersOfCells,
     /// Twice the cells along each side.
     DoubleCells,
     /// Steps of twice the length, or more where their number is odd.
@@ -37,6 +39,7 @@ impl Change {
         match self {
             Change::HalfCells => "half the cells along each side",
             Change::QuarterCells => "a quarter of the cells along each side",
+            Change::ThreeQuartersOfCells => "three quarters of the cells along each side",
             Change::DoubleCells => "twice the cells along each side",
             Change::LongSteps => "steps of twice the length",
             Change::HalfSteps => "steps of half the length",
@@ -54,6 +57,7 @@ impl Change {
         match self {
             Change::HalfCells => cells(case, &table, |n| n.div_ceil(2)),
             Change::QuarterCells => cells(case, &table, |n| n.div_ceil(4)),
+            Change::ThreeQuartersOfCells => cells(case, &table, |n| (3 * n).div_ceil(4)),
             Change::DoubleCells => cells(case, &table, |n| 2 * n),
             Change::LongSteps => steps(&table, &LONGER),
             Change::HalfSteps => steps(&table, &HALF),
@@ -105,14 +109,18 @@ pub(super) fn steps_matter(case: &Case) -> bool {
         && (remembers || has_path || has_cycles || case.motion.is_some() || case.conditions.wear.is_some())
 }
 
-/// Whether a shape of the case has an edge or a tip where the pressure grows without end, and no hardness limits it.
+/// Whether a hardness limits the pressure.
+pub(super) fn is_limited(case: &Case) -> bool {
+    case.conditions.hardness.is_finite() || case.conditions.hardness_map.is_some()
+}
+
+/// Whether a shape of the case has an edge or a tip where the pressure grows without end.
 pub(super) fn has_singular_pressure(case: &Case) -> bool {
-    let is_limited = case.conditions.hardness.is_finite() || case.conditions.hardness_map.is_some();
     let is_singular = |surface: &Surface| match surface {
         Surface::Part(Part::Shape { shape, .. }) => shape.has_singular_pressure(),
         Surface::Part(_) | Surface::File(_) => false,
     };
-    !is_limited && case.surfaces.iter().any(is_singular)
+    case.surfaces.iter().any(is_singular)
 }
 
 /// How the keys that give steps change with the length of the steps.

@@ -164,6 +164,8 @@ pub struct Leakage {
     pub trapped_volume: f64,
     /// Share of the cells that are open.
     pub open_fraction: f64,
+    /// The error of the gap that the gap itself tells \[m\], and the number of cells that are closed because of it.
+    pub closed: (f64, usize),
     /// Effective conductance \[m^3\]; `None` unless both directions were asked for.
     pub conductance: Option<[[f64; 2]; 2]>,
     /// Leak rate \[m^3/s; gas kg/s\]; `None` without a fluid.
@@ -192,7 +194,8 @@ impl Leakage {
         LeakState {
             row: None,
             constriction: self.percolates.then_some((self.critical_gap, self.critical_width)),
-            gap_error: 0.0,
+            gap_error: self.closed.0,
+            closed: self.closed.1,
             pressure_drop: None,
             mean_pressure: 0.0,
         }
@@ -259,7 +262,8 @@ impl Leak {
             medium_gap: medium,
             trapped_area: passages.trapped_area,
             trapped_volume: passages.trapped_volume,
-            open_fraction: opening.open_fraction(),
+            open_fraction: passages.open_fraction(),
+            closed: opening.closed(),
             conductance: match self.direction {
                 LeakDirection::Both => Some(conductance(&opening, &options)?),
                 _ => None,

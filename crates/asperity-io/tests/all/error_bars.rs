@@ -195,7 +195,9 @@ fn errors(known: &Known) -> Vec<(&'static str, f64, f64)> {
     let exact = (known.exact)(&case, &known.numbers);
     let stated = exact.into_iter().map(|(name, exact)| {
         let bar = bar(name);
-        (name, bar.error.unwrap() / exact.abs(), (bar.value.unwrap() - exact).abs() / exact.abs())
+        // An error that is not known claims nothing.
+        let stated = bar.error.unwrap_or(f64::INFINITY);
+        (name, stated / exact.abs(), (bar.value.unwrap() - exact).abs() / exact.abs())
     });
     stated.collect()
 }
@@ -423,5 +425,215 @@ fn the_pressure_at_a_sharp_edge_is_not_resolved() {
             "{:?}",
             found.bars
         );
+    }
+}
+
+/// A case without a closed form: its true answers are those on cells of a quarter of the length.
+fn open_form(seed: usize) -> (&'static str, String, usize) {
+    let mut random = Random(104_729 + 1000 * seed);
+    let cells = [20, 24, 32, 40][(4.0 * random.between(0.0, 1.0)) as usize];
+    let (side, modulus) = (1e-3, 1e6 / (1.0 - 0.09));
+    let domain = |boundary: &str| {
+        format!(
+            "domain = {{ cells = [{cells}, {cells}], size = [{side}, {side}], boundary = \"{boundary}\" }}\n"
+        )
+    };
+    let step = |control: &str, value: f64| {
+        format!("load = {{ control = \"{control}\", history = {{ kind = \"step\", value = {value:e} }} }}\n")
+    };
+    let once = "time = { times = [1.0] }\n";
+    let rough = |random: &mut Random, height: &str| {
+        let shortest = side / cells as f64 * random.between(4.0, 9.0);
+        let longest = (0.5 * side).max(2.0 * shortest);
+        format!(
+            "surface = [{{ kind = \"self-affine\", hurst = 0.8, {height}, longest = {longest:e}, shortest = {shortest:e}, seed = {seed} }}]\n"
+        )
+    };
+    let round = |random: &mut Random, from: f64, to: f64| {
+        let reach = 0.5 * side * random.between(from, to);
+        (4.0 / 3.0 * modulus * reach.powi(3) / 0.01, "surface = [{ kind = \"sphere\", radius = 0.01 }]\n")
+    };
+    let (kind, text) = match seed % 8 {
+        0 => {
+            let surface = rough(&mut random, "rms_gradient = 0.02");
+            let load = step("pressure", random.between(0.02, 0.5) * 0.01 * modulus);
+            ("rough, under a load", [&domain("periodic"), &surface, &load, once, ELASTIC].concat())
+        }
+        1 => {
+            let surface = rough(&mut random, "rms_height = 1e-6");
+            let load = step("approach", random.between(0.5e-6, 2e-6));
+            ("rough, under an approach", [&domain("periodic"), &surface, &load, once, ELASTIC].concat())
+        }
+        2 => {
+            let ratio = random.between(1.0, 4.0);
+            let (load, _) = round(&mut random, 0.85, 1.5);
+            let surface = format!(
+                "surface = [{{ kind = \"ellipsoid\", radius_x = 0.01, radius_y = {:e} }}]\n",
+                0.01 * ratio
+            );
+            (
+                "contact up to the border",
+                [&domain("free"), &surface, &step("load", load * ratio.sqrt()), once, ELASTIC].concat(),
+            )
+        }
+        3 => {
+            let radius = 0.5 * side * random.between(0.2, 0.9);
+            let surface = format!("surface = [{{ kind = \"flat-punch\", radius = {radius:e} }}]\n");
+            ("flat punch", [&domain("free"), &surface, &step("load", 1e-3), once, ELASTIC].concat())
+        }
+        4 => {
+            let (load, surface) = round(&mut random, 0.25, 0.7);
+            let velocity = random.log(3e-6, 3e-2);
+            let motion = format!("motion = {{ steady = {{ velocities = [{velocity:e}] }} }}\n");
+            ("sliding sphere", [&domain("free"), surface, &step("load", load), &motion, ZENER].concat())
+        }
+        5 => {
+            let (load, surface) = round(&mut random, 0.2, 0.8);
+            let (thickness, young) = (side * random.between(0.1, 0.6), random.log(1e5, 1e7));
+            let layer = format!(
+                "[[body.layer]]\nthickness = {thickness:e}\npoisson = 0.4\nmaterial = {{ model = \"elastic\", young = {young:e} }}\ninterface = \"bonded\"\n"
+            );
+            (
+                "sphere on a layer",
+                [&domain("free"), surface, &step("load", load), once, ELASTIC, &layer].concat(),
+            )
+        }
+        6 => {
+            let work = random.log(1e-3, 2e-2);
+            let range = (work / modulus * 4.8 * side / cells as f64).sqrt() * random.between(1.6, 2.5);
+            let adhesion = format!("adhesion = {{ work = {work:e}, range = {range:e} }}\n");
+            let surface = "surface = [{ kind = \"sphere\", radius = 0.01 }]\n";
+            let load = step("approach", random.between(0.5e-6, 4e-6));
+            ("sphere that adheres", [&domain("free"), surface, &load, once, &adhesion, ELASTIC].concat())
+        }
+        _ => {
+            let surface = rough(&mut random, "rms_gradient = 0.02");
+            let load = step("pressure", random.between(0.02, 0.2) * 0.02 * modulus);
+            let leak = "leakage = { pressure_drop = 1e5, viscosity = 1e-3 }\n";
+            ("rough seal", [&domain("periodic"), &surface, &load, once, leak, ELASTIC].concat())
+        }
+    };
+    (kind, text, cells)
+}
+
+/// The answers of a case on other cells.
+fn answers_on(text: &str, cells: usize) -> Vec<asperity_io::answer::Answer> {
+    use asperity_io::session::{RunOptions, run};
+    let directory = tempfile::tempdir().unwrap();
+    let case =
+        Case::parse(text, "case.toml".as_ref(), &[format!("domain.cells=[{cells}, {cells}]")]).unwrap();
+    let output = Some(directory.path().join("fine.zarr"));
+    let summary = run(&case, &RunOptions { output, ..RunOptions::default() }, |_| ()).unwrap();
+    summary.answers
+}
+
+#[test]
+fn the_stated_error_covers_the_distance_from_four_times_finer_cells() {
+    let mut table: BTreeMap<&str, [usize; 4]> = BTreeMap::new();
+    let mut missed = String::new();
+    for seed in 0..count() {
+        let (kind, text, cells) = open_form(seed);
+        let fine = answers_on(&text, 4 * cells);
+        let is_singular = ["contact up to the border", "flat punch"].contains(&kind);
+        for bar in found(&text, false).bars {
+            let Some((value, exact)) = bar.value.zip(fine.iter().find(|answer| answer.name == bar.name))
+            else {
+                continue;
+            };
+            let off = (value - exact.value).abs();
+            let row = table.entry(kind).or_default();
+            row[0] += 1;
+            match bar.error {
+                None => row[3] += 1,
+                Some(error) => {
+                    row[1] += usize::from(off <= error);
+                    row[2] += usize::from(error <= (10.0 * off).max(1e-3 * exact.value.abs()));
+                    if off > error {
+                        writeln!(
+                            missed,
+                            "{kind} {seed}: {} is off by {off:.2e}, stated {error:.2e}",
+                            bar.name
+                        )
+                        .unwrap();
+                    }
+                }
+            }
+            if is_singular && bar.name == "max_pressure" {
+                assert!(bar.error.is_none() && bar.note.contains("without end"), "{kind} {seed}: {bar:?}");
+            }
+        }
+    }
+    let mut sum = [0; 4];
+    for (kind, row) in &table {
+        println!("| {kind} | {} | {} | {} | {} |", row[0], row[1], row[2], row[3]);
+        sum.iter_mut().zip(row).for_each(|(sum, number)| *sum += number);
+    }
+    let [all, covered, close, unknown] = sum;
+    println!("| all | {all} | {covered} | {close} | {unknown} |\n{missed}");
+    // 95 of 100 of those that are stated.
+    assert!(20 * covered >= 19 * (all - unknown), "{covered} of {all}, {unknown} unknown\n{missed}");
+}
+
+#[test]
+fn the_pressure_of_a_contact_that_reaches_the_border_is_not_resolved() {
+    // The sharp edge of the body is not seen on these grids: they have 19.57, 19.62 and 19.66 kPa, in the middle; cells of a quarter 29.
+    let text = r#"
+domain = { cells = [40, 40], size = ["1 mm", "1 mm"] }
+surface = [{ kind = "ellipsoid", radius_x = "10 mm", radius_y = "20 mm" }]
+body = [{ poisson = 0.3, material = { model = "elastic", young = "0.8568 MPa" } }]
+load = { control = "load", history = { kind = "step", value = "8.45532 mN" } }
+time = { end = "1 s", steps = 1 }
+"#;
+    let bar =
+        |text: &str, name: &str| found(text, false).bars.into_iter().find(|bar| bar.name == name).unwrap();
+    let pressure = bar(text, "max_pressure");
+    assert!(pressure.error.is_none() && pressure.note.contains("border of the free domain"), "{pressure:?}");
+    // Area and approach have their limits, and a hardness limits the pressure.
+    assert!(bar(text, "approach").error.is_some() && bar(text, "contact_area").error.is_some());
+    let hard = text.replace("poisson = 0.3,", "poisson = 0.3, hardness = \"25 kPa\",");
+    assert!(bar(&hard, "max_pressure").error.is_some());
+}
+
+#[test]
+fn the_friction_of_a_row_is_known_no_better_than_the_row_says() {
+    let text = r#"
+domain = { cells = [24, 24], size = ["1 mm", "1 mm"] }
+surface = [{ kind = "sphere", radius = "10 mm" }]
+body = [{ poisson = 0.3, material = { model = "zener", shear = "1 MPa", shear_kelvin = "0.440211 MPa", retardation_time = "0.152949 s" } }]
+load = { control = "load", history = { kind = "step", value = "10 mN" } }
+motion = { steady = { velocities = ["0.0953596 mm/s"] } }
+"#;
+    let found = found(text, false);
+    let own = found.answers.iter().find(|answer| answer.name == "friction_coefficient").unwrap();
+    assert!(own.of_cells > 0.05 * own.value, "{own:?}");
+    for name in ["friction_coefficient", "friction_force"] {
+        let bar = found.bars.iter().find(|bar| bar.name == name).unwrap();
+        let exact = answers_on(text, 192).into_iter().find(|answer| answer.name == name).unwrap().value;
+        let value = bar.value.unwrap();
+        // The two ways to compute the force differ by 7 %.
+        assert!(
+            bar.error.unwrap() >= 0.07 * value && (value - exact).abs() <= bar.error.unwrap(),
+            "{bar:?} {exact}"
+        );
+    }
+}
+
+#[test]
+fn the_stiffness_along_the_surfaces_of_bodies_that_relax_has_no_limit_where_the_motion_turns() {
+    let case = |body: &str, kind: &str| {
+        format!(
+            "domain = {{ cells = [12, 12], size = [1e-3, 1e-3] }}\nsurface = [{{ kind = \"flat-punch\", radius = 1.0 }}]\nload = {{ control = \"load\", history = {{ kind = \"step\", value = 5e-3 }} }}\nfriction = {{ coefficient = 0.4 }}\ntangential = {{ control = \"force\", x = {kind} }}\ntime = {{ end = 2.25, steps = 18 }}\n{body}"
+        )
+    };
+    let sine = "{ kind = \"sine\", mean = 0.0, amplitude = 1e-3, frequency = 1.0 }";
+    let ramp = "{ kind = \"ramp\", value = 1e-3, duration = 2.25 }";
+    for (body, history, is_known) in [(ZENER, sine, false), (ZENER, ramp, true), (ELASTIC, sine, true)] {
+        let found = found(&case(body, history), false);
+        let bar = found.bars.iter().find(|bar| bar.name == "tangential_stiffness").unwrap();
+        assert_eq!(bar.error.is_some(), is_known, "{bar:?}");
+        if let Some(energy) = found.bars.iter().find(|bar| bar.name == "loop_energy").filter(|_| !is_known) {
+            // 8 rows in a loop: straight lines take 10 % off an ellipse.
+            assert!(energy.error.unwrap() > 0.1 * energy.value.unwrap(), "{energy:?}");
+        }
     }
 }

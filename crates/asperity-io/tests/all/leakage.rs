@@ -8,7 +8,7 @@ use asperity::Boundary;
 use asperity_io::case::Case;
 use asperity_io::leakage::{Beside, LeakError, LeakHistory};
 use asperity_io::session::{RunError, RunOptions, run};
-use asperity_io::store::{Reader, Status};
+use asperity_io::store::{At, FieldKind, Reader, Status};
 
 const CASE: &str = r#"
 [domain]
@@ -34,6 +34,89 @@ viscosity = "1 mPa s"
 [output]
 every = 1
 "#;
+
+/// A sealed, creeping seal whose inlet goes up and down.
+const SEALED: &str = r#"
+[domain]
+cells = [48, 48]
+size = ["0.2 mm", "0.2 mm"]
+boundary = "periodic"
+[[surface]]
+kind = "self-affine"
+rms_height = "0.5 um"
+hurst = 0.8
+longest = "0.1 mm"
+shortest = "20 um"
+seed = 3
+[[body]]
+poisson = 0.5
+material = { model = "zener", shear = "3 MPa", shear_kelvin = "3 MPa", retardation_time = "1 s" }
+[load]
+control = "pressure"
+history = { kind = "ramp", value = "0.25 MPa", duration = "2 s" }
+[time]
+end = "10 s"
+steps = 10
+[output]
+every = 1
+fields = ["gap", "pressure", "contact_pressure"]
+[leakage]
+viscosity = "1 mPa s"
+inlet = { kind = "table", points = [["0 s", "1 bar"], ["5 s", "2 bar"], ["10 s", "1.5 bar"]] }
+outlet = "1 bar"
+coupling = "two-way"
+pockets = "sealed"
+bulk_modulus = "2 GPa"
+"#;
+
+#[test]
+fn a_fluid_that_acts_on_the_surfaces_is_resumed_after_any_row_with_the_same_bits() {
+    let directory = tempfile::tempdir().unwrap();
+    let case = Case::parse(SEALED, Path::new("."), &[]).unwrap();
+    let options = |name: &str| RunOptions {
+        output: Some(directory.path().join(name)),
+        interrupt: Arc::new(AtomicBool::new(false)),
+        ..RunOptions::default()
+    };
+    let whole = run(&case, &options("whole.zarr"), |_| ()).unwrap();
+    for row in 1..whole.rows {
+        let parts = RunOptions { resume: row > 1, ..options("parts.zarr") };
+        let stopped =
+            run(&case, &parts, |progress| parts.interrupt.store(progress.done >= row, Ordering::Relaxed));
+        assert_eq!(stopped.unwrap().status, Status::Interrupted, "{row}");
+    }
+    run(&case, &RunOptions { resume: true, ..options("parts.zarr") }, |_| ()).unwrap();
+    let [whole, parts] =
+        ["whole.zarr", "parts.zarr"].map(|name| Reader::open(&directory.path().join(name)).unwrap());
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    for series in whole.scalars() {
+        let [a, b] = [&whole, &parts].map(|reader| bits(&reader.series(series.name).unwrap()));
+        assert_eq!(a, b, "{}", series.name);
+    }
+    for index in 0..whole.field_times().len() {
+        for field in [FieldKind::Gap, FieldKind::Pressure, FieldKind::ContactPressure] {
+            let [a, b] = [&whole, &parts].map(|reader| reader.field(field, At::Index(index)).unwrap());
+            assert_eq!(a, b, "{field:?} {index}");
+        }
+    }
+}
+
+#[test]
+fn the_stored_gap_is_open_where_it_was_to_the_fluid() {
+    let directory = tempfile::tempdir().unwrap();
+    let case = Case::parse(SEALED, Path::new("."), &[]).unwrap();
+    let output = Some(directory.path().join("sealed.zarr"));
+    let summary = run(&case, &RunOptions { output, ..RunOptions::default() }, |_| ()).unwrap();
+    let reader = Reader::open(&summary.result).unwrap();
+    let leaks = LeakHistory::of(&reader).unwrap().unwrap();
+    let pockets = reader.series("pocket_area").unwrap();
+    assert_eq!(leaks.column("percolates"), reader.series("connected").unwrap());
+    let trapped = leaks.column("trapped_area");
+    assert!(trapped.iter().any(|area| *area > 0.0));
+    // The same number of cells, in sums of another order.
+    let same = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-12 * a.abs();
+    assert!(trapped.iter().zip(&pockets).all(same), "{trapped:?} {pockets:?}");
+}
 
 #[test]
 fn a_run_that_stops_before_its_leakage_says_so_and_is_resumed_to_the_same_numbers() {

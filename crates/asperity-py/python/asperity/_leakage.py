@@ -34,7 +34,7 @@ class Leakage(Sealed):
     `trapped_volume`); `conductance` (2, 2) [m^3] where both directions were asked for. Fields of shape (nx, ny): `pressure` (1 at the
     inlet to 0 at the outlet, NaN where there is no fluid or no connection) and `cells` (0 closed, 1 connected to inlet and outlet,
     2 to the inlet alone, 3 to the outlet alone, 4 pocket). `leak_resolved` is False where the constriction is less than four cells
-    wide (`findings` says so; the error of the gap and the pressure of the contact are known of a :class:`Result` only).
+    wide (`findings` says so, and how many cells are closed because their gap is below its error; the error of the gap and the pressure of the contact are known of a :class:`Result` only).
     """
 
     percolates: bool
@@ -110,7 +110,8 @@ def leakage(
     Parameters
     ----------
     gap : gap between the surfaces [m], array (nx, ny)
-    contact : where the surfaces touch (nonzero); default: where the gap is not above 0
+    contact : where the surfaces touch (nonzero); default: where the gap is not above its error, the deepest negative gap (a note
+        `gaps-below-error` in `findings` counts the cells that this closes)
     size : lengths of the domain along x and y [m]; a gap as xarray array with coordinates needs none
     direction : "x" or "y"; "both": along x, and the effective conductance of a gap that repeats in both directions
     sides : "periodic" or "closed"

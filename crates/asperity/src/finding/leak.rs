@@ -3,7 +3,7 @@
 
 use super::words::{digits, si};
 use super::worst::Worst;
-use super::{CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, Finding, LEAK_BELOW_GAP_ERROR};
+use super::{CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, Finding, GAPS_BELOW_ERROR, LEAK_BELOW_GAP_ERROR};
 
 /// Smallest ratio of the critical gap to its error: the leak is proportional to the third power of the gap, so an error of 1/30
 /// means 10 %.
@@ -29,6 +29,8 @@ pub struct LeakState {
     pub constriction: Option<(f64, Option<usize>)>,
     /// Error of the gap due to the tolerance of the solver \[m\]: the tolerance times the mean displacement.
     pub gap_error: f64,
+    /// Cells whose gap is not above its error, which count as closed.
+    pub closed: usize,
     /// Drop of the fluid pressure \[Pa\], if the fluid is known.
     pub pressure_drop: Option<f64>,
     /// Load over the area of the domain \[Pa\]; 0 if it is not known, and then not checked.
@@ -39,6 +41,9 @@ pub struct LeakState {
 #[derive(Clone, Debug, Default)]
 pub struct LeakDiagnostics {
     below_error: Worst,
+    closed: Worst,
+    /// The error of the gap where cells are closed because of it [m].
+    error: f64,
     narrow: Worst,
     pressure: Worst,
 }
@@ -47,6 +52,9 @@ impl LeakDiagnostics {
     /// Checks a leak; true if there is no finding against it. A tight seal has no constriction to check.
     pub fn see(&mut self, state: &LeakState) -> bool {
         let mut unresolved = false;
+        if self.closed.above(state.row, state.closed as f64, 0.5) {
+            self.error = self.error.max(state.gap_error);
+        }
         if let Some((gap, width)) = state.constriction {
             unresolved |= self.below_error.below(state.row, gap, ABOVE_ERROR * state.gap_error);
             unresolved |= width.is_some_and(|cells| self.narrow.below(state.row, cells as f64, ACROSS));
@@ -67,6 +75,14 @@ impl LeakDiagnostics {
                 si(worst.value, "m"),
                 worst.place(),
                 si(worst.limit / ABOVE_ERROR, "m")
+            )
+        });
+        let closed = self.closed.warning(GAPS_BELOW_ERROR, |worst| {
+            format!(
+                "{} cells{} have gaps above 0 that are not above the error of the gap, {}: they count as closed. The error is the rounding of the                  largest gap, and without a contact also the deepest negative gap. Give the contact beside the gap, or a gap that is 0 where the surfaces touch.",
+                digits(worst.value),
+                worst.place(),
+                si(self.error, "m")
             )
         });
         let narrow = self.narrow.warning(CONSTRICTION_UNRESOLVED, |worst| {
@@ -97,7 +113,7 @@ impl LeakDiagnostics {
                 si(mean, "Pa"),
             )
         });
-        [below, narrow, pressure].into_iter().flatten().collect()
+        [below, closed.map(Finding::as_note), narrow, pressure].into_iter().flatten().collect()
     }
 }
 
@@ -111,6 +127,7 @@ mod tests {
             row: Some(0),
             constriction: Some((31.0, Some(4))),
             gap_error: 1.0,
+            closed: 0,
             pressure_drop: Some(1e5),
             mean_pressure: 1e7,
         };

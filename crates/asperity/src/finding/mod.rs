@@ -231,6 +231,8 @@ codes! {
     YIELD_EXCEEDED = "yield-exceeded";
     /// The gap at the critical constriction of a leak is less than 30 times the error of the gap.
     LEAK_BELOW_GAP_ERROR = "leak-below-gap-error";
+    /// Gaps of a leak that are below the error of the gap count as closed.
+    GAPS_BELOW_ERROR = "gaps-below-error";
     /// The critical constriction of a leak is less than four cells wide.
     CONSTRICTION_UNRESOLVED = "constriction-unresolved";
     /// A leak through a contact that moves.

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Mobilities are relative to that of the critical gap. They are limited to 3e13: the resistance of such a cell is below rounding
-//! in double precision. Cells with less than a millionth of the critical gap are left out (their mobility is below 1e-18).
+//! in double precision. Cells with less than a millionth of the critical gap are closed ([`Passages`]).
 
 use ndarray::{Array2, ArrayView2};
 
@@ -18,16 +18,13 @@ use crate::error::{Result, positive};
 
 /// Largest mobility, relative to that of the critical gap.
 const LARGEST_MOBILITY: f64 = 3e13;
-/// Smallest gap with flow, relative to the critical one.
-const SMALLEST_GAP: f64 = 1e-6;
 
 /// The flow of a liquid through a gap.
 #[derive(Clone, Debug)]
 pub struct Flow {
     /// T \[m^3\]; exactly 0 if the seal is tight.
     pub transmissivity: f64,
-    /// Pressure over the pressure drop, 1 at the inlet to 0 at the outlet, shape (nx, ny); NaN in contact and in pockets, and
-    /// where the only connection is through passages narrower than a millionth of the critical gap.
+    /// Pressure over the pressure drop, 1 at the inlet to 0 at the outlet, shape (nx, ny); NaN in contact and in pockets.
     pub pressure: Array2<f64>,
     /// Iterations of the linear system.
     pub iterations: usize,
@@ -89,20 +86,10 @@ pub(crate) fn liquid_after(
 /// (h/h_c)^3 of the cells through which fluid flows, 0 elsewhere.
 pub(super) fn mobility(opening: &Opening, passages: &Passages, critical: f64) -> Vec<f64> {
     let relative = |(h, kind): (&f64, &CellKind)| match h / critical {
-        ratio if *kind == CellKind::Through && ratio >= SMALLEST_GAP => {
-            (ratio * ratio * ratio).min(LARGEST_MOBILITY)
-        }
+        ratio if *kind == CellKind::Through => (ratio * ratio * ratio).min(LARGEST_MOBILITY),
         _ => 0.0,
     };
-    let cells = || opening.gap.iter().zip(&passages.kinds);
-    let all: Vec<f64> = cells().map(relative).collect();
-    if cells().all(|(h, kind)| *kind != CellKind::Through || h / critical >= SMALLEST_GAP) {
-        return all;
-    }
-    // Without the narrowest cells some parts may no longer be connected to inlet or outlet.
-    let left = Opening { gap: all, ..opening.clone() };
-    let kinds = super::passages::kinds(&left);
-    left.gap.iter().zip(kinds).map(|(k, kind)| if kind == CellKind::Through { *k } else { 0.0 }).collect()
+    opening.gap.iter().zip(&passages.kinds).map(relative).collect()
 }
 
 /// The network with inlet and outlet.

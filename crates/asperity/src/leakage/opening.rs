@@ -2,12 +2,27 @@
 //!
 //! A cell is closed if the bodies touch there, or if the gap is not above the smallest gap that lets molecules pass (0 by
 //! default). Contact is taken from the contact field, not from a gap of 0, because the gap has an error of the tolerance of the
-//! solver; if the contact is not known, only the gap is used.
+//! solver. If the contact is not known, only the gap is used, and gaps up to its error are closed: no gap is negative, so the deepest
+//! negative one tells the error; where negative gaps are deeper than an error is, they are meant (surfaces that overlap). The rounding of
+//! the largest gap is an error in any case.
 
 use ndarray::{Array2, ArrayView2};
 
 use crate::error::{Error, Result, non_negative, require};
 use crate::grid::Grid;
+
+/// Rounding of a gap, relative to the largest one: it is the difference of a few numbers of that size.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// Deeper negative gaps, relative to the largest gap, are no error.
+const DEEPEST_ERROR: f64 = 1e-4;
+
+/// The error of a gap that the gap itself tells \[m\].
+fn error_of(gap: ArrayView2<'_, f64>, knows_contact: bool) -> f64 {
+    let finite = gap.iter().copied().filter(|h| h.is_finite());
+    let [least, most] = finite.fold([0.0_f64; 2], |[least, most], h| [least.min(h), most.max(h)]);
+    let rounding = ROUNDING * most.max(-least);
+    if knows_contact || -least > DEEPEST_ERROR * most { rounding } else { rounding.max(-least) }
+}
 
 /// The direction of the flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -44,11 +59,13 @@ pub struct Opening {
     pub(super) gap: Vec<f64>,
     pub(super) sides: Sides,
     pub(super) direction: Direction,
+    pub(super) error: f64,
+    pub(super) closed: usize,
 }
 
 impl Opening {
     /// The open cells of `gap` \[m\], shape (nx, ny): those where `contact` is 0 (everywhere without it) and the gap is above
-    /// `smallest_gap` \[m\].
+    /// `smallest_gap` \[m\] and above its error.
     ///
     /// # Errors
     /// [`Error::Invalid`] for shapes that are not those of the grid, a gap of an open cell that is not a finite number, a
@@ -71,18 +88,21 @@ impl Opening {
             shape("shape of the contact", contact.dim())?;
         }
         let smallest = non_negative("smallest gap that lets the fluid pass", smallest_gap, "m")?;
+        let error = error_of(gap, contact.is_some());
         let touches = |at: (usize, usize)| contact.as_ref().is_some_and(|contact| contact[at] != 0);
         let ([nx, ny], [dx, dy]) = (grid.cells(), grid.spacing());
         let (cells, spacing) = match direction {
             Direction::X => ([nx, ny], [dx, dy]),
             Direction::Y => ([ny, nx], [dy, dx]),
         };
-        let mut open = Vec::with_capacity(grid.len());
+        let (mut open, mut closed) = (Vec::with_capacity(grid.len()), 0);
         for i in 0..cells[0] {
             for j in 0..cells[1] {
                 let at = if direction == Direction::X { (i, j) } else { (j, i) };
                 let h = gap[at];
-                open.push(if touches(at) || h <= smallest {
+                let is_rounded = !touches(at) && h > smallest && h <= error;
+                closed += usize::from(is_rounded);
+                open.push(if touches(at) || h <= smallest || is_rounded {
                     0.0
                 } else if h.is_finite() {
                     h
@@ -96,7 +116,12 @@ impl Opening {
                 });
             }
         }
-        Ok(Opening { cells, spacing, gap: open, sides, direction })
+        Ok(Opening { cells, spacing, gap: open, sides, direction, error, closed })
+    }
+
+    /// The error of the gap that the gap itself tells \[m\], and the number of cells that are closed because of it.
+    pub fn closed(&self) -> (f64, usize) {
+        (self.error, self.closed)
     }
 
     /// Length along the flow and width across it \[m\].

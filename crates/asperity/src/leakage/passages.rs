@@ -3,13 +3,17 @@
 //! Cells that share an edge are connected; if the sides are periodic, so are the cells at opposite sides. Open cells belong to
 //! passages from inlet to outlet, to dead ends at one of them, or to pockets. The critical constriction is found by opening the
 //! cells in order of decreasing gap until inlet and outlet are connected: the cell that connects them has the largest gap that
-//! every path must pass (bottleneck path; B. N. J. Persson & C. Yang, J. Phys.: Condens. Matter 20 (2008) 315011).
+//! every path must pass (bottleneck path; B. N. J. Persson & C. Yang, J. Phys.: Condens. Matter 20 (2008) 315011). Cells with less than a
+//! millionth of it are closed: their conductance is below 1e-18 of its own, and what lies behind them is a pocket.
 
 use ndarray::Array2;
 use rayon::prelude::*;
 
 use super::opening::{Opening, Sides};
 use crate::spots::Forest;
+
+/// Smallest gap of an open cell, relative to the critical one.
+const NARROWEST: f64 = 1e-6;
 
 /// The connections of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,17 +59,28 @@ pub struct Passages {
 impl Passages {
     /// Finds the passages of an opening.
     pub fn of(opening: &Opening) -> Passages {
-        let kinds = kinds(opening);
+        let mut kinds = self::kinds(opening);
         let through = kinds.contains(&CellKind::Through);
+        let constriction = if through { constriction(opening, &kinds) } else { None };
+        let least = constriction.map_or(0.0, |constriction| NARROWEST * constriction.gap);
+        if opening.gap.iter().any(|h| *h > 0.0 && *h < least) {
+            let gap = opening.gap.iter().map(|h| if *h < least { 0.0 } else { *h }).collect();
+            kinds = self::kinds(&Opening { gap, ..opening.clone() });
+        }
         let cell_area = opening.spacing[0] * opening.spacing[1];
         let pockets = kinds.iter().zip(&opening.gap).filter(|(kind, _)| **kind == CellKind::Pocket);
         let (count, sum) = pockets.fold((0usize, 0.0), |(count, sum), (_, h)| (count + 1, sum + h));
         Passages {
-            constriction: if through { constriction(opening, &kinds) } else { None },
+            constriction,
             trapped_area: count as f64 * cell_area,
             trapped_volume: sum * cell_area,
             kinds,
         }
+    }
+
+    /// Fraction of the cells that are open.
+    pub fn open_fraction(&self) -> f64 {
+        self.kinds.iter().filter(|kind| **kind != CellKind::Closed).count() as f64 / self.kinds.len() as f64
     }
 
     /// Whether inlet and outlet are connected.
@@ -92,7 +107,7 @@ fn neighbours(opening: &Opening, cell: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Kind of each cell, from the connected parts and the borders that they reach.
-pub(super) fn kinds(opening: &Opening) -> Vec<CellKind> {
+fn kinds(opening: &Opening) -> Vec<CellKind> {
     let [n, m] = opening.cells;
     let open = |cell: usize| opening.gap[cell] > 0.0;
     let wraps = [false, opening.sides == Sides::Periodic];

@@ -89,6 +89,12 @@ pub(crate) struct Previous {
 const WORN: usize = 12;
 
 impl Previous {
+    /// The next flow depends on nothing before.
+    pub(crate) fn forget(&mut self) {
+        self.x.clear();
+        self.inverse = None;
+    }
+
     /// Solves A x = b by [`solve`] from the last x on.
     pub(super) fn solve(
         &mut self,

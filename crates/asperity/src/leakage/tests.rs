@@ -226,6 +226,45 @@ fn multigrid_agrees_with_the_factorisation() {
 }
 
 #[test]
+fn the_noise_of_a_contact_is_closed_where_the_contact_is_not_given() {
+    // Nine tenths of the cells touch, with gaps that are off by up to 1e-12 to both sides, around channels that end.
+    let (n, mut next) = (40, noise(7));
+    let errors = Array2::from_shape_fn((n, n), |_| 1e-12 * (2.0 * next() - 1.0));
+    let is_channel = |i: usize, j: usize| i < n - 4 && j % 10 == 3;
+    let gap = Array2::from_shape_fn((n, n), |(i, j)| if is_channel(i, j) { 1e-6 } else { errors[(i, j)] });
+    let map = opening(&gap, [CELL; 2], Direction::X, Sides::Periodic);
+    let passages = Passages::of(&map);
+    let (error, closed) = map.closed();
+    assert!(!passages.percolates() && passages.open_fraction() < 0.1, "{}", passages.open_fraction());
+    assert!(error <= 1e-12 && error > 0.99e-12 && closed > n * n / 3, "{error} {closed}");
+    // Deep negative gaps are surfaces that overlap: they say nothing of the others.
+    let mut overlap = gap.clone();
+    overlap[(0, 0)] = -1e-7;
+    assert_eq!(opening(&overlap, [CELL; 2], Direction::X, Sides::Periodic).closed().1, 0);
+}
+
+#[test]
+fn what_lies_behind_a_vanishing_throat_is_a_pocket() {
+    // A wide channel along x, and beside it a chamber that only a throat joins.
+    let gap = |throat: f64| {
+        let mut gap = Array2::zeros((8, 8));
+        gap.slice_mut(ndarray::s![.., 0..3]).fill(1e-4);
+        gap.slice_mut(ndarray::s![3..6, 4..7]).fill(1e-5);
+        gap[(4, 3)] = throat;
+        gap
+    };
+    for (throat, kind) in [(7e-11, CellKind::Pocket), (7e-10, CellKind::Through)] {
+        let map = opening(&gap(throat), [CELL; 2], Direction::X, Sides::Closed);
+        let passages = Passages::of(&map);
+        let flow = liquid(&map, &passages, &FlowOptions::default()).unwrap();
+        assert_eq!(passages.map(&map)[(4, 5)], kind);
+        // Every cell through which fluid flows has a pressure, and no other one.
+        let has = flow.pressure.map(|p| p.is_finite());
+        assert_eq!(has, passages.map(&map).map(|kind| *kind == CellKind::Through));
+    }
+}
+
+#[test]
 fn bad_maps_are_refused_and_thin_ones_solved() {
     let grid = Grid::new([2, 3], [1.0, 1.0]).unwrap();
     let mut gap = Array2::from_elem((2, 3), 1.0);

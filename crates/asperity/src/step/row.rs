@@ -223,7 +223,11 @@ impl<'a> Step<'a> {
         let cells = self.state.unit_displacement.iter().zip(self.gap);
         gap.iter_mut().zip(cells).for_each(|(gap, (u, h))| *gap = c * u + h - w);
         // Where other tractions act, contact is known to their tolerance only.
-        if self.traction.is_some() {
+        if let Some(traction) = self.traction {
+            let closed = traction.closed();
+            if closed > 0.0 {
+                gap.mapv_inplace(|gap| if gap <= closed { 0.0 } else { gap });
+            }
             let cells = gap.iter_mut().zip(self.contact_cells()).enumerate();
             cells
                 .filter(|(n, (_, q))| **q > 0.0 && **q < self.hardness.at(*n))

@@ -40,6 +40,9 @@ pub(crate) struct TractionSolver {
     cap: Vec<f64>,
     pressing: Vec<f64>,
     extrapolation: Extrapolation,
+    /// Gaps up to it are closed in the last pass \[m\]: the displacement is known to the tolerance of the loop only. 0 for laws that do not
+    /// ask which cells are open.
+    closed: f64,
     /// The largest Σ|B| + Σ q of all passes.
     scale: f64,
     /// Of the last solve.
@@ -106,6 +109,7 @@ impl TractionSolver {
             shifted: zeros(cells),
             gap: zeros(cells),
             extrapolation: Extrapolation::default(),
+            closed: 0.0,
             scale: 0.0,
             passes: 0,
             residual: 0.0,
@@ -167,13 +171,21 @@ impl TractionSolver {
         (sum(bound) + sum(&contact.pressure)) / bound.len() as f64
     }
 
-    /// Finds the pressure of the cells in contact: b + q, and q where the law pulls.
+    /// Finds the pressure of the cells in contact: b + q, and q where the law pulls. Cells whose gap is closed are in contact.
     fn press(&mut self) {
         let Tractions { bound, contact } = &self.now;
-        let fields = (&bound[..], &contact.pressure[..]);
+        let (fields, closed) = ((&bound[..], &contact.pressure[..], &self.gap[..]), self.closed);
         if self.law.is_displaced() {
-            each(&mut self.pressing, fields, |p, (b, q)| *p = if q > 0.0 { q + b.max(0.0) } else { 0.0 });
+            each(&mut self.pressing, fields, |p, (b, q, g)| {
+                let touches = q > 0.0 || closed > 0.0 && g <= closed;
+                *p = if touches { q + b.max(0.0) } else { 0.0 };
+            });
         }
+    }
+
+    /// Gaps up to it are closed in the last attempt \[m\].
+    pub(crate) fn closed(&self) -> f64 {
+        self.closed
     }
 
     /// The traction b of the last attempt \[Pa\]; tension is negative.
@@ -345,8 +357,17 @@ impl Run<'_> {
         let (solver, contact) = (&mut *self.solver, &mut own.now.contact);
         let outcome = solver.solve(self.operator, &inner, &options, contact, self.interrupt)?;
         let w = contact.approach;
-        let fields = (&own.shifted[..], &contact.unit_displacement[..]);
-        each(&mut own.gap, fields, |to, (h, u)| *to = (h + c * u - w).max(0.0));
+        if own.law.is_displaced() {
+            let fields =
+                ((&bound[..], &contact.pressure[..]), (&own.image[..], &contact.unit_displacement[..]));
+            let [work, total] = sums(fields, |((b, q), (kb, kq))| [(b + q) * (kb + kq), b + q]);
+            own.closed = if total > 0.0 { own.tolerances[0] * c * work.abs() / total } else { 0.0 };
+        }
+        let (fields, closed) = ((&own.shifted[..], &contact.unit_displacement[..]), own.closed);
+        each(&mut own.gap, fields, |to, (h, u)| {
+            let g = h + c * u - w;
+            *to = if g > closed { g } else { 0.0 };
+        });
         own.next.copy_from_slice(&own.now.bound);
         own.law.bound(&own.gap, &own.now.contact.pressure, &mut own.next)?;
         let Tractions { bound, contact } = &own.now;

@@ -360,6 +360,8 @@ impl SurfaceTraction for InGap {
     }
 
     fn begin_solve(&mut self, compliance: f64, rise: f64, traction: &mut [f64]) {
+        // A solve depends on what is saved of the last row alone, so that a run resumed there has the same bits.
+        self.previous.forget();
         self.contents.begin(&self.beside, compliance, rise, traction);
     }
 

@@ -19,6 +19,7 @@
 
 mod adhesion;
 mod contact;
+mod extreme;
 mod flash;
 mod fluid;
 mod leak;
@@ -54,10 +55,12 @@ pub struct Answer {
     /// What a reader must know besides, in a few words.
     #[serde(skip)]
     pub note: String,
-    /// How much of it the whole cells at the edge of the contact leave open, or the distance of the rows of a time or a velocity; SI, 0
-    /// where neither limits it.
+    /// How much of it the whole cells at the edge of the contact leave open, SI; 0 where they do not limit it.
     #[serde(skip)]
     pub resolution: f64,
+    /// How much of it the distance of the rows leaves open, SI; 0 where they do not limit it.
+    #[serde(skip)]
+    pub between_rows: f64,
 }
 
 /// A contact has shaken down where a cycle flattens less than this share of what the first one did.
@@ -70,11 +73,23 @@ const SHARES: [&str; 3] = ["contact_fraction", "relaxation", "slip_share"];
 
 impl Answer {
     pub(crate) fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Answer {
-        Answer { name: name.into(), value, unit, at: None, note: String::new(), resolution: 0.0 }
+        Answer {
+            name: name.into(),
+            value,
+            unit,
+            at: None,
+            note: String::new(),
+            resolution: 0.0,
+            between_rows: 0.0,
+        }
     }
 
     fn at(self, row: &Row) -> Answer {
         Answer { at: Some(row.coordinate), ..self }
+    }
+
+    fn between_rows(self, error: f64) -> Answer {
+        Answer { between_rows: error, ..self }
     }
 
     fn with_note(self, note: impl Into<String>) -> Answer {

@@ -5,6 +5,7 @@ use asperity::sliding::Friction;
 use asperity::step::Row;
 
 use super::Answer;
+use super::extreme::Course;
 use crate::readable::quantity;
 use crate::store::{Reader, Result};
 
@@ -27,7 +28,9 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
     let error = quantity(100.0 * friction.uncertainty, "");
     let note = format!("{largest}the force is known to {error} %");
     let force = |name: &str, newton: f64| Answer::new(name, newton, reader.header().grid.units("N")).at(row);
-    let mut answers = vec![Answer::new("friction_coefficient", coefficients[n], "1").at(row).with_note(note)];
+    let open = if sweep { between(rows, &coefficients, n) } else { 0.0 };
+    let coefficient = Answer::new("friction_coefficient", coefficients[n], "1").between_rows(open);
+    let mut answers = vec![coefficient.at(row).with_note(note)];
     if friction.total.is_nan() {
         answers.push(force("friction_force", friction.force));
     } else {
@@ -38,13 +41,13 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
         let velocity = |n: usize| rows.get(n).map(|row| row.coordinate.value());
         let own = row.coordinate.value();
         let neighbours = [n.checked_sub(1).and_then(velocity), velocity(n + 1)];
-        let resolution = neighbours.iter().flatten().map(|v| (v - own).abs()).fold(0.0, f64::max);
+        let distance = neighbours.iter().flatten().map(|v| (v - own).abs()).fold(0.0, f64::max);
         let note = match neighbours {
             [Some(_), Some(_)] => "",
             _ => "at the end of the sweep: the friction may be larger beyond it",
         };
         let answer = Answer::new("velocity_of_largest_friction", own, "m/s").with_note(note);
-        answers.push(Answer { resolution, ..answer });
+        answers.push(answer.between_rows(distance));
         let few = rows.iter().zip(&coefficients).filter(|_| rows.len() <= FEW);
         answers.extend(few.map(|(row, coefficient)| {
             let name = format!("friction_coefficient_at_{}", quantity(row.coordinate.value(), "m/s"));
@@ -52,4 +55,14 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
         }));
     }
     Ok(answers)
+}
+
+/// How much larger the friction may be between the velocities of a sweep than at the row `n`, where it is the largest.
+fn between(rows: &[Row], coefficients: &[f64], n: usize) -> f64 {
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by(|a, b| rows[*a].coordinate.value().total_cmp(&rows[*b].coordinate.value()));
+    let places: Vec<f64> = order.iter().map(|row| rows[*row].coordinate.value().ln()).collect();
+    let values: Vec<f64> = order.iter().map(|row| coefficients[*row]).collect();
+    let at = order.iter().position(|row| *row == n);
+    at.map_or(0.0, |at| Course::along(&places, vec![]).open_at(&values, at))
 }

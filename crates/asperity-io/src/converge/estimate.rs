@@ -81,11 +81,8 @@ fn bar(answer: &Answer, runs: &Runs, extrapolate: bool) -> ErrorBar {
     }
     let grids = [half, quarter, double].iter().flatten().count();
     let safety = SAFETY[usize::from(grids < 2)];
-    // Times and velocities are known to the distance of the rows, areas to the cells.
-    let [of_cells, of_rows] = match answer.unit {
-        "s" | "m/s" => [0.0, answer.resolution],
-        _ => [answer.resolution, 0.0],
-    };
+    // Times, velocities and extremes are known to what the distance of the rows leaves open, areas to the cells.
+    let [of_cells, of_rows] = [answer.resolution, answer.between_rows];
     grid = grid.map(|grid| safety * grid.max(of_cells));
     // The steps and the tolerance are varied on the coarser grid.
     let from = if runs.half.is_some() { half } else { Some(own) };

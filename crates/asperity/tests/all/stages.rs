@@ -293,7 +293,8 @@ fn what_a_jump_only_passes_is_not_reached() {
 fn a_jump_that_parts_the_surfaces_loses_their_contact() {
     let points = vec![(0.0, 0.05), (1.0, 0.05), (1.0, -0.5), (2.0, -0.5)];
     for control in [Control::Approach, Control::Load] {
-        let points = points.iter().map(|(t, v)| (*t, if control == Control::Load { v.max(0.0) } else { *v }));
+        let points =
+            points.iter().map(|(t, v)| (*t, if control == Control::Load { f64::max(*v, 0.0) } else { *v }));
         let stage = until(control, History::Table { points: points.collect() }, Event::ContactLost);
         let last = *rows(Simulation {
             loading: Programme::new(vec![stage]),

@@ -57,13 +57,19 @@ pub enum Error {
     /// The event that ends a stage did not occur; the rows so far are complete.
     #[error(
         "stage {stage} waits for {event}, but the run ends at t = {end} s without it (approach {approach:e} m, load \
-         {load:e} N); end the run later, change the event, or give the stage a duration"
+         {load:e} N{}); end the run later, change the event, or give the stage a duration",
+        number.map_or(String::new(), |(name, value)| match value.is_nan() {
+            true => format!("; {name} has no value there"),
+            false => format!("; {name} {value:e}"),
+        })
     )]
     Missed {
         /// Number of the stage, from 1.
         stage: usize,
         /// The event in words.
         event: String,
+        /// The number of the rows that it waits for, by its name, at the end; NaN where it has no value.
+        number: Option<(&'static str, f64)>,
         /// End of the run \[s\].
         end: f64,
         /// Approach at the end \[m\].

@@ -45,13 +45,13 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize, units: &Units) -> Resu
         let [before, time] = [k - 1, k].map(|k| rows[k].coordinate.value());
         let note = format!("the inlet has {} then", units.number(inlet[k], "Pa"));
         let answer = Answer::new("time_opened", time, "s").with_note(note);
-        answers.push(Answer { of_rows: time - before, ..answer });
+        answers.push(answer.of_rows(time - before));
     }
     // Where the pressure falls.
     if let Some(k) = turns(0.0).rfind(|k| inlet[*k] < inlet[*k - 1]) {
         let note = format!("of the inlet, at t = {}", units.time(rows[k].coordinate.value()));
         let answer = Answer::new("closing_pressure", inlet[k], "Pa").with_note(note);
-        answers.push(Answer { of_rows: inlet[k - 1] - inlet[k], ..answer });
+        answers.push(answer.of_rows(inlet[k - 1] - inlet[k]));
     }
     Ok(answers)
 }

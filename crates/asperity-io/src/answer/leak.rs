@@ -45,9 +45,9 @@ pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     if let Some(tight) = times.get(first) {
         let between = words::tight(times, percolates, units);
         // Between the last time at which it leaks and the next one nothing is known.
-        let of_rows = open.map_or(0.0, |open| tight - times[open]);
+        let distance = open.map_or(0.0, |open| tight - times[open]);
         let answer = Answer::new("tight_from", *tight, "s").with_note(between);
-        answers.push(Answer { of_rows, ..answer });
+        answers.push(answer.of_rows(distance));
     }
     Ok(answers)
 }

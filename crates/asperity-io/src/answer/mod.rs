@@ -20,6 +20,7 @@
 
 mod adhesion;
 mod contact;
+mod extreme;
 mod flash;
 mod fluid;
 mod leak;
@@ -86,6 +87,10 @@ impl Answer {
 
     fn at(self, row: &Row) -> Answer {
         Answer { at: Some(row.coordinate), ..self }
+    }
+
+    fn of_rows(self, error: f64) -> Answer {
+        Answer { of_rows: error, ..self }
     }
 
     fn with_note(self, note: impl Into<String>) -> Answer {

@@ -5,6 +5,7 @@ use asperity::sliding::Friction;
 use asperity::step::Row;
 
 use super::Answer;
+use super::extreme::Course;
 use crate::readable::quantity;
 use crate::store::{Reader, Result};
 
@@ -42,7 +43,9 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
         let answer = Answer::new(name, coefficients[row], "1");
         Answer { of_cells: known_to(&frictions[row], frictions[row].coefficient), ..answer }
     };
-    let mut answers = vec![coefficient("friction_coefficient".into(), n).at(row).with_note(note)];
+    let open = if sweep { between(rows, &coefficients, n) } else { 0.0 };
+    let largest = coefficient("friction_coefficient".into(), n).of_rows(open);
+    let mut answers = vec![largest.at(row).with_note(note)];
     if friction.total.is_nan() {
         answers.push(force("friction_force", friction.force));
     } else {
@@ -65,7 +68,7 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
             _ => "at the end of the sweep: the friction may be larger beyond it",
         };
         let answer = Answer::new("velocity_of_largest_friction", own, "m/s").with_note(note);
-        answers.push(Answer { of_rows, ..answer });
+        answers.push(answer.of_rows(of_rows));
         let few = rows.iter().enumerate().filter(|_| rows.len() <= FEW);
         answers.extend(few.map(|(n, row)| {
             let name = format!("friction_coefficient_at_{}", quantity(row.coordinate.value(), "m/s"));
@@ -73,4 +76,14 @@ pub(super) fn of(reader: &Reader, rows: &[Row], n: usize) -> Result<Vec<Answer>>
         }));
     }
     Ok(answers)
+}
+
+/// How much larger the friction may be between the velocities of a sweep than at the row `n`, where it is the largest.
+fn between(rows: &[Row], coefficients: &[f64], n: usize) -> f64 {
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by(|a, b| rows[*a].coordinate.value().total_cmp(&rows[*b].coordinate.value()));
+    let places: Vec<f64> = order.iter().map(|row| rows[*row].coordinate.value().ln()).collect();
+    let values: Vec<f64> = order.iter().map(|row| coefficients[*row]).collect();
+    let at = order.iter().position(|row| *row == n);
+    at.map_or(0.0, |at| Course::along(&places, vec![]).open_at(&values, at))
 }

@@ -1,6 +1,7 @@
 //! The largest stress below the surface, and the load at which the body yields.
 
 use super::Answer;
+use super::extreme::Course;
 use crate::readable::quantity;
 use crate::store::{Reader, Result};
 use crate::stress::{Below, FirstYield, first_yield};
@@ -9,6 +10,10 @@ use crate::stress::{Below, FirstYield, first_yield};
 pub(super) fn of(reader: &Reader) -> Result<Vec<Answer>> {
     let Some(below) = Below::of(reader)? else { return Ok(vec![]) };
     let Some(worst) = below.worst() else { return Ok(vec![]) };
+    let values: Vec<f64> = below.instants.iter().map(|instant| below.number(instant, "max_mises")).collect();
+    let times: Vec<f64> = below.instants.iter().map(|instant| instant.time).collect();
+    let largest = below.instants.iter().position(|instant| std::ptr::eq(instant, worst)).unwrap_or_default();
+    let open = Course::along(&times, vec![values.clone()]).open_at(&values, largest);
     let number = |name: &'static str, unit| Answer::new(name, below.number(worst, name), unit);
     let rows = reader.rows()?;
     let at = rows.get(worst.row).map(|row| row.coordinate);
@@ -16,7 +21,7 @@ pub(super) fn of(reader: &Reader) -> Result<Vec<Answer>> {
         .map_or(String::new(), |at| format!(", at {}", quantity(at.value(), reader.header().axis().unit())));
     let note = format!("of {}, the largest of all computed times{when}", below.set.body);
     let mut answers: Vec<Answer> =
-        [number("max_mises", "Pa").with_note(note), number("max_mises_depth", "m")]
+        [number("max_mises", "Pa").of_rows(open).with_note(note), number("max_mises_depth", "m")]
             .map(|answer| Answer { at, ..answer })
             .into();
     if let Some(first) = first_yield(&below) {
@@ -25,7 +30,11 @@ pub(super) fn of(reader: &Reader) -> Result<Vec<Answer>> {
             FirstYield::AtOnce([_, load]) | FirstYield::Between([_, [_, load]]) => load,
         };
         let answer = Answer::new("first_yield_load", load, below.grid.units("N"));
-        answers.push(answer.with_note(first.sentence(&below.set)));
+        let open = match first {
+            FirstYield::Between([[_, before], [_, load]]) => (load - before).abs(),
+            _ => 0.0,
+        };
+        answers.push(answer.of_rows(open).with_note(first.sentence(&below.set)));
     }
     Ok(answers)
 }

@@ -7,6 +7,7 @@ use asperity::step::Row;
 use serde_json::Value;
 
 use super::Answer;
+use super::extreme::Course;
 use crate::readable::quantity;
 use crate::store::{Header, Reader, Result};
 
@@ -76,9 +77,13 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         .filter(|row| stiffness[*row].is_finite())
         .max_by(|a, b| stiffness[*a].total_cmp(&stiffness[*b]));
     answers.extend(stiffest.map(|row| {
+        // The stiffness of a step is that of its middle: the next one on the same way tells how much it changes in a step.
+        let beside = [row.checked_sub(1), Some(row + 1)].into_iter().flatten();
+        let changes = beside.filter_map(|n| Some((stiffness.get(n)? - stiffness[row]).abs()));
+        let open = changes.filter(|change| change.is_finite()).reduce(f64::min).unwrap_or(0.0);
         let to = quantity(rows[row].coordinate.value(), "s");
         let (why, of_rows) = match has_limit {
-            true => ("", 0.0),
+            true => ("", open),
             false => (
                 "; where the displacement turns while the bodies relax it grows as steps become shorter",
                 f64::INFINITY,
@@ -86,12 +91,22 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         };
         let note = format!("the largest of a step, to {to}{why}");
         let answer = Answer::new(Quantity::TangentialStiffness.name(), stiffness[row], grid.units("N/m"));
-        Answer { of_rows, ..answer.with_note(note) }
+        answer.of_rows(of_rows).with_note(note)
     }));
+    let times: Vec<f64> = rows.iter().map(|row| row.coordinate.value()).collect();
+    let open = |values: &[f64], at: usize| {
+        let along = |axis: usize| displacement.iter().map(|own| own[axis]).collect();
+        Course::along(&times, vec![along(0), along(1), values.to_vec()]).open_at(values, at)
+    };
+    let (pull_open, way_open) = (open(&forces, pulled), open(&ways, moved));
     let share = slip[pulled] / (stick[pulled] + slip[pulled]);
     answers.extend([
-        Answer::new("largest_tangential_force", forces[pulled], grid.units("N")).at(&rows[pulled]),
-        Answer::new("largest_tangential_displacement", ways[moved], "m").at(&rows[moved]),
+        Answer::new("largest_tangential_force", forces[pulled], grid.units("N"))
+            .of_rows(pull_open)
+            .at(&rows[pulled]),
+        Answer::new("largest_tangential_displacement", ways[moved], "m")
+            .of_rows(way_open)
+            .at(&rows[moved]),
         Answer::new("slip_share", share, "1").with_note("of the contact, under the largest tangential force"),
         Answer::new(Quantity::SlipWork.name(), work[rows.len() - 1], grid.units("J")).with_note(
             if reader.header().wears() { "since t = 0, of the computed cycles" } else { "since t = 0" },

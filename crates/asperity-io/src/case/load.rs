@@ -37,12 +37,13 @@ pub struct Stage {
     history: History,
     /// Longest duration of the stage. Every stage but the last needs `duration` or `until`.
     duration: Option<Time<Positive>>,
-    /// The stage ends when this happens: a number of the rows crosses a value, from either side, or the contact is lost. Without
-    /// `duration` it must happen before `time.end`.
+    /// The stage ends when this happens: a number of the rows crosses a value, from either side, or the contact is lost. A jump
+    /// reaches only the value at which it ends; what it passes is waited for from where the number is after it. Without `duration`
+    /// the event must happen before `time.end`.
     #[schemars(example = "contact-lost", example = serde_json::json!({ "approach": "2 um" }), example = serde_json::json!({ "contact_fraction": 0.1 }))]
     until: Option<Until>,
-    /// The event of `until` counts only after the jump with which the stage begins (as a load that relaxes after a step of
-    /// the approach); false if not given.
+    /// The event of `until` counts only after the jump with which the stage begins, even where the jump ends at the value
+    /// itself; false if not given.
     #[serde(default)]
     #[schemars(example = true)]
     after_jump: bool,

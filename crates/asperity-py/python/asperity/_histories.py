@@ -247,9 +247,9 @@ class Stage(Table):
     load, pressure, approach : what is prescribed [N], [Pa] or [m], exactly one of them: a history, or a number for a step
     duration : the stage lasts no longer than this [s]; the last stage may last to the end of the run
     until : what ends it: a number of the rows with its value, as in {"contact_fraction": 0.1} or ("approach", 2e-6), crossed from
-        either side, in SI units ("pressure" is the mean pressure), or "contact-lost". Without `duration` it must happen before the run ends.
-    after_jump : the event of `until` counts only after the jump with which the stage begins, as a load that relaxes after a step
-        of the approach
+        either side, in SI units ("pressure" is the mean pressure), or "contact-lost". A jump reaches only the value at which it ends; what
+        it passes is waited for from where the number is after it. Without `duration` the event must happen before the run ends.
+    after_jump : the event of `until` counts only after the jump with which the stage begins, even where the jump ends at the value itself
     times : times of the stage, measured from its start; default: those of the run
 
     Examples

@@ -39,6 +39,8 @@ pub struct Elastic {
     /// What is prescribed in the rows to come.
     asked: VecDeque<(Control, f64)>,
     done: usize,
+    /// The number of the row that the state belongs to.
+    row: Option<usize>,
     control: Control,
     /// The last state; the next row is solved from its pressure.
     state: ContactState,
@@ -60,6 +62,7 @@ impl Elastic {
             recorder: Recorder::new(simulation.columns()?),
             asked: asked.into_iter().collect(),
             done: 0,
+            row: None,
             control: Control::Load,
             state: ContactState::new(simulation.grid.len()),
             outcome: Outcome::default(),
@@ -82,7 +85,7 @@ impl Elastic {
     fn row(&self) -> Step<'_> {
         let bodies = (self.simulation.gap_cells(), self.simulation.instantaneous());
         Step {
-            index: self.done.saturating_sub(1),
+            index: self.row.unwrap_or_default(),
             control: self.control,
             recorder: Some(&self.recorder),
             ..Step::of(&self.simulation, self.contact.hardness(), (&self.state, self.outcome), bodies)
@@ -94,6 +97,8 @@ impl Drive for Elastic {
     fn advance(&mut self) -> Result<Option<Step<'_>>> {
         let Some((control, value)) = self.asked.pop_front() else { return Ok(None) };
         self.control = control;
+        self.row = Some(self.done);
+        self.recorder.clear();
         self.simulation.loading = Loading { control, history: History::Step { value } }.into();
         let (gap, compliance) = (self.simulation.gap_cells(), self.simulation.instantaneous());
         let prescribed = prescribed(control, value, self.simulation.grid.area());
@@ -113,7 +118,7 @@ impl Drive for Elastic {
     }
 
     fn last(&self) -> Option<Step<'_>> {
-        (self.done > 0 || self.state.touches()).then(|| self.row())
+        self.row.map(|_| self.row())
     }
 
     fn simulation(&self) -> &Simulation {

@@ -43,6 +43,8 @@ pub struct March {
     recorder: Recorder,
     /// The number that the stage under way waits for.
     gauge: Gauge,
+    /// Its value in the last row; `None` where the stage of that waits for none.
+    awaited: Option<f64>,
     /// Rows done.
     done: usize,
     /// The row that the state belongs to: its number, its instant, its estimated error.
@@ -72,6 +74,7 @@ impl March {
             recorder: Recorder::new(simulation.columns()?),
             stepper: Stepper::new(simulation.clone())?,
             gauge: Gauge::default(),
+            awaited: None,
             done: 0,
             row: None,
             simulation,
@@ -95,6 +98,7 @@ impl March {
         self.row = Some((self.done, attempt.instant, None));
         self.stepper.accept()?;
         self.row = Some((self.done, attempt.instant, self.stepper.time_error()));
+        self.awaited = self.schedule.awaited().map(|_| attempt.number);
         let mut recorder = std::mem::take(&mut self.recorder);
         self.last().iter().for_each(|step| step.record(&mut recorder));
         self.recorder = recorder;
@@ -159,6 +163,7 @@ impl Drive for March {
             instant: Some(instant),
             control: instant.control,
             time_error,
+            awaited: self.awaited,
             recorder: Some(&self.recorder),
             ..of_stepper
         })

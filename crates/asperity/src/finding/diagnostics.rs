@@ -12,8 +12,8 @@ use super::thin::Widest;
 use super::worst::{Watch, extend};
 use super::{
     BEYOND_HISTOGRAM, CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN,
-    SPOTS_UNRESOLVED, STEPS_TOO_LONG, adhesion, domain, flash, fluid, material, plausible, strain, surface,
-    tangential, thin, time, wear,
+    SPOTS_UNRESOLVED, STEPS_TOO_LONG, adhesion, domain, event, flash, fluid, material, plausible, strain,
+    surface, tangential, thin, time, wear,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -119,6 +119,7 @@ impl Diagnostics {
                 Box::<wear::Steps>::default(),
                 Box::<flash::Warm>::default(),
                 Box::<flash::Rows>::default(),
+                Box::<event::Waits>::default(),
             ],
             balance: Balance::default(),
             beyond: Beyond::default(),
@@ -185,7 +186,7 @@ impl Diagnostics {
         }
         self.watches.iter_mut().for_each(|watch| watch.see(step, row));
         if let Some(balance) = step.energy_balance() {
-            self.balance.see(index, balance);
+            self.balance.see(index, &balance);
         }
     }
 

@@ -16,6 +16,7 @@
 //! | `stress` | the stress below the surface: its resolution, and yielding |
 //! | `time` | steps that are too long for the history and the material |
 //! | `energy` | the energy balance |
+//! | `event` | stages that wait for a number without a value |
 //! | `leak` | leaks that are unreliable because of gap, grid or fluid pressure |
 //! | `tangential` | forces that friction does not hold, tangential tractions that act on the pressure |
 //! | `wear` | steps in which much wears, tracks that stay under the contact |
@@ -33,6 +34,7 @@ mod contact;
 mod diagnostics;
 mod domain;
 mod energy;
+mod event;
 mod expected;
 mod flash;
 mod fluid;
@@ -187,6 +189,8 @@ codes! {
     LARGE_STRAIN = "large-strain";
     /// The work of the load differs from the energy stored and dissipated.
     ENERGY_BALANCE = "energy-balance";
+    /// A stage waits for a number that has no value.
+    EVENT_WITHOUT_VALUE = "event-without-value";
     /// Too few steps while history and material change.
     STEPS_TOO_LONG = "steps-too-long";
     /// Too few steps per period.

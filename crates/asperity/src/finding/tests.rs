@@ -494,10 +494,16 @@ fn a_sine_with_few_steps_is_found() {
 #[test]
 fn a_broken_energy_balance_is_found() {
     let mut balance = super::energy::Balance::default();
-    balance.see(0, [1e-9, 1e-9]);
-    balance.see(1, [2e-9, 1.97e-9]);
+    let row = |work: f64, energies: f64| crate::step::EnergyBalance {
+        work,
+        energies,
+        error: (work - energies).abs(),
+        adheres: false,
+    };
+    balance.see(0, &row(1e-9, 1e-9));
+    balance.see(1, &row(2e-9, 1.97e-9));
     assert_eq!(balance.finding(), None);
-    balance.see(2, [6.64e-9, 2.28e-9]);
+    balance.see(2, &row(6.64e-9, 2.28e-9));
     let found = balance.finding().unwrap();
     assert_eq!((found.code.as_ref(), found.rows), (ENERGY_BALANCE, Some([2, 2])));
     // A run with energies is checked, and its balance holds.

@@ -39,8 +39,7 @@ pub struct Stage {
     /// The stage ends at this event. Without `duration` the event must occur before the run ends. With `duration` the stage ends
     /// after it at the latest, which is not an error.
     pub until: Option<Event>,
-    /// The event only counts after the jump at the beginning of the stage: not a value that the jump itself reaches, but one that
-    /// is reached later, for example by a load that relaxes.
+    /// The event only counts after the jump at the beginning of the stage: not even where the jump ends at the value itself.
     pub after_jump: bool,
     /// Times of the stage, counted from its start, in place of those of the run.
     pub times: Option<TimeGrid>,
@@ -63,8 +62,9 @@ pub enum Course {
     },
 }
 
-/// The event that ends a stage. A value is reached when the quantity crosses it, from either side; if a stage starts at the
-/// value, the quantity must leave it first.
+/// The event that ends a stage. A value is reached when the quantity crosses it, from the side on which it is when the stage starts; if
+/// it starts at the value, it must leave it first. A jump reaches the value at which it ends, not those that it only passes: after it the
+/// value is waited for from the side on which the quantity is then.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// The approach reaches a value \[m\].

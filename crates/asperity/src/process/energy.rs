@@ -10,10 +10,16 @@
 //! Springs and dashpots are those of the scheme, exactly ([`History::exchange`]). The work is taken from load and approach
 //! alone: the mean of W over the step, on the clock in which u runs, times the change of w. Only where that is not known is it what
 //! the bodies take: in a jump, at a first touch, and of elastic bodies, whose steps may have any length.
+//!
+//! Surfaces that adhere lose energy where they jump into contact or off it, so what the bodies take is no measure of the work. Where in
+//! the step they jump is not known: with x prescribed and its response y, the work of the step lies between those of a jump at its start
+//! and at its end, and is known to half of |Δx (Δy - y' Δx)|, y' Δx being the change without a jump. In a jump of x they may lose as much
+//! as their attraction has gained or lost.
 
 use super::{Process, Solved};
 use crate::error::Result;
 use crate::history::History;
+use crate::load::Control;
 use crate::material::Creep;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Simulation};
@@ -35,6 +41,10 @@ pub(super) struct Energy {
     approach: f64,
     /// Of the attraction between the surfaces \[J\].
     potential: f64,
+    /// What is not known of the work, because surfaces that adhere jump.
+    unknown: f64,
+    /// dy/dx of the last step, x being prescribed and y its response; 0 after a jump.
+    slope: f64,
     /// Heat per time in the last step \[W\].
     power: f64,
     /// Whether the load alone works on bodies that remember nothing: ∫ W dw is then the change of their energy, in steps of any length.
@@ -53,7 +63,7 @@ impl Energy {
 }
 
 saved! {
-    Energy { "energies": elastic, dissipated, flattening, work, approach, potential; }
+    Energy { "energies": elastic, dissipated, flattening, work, approach, potential, unknown, slope; }
 }
 
 impl Process for Energy {
@@ -68,7 +78,12 @@ impl Process for Energy {
         // A jump is elastic against what the bodies remember, and the course of W over w at a first touch is not known: there
         // the work is what the bodies take.
         let jump = row.step.length() == 0.0;
-        self.work += match jump || !row.before.touches() || self.is_conservative {
+        let adheres = row.simulation.traction.is_some();
+        if adheres {
+            self.unknown += if jump { (row.potential - self.potential).abs() } else { self.of_course(row) };
+            self.slope = if jump { 0.0 } else { self.slope };
+        }
+        self.work += match jump || self.is_conservative || !adheres && !row.before.touches() {
             true => cell_area * step.work + flattened + row.potential - self.potential + row.worn_work,
             false => step.mean_load * (row.now.approach - self.approach),
         };
@@ -93,6 +108,10 @@ impl Process for Energy {
         }
     }
 
+    fn unknown_work(&self) -> f64 {
+        self.unknown
+    }
+
     fn name(&self) -> &'static str {
         "energy"
     }
@@ -104,6 +123,24 @@ impl Process for Energy {
     fn load(&mut self, from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
         self.power = f64::NAN;
         self.load_own(from)
+    }
+}
+
+impl Energy {
+    /// What is not known of the work in a step, as the surfaces may jump anywhere in it. Right after a jump the slope is another one: so
+    /// they may also stay as they are.
+    fn of_course(&mut self, row: &Solved<'_>) -> f64 {
+        let rise = row.loads[1] - row.loads[0];
+        let advance = row.now.approach - self.approach;
+        let (given, response) = match row.step.instant.control {
+            Control::Approach => (advance, rise),
+            Control::Load | Control::Pressure => (rise, advance),
+        };
+        let unexpected = (response - self.slope * given).abs().min(response.abs());
+        if given != 0.0 {
+            self.slope = response / given;
+        }
+        0.5 * given.abs() * unexpected
     }
 }
 

@@ -114,6 +114,11 @@ pub(crate) trait Process: Send {
         0.0
     }
 
+    /// What is not known of the work of the load since t = 0 \[J\].
+    fn unknown_work(&self) -> f64 {
+        0.0
+    }
+
     /// The name under which it saves its state.
     fn name(&self) -> &'static str;
 }

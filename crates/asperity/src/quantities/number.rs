@@ -72,6 +72,8 @@ impl RowNumber {
                 [0.0, (quantity.states().len() - 1) as f64]
             }
             (RowNumber::Quantity(Quantity::ContactSpots), _) => [0.0, grid.len() as f64],
+            // Absolute, and no pressure of the contact.
+            (RowNumber::Quantity(Quantity::InletPressure), _) => [0.0, f64::INFINITY],
             (_, "N") => [lowest, heaviest],
             (_, "Pa") if self.name() == "mean_pressure" => [lowest, heaviest / grid.area()],
             (_, "Pa") => [lowest, hardest],

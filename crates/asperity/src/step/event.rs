@@ -45,9 +45,9 @@ impl Enclosure {
         Some(secant.clamp(self.near + 0.25 * self.width, self.far - 0.25 * self.width))
     }
 
-    /// Takes the signal at the length tried.
+    /// Takes the signal at the length tried; where it has no value the event has not happened yet.
     pub(super) fn narrow(&mut self, dt: f64, signal: f64) {
-        let near = signal > 0.0;
+        let near = signal > 0.0 || signal.is_nan();
         let repeated = self.last_near == Some(near);
         if near {
             (self.near, self.before) = (dt, signal);

@@ -34,7 +34,7 @@ pub(crate) use contact::StepContact;
 use coupled::Coupled;
 pub(crate) use interval::{Course, Interval, Load, Piece, prescribed};
 pub(crate) use quantities::Recorder;
-pub(crate) use row::PERIMETER_SHARE;
+pub(crate) use row::{EnergyBalance, PERIMETER_SHARE};
 pub(crate) use schedule::{Proposal, Response, Schedule, Summary};
 pub(crate) use snapshot::{Loader, Saved, Saver, saved};
 pub(crate) use step_size::SHARE;

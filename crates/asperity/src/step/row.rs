@@ -57,6 +57,18 @@ pub struct Row {
     pub stage: usize,
 }
 
+/// The energies of a row \[J\].
+pub(crate) struct EnergyBalance {
+    /// Of the load.
+    pub(crate) work: f64,
+    /// The sum of those stored, lost and spent on flattening.
+    pub(crate) energies: f64,
+    /// How far the work is off, or may be off.
+    pub(crate) error: f64,
+    /// Whether the surfaces adhere.
+    pub(crate) adheres: bool,
+}
+
 /// (pi - 1 + ln 2)/24: the mean excess of a counted area per perimeter and cell.
 pub(crate) const PERIMETER_SHARE: f64 = (std::f64::consts::PI - 1.0 + std::f64::consts::LN_2) / 24.0;
 
@@ -86,6 +98,8 @@ pub struct Step<'a> {
     pub(crate) processes: &'a [Box<dyn Process>],
     /// The quantities of the row; `None` between rows.
     pub(crate) recorder: Option<&'a Recorder>,
+    /// The number that the stage of the row waits for; `None` where it waits for none.
+    pub(crate) awaited: Option<f64>,
     /// The forces of a steady state of motion.
     pub(crate) friction: Option<Friction>,
     /// How warm the surfaces of a steady state of motion are.
@@ -117,6 +131,7 @@ impl<'a> Step<'a> {
             undeformed: None,
             processes: &[],
             recorder: None,
+            awaited: None,
             friction: None,
             rise: None,
         }
@@ -132,17 +147,26 @@ impl<'a> Step<'a> {
         self.simulation
     }
 
-    /// Work of the load, and the sum of the energies stored, lost and spent on flattening \[J\]; `None` where no energy is
-    /// asked for.
-    pub(crate) fn energy_balance(&self) -> Option<[f64; 2]> {
+    /// The energies of the row; `None` where none is asked for.
+    pub(crate) fn energy_balance(&self) -> Option<EnergyBalance> {
         let energy = |quantity| self.of_process(quantity);
-        // Surfaces that jump into contact or off it lose energy; what the pressure does on the slopes of a worn track is not known.
-        if self.traction.is_some() || self.simulation.wear.is_some() && self.simulation.motion.is_some() {
+        // What the pressure does on the slopes of a worn track is not known.
+        if self.simulation.wear.is_some() && self.simulation.motion.is_some() {
             return None;
         }
-        let kept = energy(Quantity::ElasticEnergy)? + energy(Quantity::DissipatedEnergy)?;
-        let worn: f64 = self.processes.iter().map(|process| process.worn_work()).sum();
-        Some([energy(Quantity::ExternalWork)?, kept + energy(Quantity::FlatteningWork)? + worn])
+        let work = energy(Quantity::ExternalWork)?;
+        let adheres = self.traction.is_some();
+        let attraction = if adheres { energy(Quantity::AdhesionEnergy)? } else { 0.0 };
+        let sum =
+            |of: fn(&dyn Process) -> f64| self.processes.iter().map(|process| of(&**process)).sum::<f64>();
+        let kept = energy(Quantity::ElasticEnergy)? + energy(Quantity::DissipatedEnergy)? + attraction;
+        let energies = kept + energy(Quantity::FlatteningWork)? + sum(|process| process.worn_work());
+        // Surfaces that jump into contact or off it lose energy besides, and gain none.
+        let error = match adheres {
+            true => sum(|process| process.unknown_work()).max(energies - work),
+            false => (work - energies).abs(),
+        };
+        Some(EnergyBalance { work, energies, error, adheres })
     }
 
     /// A quantity that a process tells of this row.
@@ -152,6 +176,11 @@ impl<'a> Step<'a> {
         let of_process = self.processes.iter().find_map(|process| process.quantity(quantity));
         let of_heat = || self.rise?.row.quantity(quantity);
         of_process.or_else(of_friction).or_else(of_heat).or_else(of_traction)
+    }
+
+    /// The number that the stage of the row waits for, NaN where the row has none; `None` where the stage waits for none.
+    pub(crate) fn awaited(&self) -> Option<f64> {
+        self.awaited
     }
 
     /// Time, length of the step, prescribed value; `None` of a steady state.

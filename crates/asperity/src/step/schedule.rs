@@ -72,7 +72,7 @@ pub(crate) enum StopReason {
     /// The last stage has ended, or the time of the run.
     Complete,
     /// A stage waited for an event that did not come.
-    Missed { stage: usize, event: Event, reached: Response },
+    Missed { stage: usize, event: Event, reached: Response, number: f64 },
 }
 
 /// What the attempts at a row are for.
@@ -86,7 +86,7 @@ enum Search {
     Equilibrium { with: f64, without: f64 },
     /// The row ends where the event has just happened.
     End,
-    /// It ends with the last equilibrium.
+    /// It ends with the last equilibrium, without the event.
     Last,
 }
 
@@ -114,10 +114,12 @@ pub(crate) struct Schedule {
     reached: Response,
     touched: bool,
     is_smooth: bool,
+    /// Whether the last row is the last equilibrium under the prescribed load.
+    is_last: bool,
     /// The number that the stage under way waits for, in the last row, before the first one of the bodies at first touch; NaN where it waits
     /// for none.
     pub(crate) number: f64,
-    /// Which side of its value the event is waited for from: -1 below, 1 above, 0 not yet known.
+    /// Which side of its value the event is waited for from: -1 below, 1 above, 0 not yet known, as after a jump.
     side: f64,
     /// The largest approach and load so far.
     largest: Response,
@@ -145,6 +147,7 @@ impl Schedule {
             reached: Response::default(),
             touched: false,
             is_smooth: false,
+            is_last: false,
             number: f64::NAN,
             side: 0.0,
             largest: Response::default(),
@@ -277,19 +280,19 @@ impl Schedule {
         bisect([0.0, rest], 40, |dt| most(dt) <= drift)[1]
     }
 
-    /// What to try after an attempt that found no equilibrium: the longest step with one is found to a thousandth. `None` where steps
-    /// have given lengths and the end of contact is not waited for, or where the last row is the last equilibrium. Close to the last one the
-    /// contact converges ever more slowly: an attempt of which it `is_known` only that it did not converge counts as one without, once
-    /// the search is on.
+    /// What to try after an attempt that found no equilibrium: the longest step with one is found to a thousandth, unless an event or the error
+    /// of the step ends it before. `None` where steps have given lengths and no event is waited for, or where the last row is the last
+    /// equilibrium. Close to the last one the contact converges ever more slowly: an attempt of which it `is_known` only that it did not
+    /// converge counts as one without, once the search is on.
     pub(crate) fn retreat(&mut self, tried: &Interval, is_known: bool) -> Option<Interval> {
         let without = tried.length();
         let with = match self.search {
             Search::Equilibrium { with, .. } => with,
-            _ if is_known && (self.size.is_some() || self.awaits_parting()) => 0.0,
+            _ if is_known && (self.size.is_some() || self.stage().until.is_some()) => 0.0,
             _ => return None,
         };
         self.search = Search::Equilibrium { with, without };
-        if without <= SHORTEST * self.simulation.times.end() {
+        if self.is_last || without <= SHORTEST * self.simulation.times.end() {
             return None;
         }
         Some(tried.of_length(self.between().unwrap_or(with)))
@@ -314,17 +317,18 @@ impl Schedule {
         let dt = attempt.instant.dt;
         let next = match &mut self.search {
             Search::End | Search::Last => None,
-            Search::Equilibrium { with, .. } => {
-                *with = dt;
-                self.between()
+            Search::Length => self.shorten(attempt),
+            &mut Search::Equilibrium { without, .. } => {
+                self.search = Search::Length;
+                let shorter = self.shorten(attempt);
+                if shorter.is_none() && matches!(self.search, Search::Length) {
+                    self.search = Search::Equilibrium { with: dt, without };
+                    self.between()
+                } else {
+                    shorter
+                }
             }
-            Search::Length => {
-                let size = self.size.as_ref().filter(|_| !attempt.instant.jump);
-                let shorter = size.and_then(|size| size.rejects(dt, attempt.error?));
-                shorter.or_else(|| self.find_event(attempt))
-            }
-            Search::Event { event, enclosure } => {
-                let (event, mut enclosure) = (*event, *enclosure);
+            &mut Search::Event { event, mut enclosure } => {
                 let (signal, tolerance) = self.signal(event, attempt);
                 match met(event, signal, tolerance) {
                     true => self.end_here(),
@@ -336,6 +340,14 @@ impl Schedule {
             }
         };
         next.map(|dt| tried.of_length(dt))
+    }
+
+    /// The length to try next where the step is in error, or where the event happens in it; `None` where the step stands.
+    fn shorten(&mut self, attempt: &Summary) -> Option<f64> {
+        let Instant { dt, jump, .. } = attempt.instant;
+        let size = self.size.as_ref().filter(|_| !jump);
+        let shorter = size.and_then(|size| size.rejects(dt, attempt.error?));
+        shorter.or_else(|| self.find_event(attempt))
     }
 
     /// The row ends with this attempt, where the event has just happened.
@@ -359,12 +371,21 @@ impl Schedule {
             Event::Load(0.0) | Event::Pressure(0.0) if !attempt.pulls => Event::ContactLost,
             event => event,
         };
-        let Instant { dt, jump, control, .. } = attempt.instant;
-        if jump && dt == 0.0 && stage.after_jump {
-            return None;
-        }
+        let Instant { time, dt, jump, control, .. } = attempt.instant;
         let (signal, tolerance) = self.signal(event, attempt);
         let start = self.signal_at_start(event, attempt);
+        if jump {
+            // What a jump only passes is not reached: it counts where it ends, unless it begins there too.
+            let is_counted = time > self.course.start || !stage.after_jump;
+            let ends_there = match event {
+                Event::ContactLost => self.touched && signal <= 0.0,
+                _ => signal.abs() <= tolerance && (start.is_nan() || start.abs() > tolerance),
+            };
+            return if is_counted && ends_there { self.end_here() } else { None };
+        }
+        if start.is_nan() {
+            self.side = 0.0;
+        }
         if signal.is_nan() {
             return None;
         }
@@ -381,7 +402,7 @@ impl Schedule {
         if side == 0.0 || side * signal > 0.0 && !met(event, signal, tolerance) {
             return None;
         }
-        if jump || met(event, signal, tolerance) {
+        if met(event, signal, tolerance) {
             return self.end_here();
         }
         let before = match (event, control) {
@@ -424,6 +445,7 @@ impl Schedule {
     pub(crate) fn accept(&mut self, row: &Summary) {
         let Summary { instant, error, is_turn, reached, .. } = *row;
         let is_event = matches!(self.search, Search::End);
+        self.is_last = matches!(self.search, Search::Last);
         self.largest.approach = self.largest.approach.max(reached.approach.abs());
         self.largest.load = self.largest.load.max(reached.load.abs());
         self.last = Some(instant);
@@ -435,7 +457,8 @@ impl Schedule {
             size.accept(instant.dt, error.unwrap_or(0.0));
         }
         if instant.jump {
-            self.jump = None;
+            // The state after it tells from where the value can be reached.
+            (self.jump, self.side) = (None, 0.0);
         } else if let Some(stop) = self.stops.get(self.next)
             && instant.time >= stop.time
         {
@@ -451,7 +474,10 @@ impl Schedule {
         }
         let stage = self.stage();
         match stage.until.filter(|_| !is_event && stage.duration.is_none()) {
-            Some(event) => self.stopped = Some(StopReason::Missed { stage: self.stage, event, reached }),
+            Some(event) => {
+                let number = row.number;
+                self.stopped = Some(StopReason::Missed { stage: self.stage, event, reached, number });
+            }
             None => self.enter(self.stage + 1, instant.time, reached),
         }
     }
@@ -560,7 +586,10 @@ impl Schedule {
         }
         self.stopped = match (from.get("stopped")?, self.stage().until) {
             (0_usize, _) => None,
-            (2, Some(event)) => Some(StopReason::Missed { stage: self.stage, event, reached: self.reached }),
+            (2, Some(event)) => {
+                let (reached, number) = (self.reached, self.number);
+                Some(StopReason::Missed { stage: self.stage, event, reached, number })
+            }
             _ => Some(StopReason::Complete),
         };
         Ok(())
@@ -570,6 +599,7 @@ impl Schedule {
 saved! {
     Schedule {
         "smooth": is_smooth;
+        "last_equilibrium": is_last;
         "side": side;
         "reached": reached.approach, reached.load, touched;
         "largest": largest.approach, largest.load;
@@ -582,9 +612,13 @@ impl StopReason {
     pub(crate) fn outcome(self, end: f64) -> Result<()> {
         match self {
             StopReason::Complete => Ok(()),
-            StopReason::Missed { stage, event, reached } => Err(Error::Missed {
+            StopReason::Missed { stage, event, reached, number } => Err(Error::Missed {
                 stage: stage + 1,
                 event: event.to_string(),
+                number: match event {
+                    Event::Number(of, _) => Some((of.name(), number)),
+                    _ => None,
+                },
                 end,
                 approach: reached.approach,
                 load: reached.load,

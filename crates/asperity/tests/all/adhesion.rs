@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use asperity::drive::{Drive, March};
+use asperity::finding::{Diagnostics, ENERGY_BALANCE, Known};
 use asperity::load::{Control, Course, Event, History, Loading, Programme, Stage};
 use asperity::material::{Creep, CreepTerm};
 use asperity::quantities::{Quantities, Quantity};
 use asperity::simulation::Simulation;
 use asperity::step::Row;
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
-use asperity::traction::Adhesion;
+use asperity::traction::{Adhesion, AdhesionLaw};
 use asperity::{Boundary, Error, Grid, TimeGrid};
 use std::f64::consts::PI;
 
@@ -355,4 +356,43 @@ fn an_attraction_stronger_than_the_roughness_closes_the_gap_and_holds() {
     // In full contact a mean pressure adds to all cells alike; the tolerance of the loop is 1e-4 of the strength.
     let off = closed.iter().zip(&pulled).map(|(a, b)| (a - b - 0.1).abs()).fold(0.0, f64::max);
     assert!(off < 1e-3, "{off}");
+}
+
+#[test]
+fn the_work_over_a_jump_into_contact_and_off_it_is_known_to_what_the_finding_tells() {
+    // A law of finite range: nothing acts before the surfaces jump into contact, so that what the bodies take is no work. The rows of 480
+    // steps are 16 times as dense as those of 30.
+    let work = |steps: usize| {
+        let law = Adhesion { law: AdhesionLaw::Linear, ..exponential(2.36) };
+        let simulation = sphere(48, law, &[(0.0, -6.0), (1.0, 1.5), (3.0, -6.0)], steps);
+        let known = Known { parts: &[], bodies: &[], thickness: None };
+        let mut diagnostics = Diagnostics::new(&simulation, known);
+        let mut march = March::new(simulation).unwrap();
+        let mut work = vec![];
+        while let Some(step) = march.advance().unwrap() {
+            let row = step.row();
+            diagnostics.see(&step, &row);
+            work.push((row.time(), step.quantity(Quantity::ExternalWork).unwrap()[0]));
+        }
+        let deepest = work.iter().find(|(time, _)| (time - 1.0).abs() < 1e-9).unwrap().1;
+        let found = diagnostics.findings(march.simulation());
+        let share = found
+            .iter()
+            .find(|found| found.code == ENERGY_BALANCE)
+            .map_or(0.02, |found| found.value.unwrap());
+        let largest = work.iter().map(|(_, work)| work.abs()).fold(0.0, f64::max);
+        ([deepest, work.last().unwrap().1], share * largest)
+    };
+    let (fine, _) = work(480);
+    // It does work on the bodies as they come together, and the load does more as they part.
+    assert!(fine[0] < 0.0 && fine[1] > 0.0, "{fine:?}");
+    let unknown = [30, 36, 45, 60].map(|steps| {
+        let (coarse, unknown) = work(steps);
+        for (coarse, fine) in coarse.iter().zip(fine) {
+            assert!((coarse - fine).abs() <= unknown, "{steps} steps: {coarse} {fine} {unknown}");
+        }
+        unknown
+    });
+    // In proportion to the step, but for where in it the jumps lie.
+    assert!(unknown[3] < 0.75 * unknown[0], "{unknown:?}");
 }

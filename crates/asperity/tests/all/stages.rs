@@ -223,8 +223,8 @@ fn an_event_that_does_not_come_is_said_and_a_duration_makes_it_optional() {
 }
 
 #[test]
-fn a_jump_that_passes_the_value_ends_the_stage() {
-    let first = until(Control::Load, History::Step { value: 0.2 }, Event::Approach(1e-4));
+fn a_jump_reaches_the_value_at_which_it_ends() {
+    let first = until(Control::Load, History::Step { value: 0.2 }, Event::Load(0.2));
     let second = until(Control::Approach, Course::Hold, Event::Load(0.15));
     let third = timed(Control::Load, History::Step { value: 0.3 }, 0.3);
     let simulation = Simulation {
@@ -239,6 +239,72 @@ fn a_jump_that_passes_the_value_ends_the_stage() {
     // The jump to 0.3 is a row of no length.
     assert_eq!(rows[event + 1].time(), rows[event].time());
     assert!((rows[event + 1].load - 0.3).abs() < 1e-12);
+}
+
+#[test]
+fn what_a_jump_only_passes_is_not_reached() {
+    // At a held approach the load relaxes to half of its first value and no further, at a held load the approach grows.
+    let wait = |control, value, event| Simulation {
+        loading: Programme::new(vec![until(control, History::Step { value }, event)]),
+        times: TimeGrid::Uniform { end: 9.0, steps: 9 },
+        ..rough([20, 20])
+    };
+    let first = rows(Simulation {
+        loading: Programme::new(vec![Stage::new(Control::Approach, History::Step { value: 0.05 })]),
+        ..wait(Control::Approach, 0.05, Event::Load(0.0))
+    })[0];
+    let fraction = RowNumber::from_name("contact_fraction").unwrap();
+    let never = [
+        (Control::Approach, 0.05, Event::Load(0.1 * first.load)),
+        (Control::Approach, 0.05, Event::Pressure(0.1 * first.mean_pressure)),
+        (Control::Load, first.load, Event::Approach(0.01)),
+        (Control::Load, first.load, Event::Load(0.5 * first.load)),
+        (Control::Load, first.load, Event::Number(fraction, 0.1 * first.contact_fraction)),
+    ];
+    for (control, value, event) in never {
+        let mut march = March::new(wait(control, value, event)).unwrap();
+        let error = loop {
+            match march.advance() {
+                Ok(step) => assert!(step.is_some(), "{event:?} is complete"),
+                Err(error) => break error,
+            }
+        };
+        assert!(matches!(error, Error::Missed { stage: 1, .. }), "{event:?}: {error}");
+    }
+    // What comes after it is reached, from the side on which the jump has led.
+    for (control, value, event) in [
+        (Control::Approach, 0.05, Event::Load(0.7 * first.load)),
+        (Control::Approach, 0.05, Event::Pressure(0.7 * first.mean_pressure)),
+        (Control::Load, first.load, Event::Approach(1.1 * first.approach)),
+    ] {
+        let last = *rows(wait(control, value, event)).last().unwrap();
+        let [reached, wanted] = match event {
+            Event::Approach(value) => [last.approach, value],
+            Event::Pressure(value) => [last.mean_pressure, value],
+            Event::Load(value) => [last.load, value],
+            _ => unreachable!(),
+        };
+        // To a millionth of the largest value so far.
+        assert!(last.time() > 0.0 && (reached / wanted - 1.0).abs() < 2e-6, "{event:?}: {last:?}");
+    }
+}
+
+#[test]
+fn a_jump_that_parts_the_surfaces_loses_their_contact() {
+    let points = vec![(0.0, 0.05), (1.0, 0.05), (1.0, -0.5), (2.0, -0.5)];
+    for control in [Control::Approach, Control::Load] {
+        let points =
+            points.iter().map(|(t, v)| (*t, if control == Control::Load { f64::max(*v, 0.0) } else { *v }));
+        let stage = until(control, History::Table { points: points.collect() }, Event::ContactLost);
+        let last = *rows(Simulation {
+            loading: Programme::new(vec![stage]),
+            times: TimeGrid::Uniform { end: 2.0, steps: 4 },
+            ..rough([20, 20])
+        })
+        .last()
+        .unwrap();
+        assert_eq!((last.time(), last.load, last.contact_area), (1.0, 0.0, 0.0));
+    }
 }
 
 #[test]
@@ -356,8 +422,11 @@ fn an_event_after_the_jump_is_the_relaxation_and_too_few_steps_of_a_sine_are_ref
         let times = TimeGrid::Uniform { end: 4.0, steps: 4 };
         *rows(Simulation { loading: Programme::new(vec![stage]), times, ..rough([20, 20]) }).last().unwrap()
     };
-    assert_eq!(run(false).time(), 0.0);
-    assert!((run(true).time() - 0.5 * 2f64.ln()).abs() < 1e-4, "{:?}", run(true));
+    for after_jump in [false, true] {
+        let row = run(after_jump);
+        assert!((row.time() - 0.5 * 2f64.ln()).abs() < 1e-4, "{row:?}");
+        assert!((row.load / (0.75 * first) - 1.0).abs() < 2e-6, "{row:?}");
+    }
     let sine = History::Sine { mean: 0.1, amplitude: 0.1, frequency: 2.0 };
     let simulation = Simulation {
         loading: Programme::new(vec![Stage::new(Control::Load, sine)]),

@@ -8,6 +8,7 @@ use crate::contact::{ContactState, Hardness, Outcome};
 use crate::drive::Coordinate;
 use crate::flash::{FlashRow, Rise};
 use crate::history::History;
+use crate::kernel::strip_at;
 use crate::load::Control;
 use crate::process::{Process, SlipFields, cells};
 use crate::quantities::{Column, Quantity, contact_edges};
@@ -359,18 +360,47 @@ impl<'a> Step<'a> {
     }
 
     /// What displacements and approach are measured from \[m\]: where they are known up to a constant, the displacement of the domain's
-    /// end, x = L, on the straight line through the last two cells; else 0.
+    /// end, x = L; else 0. Between the last cell and the end u falls as U there does by the potential of the pressures, in the ratio that
+    /// both have between the last two cells. Where a traction reaches the end, it is on the straight line through the last two cells.
     fn datum(&self) -> f64 {
         if !self.simulation.is_up_to_a_constant() {
             return 0.0;
         }
-        let mut u = vec![0.0; self.state.unit_displacement.len()];
+        let unit = &self.state.unit_displacement;
+        let mut u = vec![0.0; unit.len()];
         self.recall(&mut u);
-        u.iter_mut().zip(&self.state.unit_displacement).for_each(|(g, unit)| *g += self.compliance * unit);
-        match u[..] {
-            [.., before, last] => last + 0.5 * (last - before),
-            _ => 0.0,
+        u.iter_mut().zip(unit).for_each(|(g, unit)| *g += self.compliance * unit);
+        let ([.., before, last], [.., unit_before, unit_last]) = (&u[..], &unit[..]) else { return 0.0 };
+        let ratio = (before - last) / (unit_before - unit_last);
+        match self.fall_at_end() {
+            Some(fall) if ratio.is_finite() => last - ratio * fall,
+            _ => last + 0.5 * (last - before),
         }
+    }
+
+    /// By how much U falls from the middle of the last cell of a line to its end; `None` where nothing presses, or something at the end, or
+    /// the body is no half-space.
+    fn fall_at_end(&self) -> Option<f64> {
+        let pressure = &self.state.pressure[..];
+        let [inside @ .., before, last] = pressure else { return None };
+        let is_half_space = self.simulation.kernel.is_half_space() && self.simulation.layers.is_none();
+        let at_end = *before != 0.0 || *last != 0.0;
+        if !is_half_space || at_end || inside.iter().all(|p| *p == 0.0) {
+            return None;
+        }
+        let [dx, _] = self.simulation.grid.spacing();
+        let fall = |cells: usize| {
+            let x = cells as f64 * dx;
+            strip_at(x, dx) - strip_at(x + 0.5 * dx, dx)
+        };
+        Some(
+            pressure
+                .iter()
+                .rev()
+                .enumerate()
+                .map(|(cells, p)| if *p == 0.0 { 0.0 } else { p * fall(cells) })
+                .sum(),
+        )
     }
 
     /// Permanent flattening \[m\] since t = 0, 0 or more: what [`Plasticity::Accumulate`](crate::Plasticity) has added to the

@@ -332,7 +332,7 @@ the answer. The test asserts that 95 of 100 answers are covered.
 const TIME_ERRORS: &str = "\
 ## Stated against true errors of the time steps
 
-The test `time_error` runs 50 random cases of each of six classes, from seeds that no choice of a number was made with: a cylinder, every other
+The test `time_error` runs 50 random cases of each of six classes, from seeds that no number was chosen with: a cylinder, every other
 one rough, on a free line under a load, on a periodic line, and moving along one; a sphere, every other one rough; waves all over a periodic square; a
 sphere that adheres, in and out again. The bodies have 1 to 4 terms with E(0)/E(infinity) from 2 to 3000 (with adhesion to 40). Load or approach run
 straight between 2 to 5 points, some with jumps, or along a sine; the steps are uniform or logarithmic (5 to 500), or adaptive with a tolerance of
@@ -343,12 +343,12 @@ history of a body whose Poisson's ratio changes (or these are below 1e-6, the to
 is measured by that hundredth. A case is close if the largest `time_error` is at most ten times the largest of these errors and those of the pressure
 fields, or at most 1e-3. Adaptive steps are within their tolerance if these errors are.
 
-Cases that are not covered have a cell at the rim that has just touched: on a stiff body it carries the largest pressure, and a touch that comes a
-little early or late in a step shows there at once. Where bodies that adhere jump together or apart, the rows within the jump have no such error: the
-moment of the jump does.
+Most cases that are not covered have a cell at the rim that has just touched: on a stiff body it carries the largest pressure, and a touch that
+comes a little early or late in a step shows there at once. With adhesion these are all of them, by factors of 1.1 to 5; the load is covered. The test
+asserts that 95 of 100 of each class are covered, with adhesion 85, that 65 of 100 are close, and that 90 of 100 adaptive runs are within.
 
-| class, prescribed | cases | covered | close | within tolerance |
-|---|---|---|---|---|
+| class | cases | covered | close | adaptive | within tolerance |
+|---|---|---|---|---|---|
 ";
 
 fn verification() -> Done {

@@ -360,47 +360,38 @@ impl<'a> Step<'a> {
     }
 
     /// What displacements and approach are measured from \[m\]: where they are known up to a constant, the displacement of the domain's
-    /// end, x = L; else 0. Between the last cell and the end u falls as U there does by the potential of the pressures, in the ratio that
-    /// both have between the last two cells. Where a traction reaches the end, it is on the straight line through the last two cells.
+    /// end, x = L; else 0. Between the last cell and the end u falls as the potential of the pressures of a half-space, in the ratio that
+    /// both have between the last two cells. Where a traction reaches the last cell, it is on the straight line through the last two.
     fn datum(&self) -> f64 {
         if !self.simulation.is_up_to_a_constant() {
             return 0.0;
         }
-        let unit = &self.state.unit_displacement;
-        let mut u = vec![0.0; unit.len()];
+        let mut u = vec![0.0; self.state.unit_displacement.len()];
         self.recall(&mut u);
-        u.iter_mut().zip(unit).for_each(|(g, unit)| *g += self.compliance * unit);
-        let ([.., before, last], [.., unit_before, unit_last]) = (&u[..], &unit[..]) else { return 0.0 };
-        let ratio = (before - last) / (unit_before - unit_last);
-        match self.fall_at_end() {
-            Some(fall) if ratio.is_finite() => last - ratio * fall,
-            _ => last + 0.5 * (last - before),
+        u.iter_mut().zip(&self.state.unit_displacement).for_each(|(g, unit)| *g += self.compliance * unit);
+        let [.., before, last] = u[..] else { return 0.0 };
+        let [between, beyond] = self.falls_at_end();
+        match beyond > 0.0 && between > 0.0 {
+            true => last - (before - last) * (beyond / between),
+            false => last + 0.5 * (last - before),
         }
     }
 
-    /// By how much U falls from the middle of the last cell of a line to its end; `None` where nothing presses, or something at the end, or
-    /// the body is no half-space.
-    fn fall_at_end(&self) -> Option<f64> {
+    /// By how much the potential of the pressures falls between the last two cells of a line, and from the middle of the last one to its end;
+    /// 0 where nothing presses, or something on the last one.
+    fn falls_at_end(&self) -> [f64; 2] {
         let pressure = &self.state.pressure[..];
-        let [inside @ .., before, last] = pressure else { return None };
-        let is_half_space = self.simulation.kernel.is_half_space() && self.simulation.layers.is_none();
-        let at_end = *before != 0.0 || *last != 0.0;
-        if !is_half_space || at_end || inside.iter().all(|p| *p == 0.0) {
-            return None;
-        }
-        let [dx, _] = self.simulation.grid.spacing();
-        let fall = |cells: usize| {
+        let dx = self.simulation.grid.spacing()[0];
+        let mut falls = [0.0; 2];
+        for (cells, p) in pressure.iter().rev().enumerate().filter(|(_, p)| **p != 0.0) {
+            if cells == 0 {
+                return [0.0; 2];
+            }
             let x = cells as f64 * dx;
-            strip_at(x, dx) - strip_at(x + 0.5 * dx, dx)
-        };
-        Some(
-            pressure
-                .iter()
-                .rev()
-                .enumerate()
-                .map(|(cells, p)| if *p == 0.0 { 0.0 } else { p * fall(cells) })
-                .sum(),
-        )
+            let [before, last, end] = [x - dx, x, x + 0.5 * dx].map(|x| strip_at(x, dx));
+            falls = [falls[0] + p * (before - last), falls[1] + p * (last - end)];
+        }
+        falls
     }
 
     /// Permanent flattening \[m\] since t = 0, 0 or more: what [`Plasticity::Accumulate`](crate::Plasticity) has added to the

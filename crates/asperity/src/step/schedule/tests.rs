@@ -125,7 +125,8 @@ fn a_load_of_nothing_is_lost_contact_only_where_nothing_pulls() {
 #[test]
 fn a_sine_of_load_has_as_many_adaptive_steps_as_the_tolerance_asks_for() {
     let sine = |mean: f64| History::Sine { mean, amplitude: 1.0, frequency: 0.5 };
-    let steps = |history: &History, control: Control, tolerance: f64| 2.0 / longest(history, control, tolerance);
+    let steps =
+        |history: &History, control: Control, tolerance: f64| 2.0 / longest(history, control, tolerance);
     // (2 pi/n)²/8 of the amplitude over the largest load.
     assert!((steps(&sine(1.0), Control::Load, 1e-4) - TAU * (0.5_f64 / 8e-4).sqrt()).abs() < 1e-9);
     assert!((steps(&sine(1.0), Control::Load, 1e-2) - STEPS_PER_PERIOD).abs() < 1e-9);

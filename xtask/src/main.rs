@@ -332,15 +332,23 @@ the answer. The test asserts that 95 of 100 answers are covered.
 const TIME_ERRORS: &str = "\
 ## Stated against true errors of the time steps
 
-The test `time_error` runs 200 random cases: a cylinder or a rough line on a body of 1 to 4 terms with E(0)/E(infinity) from 2 to 3000,
-under a load or an approach that runs straight between 2 to 5 points, in 5 to 500 uniform or logarithmic steps or in adaptive steps with a
-tolerance of 1e-4 to 3e-2, some in motion. The reference takes 16 steps in place of each. A case is covered if the largest `time_error` of
-its rows is at least its largest error of the load, of the largest pressure, and of the stress history of a body whose Poisson's ratio
-changes (or these are below 1e-6, the tolerance of the solver). It is close if the largest `time_error` is at most ten times the largest
-of these errors and those of the pressure fields, or at most 1e-3. The test asserts that 95 of 100 are covered and 90 of 100 are close.
+The test `time_error` runs 50 random cases of each of six classes, from seeds that no number was chosen with: a cylinder, every other
+one rough, on a free line under a load, on a periodic line, and moving along one; a sphere, every other one rough; waves all over a periodic square; a
+sphere that adheres, in and out again. The bodies have 1 to 4 terms with E(0)/E(infinity) from 2 to 3000 (with adhesion to 40). Load or approach run
+straight between 2 to 5 points, some with jumps, or along a sine; the steps are uniform or logarithmic (5 to 500), or adaptive with a tolerance of
+1e-4 to 3e-2. Lines have 48 cells, squares 18 x 18. The reference takes 16 steps in place of each, so that its own error is 256 times smaller.
 
-| prescribed | cases | covered | close |
-|---|---|---|---|
+A case is covered if the largest `time_error` of its rows is at least its largest error of the load, of the largest pressure, and of the stress
+history of a body whose Poisson's ratio changes (or these are below 1e-6, the tolerance of the solver). A load below a hundredth of the largest one
+is measured by that hundredth. A case is close if the largest `time_error` is at most ten times the largest of these errors and those of the pressure
+fields, or at most 1e-3. Adaptive steps are within their tolerance if these errors are.
+
+Most cases that are not covered have a cell at the rim that has just touched: on a stiff body it carries the largest pressure, and a touch that
+comes a little early or late in a step shows there at once. With adhesion these are all of them, by factors of 1.1 to 5; the load is covered. The test
+asserts that 95 of 100 of each class are covered, with adhesion 85, that 65 of 100 are close, and that 90 of 100 adaptive runs are within.
+
+| class | cases | covered | close | adaptive | within tolerance |
+|---|---|---|---|---|---|
 ";
 
 fn verification() -> Done {

@@ -83,7 +83,8 @@ pub struct Diagnostics {
     /// Where an approach is held while cells are at the hardness, and the control of each stage.
     held: time::Held,
     controls: Vec<Control>,
-    /// Errors of the time steps that are too large by themselves, and the largest load of the run.
+    /// Errors of the time steps that are above the limit of their stage by themselves, and the largest load of the run.
+    limits: Vec<f64>,
     coarse: Vec<time::Coarse>,
     heaviest: f64,
     /// Time of the last row, and whether it is the state right after a jump.
@@ -125,6 +126,7 @@ impl Diagnostics {
             beyond: Beyond::default(),
             held: time::Held::default(),
             controls: simulation.loading.stages.iter().map(|stage| stage.control).collect(),
+            limits: time::limits(simulation),
             coarse: vec![],
             heaviest: 0.0,
             last: None,
@@ -228,8 +230,10 @@ impl Diagnostics {
         let is_at_once = self.last.is_none_or(|(before, _)| before == time);
         let after_jump =
             self.last.replace((time, is_at_once && load > 0.0)).is_some_and(|(_, jumped)| jumped);
-        if let Some(error) = row.time_error.filter(|error| *error > time::COARSE) {
-            self.coarse.push(time::Coarse { index, error, load, after_jump });
+        // A stage that was prescribed between two rows goes on with the steps of the run.
+        let limit = self.limits.get(row.stage).or(self.limits.last()).copied().unwrap_or(f64::INFINITY);
+        if let Some(error) = row.time_error.filter(|error| *error > limit) {
+            self.coarse.push(time::Coarse { index, error, limit, load, after_jump });
         }
         self.resolution.see(index, contact);
         self.strain.see(index, row, contact);

@@ -714,3 +714,21 @@ fn a_half_space_that_is_thinner_than_its_contact_needs_is_told() {
         assert_eq!(diagnostics.known().iter().any(|finding| finding.code == THIN_BODY), told);
     }
 }
+
+#[test]
+fn adaptive_steps_that_miss_their_tolerance_are_told() {
+    let sphere = simulation(&[sphere(10e-3)]);
+    let adaptive = TimeGrid::Adaptive { end: 1.0, tolerance: 1e-3, first: 0.1 };
+    let simulation = Simulation { times: adaptive, ..sphere };
+    let limit = time::limits(&simulation)[0];
+    assert_eq!(limit, 2e-3);
+    let told = |error: f64, load: f64| {
+        let row = time::Coarse { index: 3, error, limit, load, after_jump: false };
+        time::coarse(&simulation, &[row], 1.0)
+    };
+    let found = told(8e-3, 1.0).unwrap();
+    assert_eq!((found.code.as_ref(), found.value, found.limit), (STEPS_TOO_LONG, Some(8e-3), Some(2e-3)));
+    assert!(found.is_warning() && found.text.contains("0.0002 in place of 0.001"), "{}", found.text);
+    // Within twice the tolerance, or of a load that has all but gone.
+    assert!(told(1.9e-3, 1.0).is_none() && told(8e-3, 0.1).is_none());
+}

@@ -27,8 +27,9 @@ const PER_RISE: usize = 4;
 const DRIFT: f64 = 0.5;
 /// Changes by less than this fraction of the largest value are scatter of a measured history.
 const SMALL: f64 = 0.05;
-/// Largest estimated error of the stress.
-pub(super) const COARSE: f64 = 0.05;
+/// Largest estimated error of the stress; of adaptive steps also this many tolerances.
+const COARSE: f64 = 0.05;
+const MISSED: f64 = 2.0;
 /// Relaxation times with less than this fraction of the modulus are ignored.
 const SHARE: f64 = 0.05;
 /// A material relaxes during a change of the load if one of its times is within this factor of the steps and of the change's
@@ -68,9 +69,21 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
 pub(super) struct Coarse {
     pub index: usize,
     pub error: f64,
+    pub limit: f64,
     pub load: f64,
     /// Whether its step begins at a jump.
     pub after_jump: bool,
+}
+
+/// The largest error of a row that is not reported, in each stage.
+pub(super) fn limits(simulation: &Simulation) -> Vec<f64> {
+    let grids =
+        simulation.loading.stages.iter().map(|stage| stage.times.as_ref().unwrap_or(&simulation.times));
+    let limit = |grid: &TimeGrid| match grid {
+        TimeGrid::Adaptive { tolerance, .. } => COARSE.min(MISSED * tolerance),
+        _ => COARSE,
+    };
+    grids.map(limit).collect()
 }
 
 /// The finding for steps whose estimated error is too large for the largest load of the run. (In the first step of a load that grows from 0
@@ -78,27 +91,27 @@ pub(super) struct Coarse {
 pub(super) fn coarse(simulation: &Simulation, rows: &[Coarse], heaviest: f64) -> Option<Finding> {
     let mut worst = Worst::default();
     let mut after_jump = false;
-    for row in rows.iter().filter(|row| row.error * row.load > COARSE * heaviest) {
-        if row.error > worst.value {
+    for row in rows.iter().filter(|row| row.error * row.load > row.limit * heaviest) {
+        if row.error / row.limit > worst.excess {
             after_jump = row.after_jump;
         }
-        worst.above(row.index, row.error, COARSE);
+        worst.above(row.index, row.error, row.limit);
     }
+    let factor = worst.excess.sqrt();
     worst.warning(STEPS_TOO_LONG, |error| {
         format!(
             "The time steps are long for the history and the material{}: the pressures may be off by up to {} % of their sum (load and \
              approach are often more accurate, single cells less). {}",
             error.place(),
             digits(100.0 * error.value),
-            shorter(simulation, error.value, after_jump)
+            shorter(simulation, factor, after_jump)
         )
     })
 }
 
-/// What brings an estimated error down to the limit: it falls with the square of the step, and with the tolerance of adaptive steps; the
+/// What brings an estimated error down to the limit, where that takes `factor` times as many steps: it falls with the square of the step, and with the tolerance of adaptive steps; the
 /// creep right after a jump may be far faster than any step of given length.
-fn shorter(simulation: &Simulation, error: f64, after_jump: bool) -> String {
-    let factor = (error / COARSE).sqrt();
+fn shorter(simulation: &Simulation, factor: f64, after_jump: bool) -> String {
     let after_jump = after_jump && simulation.tangential.is_none();
     let advice = match &simulation.times {
         TimeGrid::Adaptive { tolerance, .. } => {

@@ -124,6 +124,8 @@ pub(crate) struct Ends<'a> {
     pub(crate) now: &'a ContactState,
     /// Contact pressures of both \[Pa\]: all of it, where no other traction acts.
     pub(crate) pressures: [&'a [f64]; 2],
+    /// Whether tractions act on open cells too.
+    pub(crate) pulls: bool,
     /// Loads of both \[N\].
     pub(crate) loads: [f64; 2],
     /// h0 + g, and h0.
@@ -146,6 +148,7 @@ impl<'a> Ends<'a> {
             before,
             now,
             pressures: [&before.pressure, &now.pressure],
+            pulls: false,
             loads,
             gap,
             rigid: rest,

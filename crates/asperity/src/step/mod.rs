@@ -37,7 +37,6 @@ pub(crate) use quantities::Recorder;
 pub(crate) use row::{EnergyBalance, PERIMETER_SHARE};
 pub(crate) use schedule::{Proposal, Response, Schedule, Summary};
 pub(crate) use snapshot::{Loader, Saved, Saver, saved};
-pub(crate) use step_size::SHARE;
 pub(crate) use undeformed::UndeformedGap;
 
 use std::sync::Arc;

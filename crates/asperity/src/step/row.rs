@@ -8,6 +8,7 @@ use crate::contact::{ContactState, Hardness, Outcome};
 use crate::drive::Coordinate;
 use crate::flash::{FlashRow, Rise};
 use crate::history::History;
+use crate::kernel::strip_at;
 use crate::load::Control;
 use crate::process::{Process, SlipFields, cells};
 use crate::quantities::{Column, Quantity, contact_edges};
@@ -392,7 +393,8 @@ impl<'a> Step<'a> {
     }
 
     /// What displacements and approach are measured from \[m\]: where they are known up to a constant, the displacement of the domain's
-    /// end, x = L, on the straight line through the last two cells; else 0.
+    /// end, x = L; else 0. Between the last cell and the end u falls as the potential of the pressures of a half-space, in the ratio that
+    /// both have between the last two cells. Where a traction reaches the last cell, it is on the straight line through the last two.
     fn datum(&self) -> f64 {
         if !self.simulation.is_up_to_a_constant() {
             return 0.0;
@@ -400,10 +402,29 @@ impl<'a> Step<'a> {
         let mut u = vec![0.0; self.state.unit_displacement.len()];
         self.recall(&mut u);
         u.iter_mut().zip(&self.state.unit_displacement).for_each(|(g, unit)| *g += self.compliance * unit);
-        match u[..] {
-            [.., before, last] => last + 0.5 * (last - before),
-            _ => 0.0,
+        let [.., before, last] = u[..] else { return 0.0 };
+        let [between, beyond] = self.falls_at_end();
+        match beyond > 0.0 && between > 0.0 {
+            true => last - (before - last) * (beyond / between),
+            false => last + 0.5 * (last - before),
         }
+    }
+
+    /// By how much the potential of the pressures falls between the last two cells of a line, and from the middle of the last one to its end;
+    /// 0 where nothing presses, or something on the last one.
+    fn falls_at_end(&self) -> [f64; 2] {
+        let pressure = &self.state.pressure[..];
+        let dx = self.simulation.grid.spacing()[0];
+        let mut falls = [0.0; 2];
+        for (cells, p) in pressure.iter().rev().enumerate().filter(|(_, p)| **p != 0.0) {
+            if cells == 0 {
+                return [0.0; 2];
+            }
+            let x = cells as f64 * dx;
+            let [before, last, end] = [x - dx, x, x + 0.5 * dx].map(|x| strip_at(x, dx));
+            falls = [falls[0] + p * (before - last), falls[1] + p * (last - end)];
+        }
+        falls
     }
 
     /// Permanent flattening \[m\] since t = 0, 0 or more: what [`Plasticity::Accumulate`](crate::Plasticity) has added to the

@@ -15,6 +15,7 @@
 
 mod steered;
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::event::{Enclosure, MET};
@@ -517,12 +518,9 @@ impl Schedule {
         let span =
             Span { history: &history, start, end, run_end, include, kinks, turns: next.until.is_some() };
         let stops = stops(&span, next.times.as_ref(), times);
-        let longest = match &history {
-            History::Sine { frequency, .. } => 1.0 / (STEPS_PER_PERIOD * frequency),
-            _ => f64::INFINITY,
-        };
         let size = match next.times.as_ref().unwrap_or(times) {
             TimeGrid::Adaptive { end, tolerance, first } => {
+                let longest = longest(&history, next.control, *tolerance);
                 Some(StepSizeControl::new(*tolerance, *first, *end, longest))
             }
             _ => None,
@@ -625,6 +623,18 @@ impl StopReason {
             }),
         }
     }
+}
+
+/// No step is longer \[s\]: a prescribed load is straight within it, and leaves a sine by (2π/n)²/8 of the amplitude at n steps to a period.
+/// (Under a prescribed approach this is part of the error of the step.)
+fn longest(history: &History, control: Control, tolerance: f64) -> f64 {
+    let History::Sine { mean, amplitude, frequency } = history else { return f64::INFINITY };
+    let share = amplitude.abs() / (mean.abs() + amplitude.abs()).max(f64::MIN_POSITIVE);
+    let straight = match control {
+        Control::Approach => 0.0,
+        Control::Load | Control::Pressure => TAU * (share / (8.0 * tolerance)).sqrt(),
+    };
+    1.0 / (STEPS_PER_PERIOD.max(straight) * frequency)
 }
 
 /// Whether an event is met as closely as asked for; contact is not lost before it is.

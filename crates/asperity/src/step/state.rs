@@ -52,7 +52,8 @@ impl StepState {
         let gap = self.gap();
         let (pressures, hardness) = (contact.pressures([before, now]), contact.hardness());
         let (rigid, rigid_before) = (undeformed.now(), undeformed.before());
-        Ends { before, now, pressures, loads: self.loads, gap, rigid, rigid_before, hardness }
+        let (pulls, loads) = (contact.pulls(), self.loads);
+        Ends { before, now, pressures, pulls, loads, gap, rigid, rigid_before, hardness }
     }
 
     /// The load that the attempt carries \[N\]; its own is the prescribed one, where that is a load.

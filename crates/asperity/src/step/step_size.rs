@@ -17,7 +17,7 @@ const SHRINK: f64 = 0.2;
 const SAFETY: f64 = 0.9;
 /// Each step may take this share: the errors of steps add up while the material remembers them, and those of single cells are larger than
 /// that of the sum.
-pub(crate) const SHARE: f64 = 0.08;
+const SHARE: f64 = 0.08;
 
 /// ln of the rate of a clock may change in a step by this times the root of the tolerance: the error of the step is about 0.15
 /// times the square of the change.

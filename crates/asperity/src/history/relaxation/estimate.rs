@@ -23,10 +23,26 @@
 //! A cell that comes into contact during the step moves with the approach w only from then on, and so faster than u' - u over
 //! the whole step says. Where u runs linearly in time, a quarter of its gap before the step replaces |u\[z0, z1, z2\]| Δz² if it is
 //! larger. (A quarter, because this error does not add up over the steps.)
+//!
+//! **Lines.** On a line one or two cells come into contact at a time, and the error of a cell alone is one of a pressure ε/dx, with those of
+//! its neighbours of the other sign (π/3 ε/dx in all, from the operator of the half-space). So the cells that come into contact are a sum of
+//! their own, over Σ p' dx. Where the displacement is known up to a constant (a free line, always under a load), u - w takes the place of u: the
+//! constant drops out of it, and cells that stay in contact have none. What bends the course of all cells alike is |L\[z0, z1, z2\]| Δz² over W, which
+//! is 0 where u runs linearly in L. The stress is
+//!
+//! ```text
+//! max( a Σ p', 0.1 a_n Σ p_n, 0.1 a E_inf |L|/dx )/3
+//! ```
+//!
+//! (Under Hertz's pressure U falls by 0.64 a p from the middle to the ends of the contact.)
+//!
+//! **Tractions on open cells** (adhesion, fluids) are part of the stress. There all cells with a traction count, those apart before first touch
+//! too, each with the size of its tractions as its weight, so that those far away do not dilute the error of the others.
 
-use super::rules::Driver;
+use super::load_cell::LoadCell;
+use super::rules::{Driver, Rules};
 use super::shape::{Shape, moment};
-use super::survey::{Clock, Sums};
+use super::survey::{Clock, Found, Sums};
 use super::{Reference, Relaxation};
 use crate::history::Ends;
 use crate::material::Dual;
@@ -46,16 +62,24 @@ const GROWTH: f64 = 0.2;
 /// The first step after a jump is this share of the mean relaxation time.
 const FIRST: f64 = 0.2;
 
+/// Share of Σ p' a that is the stress of a line whose displacement is known up to a constant: between the whole fall of U over the contact and
+/// its mean.
+const FALL: f64 = 1.0 / 3.0;
+
 /// Sums over the cells at the end of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Survey {
-    /// Of what bends the course of u: the cells in contact at either end, and those apart that would overlap.
+    /// Of what bends the course of u over the stress: in the cells in contact at either end and those apart that would overlap, and in those
+    /// that come into contact, where these count alone.
     bends: f64,
-    /// Of the stress.
+    bends_alone: f64,
+    /// The stress.
     stress: f64,
-    /// Of what bends the course of u in cells in contact at the end, and of their stress.
+    /// Of what bends the course of u in cells in contact at the end, and of their stress; the same of those that count alone.
     pub(super) own: f64,
     pub(super) pressed: f64,
+    pub(super) alone: f64,
+    pub(super) pressed_alone: f64,
     /// The pressure that these cells could carry at most, over that of all: no error is larger.
     pub(super) largest: f64,
     /// Share of the cells in contact at the start that still are at the end.
@@ -69,7 +93,9 @@ pub(super) struct Survey {
 impl Relaxation {
     /// Keeps the state just solved as the third one, for a shorter step from the same start.
     pub(super) fn keep(&mut self, ends: &Ends<'_>) {
-        self.reference = Some(Reference { length: self.rules.length, driver: self.rules.driver });
+        let (approach, driven) = (ends.now.approach, self.driven(ends));
+        let Rules { length, driver, .. } = self.rules;
+        self.reference = Some(Reference { length, driver, approach, driven });
         let compliance = self.rules.compliance;
         if self.third.is_empty() {
             return;
@@ -84,33 +110,103 @@ impl Relaxation {
 
     /// Surveys the cells at the end of the step under way, which has just been solved.
     pub(super) fn survey(&self, ends: &Ends<'_>) -> Survey {
-        let Some(reference) = self.reference.filter(|_| self.rules.length > 0.0) else {
-            return self.survey_from(ends, [1.0, f64::INFINITY]);
-        };
-        let (step, third) = reference.clock(self.rules.length, self.rules.driver);
-        self.survey_from(ends, [step, third])
-    }
-
-    fn survey_from(&self, ends: &Ends<'_>, [step, third]: [f64; 2]) -> Survey {
-        let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
-        // What the solver leaves of u.
-        let [energy, pressure] =
-            sums((&ends.now.pressure[..], &ends.now.unit_displacement[..]), |(p, unit)| [p * unit, p.abs()]);
+        let [energy, pressure, pressure_before] = sums(
+            (&ends.now.pressure[..], &ends.now.unit_displacement[..], &ends.before.pressure[..]),
+            |(p, unit, before)| [p * unit, p.abs(), before.abs()],
+        );
         let compliance = self.rules.compliance;
         let left = if pressure > 0.0 { self.tolerance * compliance * energy / pressure } else { 0.0 };
-        let sums = run(Sums {
+        let found = self.found(ends, left);
+        let Found { touching, touched, .. } = found;
+        let mean = if pressure > 0.0 { touching * energy / pressure } else { 0.0 };
+        let relaxed = self.dual.relaxation.equilibrium * found.displaced;
+        // Where surfaces pull at each other U may be negative.
+        let (now, before) = (if ends.pulls { mean } else { found.now.abs() }, found.before.abs());
+        let least = FLOOR * before.max(relaxed).max(pressure * self.size_of(touching));
+        let [stress, pressed] = match self.is_relative {
+            true => [self.fall([touching, touched], [pressure, pressure_before]); 2],
+            false => [now.max(least), mean.max(least)],
+        };
+        let x = self.rules.length;
+        let noise = match x > 0.0 {
+            true => self.dual.relaxation.viscosity * (self.total_error.solver + left) * touching / x,
+            false => 0.0,
+        };
+        let weight = if ends.pulls && found.weight > 0.0 { touching / found.weight } else { 1.0 };
+        let pressed_alone = self.cell_area * pressure.max(FLOOR * pressure_before);
+        let mut survey = Survey {
+            bends: weight * found.bends,
+            bends_alone: 0.0,
+            stress,
+            own: weight * (found.own_of_old + found.own_of_new),
+            pressed: if touching > 0.0 { pressed } else { 0.0 },
+            alone: 0.0,
+            pressed_alone,
+            largest: if pressure > 0.0 { found.most / pressure } else { 0.0 },
+            staying: if touched > 0.0 { found.stay / touched } else { 1.0 },
+            noise,
+            left,
+        };
+        if self.is_line {
+            (survey.bends, survey.own) = (weight * found.bends_of_old, weight * found.own_of_old);
+            (survey.bends_alone, survey.alone) = (LATE * found.own_of_new, found.own_of_new);
+        }
+        if self.is_relative {
+            // Over the stress: |L[z0, z1, z2]| Δz² over W.
+            let bends = self.bends_of_all(ends) * touching * FALL;
+            (survey.bends, survey.own) = (survey.bends + bends, survey.own + bends);
+        }
+        survey
+    }
+
+    /// L at the end of the step under way.
+    fn driven(&self, ends: &Ends<'_>) -> f64 {
+        let LoadCell { start, .. } = &self.cell;
+        self.rules.reach(ends.loads[1], start.driver, &start.states)
+    }
+
+    /// |L\[z0, z1, z2\]| Δz²: what bends the course of u in all cells alike.
+    fn bends_of_all(&self, ends: &Ends<'_>) -> f64 {
+        let Some((reference, [step, third])) = self.third_on_clock() else { return 0.0 };
+        let (start, end) = (self.cell.start.driver, self.driven(ends));
+        let (before, now) = (reference.driven - start, end - start);
+        let second = ((before / third - now / step) / (third - step)).abs();
+        let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
+        let is_rounding = second <= ROUNDING * start.abs().max(end.abs()) * spread;
+        if is_rounding { 0.0 } else { second * step * step }
+    }
+
+    /// The third state, where there is one, and the end of the step and it on one clock.
+    fn third_on_clock(&self) -> Option<(Reference, [f64; 2])> {
+        let reference = self.reference.filter(|_| self.rules.length > 0.0)?;
+        let (step, third) = reference.clock(self.rules.length, self.rules.driver);
+        Some((reference, [step, third]))
+    }
+
+    fn found(&self, ends: &Ends<'_>, left: f64) -> Found {
+        let known = self.third_on_clock();
+        let [step, third] = known.map_or([1.0, f64::INFINITY], |(_, clock)| clock);
+        let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
+        let [w_before, w] = ends.approaches();
+        let w_third = known.map_or(w_before, |(reference, _)| reference.approach);
+        let run = run(Sums {
             u: &self.displacement,
             third: &self.third,
             rigid_before: ends.rigid_before,
+            traction: &ends.before.pressure,
+            traction_now: &ends.now.pressure,
             p: ends.pressures[0],
-            unit: &ends.before.unit_displacement,
             p_now: ends.pressures[1],
+            unit: &ends.before.unit_displacement,
             unit_now: &ends.now.unit_displacement,
             gap: ends.gap,
             rigid: ends.rigid,
             hardness: ends.hardness,
-            compliance,
-            approaches: ends.approaches(),
+            compliance: self.rules.compliance,
+            approaches: [w_before, w],
+            shifts: if self.is_relative { [w_third - w_before, w - w_before] } else { [0.0; 2] },
+            is_weighted: ends.pulls,
+            is_line: self.is_line,
             clock: Clock {
                 step,
                 third,
@@ -120,34 +216,36 @@ impl Relaxation {
                 lasts: self.rules.length > 0.0,
             },
         });
-        let [bends, now, before, displaced, own, touching, most, touched, stay] = sums;
-        let staying = if touched > 0.0 { stay / touched } else { 1.0 };
-        // U under pressures all over a contact of this size. (On a periodic domain an even pressure has none.)
-        let contact = match self.is_line {
-            true => touching * self.cell_area,
-            false => (touching * self.cell_area).sqrt(),
-        };
-        let relaxed = self.dual.relaxation.equilibrium * displaced;
-        // Where surfaces pull at each other U may be negative.
-        let (now, before) = (now.abs(), before.abs());
-        let least = FLOOR * before.max(relaxed).max(pressure * contact);
-        let mean = if pressure > 0.0 { touching * energy / pressure } else { 0.0 };
-        let pressed = if touching > 0.0 { mean.max(least) } else { 0.0 };
-        let largest = if pressure > 0.0 { most / pressure } else { 0.0 };
-        let x = self.rules.length;
-        let noise = match x > 0.0 {
-            true => self.dual.relaxation.viscosity * (self.total_error.solver + left) * touching / x,
-            false => 0.0,
-        };
-        Survey { bends, stress: now.max(least), own, pressed, largest, staying, noise, left }
+        Found::from(run)
+    }
+
+    /// The size of a contact of so many cells \[m\]. Pressures all over it have U about as large as their sum times it (on a periodic domain an
+    /// even pressure has none).
+    fn size_of(&self, cells: f64) -> f64 {
+        match self.is_line {
+            true => cells * self.cell_area,
+            false => (cells * self.cell_area).sqrt(),
+        }
+    }
+
+    /// The stress as the fall of U over the contact, of this many cells with these pressures in all, at the end and at the start of the step.
+    fn fall(&self, cells: [f64; 2], [now, before]: [f64; 2]) -> f64 {
+        let [size, size_before] = cells.map(|cells| self.size_of(cells));
+        let relaxed = self.dual.relaxation.equilibrium * self.cell.start.driver.abs() / self.cell_area;
+        FALL * (now * size).max(FLOOR * size_before * before).max(FLOOR * relaxed * size.max(size_before))
     }
 
     /// The estimated error of the step that was surveyed, without those of the steps before; 0 where nothing is remembered.
     pub(super) fn estimate(&self, survey: &Survey) -> f64 {
         let is_known = self.reference.is_some() && self.rules.length > 0.0 && survey.stress > 0.0;
-        let bends = 2.0 * self.defect() * survey.bends;
+        let defect = 2.0 * self.defect();
+        let bends = defect * survey.bends;
         // Shorter steps have less of the one, but more of the other.
-        if is_known && bends > survey.noise { bends / survey.stress } else { 0.0 }
+        if !(is_known && bends + defect * survey.bends_alone > survey.noise) {
+            return 0.0;
+        }
+        let alone = if survey.bends_alone > 0.0 { survey.bends_alone / survey.pressed_alone } else { 0.0 };
+        bends / survey.stress + defect * alone
     }
 
     /// The error of the stress that the solver leaves, relative.

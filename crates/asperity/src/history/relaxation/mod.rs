@@ -76,6 +76,10 @@ pub(crate) struct Relaxation {
     tolerance: f64,
     cell_area: f64,
     is_line: bool,
+    /// Whether displacements are known up to a constant only: then the approach is taken off them.
+    is_relative: bool,
+    /// The approach at the start of the step under way \[m\], and L.
+    started_at: [f64; 2],
     /// Of the step that was solved last, and the error of all steps.
     survey: Survey,
     total_error: TotalError,
@@ -95,6 +99,9 @@ pub(crate) enum UnderWay {
 pub(crate) struct Reference {
     pub(crate) length: f64,
     pub(crate) driver: Driver,
+    /// Its approach \[m\], and L.
+    pub(crate) approach: f64,
+    pub(crate) driven: f64,
 }
 
 impl Relaxation {
@@ -124,8 +131,10 @@ impl Relaxation {
             tolerance: simulation.solver.tolerance,
             cell_area: simulation.grid.cell_area(),
             is_line: simulation.grid.is_line(),
+            is_relative: simulation.is_up_to_a_constant(),
+            started_at: [0.0; 2],
             survey: Survey::default(),
-            total_error: TotalError { left: vec![0.0; count], value: 0.0, adaptive: None, solver: 0.0 },
+            total_error: TotalError::new(count),
             pair,
             dual,
         })
@@ -219,7 +228,8 @@ saved! {
         "gone": gone;
         "elapsed": elapsed;
         "rules": rules;
-        "error_left": total_error.left;
+        "error_left": total_error.left, total_error.left_alone;
+        "started_at": started_at;
         "solver_left": total_error.solver;
     }
 }
@@ -241,7 +251,9 @@ impl History for Relaxation {
         self.cell.begin();
         self.since_kink = if step.is_smooth { self.since_kink + self.rules.length } else { 0.0 };
         let ends = self.under_way == UnderWay::Contact && !self.is_elastic();
-        let before = Reference { length: -self.rules.length, driver: self.rules.driver };
+        let start = [last.approach, self.cell.start.driver];
+        let [approach, driven] = std::mem::replace(&mut self.started_at, start);
+        let before = Reference { length: -self.rules.length, driver: self.rules.driver, approach, driven };
         self.reference = (ends && step.is_smooth).then_some(before);
         if self.under_way == UnderWay::Apart {
             self.gone.iter_mut().zip(&self.elapsed).for_each(|(gone, x)| *gone += x);

@@ -113,10 +113,15 @@ impl Rules {
         Ending { compliance: self.compliance, recalled: self.recalled(), updates: &self.updates }
     }
 
+    /// u_(n+1) of a cell under `unit` = U_(n+1).
+    pub(crate) fn reach(&self, unit: f64, u: f64, q: &[f64]) -> f64 {
+        let sum: f64 = self.recalled.iter().zip(q).map(|(weight, q)| weight * q).sum();
+        self.compliance * unit + sum + self.own * u
+    }
+
     /// u_(n+1) of a cell under `unit` = U_(n+1), and its states after the step.
     pub(crate) fn end(&self, unit: f64, u: f64, q: &mut [f64]) -> f64 {
-        let sum: f64 = self.recalled.iter().zip(&*q).map(|(weight, q)| weight * q).sum();
-        let fresh = self.compliance * unit + sum + self.own * u;
+        let fresh = self.reach(unit, u, q);
         for (q, update) in q.iter_mut().zip(&self.updates) {
             *q = update.keep * *q + update.old * u + update.new * fresh;
         }

@@ -8,7 +8,7 @@
 //! error = Σ |ε| / max( Σ p', 0.1 Σ p_n, 0.1 Σ |E_inf u'| )
 //! ```
 //!
-//! with the sums over the cells in contact at either end, b and its growth with the time since the smooth piece began as there.
+//! with the sums of the sizes over the cells with a traction at either end, b and its growth with the time since the smooth piece began as there.
 
 use rustfft::num_complex::Complex64;
 
@@ -21,7 +21,8 @@ use crate::history::relaxation::{FLOOR, LATE, Reference, UnderWay, remembered_de
 impl Spectral {
     /// Keeps the state just solved as the third one, for another step from the same start.
     pub(super) fn keep(&mut self, pressure: &[f64]) {
-        self.reference = Some(Reference { length: self.length, driver: self.driver });
+        self.reference =
+            Some(Reference { length: self.length, driver: self.driver, approach: 0.0, driven: 0.0 });
         self.third = self.fresh(pressure).1;
     }
 
@@ -65,8 +66,8 @@ impl Spectral {
         }
         let weight = if square > 0.0 { weighted / square } else { 0.0 };
         let curved = field_of(&mut self.torus, rigid.len(), |n| curved[n]);
-        let touched = (0..rigid.len()).filter(|k| before_p[*k] > 0.0 || now_p[*k] > 0.0);
-        let [now, before] = [now_p, before_p].map(|p| p.iter().sum::<f64>());
+        let touched = (0..rigid.len()).filter(|k| before_p[*k] != 0.0 || now_p[*k] != 0.0);
+        let [now, before] = [now_p, before_p].map(|p| p.iter().map(|p| p.abs()).sum::<f64>());
         // E_inf u' counts where the pressure has fallen far below it.
         let relaxed: f64 = match now < before {
             true => {
@@ -85,13 +86,13 @@ impl Spectral {
         let rounding = weight * self.noise * ends.now.approach.abs() * spread * step * step;
         let mut error = 0.0;
         for (k, (p, p_now)) in before_p.iter().zip(now_p).enumerate() {
-            let presses = *p > 0.0 || *p_now > 0.0;
+            let presses = *p != 0.0 || *p_now != 0.0;
             if !(presses || rigid[k] < ends.now.approach) {
                 continue;
             }
             let own = if curved[k].abs() > rounding { curved[k].abs() } else { 0.0 };
             let late = match &change {
-                Some(change) if presses && *p <= 0.0 => weight * LATE * (advance - change[k].abs()),
+                Some(change) if presses && *p == 0.0 => weight * LATE * (advance - change[k].abs()),
                 _ => 0.0,
             };
             error += own.max(late);

@@ -162,7 +162,7 @@ impl History for Spectral {
     fn open(&mut self, step: &Interval, last: &ContactState, rigid: &[f64], gap: &mut [f64]) -> Result<Law> {
         let ends = self.under_way == UnderWay::Contact;
         self.since_kink = if step.is_smooth { self.since_kink + self.length } else { 0.0 };
-        let before = Reference { length: -self.length, driver: self.driver };
+        let before = Reference { length: -self.length, driver: self.driver, approach: 0.0, driven: 0.0 };
         self.reference = (ends && step.is_smooth).then_some(before);
         if ends {
             self.third.clone_from(&self.displacement);

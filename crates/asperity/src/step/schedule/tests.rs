@@ -245,3 +245,15 @@ fn events_are_met_from_where_the_last_jump_has_led() {
     }
     assert!(met > 50 && missed > 20, "{met} {missed}");
 }
+
+#[test]
+fn a_sine_of_load_has_as_many_adaptive_steps_as_the_tolerance_asks_for() {
+    let sine = |mean: f64| History::Sine { mean, amplitude: 1.0, frequency: 0.5 };
+    let steps =
+        |history: &History, control: Control, tolerance: f64| 2.0 / longest(history, control, tolerance);
+    // (2 pi/n)²/8 of the amplitude over the largest load.
+    assert!((steps(&sine(1.0), Control::Load, 1e-4) - TAU * (0.5_f64 / 8e-4).sqrt()).abs() < 1e-9);
+    assert!((steps(&sine(1.0), Control::Load, 1e-2) - STEPS_PER_PERIOD).abs() < 1e-9);
+    assert!((steps(&sine(1.0), Control::Approach, 1e-4) - STEPS_PER_PERIOD).abs() < 1e-9);
+    assert_eq!(longest(&History::Step { value: 1.0 }, Control::Load, 1e-4), f64::INFINITY);
+}

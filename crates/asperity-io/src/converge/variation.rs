@@ -110,7 +110,7 @@ pub(super) fn has_singular_pressure(case: &Case) -> bool {
     let is_limited = case.conditions.hardness.is_finite() || case.conditions.hardness_map.is_some();
     let is_singular = |surface: &Surface| match surface {
         Surface::Part(Part::Shape { shape, .. }) => shape.has_singular_pressure(),
-        Surface::Part(_) | Surface::File(_) => false,
+        Surface::Part(_) | Surface::File(_) | Surface::Given(..) => false,
     };
     !is_limited && case.surfaces.iter().any(is_singular)
 }

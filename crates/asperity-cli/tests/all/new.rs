@@ -81,7 +81,7 @@ fn a_case_with_own_files_passes_the_check_and_says_what_is_missing() {
     }
 }
 
-/// A measured map is continued by its reflections; one that repeats is taken as it is.
+/// A measured map is continued by its reflections, or windowed for friction; one that repeats is taken as it is.
 #[test]
 fn a_map_that_does_not_repeat_is_mirrored() {
     let folder = files();
@@ -115,10 +115,17 @@ fn a_map_that_does_not_repeat_is_mirrored() {
             "{whole}"
         );
         let part = text("part.npz");
-        assert!(part.contains("border = \"mirror\"") && !part.contains("window = "), "{part}");
+        // Friction keeps its lay, and its cells.
+        let mirrored = purpose != "friction";
+        assert_eq!(
+            (part.contains("border = \"mirror\""), part.contains("window = ")),
+            (mirrored, !mirrored),
+            "{part}"
+        );
         let checked = asperity(folder.path(), &["check", "own.toml", "--json"]);
         let object: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
-        assert_eq!(object["cells"], serde_json::json!([36, 24]));
+        let cells = if mirrored { [36, 24] } else { [18, 12] };
+        assert_eq!(object["cells"], serde_json::json!(cells));
         assert!(!object["findings"].to_string().contains("gap-not-periodic"), "{object}");
     }
 }

@@ -20,8 +20,8 @@ use ndarray::{Array2, s};
 use super::sliding::{Case, zener};
 
 /// Cells of the whole surface and of the part along a side.
-const WHOLE: usize = 96;
-const PART: usize = 72;
+const WHOLE: usize = 128;
+const PART: usize = 96;
 
 /// A periodic surface of rms slope 1 on the unit square.
 fn whole(seed: u64) -> Surface {
@@ -29,9 +29,9 @@ fn whole(seed: u64) -> Surface {
     let spectrum = SelfAffine {
         hurst: 0.8,
         roughness: Roughness::RmsGradient(1.0),
-        longest: 0.5,
+        longest: 0.25,
         shortest: 6.0 / WHOLE as f64,
-        roll_off: 0.5,
+        roll_off: 0.25,
         seed,
     };
     Surface::new(grid, spectrum.heights(&grid).unwrap()).unwrap()
@@ -42,7 +42,7 @@ const PLANE: Operation = Operation::Level(Level::Plane);
 
 /// The part of a surface that was measured, after these steps.
 fn prepared(whole: &Surface, steps: &[Operation]) -> Surface {
-    let crop = Operation::Crop { from: [15, 9], cells: [PART; 2] };
+    let crop = Operation::Crop { from: [20, 11], cells: [PART; 2] };
     process::apply(&crop.apply(whole).unwrap(), steps).unwrap()
 }
 
@@ -86,23 +86,28 @@ fn share(contact: &Array2<u8>) -> f64 {
     contact.iter().filter(|c| **c > 0).count() as f64 / contact.len() as f64
 }
 
-/// A mirrored part conducts about as the whole surface does, and a windowed one is dammed.
+/// A mirrored part conducts about as the whole surface does, and a windowed one is dammed, the more the nearer the seal is to closing. The
+/// conductance of one such part is off by a factor of 2 to 3; the mean of twelve (six seeds, x and y) by about 1.3 far from sealing, and by
+/// 2 where some of the parts are tight.
 #[test]
 fn a_mirrored_part_leaks_as_the_whole_surface_and_a_windowed_one_does_not() {
-    let mean = |surface: &dyn Fn(u64) -> Surface, pressure: f64| {
+    let mean = |steps: Option<&[Operation]>, pressure: f64| {
         let of = |seed| {
-            let surface = surface(seed);
+            let surface = steps.map_or_else(|| whole(seed), |steps| prepared(&whole(seed), steps));
             let state = pressed(&surface, pressure, 1e-7);
             let [x, y] = [Direction::X, Direction::Y].map(|along| conductance(&surface, &state, along));
             0.5 * (x + y)
         };
-        (0..4).map(of).sum::<f64>() / 4.0
+        (0..6).map(of).sum::<f64>() / 6.0
     };
-    let pressure = 0.15;
-    let truth = mean(&whole, pressure);
-    let mirrored = mean(&|seed| prepared(&whole(seed), &[PLANE, Operation::Mirror]), pressure);
-    let windowed = mean(&|seed| prepared(&whole(seed), &[PLANE, TUKEY]), pressure);
-    println!("{truth:e} {mirrored:e} {windowed:e}");
+    let over_truth = |steps: &[Operation], pressure: f64| mean(Some(steps), pressure) / mean(None, pressure);
+    let (mirror, window) = ([PLANE, Operation::Mirror], [PLANE, TUKEY]);
+    let [open, nearly_tight] = [0.10, 0.18];
+    let mirrored = [over_truth(&mirror, open), over_truth(&mirror, nearly_tight)];
+    let windowed = [over_truth(&window, open), over_truth(&window, nearly_tight)];
+    assert!((1.0 / 1.5..1.5).contains(&mirrored[0]), "{mirrored:?}");
+    assert!((1.0 / 3.0..3.0).contains(&mirrored[1]), "{mirrored:?}");
+    assert!(windowed[0] < 0.75 && windowed[1] < 0.3, "{windowed:?}");
 }
 
 /// A groove across a flat patch stays open when the patch is mirrored, and is closed by a window. Its gap is that of the
@@ -110,9 +115,9 @@ fn a_mirrored_part_leaks_as_the_whole_surface_and_a_windowed_one_does_not() {
 /// h(y) = d - 2 p W/(pi E*) arcosh(cos(pi y/W)/cos(pi a/W)).
 #[test]
 fn a_groove_across_a_flat_patch_stays_open_when_it_is_mirrored() {
-    let (cells, half, depth, pressure) = (128, 16, 0.1, 0.2);
-    let grid = Grid::new([4, cells], [4.0 / cells as f64, 1.0]).unwrap();
-    let inside = |j: usize| j.abs_diff(cells / 2) < half || j == cells / 2 - half;
+    let (cells, half, depth, pressure) = (256, 32, 0.1, 0.2);
+    let grid = Grid::new([64, cells], [64.0 / cells as f64, 1.0]).unwrap();
+    let inside = |j: usize| (cells / 2 - half..cells / 2 + half).contains(&j);
     let heights = Array2::from_shape_fn(grid.shape(), |(_, j)| if inside(j) { -depth } else { 0.0 });
     let groove = Surface::new(grid, heights).unwrap();
     let leak = |step: Operation| {
@@ -124,7 +129,11 @@ fn a_groove_across_a_flat_patch_stays_open_when_it_is_mirrored() {
     let exact: f64 =
         (0..10_000).map(|n| gap((n as f64 + 0.5) / 1e4 * a).powi(3)).sum::<f64>() * 2.0 * a / 1e4;
     let mirrored = leak(Operation::Mirror);
-    println!("{exact:e} {mirrored:e} {:e}", leak(TUKEY));
+    // An error of the order of a cell over the width: 5.6 % with 32 cells across the groove, 2.8 % with 64, 1.4 % with 128.
+    assert!((mirrored / exact - 1.0).abs() < 0.04, "{mirrored:e} is not {exact:e}");
+    // The outermost cells of the window are half a cell away from its zero, so that corners of the groove stay open.
+    let dammed = leak(TUKEY);
+    assert!(dammed < 1e-5 * exact, "{dammed:e}");
 }
 
 /// Steady friction coefficients over pressure at these velocities, along +x.
@@ -192,8 +201,8 @@ fn damaged(surface: &Surface, spikes: bool, seed: u64) -> Surface {
 #[test]
 #[ignore = "minutes: the study of docs/surfaces.md"]
 fn what_each_step_of_the_preparation_does() {
-    const SEEDS: u64 = 6;
-    const PRESSURES: [f64; 3] = [0.05, 0.12, 0.18];
+    const SEEDS: u64 = 8;
+    const PRESSURES: [f64; 3] = [0.10, 0.18, 0.24];
     const VELOCITIES: [f64; 3] = [0.01, 0.1, 1.0];
     let harmonic = Operation::Fill { method: Fill::Harmonic, largest_share: 0.25 };
     let nearest = Operation::Fill { method: Fill::Nearest, largest_share: 0.25 };

@@ -252,7 +252,10 @@ fn of_surface(
     let mut text = head(title, from);
     let border = match purpose {
         Purpose::Indentation => Border::Free,
-        _ => Border::of(&topography)?,
+        _ if repeats_as_stored(&topography)? => Border::Repeats,
+        // It keeps the lay, which slides differently along +x and -x, and friction hardly depends on it.
+        Purpose::Friction => Border::Window,
+        _ => Border::Mirror,
     };
     text += &domain(&topography, border);
     text += &surface_part(args, &topography, &relative(from, folder), border);
@@ -298,17 +301,19 @@ enum Border {
     Repeats,
     /// Periodic, of a surface that does not, which is continued by its reflections.
     Mirror,
+    /// Periodic, of a surface whose heights fall to zero there.
+    Window,
+}
+
+/// Whether a map continues at the opposite border. Spikes would hide how large a jump is.
+fn repeats_as_stored(topography: &Topography) -> Result<bool, Failure> {
+    let map = surface::map("the surface", topography)?;
+    let spikes = Outliers { threshold: SPIKES, ..Outliers::default() };
+    let clean = Operation::RemoveOutliers(spikes).apply(&map).map_err(Failure::about("the surface"))?;
+    Ok(repeats(&clean))
 }
 
 impl Border {
-    /// Of a surface on a periodic domain; spikes hide how large a jump at the border is.
-    fn of(topography: &Topography) -> Result<Border, Failure> {
-        let map = surface::map("the surface", topography)?;
-        let spikes = Outliers { threshold: SPIKES, ..Outliers::default() };
-        let clean = Operation::RemoveOutliers(spikes).apply(&map).map_err(Failure::about("the surface"))?;
-        Ok(if repeats(&clean) { Border::Repeats } else { Border::Mirror })
-    }
-
     /// The keys of the domain, with a remark.
     fn key(self) -> &'static str {
         match self {
@@ -318,6 +323,9 @@ impl Border {
             }
             Border::Mirror => {
                 "boundary = \"periodic\"                 # a part of a larger surface, continued by its reflections\n"
+            }
+            Border::Window => {
+                "boundary = \"periodic\"                 # a part of a larger surface; its border is windowed\n"
             }
         }
     }
@@ -382,9 +390,15 @@ fn surface_part(args: &New, topography: &Topography, path: &str, border: Border)
     if holes > 0 {
         text += &format!("fill = \"harmonic\"                     # {holes} points are undefined\n");
     }
-    if border == Border::Mirror {
-        text += "border = \"mirror\"                     # the surface and its reflections: opposite borders match\n";
-    }
+    text += match border {
+        Border::Mirror => {
+            "border = \"mirror\"                     # the surface and its reflections: opposite borders match\n"
+        }
+        Border::Window => {
+            "window = { shape = \"tukey\", share = 0.1 }   # opposite borders match; not for a leak\n"
+        }
+        Border::Free | Border::Repeats => "",
+    };
     if nx.max(ny) > MOST_CELLS {
         text += "resample = \"band-limited\"             # to the cells of the domain\n";
     }

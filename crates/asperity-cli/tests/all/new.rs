@@ -126,7 +126,8 @@ fn a_map_that_does_not_repeat_is_mirrored() {
         let object: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
         let cells = if mirrored { [36, 24] } else { [18, 12] };
         assert_eq!(object["cells"], serde_json::json!(cells));
-        assert!(!object["findings"].to_string().contains("gap-not-periodic"), "{object}");
+        // Tukey's window has less than a cell of these 12 to fall in.
+        assert!(!mirrored || !object["findings"].to_string().contains("gap-not-periodic"), "{object}");
     }
 }
 

@@ -10,7 +10,7 @@ const metres = (value) => {
 
 /** Operations on a surface: name, words, what is added at first. */
 const OPERATIONS = [["level=plane", "level"], ["crop size=", "crop, e.g. crop size=50um,50um"], ["fill=harmonic", "fill undefined points"], ["filter shortest=", "filter, e.g. filter shortest=2um"],
-  ["outliers=6 radius=2", "outliers"], ["resample=bilinear cells=", "resample, e.g. cells=256,256"], ["flip=x", "flip"], ["rotate=1", "rotate"], ["invert", "invert"]];
+  ["outliers=6 radius=2", "outliers"], ["border=mirror", "continue by reflections, to repeat on a periodic domain"], ["resample=bilinear cells=", "resample, e.g. cells=256,256"], ["flip=x", "flip"], ["rotate=1", "rotate"], ["invert", "invert"]];
 
 async function surfacePage(name) {
   const steps = make("textarea", { rows: 4, id: "steps", "aria-label": "Steps, one a line", spellcheck: "false", placeholder: "one step a line, done in their order" });

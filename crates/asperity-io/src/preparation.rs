@@ -5,7 +5,7 @@
 //! lengths, the middle of the surface, the cells of the domain. [`prepare`] settles that, applies the operations in
 //! order, and writes down each one as it was done.
 
-use asperity::surface::process::{self, Resampling};
+use asperity::surface::process::{self, Border, Resampling};
 use asperity::surface::profile::remove_circle;
 use asperity::surface::{Operation, Surface};
 use asperity::{Error, Result};
@@ -63,6 +63,11 @@ pub struct Prepared {
     pub history: Vec<String>,
 }
 
+/// What the sentences of a history say about the border of the surface.
+pub fn border<S: AsRef<str>>(history: &[S]) -> Border {
+    Border::after(history.iter().map(AsRef::as_ref))
+}
+
 /// Does all steps in order; `domain` are the cells of the domain, if there is one.
 ///
 /// ```
@@ -83,12 +88,13 @@ pub struct Prepared {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] of the first step that fails, with its number.
+/// [`Error::Invalid`] of the first step that fails, with its number, or of [`check_border`].
 pub fn prepare(surface: Surface, steps: &[Step], domain: Option<[usize; 2]>) -> Result<Prepared> {
+    check_border(steps)?;
     let mut prepared = Prepared { surface, history: Vec::with_capacity(steps.len()) };
     for (n, step) in steps.iter().enumerate() {
         let done = step.settle(&prepared.surface, domain).and_then(|operation| {
-            check_memory_of(&operation)?;
+            check_memory_of(&operation, &prepared.surface)?;
             let surface = operation.apply(&prepared.surface)?;
             let sentence = sentence(&operation, &prepared.surface, &surface);
             Ok((surface, sentence))
@@ -100,16 +106,37 @@ pub fn prepare(surface: Surface, steps: &[Step], domain: Option<[usize; 2]>) -> 
     Ok(prepared)
 }
 
-/// Bytes per point of a resampled surface: itself, its transpose, and what comes after it (statistics, the file).
+/// Refuses steps that window a surface and continue it by its reflections: the reflections of a flat border are a dam in the middle of
+/// the domain.
+///
+/// # Errors
+/// [`Error::Invalid`] where both are among the steps.
+pub fn check_border(steps: &[Step]) -> Result<()> {
+    let any =
+        |of: fn(&Operation) -> bool| steps.iter().any(|step| matches!(step, Step::Operation(one) if of(one)));
+    if any(|step| matches!(step, Operation::Window(_))) && any(|step| matches!(step, Operation::Mirror)) {
+        return Err(Error::invalid(
+            "preparation of the border",
+            "a window and a mirror",
+            "one of the two: what is continued by its reflections matches at its border as it is",
+        ));
+    }
+    Ok(())
+}
+
+/// Bytes per point of a larger surface: itself, its transpose, and what comes after it (statistics, the file).
 const BYTES_PER_POINT: u64 = 32;
 
 /// Refuses an operation whose result does not fit into the memory.
-fn check_memory_of(operation: &Operation) -> Result<()> {
-    let Operation::Resample { cells: [nx, ny], .. } = operation else { return Ok(()) };
-    let bytes = (*nx as u64).saturating_mul(*ny as u64).saturating_mul(BYTES_PER_POINT);
-    resources::check_memory("so many points", bytes).map_err(|reason| {
-        Error::invalid("number of cells to resample to", format!("{nx} x {ny}"), format!("less: {reason}"))
-    })
+fn check_memory_of(operation: &Operation, surface: &Surface) -> Result<()> {
+    let (what, [nx, ny]) = match operation {
+        Operation::Resample { cells, .. } => ("number of cells to resample to", *cells),
+        Operation::Mirror => ("number of cells with the reflections", surface.grid().cells().map(|n| 2 * n)),
+        _ => return Ok(()),
+    };
+    let bytes = (nx as u64).saturating_mul(ny as u64).saturating_mul(BYTES_PER_POINT);
+    resources::check_memory("so many points", bytes)
+        .map_err(|reason| Error::invalid(what, format!("{nx} x {ny}"), format!("less: {reason}")))
 }
 
 /// The operation and, where it changes them, the numbers of undefined points, with the heights of those that are removed.

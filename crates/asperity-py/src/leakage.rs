@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use asperity::finding::{LeakDiagnostics, LeakState};
 use asperity::{Boundary, Error, Grid};
 use asperity_io::case::{LeakageKeys, leak as checked};
-use asperity_io::leakage::Leak;
+use asperity_io::leakage::{Leak, through_windows};
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -60,14 +60,17 @@ pub fn leakage<'py>(
 /// of the gap, pressure drop, mean pressure.
 type State = (Option<usize>, Option<f64>, Option<usize>, f64, Option<f64>, f64);
 
-/// Which leaks the numbers carry, and what was found against the others (a JSON list).
+/// Which leaks the numbers carry, and what was found against the others (a JSON list). `preparation` is what was done to the surfaces, as
+/// JSON of the setup of a result.
 #[pyfunction]
-pub fn judge_leaks(states: Vec<State>) -> (Vec<bool>, String) {
+pub fn judge_leaks(states: Vec<State>, preparation: &str) -> (Vec<bool>, String) {
     let mut diagnostics = LeakDiagnostics::default();
     let resolved = states.into_iter().map(|(row, gap, width, gap_error, pressure_drop, mean_pressure)| {
         let constriction = gap.map(|gap| (gap, width));
         diagnostics.see(&LeakState { row, constriction, gap_error, closed: 0, pressure_drop, mean_pressure })
     });
-    let resolved = resolved.collect();
-    (resolved, asperity_io::finding::list(&diagnostics.findings()).to_string())
+    let windows = serde_json::from_str(preparation).ok().and_then(|setup| through_windows(&setup));
+    let resolved = resolved.map(|sound| sound && windows.is_none()).collect();
+    let findings: Vec<_> = diagnostics.findings().into_iter().chain(windows).collect();
+    (resolved, asperity_io::finding::list(&findings).to_string())
 }

@@ -56,7 +56,12 @@ impl March {
             let setup = serde_json::Value::Object(session::setup(&case, &simulation)).to_string();
             let steady = case.steady_of(&parts, &simulation)?;
             // An array does not tell what it is made of.
-            let known = Known { parts: &[], bodies: &case.bodies, thickness: case.thickness };
+            let known = Known {
+                parts: &[],
+                bodies: &case.bodies,
+                thickness: case.thickness,
+                mirrored: case.is_mirrored(),
+            };
             let diagnostics = Diagnostics::new(&simulation, known);
             let found = case.findings;
             drop(parts);

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import asperity as asp
 import numpy as np
 import pytest
@@ -132,3 +134,24 @@ def test_a_study_over_pressure_holds_the_leaks(tmp_path) -> None:
     data = asp.study(CASE, over={"load.history.value": ["1.2 kPa", "1.8 kPa"]}, workers=1, progress=False)
     rates = data.leak_rate.isel(leak_step=-1)
     assert rates.shape == (2,) and float(rates[1]) < float(rates[0])
+
+
+def test_a_leak_through_a_windowed_surface_is_told(tmp_path):
+    # A groove 0.1 mm wide and 8 um deep across a flat patch of 0.2 mm.
+    groove = asp.Surface(np.tile(np.where(abs(np.arange(16) - 7.5) < 4, -8e-6, 0.0), (16, 1)), size=(2e-4, 2e-4))
+    rubber = asp.Elastic(young=4.8e6, poisson=0.5)
+
+    def told(surface):
+        result = asp.solve(surface, rubber, pressure=1e5, times=[1.0], boundary="periodic", fields=["pressure", "gap"], progress=False)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            leak = result.leakage(pressure_drop=1e3, viscosity=1e-3)
+        return leak, [str(one.message) for one in caught if "window-in-leak" in str(one.message)]
+
+    dammed, words = told(groove.window())
+    assert not dammed.percolates.values[-1] and not dammed.leak_resolved.values[-1] and len(words) == 1
+    # Also with something added to it, and where the surface went through a file.
+    groove.window().write(tmp_path / "groove.npz")
+    assert len(told(asp.Surface.read(tmp_path / "groove.npz") + groove)[1]) == 1
+    open_, words = told(groove.mirrored())
+    assert open_.percolates.values[-1] and open_.leak_resolved.values[-1] and words == []

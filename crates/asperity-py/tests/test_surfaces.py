@@ -44,6 +44,22 @@ def test_steps_do_what_numpy_says(rough):
     assert rough.window() == rough.window("tukey", share=0.1)
 
 
+def test_a_mirrored_surface_repeats_and_keeps_its_heights(rough):
+    z, whole = rough.heights, rough.crop(cells=(20, 12)).mirrored()
+    part = z[22:42, 18:30]
+    assert whole.cells == (40, 24) and whole.size == pytest.approx((40 * rough.size[0] / 64, 24 * rough.size[1] / 48))
+    assert np.array_equal(whole.heights, np.block([[part, part[:, ::-1]], [part[::-1], part[::-1, ::-1]]]))
+    assert whole == rough.process("crop cells=20,12", "border=mirror") and "mirror" in whole.history[-1]
+    # A surface that was measured does not repeat; with its reflections it does.
+    measured = asp.Surface(part, size=(1e-3, 1e-3), metadata={"format": "x3p"})
+    assert measured.mirrored().statistics() == measured.mirrored().statistics(periodic=True)
+    assert measured.statistics() == measured.statistics(periodic=False)
+    profile = asp.Surface(np.arange(5.0), size=(1e-3,)).mirrored()
+    assert profile.heights.tolist() == [0, 1, 2, 3, 4, 4, 3, 2, 1, 0] and profile.size == (2e-3,)
+    with pytest.raises(asp.CaseError, match="one of the two"):
+        rough.process("window=tukey", "border=mirror")
+
+
 def test_the_spectrum_of_a_surface_that_does_not_repeat_keeps_its_power(rough):
     # A part of a periodic surface. Its spectrum C(q) is that of the whole, on average over waves; about 300 waves between 2e4 and 1e5 per
     # metre, each with a scatter of 100 %, give the sum to 6 %, Hann's window correlates neighbours, so that 9 numbers count as about 2:

@@ -133,7 +133,7 @@ pub struct SurfaceProcess {
     pub file: SurfaceFile,
     /// A processing step, done in the order given, as in `process` of a case file: --op level=plane --op fill=harmonic --op 'crop
     /// size=50um,50um' --op 'filter shortest=2um' --op 'resample=bilinear cells=512,512' --op flip=x --op rotate=1
-    /// --op invert --op window=tukey --op 'outliers=6 radius=2'
+    /// --op invert --op border=mirror --op window=tukey --op 'outliers=6 radius=2'
     #[arg(long, value_name = "STEP", required = true)]
     pub op: Vec<String>,
     #[command(flatten)]

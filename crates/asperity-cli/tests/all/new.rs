@@ -81,6 +81,56 @@ fn a_case_with_own_files_passes_the_check_and_says_what_is_missing() {
     }
 }
 
+/// A measured map is continued by its reflections, or windowed for friction; one that repeats is taken as it is.
+#[test]
+fn a_map_that_does_not_repeat_is_mirrored() {
+    let folder = files();
+    let made = asperity(
+        folder.path(),
+        &["surface", "process", "face.npz", "--op", "crop cells=18,12", "-o", "part.npz"],
+    );
+    assert!(made.status.success(), "{}", told(&made));
+    for purpose in ["seal", "friction", "contact", "adhesion"] {
+        let text = |from: &str| {
+            let words = [
+                "new",
+                "--from",
+                from,
+                "--material",
+                "relaxation.csv",
+                "--for",
+                purpose,
+                "own.toml",
+                "--force",
+            ];
+            let made = asperity(folder.path(), &words);
+            assert!(made.status.success(), "{purpose}: {}", told(&made));
+            std::fs::read_to_string(folder.path().join("own.toml")).unwrap()
+        };
+        let whole = text("face.npz");
+        assert!(
+            !whole.contains("border = ")
+                && !whole.contains("window = ")
+                && whole.contains("level = \"none\""),
+            "{whole}"
+        );
+        let part = text("part.npz");
+        // Friction keeps its lay, and its cells.
+        let mirrored = purpose != "friction";
+        assert_eq!(
+            (part.contains("border = \"mirror\""), part.contains("window = ")),
+            (mirrored, !mirrored),
+            "{part}"
+        );
+        let checked = asperity(folder.path(), &["check", "own.toml", "--json"]);
+        let object: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
+        let cells = if mirrored { [36, 24] } else { [18, 12] };
+        assert_eq!(object["cells"], serde_json::json!(cells));
+        // Tukey's window has less than a cell of these 12 to fall in.
+        assert!(!mirrored || !object["findings"].to_string().contains("gap-not-periodic"), "{object}");
+    }
+}
+
 fn example(name: &str) -> String {
     format!("{}/../../examples/data/{name}", env!("CARGO_MANIFEST_DIR"))
 }

@@ -104,9 +104,7 @@ pub(super) fn of(reader: &Reader, rows: &[Row]) -> Result<Vec<Answer>> {
         Answer::new("largest_tangential_force", forces[pulled], grid.units("N"))
             .of_rows(pull_open)
             .at(&rows[pulled]),
-        Answer::new("largest_tangential_displacement", ways[moved], "m")
-            .of_rows(way_open)
-            .at(&rows[moved]),
+        Answer::new("largest_tangential_displacement", ways[moved], "m").of_rows(way_open).at(&rows[moved]),
         Answer::new("slip_share", share, "1").with_note("of the contact, under the largest tangential force"),
         Answer::new(Quantity::SlipWork.name(), work[rows.len() - 1], grid.units("J")).with_note(
             if reader.header().wears() { "since t = 0, of the computed cycles" } else { "since t = 0" },

@@ -249,7 +249,7 @@ impl Document {
         };
         let pair = pair?;
         let usual = pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 };
-        let case = Case {
+        let mut case = Case {
             title: self.title.clone(),
             name: String::new(),
             source: source.to_owned(),
@@ -270,6 +270,14 @@ impl Document {
             usual_rows: swept.unwrap_or(usual),
             rows: swept.or(pair.plan.exact.then_some(pair.plan.instants.len())),
         };
+        if case.leakage.is_some() {
+            case.read_surfaces();
+            let windowed = case.windowed();
+            case.findings.extend(finding::window_in_leak(&windowed));
+            if let Some(seal) = &mut case.seal {
+                seal.windowed = windowed;
+            }
+        }
         let or = match case.conditions.scheme {
             Scheme::Direct => {
                 " or steps, or scheme = \"linear\": the direct scheme keeps all pressure fields"
@@ -421,7 +429,10 @@ impl Document {
         let line = grid.as_ref().map(Grid::is_line).or(self.domain.is_line()).unwrap_or(false);
         let part = |(n, (surface, file)): (usize, (&super::surface::Surface, &Option<_>))| match file {
             Some(file) => Option::clone(file).map(Surface::File),
-            None => surface.part(&place(n), grid.as_ref(), line).map(Surface::Part),
+            None => surface.part(&place(n), grid.as_ref(), line).map(|part| match surface.history() {
+                [] => Surface::Part(part),
+                history => Surface::Given(part, history.to_vec()),
+            }),
         };
         let parts: Vec<_> = self.surface.iter().zip(&measured).enumerate().map(part).collect();
         let parts = parts.into_iter().collect();

@@ -8,7 +8,7 @@ use asperity::sliding::Steady;
 use asperity::tangential::{Coupling, TangentialControl};
 use asperity::{Axis, Course, History, Simulation};
 use ndarray::Array2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::plan::Surface;
 use super::{Case, Rows};
@@ -191,7 +191,7 @@ pub struct WaveReport {
 }
 
 /// What was done to a measured surface.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Preparation {
     /// The file.
     pub surface: String,
@@ -255,7 +255,7 @@ impl Case {
             size: grid.extents().to_vec(),
             spacing: grid.cell_sides().collect(),
             boundary: choice::word(boundary),
-            surfaces: self.surfaces.iter().map(name).collect(),
+            surfaces: self.surfaces.iter().map(Surface::name).collect(),
             preparation: self.surfaces.iter().filter_map(preparation).collect(),
             bodies: self.bodies.iter().map(|body| body.name.clone()).collect(),
             poisson: self.bodies.iter().map(Body::poisson).collect(),
@@ -379,13 +379,5 @@ fn words_of(stack: &Stack) -> String {
 }
 
 fn preparation(surface: &Surface) -> Option<Preparation> {
-    let Surface::File(file) = surface else { return None };
-    Some(Preparation { surface: file.path.display().to_string(), steps: file.history()? })
-}
-
-fn name(surface: &Surface) -> String {
-    match surface {
-        Surface::File(file) => file.path.display().to_string(),
-        Surface::Part(part) => part.name().to_owned(),
-    }
+    Some(Preparation { surface: surface.name(), steps: surface.history()? })
 }

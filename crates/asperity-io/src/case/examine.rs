@@ -96,7 +96,12 @@ impl Case {
         let steady = self.steady_of(&parts, &simulation)?;
         let diagnostics = Diagnostics::new(
             &simulation,
-            Known { parts: &parts, bodies: &self.bodies, thickness: self.thickness },
+            Known {
+                parts: &parts,
+                bodies: &self.bodies,
+                thickness: self.thickness,
+                mirrored: self.is_mirrored(),
+            },
         );
         let expected = match &steady {
             None => Expected::of(&simulation, &parts),

@@ -17,7 +17,7 @@ use crate::preparation::Step;
 use crate::stress::{StressBody, StressPlan};
 
 /// The key that a step takes without its name: `level=plane` is `level form=plane`.
-const FIRST_KEYS: [(&str, &str); 8] = [
+const FIRST_KEYS: [(&str, &str); 9] = [
     ("level", "form"),
     ("fill", "method"),
     ("crop", "cells"),
@@ -25,6 +25,7 @@ const FIRST_KEYS: [(&str, &str); 8] = [
     ("flip", "axis"),
     ("rotate", "quarter_turns"),
     ("window", "shape"),
+    ("border", "method"),
     ("outliers", "threshold"),
 ];
 
@@ -245,6 +246,7 @@ mod tests {
         assert_eq!(operation("rotate=-1"), Operation::Rotate { quarter_turns: -1 });
         assert_eq!(operation("invert"), Operation::Invert);
         assert_eq!(operation("window=tukey share=0.2"), Operation::Window(Window::Tukey { share: 0.2 }));
+        assert_eq!(operation("border=mirror"), Operation::Mirror);
         let outliers = Outliers { threshold: 5.0, radius: 3 };
         assert_eq!(operation("outliers=5 radius=3"), Operation::RemoveOutliers(outliers));
         assert_eq!(
@@ -272,6 +274,8 @@ mod tests {
             ("flip", "axis is missing"),
             ("rotate=0.5", "a whole number"),
             ("window=hann share=0.3", "Tukey"),
+            ("border", "method is missing"),
+            ("border=window", "\"mirror\""),
             ("level plane", "KEY=VALUE"),
         ] {
             let error = step(words).unwrap_err();

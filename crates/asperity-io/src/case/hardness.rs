@@ -53,7 +53,11 @@ pub fn numbers_of_cells(at: &Place<'_>, path: &str, grid: Option<&Grid>) -> Opti
     if numbers.heights.dim() != grid.shape() {
         let ((mx, my), [nx, ny]) = (numbers.heights.dim(), grid.cells());
         let what = format!("{name} holds {mx} x {my} numbers, but the domain has {nx} x {ny} cells");
-        return at.refuse(Code::Data, what, "one number for each cell", "axis 0 of an array is x");
+        let help = match [nx, ny] == [2 * mx, 2 * my] {
+            true => "the domain is that of a mirrored surface: continue the numbers by their reflections too",
+            false => "axis 0 of an array is x",
+        };
+        return at.refuse(Code::Data, what, "one number for each cell", help);
     }
     at.note_file(path, digest);
     Some(numbers.heights)

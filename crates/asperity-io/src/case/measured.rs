@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity::Grid;
-use asperity::surface::{Part, Surface};
+use asperity::surface::{Operation, Part, Surface};
 
 use crate::preparation::{Prepared, Step, prepare};
 use crate::topography::{ReadOptions, TopographyError, read, read_profile};
@@ -72,9 +72,10 @@ impl Measured {
             return Ok((profile.surface, profile.history));
         }
         let topography = read(&self.path, &self.options).map_err(told)?;
+        let history = topography.history().map(str::to_owned).collect();
         let (nx, ny) = topography.heights.dim();
         let grid = Grid::new([nx, ny], topography.size).map_err(of_file)?;
-        Ok((Surface::new(grid, topography.heights).map_err(of_file)?, vec![]))
+        Ok((Surface::new(grid, topography.heights).map_err(of_file)?, history))
     }
 
     /// The surface after its preparation; `domain` are the cells of the domain, `None` where it takes the surface's
@@ -110,6 +111,16 @@ impl Measured {
         kept.as_ref().map(|kept| kept.prepared.history.clone())
     }
 
+    /// Whether the case continues the surface by its reflections.
+    fn is_mirrored(&self) -> bool {
+        self.steps.contains(&Step::Operation(Operation::Mirror))
+    }
+
+    /// Words behind a size or a number of points.
+    fn with_reflections(&self) -> &'static str {
+        if self.is_mirrored() { " with its reflections" } else { "" }
+    }
+
     /// The heights as a part of the gap.
     ///
     /// # Errors
@@ -141,22 +152,26 @@ impl Measured {
             let is_larger = (0..2).all(|axis| domain[axis] <= size[axis] * (1.0 + SAME));
             // Nobody knows what lies around a measured surface.
             let crop = match is_larger && !line {
-                true => format!(
-                    ", or keep a part of the surface: crop = {{ size = [{:e}, {:e}] }}",
-                    domain[0], domain[1]
-                ),
+                true => {
+                    let [x, y] = domain.map(|side| if self.is_mirrored() { 0.5 * side } else { side });
+                    let mirrored =
+                        if self.is_mirrored() { ", half of the domain before the reflections" } else { "" };
+                    format!(", or keep a part of the surface: crop = {{ size = [{x:e}, {y:e}] }}{mirrored}")
+                }
                 false => String::new(),
             };
             return Err(format!(
-                "{name} measures {own}, but the domain {wanted}; leave domain.size out to take that of the {what}{crop}"
+                "{name} measures {own}{}, but the domain {wanted}; leave domain.size out to take that of the {what}{crop}",
+                self.with_reflections()
             ));
         }
         if of_file.cells() != grid.cells() {
             let counts = |grid: &Grid, between: &str| numbers(grid.cells().map(|n| n.to_string()), between);
             return Err(format!(
-                "{name} holds {} points, but the domain has {} cells; leave domain.cells out to take those of the {what}, set \
+                "{name} holds {} points{}, but the domain has {} cells; leave domain.cells out to take those of the {what}, set \
                  domain.cells = [{}], or add resample = \"bilinear\" (or \"band-limited\") to this surface",
                 counts(of_file, " x "),
+                self.with_reflections(),
                 counts(grid, " x "),
                 counts(of_file, ", "),
             ));

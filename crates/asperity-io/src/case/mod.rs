@@ -43,6 +43,7 @@ mod adhesion;
 mod assemble;
 mod bare;
 mod body;
+mod border;
 mod cost;
 mod describe;
 mod document;
@@ -229,7 +230,7 @@ impl Case {
     /// [`CaseErrors`] where a file cannot be read or does not fit the domain.
     pub fn parts(&self) -> Result<Vec<Part>, CaseErrors> {
         let part = |surface: &Surface| match surface {
-            Surface::Part(part) => Ok(part.clone()),
+            Surface::Part(part) | Surface::Given(part, _) => Ok(part.clone()),
             Surface::File(file) => file.part(&self.conditions.grid).map_err(|reason| {
                 self.faults(&file.key, |place| place.data(Err(reason), "a surface of the domain"))
             }),

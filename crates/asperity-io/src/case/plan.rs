@@ -18,6 +18,27 @@ pub enum Surface {
     Part(Part),
     /// A topography file, read when the gap is built.
     File(Measured),
+    /// Heights of a program, and what was done to them.
+    Given(Part, Vec<String>),
+}
+
+impl Surface {
+    /// What messages call it.
+    pub fn name(&self) -> String {
+        match self {
+            Surface::File(file) => file.path.display().to_string(),
+            Surface::Part(part) | Surface::Given(part, _) => part.name().to_owned(),
+        }
+    }
+
+    /// What was done to measured heights, one sentence per step; `None` for a shape, and for a file that was not read yet.
+    pub fn history(&self) -> Option<Vec<String>> {
+        match self {
+            Surface::Part(_) => None,
+            Surface::File(file) => file.history(),
+            Surface::Given(_, history) => Some(history.clone()).filter(|history| !history.is_empty()),
+        }
+    }
 }
 
 /// How the contact moves.

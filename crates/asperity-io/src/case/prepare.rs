@@ -7,7 +7,7 @@ use asperity::surface::{self, Fill, Level};
 
 use super::keys::*;
 use super::surface::File;
-use crate::preparation::{self, Step};
+use crate::preparation::{self, Step, check_border};
 
 /// Largest share of a surface that is filled by default; more would be invention, not measurement.
 const FILL_SHARE: f64 = 0.25;
@@ -58,6 +58,11 @@ pub enum Operation {
     Invert {},
     /// Multiply by a window that decreases to zero towards the edges.
     Window(Window),
+    /// Continue beyond the border, so that opposite borders match on a periodic domain.
+    Border {
+        /// How.
+        method: Continuation,
+    },
     /// Make spikes undefined.
     Outliers(Outliers),
     /// Subtract a circle from a profile, fitted by least squares.
@@ -131,6 +136,14 @@ pub enum WindowShape {
     Tukey,
 }
 
+/// How a surface goes on beyond its border.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Continuation {
+    /// By its reflections: a surface of twice the length and width, four times the cells, that repeats without a seam.
+    Mirror,
+}
+
 /// Spikes: points far from the lines through their neighbours in every direction.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -145,14 +158,15 @@ pub struct Outliers {
 
 /// The steps in the order in which they are done.
 ///
-/// Without `process`: crop, flip, rotate, invert, level, outliers (and level again without them), fill, circle, filter,
-/// window, resample.
+/// Without `process`: crop, flip, rotate, invert, level, outliers (and level again without them), fill, circle, border, filter,
+/// window, resample. A filter treats the surface as periodic, so the reflections come before it.
 pub fn steps(at: &Place<'_>, file: &File) -> Option<Vec<Step>> {
     let operations = operations(file);
     let Some(process) = &file.process else {
         let given =
             operations.iter().filter_map(|(key, operation)| Some(operation.as_ref()?.step(&at.key(key))));
-        return given.collect();
+        let steps: Vec<Step> = given.collect::<Option<_>>()?;
+        return at.key("border").core(check_border(&steps)).map(|()| steps);
     };
     let keys: BTreeSet<&str> = operations.iter().map(|(key, _)| *key).chain(["fill_share"]).collect();
     let alone = at.without(
@@ -164,11 +178,12 @@ pub fn steps(at: &Place<'_>, file: &File) -> Option<Vec<Step>> {
     let list = at.key("process");
     // All of them are looked at, also after one that is wrong.
     let steps: Vec<_> = process.iter().enumerate().map(|(n, step)| step.step(&list.item(n))).collect();
-    alone.and(steps.into_iter().collect())
+    let steps: Vec<Step> = alone.and(steps.into_iter().collect())?;
+    list.core(check_border(&steps)).map(|()| steps)
 }
 
 /// The operations of the single keys, in their order.
-fn operations(file: &File) -> [(&'static str, Option<Operation>); 12] {
+fn operations(file: &File) -> [(&'static str, Option<Operation>); 13] {
     let level = || (file.level != Some(Level::None)).then_some(Operation::Level { form: file.level });
     [
         ("crop", file.crop.clone().map(Operation::Crop)),
@@ -181,6 +196,7 @@ fn operations(file: &File) -> [(&'static str, Option<Operation>); 12] {
         ("level", file.outliers.as_ref().and_then(|_| level())),
         ("fill", Some(Operation::Fill { method: file.fill, share: file.fill_share })),
         ("circle", file.circle.clone().map(Operation::Circle)),
+        ("border", file.border.map(|method| Operation::Border { method })),
         ("filter", file.filter.clone().map(Operation::Filter)),
         ("window", file.window.clone().map(Operation::Window)),
         ("resample", file.resample.map(|method| Operation::Resample { method: Some(method), cells: None })),
@@ -209,6 +225,7 @@ impl Operation {
             Operation::Crop(crop) => return crop.step(at),
             Operation::Filter(filter) => surface::Operation::Filter(filter.band(at)?),
             Operation::Window(window) => surface::Operation::Window(window.window(at)?),
+            Operation::Border { method: Continuation::Mirror } => surface::Operation::Mirror,
             Operation::Circle(circle) => {
                 return Some(Step::Circle { radius: circle.radius.map(Length::get) });
             }

@@ -107,7 +107,7 @@ impl SealKeys {
             LeakDirection::X | LeakDirection::Both => 0,
         };
         let (length, ends, leak) = (self.length.get(), [inlet, outlet], leak.clone());
-        Some(SealPlan { profile, length, pressures, seeds, rough, patch, ends, leak })
+        Some(SealPlan { profile, length, pressures, seeds, rough, patch, ends, leak, windowed: vec![] })
     }
 
     fn shape(&self, at: &Place<'_>) -> Option<Shape> {

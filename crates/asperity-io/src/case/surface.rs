@@ -6,7 +6,7 @@ use asperity::surface::{Fill, Level, Part, Punch, Shape};
 
 use super::keys::*;
 use super::measured::Measured;
-use super::prepare::{self, Circle, Crop, Filter, Operation, Outliers, Window};
+use super::prepare::{self, Circle, Continuation, Crop, Filter, Operation, Outliers, Window};
 use super::roughness::SelfAffine;
 use crate::quantity::unit::Unit;
 use crate::topography::ReadOptions;
@@ -109,6 +109,9 @@ pub enum Kind {
         /// Whether a shape of a single body is among them: no wave, roughness or punch.
         #[serde(default)]
         single: bool,
+        /// What was done to the heights, one sentence per step.
+        #[serde(default)]
+        history: Vec<String>,
     },
 }
 
@@ -174,6 +177,14 @@ impl Surface {
         Some(Part::Shape { shape, center })
     }
 
+    /// What was done to the heights that a program gives.
+    pub fn history(&self) -> &[String] {
+        match &self.kind {
+            Kind::Array { history, .. } => history,
+            _ => &[],
+        }
+    }
+
     /// Whether it is the shape of a single body: no wave, roughness or punch.
     pub fn is_single(&self) -> bool {
         use Kind::{Array, Cone, Cylinder, Ellipsoid, Sphere, Wedge};
@@ -226,10 +237,14 @@ pub struct File {
     /// A circle to subtract from a profile; none if not given, the one that fits best for `circle = {}`.
     #[schemars(example = serde_json::json!({ "radius": "10 mm" }))]
     pub circle: Option<Circle>,
+    /// "mirror": the surface goes on beyond its border by its reflections, so that it is twice as long and wide and repeats on a
+    /// periodic domain; as it is if not given.
+    pub border: Option<Continuation>,
     /// The wavelengths kept; all if not given.
     #[schemars(example = serde_json::json!({ "longest": "80 um", "shortest": "2.5 um" }))]
     pub filter: Option<Filter>,
-    /// A window by which the heights decrease to zero towards the edges; none if not given.
+    /// A window by which the heights decrease to zero towards the edges; none if not given. It closes the passages across the border:
+    /// for a leak take `border`.
     #[schemars(example = serde_json::json!({ "shape": "tukey", "share": 0.1 }))]
     pub window: Option<Window>,
     /// How the heights are resampled if the domain has another number of cells; without it they must agree.

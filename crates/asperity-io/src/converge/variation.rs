@@ -118,7 +118,7 @@ pub(super) fn is_limited(case: &Case) -> bool {
 pub(super) fn has_singular_pressure(case: &Case) -> bool {
     let is_singular = |surface: &Surface| match surface {
         Surface::Part(Part::Shape { shape, .. }) => shape.has_singular_pressure(),
-        Surface::Part(_) | Surface::File(_) => false,
+        Surface::Part(_) | Surface::File(_) | Surface::Given(..) => false,
     };
     case.surfaces.iter().any(is_singular)
 }

@@ -19,7 +19,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use beside::Beside;
-pub use result::{LeakError, LeakHistory, compute, settings, store};
+pub use result::{LeakError, LeakHistory, compute, settings, store, through_windows};
 
 /// Fields of the gap, the network and the iteration that a flow holds besides the factor, about.
 const FIELDS: f64 = 20.0;

@@ -5,12 +5,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use asperity::finding::{self, Finding, LeakDiagnostics, LeakState};
 use asperity::leakage::Sides;
+use asperity::surface::process::Border;
 use serde_json::Value;
 use thiserror::Error;
 
 use super::{Beside, Fluid, Leak, LeakDirection, words};
 use crate::answer::{Units, Validity};
+use crate::case::Preparation;
 use crate::instants;
+use crate::preparation::border;
 use crate::readable::quantity;
 use crate::store::{At, FieldKind, LeakTable, LeakWriter, Reader, StoreError};
 
@@ -172,6 +175,13 @@ pub fn compute(
     evaluate(reader, leak, Beside::default(), interrupt, &mut observe, None)
 }
 
+/// What is found of a leak whose `setup` says that surfaces of its contact were windowed.
+pub fn through_windows(setup: &serde_json::Map<String, Value>) -> Option<Finding> {
+    let prepared: Vec<Preparation> = serde_json::from_value(setup.get("preparation")?.clone()).ok()?;
+    let windowed = prepared.into_iter().filter(|one| border(&one.steps) == Border::Windowed);
+    finding::window_in_leak(&windowed.map(|one| one.surface).collect::<Vec<_>>())
+}
+
 fn evaluate(
     reader: &Reader,
     leak: &Leak,
@@ -193,6 +203,7 @@ fn evaluate(
     let initial = reader.initial_gap()?;
     // Without the bodies those of the earlier leakage are kept.
     let mut beside = if beside.is_none() { Beside::of_result(reader)? } else { beside };
+    let windows = through_windows(&reader.header().setup);
     let mut diagnostics = LeakDiagnostics::default();
     let mut table = LeakTable::default();
     for (done, index) in instants.iter().copied().enumerate() {
@@ -218,7 +229,7 @@ fn evaluate(
         let (sum, count) =
             touching.fold((0.0, 0.0), |(sum, count), ((h, h0), _)| (sum + (h - h0), count + 1.0));
         let displacement = if count > 0.0 { sum / count + row.approach } else { 0.0 };
-        let resolved = diagnostics.see(&LeakState {
+        let sound = diagnostics.see(&LeakState {
             row: Some(step),
             gap_error: tolerance * displacement.abs(),
             // A fluid that acts on the surfaces has opened the gap already.
@@ -226,6 +237,7 @@ fn evaluate(
             mean_pressure: row.mean_pressure,
             ..state.alone()
         });
+        let resolved = sound && windows.is_none();
         if let Some(writer) = writer.filter(|_| leak.field) {
             writer.put_pressure(done, state.pressure.view())?;
         }
@@ -233,6 +245,7 @@ fn evaluate(
         observe(done + 1, instants.len());
     }
     let mut findings = diagnostics.findings();
+    findings.extend(windows);
     // The findings of a case with [leakage] have it already.
     let moving = finding::leak_in_motion();
     if reader.header().moves_in_time() && reader.findings().iter().all(|found| found.code != moving.code) {

@@ -2,7 +2,7 @@
 
 use asperity::finding::{
     Finding, SEAL_BELOW_SWEEP, SEAL_BEYOND_SWEEP, SEAL_LIFTED, SEAL_NARROW, SEAL_NEVER_TIGHT,
-    SEAL_PATCH_SMALL, SEAL_SWEEP_COARSE,
+    SEAL_PATCH_SMALL, SEAL_SWEEP_COARSE, window_in_leak,
 };
 use asperity::seal::{Conductance, SealFlow, SealState, flow};
 
@@ -27,7 +27,7 @@ pub(super) fn of(
     flows: &[SealFlow],
     now: &Over,
 ) -> asperity::Result<Vec<Finding>> {
-    let mut found = vec![];
+    let mut found = Vec::from_iter(window_in_leak(&plan.windowed));
     let [inlet, _] = plan.ends;
     let pa = |pressure: f64| quantity(pressure, "Pa");
     let largest = plan.profile.largest(inlet).unwrap_or(0.0);

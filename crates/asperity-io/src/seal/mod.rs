@@ -41,6 +41,8 @@ pub struct SealPlan {
     pub ends: [f64; 2],
     /// The fluid; there is one.
     pub leak: Leak,
+    /// Names of the surfaces that were windowed.
+    pub windowed: Vec<String>,
 }
 
 /// A random roughness.

@@ -22,7 +22,7 @@ use crate::case::{Case, CaseErrors};
 use crate::leakage::{self, LeakError};
 use crate::readable::counted;
 use crate::resources::free_disk;
-use crate::store::{Outcome, Reader, SCALARS, Status, StoreError, Work, Writer};
+use crate::store::{LeakTable, Outcome, Reader, SCALARS, Status, StoreError, Work, Writer};
 use crate::stress::{self, StressError};
 use maps::Maps;
 use record::{Record, Stop};
@@ -170,7 +170,12 @@ fn run_inside(
     let parts = case.parts()?;
     let simulation = case.simulation_of(&parts)?;
     let steady = case.steady_of(&parts, &simulation)?;
-    let known = Known { parts: &parts, bodies: &case.bodies, thickness: case.thickness };
+    let known = Known {
+        parts: &parts,
+        bodies: &case.bodies,
+        thickness: case.thickness,
+        mirrored: case.is_mirrored(),
+    };
     let diagnostics = Diagnostics::new(&simulation, known);
     drop(parts);
     let header = header(case, &simulation, steady.as_ref());
@@ -270,6 +275,8 @@ fn leakage(case: &Case, mut summary: Summary, options: &RunOptions) -> Result<Su
     };
     match stored() {
         Ok(leaks) => {
+            // Those of the case about its leak are among them.
+            summary.findings.retain(|finding| !LeakTable::is_judged_by(&finding.code));
             summary.findings.extend(leaks.findings.iter().cloned());
             summary.answers = answers(&summary.result, &case.output.units);
             Ok(summary)

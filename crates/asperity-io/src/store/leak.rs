@@ -19,7 +19,7 @@ use std::path::Path;
 
 use asperity::Grid;
 use asperity::finding::{
-    CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, Finding, GAPS_BELOW_ERROR, LEAK_BELOW_GAP_ERROR,
+    CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, Finding, GAPS_BELOW_ERROR, LEAK_BELOW_GAP_ERROR, WINDOW_IN_LEAK,
 };
 use ndarray::ArrayView2;
 use serde_json::{Map, Value, json};
@@ -33,7 +33,8 @@ use super::writer::{Writer, remove};
 use crate::leakage::Leakage;
 
 /// Codes of the findings about leaks.
-const CODES: [&str; 4] = [LEAK_BELOW_GAP_ERROR, GAPS_BELOW_ERROR, CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED];
+const CODES: [&str; 5] =
+    [LEAK_BELOW_GAP_ERROR, GAPS_BELOW_ERROR, CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, WINDOW_IN_LEAK];
 /// Attribute of the group that holds what was asked for, as JSON text.
 const ATTRIBUTE: &str = "leakage";
 

@@ -5,10 +5,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use asperity::Boundary;
+use asperity::finding::{Finding, WINDOW_IN_LEAK};
+use asperity::surface::Operation;
+use asperity::surface::process::Window;
+use asperity_io::answer::Units;
 use asperity_io::case::Case;
-use asperity_io::leakage::{Beside, LeakError, LeakHistory};
+use asperity_io::leakage::{Beside, LeakError, LeakHistory, compute};
 use asperity_io::session::{RunError, RunOptions, run};
 use asperity_io::store::{At, FieldKind, Reader, Status};
+use asperity_io::topography::{Format, Topography, write};
 
 const CASE: &str = r#"
 [domain]
@@ -234,4 +239,69 @@ fn beside_the_leak_stand_that_of_a_fluid_that_does_not_act_and_the_pressure_that
     };
     assert_eq!(again("{\"field\": true}").get("opening_pressure").unwrap(), resting);
     assert_eq!(again("{\"viscosity\": 2.0}").get("opening_pressure"), None);
+}
+
+/// A groove 0.1 mm wide and 8 um deep across a flat patch of 0.2 mm.
+fn groove(directory: &Path, name: &str, history: &[&str]) {
+    let heights =
+        ndarray::Array2::from_shape_fn((16, 16), |(_, j)| if (4..12).contains(&j) { -8e-6 } else { 0.0 });
+    let (format, size) = (Format::Npz, [2e-4, 2e-4]);
+    let mut map = Topography { format, heights, size, channel: None, channels: vec![], metadata: vec![] };
+    map.record(history.iter().map(|step| (*step).to_owned()));
+    write(&directory.join(name), &map, format).unwrap();
+}
+
+const GROOVE: &str = r#"
+[domain]
+boundary = "periodic"
+[[surface]]
+kind = "file"
+path = "groove.npz"
+level = "none"
+BORDER
+[[body]]
+poisson = 0.5
+material = { model = "elastic", young = "4.8 MPa" }
+[load]
+control = "pressure"
+history = { kind = "step", value = "0.1 MPa" }
+[time]
+end = "1 s"
+steps = 1
+[leakage]
+pressure_drop = "1 kPa"
+viscosity = "1 mPa s"
+"#;
+
+/// A window closes the groove, which is said before the run, with the answer, in the result and when the leak is computed again; the
+/// mirrored patch leaks, and nothing is said.
+#[test]
+fn a_leak_through_a_window_is_told_wherever_it_is_seen() {
+    let directory = tempfile::tempdir().unwrap();
+    let tukey = Operation::Window(Window::Tukey { share: 0.1 }).to_string();
+    groove(directory.path(), "groove.npz", &[]);
+    groove(directory.path(), "windowed.npz", &[&tukey]);
+    let told = |findings: &[Finding]| findings.iter().filter(|found| found.code == WINDOW_IN_LEAK).count();
+    for (name, border, windowed) in
+        [("window", "window = { shape = \"hann\" }", true), ("mirror", "border = \"mirror\"", false)]
+    {
+        let case = Case::parse(&GROOVE.replace("BORDER", border), directory.path(), &[]).unwrap();
+        let count = usize::from(windowed);
+        assert_eq!((told(&case.findings), told(&case.examine().unwrap().findings)), (count, count));
+        let path = directory.path().join(name);
+        let done =
+            run(&case, &RunOptions { output: Some(path.clone()), ..RunOptions::default() }, |_| ()).unwrap();
+        let reader = Reader::open(&path).unwrap();
+        let stored = LeakHistory::of(&reader).unwrap().unwrap();
+        assert_eq!([told(&done.findings), told(reader.findings()), told(&stored.findings)], [count; 3]);
+        assert_eq!(stored.last("percolates") == 0.0, windowed);
+        assert_eq!(stored.last("leak_resolved") == 0.0, windowed);
+        assert_eq!(stored.sentence(&Units::default()).contains("see the findings"), windowed);
+        let again = compute(&reader, &stored.leak, &AtomicBool::new(false), |_, _| ()).unwrap();
+        assert_eq!(told(&again.findings), count);
+    }
+    // A file that says that it was windowed; without a leak there is nothing to say.
+    let told_of = |text: &str| told(&Case::parse(text, directory.path(), &[]).unwrap().findings);
+    let text = GROOVE.replace("BORDER", "").replace("groove.npz", "windowed.npz");
+    assert_eq!((told_of(&text), told_of(text.split("[leakage]").next().unwrap())), (1, 0));
 }

@@ -23,6 +23,8 @@ _WORDS = {
     "output.histogram.pressure": "largest_pressure=",
     "output.histogram.gap": "largest_gap=",
     "(surface info: --longest, --shortest)": "(longest=, shortest=)",
+    '(border = "mirror", step border=mirror)': "(surface.mirrored())",
+    '(border = "mirror")': "(surface.mirrored())",
 }
 
 

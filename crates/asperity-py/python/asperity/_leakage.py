@@ -175,7 +175,7 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
         narrowest = found["critical_gap"] if found["percolates"] else None
         states.append((step, narrowest, found["critical_width"], tolerance * abs(displacement), drop, float(result.mean_pressure[step])))
         rows.append(found)
-    resolved, told = _core.judge_leaks(states)
+    resolved, told = _core.judge_leaks(states, json.dumps({"preparation": setup.get("preparation", [])}))
     for row, good in zip(rows, resolved):
         row["leak_resolved"] = good
     warn(findings_of(json.loads(told)))

@@ -67,7 +67,7 @@ def persson_friction(
 
     An estimate from the power spectrum alone, for comparison. It is exact in full contact, and loses its meaning where the
     motion shrinks the contact (docs/sliding.md). Each wave of the surface counts with its own direction. Level a measured
-    surface, and taper it (``surface.level().window()``), or its borders count as steps.
+    surface, and continue it by its reflections (``surface.level().mirrored()``), or its borders count as steps.
 
     Parameters
     ----------

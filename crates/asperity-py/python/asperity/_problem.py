@@ -84,7 +84,7 @@ class Problem:
                 raise CaseError(f"largest_{name} is {end:g} {'Pa' if name == 'pressure' else 'm'}, but must be finite and greater than 0")
         keys: dict[str, Any] = {
             "domain": {"cells": list(shape.cells), "size": list(shape.size), "boundary": self.boundary},
-            "surface": [{"kind": "array", "array": "heights", "single": bool(shape.metadata.get("single"))}],
+            "surface": [{"kind": "array", "array": "heights", "single": bool(shape.metadata.get("single")), "history": [str(step) for step in shape.history]}],
             "body": bodies,
             "load": self.load_keys("N/m" if shape.is_line else "N"),
             "solver": {name: getattr(self, name) for name in ("method", "tolerance", "max_iterations", "plasticity")},

@@ -145,6 +145,8 @@ class Surface(OnGrid):
             raise CaseError(f"surfaces of {both} cannot be added: they must have the same cells and size")
         # What was measured does not repeat beyond its edges, and the sum neither; a single body stays one with roughness on it.
         known: dict[str, Any] = {key: one.metadata[key] for one in (self, other) for key in ("format", "single") if key in one.metadata}
+        if done := [*self.history, *other.history]:
+            known["history"] = done
         return Surface(self.heights + other.heights, size=self.size, metadata=known)
 
     def __radd__(self, other: Summand) -> Surface:
@@ -228,8 +230,11 @@ class Surface(OnGrid):
         """
         heights, size, done = self._compiled.process([str(step) for step in steps])
         changed = self._changed(heights[:, 0] if self.is_line else heights, done, size)
-        if any("crop" in step for step in done):
-            changed.metadata.pop("repeats", None)
+        for step in done:
+            if step.startswith("crop"):
+                changed.metadata.pop("repeats", None)
+            if step.endswith("(mirror)"):
+                changed.metadata["repeats"] = True
         return changed
 
     def level(self, form: Form = "plane") -> Surface:
@@ -268,7 +273,7 @@ class Surface(OnGrid):
     def filter(self, *, longest: float | None = None, shortest: float | None = None, edge: Edge = "sharp") -> Surface:
         """Only the wavelengths from `shortest` to `longest` [m]; the edge is "sharp" or "gaussian" (ISO 16610-61).
 
-        The surface is taken as periodic: lay a :meth:`window` over one that is not.
+        The surface is taken as periodic: use that of one that is not :meth:`mirrored`.
         """
         ends = numbers_of({"longest": longest, "shortest": shortest})
         return self.process(" ".join(["filter", *(f"{name}={value!r}" for name, value in ends.items()), f"edge={edge}"]))
@@ -285,11 +290,26 @@ class Surface(OnGrid):
         """Heights of the other sign: a replica."""
         return self.process("invert")
 
+    def mirrored(self) -> Surface:
+        """The surface and its reflections: twice as long and wide, periodic without a seam; a profile twice as long.
+
+        No height changes. The symmetry is part of the answer: a conductance without a part off the diagonal, the same friction along +x
+        and -x, and a lay at an angle to the axes becomes a herringbone.
+
+        >>> import asperity as asp, numpy as np
+        >>> part = asp.Surface(np.array([[1.0, 2.0], [3.0, 4.0]]), size=(2e-6, 2e-6))
+        >>> whole = part.mirrored()
+        >>> whole.heights[0].tolist(), whole.heights[:, 0].tolist(), whole.size
+        ([1.0, 2.0, 2.0, 1.0], [1.0, 3.0, 3.0, 1.0], (4e-06, 4e-06))
+        """
+        return self.process("border=mirror")
+
     def window(self, shape: Window = "tukey", *, share: float | None = None) -> Surface:
         """Faded to zero at the edges by a "tukey" window that rises over a `share` of the length (0.1), or a "hann" one.
 
-        The window is 1 in the middle, and no height grows: for contacts. For the spectrum of a surface that is not periodic see
-        :meth:`power_spectrum`.
+        The window is 1 in the middle, and no height grows. Its flat border closes every passage across it: a leak through a windowed
+        surface is too small or zero (finding ``window-in-leak``), so take :meth:`mirrored` for leaks. For the spectrum of a surface that
+        is not periodic see :meth:`power_spectrum`.
         """
         words = f"window shape={shape}"
         return self.process(words if share is None else f"{words} share={number('share', share)!r}")
@@ -299,8 +319,8 @@ class Surface(OnGrid):
 
         Parameters
         ----------
-        periodic : whether the surface repeats beyond its edges; by default true unless it was read from a file. For the
-            waves one that does not repeat is levelled, filled and windowed first.
+        periodic : whether the surface repeats beyond its edges; by default true unless it was read from a file and not mirrored. For
+            the waves one that does not repeat is levelled, filled and windowed first.
         longest, shortest : wavelengths [m] between which the Hurst exponent is fitted
 
         Returns
@@ -415,8 +435,9 @@ class Surface(OnGrid):
             raise CaseError(f"{what} is for surfaces over a plane, but this one is a line of {self.cells[0]} cells")
 
     def _repeats(self, periodic: bool | None) -> bool:
-        # A file's surface knows its format.
-        return "format" not in self.metadata if periodic is None else bool(periodic)
+        # A file's surface knows its format; one continued by its reflections repeats.
+        known = "repeats" in self.metadata or "format" not in self.metadata
+        return known if periodic is None else bool(periodic)
 
     @property
     def plot(self) -> SurfacePlots:

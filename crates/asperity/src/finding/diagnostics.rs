@@ -33,6 +33,8 @@ pub struct Known<'a> {
     pub bodies: &'a [Body],
     /// Thickness of the thinnest body that is treated as a half-space \[m\], if known.
     pub thickness: Option<f64>,
+    /// Whether a surface was continued by its reflections, so that the slope of the gap changes sign at the border.
+    pub mirrored: bool,
 }
 
 /// The diagnostics of one run.
@@ -307,12 +309,15 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
         // The shape of a round body confines the contact, also on a long track.
         Boundary::Free if known.parts.iter().any(is_round) => None,
         Boundary::Free => domain::unconfined(grid, gap),
-        Boundary::Periodic => domain::not_periodic(grid, gap),
+        Boundary::Periodic => domain::not_periodic(grid, gap, known.mirrored),
     }
     .into_iter()
     .collect::<Vec<_>>();
     if *boundary == Boundary::Periodic {
         found.extend(known.thickness.and_then(|thickness| thin::long_waves(grid, thickness)));
+    }
+    if known.mirrored {
+        found.extend(surface::lay_mirrored(grid, gap));
     }
     found.extend(domain::unlikely_size(grid));
     for part in known.parts {

@@ -2,12 +2,13 @@
 //!
 //! Nothing touches outside a free domain. A periodic domain repeats, so its gap must be continuous across the border.
 
-use ndarray::Array2;
+use ndarray::{Array2, ArrayView2, Axis};
 
 use super::plausible::SIDES;
 use super::words::{digits, si};
 use super::{CONTACT_AT_BORDER, Finding, GAP_NOT_PERIODIC, ROUGH_ON_FREE_DOMAIN, UNLIKELY_UNIT};
 use crate::grid::Grid;
+use crate::surface::Surface;
 
 /// A gap is not periodic if its second difference across the border is larger than the largest one inside by this factor.
 const JUMP: f64 = 2.0;
@@ -32,7 +33,7 @@ pub(super) fn unlikely_size(grid: &Grid) -> Option<Finding> {
 }
 
 /// Whether any cell of the border of a field is positive.
-pub(super) fn touches_border(grid: &Grid, pressure: ndarray::ArrayView2<'_, f64>) -> bool {
+pub(super) fn touches_border(grid: &Grid, pressure: ArrayView2<'_, f64>) -> bool {
     border(grid).any(|at| pressure[at] > 0.0)
 }
 
@@ -121,13 +122,12 @@ pub(super) fn unconfined(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
 }
 
 /// A periodic gap that is not continuous across the border. The second differences there are compared with the largest of the
-/// lines inside, cell by cell (rms) and for the line as a whole (mean).
-pub(super) fn not_periodic(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
-    let range = gap.iter().filter(|h| h.is_finite()).fold(0.0, |most: f64, h| most.max(*h));
-    let found = [0, 1].into_iter().filter_map(|axis| kink(gap, axis, range).map(|kink| (axis, kink)));
-    let (axis, Kink { jump, slope, inside }) = found.max_by(|a, b| a.1.jump.total_cmp(&b.1.jump))?;
+/// lines inside, cell by cell (rms) and for the line as a whole (mean). Across the seam of a surface that was `mirrored` the gap has no
+/// jump, and its slope changes sign, as the continuation by reflections is made.
+pub(super) fn not_periodic(grid: &Grid, gap: &Array2<f64>, mirrored: bool) -> Option<Finding> {
+    let (axis, Kink { jump, slope, inside }) = worst_kink(gap.view(), mirrored)?;
     let name = ["x", "y"][axis];
-    let slope = slope / grid.spacing()[axis];
+    let (slope, range) = (slope / grid.spacing()[axis], range(gap.view()));
     Some(Finding::warning(
         GAP_NOT_PERIODIC,
         jump,
@@ -135,13 +135,33 @@ pub(super) fn not_periodic(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
         format!(
             "The gap is not continuous across the border of the periodic domain along {name}: it jumps by {}, {} times as much \
              as between neighbouring cells inside, and its slope changes by {}. The jump acts like an edge. Use boundary = \
-             \"free\" for a single body. Level a measured surface and apply a window to it; for heights that are periodic as they are \
-             (a generated map), take level = \"none\". Let the domain hold whole waves.",
+             \"free\" for a single body. Level a measured surface and continue it by its reflections (border = \"mirror\"); a window \
+             would close the passages at the border. For heights that are periodic as they are (a generated map), take level = \"none\". \
+             Let the domain hold whole waves.",
             si(jump, "m"),
             digits(jump / inside.max(ROUNDING * range)),
             digits(slope)
         ),
     ))
+}
+
+/// Whether a surface continues across its borders: no jump or kink there is larger than what its cells show inside.
+pub fn repeats(surface: &Surface) -> bool {
+    worst_kink(surface.heights(), false).is_none()
+}
+
+/// The axis across whose border the heights or gaps jump most, where they do.
+fn worst_kink(heights: ArrayView2<'_, f64>, mirrored: bool) -> Option<(usize, Kink)> {
+    let range = range(heights);
+    let found =
+        [0, 1].into_iter().filter_map(|axis| kink(heights, axis, range, mirrored).map(|kink| (axis, kink)));
+    found.max_by(|a, b| a.1.jump.total_cmp(&b.1.jump))
+}
+
+/// Highest less lowest finite value.
+fn range(heights: ArrayView2<'_, f64>) -> f64 {
+    let finite = || heights.iter().copied().filter(|h| h.is_finite());
+    finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min)
 }
 
 struct Kink {
@@ -153,13 +173,17 @@ struct Kink {
 }
 
 /// The kink at the border along an axis, if there is one.
-fn kink(gap: &Array2<f64>, axis: usize, range: f64) -> Option<Kink> {
-    let lines = [gap.dim().0, gap.dim().1][axis];
+fn kink(heights: ArrayView2<'_, f64>, axis: usize, range: f64, mirrored: bool) -> Option<Kink> {
+    let lines = heights.len_of(Axis(axis));
     if lines < 5 {
         return None;
     }
-    let bends = bends(gap, axis);
-    let (inner, ends) = (&bends[1..lines - 1], [bends[0], bends[lines - 1]]);
+    let bends = bends(heights, axis);
+    let (inner, mut ends) = (&bends[1..lines - 1], [bends[0], bends[lines - 1]]);
+    if mirrored {
+        let seam = across(heights, axis);
+        ends = [seam, seam];
+    }
     let size = |line: &[f64; 2], k: usize| line[k].abs();
     let largest =
         |list: &[[f64; 2]], k: usize| list.iter().fold(0.0, |most: f64, line| most.max(size(line, k)));
@@ -171,7 +195,7 @@ fn kink(gap: &Array2<f64>, axis: usize, range: f64) -> Option<Kink> {
 
 /// Root mean square and mean of the second differences along an axis, of each line of the domain across it. Cells that
 /// cannot touch, and their neighbours, are left out.
-fn bends(gap: &Array2<f64>, axis: usize) -> Vec<[f64; 2]> {
+fn bends(gap: ArrayView2<'_, f64>, axis: usize) -> Vec<[f64; 2]> {
     let (nx, ny) = gap.dim();
     let lines = [nx, ny][axis];
     let mut sums = vec![[0.0_f64; 3]; lines];
@@ -194,9 +218,19 @@ fn bends(gap: &Array2<f64>, axis: usize) -> Vec<[f64; 2]> {
             (0..ny).for_each(|j| add(j, row[(j + ny - 1) % ny], row[j], row[(j + 1) % ny]));
         }
     }
-    let line = |[squares, sum, count]: [f64; 3]| match count > 0.0 {
-        true => [f64::sqrt(squares / count), sum / count],
-        false => [0.0, 0.0],
-    };
-    sums.into_iter().map(line).collect()
+    sums.into_iter().map(rms_and_mean).collect()
+}
+
+/// Root mean square and mean of the first differences across the border along an axis.
+fn across(heights: ArrayView2<'_, f64>, axis: usize) -> [f64; 2] {
+    let line = |k: usize| heights.index_axis(Axis(axis), k);
+    let last = heights.len_of(Axis(axis)) - 1;
+    let jumps = line(last).into_iter().zip(line(0)).map(|(last, first)| first - last);
+    let add = |[squares, sum, count]: [f64; 3], x: f64| [squares + x * x, sum + x, count + 1.0];
+    rms_and_mean(jumps.filter(|jump| jump.is_finite()).fold([0.0; 3], add))
+}
+
+/// Of a sum of squares, a sum and a count; 0 of none.
+fn rms_and_mean([squares, sum, count]: [f64; 3]) -> [f64; 2] {
+    if count > 0.0 { [f64::sqrt(squares / count), sum / count] } else { [0.0, 0.0] }
 }

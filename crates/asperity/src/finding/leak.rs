@@ -3,7 +3,9 @@
 
 use super::words::{digits, si};
 use super::worst::Worst;
-use super::{CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, Finding, GAPS_BELOW_ERROR, LEAK_BELOW_GAP_ERROR};
+use super::{
+    CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, Finding, GAPS_BELOW_ERROR, LEAK_BELOW_GAP_ERROR, WINDOW_IN_LEAK,
+};
 
 /// Smallest ratio of the critical gap to its error: the leak is proportional to the third power of the gap, so an error of 1/30
 /// means 10 %.
@@ -115,6 +117,21 @@ impl LeakDiagnostics {
         });
         [below, closed.map(Finding::as_note), narrow, pressure].into_iter().flatten().collect()
     }
+}
+
+/// A leak through surfaces of these names, which were windowed.
+pub fn window_in_leak(names: &[String]) -> Option<Finding> {
+    let (which, it) = match names {
+        [] => return None,
+        [name] => (format!("The surface {name} is"), "it"),
+        names => (format!("The surfaces {} are", names.join(" and ")), "them"),
+    };
+    let text = format!(
+        "{which} windowed: the heights fall to zero towards the borders, and the flat border is a dam across the flow. The leak is too small, \
+         and may be zero where the true surface leaks. Continue {it} by reflections (border = \"mirror\", step border=mirror) in place of \
+         the window."
+    );
+    Some(Finding::warning(WINDOW_IN_LEAK, f64::NAN, f64::NAN, text))
 }
 
 #[cfg(test)]

@@ -57,8 +57,9 @@ mod worst;
 use std::borrow::Cow;
 
 pub use diagnostics::{Diagnostics, Known};
+pub use domain::repeats;
 pub use expected::{Contact, Expected};
-pub use leak::{LeakDiagnostics, LeakState};
+pub use leak::{LeakDiagnostics, LeakState, window_in_leak};
 pub use material::{
     at_reference, beyond_data, celsius_meant, contradiction, misfit, misfit_of_both, modulus_kind,
     points_left_out, reversal, shift_uncertain, too_few_points, unlikely_data, unlikely_modulus,
@@ -171,6 +172,8 @@ codes! {
     CONTACT_AT_BORDER = "contact-at-border";
     /// The gap of a periodic domain is not continuous across its border.
     GAP_NOT_PERIODIC = "gap-not-periodic";
+    /// A lay at an angle to the axes becomes a herringbone by the reflections of its surface.
+    LAY_MIRRORED = "lay-mirrored";
     /// Only the end of the free domain confines the contact.
     ROUGH_ON_FREE_DOMAIN = "rough-on-free-domain";
     /// Waves shorter than four cells.
@@ -239,6 +242,8 @@ codes! {
     GAPS_BELOW_ERROR = "gaps-below-error";
     /// The critical constriction of a leak is less than four cells wide.
     CONSTRICTION_UNRESOLVED = "constriction-unresolved";
+    /// A leak through a surface that was windowed.
+    WINDOW_IN_LEAK = "window-in-leak";
     /// A leak through a contact that moves.
     LEAK_IN_MOTION = "leak-in-motion";
     /// The pressure drop of a fluid that does not load the bodies is more than 0.02 of the mean pressure.

@@ -1,15 +1,17 @@
 //! Surfaces: waves that the grid does not resolve, steep slopes, outliers, sizes that suggest a wrong unit.
 
-use ndarray::Array2;
+use std::f64::consts::FRAC_PI_2;
+
+use ndarray::{Array2, s};
 
 use super::plausible::{DEEPEST, FLATTEST, LARGEST_RADIUS, SLOPES, exceeded};
 use super::words::{digits, si};
 use super::{
-    Finding, HURST_OUT_OF_RANGE, HURST_UNCERTAIN, LARGE_SLOPE, OUTLIERS, SHORTEST_WAVE_UNRESOLVED,
-    UNLIKELY_UNIT,
+    Finding, HURST_OUT_OF_RANGE, HURST_UNCERTAIN, LARGE_SLOPE, LAY_MIRRORED, OUTLIERS,
+    SHORTEST_WAVE_UNRESOLVED, UNLIKELY_UNIT,
 };
 use crate::grid::Grid;
-use crate::surface::statistics::{HeightStatistics, SelfAffineFit, SlopeStatistics};
+use crate::surface::statistics::{Extent, HeightStatistics, PowerSpectrum, SelfAffineFit, SlopeStatistics};
 use crate::surface::{Part, Roughness, SelfAffine, Shape, Surface};
 
 /// Smallest number of cells per shortest wave: with four, the error of the curvature of its crests is 10 %.
@@ -128,6 +130,29 @@ pub(super) fn of_gap(grid: &Grid, gap: &Array2<f64>, unknown: bool) -> Vec<Findi
         found.extend(unresolved("gap", cells));
     }
     found
+}
+
+/// The gap of a surface that was continued by its reflections, whose lay runs at an angle to the axes: it runs at the opposite angle in
+/// the reflections.
+pub(super) fn lay_mirrored(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
+    /// Smallest angle between a lay and the axes \[rad\]: sin² of it is 3 %.
+    const OBLIQUE: f64 = 10.0 / 180.0 * std::f64::consts::PI;
+    let ([nx, ny], [dx, dy]) = (grid.cells().map(|n| n / 2), grid.spacing());
+    let quarter = Grid::new([nx, ny], [dx * nx as f64, dy * ny as f64]).ok()?;
+    let heights = gap.slice(s![..nx, ..ny]).to_owned();
+    let lay = PowerSpectrum::within(&Surface::new(quarter, heights).ok()?, Extent::Finite).ok()?.lay();
+    // The gap has the lay of the heights.
+    let from_axis = lay.angle.abs().min(FRAC_PI_2 - lay.angle.abs());
+    if !lay.is_clear() || from_axis <= OBLIQUE {
+        return None;
+    }
+    let text = format!(
+        "The lay of the surface runs at {} degrees from x, so that its reflections (border = \"mirror\") make a herringbone, which conducts and \
+         slides differently. Turn the sample under the instrument until the lay runs along an axis, or regard the numbers as those of a \
+         herringbone.",
+        digits(lay.angle.to_degrees())
+    );
+    Some(Finding::warning(LAY_MIRRORED, from_axis, OBLIQUE, text))
 }
 
 /// Self-affine parts of a given rms height: their slope follows from the gap.

@@ -1,5 +1,7 @@
 //! Each finding is reported for a case made for it, and not reported for a similar case.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use crate::drive::Drive;
 use ndarray::Array2;
 
@@ -11,7 +13,7 @@ use crate::material::{Body, Creep, CreepTerm, Lateral, Material, Modulus};
 use crate::quantities::{Quantities, Quantity};
 use crate::simulation::Simulation;
 use crate::surface::statistics::SelfAffineFit;
-use crate::surface::{Part, Roughness, SelfAffine, Shape, Surface, undeformed_gap};
+use crate::surface::{Operation, Part, Roughness, SelfAffine, Shape, Surface, undeformed_gap};
 use crate::time::TimeGrid;
 
 fn grid(cells: usize, size: f64) -> Grid {
@@ -77,11 +79,11 @@ fn the_expected_share_of_a_rough_contact_is_twice_the_pressure_over_modulus_and_
 }
 
 fn before(simulation: &Simulation, parts: &[Part]) -> Vec<Finding> {
-    Diagnostics::new(simulation, Known { parts, bodies: &[], thickness: None }).known().to_vec()
+    Diagnostics::new(simulation, Known { parts, ..Known::default() }).known().to_vec()
 }
 
 fn after(simulation: Simulation, parts: &[Part]) -> Vec<Finding> {
-    let mut diagnostics = Diagnostics::new(&simulation, Known { parts, bodies: &[], thickness: None });
+    let mut diagnostics = Diagnostics::new(&simulation, Known { parts, ..Known::default() });
     let mut march = March::new(simulation).unwrap();
     while let Some(step) = march.advance().unwrap() {
         diagnostics.see(&step, &step.row());
@@ -139,6 +141,34 @@ fn contact_at_the_border_of_a_free_domain_is_found_with_the_size_needed() {
     // A periodic domain has no border.
     let periodic = Simulation { boundary: Boundary::Periodic, ..heavy };
     assert!(!codes(&after(periodic, &parts)).contains(&CONTACT_AT_BORDER));
+}
+
+/// Of a map with ridges along 30 degrees, continued by its reflections; of ridges along x there is nothing to say. A slope that changes
+/// sign at a seam is no jump.
+#[test]
+fn a_lay_at_an_angle_is_told_where_its_surface_is_mirrored() {
+    let half = Grid::new([32, 32], [1e-3, 1e-3]).unwrap();
+    let found = |degrees: f64| {
+        let across = (degrees.to_radians() + FRAC_PI_2).sin_cos();
+        let ridges = |(i, j): (usize, usize)| {
+            1e-6 * (TAU * (half.x(i) * across.1 + half.y(j) * across.0) / 2.3e-4).sin()
+        };
+        let map = Surface::new(half, Array2::from_shape_fn((32, 32), ridges)).unwrap();
+        let whole = Operation::Mirror.apply(&map).unwrap();
+        let grid = *whole.grid();
+        let parts = [Part::Heights { name: "map".into(), heights: whole.into_heights() }];
+        let gap = undeformed_gap(&grid, &parts).unwrap();
+        let simulation = Simulation { grid, gap, boundary: Boundary::Periodic, ..simulation(&[]) };
+        Diagnostics::new(&simulation, Known { parts: &parts, mirrored: true, ..Known::default() })
+            .known()
+            .to_vec()
+    };
+    let oblique = found(30.0);
+    assert_eq!(codes(&oblique), [LAY_MIRRORED]);
+    // The mean of a Hann window over a few ridges finds their angle to a degree.
+    assert!((oblique[0].value.unwrap().to_degrees() - 30.0).abs() < 1.0, "{oblique:?}");
+    assert_eq!(codes(&found(0.0)), QUIET);
+    assert_eq!(codes(&found(90.0)), QUIET);
 }
 
 #[test]
@@ -266,8 +296,7 @@ fn a_contact_that_shrinks_over_its_imprint_is_no_large_strain() {
     let times = TimeGrid::Adaptive { end: 30.2, tolerance: 1e-2, first: 1e-2 };
     let simulation =
         Simulation { creep, times, loading: loaded(Control::Load, history), ..simulation(&parts) };
-    let mut diagnostics =
-        Diagnostics::new(&simulation, Known { parts: &parts, bodies: &[], thickness: None });
+    let mut diagnostics = Diagnostics::new(&simulation, Known { parts: &parts, ..Known::default() });
     let mut march = March::new(simulation).unwrap();
     let (mut widest, mut deepest) = (0.0_f64, 0.0_f64);
     while let Some(step) = march.advance().unwrap() {
@@ -533,7 +562,7 @@ fn moduli_radii_and_heights_of_unlikely_units_are_found() {
     let parts = [sphere(5e-3)];
     let judged = |bodies: &[Body]| {
         let diagnostics =
-            Diagnostics::new(&simulation(&parts), Known { parts: &parts, bodies, thickness: None });
+            Diagnostics::new(&simulation(&parts), Known { parts: &parts, bodies, ..Known::default() });
         codes(diagnostics.known()).join(" ")
     };
     assert_eq!(judged(&[soft(2e-3)]), UNLIKELY_UNIT);
@@ -657,7 +686,7 @@ fn a_resumed_run_finds_what_a_whole_one_does() {
     let history = History::Triangle { peak: 0.2, rise: 1.0, fall: 1.0 };
     let times = TimeGrid::Uniform { end: 2.0, steps: 20 };
     let simulation = Simulation { loading: loaded(Control::Load, history), times, ..simulation(&parts) };
-    let known = Known { parts: &parts, bodies: &[], thickness: None };
+    let known = Known { parts: &parts, ..Known::default() };
     let mut march = March::new(simulation.clone()).unwrap();
     let mut whole = Diagnostics::new(&simulation, known);
     let mut second = Diagnostics::new(&simulation, known);
@@ -688,7 +717,7 @@ fn a_half_space_that_is_thinner_than_its_contact_needs_is_told() {
     let parts = [sphere(1e-3)];
     let rows = |thickness: f64| {
         let simulation = simulation(&parts);
-        let known = Known { parts: &parts, bodies: &[], thickness: Some(thickness) };
+        let known = Known { parts: &parts, thickness: Some(thickness), ..Known::default() };
         let mut diagnostics = Diagnostics::new(&simulation, known);
         let mut march = March::new(simulation).unwrap();
         let mut radius: f64 = 0.0;
@@ -709,7 +738,7 @@ fn a_half_space_that_is_thinner_than_its_contact_needs_is_told() {
     let periodic = Simulation { boundary: Boundary::Periodic, ..simulation(&parts) };
     let side = periodic.grid.size()[0];
     for (thickness, told) in [(side / 1.6, true), (side / 1.4, false)] {
-        let known = Known { parts: &parts, bodies: &[], thickness: Some(thickness) };
+        let known = Known { parts: &parts, thickness: Some(thickness), ..Known::default() };
         let diagnostics = Diagnostics::new(&periodic, known);
         assert_eq!(diagnostics.known().iter().any(|finding| finding.code == THIN_BODY), told);
     }

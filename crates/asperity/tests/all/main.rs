@@ -21,6 +21,7 @@ mod material;
 mod mdr;
 mod motion;
 mod operator;
+mod preparation;
 mod quantities;
 mod sliding;
 mod stages;

@@ -4,8 +4,11 @@
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
+use asperity::finding::repeats;
 use asperity::indentation::{Given, IndentationRecord, controlled};
 use asperity::material::{Modulus, Shift};
+use asperity::surface::Operation;
+use asperity::surface::process::Outliers;
 use asperity_io::curve::{Columns, Curves, Indentation, Kind, Request, ShiftRequest, thinned};
 use asperity_io::output::write_all;
 use asperity_io::topography::Topography;
@@ -19,8 +22,10 @@ use crate::format::{extent, quantity};
 
 /// The remark behind a value that only the user knows.
 pub(super) const YOURS: &str = "# YOUR VALUE: ";
-/// Cells along a side of a case at most; a finer surface is resampled.
+/// Points along a side of a surface at most; a finer one is resampled.
 const MOST_CELLS: usize = 512;
+/// Deviations of a spike from the lines through its neighbours.
+const SPIKES: f64 = 8.0;
 
 /// Writes the case.
 pub(super) fn write(args: &New, purpose: Purpose, from: &Path, material: &Path) -> Result<(), Failure> {
@@ -251,8 +256,15 @@ fn of_surface(
         _ => "Contact of a rough surface",
     };
     let mut text = head(title, from);
-    text += &domain(&topography, purpose);
-    text += &surface_part(args, &topography, &relative(from, folder), purpose);
+    let border = match purpose {
+        Purpose::Indentation => Border::Free,
+        _ if repeats_as_stored(&topography)? => Border::Repeats,
+        // It keeps the lay, which slides differently along +x and -x, and friction hardly depends on it.
+        Purpose::Friction => Border::Window,
+        _ => Border::Mirror,
+    };
+    text += &domain(&topography, border);
+    text += &surface_part(args, &topography, &relative(from, folder), border);
     if purpose == Purpose::Indentation {
         text += &indenter(material, 10.0 * topography.size[0]);
     }
@@ -286,31 +298,76 @@ fn with_adhesion(before: String, after: String, purpose: Purpose, folder: &Path)
     [before, section, after].concat()
 }
 
-fn domain(topography: &Topography, purpose: Purpose) -> String {
+/// The border of the domain, and what the surface does there.
+#[derive(Clone, Copy, PartialEq)]
+enum Border {
+    /// Free.
+    Free,
+    /// Periodic, of a surface that goes on at the opposite border.
+    Repeats,
+    /// Periodic, of a surface that does not, which is continued by its reflections.
+    Mirror,
+    /// Periodic, of a surface whose heights fall to zero there.
+    Window,
+}
+
+/// Whether a map continues at the opposite border. Spikes would hide how large a jump is.
+fn repeats_as_stored(topography: &Topography) -> Result<bool, Failure> {
+    let map = surface::map("the surface", topography)?;
+    let spikes = Outliers { threshold: SPIKES, ..Outliers::default() };
+    let clean = Operation::RemoveOutliers(spikes).apply(&map).map_err(Failure::about("the surface"))?;
+    Ok(repeats(&clean))
+}
+
+impl Border {
+    /// The keys of the domain, with a remark.
+    fn key(self) -> &'static str {
+        match self {
+            Border::Free => "boundary = \"free\"\n",
+            Border::Repeats => {
+                "boundary = \"periodic\"                 # opposite borders of the file match\n"
+            }
+            Border::Mirror => {
+                "boundary = \"periodic\"                 # a part of a larger surface, continued by its reflections\n"
+            }
+            Border::Window => {
+                "boundary = \"periodic\"                 # a part of a larger surface; its border is windowed\n"
+            }
+        }
+    }
+
+    /// Sides of the domain over those of the surface.
+    fn times(self) -> usize {
+        if self == Border::Mirror { 2 } else { 1 }
+    }
+}
+
+fn domain(topography: &Topography, border: Border) -> String {
     let shape: [usize; 2] = topography.heights.dim().into();
     let longest = shape[0].max(shape[1]);
-    let boundary = if purpose == Purpose::Indentation {
-        "boundary = \"free\"\n"
-    } else {
-        "boundary = \"periodic\"                 # a part of a larger surface; its border is windowed\n"
-    };
+    let (times, with) = (border.times(), if border == Border::Mirror { " with its reflections" } else { "" });
     let cells = if longest > MOST_CELLS {
-        let fewer = shape.map(|n| (n * MOST_CELLS).div_ceil(longest).max(8));
+        let fewer = shape.map(|n| times * (n * MOST_CELLS).div_ceil(longest).max(8));
         format!(
-            "cells = [{}, {}]                    # of the {} x {} points of the file; all of them cost more\n",
-            fewer[0], fewer[1], shape[0], shape[1]
+            "cells = [{}, {}]                    # of the {} x {} points of the file{with}; all of them cost more\n",
+            fewer[0],
+            fewer[1],
+            times * shape[0],
+            times * shape[1]
         )
     } else {
         String::new()
     };
+    let size = topography.size.map(|side| quantity(times as f64 * side, "m"));
     format!(
-        "[domain]                              # its size is that of the surface, {} x {}\n{cells}{boundary}",
-        quantity(topography.size[0], "m"),
-        quantity(topography.size[1], "m")
+        "[domain]                              # its size is that of the surface{with}, {} x {}\n{cells}{}",
+        size[0],
+        size[1],
+        border.key()
     )
 }
 
-fn surface_part(args: &New, topography: &Topography, path: &str, purpose: Purpose) -> String {
+fn surface_part(args: &New, topography: &Topography, path: &str, border: Border) -> String {
     let [low, high] = extent(topography.heights.iter().copied());
     let (nx, ny) = topography.heights.dim();
     let holes = topography.heights.iter().filter(|height| !height.is_finite()).count();
@@ -327,14 +384,27 @@ fn surface_part(args: &New, topography: &Topography, path: &str, purpose: Purpos
     if let Some(unit) = &args.height_unit {
         text += &format!("height_unit = {}\n", toml(unit));
     }
-    text += "level = \"plane\"                       # the sample may be tilted under the instrument\n";
-    text += "outliers = { threshold = 8, radius = 2 }   # spikes of the instrument; summits of the surface stay\n";
+    text += match border {
+        Border::Repeats => {
+            "level = \"none\"                        # a plane would part the borders, which match\n"
+        }
+        _ => "level = \"plane\"                       # the sample may be tilted under the instrument\n",
+    };
+    text += &format!(
+        "outliers = {{ threshold = {SPIKES}, radius = 2 }}   # spikes of the instrument; summits of the surface stay\n"
+    );
     if holes > 0 {
         text += &format!("fill = \"harmonic\"                     # {holes} points are undefined\n");
     }
-    if purpose != Purpose::Indentation {
-        text += "window = { shape = \"tukey\", share = 0.1 }   # opposite borders match\n";
-    }
+    text += match border {
+        Border::Mirror => {
+            "border = \"mirror\"                     # the surface and its reflections: opposite borders match\n"
+        }
+        Border::Window => {
+            "window = { shape = \"tukey\", share = 0.1 }   # opposite borders match; not for a leak\n"
+        }
+        Border::Free | Border::Repeats => "",
+    };
     if nx.max(ny) > MOST_CELLS {
         text += "resample = \"band-limited\"             # to the cells of the domain\n";
     }

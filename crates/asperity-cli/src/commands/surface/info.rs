@@ -1,7 +1,5 @@
 //! `asperity surface info`: what a file holds, and the statistics of its heights as stored.
 
-use asperity::surface::statistics::Extent;
-
 use asperity_io::quantity::Length;
 
 use super::table::SurfaceSummary;
@@ -26,7 +24,7 @@ impl Verb for SurfaceInfo {
         }
         let topography = super::open(&self.file)?;
         let name = self.file.file.display().to_string();
-        let extent = if self.periodic { Extent::Periodic } else { Extent::Finite };
+        let extent = super::extent(&topography, self.periodic);
         let mut summary = SurfaceSummary::of(&name, &topography, extent)?;
         if self.longest.is_some() || self.shortest.is_some() {
             let limit = |given: Option<Length>, usual: f64| given.map_or(usual, Length::get);

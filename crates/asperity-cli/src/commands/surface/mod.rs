@@ -11,9 +11,10 @@ use std::path::Path;
 
 use asperity::Grid;
 use asperity::surface::Surface as Map;
+use asperity::surface::process::Border;
 use asperity::surface::statistics::Extent;
 use asperity_io::case::fragment;
-use asperity_io::preparation::{Prepared, Step, prepare};
+use asperity_io::preparation::{Prepared, Step, border, prepare};
 use asperity_io::quantity::Length;
 use asperity_io::quantity::range::Positive;
 use asperity_io::topography::{Format, ReadOptions, Topography, read, write};
@@ -43,7 +44,7 @@ pub(super) fn name(path: &Path) -> String {
 }
 
 /// The heights on their grid; `name` is what messages call them.
-fn map(name: &str, topography: &Topography) -> Result<Map, Failure> {
+pub(super) fn map(name: &str, topography: &Topography) -> Result<Map, Failure> {
     let failed = Failure::about(name);
     let (nx, ny) = topography.heights.dim();
     let grid = Grid::new([nx, ny], topography.size).map_err(&failed)?;
@@ -62,6 +63,12 @@ fn target(path: &Path, to: Option<&str>) -> Result<Format, Failure> {
         refuse!("{format} is read, but not written; write one of {}", names.join(", "));
     }
     Ok(format)
+}
+
+/// Whether a surface repeats: where its user says so, or its history that it was continued by its reflections.
+fn extent(topography: &Topography, periodic: bool) -> Extent {
+    let history: Vec<&str> = topography.history().collect();
+    if periodic || border(&history) == Border::Mirrored { Extent::Periodic } else { Extent::Finite }
 }
 
 /// Writes a surface where the command line says, and prints its statistics.

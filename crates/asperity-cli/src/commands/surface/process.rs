@@ -1,6 +1,5 @@
 //! `asperity surface process`: a measured surface or profile prepared step by step.
 
-use asperity::surface::statistics::Extent;
 use asperity_io::topography::Topography;
 
 use crate::args::SurfaceProcess;
@@ -27,6 +26,7 @@ impl Verb for SurfaceProcess {
         let size = prepared.surface.grid().size();
         let processed = Topography { heights: prepared.surface.into_heights(), size, ..topography };
         let processed = Topography { format, ..processed };
-        super::finish(&self.to, &processed, Extent::Finite, |summary| summary)
+        let extent = super::extent(&processed, false);
+        super::finish(&self.to, &processed, extent, |summary| summary)
     }
 }

@@ -212,6 +212,13 @@ fn slips_in_the_steps_are_told_with_their_place() {
         ("flip = \"z\"", vec!["surface[0].flip", "\"x\", \"y\""]),
         ("rotate = 0.5", vec!["surface[0].rotate", "a whole number"]),
         ("window = { shape = \"hann\", share = 0.5 }", vec!["Tukey"]),
+        ("border = \"window\"", vec!["surface[0].border", "\"mirror\""]),
+        ("border = \"mirror\"\nwindow = {}", vec!["a window and a mirror", "one of the two"]),
+        (
+            "process = [{ op = \"window\" }, { op = \"border\", method = \"mirror\" }]",
+            vec!["surface[0].process", "one of the two"],
+        ),
+        ("border = \"mirror\"\nprocess = []", vec!["`border` cannot be combined with `process`"]),
         ("outliers = { radius = 11 }", vec!["between 1 and 10 cells"]),
         ("outliers = true", vec!["surface[0].outliers", "a table"]),
         ("resample = \"cubic\"", vec!["\"bilinear\""]),
@@ -224,6 +231,67 @@ fn slips_in_the_steps_are_told_with_their_place() {
         let words: Vec<_> = words.into_iter().filter(|word| *word != "step").collect();
         refused(dir.path(), "", &[&file(keys)], &words);
     }
+}
+
+#[test]
+fn a_mirrored_surface_has_twice_the_length_and_width_and_so_has_its_domain() {
+    let dir = tempfile::tempdir().unwrap();
+    wavy(dir.path(), "a.sdf", |_| ());
+    let mirrored = |keys: &str| file(&format!("level = \"none\"\nborder = \"mirror\"\n{keys}"));
+    let case = parse(dir.path(), "boundary = \"periodic\"", &[&mirrored("")]).unwrap();
+    assert_eq!((case.conditions.grid.cells(), case.conditions.grid.size()), ([24, 16], [24e-6, 8e-6]));
+    let gap = case.gap().unwrap();
+    for (i, j) in (0..24).flat_map(|i| (0..16).map(move |j| (i, j))) {
+        assert_eq!(gap[[i, j]], gap[[i.min(23 - i), j.min(15 - j)]]);
+    }
+    // The slope of the map changes sign at the border, which is no jump; without the reflections the tilt is one.
+    let codes =
+        |case: &Case| case.examine().unwrap().findings.iter().map(|f| f.code.to_string()).collect::<Vec<_>>();
+    assert!(!codes(&case).contains(&"gap-not-periodic".to_owned()));
+    let tilted = parse(dir.path(), "boundary = \"periodic\"", &[&file("level = \"none\"")]).unwrap();
+    let found = tilted.examine().unwrap().findings;
+    let jump = found.iter().find(|finding| finding.code == "gap-not-periodic").unwrap();
+    assert!(jump.text.contains("border = \"mirror\""), "{}", jump.text);
+    // Before the filter, which takes the surface as periodic; the crop counts before the reflections, the resampling after them.
+    assert_eq!(
+        record(
+            dir.path(),
+            "cells = [10, 10]",
+            "resample = \"bilinear\"\nfilter = { shortest = \"2 um\" }\nborder = \"mirror\"\ncrop = { cells = [8, 8] }"
+        ),
+        [
+            "crop to 8 x 8 cells from (2, 0)",
+            "subtract the plane (least squares)",
+            "fill undefined points (harmonic, at most 25 %): 0 filled",
+            "continue by reflections along each axis (mirror)",
+            "keep wavelengths from 2e-6 m on (sharp)",
+            "resample to 10 x 10 cells (bilinear)",
+        ]
+    );
+    // A domain of the file's own size.
+    let own = "cells = [12, 8]\nsize = [\"12 um\", \"4 um\"]";
+    let words = [
+        "2.4e-5 m x 8e-6 m with its reflections",
+        "leave domain.size out",
+        "crop = { size = [6e-6, 2e-6] }, half of",
+    ];
+    refused(dir.path(), own, &[&mirrored("")], &words);
+    refused(
+        dir.path(),
+        "cells = [12, 8]",
+        &[&mirrored("")],
+        &["24 x 16 points with its reflections", "domain.cells = [24, 16]"],
+    );
+    // A map of hardness is one of the domain.
+    std::fs::write(dir.path().join("hard.txt"), "1 1 1 1 1 1 1 1 1 1 1 1\n".repeat(8)).unwrap();
+    let body = "hardness_file = { path = \"hard.txt\", unit = \"1 GPa\" }";
+    let text = format!("{}[[surface]]\n{}\n", FRAME.replace("DOMAIN", ""), mirrored(""));
+    let text = text.replace("poisson = 0.5", &format!("poisson = 0.5\n{body}"));
+    let told = Case::parse(&text, dir.path(), &[]).unwrap_err().to_string();
+    assert!(
+        told.contains("24 x 16 cells") && told.contains("continue the numbers by their reflections"),
+        "{told}"
+    );
 }
 
 #[test]

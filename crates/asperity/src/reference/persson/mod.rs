@@ -97,8 +97,8 @@ pub struct Magnification {
 
 impl Persson {
     /// From the waves of a periodic surface that slides in a direction. Each wave has its own direction, so the friction of an
-    /// anisotropic surface depends on the direction. Level and window a measured surface first, because its borders otherwise act
-    /// as steps.
+    /// anisotropic surface depends on the direction. Level a measured surface first and continue it by its reflections, because
+    /// its borders otherwise act as steps.
     ///
     /// `creep` is the contact creep compliance at the temperature of the contact ([`Creep::stretched`]), `pressure` the nominal
     /// one \[Pa\].

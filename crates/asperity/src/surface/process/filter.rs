@@ -1,6 +1,6 @@
 //! High-, low- and band-pass filters by wavelength.
 //!
-//! The surface is taken as periodic; level or window a measured one first. Sharp edges keep or drop a wave; Gaussian edges
+//! The surface is taken as periodic; level a measured one first, and mirror or window it. Sharp edges keep or drop a wave; Gaussian edges
 //! multiply its amplitude by the areal Gaussian filter of ISO 16610-61, which passes half of it at the cut-off wavelength L:
 //!
 //! ```text

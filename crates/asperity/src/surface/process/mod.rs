@@ -4,15 +4,19 @@
 //! Steps that work point by point keep undefined points (NaN). Steps that need every point (filters, resampling by waves) return
 //! an error.
 
+mod border;
 mod crop;
 mod filter;
+mod mirror;
 mod orient;
 mod outliers;
 mod resample;
 mod window;
 
+pub use border::Border;
 pub use crop::{crop, defined_extent};
 pub use filter::{Band, Edge, filter};
+pub use mirror::mirror;
 pub use orient::{Axis, flip, invert, rotate};
 pub use outliers::{Outliers, remove_outliers};
 pub use resample::{Resampling, resample};
@@ -63,6 +67,8 @@ pub enum Operation {
     Invert,
     /// [`window()`]: fade to zero at the edges.
     Window(Window),
+    /// [`mirror()`]: continue by reflections.
+    Mirror,
     /// [`remove_circle`]: subtract a circle from a profile.
     RemoveCircle {
         /// Its radius \[m\]; `None`: the radius that fits best.
@@ -91,6 +97,7 @@ impl Operation {
             Operation::Rotate { quarter_turns } => rotate(surface, quarter_turns),
             Operation::Invert => Ok(invert(surface)),
             Operation::Window(shape) => window(surface, shape),
+            Operation::Mirror => mirror(surface),
             Operation::RemoveOutliers(outliers) => remove_outliers(surface, outliers),
             Operation::RemoveCircle { radius } => without_circle(surface, radius),
         }
@@ -156,7 +163,8 @@ impl fmt::Display for Operation {
                 write!(f, "fill undefined points ({method}, at most {} %)", 100.0 * largest_share)
             }
             Operation::Crop { from, cells } => {
-                write!(f, "crop to {} x {} cells from ({}, {})", cells[0], cells[1], from[0], from[1])
+                let (cut, [nx, ny], [i, j]) = (border::CUT, cells, from);
+                write!(f, "{cut} {nx} x {ny} cells from ({i}, {j})")
             }
             Operation::Resample { cells, method } => {
                 let method = match method {
@@ -174,6 +182,7 @@ impl fmt::Display for Operation {
             Operation::Rotate { quarter_turns } => write!(f, "rotate by {quarter_turns} quarter turns"),
             Operation::Invert => write!(f, "invert"),
             Operation::Window(shape) => write!(f, "{shape}"),
+            Operation::Mirror => f.write_str(border::MIRRORED),
             Operation::RemoveOutliers(outliers) => {
                 write!(
                     f,

@@ -21,11 +21,22 @@ pub enum Window {
     },
 }
 
+/// How the sentence of a Hann window begins in a history, and that of Tukey's.
+const HANN: &str = "Hann window";
+const TUKEY: &str = "Tukey window over";
+
+impl Window {
+    /// Whether a sentence of a history says that the surface was windowed.
+    pub(super) fn is_told_by(sentence: &str) -> bool {
+        sentence.starts_with(HANN) || sentence.starts_with(TUKEY)
+    }
+}
+
 impl fmt::Display for Window {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Window::Hann => write!(f, "Hann window"),
-            Window::Tukey { share } => write!(f, "Tukey window over {} % of the length", 100.0 * share),
+            Window::Hann => f.write_str(HANN),
+            Window::Tukey { share } => write!(f, "{TUKEY} {} % of the length", 100.0 * share),
         }
     }
 }

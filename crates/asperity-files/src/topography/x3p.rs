@@ -105,7 +105,7 @@ impl<'a> Members<'a> {
             [] => {
                 return Err(Problem::malformed("the zip archive", "without main.xml", "one of an X3P file"));
             }
-            [first, ..] if first.is_empty() => String::new(),
+            ["", ..] => String::new(),
             [folder] => (*folder).to_owned(),
             more => {
                 let several = format!("in {} folders ({})", more.len(), more[..more.len().min(5)].join(", "));

@@ -212,15 +212,12 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
     let reason = match args.terms {
         Some(_) => "as asked for".to_owned(),
         None => format!(
-            "more do not lower the Bayesian information criterion, or are not determined; probability {:.2}",
+            "others do not lower the Bayesian information criterion, are not determined or practically excluded; probability {:.2}",
             fit.numbers[fit.terms.len()]
         ),
     };
     line("terms", format!("{} ({reason})", fit.terms.len()));
-    line(
-        "misfit",
-        format!("{} rms, {:.3} % of the largest {fitted}", quantity(fit.rms, unit), 100.0 * fit.relative_rms),
-    );
+    line("misfit", misfit(fit.rms, fit.relative_rms, fit.given));
     let symbol = if of.modulus == Modulus::Young { "E" } else { "G" };
     let pascal = |x: Interval| interval_in_words(of.of(x), "Pa");
     line("", format!("{:<12}95 % interval", "value"));

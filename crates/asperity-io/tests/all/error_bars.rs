@@ -408,8 +408,8 @@ fn the_pressure_at_a_sharp_edge_is_not_resolved() {
     let punch = with("surface = [{ kind = \"flat-punch\", radius = 2e-4 }]");
     for (text, is_resolved) in [
         (punch.clone(), false),
-        // A hardness limits it, and a sphere has no edge.
-        (punch.replace("poisson = 0.5,", "poisson = 0.5, hardness = \"1 MPa\","), true),
+        // A hardness that the edge reaches limits it, and a sphere has no edge.
+        (punch.replace("poisson = 0.5,", "poisson = 0.5, hardness = \"1 kPa\","), true),
         (SPHERE.to_owned(), true),
     ] {
         let found = found(&text, false);

@@ -140,6 +140,7 @@ impl Case {
                 row: None,
                 constriction: None,
                 gap_error: 0.0,
+                closed: 0,
                 pressure_drop: leak
                     .fluid
                     .filter(|_| leak.coupling.is_none())

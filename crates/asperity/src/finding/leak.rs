@@ -81,7 +81,8 @@ impl LeakDiagnostics {
         });
         let closed = self.closed.warning(GAPS_BELOW_ERROR, |worst| {
             format!(
-                "{} cells{} have gaps above 0 that are not above the error of the gap, {}: they count as closed. The error is the rounding of the                  largest gap, and without a contact also the deepest negative gap. Give the contact beside the gap, or a gap that is 0 where the surfaces touch.",
+                "{} cells{} have gaps above 0 that are not above the error of the gap, {}: they count as closed. The error is the rounding of the \
+                 largest gap, and without a contact also the deepest negative gap. Give the contact beside the gap, or a gap that is 0 where the surfaces touch.",
                 digits(worst.value),
                 worst.place(),
                 si(self.error, "m")

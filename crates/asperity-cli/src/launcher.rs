@@ -116,9 +116,9 @@ pub fn refuse_several(what: &str) -> Result<(), Failure> {
     let Some(([_, count], launcher)) = ranks(&variable) else { return Ok(()) };
     let size = launcher.count.into_iter().find(|name| variable(name).is_some()).unwrap_or_default();
     refuse!(
-        "{what} is one contact on the threads of one process, but {} has started {count} processes of it ({size}={count}). Start one \
+        "`asperity {what}` works with the threads of one process, but {} has started {count} processes of it ({size}={count}). Start one \
          process with more threads (`srun -n 1 -c 16`, `mpirun -n 1`), or take `asperity study`, which divides many cases. If each process \
-         has a case of its own, call it as `env -u {size} asperity run CASE`",
+         has a case of its own, call it as `env -u {size} asperity {what} CASE`",
         launcher.name
     );
 }

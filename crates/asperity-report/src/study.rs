@@ -33,7 +33,13 @@ pub fn figure(plan: &Plan, table: &Table) -> Option<Figure> {
         }
     };
     let mut curves: Vec<(String, Vec<Place>)> = vec![];
-    for (row, value) in answer.values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+    let holds = |row: usize| {
+        let own = table.rows[row].answers.iter().find(|own| own.name == answer.name);
+        own.is_none_or(|own| own.validity.is_valid())
+    };
+    let known = || answer.values.iter().enumerate().filter(|(_, value)| value.is_finite());
+    let left_out = known().filter(|(row, _)| !holds(*row)).count();
+    for (row, value) in known().filter(|(row, _)| holds(*row)) {
         let Some(x) = place(row) else { continue };
         let word = |n: &usize| {
             format!("{} = {}", plan.called(&table.keys[*n].name), table.rows[row].run.values[*n].text())
@@ -77,11 +83,17 @@ pub fn figure(plan: &Plan, table: &Table) -> Option<Figure> {
     }
     let figure =
         Figure::new(title(plan, table).unwrap_or_default()).with(panel).columns(1).panel_size([360.0, 260.0]);
-    Some(match (averaged, has_errors) {
-        (true, _) => figure.caption("Mean over the seeds; the bars go from the least to the largest value."),
-        (false, true) => figure.caption("The bars are the errors of the answers."),
-        (false, false) => figure,
-    })
+    let mut words = match (averaged, has_errors) {
+        (true, _) => "Mean over the seeds; the bars go from the least to the largest value.".to_owned(),
+        (false, true) => "The bars are the errors of the answers.".to_owned(),
+        (false, false) => String::new(),
+    };
+    if left_out > 0 {
+        let shown = known().count();
+        words +=
+            &format!(" Left out: {left_out} of {shown} answers, which their findings take back (not valid).");
+    }
+    Some(figure.caption(words.trim_start()))
 }
 
 /// "contact area over load and seed": the answer of the figure, and what was varied.

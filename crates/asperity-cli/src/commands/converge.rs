@@ -20,6 +20,7 @@ impl Verb for Converge {
 
     /// Solves the case and its variations, and prints the answers.
     fn run(&self) -> Result<(), Failure> {
+        crate::launcher::refuse_several("converge")?;
         let given = answers::units(&self.unit)?;
         let set = [&self.common.set[..], &answers::keys(&given)].concat();
         let case = Case::read(&self.case, &set)?;

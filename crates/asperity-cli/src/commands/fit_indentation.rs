@@ -131,7 +131,9 @@ pub(super) fn indenter(args: &FitIndentation) -> String {
     let word = choice::word(&args.indenter);
     match (args.radius, args.angle) {
         (Some(radius), _) => format!("{word}, radius {}", quantity(radius.get(), "m")),
-        (None, Some(angle)) => format!("{word}, half angle {:.4} deg", angle.get().to_degrees()),
+        (None, Some(angle)) => {
+            format!("{word}, half angle {} deg", (1e4 * angle.get().to_degrees()).round() / 1e4)
+        }
         (None, None) => word.to_owned(),
     }
 }

@@ -22,7 +22,7 @@ impl Verb for Run {
 
     /// Runs the case, tells the progress on stderr and a summary on stdout.
     fn run(&self) -> Result<(), Failure> {
-        crate::launcher::refuse_several("`asperity run`")?;
+        crate::launcher::refuse_several("run")?;
         let mut set = self.common.set.clone();
         let units = super::answers::units(&self.unit)?;
         set.extend(super::answers::keys(&units));

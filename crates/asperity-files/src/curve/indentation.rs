@@ -188,14 +188,14 @@ pub fn power_law_block(
     head(record, fit.rows.len(), fit.relative_rms, fit.window)
         + &test.written()
         + &format!(
-            "# {} relaxation modulus 1 s after a step {:e} Pa, {}; exponent {}.\n",
+            "# {} relaxation modulus 1 s after a step {:e} Pa, {}; exponent {}. Known from {step:e} s to {length:e} s.\n",
             if of.modulus == Modulus::Young { "Young's" } else { "Shear" },
             modulus.value,
             interval(modulus, "Pa"),
             interval(fit.exponent, "").trim_end(),
         )
         + &format!(
-            "poisson = {:?}\nmaterial = {{ model = \"springpot\", {} = \"{:e} Pa\", time = \"1 s\", order = {:?}, window = [\"{step:e} s\", \"{length:e} s\"] }}\n",
+            "poisson = {:?}\nmaterial = {{ model = \"springpot\", {} = \"{:e} Pa\", time = \"1 s\", order = {:?} }}\n",
             of.poisson,
             choice::word(&of.modulus),
             modulus.value * libm::tgamma(1.0 - fit.exponent.value),

@@ -60,7 +60,7 @@ pub enum Operation {
     Window(Window),
     /// Continue beyond the border, so that opposite borders match on a periodic domain.
     Border {
-        /// How.
+        /// How the surface goes on beyond its border.
         method: Continuation,
     },
     /// Make spikes undefined.

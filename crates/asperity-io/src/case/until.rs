@@ -22,7 +22,7 @@ pub enum Until {
     /// The load crosses a value.
     Load(Prescribed),
     /// The mean pressure crosses a value.
-    Pressure(Pressure<NonNegative>),
+    Pressure(Pressure<Finite>),
     /// Another number of the rows crosses a value.
     Number(RowNumber, Prescribed),
 }
@@ -87,11 +87,7 @@ impl JsonSchema for Until {
         let own = [
             ("approach", "The approach crosses a value.", generator.subschema_for::<Length>()),
             ("load", "The load crosses a value.", generator.subschema_for::<Prescribed>()),
-            (
-                "pressure",
-                "The mean pressure crosses a value.",
-                generator.subschema_for::<Pressure<NonNegative>>(),
-            ),
+            ("pressure", "The mean pressure crosses a value.", generator.subschema_for::<Pressure<Finite>>()),
         ]
         .map(|(name, words, schema)| member(name, words.to_owned(), schema.into()));
         let others =

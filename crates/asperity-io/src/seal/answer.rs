@@ -84,6 +84,8 @@ pub struct SealAnswer {
     pub leak: Spread,
     /// The same if the fluid did not open the contact.
     pub one_way: Spread,
+    /// Between which values the pressures of the sweep leave its mean.
+    pub one_way_bounds: [f64; 2],
     /// The least and the largest mean leak that the pressures of the sweep allow.
     pub bounds: [f64; 2],
     /// When each seed opens.
@@ -129,6 +131,12 @@ impl SealAnswer {
         let (flows, now) = all(inlet, last)?;
         let rate = plan.leak_of_flow(sweep.times[last])?;
         let one_way = spread(&flows, |flow| rate * flow.one_way);
+        let mut one_way_bounds = [0.0; 2];
+        for sigma in sigmas(last)? {
+            for (bound, sigma) in one_way_bounds.iter_mut().zip([sigma.low(), sigma.high()]) {
+                *bound += rate * flow(&sigma, &plan.profile, [inlet, outlet])?.one_way / flows.len() as f64;
+            }
+        }
         let raised = outlet + RAISE * (inlet - outlet);
         let reach = plan.reach();
         let growth = match raised <= reach {
@@ -146,6 +154,9 @@ impl SealAnswer {
         let sigmas = sigmas(last)?;
         let opens: Vec<Opens> = sigmas.iter().map(|sigma| opening(sigma, &plan.profile, outlet)).collect();
         let known: Option<Vec<f64>> = opens.iter().map(|opens| pressure(opens, outlet)).collect();
+        // Of seeds of which some leak at every pressure and some do not a mean says nothing.
+        let always = opens.iter().filter(|opens| matches!(opens, Opens::Always)).count();
+        let known = known.filter(|known| always == 0 || always == known.len());
         let knudsen = flows.iter().zip(&sigmas).filter_map(|(flow, sigma)| knudsen(sigma, flow));
         let knudsen = knudsen.fold(f64::NAN, f64::max);
         let findings = findings::of(plan, &sweep, &sigmas, &flows, &now)?;
@@ -154,6 +165,7 @@ impl SealAnswer {
             leak: now.leak,
             bounds: now.bounds,
             one_way,
+            one_way_bounds,
             opening: known.map(|known| Spread::of(&known)),
             growth,
             knudsen,

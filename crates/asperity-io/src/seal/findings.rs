@@ -86,10 +86,18 @@ pub(super) fn of(
         );
         found.push(Finding::warning(SEAL_SWEEP_COARSE, open, OPEN, text));
     }
-    if sigmas.iter().any(|sigma| sigma.sealing_pressure().is_none()) {
+    let open = sigmas.iter().filter(|sigma| sigma.sealing_pressure().is_none()).count();
+    if open > 0 {
+        let (patch, seal) = match open == sigmas.len() {
+            true => ("The patch leaks".to_owned(), "the seal leaks"),
+            false => (
+                format!("The patches of {open} of {} seeds leak", sigmas.len()),
+                "a seal of such patches leaks",
+            ),
+        };
         let most = sigmas.iter().filter_map(Conductance::last_leaking).fold(0.0, f64::max);
         let text = format!(
-            "The patch leaks at every pressure of the sweep, up to {}, the largest in this seal: the seal leaks at every inlet pressure.",
+            "{patch} at every pressure of the sweep, up to {}, the largest in this seal: {seal} at every inlet pressure.",
             pa(most)
         );
         found.push(Finding::warning(SEAL_NEVER_TIGHT, most, largest, text).as_note());

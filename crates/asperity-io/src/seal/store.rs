@@ -53,6 +53,7 @@ impl SealAnswer {
             "seal_leak_bounds": self.bounds,
             "seal_leak_per_metre": self.leak.times(1.0 / self.plan.length),
             "seal_leak_one_way": self.one_way,
+            "seal_leak_one_way_bounds": self.one_way_bounds,
             "seal_opening_pressure": self.opening,
             "leak_growth": self.growth,
             "inlet": self.plan.ends[0],

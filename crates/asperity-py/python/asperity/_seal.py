@@ -73,7 +73,8 @@ class Seal(Sealed):
     @property
     def answers(self) -> list[dict[str, Any]]:
         """The answers, each with `name`, `value`, `unit`, and `valid`: False and `why` where a finding takes it back (docs/results.md)."""
-        return self._found["answers"]
+        answers: list[dict[str, Any]] = self._found["answers"]
+        return answers
 
     @property
     def answer(self) -> dict[str, Any]:

@@ -157,6 +157,9 @@ impl Diagnostics {
         for (index, (row, friction)) in rows.iter().zip(frictions).enumerate() {
             self.slides.see(index, row.coordinate, friction);
         }
+        if let Some(last) = rows.last() {
+            self.watches.iter_mut().for_each(|watch| watch.recall(last));
+        }
         // Findings that do not follow from rows alone; later rows are checked again.
         for finding in found {
             let Some([first, last]) = finding.rows.filter(|at| at[0] < rows.len()) else { continue };

@@ -145,9 +145,27 @@ pub(super) fn not_periodic(grid: &Grid, gap: &Array2<f64>, mirrored: bool) -> Op
     ))
 }
 
-/// Whether a surface continues across its borders: no jump or kink there is larger than what its cells show inside.
+/// Whether a surface continues across its borders: no jump or kink there is larger than what its cells show inside. Where neighbouring cells
+/// have hardly more to do with each other than distant ones, that cannot be told, and the answer is no.
 pub fn repeats(surface: &Surface) -> bool {
-    worst_kink(surface.heights(), false).is_none()
+    let heights = surface.heights();
+    worst_kink(heights, false).is_none() && [0, 1].into_iter().all(|axis| is_smooth(heights, axis))
+}
+
+/// Whether the mean square difference of neighbours is below the variance; it is twice the variance of cells that know nothing of each other.
+fn is_smooth(heights: ArrayView2<'_, f64>, axis: usize) -> bool {
+    let lines = heights.len_of(Axis(axis));
+    if lines < 2 {
+        return true;
+    }
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let known: Vec<f64> = heights.iter().copied().filter(|h| h.is_finite()).collect();
+    let middle = mean(&known);
+    let variance = mean(&known.iter().map(|h| (h - middle).powi(2)).collect::<Vec<_>>());
+    let [before, after] = [(0, lines - 1), (1, lines)]
+        .map(|(from, to)| heights.slice_axis(Axis(axis), ndarray::Slice::from(from..to)));
+    let steps = before.iter().zip(after).map(|(a, b)| (b - a).powi(2));
+    mean(&steps.filter(|square| square.is_finite()).collect::<Vec<_>>()) <= variance
 }
 
 /// The axis across whose border the heights or gaps jump most, where they do.

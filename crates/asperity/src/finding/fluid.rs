@@ -155,6 +155,10 @@ impl Watch for Wet {
         [films, chatter, tension, squeezed].into_iter().flatten().collect()
     }
 
+    fn recall(&mut self, last: &Row) {
+        self.mean_gap = Some(last.mean_gap);
+    }
+
     fn resume(&mut self, finding: &Finding) {
         self.films.resume(FLUID_LIFTS, finding);
         self.held.resume(FLUID_CHATTER, finding);

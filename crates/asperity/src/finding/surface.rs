@@ -58,8 +58,8 @@ fn of_shape(grid: &Grid, shape: &Shape) -> Vec<Finding> {
                 .collect()
         }
         Shape::Cylinder { radius: r } => radius("cylinder", *r).into_iter().collect(),
-        Shape::Wedge { slope } => steep("wedge", *slope).into_iter().collect(),
-        Shape::Cone { slope } => steep("cone", *slope).into_iter().collect(),
+        Shape::Wedge { slope } => steep("the wedge", *slope).into_iter().collect(),
+        Shape::Cone { slope } => steep("the cone", *slope).into_iter().collect(),
         Shape::FlatPunch(_) => vec![],
         Shape::Wave { amplitude, wavelength } => {
             let cells = [wavelength[0] / dx, wavelength[1] / dy];
@@ -70,7 +70,7 @@ fn of_shape(grid: &Grid, shape: &Shape) -> Vec<Finding> {
                 wavelength.iter().map(|l| (std::f64::consts::TAU * amplitude / l).powi(2)).sum();
             let slope = (square / 2.0 / waves.max(1.0)).sqrt();
             let short = unresolved("wave", cells[0].min(cells[1]));
-            short.into_iter().chain(steep("wave", slope)).collect()
+            short.into_iter().chain(steep("the wave", slope)).collect()
         }
     }
 }
@@ -78,7 +78,7 @@ fn of_shape(grid: &Grid, shape: &Shape) -> Vec<Finding> {
 fn of_spectrum(grid: &Grid, surface: &SelfAffine) -> Vec<Finding> {
     let cell = grid.longest_cell();
     let slope = match surface.roughness {
-        Roughness::RmsGradient(gradient) => steep("self-affine surface", gradient),
+        Roughness::RmsGradient(gradient) => steep("the self-affine surface", gradient),
         // Known once the surface is made: see `of_given_height`.
         Roughness::RmsHeight(_) => None,
     };
@@ -161,7 +161,7 @@ pub(super) fn of_given_height(grid: &Grid, gap: &Array2<f64>, parts: &[Part]) ->
         |part: &Part| matches!(part, Part::SelfAffine(SelfAffine { roughness: Roughness::RmsHeight(_), .. }));
     let slope = parts.iter().any(by_height).then(|| slope(grid, gap, f64::INFINITY))?;
     if slope <= SLOPES[1] {
-        return steep("gap", slope);
+        return steep("the gap", slope);
     }
     let text = format!(
         "The gap has an rms slope of {}: check the units of rms_height, of the wavelengths and of domain.size.",
@@ -212,7 +212,7 @@ fn unresolved(name: &str, cells: f64) -> Option<Finding> {
 pub(super) fn steep(name: &str, slope: f64) -> Option<Finding> {
     (slope > STEEPEST).then(|| {
         let text = format!(
-            "The rms slope of the {name} is {}: the theory assumes small slopes, and beyond {STEEPEST} its pressures and \
+            "The rms slope of {name} is {}: the theory assumes small slopes, and beyond {STEEPEST} its pressures and \
              areas are only estimates.",
             digits(slope)
         );

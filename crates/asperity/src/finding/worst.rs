@@ -13,6 +13,9 @@ pub(super) trait Watch {
     /// What is wrong with the rows so far.
     fn findings(&self, simulation: &Simulation) -> Vec<Finding>;
 
+    /// The last row of an earlier session of the run, where the next one is compared with it.
+    fn recall(&mut self, _last: &Row) {}
+
     /// Takes over a finding of an earlier session of the run, if it comes from this check.
     fn resume(&mut self, finding: &Finding);
 }

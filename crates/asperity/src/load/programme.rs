@@ -197,8 +197,8 @@ impl Stage {
             Some(Event::Number(number, value)) if !value.is_finite() => {
                 Err(Error::invalid(format!("{} of the event", number.name()), value, "finite"))
             }
-            Some(Event::Load(value) | Event::Pressure(value)) if !(value.is_finite() && value >= 0.0) => {
-                Err(Error::invalid("load of the event", value, "finite and not negative (bodies only press)"))
+            Some(Event::Load(value) | Event::Pressure(value)) if !value.is_finite() => {
+                Err(Error::invalid("load of the event", value, "finite"))
             }
             _ => Ok(()),
         }

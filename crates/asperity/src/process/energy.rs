@@ -80,7 +80,12 @@ impl Process for Energy {
         let jump = row.step.length() == 0.0;
         let adheres = row.simulation.traction.is_some();
         if adheres {
-            self.unknown += if jump { (row.potential - self.potential).abs() } else { self.of_course(row) };
+            // The state right after t = 0 is where the work begins to count.
+            self.unknown += match jump {
+                true if row.step.instant.time == 0.0 => 0.0,
+                true => (row.potential - self.potential).abs(),
+                false => self.of_course(row),
+            };
             self.slope = if jump { 0.0 } else { self.slope };
         }
         self.work += match jump || self.is_conservative || !adheres && !row.before.touches() {

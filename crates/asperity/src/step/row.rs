@@ -157,6 +157,10 @@ impl<'a> Step<'a> {
         }
         let work = energy(Quantity::ExternalWork)?;
         let adheres = self.traction.is_some();
+        // The dissipated energy of surfaces that adhere, which each row has, does not need it.
+        if adheres && !self.simulation.takes(Quantity::ExternalWork) {
+            return None;
+        }
         let attraction = if adheres { energy(Quantity::AdhesionEnergy)? } else { 0.0 };
         let sum =
             |of: fn(&dyn Process) -> f64| self.processes.iter().map(|process| of(&**process)).sum::<f64>();
@@ -256,7 +260,7 @@ impl<'a> Step<'a> {
         if let Some(traction) = self.traction {
             let closed = traction.closed();
             if closed > 0.0 {
-                gap.mapv_inplace(|gap| if gap <= closed { 0.0 } else { gap });
+                gap.mapv_inplace(|gap| if gap.abs() <= closed { 0.0 } else { gap });
             }
             let cells = gap.iter_mut().zip(self.contact_cells()).enumerate();
             cells

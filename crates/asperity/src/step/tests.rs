@@ -86,8 +86,9 @@ fn assert_alike(simulation: Simulation) {
     for (row, (a, b)) in expected.iter().zip(&found).enumerate() {
         for (k, (a, b)) in a.iter().zip(b).enumerate() {
             // A row is solved again from its own solution: both lie within the tolerance, 1e-6, of the exact one. Taken in twice, energies
-            // and wear would be wrong by tens of per cent.
-            assert!((a - b).abs() <= 1e-4 * a.abs().max(1e-9), "row {row}, number {k}: {a} and {b}");
+            // and wear would be wrong by tens of per cent. The third number, the estimated error, is a difference of solutions.
+            let tolerance = if k == 2 { 1e-2 } else { 1e-4 };
+            assert!((a - b).abs() <= tolerance * a.abs().max(1e-9), "row {row}, number {k}: {a} and {b}");
         }
     }
 }

@@ -365,7 +365,7 @@ fn the_work_over_a_jump_into_contact_and_off_it_is_known_to_what_the_finding_tel
     let work = |steps: usize| {
         let law = Adhesion { law: AdhesionLaw::Linear, ..exponential(2.36) };
         let simulation = sphere(48, law, &[(0.0, -6.0), (1.0, 1.5), (3.0, -6.0)], steps);
-        let known = Known { parts: &[], bodies: &[], thickness: None };
+        let known = Known { parts: &[], bodies: &[], thickness: None, mirrored: false };
         let mut diagnostics = Diagnostics::new(&simulation, known);
         let mut march = March::new(simulation).unwrap();
         let mut work = vec![];

@@ -29,6 +29,7 @@ impl Verb for args::Seal {
 
     /// Runs the patch, and prints the leak, the opening pressure and what they depend on.
     fn run(&self) -> Result<(), Failure> {
+        crate::launcher::refuse_several("seal")?;
         let units = units(&self.unit)?;
         let case = Case::read(&self.case, &self.common.set).map_err(Failure::Case)?;
         let Some(plan) = &case.seal else {

@@ -10,6 +10,9 @@ use crate::format::quantity;
 /// cm^3/min at 0 degC and one atmosphere.
 const SCCM: &str = "cm³/min at 0 °C and 1 atm (sccm)";
 
+/// A ratio that is known to this factor is stated without its bounds.
+const KNOWN: f64 = 1.2;
+
 /// Name and words of each answer, the leak first.
 pub(super) fn lines(answer: &SealAnswer, units: &Units) -> Vec<[String; 2]> {
     let words = Words { answer, units };
@@ -145,9 +148,18 @@ impl Words<'_> {
 
     fn opened(&self) -> Option<String> {
         let held = self.answer.one_way.mean;
-        let ratio = self.answer.leak.mean / held;
+        let leak = self.answer.leak.mean;
+        let [least, most] = self.answer.one_way_bounds.map(|held| leak / held);
         (self.leaks() && !held.is_nan()).then(|| match held > 0.0 {
-            true => format!("{} times the leak of the contact that it does not open", number(ratio)),
+            true if least <= KNOWN * most => {
+                format!("{} times the leak of the contact that it does not open", number(leak / held))
+            }
+            true => format!(
+                "about {} times the leak of the contact that it does not open (the sweep leaves {} to {} open)",
+                number(leak / held),
+                number(most),
+                number(least)
+            ),
             false => "the contact that it does not open is tight".to_owned(),
         })
     }

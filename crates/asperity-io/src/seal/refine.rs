@@ -26,9 +26,9 @@ pub(super) fn next(plan: &SealPlan, sweep: &SealSweep, more: usize) -> asperity:
         let sigma = sweep.conductance(plan, *seed, *time)?;
         Ok((bounds(&sigma, &plan.profile, plan.ends)?, sigma))
     };
-    let open: asperity::Result<Vec<([f64; 2], Conductance)>> = states.par_iter().map(open).collect();
+    let open: asperity::Result<Vec<_>> = states.par_iter().map(open).collect();
     let open = open?;
-    let mut times: Vec<(f64, &[([f64; 2], Conductance)])> =
+    let mut times: Vec<(f64, &[_])> =
         open.chunks(sweep.seeds.len()).map(|seeds| (share(seeds.iter().map(|seed| seed.0)), seeds)).collect();
     times.sort_by(|a, b| b.0.total_cmp(&a.0));
     for (share, seeds) in times {

@@ -32,7 +32,7 @@ impl Indenter {
     /// # Errors
     /// [`Error::Invalid`] if the angle is not between 0 and 90 degrees.
     pub fn profile(self, size: f64) -> Result<MdrProfile> {
-        if !self.is_round() && !(size > 0.0 && size < FRAC_PI_2) {
+        if !(self.is_round() || size > 0.0 && size < FRAC_PI_2) {
             return Err(Error::invalid(
                 "half angle of the indenter",
                 format!("{} degrees", size.to_degrees()),

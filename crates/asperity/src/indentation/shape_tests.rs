@@ -74,7 +74,7 @@ fn record(profile: MdrProfile, body: Body, deepest: f64, back: bool, rows: usize
             })
             .sum()
     };
-    let largest = (0..=n).filter(|k| depths[*k] == deepest).next_back().unwrap();
+    let largest = (0..=n).rfind(|k| depths[*k] == deepest).unwrap();
     let load = |m: usize| {
         if m <= largest {
             return seen(&unit, 0, m, times[m]);

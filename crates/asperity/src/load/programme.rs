@@ -229,7 +229,7 @@ mod tests {
         let wrong = Stage { duration: Some(-1.0), ..timed.clone() };
         let error = Programme::new(vec![timed.clone(), wrong]).validate().unwrap_err().to_string();
         assert!(error.contains("duration of stage 2 is -1"), "{error}");
-        let wrong = Stage { until: Some(Event::Load(-1.0)), ..timed };
+        let wrong = Stage { until: Some(Event::Load(f64::NAN)), ..timed };
         assert!(Programme::new(vec![wrong]).validate().is_err());
         assert!(Programme::new(vec![]).validate().is_err());
     }

@@ -358,8 +358,7 @@ impl Run<'_> {
         let outcome = solver.solve(self.operator, &inner, &options, contact, self.interrupt)?;
         let w = contact.approach;
         if own.law.is_displaced() {
-            let fields =
-                ((&bound[..], &contact.pressure[..]), (&own.image[..], &contact.unit_displacement[..]));
+            let fields = ((bound, &contact.pressure[..]), (&own.image[..], &contact.unit_displacement[..]));
             let [work, total] = sums(fields, |((b, q), (kb, kq))| [(b + q) * (kb + kq), b + q]);
             own.closed = if total > 0.0 { own.tolerances[0] * c * work.abs() / total } else { 0.0 };
         }

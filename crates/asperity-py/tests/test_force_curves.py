@@ -163,7 +163,7 @@ def test_stated_uncertainties_are_in_the_intervals_of_a_relaxation():
     depth = 1e-6 * np.minimum(time, 1.0)
     load = 4 / 3 * 1e6 / 0.75 * np.sqrt(10e-6) * depth**1.5
     load *= 1.0 + 1e-3 * np.random.default_rng(1).normal(size=load.size)
-    how = {"terms": 0, "given": "depth", **SPHERE}
+    how = {"terms": 0, "given": "depth", "indenter": "paraboloid", **SPHERE}
     plain = asp.fit_indentation(time, load, depth, **how)
     stated = asp.fit_indentation(
         time, load, depth, radius_uncertainty=0.8e-6, spring_constant=0.2, spring_constant_uncertainty=0.006, **how

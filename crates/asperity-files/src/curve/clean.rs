@@ -139,7 +139,8 @@ fn above_noise(curves: &mut Curves, notes: &mut Vec<String>) -> Result<()> {
             let least = near.copied().fold(f64::INFINITY, f64::min);
             least > 0.0 && *n + 1 < all && *n > 0 && (least > ABOVE_NOISE * values[*n].abs() || count == 1)
         };
-        if count as f64 <= (0.02 * all as f64).max(1.0) && bad.iter().all(stray) {
+        let is_few = count as f64 <= (0.02 * all as f64).max(1.0) && count as f64 <= MOST * all as f64;
+        if is_few && bad.iter().all(stray) {
             let told: Vec<Option<usize>> = bad.iter().map(|n| line(*n)).collect();
             notes.push(format!(
                 "{count} of {all} values of the {name}{place} {} not greater than 0 and left out{}",
@@ -155,9 +156,11 @@ fn above_noise(curves: &mut Curves, notes: &mut Vec<String>) -> Result<()> {
         let end = values.iter().position(|value| *value < ABOVE_NOISE * noise).unwrap_or(first).min(first);
         let start = sweep.x.iter().copied().find(|x| *x > 0.0).unwrap_or(0.0);
         let fault = fault(format!(
-            "the {name}{place} is {:e} here, and {count} of {all} values are not greater than 0, as those of every passive material are: from \
+            "the {name}{place} is {:e} {}, and {count} of {all} values are not greater than 0, as those of every passive material are: from \
              {:.3e} s on it is not told from noise",
-            values[first], sweep.x[end.min(sweep.x.len() - 1)]
+            values[first],
+            line(first).map_or(format!("at point {}", first + 1), |_| "here".to_owned()),
+            sweep.x[end.min(sweep.x.len() - 1)]
         ))
         .at(line(first));
         return Err(match end >= 2 && sweep.x[end - 1] > start {

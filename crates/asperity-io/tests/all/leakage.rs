@@ -296,7 +296,7 @@ fn a_leak_through_a_window_is_told_wherever_it_is_seen() {
         assert_eq!([told(&done.findings), told(reader.findings()), told(&stored.findings)], [count; 3]);
         assert_eq!(stored.last("percolates") == 0.0, windowed);
         assert_eq!(stored.last("leak_resolved") == 0.0, windowed);
-        assert_eq!(stored.sentence(&Units::default()).contains("see the findings"), windowed);
+        assert_eq!(stored.sentence(&Units::default()).contains("not valid"), windowed);
         let again = compute(&reader, &stored.leak, &AtomicBool::new(false), |_, _| ()).unwrap();
         assert_eq!(told(&again.findings), count);
     }

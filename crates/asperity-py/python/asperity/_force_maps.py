@@ -93,7 +93,7 @@ def fit_force_map(curves: Iterable[ForceCurve], /, *, poisson: float, model: str
     >>> def curve(x, young):                                    # Hertz: 4/3 E* sqrt(R) d^(3/2)
     ...     force = 4 / 3 * young / 0.75 * np.sqrt(10e-6) * np.maximum(depth, 0.0) ** 1.5
     ...     return asp.ForceCurve(force, depth, metadata={"grid index x": x, "grid index y": 0})
-    >>> found = asp.fit_force_map([curve(0, 1e6), curve(1, 2e6)], radius=10e-6, poisson=0.5, model="hertz")
+    >>> found = asp.fit_force_map([curve(0, 1e6), curve(1, 2e6)], radius=10e-6, poisson=0.5, model="hertz", indenter="paraboloid")
     >>> found.young.shape, (found.young / 1e6).round(2).tolist()
     ((2, 1), [[1.0], [2.0]])
     """

@@ -205,7 +205,7 @@ const RULES: &[Rule] = &[
     takes(SEAL_NARROW, SEAL, 4.0, "the seal is narrower than its patch"),
     see(SEAL_NARROW, SEAL),
     see(SEAL_PATCH_SMALL, SEAL),
-    takes(CONTACT_AT_BORDER, CONTACT, 0.0, "the border of the domain cuts the contact off"),
+    see(CONTACT_AT_BORDER, CONTACT),
     see(GAP_NOT_PERIODIC, AREA),
     see(GAP_NOT_PERIODIC, LEAK),
     see(LAY_MIRRORED, LEAK),

@@ -291,7 +291,7 @@ fn what_a_jump_only_passes_is_not_reached() {
 
 #[test]
 fn a_jump_that_parts_the_surfaces_loses_their_contact() {
-    let points = vec![(0.0, 0.05), (1.0, 0.05), (1.0, -0.5), (2.0, -0.5)];
+    let points = [(0.0, 0.05), (1.0, 0.05), (1.0, -0.5), (2.0, -0.5)];
     for control in [Control::Approach, Control::Load] {
         let points =
             points.iter().map(|(t, v)| (*t, if control == Control::Load { f64::max(*v, 0.0) } else { *v }));

@@ -133,6 +133,7 @@ fn above_noise(curves: &mut Curves, notes: &mut Vec<String>) -> Result<()> {
         let Some(first) = bad.first().copied() else { continue };
         let line = |n: usize| sweep.lines.get(n).copied();
         let (count, all) = (bad.len(), values.len());
+        let unit = if name.contains("modulus") { "Pa" } else { "1/Pa" };
         // A stray point has neighbours far above its own distance from 0.
         let stray = |n: &usize| {
             let near = [n.checked_sub(1), Some(n + 1)].into_iter().flatten().filter_map(|k| values.get(k));
@@ -156,7 +157,7 @@ fn above_noise(curves: &mut Curves, notes: &mut Vec<String>) -> Result<()> {
         let end = values.iter().position(|value| *value < ABOVE_NOISE * noise).unwrap_or(first).min(first);
         let start = sweep.x.iter().copied().find(|x| *x > 0.0).unwrap_or(0.0);
         let fault = fault(format!(
-            "the {name}{place} is {:e} {}, and {count} of {all} values are not greater than 0, as those of every passive material are: from \
+            "the {name}{place} is {:e} {unit} {}, and {count} of {all} values are not greater than 0, as those of every passive material are: from \
              {:.3e} s on it is not told from noise",
             values[first],
             line(first).map_or(format!("at point {}", first + 1), |_| "here".to_owned()),

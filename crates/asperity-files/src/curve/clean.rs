@@ -152,6 +152,10 @@ fn above_noise(curves: &mut Curves, notes: &mut Vec<String>) -> Result<()> {
             curves.left_out += count;
             continue;
         }
+        // A single one of few points is refused by the fit, which names it.
+        if count == 1 && all < 20 {
+            continue;
+        }
         let tail = &values[first..];
         let noise = (tail.iter().map(|v| v * v).sum::<f64>() / tail.len() as f64).sqrt();
         let end = values.iter().position(|value| *value < ABOVE_NOISE * noise).unwrap_or(first).min(first);

@@ -669,7 +669,7 @@ fn faults_of_measured_curves_are_named_with_their_line() {
     let dma =
         |name: &str, keys: &str| format!(r#"{{ model = "dma", path = "{name}", modulus = "young"{keys} }}"#);
     says(dir, &dma("hertz.csv", ""), at, "data", &[]);
-    says(dir, &dma("good.csv", ""), at, "data", &["1 \"t [s]\", 2 \"E [MPa]\""]);
+    says(dir, &dma("good.csv", ""), at, "data", &["column 1, \"t [s]\""]);
     says(dir, &dma("sweep.csv", ""), at, "data", &["line 4", "the frequency is that of line 3"]);
     says(dir, &dma("loss.csv", ""), at, "data", &[]);
     says(dir, &dma("five.csv", ""), at, "data", &["3 temperatures (0.0 °C, 20.0 °C, 40.0 °C)"]);

@@ -142,7 +142,7 @@ impl Document {
             fields: self.usual_fields(acts),
             count: swept.or(stops.as_ref().map(Vec::len)),
         };
-        let output = self.output.output(&at("output"), times.as_ref(), programme, usual);
+        let mut output = self.output.output(&at("output"), times.as_ref(), programme, usual);
         let stages = programme.iter().flat_map(|programme| &programme.stages);
         let mut grids = times.iter().chain(stages.filter_map(|stage| stage.times.as_ref()));
         let adaptive = grids.any(TimeGrid::is_adaptive);
@@ -235,7 +235,7 @@ impl Document {
         if let (Some(pair), Some(grid)) = (&pair, &grid) {
             pair.resolved(&at("body"), &self.body, grid, boundary);
         }
-        let stress = self.stress.as_ref().zip(grid.as_ref().zip(pair.as_ref())).zip(output.as_ref().zip(end));
+        let stress = self.stress.as_ref().zip(grid.as_ref().zip(pair.as_ref())).zip(output.as_mut().zip(end));
         let stress = stress.and_then(|((stress, (grid, pair)), (output, end))| {
             let kinds = [motion.is_some(), self.tangential.is_some()];
             stress.of_case(&at("stress"), grid, pair, kinds, output, end)

@@ -85,14 +85,15 @@ enum Progression {
 }
 
 impl Stress {
-    /// The stress that a case asks for; whether the contact `moves`, whether it `slips` under a tangential load.
+    /// The stress that a case asks for; whether the contact `moves`, whether it `slips` under a tangential load. The output then stores what
+    /// the stress is computed from.
     pub fn of_case(
         &self,
         at: &Place<'_>,
         grid: &Grid,
         pair: &Pair,
         [moves, slips]: [bool; 2],
-        output: &Output,
+        output: &mut Output,
         end: f64,
     ) -> Option<StressPlan> {
         if pair.layers.is_some() {
@@ -104,6 +105,7 @@ impl Stress {
         let bodies: Vec<StressBody> =
             pair.bodies.iter().map(|body| StressBody::of(body, contact.as_ref())).collect();
         let plan = self.plan(at, grid, &bodies)?;
+        let times = stored_times(&at.key("times"), self.times.as_ref(), output, end)?;
         if let Ratio::Changing(_) = plan.poisson {
             let place = if self.body.is_some() { at.key("body") } else { at.clone() };
             let because = format!(
@@ -116,26 +118,12 @@ impl Stress {
                 let help = "give the body a constant `poisson`, or choose the other body";
                 return place.fault(message, "a body of constant Poisson's ratio", help);
             }
-            if output.rows != Rows::Every(1) {
-                let message = format!(
-                    "{because} and the stress needs the pressures of all rows, but not all are stored"
-                );
-                return place.fault(message, "stored pressures of all rows", "set output.every = 1");
-            }
+            output.rows = Rows::Every(1);
         }
-        if !output.fields.contains(&FieldKind::Pressure) {
-            let message =
-                "the stress below the surface is computed from stored pressures, but none are stored";
-            return at.fault(message, "stored pressures", "add \"pressure\" to output.fields");
+        output.fields.insert(FieldKind::Pressure);
+        if slips {
+            output.fields.extend([FieldKind::TractionX, FieldKind::TractionY]);
         }
-        if slips
-            && ![FieldKind::TractionX, FieldKind::TractionY].iter().all(|kind| output.fields.contains(kind))
-        {
-            let message = "the stress below the surface needs the stored tangential tractions, but they are not all stored";
-            let help = "add \"traction_x\" and \"traction_y\" to output.fields";
-            return at.fault(message, "stored tractions", help);
-        }
-        let times = stored_times(&at.key("times"), self.times.as_ref(), output, end)?;
         Some(StressPlan { times, ..plan })
     }
 

@@ -2,6 +2,7 @@
 
 mod case;
 mod changed_data;
+mod combinations;
 mod common;
 mod error_bars;
 mod export;

@@ -152,7 +152,7 @@ impl Energy {
 /// Σ p |h| over the cells at the hardness \[m Pa\].
 fn overlap_work(row: &Solved<'_>) -> f64 {
     let (c, w) = (row.compliance, row.now.approach);
-    let cells = (row.contact, &row.now.unit_displacement[..], row.gap(), row.hardness);
+    let cells = (&row.contact.pressure[..], &row.now.unit_displacement[..], row.gap(), row.hardness);
     sums(cells, |(p, u, h, hardness)| {
         let overlap = if p >= hardness { (w - c * u - h).max(0.0) } else { 0.0 };
         [if overlap > 0.0 { p * overlap } else { 0.0 }]

@@ -35,7 +35,7 @@ impl Process for Flattening {
             overlap if p >= hardness && overlap > 0.0 => overlap,
             _ => 0.0,
         };
-        let (p, u) = (&row.now.pressure[..], &row.now.unit_displacement[..]);
+        let (p, u) = (&row.contact.pressure[..], &row.now.unit_displacement[..]);
         let cells = (p, u, &row.own_gap[..], row.hardness);
         let [depth] = each_with_sums(row.undeformed.own_mut(), cells, |h, (p, u, gap, most)| {
             let overlap = overlap(p, u, gap, most);

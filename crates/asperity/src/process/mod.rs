@@ -129,8 +129,10 @@ pub(crate) struct Solved<'a> {
     pub(crate) step: &'a Interval,
     pub(crate) before: &'a ContactState,
     pub(crate) now: &'a ContactState,
-    /// Contact pressure of the row \[Pa\], and the potential energy of other tractions \[J\].
-    pub(crate) contact: &'a [f64],
+    /// The contact of the row and that of the row before, without what other tractions press or pull: all of it, where none acts.
+    pub(crate) contact: &'a ContactState,
+    pub(crate) contact_before: &'a ContactState,
+    /// The potential energy of other tractions \[J\].
     pub(crate) potential: f64,
     /// Loads of both \[N\].
     pub(crate) loads: [f64; 2],
@@ -138,6 +140,7 @@ pub(crate) struct Solved<'a> {
     pub(crate) own_gap: &'a mut [f64],
     pub(crate) undeformed: &'a mut UndeformedGap,
     pub(crate) compliance: f64,
+    /// The cut-off of the contact pressure.
     pub(crate) hardness: Hardness<'a>,
     pub(crate) operator: &'a mut dyn Operator,
     pub(crate) interrupt: Option<&'a AtomicBool>,

@@ -202,7 +202,7 @@ impl Moving {
         let Some(flash) = &mut self.flash else { return Ok(()) };
         flash.warm(Rubbing {
             velocity,
-            pressure: row.contact,
+            pressure: &row.contact.pressure,
             shear: self.motion.shear_stress.as_ref().map_or(0.0, |law| law.at(velocity, 1.0)),
             loss: coefficient * velocity.signum(),
         })

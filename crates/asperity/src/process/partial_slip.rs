@@ -141,12 +141,13 @@ impl PartialSlip {
     /// Sets the limits of the tractions; returns their sum, and the displacement under all of them, weighted by them.
     fn limit(&mut self, row: &Solved<'_>) -> [f64; 2] {
         let law = &self.law;
-        let cells = (row.contact, 0..row.contact.len());
+        let pressure = &row.contact.pressure[..];
+        let cells = (pressure, 0..pressure.len());
         each(&mut self.radius, cells, |radius, (p, n)| *radius = law.limit(n, p));
         let cells = (&self.radius[..], &row.now.unit_displacement[..]);
         let c = row.compliance;
         let [most, moved] = sums(cells, |(radius, u)| [radius, radius * c * u]);
-        [most, if most > 0.0 { moved / most } else { 0.0 }]
+        [most, if most > 0.0 { moved.abs() / most } else { 0.0 }]
     }
 
     /// The step, with what is known of the traction: where one component of the force acts alone, u runs in the integral of C dQ.
@@ -207,7 +208,7 @@ impl PartialSlip {
         each(&mut self.path, cells, |path, (u, b, slips)| *path += length(slip(u, b, slips)));
         let cells = (q, unit, &self.offset[..], &self.slips[..]);
         each(&mut self.heat, cells, |heat, (q, u, b, slips)| *heat -= inner(q, slip(u, b, slips)));
-        let cells = (row.contact, q, unit, &self.offset[..], &self.slips[..]);
+        let cells = (&row.contact.pressure[..], q, unit, &self.offset[..], &self.slips[..]);
         let [x, y, work, stick, slip] = sums(cells, |(p, q, u, b, slips)| {
             let count = |is: bool| f64::from(u8::from(is));
             [q[0], q[1], -inner(q, slip(u, b, slips)), count(p > 0.0 && !slips), count(slips)]
@@ -294,7 +295,7 @@ impl Process for PartialSlip {
             self.solve(row, row.simulation.solver.tolerance)?;
         }
         let (q, radius) = (&self.slip.traction[..], &self.radius[..]);
-        each(&mut self.slips, (row.contact, q, radius), |slips, (p, q, radius)| {
+        each(&mut self.slips, (&row.contact.pressure[..], q, radius), |slips, (p, q, radius)| {
             *slips = p > 0.0 && length(q) >= radius * (1.0 - EDGE);
         });
         if row.simulation.wear.is_some() {

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use asperity_sweep::{each, sums};
 
 use super::{Process, Solved, roll};
-use crate::contact::{ContactState, Problem, Start, Task};
+use crate::contact::{ContactState, Prescribed, Problem, Start, Task};
 use crate::error::Result;
 use crate::grid::Boundary;
 use crate::quantities::Quantity;
@@ -54,6 +54,8 @@ struct After {
     /// What the row prepared recedes by because of its slip, and the contact that the worn surfaces make.
     recession: Recession,
     state: ContactState,
+    /// The gap with what other tractions displace, where there are any.
+    gap: Vec<f64>,
 }
 
 saved! {
@@ -80,6 +82,7 @@ impl Wearing {
             solver: RecedingSolver::new(simulation.solver.method, operator),
             recession: Recession::default(),
             state: ContactState::new(simulation.grid.len()),
+            gap: vec![],
         });
         Some(Wearing {
             depth: Depth::new(&law, simulation.grid, simulation.boundary),
@@ -104,21 +107,35 @@ impl Wearing {
 
     /// Finds what the surfaces of a row recede by after it because of its slip, and the pressure that takes it off.
     fn wear_by_slip(&mut self, row: &mut Solved<'_>) -> Result<()> {
-        let Some(After { solver, recession, state }) = &mut self.after else { return Ok(()) };
+        let Some(After { solver, recession, state, gap }) = &mut self.after else { return Ok(()) };
         let factor = self.law.total() * self.cycles.factor;
         let mut cells = std::mem::take(&mut row.slipped);
         each(&mut cells, factors(&self.law), |slip, map| *slip *= factor * map);
         let is_none = asperity_sweep::is_zero(&cells);
         let scale = if is_none { 0.0 } else { 1.0 };
         *recession = Recession { scale, cells: Some(cells), threshold: self.law.threshold };
-        state.clone_from(row.now);
+        state.clone_from(row.contact);
         if !is_none {
-            let problem = Problem {
+            let mut problem = Problem {
                 gap: row.undeformed.or(row.own_gap),
                 compliance: row.compliance,
                 hardness: row.hardness,
                 prescribed: row.step.prescribed(self.simulation.grid.area()),
             };
+            if self.simulation.traction.is_some() {
+                // They stay as they are in the row.
+                gap.resize(problem.gap.len(), 0.0);
+                let displaced = (&row.now.unit_displacement[..], &row.contact.unit_displacement[..]);
+                each(gap, (problem.gap, displaced), |to, (h, (all, own))| {
+                    *to = h + row.compliance * (all - own)
+                });
+                let [others] =
+                    sums((&row.now.pressure[..], &row.contact.pressure[..]), |(all, own)| [all - own]);
+                problem.gap = gap;
+                if let Prescribed::Load(load) = &mut problem.prescribed {
+                    *load -= others * self.simulation.grid.cell_area();
+                }
+            }
             let options = &self.simulation.solver;
             let (operator, interrupt) = (&mut *row.operator, row.interrupt);
             let task = Task { operator, problem: &problem, options, state, interrupt };
@@ -129,7 +146,7 @@ impl Wearing {
 
     /// The pressure of the last row where the contact is now.
     fn before<'a>(&self, row: &Solved<'a>) -> Cow<'a, [f64]> {
-        let pressure = &row.before.pressure;
+        let pressure = &row.contact_before.pressure;
         let shift =
             [0, 1].map(|axis| (self.offset[axis].round() - self.offset_before[axis].round()) as isize);
         let follows = self.simulation.motion.as_ref().is_some_and(|motion| motion.gap.follows());
@@ -206,17 +223,18 @@ impl Process for Wearing {
 
     /// Takes in what the row has worn.
     fn accept(&mut self, row: &mut Solved<'_>) {
+        let pressure = &row.contact.pressure[..];
         let ([volume, uncertain], damping) = if let Some(After { recession, state, .. }) = &self.after {
             recession.add(&state.pressure, row.undeformed.own_mut());
             let damping = self.damping(recession, state, row.compliance);
-            row.worn_work = self.work(recession, [&state.pressure, row.contact]);
-            (self.depth.add(recession, &state.pressure, row.contact, self.offset), damping)
+            row.worn_work = self.work(recession, [&state.pressure, pressure]);
+            (self.depth.add(recession, &state.pressure, pressure, self.offset), damping)
         } else {
             let recession = &row.undeformed.recession;
             let before = self.before(row);
-            row.worn_work = self.work(recession, [row.contact, &before]);
-            let damping = self.damping(recession, row.now, row.compliance);
-            (self.depth.add(recession, row.contact, &before, self.offset), damping)
+            row.worn_work = self.work(recession, [pressure, &before]);
+            let damping = self.damping(recession, row.contact, row.compliance);
+            (self.depth.add(recession, pressure, &before, self.offset), damping)
         };
         self.offset_before = self.offset;
         let of_cycles = self.cycles.take_in([row.step.start, row.step.instant.time], [volume, uncertain]);
@@ -243,7 +261,7 @@ impl Process for Wearing {
         let recession = &gap.recession;
         let threshold = recession.threshold;
         let of = |p: f64, k: f64| crate::wear::depth(p, k, threshold);
-        let (now, before) = (&ends.now.pressure[..], &ends.before.pressure[..]);
+        let [before, now] = ends.pressures;
         let cells = (now, before, &ends.now.unit_displacement[..], recession.per_pressure());
         let [misplaced, yields, wears] = sums(cells, |(p, before, u, k)| {
             [p * 0.5 * (of(p, k) - of(before, k)).abs(), p * compliance * u, p * of(p, k)]
@@ -266,7 +284,7 @@ impl Process for Wearing {
             _ => return Ok(None),
         };
         let recession = &row.undeformed.recession;
-        let cells = (row.contact, recession.per_pressure());
+        let cells = (&row.contact.pressure[..], recession.per_pressure());
         let [depths] = sums(cells, |(p, k)| [crate::wear::depth(p, k, recession.threshold)]);
         let before = if share == 1.0 { self.numbers.volume } else { self.numbers.counterbody };
         Ok(Some(before + share * depths * self.simulation.grid.cell_area()))

@@ -249,11 +249,7 @@ impl Simulation {
 
     /// What goes with a traction besides the contact.
     fn validate_traction(&self) -> Result<()> {
-        let Some(traction) = &self.traction else { return Ok(()) };
-        let expected = "\"cap\" where other tractions act on the surfaces";
-        require(self.plasticity == Plasticity::Cap, "plasticity", "\"accumulate\"", expected)
-            .of("solver.plasticity")?;
-        traction.check(self)
+        self.traction.iter().try_for_each(|traction| traction.check(self))
     }
 
     /// Where displacements are known up to a constant.

@@ -57,9 +57,14 @@ impl StepContact {
         self.traction.is_some()
     }
 
+    /// The contacts of both states of a step: without what other tractions press or pull.
+    pub(super) fn contacts<'a>(&'a self, states: [&'a ContactState; 2]) -> [&'a ContactState; 2] {
+        self.traction.as_ref().map_or(states, TractionSolver::contacts)
+    }
+
     /// The contact pressures of both states of a step \[Pa\], 0 or more: all pressure, where no other traction acts.
     pub(super) fn pressures<'a>(&'a self, states: [&'a ContactState; 2]) -> [&'a [f64]; 2] {
-        self.traction.as_ref().map_or(states.map(|state| &state.pressure[..]), TractionSolver::contact)
+        self.contacts(states).map(|state| &state.pressure[..])
     }
 
     /// Takes the operator of the step that was opened, where it has one of its own.
@@ -110,7 +115,7 @@ impl StepContact {
         let task = Task { operator, problem: &problem, options, state, interrupt };
         match &mut self.traction {
             None => self.solver.solve(start, recession, task),
-            Some(traction) => traction.solve(self.solver.still(task.operator), task),
+            Some(traction) => traction.solve(&mut self.solver, recession, task),
         }
     }
 

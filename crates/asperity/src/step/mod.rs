@@ -42,13 +42,14 @@ pub(crate) use undeformed::UndeformedGap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::Outcome;
+use crate::contact::{Hardness, Outcome};
 use crate::error::{Error, Result};
 use crate::history::{self, History, Law, ThirdState};
 use crate::operator::plan;
 use crate::process::{self, Process, Solved};
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
+use crate::traction::TractionSolver;
 use asperity_sweep::is_zero;
 use state::StepState;
 
@@ -150,8 +151,9 @@ impl Stepper {
         let solved = self.solve_contact(start, prescribed);
         let outcome = solved.map_err(|error| self.failed(error.at(step.instant.time)))?;
         self.outcome = self.outcome.then(outcome);
-        let StepState { undeformed, now, own_gap, .. } = &mut self.state;
-        undeformed.recede(&now.pressure, own_gap);
+        let StepState { undeformed, before, now, own_gap, .. } = &mut self.state;
+        let [_, pressure] = self.contact.pressures([before, now]);
+        undeformed.recede(pressure, own_gap);
         let carried = self.state.meet(prescribed);
         self.tried = Some(step.length());
         Ok(Summary {
@@ -259,7 +261,6 @@ impl Stepper {
         self.outcome.convolutions += row.convolutions;
         self.history.close(&self.state.ends(&self.contact));
         let exchange = self.history.exchange(&self.state.ends(&self.contact));
-        self.contact.commit();
         let time_error = self.history.time_error();
         let mut row = Solved {
             time_error,
@@ -267,6 +268,7 @@ impl Stepper {
             ..solved(&self.simulation, step, &mut self.state, &mut self.contact)
         };
         self.processes.iter_mut().for_each(|process| process.accept(&mut row));
+        self.contact.commit();
         let (length, touches) = (step.length(), self.touches());
         self.state.end(length, touches);
         self.is_open = false;
@@ -283,21 +285,25 @@ fn solved<'a>(
 ) -> Solved<'a> {
     let StepContact { operator, hardness, traction, interrupt, .. } = contact;
     let StepState { now, before, loads, own_gap, undeformed, compliance, .. } = state;
+    let (now, before) = (&*now, &*before);
     let traction = traction.as_ref();
+    let [contact_before, contact] = traction.map_or([before, now], TractionSolver::contacts);
+    let cut_off = traction.and_then(TractionSolver::cut_off);
     let potential = traction
         .and_then(|traction| traction.quantity(Quantity::AdhesionEnergy, simulation.grid.cell_area()));
     Solved {
         simulation,
         step,
         before,
-        contact: traction.map_or(&now.pressure, |traction| traction.contact()[1]),
+        contact,
+        contact_before,
         potential: potential.unwrap_or(0.0),
         now,
         loads: *loads,
         own_gap,
         undeformed,
         compliance: *compliance,
-        hardness: hardness.lent(),
+        hardness: cut_off.map_or(hardness.lent(), Hardness::Cells),
         operator: &mut **operator,
         interrupt: interrupt.as_deref(),
         time_error: None,

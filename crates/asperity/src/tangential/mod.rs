@@ -9,6 +9,8 @@
 //! |q| <= min(μ p, τ) in each cell; the slip of a step is opposite to q where equality holds
 //! ```
 //!
+//! p is the contact pressure: what adhesion pulls, or a fluid carries, does not rub.
+//!
 //! Where the bodies differ (Dundurs' β is not 0), tangential tractions also displace the surfaces normally, and pressures tangentially. With
 //! [`Coupling::Full`] pressure and tractions are found in turn until both agree (Panagiotopoulos 1975); otherwise this is neglected,
 //! and both are off by the order of β. Poisson's ratio does not change in time.
@@ -160,8 +162,11 @@ impl Tangential {
     }
 
     /// The first time at which the force is more than friction holds, μ W or less, as far as it is known before the run: a force and a load
-    /// that are prescribed for all of it.
+    /// that are prescribed for all of it, all of which presses the surfaces together.
     pub fn slides_at(&self, simulation: &Simulation) -> Option<f64> {
+        if simulation.traction.is_some() {
+            return None;
+        }
         let [Stage { control, course: Course::Given(history), until: None, .. }] =
             &simulation.loading.stages[..]
         else {
@@ -230,11 +235,6 @@ impl Tangential {
             simulation.motion.is_none(),
             "motion beside a tangential load",
             "none: slip follows from [tangential]",
-        )?;
-        excludes(
-            simulation.traction.is_none(),
-            "traction of adhesion or of a fluid under a tangential load",
-            "none: they are not solved together",
         )?;
         let is_free_line = simulation.grid.is_line() && simulation.boundary == Boundary::Free;
         let expected = "periodic: on a free line the displacement is only known up to a constant";

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::{SurfaceTraction, TractionLaw};
 use crate::contact::{
-    ContactState, Hardness, Outcome, Prescribed, Problem, Solver, SolverOptions, Task, not_converged,
+    ContactState, Hardness, Outcome, Prescribed, Problem, SolverOptions, Start, Task, not_converged,
 };
 use crate::error::{Error, Result};
 use crate::extrapolation::Extrapolation;
@@ -13,6 +13,7 @@ use crate::operator::Operator;
 use crate::quantities::Quantity;
 use crate::step::{Loader, Saver, saved};
 use crate::time::Instant;
+use crate::wear::{RecedingSolver, Recession};
 use asperity_sweep::{each, is_zero, minimum, sum, sums, zeros};
 
 /// Forces below this share of the largest one of the run are none.
@@ -89,7 +90,7 @@ struct Pass {
     outcome: Outcome,
     /// Σ|B - b| over Σ|B| + Σ q.
     residual: f64,
-    /// 1/2 <t, c K t> + Σ γ(g), less the work of a prescribed load.
+    /// 1/2 <t, c K t> + Σ γ(g), and the work of q on what recedes, less the work of a prescribed load.
     energy: Option<f64>,
 }
 
@@ -155,9 +156,14 @@ impl TractionSolver {
         self.last.copy_from(&self.now);
     }
 
-    /// The contact pressures q of the last row and of the last attempt \[Pa\].
-    pub(crate) fn contact(&self) -> [&[f64]; 2] {
-        [&self.last.contact.pressure, &self.now.contact.pressure]
+    /// The contacts of the last row and of the last attempt: their pressure q \[Pa\] and K q.
+    pub(crate) fn contacts(&self) -> [&ContactState; 2] {
+        [&self.last.contact, &self.now.contact]
+    }
+
+    /// The cut-off of q, where it is not that of the total pressure.
+    pub(crate) fn cut_off(&self) -> Option<&[f64]> {
+        (!self.cap.is_empty()).then_some(&self.cap)
     }
 
     /// The pressure of the cells in contact in the last attempt \[Pa\], 0 elsewhere.
@@ -215,11 +221,17 @@ impl TractionSolver {
         })
     }
 
-    /// Solves for the total traction, which `state` holds in the end; its approach is where the search starts.
+    /// Solves for the total traction, which `state` holds in the end; its approach is where the search starts. The surfaces may recede
+    /// under the contact pressure.
     ///
     /// # Errors
     /// [`Error::NotConverged`], after which `state` holds the last pass; [`Error::PulledOff`]; those of the contact and of the law.
-    pub(crate) fn solve(&mut self, solver: &mut Solver, task: Task) -> Result<Outcome> {
+    pub(crate) fn solve(
+        &mut self,
+        solver: &mut RecedingSolver,
+        recession: &Recession,
+        task: Task,
+    ) -> Result<Outcome> {
         let Task { operator, problem, options, state, interrupt } = task;
         self.now.copy_from(&self.last);
         self.passes = 0;
@@ -229,7 +241,7 @@ impl TractionSolver {
         };
         self.law.begin_solve(problem.compliance, rise, &mut self.now.bound);
         let total = Outcome::default();
-        let mut run = Run { own: self, solver, operator, options, interrupt, total };
+        let mut run = Run { own: self, solver, recession, operator, options, interrupt, total };
         let solved = match problem.prescribed {
             Prescribed::Approach(_) => run.solve(problem),
             Prescribed::Load(load) => match run.solve_under(problem, load) {
@@ -261,7 +273,8 @@ impl TractionSolver {
 /// A solve under way.
 pub(super) struct Run<'a> {
     own: &'a mut TractionSolver,
-    solver: &'a mut Solver,
+    solver: &'a mut RecedingSolver,
+    recession: &'a Recession,
     pub(super) operator: &'a mut dyn Operator,
     options: &'a SolverOptions,
     interrupt: Option<&'a AtomicBool>,
@@ -354,9 +367,14 @@ impl Run<'_> {
             inner.hardness = Hardness::Cells(&own.cap);
         }
         let options = SolverOptions { tolerance: own.tolerances[1], ..*self.options };
-        let (solver, contact) = (&mut *self.solver, &mut own.now.contact);
-        let outcome = solver.solve(self.operator, &inner, &options, contact, self.interrupt)?;
+        let contact = &mut own.now.contact;
+        let (operator, interrupt) = (&mut *self.operator, self.interrupt);
+        let task = Task { operator, problem: &inner, options: &options, state: &mut *contact, interrupt };
+        let outcome = self.solver.solve(Start::Pressure, self.recession, task)?;
         let w = contact.approach;
+        if !self.recession.is_none() {
+            self.recession.add(&contact.pressure, &mut own.shifted);
+        }
         if own.law.is_displaced() {
             let fields = ((bound, &contact.pressure[..]), (&own.image[..], &contact.unit_displacement[..]));
             let [work, total] = sums(fields, |((b, q), (kb, kq))| [(b + q) * (kb + kq), b + q]);
@@ -381,10 +399,11 @@ impl Run<'_> {
         own.scale = own.scale.max(size);
         own.potential = own.law.energy(&own.gap);
         let of_load = if matches!(problem.prescribed, Prescribed::Load(_)) { w * total } else { 0.0 };
+        let recedes = self.recession.work(&contact.pressure);
         Ok(Pass {
             outcome,
             residual: if change > 0.0 { change / size.max(LEAST * own.scale) } else { 0.0 },
-            energy: own.potential.map(|potential| 0.5 * c * work + potential - of_load),
+            energy: own.potential.map(|potential| 0.5 * c * work + recedes + potential - of_load),
         })
     }
 

@@ -135,9 +135,6 @@ impl Wear {
     /// [`Error::Invalid`] with the key of the case.
     pub(crate) fn validate(&self, simulation: &Simulation) -> Result<()> {
         self.validate_numbers(simulation)?;
-        let expected = "none: wear is not solved together with them";
-        let holds = simulation.traction.is_none();
-        require(holds, "traction of adhesion or of a fluid beside wear", "given", expected).of("wear")?;
         let is_coupled = simulation.tangential.as_ref().is_some_and(|law| law.is_coupled());
         let expected = "\"neglect\" where the surfaces wear";
         require(!is_coupled, "coupling of pressure and traction", "\"full\"", expected)

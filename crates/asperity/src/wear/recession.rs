@@ -1,6 +1,6 @@
 //! How far the surfaces recede in a step.
 
-use asperity_sweep::each;
+use asperity_sweep::{each, sums};
 
 use crate::operator::Bed;
 
@@ -32,6 +32,17 @@ impl Recession {
     pub(crate) fn add(&self, pressure: &[f64], gap: &mut [f64]) {
         let threshold = self.threshold;
         each(gap, (pressure, self.per_pressure()), |h, (p, k)| *h += depth(p, k, threshold));
+    }
+
+    /// Σ ∫ p dz of a pressure that grows with the depth z, from 0 \[Pa m\].
+    pub(crate) fn work(&self, pressure: &[f64]) -> f64 {
+        if self.is_none() {
+            return 0.0;
+        }
+        let threshold = self.threshold;
+        let of = |(p, k): (f64, f64)| [0.5 * (p + threshold) * depth(p, k, threshold)];
+        let [work] = sums((pressure, self.per_pressure()), of);
+        work
     }
 }
 

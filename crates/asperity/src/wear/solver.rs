@@ -30,7 +30,7 @@ impl RecedingSolver {
     }
 
     /// The solver of surfaces that do not recede.
-    pub(crate) fn still(&mut self, operator: &dyn Operator) -> &mut Solver {
+    fn still(&mut self, operator: &dyn Operator) -> &mut Solver {
         self.plan(None, operator)
     }
 

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod adhesion;
+mod beside_tractions;
 mod capped;
 mod conditions;
 mod contact;

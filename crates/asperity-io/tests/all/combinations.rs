@@ -221,15 +221,15 @@ impl Chosen {
     }
 }
 
-/// Why a case with these features is refused, with the key; the outer `None` where it cannot have both.
+/// Why a case with these features is refused; the outer `None` where it cannot have both.
 fn refusal(features: &[&Feature]) -> Option<Option<String>> {
     let text = Chosen::of(features)?.case();
     let checked = Case::parse(&text, Path::new("."), &[]).and_then(|case| case.examine().map(|_| ()));
     Some(checked.err().map(|errors| {
         let error = &errors.errors[0];
         match &error.help {
-            Some(help) => format!("`{}`: {} ({help})", error.key, error.message),
-            None => format!("`{}`: {}", error.key, error.message),
+            Some(help) => format!("{} ({help})", error.message),
+            None => error.message.clone(),
         }
     }))
 }

@@ -192,6 +192,10 @@ pub(super) fn header_cells(line: &str, separator: Option<char>, columns: usize) 
 
 /// Cells that are nothing but a unit join the name before them: "E, MPa" in a file of commas.
 fn with_units(cells: Vec<String>) -> Vec<String> {
+    // A line of units alone has no names.
+    if cells.first().is_some_and(|cell| !cell.is_empty() && is_unit(cell)) {
+        return cells;
+    }
     let mut joined: Vec<String> = Vec::with_capacity(cells.len());
     for cell in cells {
         match joined.last_mut() {

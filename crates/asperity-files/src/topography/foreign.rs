@@ -85,10 +85,10 @@ pub(super) fn refuse_look_alikes(bytes: &[u8]) -> Result<()> {
         let export = "SUR, SDF or MetroPro DAT from Mx";
         return Err(foreign(("Zygo DATX (interferometer)", Way::SurfaceTopography, export)));
     }
-    // Lines of both directions one after the other, scaled by entries of their own.
+    // Its layout is not published, and programs that read it differ in the order of its points and in the scale of its heights.
     if holds(b"Measurement_000") && holds(b"Channel_0") {
-        let export = "an image of heights from JPK Data Processing";
-        return Err(foreign(("JPK HDF5 (atomic force microscope)", Way::Gwyddion, export)));
+        let export = "one image of heights as text from JPK Data Processing";
+        return Err(foreign(("JPK HDF5 (atomic force microscope, .h5-jpk)", Way::Export, export)));
     }
     Ok(())
 }

@@ -33,7 +33,7 @@ pub(super) fn best(
         let unit = unit_of(&table.headings[*column], role, said);
         let is_known = convert(role, &unit, Vec::new()).is_ok();
         let numbers = table.sparse(*column).map_or(0, |numbers| numbers.iter().flatten().count());
-        (is_known, is_specific(table, *column, role), !unit.is_empty(), numbers)
+        (is_known, is_specific(table, *column, role), !unit.is_empty(), 2 * numbers > table.rows.len())
     };
     // Of several, the first.
     candidates.into_iter().rev().max_by_key(worth)

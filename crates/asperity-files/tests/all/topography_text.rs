@@ -414,3 +414,19 @@ fn counters_and_coordinates_beside_a_matrix_are_no_heights() {
     let rows = (0..9).map(|j| (0..8).map(|i| plane(i, j)).collect::<Vec<_>>().join(","));
     assert!(with(&rows.collect::<Vec<_>>().join("\n"), size, unit).is_ok());
 }
+
+/// Numbers of these files are pixels, phases, or mark what was not measured.
+#[test]
+fn text_of_other_formats_is_no_matrix_and_no_list_of_points() {
+    let zygo = "Zygo XYZ Data File - Format 1\n1 8 3 0 \"today\"\n#\n0 0 0.5\n1 0 0.4\n0 1 0.6\n1 1 0.7\n#\n";
+    let ascii = "Zygo ASCII Data File - Format 2\n0 1 2 3\n4 5 6 2147483640\n7 8 9 10\n";
+    let esri = "ncols 3\nnrows 2\ncellsize 2\nNODATA_value -9999\n1 2 3\n4 -9999 6\n";
+    for (text, name) in
+        [(zygo, "Zygo XYZ"), (ascii, "Zygo ASCII"), (esri, "ESRI"), ("DSAA\n2 2\n0 1\n0 1\n", "Surfer")]
+    {
+        let error = with(text, Some([1e-6, 1e-6]), Some(NM)).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains("export"), "{error}");
+        let options = ReadOptions { height_unit: Some(NM), ..ReadOptions::default() };
+        assert!(profile_of(text.as_bytes(), &options).is_err());
+    }
+}

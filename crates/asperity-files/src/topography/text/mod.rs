@@ -21,7 +21,7 @@ use memchr::memchr;
 use dialect::{Dialect, Separator};
 use header::Header;
 
-use super::{Format, Problem, Reader, Result, write};
+use super::{Format, Problem, Reader, Result, foreign, write};
 
 pub(super) use encoding::label;
 pub(crate) use header::leading_number;
@@ -117,6 +117,7 @@ fn decode(bytes: &[u8]) -> Result<Cow<'_, [u8]>> {
 
 impl<'a> Text<'a> {
     fn split(bytes: &'a [u8]) -> Result<Self> {
+        foreign::refuse_texts(bytes)?;
         let mut blocks: Vec<Block> = Vec::new();
         let mut header = Header::default();
         let (mut metadata, mut header_lines) = (Vec::new(), 0);

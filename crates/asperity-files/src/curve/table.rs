@@ -130,8 +130,9 @@ impl Table {
             }
             let mut cells = cells(line, separator);
             if numbers(line) == 0 || cells.len() != columns {
-                // Text below the table.
-                if n > last && numbers(line) == 0 && cells.len() < columns {
+                // Text below the table: "Mean: 12".
+                let is_text = cells.first().is_none_or(|cell| !number(cell));
+                if n > last && is_text && cells.len() < columns {
                     break;
                 }
                 if let Some(next) = repeated_heading(&lines[..=last], n, &named, separator, &is_row) {

@@ -79,3 +79,27 @@ fn a_last_column_that_begins_later_is_one() {
         "{error}"
     );
 }
+
+/// The units behind "in" and "_" are those of every quantity, and a labelled number below the table is no point.
+#[test]
+fn words_before_units_belong_to_no_name() {
+    for text in [
+        "f in Hz,G' in MPa,phase in rad,T in C\n1,4,0.5,25\n2,5,0.4,25\n",
+        "f_Hz;G'_MPa;phase_rad;T_in_C\n1;4;0,5;25\n2;5;0,4;25\nSample: 12\n",
+        "f in Hz\tG' in MPa\tphase in rad\tTemp. in °C\n1\t4\t0.5\t25\n2\t5\t0.4\t25\n\nMean: 12\n",
+    ] {
+        let curves = parse(text.as_bytes(), Kind::Dma).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let sweep = &curves.sweeps[0];
+        assert_eq!((sweep.temperature, sweep.x.len(), sweep.curves[0][0]), (Some(298.15), 2, 4e6), "{text}");
+        assert!((sweep.curves[1][0] / 4e6 - 0.5f64.tan()).abs() < 1e-12, "{text}");
+    }
+    for (time, seconds) in
+        [("t in sec", 1.0), ("Step time in min", 60.0), ("Zeit_sec", 1.0), ("Zeit in h", 3600.0)]
+    {
+        let text = format!("{time},E in MPa\n1,4\n2,3\n");
+        assert_eq!(parse(text.as_bytes(), Kind::Relaxation).unwrap().sweeps[0].x[0], seconds, "{time}");
+    }
+    // The secant modulus has no unit of time.
+    let error = Curves::kind_of_bytes("x".as_ref(), b"t [s],E sec\n1,4\n2,3\n", None).unwrap_err();
+    assert!(error.message.contains("\"E sec\""), "{error}");
+}

@@ -482,7 +482,8 @@ pub(super) fn is_grouped(cell: &str) -> bool {
 
 /// Separator and decimal mark of a file whose lines hold text as well.
 fn guess(lines: &[&str]) -> (Option<char>, bool) {
-    let has = |c: char| lines.iter().filter(|line| line.contains(c)).count() * 2 > lines.len();
+    let written = || lines.iter().filter(|line| !line.is_empty());
+    let has = |c: char| written().filter(|line| line.contains(c)).count() * 2 > written().count();
     match (has(';'), has('\t'), has(',')) {
         (true, _, comma) => (Some(';'), comma),
         (_, true, comma) => (None, comma),

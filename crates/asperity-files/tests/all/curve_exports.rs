@@ -14,6 +14,7 @@ fn numbers_and_units_of_a_step_are_read_in_every_spelling() {
         "t [s],E [MPa]\n5.D-1,45.d-1\n1.5,3.\n60,2.25\n",
         "t [s];E [MPa]\n5,0E-01;4,5E+00\n1,5E+00;3,0E+00\n6,0E+01;2,25E+00\n",
         "\"t [s]\",\"E [MPa]\"\n\"0,5\",\"4,5\"\n\"1,5\",\"3,0\"\n\"60\",\"2,25\"\n",
+        "\"t [s]\"; \"E [MPa]\"\n\n\"0.5\"; \"4.5\"\n\n\"1.5\"; \"3.0\"\n\n\"60\"; \"2.25\"\n\n",
         "t [s]\tE [Pa]\n0.5\t4,500,000.0\n1.5\t3,000,000.0\n60\t2,250,000.0\n",
         "t [s]\tE [MPa]\r0.5\t4.5\r1.5\t3\r60\t2.25\r",
         "log t [s],E [MPa]\n\u{2212}0.30102999566,4.5\n0.17609125906,3\n1.77815125038,2.25\n",
@@ -102,4 +103,19 @@ fn words_before_units_belong_to_no_name() {
     // The secant modulus has no unit of time.
     let error = Curves::kind_of_bytes("x".as_ref(), b"t [s],E sec\n1,4\n2,3\n", None).unwrap_err();
     assert!(error.message.contains("\"E sec\""), "{error}");
+}
+
+/// Blanks part the columns and the words of a name; the first column counts the points.
+#[test]
+fn names_of_several_words_are_not_cut_into_names_of_several_columns() {
+    let points = "0  1.0  0.5  4.0\n1  2.0  0.4  5.0\n2  4.0  0.3  6.0\n";
+    let curves =
+        parse(format!("#  f/Hz  phase/rad  Storage modulus/MPa\n{points}").as_bytes(), Kind::Dma).unwrap();
+    assert_eq!(curves.columns.iter().map(|place| place.column).max(), Some(4));
+    assert_eq!(curves.sweeps[0].curves[0], [4e6, 5e6, 6e6]);
+    // Without a name above the counter, nothing says which column is the unnamed one.
+    for heading in ["   f/Hz  phase/rad  Storage modulus/MPa", "f/Hz phase/rad Storage modulus/MPa"] {
+        let error = parse(format!("{heading}\n{points}").as_bytes(), Kind::Dma).unwrap_err();
+        assert!(error.message.contains("Storage modulus"), "{error}");
+    }
 }

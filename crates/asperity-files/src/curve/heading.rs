@@ -207,7 +207,9 @@ pub(super) fn header_cells(line: &str, separator: Option<char>, columns: usize) 
 fn is_cut(cells: &[String]) -> bool {
     let whole = cells.join(" ");
     let name = split_unit(&whole).0;
-    cells.iter().all(|cell| cell.chars().count() > 2)
+    let is_word = |cell: &String| cell.chars().count() > 2 && cell.starts_with(char::is_alphabetic);
+    cells.iter().all(is_word)
+        && cells[0].chars().all(char::is_alphabetic)
         && name.contains(' ')
         && Role::ALL.iter().any(|role| role.is_called(name))
 }

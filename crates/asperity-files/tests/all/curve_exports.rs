@@ -10,7 +10,7 @@ fn parse(bytes: &[u8], kind: Kind) -> Result<Curves, CurveError> {
 #[test]
 fn numbers_and_units_of_a_step_are_read_in_every_spelling() {
     for text in [
-        "t [s] E [MPa]\n0.5D+00 4.5D+00\n1.5D+00 3.0D+00\n6.0D+01 2.25D+00\n",
+        "t [s] E(t) [MPa]\n0.5D+00 4.5D+00\n1.5D+00 3.0D+00\n6.0D+01 2.25D+00\n",
         "t [s],E [MPa]\n5.D-1,45.d-1\n1.5,3.\n60,2.25\n",
         "t [s];E [MPa]\n5,0E-01;4,5E+00\n1,5E+00;3,0E+00\n6,0E+01;2,25E+00\n",
         "\"t [s]\",\"E [MPa]\"\n\"0,5\",\"4,5\"\n\"1,5\",\"3,0\"\n\"60\",\"2,25\"\n",

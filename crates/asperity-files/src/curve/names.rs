@@ -15,11 +15,11 @@ pub(super) fn bare_unit(cell: &str) -> &str {
 
 /// Whether a header cell is nothing but a unit (or says that there is none).
 pub(super) fn is_unit(cell: &str) -> bool {
+    const UNITS: [&str; 15] =
+        ["", "-", "1", "s", "sec", "K", "h", "°C", "degC", "rad/s", "mrad/s", "rad", "mrad", "deg", "°"];
     let unit = bare_unit(cell);
     let unit = units::spelled(unit);
     // One letter is rather a name: t, T, f.
-    const UNITS: [&str; 15] =
-        ["", "-", "1", "s", "sec", "K", "h", "°C", "degC", "rad/s", "mrad/s", "rad", "mrad", "deg", "°"];
     UNITS.contains(&&*unit) || (unit.chars().count() > 1 && Unit::parse(&unit).is_ok())
 }
 

@@ -1,6 +1,6 @@
 #![no_main]
 
-use asperity_files::curve::{Columns, Curves, Kind};
+use asperity_files::curve::{Cantilever, Columns, Curves, ForceTable, Indentation, Kind};
 
 // Text tables and spreadsheets (.xls, .xlsx), as each kind of measurement.
 libfuzzer_sys::fuzz_target!(|data: &[u8]| {
@@ -10,6 +10,12 @@ libfuzzer_sys::fuzz_target!(|data: &[u8]| {
             let numbers =
                 curves.sweeps.iter().flat_map(|sweep| sweep.curves.iter().flatten().chain(&sweep.x));
             assert!(numbers.into_iter().all(|number| number.is_finite()));
+        }
+    }
+    let _ = Indentation::parse("record".as_ref(), data, &Columns::default());
+    for cantilever in [None, Some(Cantilever { spring_constant: 0.5, sensitivity: Some(50e-9) })] {
+        if let Ok(table) = ForceTable::parse("record".as_ref(), data, &Columns::default(), cantilever) {
+            assert!(table.loads.iter().chain(&table.depths).all(|number| number.is_finite()));
         }
     }
 });

@@ -12,7 +12,7 @@ use asperity_report::material::force_curve as picture;
 use serde_json::{Value, json};
 
 use super::fit_indentation::{interval, interval_in_words};
-use super::material::columns;
+use super::material::{columns, refused};
 use crate::args::FitIndentation;
 use crate::failure::{Failure, refuse};
 use crate::format::quantity;
@@ -85,7 +85,8 @@ pub fn fit(args: &FitIndentation, model: ForceModel, profile: MdrProfile) -> Res
         )?,
         sensitivity_uncertainty: curve.sensitivity_uncertainty.map_or(0.0, Quantity::get),
     };
-    let table = ForceTable::read(&args.record, &columns(&args.column, &args.unit)?, cantilever)?;
+    let said = columns(&args.column, &args.unit)?;
+    let table = ForceTable::read(&args.record, &said, cantilever).map_err(refused)?;
     let record = ForceRecord { loads: &table.loads, depths: &table.depths };
     let fit = fit_force_curve(profile, &record, &options).map_err(Failure::about(args.record.display()))?;
     let of = MaterialOf { modulus: args.modulus, poisson: args.poisson.get() };

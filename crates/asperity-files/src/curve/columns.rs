@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use asperity::material::Modulus;
 
 use super::Kind;
+use super::alternatives;
 use super::error::{Remedy, Result, fault};
 use super::role::{self, Role, unnumbered};
 use super::sweeps::{DYNAMIC, Pair};
@@ -95,21 +96,16 @@ pub struct Place {
 pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> {
     let places = places(table, form, said)?;
     let (kept, mut notes) = complete(table, &places)?;
+    notes.extend(alternatives::agree(table, form, &places, said)?);
     let unread = table.unread.as_deref().filter(|_| table.is_named()).map(shown);
     notes.extend(unread.as_ref().map(|line| {
         format!("the line {line:?}, between the names of the columns and the points, is not read")
     }));
     let (mut values, mut used) = (Values::new(), Vec::new());
     for (role, column) in places {
-        let Heading { header, name, unit: own, base } = &table.headings[column];
-        // "[log Pa]" under "log G'".
-        let header_unit = if base.is_some() { role::logarithm(own).1 } else { own };
-        let unit = match (said.units.get(&role), role) {
-            (Some(unit), _) => tidy(role, name, unit.trim()),
-            // "tan(delta) [-]": a ratio, unless the brackets hold per cent or a number.
-            (None, Role::TanDelta) if is_ratio(header_unit) => String::new(),
-            (None, _) => tidy(role, name, header_unit),
-        };
+        let heading = &table.headings[column];
+        let Heading { header, name, base, .. } = heading;
+        let unit = unit_of(heading, role, said);
         let place = format!("column {}{}", column + 1, table.quoted(column));
         if let (true, Some(line), false) =
             (unit.is_empty(), &unread, matches!(role, Role::TanDelta | Role::Set))
@@ -138,7 +134,9 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
             let line = row.map(|row| table.rows[kept[row]].line);
             let angular = role == Role::Frequency && unit.is_empty() && is_angular(name);
             let remedy = if angular { Remedy::Radians } else { Remedy::Unit(role) };
-            fault(format!("{} ({place}): {why}", role.name())).remedy(remedy).at(line)
+            let others =
+                if unit.is_empty() { format!("; the file has {}", table.listed()) } else { String::new() };
+            fault(format!("{} ({place}): {why}{others}", role.name())).remedy(remedy).at(line)
         })?;
         if unit.is_empty() && !matches!(role, Role::TanDelta | Role::Set) {
             notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));
@@ -150,6 +148,19 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();
     Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })
+}
+
+/// The unit of a column: as the caller says, or else as its heading does; empty if neither does.
+pub(super) fn unit_of(heading: &Heading, role: Role, said: &Columns) -> String {
+    let Heading { name, unit: own, base, .. } = heading;
+    // "[log Pa]" under "log G'".
+    let header_unit = if base.is_some() { role::logarithm(own).1 } else { own };
+    match (said.units.get(&role), role) {
+        (Some(unit), _) => tidy(role, name, unit.trim()),
+        // "tan(delta) [-]": a ratio, unless the brackets hold per cent or a number.
+        (None, Role::TanDelta) if is_ratio(header_unit) => String::new(),
+        (None, _) => tidy(role, name, header_unit),
+    }
 }
 
 /// A line of the file as a message shows it.
@@ -191,16 +202,24 @@ pub(super) struct Read {
 /// The rows with a number in each of the columns, and a note on the others.
 fn complete(table: &Table, places: &BTreeMap<Role, usize>) -> Result<(Vec<usize>, Vec<String>)> {
     let mut whole = vec![true; table.rows.len()];
-    for (_, column) in places.iter().filter(|(role, _)| **role != Role::Set) {
-        for (whole, number) in whole.iter_mut().zip(table.sparse(*column)?) {
+    let mut most = (0, String::new());
+    for (role, column) in places.iter().filter(|(role, _)| **role != Role::Set) {
+        let numbers = table.sparse(*column)?;
+        let missing = numbers.iter().filter(|number| number.is_none()).count();
+        if missing > most.0 {
+            most = (missing, format!("{} (column {}{})", role.name(), column + 1, table.quoted(*column)));
+        }
+        for (whole, number) in whole.iter_mut().zip(numbers) {
             *whole &= number.is_some();
         }
     }
     let (kept, lacking): (Vec<usize>, Vec<usize>) = (0..whole.len()).partition(|row| whole[*row]);
     let Some(first) = lacking.first() else { return Ok((kept, Vec::new())) };
     if 2 * lacking.len() > whole.len() {
+        let (missing, column) = most;
         return Err(fault(format!(
-            "{} of {} points lack a number in one of the columns that are read",
+            "{} of {} points lack a number in one of the columns that are read, {missing} of them that of {column}; every point needs all of \
+             them: take the others out, or put the quantities that were measured at the same points beside each other",
             lacking.len(),
             whole.len()
         ))
@@ -217,7 +236,7 @@ fn complete(table: &Table, places: &BTreeMap<Role, usize>) -> Result<(Vec<usize>
 }
 
 /// The numbers of their logarithms.
-fn powers(base: f64, logarithms: &[f64]) -> Result<Vec<f64>, String> {
+pub(super) fn powers(base: f64, logarithms: &[f64]) -> Result<Vec<f64>, String> {
     /// More decades than any quantity of a curve spans.
     const MOST: f64 = 60.0;
     let ends = logarithms.iter().fold([0.0, 0.0], |[low, high]: [f64; 2], v| [low.min(*v), high.max(*v)]);
@@ -245,7 +264,8 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
     }
     for role in &possible {
         let taken = |n: &usize| places.values().any(|place| place == n);
-        let column = (0..table.headings.len()).find(|n| means(table, *n, *role, form) && !taken(n));
+        let candidates = (0..table.headings.len()).filter(|n| means(table, *n, *role, form) && !taken(n));
+        let column = alternatives::best(table, *role, candidates, said);
         if let (false, Some(column)) = (places.contains_key(role), column) {
             places.insert(*role, column);
         }
@@ -357,7 +377,7 @@ fn one_pair(places: &mut BTreeMap<Role, usize>, form: Form, said: &Columns) -> O
 }
 
 /// Whether the name of a column says that it holds the role.
-fn means(table: &Table, column: usize, role: Role, form: Form) -> bool {
+pub(super) fn means(table: &Table, column: usize, role: Role, form: Form) -> bool {
     let name = table.headings[column].name.trim();
     match role::bare(name).as_str() {
         "t" => time_or_temperature(table, column, form) == role,

@@ -163,16 +163,29 @@ fn are_units(names: &[String], cells: &[String]) -> bool {
 /// The cells of a header line, where it has as many as there are columns. Names may hold blanks: where these part
 /// the columns, two of them do.
 pub(super) fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<Vec<String>> {
+    let is_marked = line.starts_with('#');
     let line = line.trim_start_matches(['#', '%', '/']);
     let line = if line.contains('\t') { line.trim_end() } else { line.trim() };
     let clean = |cells: Vec<&str>| -> Vec<String> {
         cells.iter().map(|cell| unquoted(cell.trim()).trim().replace("\"\"", "\"")).collect()
     };
-    let spaced = clean(line.split("  ").filter(|cell| !cell.trim().is_empty()).collect());
+    let blanks = separator.is_none() && !line.contains('\t');
+    let mut spaced = clean(line.split("  ").filter(|cell| !cell.trim().is_empty()).collect());
+    // "#" may be the name of a counter.
+    if blanks
+        && is_marked
+        && spaced.len() + 1 == columns
+        && spaced.iter().filter(|cell| is_name(cell)).count() >= 2
+    {
+        spaced.insert(0, "#".to_owned());
+    }
     let spaced = (separator.is_none() && spaced.len() == columns).then_some(spaced);
     let mut plain = clean(cells(line, separator));
     if plain.len() == columns + 1 && plain.last().is_some_and(String::is_empty) {
         plain.pop();
+    }
+    if blanks && plain.windows(2).any(is_cut) {
+        return spaced;
     }
     if plain.len() > columns {
         if spaced.is_some() {
@@ -190,8 +203,23 @@ pub(super) fn header_cells(line: &str, separator: Option<char>, columns: usize) 
     spaced
 }
 
+/// Whether two cells are the words of one name, as in "storage modulus": blanks do not part the columns of their line.
+fn is_cut(cells: &[String]) -> bool {
+    let whole = cells.join(" ");
+    let name = split_unit(&whole).0;
+    let is_word = |cell: &String| cell.chars().count() > 2 && cell.starts_with(char::is_alphabetic);
+    cells.iter().all(is_word)
+        && cells[0].chars().all(char::is_alphabetic)
+        && name.contains(' ')
+        && Role::ALL.iter().any(|role| role.is_called(name))
+}
+
 /// Cells that are nothing but a unit join the name before them: "E, MPa" in a file of commas.
 fn with_units(cells: Vec<String>) -> Vec<String> {
+    // A line of units alone has no names.
+    if cells.first().is_some_and(|cell| !cell.is_empty() && is_unit(cell)) {
+        return cells;
+    }
     let mut joined: Vec<String> = Vec::with_capacity(cells.len());
     for cell in cells {
         match joined.last_mut() {

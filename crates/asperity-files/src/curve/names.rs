@@ -15,11 +15,12 @@ pub(super) fn bare_unit(cell: &str) -> &str {
 
 /// Whether a header cell is nothing but a unit (or says that there is none).
 pub(super) fn is_unit(cell: &str) -> bool {
+    const UNITS: [&str; 15] =
+        ["", "-", "1", "s", "sec", "K", "h", "°C", "degC", "rad/s", "mrad/s", "rad", "mrad", "deg", "°"];
     let unit = bare_unit(cell);
     let unit = units::spelled(unit);
     // One letter is rather a name: t, T, f.
-    matches!(&*unit, "" | "-" | "1" | "s" | "K" | "h" | "°C" | "degC" | "rad/s" | "mrad/s" | "mrad" | "°")
-        || (unit.chars().count() > 1 && Unit::parse(&unit).is_ok())
+    UNITS.contains(&&*unit) || (unit.chars().count() > 1 && Unit::parse(&unit).is_ok())
 }
 
 /// Name and unit of "load [mN]", "load (mN)", "load/mN", "load, mN", "load in mN", "load_mN" or "load mN".
@@ -62,7 +63,7 @@ pub(super) fn split_unit(header: &str) -> (&str, &str) {
         && is_unit_of(name, unit)
     {
         let name = name.trim_end_matches([' ', ',', ';', '_', '/']);
-        return (name.strip_suffix(" in").unwrap_or(name).trim(), unit);
+        return (name.strip_suffix(" in").or(name.strip_suffix("_in")).unwrap_or(name).trim(), unit);
     }
     match header.split_once('/') {
         Some((name, unit)) if !name.trim().is_empty() => (name.trim(), bare_unit(unit.trim())),
@@ -74,13 +75,14 @@ pub(super) fn split_unit(header: &str) -> (&str, &str) {
 fn is_unit_of(name: &str, unit: &str) -> bool {
     let named = !name.trim_matches([' ', ',', ';', '_', '/']).is_empty();
     let plain = name.trim_end_matches([' ', ',', ';', '_', '/']);
+    let plain = plain.strip_suffix(" in").or(plain.strip_suffix("_in")).unwrap_or(plain);
     let time = name.trim().to_lowercase().starts_with('t') || role::Role::Time.is_called(plain);
     named
         && match unit {
             "" | "-" | "1" | "%" | "d" | "g" | "day" | "days" | "cal" => false,
             // "temperature_C"
             "C" | "c" | "F" | "f" => plain == "T" || role::Role::Temperature.is_called(plain),
-            "min" | "h" => time,
+            "min" | "sec" | "h" => time,
             "s" | "K" | "N" | "m" => true,
             unit => is_unit(unit),
         }

@@ -62,9 +62,13 @@ impl Table {
         if bytes.iter().all(u8::is_ascii_whitespace) {
             return Err(fault("the file is empty"));
         }
-        let text = to_text(bytes).ok_or_else(|| {
+        let mut text = to_text(bytes).ok_or_else(|| {
             fault("the file is binary, not a text table and not a spreadsheet (.xls, .xlsx); export the measured columns as text (csv)")
         })?;
+        // Lines that end in a carriage return alone.
+        if text.contains('\r') && !text.contains('\n') {
+            text = text.replace('\r', "\n");
+        }
         if text.lines().nth(MOST_LINES).is_some() {
             return Err(fault(format!("the file has more than {MOST_LINES} lines")));
         }
@@ -74,8 +78,9 @@ impl Table {
         let lines: Vec<&str> = text.lines().map(trim).collect();
         let numeric = lines.iter().copied().filter(|line| !is_comment(line) && is_numbers(line));
         let (separator, decimal_comma) = match numeric.clone().next() {
+            Some(_) if are_grouped_between_tabs(numeric.clone()) => (None, false),
             Some(_) => dialect(numeric).map_err(|problem| fault(problem.to_string()))?,
-            // Columns of text beside the numbers.
+            // Columns of text beside the numbers, or numbers between quotes.
             None => guess(&lines),
         };
         if decimal_comma && let Some(cell) = thousands(&lines, separator) {
@@ -92,10 +97,8 @@ impl Table {
         // "NaN" counts as a number; dashes may be anything.
         let number = |cell: &str| parse_number(cell, decimal_comma).is_some() || is_undefined(cell);
         let numbers = |line: &str| cells(line, separator).iter().filter(|cell| number(cell)).count();
-        let complete = first_row(&lines, dialect, &numbers).ok_or_else(|| {
-            fault("there is no line with two numbers; a curve is a text table with one point per line")
-        })?;
-        let columns = columns(&lines[..=complete], separator);
+        let complete = first_row(&lines, dialect, &numbers).ok_or_else(|| no_points(&lines, dialect))?;
+        let columns = columns(&lines[..=complete], &lines[complete + 1..], separator);
         if columns > MOST_COLUMNS {
             return Err(fault(format!("the table has {columns} columns, but may have {MOST_COLUMNS}")));
         }
@@ -127,8 +130,9 @@ impl Table {
             }
             let mut cells = cells(line, separator);
             if numbers(line) == 0 || cells.len() != columns {
-                // Text below the table.
-                if n > last && numbers(line) == 0 && cells.len() < columns {
+                // Text below the table: "Mean: 12".
+                let is_text = cells.first().is_none_or(|cell| !number(cell));
+                if n > last && is_text && cells.len() < columns {
                     break;
                 }
                 if let Some(next) = repeated_heading(&lines[..=last], n, &named, separator, &is_row) {
@@ -183,7 +187,7 @@ impl Table {
         cells(line, self.separator).get(column).copied().unwrap_or_default()
     }
 
-    fn number(&self, row: &Row, column: usize) -> Result<f64> {
+    pub(super) fn number(&self, row: &Row, column: usize) -> Result<f64> {
         let cell = self.cell(row, column);
         parse_number(cell, self.decimal_comma).ok_or_else(|| {
                 let shown: String = cell.chars().take(40).collect();
@@ -234,7 +238,14 @@ impl Table {
             "" => (n + 1).to_string(),
             header => format!("{} {header:?}", n + 1),
         };
-        self.headings.iter().enumerate().take(20).map(name).collect::<Vec<_>>().join(", ")
+        let names = self.headings.iter().enumerate().take(20).map(name).collect::<Vec<_>>().join(", ");
+        match self.unread.as_ref().filter(|_| !self.is_named()) {
+            Some(line) => {
+                let shown: String = line.chars().take(60).collect();
+                format!("{names}, which the line above them, {shown:?}, does not name one by one")
+            }
+            None => names,
+        }
     }
 }
 
@@ -276,9 +287,35 @@ fn first_row(lines: &[&str], dialect: Dialect, numbers: &dyn Fn(&str) -> usize) 
     pairs().find(follows).or_else(|| pairs().next()).map(|pair| pair[0]).or_else(|| rows.first().copied())
 }
 
-/// The columns of a table, from its first complete point, the last of the lines. An empty last cell belongs to a column that has a name;
-/// otherwise a separator ends the line.
-fn columns(lines: &[&str], separator: Option<char>) -> usize {
+/// The error for a file without a line of two numbers: the first cell that looks like one and is none.
+fn no_points(lines: &[&str], dialect: Dialect) -> CurveError {
+    let why = "there is no line with two numbers; a curve is a text table with one point per line";
+    let begins = |cell: &str| {
+        let cell = cell.trim_start_matches(['"', '+', '-', '\u{2212}', '.', ',']);
+        cell.starts_with(|c: char| c.is_ascii_digit())
+    };
+    let is_wrong = |cell: &str| begins(cell) && parse_number(cell, dialect.decimal_comma).is_none();
+    let place = |n: usize| {
+        let cells = cells(lines[n], dialect.separator);
+        let column = cells.iter().position(|cell| is_wrong(cell))?;
+        (cells.iter().filter(|cell| begins(cell)).count() >= 2).then(|| (n, column, cells[column]))
+    };
+    match (0..lines.len()).find_map(place) {
+        Some((n, column, cell)) => {
+            let shown: String = cell.chars().take(40).collect();
+            fault(format!("{why}; the cell {shown:?} (column {}) is none; {ALONE}", column + 1)).at(n + 1)
+        }
+        None => fault(why),
+    }
+}
+
+/// How a number is written.
+const ALONE: &str = "write numbers alone, as 1234.5 or 1.2345e3, without units and without marks or blanks between thousands; the unit \
+                     belongs into the header, as in \"modulus [MPa]\"";
+
+/// The columns of a table, from its first complete point, the last of the lines. An empty last cell belongs to a column that has a name,
+/// or numbers on the lines after it; otherwise a separator ends the line.
+fn columns(lines: &[&str], after: &[&str], separator: Option<char>) -> usize {
     let Some((line, above)) = lines.split_last() else { return 0 };
     let point = cells(line, separator);
     let ends = |cells: &[&str]| cells.last().is_some_and(|cell| cell.is_empty());
@@ -290,7 +327,11 @@ fn columns(lines: &[&str], separator: Option<char>) -> usize {
         Some(cells(line, separator)).filter(|named| named.len() == point.len())
     };
     let unnamed = || named.or_else(last_above).is_none_or(|named| ends(&named));
-    point.len() - usize::from(ends(&point) && unnamed())
+    let empty = || {
+        let mut rows = after.iter().filter(|line| !is_comment(line)).map(|line| cells(line, separator));
+        rows.all(|row| row.len() != point.len() || ends(&row))
+    };
+    point.len() - usize::from(ends(&point) && unnamed() && empty())
 }
 
 /// Whether a tab stands behind a line of the text, whose end is trimmed.
@@ -362,12 +403,38 @@ pub(super) fn parse_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     let cell = cell.trim_matches('"');
     // "7,874.1" between quotes; "7,874" may have a decimal comma.
     let grouped = || is_grouped(cell) && (cell.contains('.') || cell.matches(',').count() > 1);
-    let number = match (cell.contains(','), decimal_comma) {
+    let read = |cell: &str| match (cell.contains(','), decimal_comma) {
         (true, true) => cell.replacen(',', ".", 1).parse(),
         (true, false) if grouped() => cell.replace(',', "").parse(),
         _ => cell.parse(),
     };
+    let number = read(cell).or_else(|error| usual(cell).map_or(Err(error), |cell| read(&cell)));
     number.ok().filter(|value: &f64| value.is_finite())
+}
+
+/// A number with the exponent of Fortran ("1.5D-03") or the minus sign of typography in the usual way.
+fn usual(cell: &str) -> Option<String> {
+    let is_exponent = |at: usize| {
+        cell[..at].contains(['.', ',']) && cell[..at].ends_with(|c: char| c.is_ascii_digit() || c == '.')
+    };
+    let exponent = cell.find(['d', 'D']).filter(|at| is_exponent(*at));
+    if exponent.is_none() && !cell.contains('\u{2212}') {
+        return None;
+    }
+    let mut text = cell.to_owned();
+    if let Some(at) = exponent {
+        text.replace_range(at..=at, "e");
+    }
+    Some(text.replace('\u{2212}', "-"))
+}
+
+/// Half of the last digit of a number that has a decimal mark or is an integer.
+pub(super) fn half_digit(cell: &str) -> f64 {
+    let cell = cell.trim_matches('"');
+    let (mantissa, exponent) = cell.split_once(['e', 'E', 'd', 'D']).unwrap_or((cell, "0"));
+    let decimals = mantissa.rfind(['.', ',']).map_or(0, |at| mantissa.len() - at - 1);
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    0.5 * 10f64.powi(exponent.clamp(-400, 400) - decimals.min(400) as i32)
 }
 
 /// Whether a cell is a word for an undefined number.
@@ -392,6 +459,7 @@ pub(super) fn is_missing(cell: &str) -> bool {
 fn thousands<'l>(lines: &[&'l str], separator: Option<char>) -> Option<&'l str> {
     let mut found = None;
     let numbers = lines.iter().filter(|line| !is_comment(line)).flat_map(|line| cells(line, separator));
+    let numbers = numbers.map(|cell| cell.trim_matches('"'));
     for cell in numbers.filter(|cell| cell.contains(',') && parse_number(cell, true).is_some()) {
         if !is_grouped(cell) {
             return None;
@@ -414,13 +482,32 @@ pub(super) fn is_grouped(cell: &str) -> bool {
 
 /// Separator and decimal mark of a file whose lines hold text as well.
 fn guess(lines: &[&str]) -> (Option<char>, bool) {
-    let has = |c: char| lines.iter().filter(|line| line.contains(c)).count() * 2 > lines.len();
+    let written = || lines.iter().filter(|line| !line.is_empty());
+    let has = |c: char| written().filter(|line| line.contains(c)).count() * 2 > written().count();
     match (has(';'), has('\t'), has(',')) {
         (true, _, comma) => (Some(';'), comma),
         (_, true, comma) => (None, comma),
-        (_, _, true) => (Some(','), false),
+        (_, _, true) => (Some(','), has_quoted_decimal_commas(lines)),
         _ => (None, false),
     }
+}
+
+/// Whether numbers between quotes have decimal commas, and none has a point: `"0,5","1,25"`.
+fn has_quoted_decimal_commas(lines: &[&str]) -> bool {
+    let cells = || lines.iter().flat_map(|line| cells(line, Some(','))).filter(|cell| cell.starts_with('"'));
+    let number = |cell: &&str| parse_number(cell, true).is_some();
+    cells().filter(number).any(|cell| cell.contains(','))
+        && !cells().filter(number).any(|cell| cell.contains('.'))
+}
+
+/// Whether tabs part the numbers of all lines, and commas only thousands of numbers with decimal points.
+fn are_grouped_between_tabs<'l>(lines: impl Iterator<Item = &'l str> + Clone) -> bool {
+    let has = |c: char| lines.clone().any(|line| line.contains(c));
+    let is_grouped = |cell: &str| !cell.contains(',') || is_grouped(cell.trim());
+    has(',')
+        && has('.')
+        && !has(';')
+        && lines.clone().all(|line| line.contains('\t') && line.split('\t').all(is_grouped))
 }
 
 /// The cells of a line: at the separator, or at tabs where there are any, else at blanks. A separator between quotes is none; quotes

@@ -46,7 +46,10 @@ pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
     let tidied = match role {
         _ if unit == "-" => "",
         Role::Temperature
-            if matches!(bare.as_str(), "c" | "degc" | "celsius" | "degreesc" | "gradc" | "degcelsius") =>
+            if matches!(
+                bare.as_str(),
+                "c" | "âc" | "degc" | "celsius" | "degreesc" | "gradc" | "degcelsius"
+            ) =>
         {
             "°C"
         }
@@ -54,7 +57,7 @@ pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
         Role::Temperature if matches!(bare.as_str(), "f" | "degf" | "fahrenheit" | "degreesf" | "gradf") => {
             "°F"
         }
-        Role::Frequency if bare == "hz" || bare == "hertz" => "Hz",
+        Role::Frequency if matches!(bare.as_str(), "hz" | "hertz" | "cps" | "cycless" | "cyclessec") => "Hz",
         // Angular frequencies in 1/s are those in rad/s.
         Role::Frequency if matches!(unit, "1/s" | "s^-1" | "s-1") && is_angular(name) => "rad/s",
         Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity if bare == "pas" => "Pa s",
@@ -68,7 +71,13 @@ pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
         {
             "deg"
         }
-        Role::Time if matches!(bare.as_str(), "sec" | "second" | "seconds" | "sekunden") => "s",
+        Role::Time => match bare.as_str() {
+            "sec" | "secs" | "second" | "seconds" | "sek" | "sekunde" | "sekunden" => "s",
+            "min" | "mins" | "minute" | "minutes" | "minuten" => "min",
+            "hr" | "hrs" | "hour" | "hours" | "std" | "stunde" | "stunden" => "h",
+            "msec" | "millisecond" | "milliseconds" | "millisekunden" => "ms",
+            _ => unit,
+        },
         _ => unit,
     };
     tidied.to_owned()

@@ -210,6 +210,9 @@ pub(super) fn tells_value(text: &str) -> bool {
     value_in(text).is_some()
 }
 
+/// Other numbers before a K are no temperatures but thousands: a molecular weight of 44.1 K.
+const PLAUSIBLE_KELVIN: Range<f64> = 100.0..2000.0;
+
 /// The temperature or frequency in a text: "-20 °C", "E'(0.100 Hz)/MPa".
 fn value_in(text: &str) -> Option<Value> {
     const UNITS: [(&str, &str); 8] = [
@@ -246,7 +249,8 @@ fn value_in(text: &str) -> Option<Value> {
             continue;
         }
         let digits = text[signed..end].replace(',', ".").replace('−', "-");
-        if let Ok(number) = digits.parse::<f64>() {
+        let is_likely = |number: &f64| unit != &"K" || PLAUSIBLE_KELVIN.contains(number);
+        if let Some(number) = digits.parse::<f64>().ok().filter(is_likely) {
             return Some(Value { number, unit, span: signed..text.len() - rest.len() });
         }
     }
@@ -329,5 +333,7 @@ mod tests {
         }
         // A rate is no temperature, and the digit of a name no number.
         assert!(value_in("ramp 5 K/min").is_none() && value_in("E1 K").is_none() && value_in("20").is_none());
+        // Nor is a molecular weight in thousands.
+        assert!(value_in("44.1 K, Nen=19.44").is_none() && value_in("293.15 K").is_some());
     }
 }

@@ -58,6 +58,36 @@ const BY_EXPORT: [(&[u8], &str, &str); 5] = [
     (b"\xff\xd8\xff", "JPEG", PICTURE),
 ];
 
+/// Formats of text whose numbers would be taken for a matrix or for points in lengths.
+const TEXTS: [(&str, &str, &str); 4] = [
+    (
+        "zygo xyz data file",
+        "Zygo XYZ (text of an interferometer, whose x and y are numbers of pixels)",
+        "MetroPro DAT, SDF or SUR",
+    ),
+    (
+        "zygo ascii data file",
+        "Zygo ASCII (text of an interferometer, whose numbers are phases)",
+        "MetroPro DAT, SDF or SUR",
+    ),
+    ("dsaa", "Surfer grid (DSAA)", "x, y and z as text, or the rows alone"),
+    (
+        "ncols",
+        "ESRI ASCII grid",
+        "x, y and z as text, or the rows alone, with nan where nothing was measured",
+    ),
+];
+
+/// Refuses text of such a format.
+pub(super) fn refuse_texts(text: &[u8]) -> Result<()> {
+    let starts =
+        |name: &str| text.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name.as_bytes()));
+    match TEXTS.iter().find(|(start, ..)| starts(start)) {
+        Some((_, name, export)) => Err(foreign((name, Way::Export, export))),
+        None => Ok(()),
+    }
+}
+
 /// The error for a file in a format that is not read.
 pub(super) fn unread(bytes: &[u8]) -> Problem {
     let groups =
@@ -85,10 +115,10 @@ pub(super) fn refuse_look_alikes(bytes: &[u8]) -> Result<()> {
         let export = "SUR, SDF or MetroPro DAT from Mx";
         return Err(foreign(("Zygo DATX (interferometer)", Way::SurfaceTopography, export)));
     }
-    // Lines of both directions one after the other, scaled by entries of their own.
+    // Its layout is not published, and programs that read it differ in the order of its points and in the scale of its heights.
     if holds(b"Measurement_000") && holds(b"Channel_0") {
-        let export = "an image of heights from JPK Data Processing";
-        return Err(foreign(("JPK HDF5 (atomic force microscope)", Way::Gwyddion, export)));
+        let export = "one image of heights as text from JPK Data Processing";
+        return Err(foreign(("JPK HDF5 (atomic force microscope, .h5-jpk)", Way::Export, export)));
     }
     Ok(())
 }

@@ -3,7 +3,9 @@
 use asperity::indentation::{IndentationOptions, IndentationRecord, fit_indentation};
 use asperity::material::{FitOptions, Moduli};
 use asperity::reference::MdrProfile;
-use asperity_files::curve::{Columns, Curves, Indentation, Kind, Request, ShiftRequest};
+use asperity_files::curve::{
+    Cantilever, Columns, Curves, ForceTable, Indentation, Kind, Request, ShiftRequest,
+};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -22,6 +24,12 @@ fn answer(bytes: &[u8]) {
         let options = IndentationOptions { springs: 20, terms: Some(1), ..IndentationOptions::default() };
         match fit_indentation(MdrProfile::Paraboloid { radius: 1.0 }, &taken, &options) {
             Ok(fit) => assert!(fit.rms.is_finite()),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+    for cantilever in [None, Some(Cantilever { spring_constant: 0.5, sensitivity: Some(50e-9) })] {
+        match ForceTable::parse("any".as_ref(), bytes, &Columns::default(), cantilever) {
+            Ok(table) => assert!(table.loads.len() == table.depths.len()),
             Err(error) => assert!(!error.to_string().is_empty()),
         }
     }
@@ -50,8 +58,10 @@ const GOOD: &str = "# T [K]; f [Hz]; E' [MPa]; E'' [MPa]\n300; 0,1; 2,5; 0,5\n30
                     310; 0,1; 2,1; 0,3\n310; 1; 2,5; 0,5\n310; 10; 3; 0,7\n";
 
 /// Tables of other forms: points that lack numbers, blocks of columns, both functions of a step, values below 0.
-const FORMS: [&str; 6] = [
+const FORMS: [&str; 8] = [
     GOOD,
+    "\"f [Hz]\",\"G' [Pa]\",\"Storage modulus [kPa]\",\"G'' [Pa]\",\"tan d\"\n\"0,1\",\"4000\",\"4\",\"1000\",\"0,25\"\n\"1\",\"5000\",\"5\",\"1000\",\"0,2\"\n\"10\",\"6000\",\"6\",\"600\",\"0,1\"\n",
+    "#  Time/s  Step time/s  Relaxation modulus/MPa\n1  1.D+01  1.0D+00  4.0\n2  1.1D+01  2.0D+00  3.0\n3  1.3D+01  4.0D+00  2.5\n4  1.7D+01  8.0D+00  2.2\n",
     "Time [min];E [MPa];Strain [%]\n-;-;-\n0;;1\n0,1;4;1\n0,2;3;1\n0,4;2,5;1\n0,8;2,2;1\n1,6;2,1;1\n",
     "20,,25,\nf [Hz],E' [MPa],f [Hz],E' [MPa]\n0.1,5,0.1,4\n1,6,1,5\n10,7,10,6\n",
     "Step: creep\nt [s]\tStrain [%]\tJ [1/MPa]\tG [MPa]\n\t1\t\t\n0.1\t1\t1\t1\n1\t2\t2\t0.5\n10\t3\t3\t0.3333\n100\t4\t4\t0.25\n",

@@ -355,3 +355,78 @@ fn an_infinite_height_is_no_empty_cell() {
         );
     }
 }
+
+#[test]
+fn quotes_carriage_returns_and_the_minus_of_typography_change_no_number() {
+    for text in [
+        "\"1\",\"2.5\",\"-3\"\n\"4\",\"nan\",\"6e3\"\n",
+        "\"1\",\"2,5\",\"-3\"\r\n\"4\",\"nan\",\"6e3\"\r\n",
+        "1 2.5 -3\r4 nan 6e3\r",
+        "1\t2.5\t\u{2212}3\n4\tnan\t6e3\n",
+    ] {
+        let options = ReadOptions {
+            size: Some([3.0, 2.0]),
+            height_unit: Some(NM),
+            format: Some(Format::Text),
+            ..Default::default()
+        };
+        let surface = read_bytes(text.as_bytes(), &options).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        assert_heights(&surface, &heights(), NM);
+    }
+    // The names of the columns stay above lines after the last point.
+    let points = "x [um],y [um],z [nm]\n0,0,1\n1,0,2\n0,1,3\n1,1,4\nEnd of data\nexported: today\n";
+    let surface = read(points).unwrap();
+    assert_size(&surface, [2.0 * UM, 2.0 * UM]);
+    assert_heights(&surface, &array![[1.0, 3.0], [2.0, 4.0]], NM);
+    let profile =
+        b"\"Lateral um\",\"Total Profile nm\"\n\"0.0\",\"1.0\"\n\"0.5\",\"2.0\"\n\"1.0\",\"1.0\"\n\nEnd\n";
+    let profile = profile_of(profile, &ReadOptions::default()).unwrap();
+    assert!((profile.surface.heights()[[1, 0]] / 2e-9 - 1.0).abs() < 1e-12);
+    assert!((profile.surface.grid().size()[0] / 1.5e-6 - 1.0).abs() < 1e-12);
+}
+
+/// The heights i² + 3 j² - i j of a map, whose lines and columns are not evenly spaced, with numbers put before them.
+#[test]
+fn counters_and_coordinates_beside_a_matrix_are_no_heights() {
+    let line = |j: i32| (0..8).map(|i| (i * i + 3 * j * j - i * j).to_string()).collect::<Vec<_>>().join(",");
+    let lines: Vec<String> = (0..9).map(line).collect();
+    let (size, unit) = (Some([8e-6, 9e-6]), Some(NM));
+    assert!(with(&lines.join("\n"), size, unit).is_ok());
+    let numbered = |from: i32, step: f64| {
+        let rows = lines.iter().zip(0..).map(|(line, j)| format!("{},{line}", f64::from(from + j) * step));
+        rows.collect::<Vec<_>>().join("\n")
+    };
+    for (text, words) in [
+        (format!("0,1,2,3,4,5,6,7\n{}", lines.join("\n")), "first line"),
+        (format!("0,0.1,0.2,0.3,0.4,0.5,0.6,0.7\n{}", lines.join("\n")), "first line"),
+        (numbered(1, 1.0), "first column"),
+        // Coordinates of both axes.
+        (format!("0,0,2,4,6,8,10,12,14\n{}", numbered(0, 0.25)), "first line"),
+    ] {
+        let error = with(&text, size, unit).unwrap_err().to_string();
+        assert!(
+            error.contains(words) && error.contains("evenly spaced") && error.contains("take it out"),
+            "{error}"
+        );
+    }
+    // A plane is evenly spaced everywhere, and so is a wedge.
+    let plane = |i: i32, j: i32| (2 * i + j).to_string();
+    let rows = (0..9).map(|j| (0..8).map(|i| plane(i, j)).collect::<Vec<_>>().join(","));
+    assert!(with(&rows.collect::<Vec<_>>().join("\n"), size, unit).is_ok());
+}
+
+/// Numbers of these files are pixels, phases, or mark what was not measured.
+#[test]
+fn text_of_other_formats_is_no_matrix_and_no_list_of_points() {
+    let zygo = "Zygo XYZ Data File - Format 1\n1 8 3 0 \"today\"\n#\n0 0 0.5\n1 0 0.4\n0 1 0.6\n1 1 0.7\n#\n";
+    let ascii = "Zygo ASCII Data File - Format 2\n0 1 2 3\n4 5 6 2147483640\n7 8 9 10\n";
+    let esri = "ncols 3\nnrows 2\ncellsize 2\nNODATA_value -9999\n1 2 3\n4 -9999 6\n";
+    for (text, name) in
+        [(zygo, "Zygo XYZ"), (ascii, "Zygo ASCII"), (esri, "ESRI"), ("DSAA\n2 2\n0 1\n0 1\n", "Surfer")]
+    {
+        let error = with(text, Some([1e-6, 1e-6]), Some(NM)).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains("export"), "{error}");
+        let options = ReadOptions { height_unit: Some(NM), ..ReadOptions::default() };
+        assert!(profile_of(text.as_bytes(), &options).is_err());
+    }
+}

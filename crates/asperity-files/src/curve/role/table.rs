@@ -98,7 +98,7 @@ roles! {
         "d'' j'' losscompliance verlustnachgiebigkeit verlustkomplianz";
     /// Absolute value of the complex viscosity.
     ComplexViscosity "complex_viscosity" ["Pa s", "Pa s"]
-        "η* eta* complexviscosity complexviscosityη* komplexeviskosität";
+        "η* n* eta* complexviscosity complexviscosityη* komplexeviskosität";
     /// Real part of the complex viscosity, loss modulus over angular frequency.
     RealViscosity "real_viscosity" ["Pa s", "Pa s"]
         "η' eta' realviscosity dynamicviscosity realpartofviscosity";
@@ -114,10 +114,10 @@ roles! {
         "set run sweep segment interval isotherm lauf messreihe intervall";
     /// Load of an indentation.
     Load "load" ["N", "mN"]
-        "load force normalload normalforce w p f fn";
+        "load force normalload normalforce w p f fn kraft normalkraft prüfkraft";
     /// Depth of an indentation.
     Depth "depth" ["m", "um"]
-        "depth indentation displacement indentationdepth approach h d";
+        "depth indentation displacement indentationdepth approach h d eindringtiefe tiefe";
     /// Way of a cantilever's base towards the sample.
     Height "height" ["m", "um"]
         "height z piezo zpiezo piezoheight heightmeasured measuredheight heightpiezo zsensor höhe";

@@ -101,13 +101,16 @@ impl Dialect {
             Problem::malformed(
                 "the use of commas",
                 value,
-                "either between numbers or as decimal mark; write numbers with a decimal point",
+                "either between numbers or as decimal mark; write numbers with a decimal point, and nothing between thousands",
             )
         };
         let (semicolon, comma, point) = (has(b';'), has(b','), has(b'.'));
         let dialect = |separator, decimal_comma| Ok(Dialect { separator, decimal_comma });
         match (semicolon, comma, point) {
-            (true, true, true) => Err(mixed("beside decimal points and semicolons")),
+            (true, true, true) => Err(mixed(&match blocks.clone().find_map(grouped) {
+                Some(number) => format!("beside decimal points and semicolons, as in {number:?}"),
+                None => "beside decimal points and semicolons".to_owned(),
+            })),
             (true, decimal_comma, _) => dialect(Separator::Byte(b';'), decimal_comma),
             (false, false, _) => dialect(Separator::Blank, false),
             (false, true, true) => dialect(Separator::Byte(b','), false),
@@ -129,6 +132,13 @@ impl Dialect {
             }
         }
     }
+}
+
+/// A number with a comma and a point, as between thousands.
+fn grouped(block: &[u8]) -> Option<String> {
+    let tokens = block.split(|byte| byte.is_ascii_whitespace() || *byte == b';');
+    let mut both = tokens.filter(|token| token.contains(&b',') && token.contains(&b'.'));
+    both.next().map(|token| String::from_utf8_lossy(&token[..token.len().min(40)]).into_owned())
 }
 
 /// Where the commas of a file without decimal points and semicolons stand.

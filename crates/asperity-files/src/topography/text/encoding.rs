@@ -21,11 +21,20 @@ pub(super) fn utf8(bytes: &[u8]) -> Option<Cow<'_, [u8]>> {
     (!binary).then_some(text)
 }
 
-/// A line or part of it as text: UTF-8, else Latin-1.
+/// A line or part of it as text: UTF-8, else Latin-1 with the quotation marks and dashes of Windows.
 pub(in crate::topography) fn label(bytes: &[u8]) -> String {
+    let character = |byte: u8| match byte {
+        0x91 => '\u{2018}',
+        0x92 => '\u{2019}',
+        0x93 => '\u{201c}',
+        0x94 => '\u{201d}',
+        0x96 => '\u{2013}',
+        0x97 => '\u{2014}',
+        other => char::from(other),
+    };
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
+        Err(_) => bytes.iter().map(|b| character(*b)).collect(),
     }
 }
 

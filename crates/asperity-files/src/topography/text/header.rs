@@ -72,6 +72,14 @@ impl Header {
         self.above = Default::default();
     }
 
+    /// Takes the names above the numbers, and what [`next_block`](Self::next_block) forgets, from the header before them.
+    pub(super) fn keep_names_of(&mut self, before: &mut Header) {
+        self.above = std::mem::take(&mut before.above);
+        if self.unexplained.is_empty() {
+            self.unexplained = std::mem::take(&mut before.unexplained);
+        }
+    }
+
     /// Reads one header line; returns it as key and value for the metadata.
     pub(super) fn line(&mut self, line: &[u8]) -> Option<(String, String)> {
         // Longer lines are no header of any program.

@@ -1,6 +1,6 @@
 //! Text matrices: each line of the file is one y; the values on it run along x.
 
-use super::parse::table;
+use super::parse::{Table, table};
 use super::{Block, Text, decode};
 use crate::topography::finish::{Measured, Unit};
 use crate::topography::{Problem, Request, Result, grid};
@@ -42,6 +42,7 @@ pub(super) fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
         return Err(request.no_heights(detail));
     }
     grid::points(nx as u64, ny as u64)?;
+    refuse_counters(&table, block.line)?;
     for (axis, found, stated) in [("x", nx, block.header.points[0]), ("y", ny, block.header.points[1])] {
         if let Some(stated) = stated
             && stated != found as u64
@@ -55,4 +56,39 @@ pub(super) fn read(bytes: &[u8], request: &Request) -> Result<Measured> {
     let channels = if channel.is_some() || names.len() > 1 { names } else { Vec::new() };
     let metadata = text.metadata(block);
     Ok(Measured { channel, channels, metadata, ..Measured::new(heights, unit, lateral) })
+}
+
+/// # Errors
+/// Where the first line, or the first number of every line, counts the others or holds their coordinates, as spreadsheets and scripts write
+/// them: its numbers are evenly spaced, and those of no other line (column) are.
+fn refuse_counters(table: &Table, line: usize) -> Result<()> {
+    /// Fewer heights may be evenly spaced by chance.
+    const LEAST: usize = 6;
+    let lines: Vec<&[f64]> = table.lines().collect();
+    let columns = table.columns;
+    let found = |what: String, numbers: &[f64]| {
+        let shown: Vec<String> = numbers.iter().take(4).map(f64::to_string).collect();
+        Problem::malformed(
+            what,
+            format!("evenly spaced ({}, ...), as no other is", shown.join(", ")),
+            "heights: a counter or coordinates would become a part of the surface; take it out, or save the heights as NPY",
+        )
+    };
+    // A corner may belong to neither.
+    let (first, rest) = (&lines[0][1..], lines.get(1..).unwrap_or_default());
+    if first.len() >= LEAST && is_even(first.iter()) && !rest.iter().any(|line| is_even(line[1..].iter())) {
+        return Err(found(format!("the first line of numbers (line {line})"), lines[0]));
+    }
+    let column = |n: usize| rest.iter().map(move |line| &line[n]);
+    if rest.len() >= LEAST && is_even(column(0)) && !(1..columns).any(|n| is_even(column(n))) {
+        return Err(found("the first column".to_owned(), &column(0).copied().collect::<Vec<f64>>()));
+    }
+    Ok(())
+}
+
+/// Whether numbers rise or fall in equal steps, but for rounding.
+fn is_even<'n>(numbers: impl Iterator<Item = &'n f64> + Clone) -> bool {
+    let mut steps = numbers.clone().zip(numbers.skip(1)).map(|(a, b)| b - a);
+    let Some(first) = steps.next().filter(|step| *step != 0.0 && step.is_finite()) else { return false };
+    steps.all(|step| (step - first).abs() <= 1e-3 * first.abs())
 }

@@ -10,6 +10,7 @@ mod header;
 mod labels;
 mod matrix;
 mod parse;
+mod plain;
 mod profile;
 mod xyz;
 
@@ -20,7 +21,7 @@ use memchr::memchr;
 use dialect::{Dialect, Separator};
 use header::Header;
 
-use super::{Format, Problem, Reader, Result, write};
+use super::{Format, Problem, Reader, Result, foreign, write};
 
 pub(super) use encoding::label;
 pub(crate) use header::leading_number;
@@ -91,7 +92,7 @@ fn detect(bytes: &[u8]) -> Option<Format> {
     if bytes.len() > PREFIX {
         prefix = &prefix[..prefix.iter().rposition(|b| *b == b'\n').map_or(PREFIX, |end| end + 1)];
     }
-    let text = encoding::utf8(prefix)?;
+    let text = plain::plain(prefix)?;
     // Text whose numbers are ambiguous is still text: the error when it is read gives the reason.
     let Ok(text) = Text::split(&text) else { return Some(Format::Text) };
     let block = text.blocks.first()?;
@@ -109,13 +110,14 @@ fn detect(bytes: &[u8]) -> Option<Format> {
 
 /// The bytes as UTF-8 (or as an 8-bit code, which only concerns the header).
 fn decode(bytes: &[u8]) -> Result<Cow<'_, [u8]>> {
-    encoding::utf8(bytes).ok_or_else(|| {
+    plain::plain(bytes).ok_or_else(|| {
         Problem::malformed("the file", "binary", "text; omit the format to have it detected from the content")
     })
 }
 
 impl<'a> Text<'a> {
     fn split(bytes: &'a [u8]) -> Result<Self> {
+        foreign::refuse_texts(bytes)?;
         let mut blocks: Vec<Block> = Vec::new();
         let mut header = Header::default();
         let (mut metadata, mut header_lines) = (Vec::new(), 0);
@@ -166,6 +168,8 @@ impl<'a> Text<'a> {
             // Lines after the last numbers describe the last block.
             None => {
                 if let Some(last) = blocks.last_mut() {
+                    // They do not name its columns.
+                    header.keep_names_of(&mut last.header);
                     (last.header, last.metadata) = (header, metadata.len());
                 }
             }

@@ -1,7 +1,8 @@
 //! One or two columns of text: heights along a line, with their positions or without.
 
 use super::parse::{columns, table};
-use super::{Block, Text, decode, encoding};
+use super::plain::plain;
+use super::{Block, Text, decode};
 use crate::topography::finish::Unit;
 use crate::topography::unit::{LoneA, metres};
 use crate::topography::{Format, Problem, Result};
@@ -22,7 +23,7 @@ pub(crate) struct Columns {
 
 /// Whether the bytes are text whose longest block of numbers has one or two columns, and no header of a matrix.
 pub(crate) fn is_profile(bytes: &[u8]) -> bool {
-    let Some(text) = encoding::utf8(bytes) else { return false };
+    let Some(text) = plain(bytes) else { return false };
     let Ok(text) = Text::split(&text) else { return false };
     let longest = longest(&text);
     longest.is_some_and(|block| columns(text.dialect, block.data) <= 2 && !block.header.says_matrix())

@@ -18,7 +18,7 @@ const MOST_CELLS_PER_POINT: usize = 8;
 
 /// Three columns are taken for points.
 const HINT: &str = "three columns are taken for x, y and height; if this is a matrix, say so in its first line \
-                    (\"# Width: 3 um\"), or save it as NPY";
+                    (\"# Width: 3 um\"), or save it as NPY; if it is a profile, keep two columns, position and height";
 
 /// Positions of the x and y columns, where a row of names gives them.
 pub(super) fn named_columns(columns: &[Column]) -> Option<[usize; 2]> {

@@ -346,9 +346,10 @@ fields, or at most 1e-3. Adaptive steps are within their tolerance if these erro
 
 Most cases that are not covered have a cell at the rim that has just touched: on a stiff body it carries the largest pressure, and a touch that
 comes a little early or late in a step shows there at once. With adhesion this cell has an estimate of its own, which is seldom close: it takes the
-touch at the worst moment of the step. The others miss by factors below 2: a stress history under a moving line, and a pressure just after a load fell
-at once to a tenth, where cells remember more than the rows say (20 times, one of 300). The test asserts that 95 of 100 of each class are covered,
-that 65 of 100 are close, and that 90 of 100 adaptive runs are within.
+touch at the worst moment of the step. The two that are left: a stress history under a moving line, 1.8 times its bar, and a sphere off by 5.5e-6, where
+no error is stated. Of 300 cases from other seeds a line under a load that had fallen to a tenth missed by 20 times (1.5e-3 of the largest pressure):
+its cells remember more than the rows say. The test asserts that 95 of 100 of each class are covered, that 65 of 100 are close, and that 90 of 100
+adaptive runs are within.
 
 | class | cases | covered | close | adaptive | within tolerance |
 |---|---|---|---|---|---|

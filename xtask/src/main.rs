@@ -323,10 +323,11 @@ The test `error_bars` finds the error bars of 100 random cases with closed forms
 `asperity converge` does: spheres under a load (Hertz) and under one that rises and falls (Ting, 8 to 80 steps), waves in partial contact
 (Westergaard), a cylinder that slides on a viscoelastic body (Hunter), and the flow along the furrows of a wave in contact. An answer is
 covered if its stated error is at least its true one; it is close if its stated error is at most ten times the true one, or at most 1e-3 of
-the answer. The test asserts that 95 of 100 answers are covered.
+the answer. `unknown` are answers whose error is stated as not known. The test asserts that 95 of 100 answers are known, and that 95 of 100 of these are
+covered.
 
-| case | answers | covered | close |
-|---|---|---|---|
+| case | answers | covered | close | unknown |
+|---|---|---|---|---|
 ";
 
 const TIME_ERRORS: &str = "\
@@ -344,8 +345,11 @@ is measured by that hundredth. A case is close if the largest `time_error` is at
 fields, or at most 1e-3. Adaptive steps are within their tolerance if these errors are.
 
 Most cases that are not covered have a cell at the rim that has just touched: on a stiff body it carries the largest pressure, and a touch that
-comes a little early or late in a step shows there at once. With adhesion these are all of them, by factors of 1.1 to 5; the load is covered. The test
-asserts that 95 of 100 of each class are covered, with adhesion 85, that 65 of 100 are close, and that 90 of 100 adaptive runs are within.
+comes a little early or late in a step shows there at once. With adhesion this cell has an estimate of its own, which is seldom close: it takes the
+touch at the worst moment of the step. The two that are left: a stress history under a moving line, 1.8 times its bar, and a sphere off by 5.5e-6, where
+no error is stated. Of 300 cases from other seeds a line under a load that had fallen to a tenth missed by 20 times (1.5e-3 of the largest pressure):
+its cells remember more than the rows say. The test asserts that 95 of 100 of each class are covered, that 65 of 100 are close, and that 90 of 100
+adaptive runs are within.
 
 | class | cases | covered | close | adaptive | within tolerance |
 |---|---|---|---|---|---|

@@ -29,7 +29,7 @@ use crate::session::{RunError, RunOptions, run};
 use crate::store::{Reader, Status, StoreError};
 use estimate::{Runs, Steps, bar};
 pub use variation::Change;
-use variation::{has_singular_pressure, is_limited, steps_matter};
+use variation::{has_singular_pressure, steps_matter};
 
 /// An answer with its error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -152,6 +152,8 @@ struct Solved {
     answers: Vec<Answer>,
     /// Where its rows are, and the last of them.
     at: Vec<Coordinate>,
+    /// Whether any of its cells is at the hardness.
+    capped: Vec<bool>,
     last: Option<Row>,
     findings: Vec<Finding>,
     convolutions: u64,
@@ -225,7 +227,8 @@ impl Solved {
     /// Why an answer has no value on ever finer grids; `None` where nothing is known to say so.
     fn why_singular(&self, case: &Case, answer: &Answer) -> Option<&'static str> {
         let is_largest = OF_LARGEST_PRESSURE.iter().any(|begin| answer.name.starts_with(begin));
-        if !is_largest || is_limited(case) {
+        // The largest pressure is the hardness where cells have reached it.
+        if !is_largest || self.is_capped(answer) {
             return None;
         }
         if has_singular_pressure(case) {
@@ -241,6 +244,12 @@ impl Solved {
             "where the contact reaches the border of the free domain the body ends in a sharp edge, at which the pressure grows without end \
              as the cells shrink",
         )
+    }
+
+    /// Whether cells are at the hardness in a row of an answer; in any row where it is one of all rows.
+    fn is_capped(&self, answer: &Answer) -> bool {
+        let rows = self.at.iter().zip(&self.capped);
+        rows.filter(|(at, _)| answer.at.is_none_or(|own| own == **at)).any(|(_, is_capped)| *is_capped)
     }
 }
 
@@ -352,6 +361,7 @@ fn solved(reader: &Reader) -> Result<Solved, ConvergeError> {
     let findings = reader.findings().to_vec();
     let rows = reader.rows()?;
     let at = rows.iter().map(|row| row.coordinate).collect();
+    let capped = rows.iter().map(|row| row.capped_area > 0.0).collect();
     let last = rows.last().copied();
-    Ok(Solved { answers, at, last, findings, convolutions: reader.work().convolutions })
+    Ok(Solved { answers, at, capped, last, findings, convolutions: reader.work().convolutions })
 }

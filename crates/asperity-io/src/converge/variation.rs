@@ -109,11 +109,6 @@ pub(super) fn steps_matter(case: &Case) -> bool {
         && (remembers || has_path || has_cycles || case.motion.is_some() || case.conditions.wear.is_some())
 }
 
-/// Whether a hardness limits the pressure.
-pub(super) fn is_limited(case: &Case) -> bool {
-    case.conditions.hardness.is_finite() || case.conditions.hardness_map.is_some()
-}
-
 /// Whether a shape of the case has an edge or a tip where the pressure grows without end.
 pub(super) fn has_singular_pressure(case: &Case) -> bool {
     let is_singular = |surface: &Surface| match surface {

@@ -181,8 +181,8 @@ fn channel(case: &Case, numbers: &[f64]) -> Exact {
     ]
 }
 
-/// Stated and true error of each answer of a case whose exact value is known.
-fn errors(known: &Known) -> Vec<(&'static str, f64, f64)> {
+/// Stated and true error of each answer of a case whose exact value is known; no stated one where it is not known.
+fn errors(known: &Known) -> Vec<(&'static str, Option<f64>, f64)> {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("case.toml");
     // Inline tables stand before the sections.
@@ -195,9 +195,8 @@ fn errors(known: &Known) -> Vec<(&'static str, f64, f64)> {
     let exact = (known.exact)(&case, &known.numbers);
     let stated = exact.into_iter().map(|(name, exact)| {
         let bar = bar(name);
-        // An error that is not known claims nothing.
-        let stated = bar.error.unwrap_or(f64::INFINITY);
-        (name, stated / exact.abs(), (bar.value.unwrap() - exact).abs() / exact.abs())
+        let stated = bar.error.map(|error| error / exact.abs());
+        (name, stated, (bar.value.unwrap() - exact).abs() / exact.abs())
     });
     stated.collect()
 }
@@ -209,35 +208,41 @@ fn count() -> usize {
 
 #[test]
 fn the_stated_error_of_answers_covers_the_true_one() {
-    let mut table: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
+    let mut table: BTreeMap<&str, [usize; 4]> = BTreeMap::new();
     let mut missed = String::new();
     for seed in 0..count() {
         let known = case(seed);
         let errors = errors(&known);
         // Of a case the answer is the first one.
         for (name, stated, off) in &errors {
+            let row = table.entry(known.kind).or_default();
+            row[0] += 1;
+            let Some(stated) = stated else {
+                writeln!(missed, "{} {seed}: {name} is off by {off:.1e}, unknown", known.kind).unwrap();
+                row[3] += 1;
+                continue;
+            };
             if off > stated {
                 writeln!(missed, "{} {seed}: {name} is off by {off:.1e}, stated {stated:.1e}", known.kind)
                     .unwrap();
             }
-            let row = table.entry(known.kind).or_default();
-            row[0] += 1;
             row[1] += usize::from(off <= stated);
             // Below 1e-3 nobody asks how large an error is.
             row[2] += usize::from(*stated <= (10.0 * off).max(1e-3));
         }
     }
-    let mut sum = [0; 3];
+    let mut sum = [0; 4];
     for (kind, row) in &table {
-        let [answers, within, close] = row;
-        println!("| {kind} | {answers} | {within} | {close} |");
+        let [answers, within, close, unknown] = row;
+        println!("| {kind} | {answers} | {within} | {close} | {unknown} |");
         sum.iter_mut().zip(row).for_each(|(sum, number)| *sum += number);
     }
-    let [all, covered, close] = sum;
-    println!("| all | {all} | {covered} | {close} |");
+    let [all, covered, close, unknown] = sum;
+    println!("| all | {all} | {covered} | {close} | {unknown} |");
     println!("{missed}");
-    // 95 of 100.
-    assert!(20 * covered >= 19 * all, "{covered} of {all}\n{missed}");
+    // 95 of 100 of those that are stated, and these are 95 of 100: all of them have limits.
+    let known = all - unknown;
+    assert!(20 * covered >= 19 * known && 20 * known >= 19 * all, "{covered} of {known} of {all}\n{missed}");
 }
 
 fn found(text: &str, refine: bool) -> Convergence {
@@ -388,19 +393,23 @@ fn sneddon(case: &Case, numbers: &[f64]) -> Exact {
 
 #[test]
 fn contacts_of_a_few_cells_lie_within_the_stated_error() {
-    let (mut all, mut covered, mut missed) = (0, 0, String::new());
+    let (mut all, mut known, mut covered, mut missed) = (0, 0, 0, String::new());
     for seed in 0..count() {
-        let known = small(seed);
-        for (name, stated, off) in errors(&known) {
+        for (name, stated, off) in errors(&small(seed)) {
             all += 1;
+            let Some(stated) = stated else {
+                writeln!(missed, "{seed} {name}: off by {off:.2}, unknown").unwrap();
+                continue;
+            };
+            known += 1;
             covered += usize::from(off <= stated);
             if off > stated {
                 writeln!(missed, "{seed} {name}: off by {off:.2}, stated {stated:.2}").unwrap();
             }
         }
     }
-    println!("{covered} of {all}\n{missed}");
-    assert!(20 * covered >= 19 * all, "{covered} of {all}\n{missed}");
+    println!("{covered} of {known} of {all}\n{missed}");
+    assert!(20 * covered >= 19 * known, "{covered} of {known} of {all}\n{missed}");
 }
 
 #[test]
@@ -588,10 +597,12 @@ time = { end = "1 s", steps = 1 }
         |text: &str, name: &str| found(text, false).bars.into_iter().find(|bar| bar.name == name).unwrap();
     let pressure = bar(text, "max_pressure");
     assert!(pressure.error.is_none() && pressure.note.contains("border of the free domain"), "{pressure:?}");
-    // Area and approach have their limits, and a hardness limits the pressure.
+    // Area and approach have their limits, and a hardness limits the pressure where cells reach it.
     assert!(bar(text, "approach").error.is_some() && bar(text, "contact_area").error.is_some());
-    let hard = text.replace("poisson = 0.3,", "poisson = 0.3, hardness = \"25 kPa\",");
-    assert!(bar(&hard, "max_pressure").error.is_some());
+    for (hardness, is_known) in [("15 kPa", true), ("25 kPa", false)] {
+        let hard = text.replace("poisson = 0.3,", &format!("poisson = 0.3, hardness = \"{hardness}\","));
+        assert_eq!(bar(&hard, "max_pressure").error.is_some(), is_known, "{hardness}");
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A cold start from coarser grids: the contact of the gap averaged over 2 x 2 cells (two of a line), solved roughly (and, in its turn,
 //! started from a coarser one), tells where the fine grid will touch and under what pressure.
 //!
-//! Long waves cost the same number of iterations on every grid, and a quarter for each halving: the fine grid is
+//! Long waves cost the same number of iterations on every grid, and a quarter (half on a line) for each halving: the fine grid is
 //! left with what only it can see. Whatever goes wrong on a coarse grid only costs the start.
 
 use rayon::prelude::*;
@@ -52,7 +52,7 @@ pub(super) fn start(task: &mut Task) -> Result<f64> {
         Err(_) => return Ok(0.0),
     };
     prolong(&grid, &coarse.pressure, &mut state.pressure);
-    Ok(convolutions as f64 / 4.0)
+    Ok(convolutions as f64 * grid.len() as f64 / operator.grid().len() as f64)
 }
 
 /// The grid of half as many cells along each side.
@@ -139,6 +139,43 @@ mod tests {
                 let apart = cold.energy_distance(&uniform);
                 assert!(apart <= fast.certificate + slow.certificate, "{apart}");
             }
+        }
+    }
+
+    #[test]
+    fn the_work_of_a_coarse_grid_counts_as_its_share_of_the_cells() {
+        for (grid, share) in
+            [(Grid::line(128, 1.0).unwrap(), 0.5), (Grid::new([128, 128], [1.0, 1.0]).unwrap(), 0.25)]
+        {
+            let coarse = coarser(&grid).unwrap();
+            let gap: Vec<f64> = (0..grid.len()).map(|n| 0.1 * grid.x(n / grid.cells()[1]).powi(2)).collect();
+            let solved = |grid: Grid, gap: &[f64]| {
+                let mut operator = half_space(grid, Boundary::Periodic);
+                let mut state = ContactState::new(grid.len());
+                let prescribed = Prescribed::Load(0.01);
+                let problem = Problem { gap, compliance: 1.0, hardness: f64::INFINITY.into(), prescribed };
+                // As a coarse grid is solved, on which there is no coarser one.
+                let options = SolverOptions {
+                    tolerance: COARSE_TOLERANCE,
+                    max_iterations: COARSE_ITERATIONS,
+                    ..SolverOptions::default()
+                };
+                let task = &mut Task {
+                    operator: &mut *operator,
+                    problem: &problem,
+                    options: &options,
+                    state: &mut state,
+                    interrupt: None,
+                };
+                let work = start(task).unwrap();
+                let mut solver = Solver::new(options.method, &*operator);
+                state.pressure.fill(0.0);
+                let outcome = solver.solve(&mut *operator, &problem, &options, &mut state, None);
+                (work, outcome.map(|outcome| outcome.convolutions))
+            };
+            let (work, _) = solved(grid, &gap);
+            let (none, convolutions) = solved(coarse, &averaged(&grid, &gap));
+            assert_eq!((none, work), (0.0, share * convolutions.unwrap() as f64));
         }
     }
 

@@ -151,3 +151,35 @@ impl Drive for Elastic {
         to.finish()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::Ordering;
+
+    use ndarray::Array2;
+
+    use super::*;
+    use crate::grid::Grid;
+
+    #[test]
+    fn the_row_of_a_contact_that_failed_has_its_own_number() {
+        let grid = Grid::new([16, 16], [1.0, 1.0]).unwrap();
+        let gap = Array2::from_shape_fn((16, 16), |(i, j)| grid.x(i).powi(2) + grid.y(j).powi(2));
+        let mut contacts =
+            Elastic::new(Simulation::new(grid, gap), [(Control::Load, 0.01), (Control::Load, 0.02)]).unwrap();
+        let flag = Arc::new(AtomicBool::new(false));
+        contacts.interrupt_with(flag.clone());
+        assert!(contacts.last().is_none());
+        assert_eq!(contacts.advance().unwrap().unwrap().index(), 0);
+        flag.store(true, Ordering::Relaxed);
+        assert!(matches!(contacts.advance(), Err(Error::Interrupted)));
+        // Its best state is that of row 1, which is not done.
+        assert_eq!((contacts.last().unwrap().index(), contacts.done()), (1, 1));
+        flag.store(false, Ordering::Relaxed);
+        let start = vec![0.0; grid.len()];
+        contacts.ask(Control::Load, 0.02, &start);
+        let row = contacts.advance().unwrap().unwrap();
+        assert_eq!(row.index(), 1);
+        assert!((row.row().load / 0.02 - 1.0).abs() < 1e-9);
+    }
+}

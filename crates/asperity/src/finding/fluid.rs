@@ -180,6 +180,26 @@ mod tests {
     use crate::traction::{Action, Pockets};
 
     #[test]
+    fn a_gap_that_closed_too_fast_is_told_after_the_run_was_resumed() {
+        let grid = Grid::new([8, 8], [2.0, 2.0]).unwrap();
+        let simulation = Simulation::new(grid, Array2::zeros(grid.shape()));
+        let mut watch = Wet::default();
+        watch.recall(&Row { mean_gap: 0.5, ..Row::default() });
+        watch.resume(&Finding::warning(SQUEEZE_SLOW, 8.0, 2.0, String::new()).at(Some([3, 4])));
+        // The next row is compared with the last one of the session before.
+        assert_eq!(watch.mean_gap, Some(0.5));
+        let [finding] = &watch.findings(&simulation)[..] else { panic!() };
+        assert_eq!(
+            (finding.code.as_ref(), finding.value, finding.rows),
+            (SQUEEZE_SLOW, Some(8.0), Some([3, 4]))
+        );
+        // A smaller value keeps the worst one, and is one of its rows.
+        assert!(watch.squeezed.above(6, 3.0, 2.0));
+        let [finding] = &watch.findings(&simulation)[..] else { panic!() };
+        assert_eq!((finding.value, finding.rows), (Some(8.0), Some([3, 6])));
+    }
+
+    #[test]
     fn a_fluid_may_run_away_from_twice_the_mean_pressure_on() {
         let codes = |action: Action, control: Control, inlet: f64, outlet: f64, boundary: Boundary| {
             let points = vec![(0.0, outlet), (0.5, inlet), (1.0, outlet)];

@@ -2,6 +2,7 @@
 
 use ndarray::Array2;
 
+use crate::contact::Solver;
 use crate::error::{Error, Of, Result, require};
 use crate::grid::Grid;
 use crate::quantities::Quantity;
@@ -124,9 +125,14 @@ impl Wear {
         let bodies = self.coefficients.iter().filter(|k| **k > 0.0).count();
         // the gap and that before the step, a copy for the bed, cells above the threshold
         let fields = 3 + bodies + if self.threshold > 0.0 { 2 } else { 0 };
-        // the contact of the worn surfaces, and the slip
-        let slip = if self.sliding(simulation) == Sliding::Slip { 5 } else { 0 };
-        8 * grid.len() * (fields + slip)
+        let slips = self.sliding(simulation) == Sliding::Slip;
+        // the contact of the worn surfaces with a solver of its own, and the slip
+        let slip = if slips { 5 } else { 0 };
+        let solver = match slips {
+            true => Solver::bytes(simulation.solver.method, grid, simulation.boundary),
+            false => 0,
+        };
+        8 * grid.len() * (fields + slip) + solver
     }
 
     /// Checks what can be known before the run; of the sliding distance once the motion is known.

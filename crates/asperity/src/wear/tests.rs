@@ -5,6 +5,7 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use super::Wear;
+use crate::contact::Solver;
 use crate::drive::{Drive, March};
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};
@@ -287,4 +288,28 @@ fn fretting_in_gross_slip_wears_by_its_path() {
     // The bodies stick at each turn for some 1e-3 of the way.
     assert!((volume / (1e-2 * cycles * load * path) - 1.0).abs() < 5e-3, "{volume}");
     assert!(end.of(Quantity::WearError) > 0.0);
+}
+
+#[test]
+fn the_memory_of_wear_by_slip_counts_the_solver_of_the_worn_surfaces() {
+    let grid = Grid::new([24, 24], [0.6, 0.6]).unwrap();
+    let gap = undeformed_gap(&grid, &[sphere(1.0)]).unwrap();
+    let tangential = Tangential {
+        coefficient: 0.3,
+        coefficients: None,
+        shear_limit: f64::INFINITY,
+        poisson: 0.3,
+        beta: 0.0,
+        coupling: Coupling::Neglect,
+        control: TangentialControl::Displacement,
+        histories: [History::Step { value: 0.0 }, History::Step { value: 0.0 }],
+    };
+    let law = Wear::new([1e-2, 0.0]);
+    let rubs = sliding(grid, gap, 5e-3, [1.0, 0.0], 1.0, 40);
+    let slips = Simulation { tangential: Some(Arc::new(tangential)), ..rubs.clone() };
+    let [by_path, by_slip] = [&rubs, &slips].map(|simulation| law.bytes(&grid, simulation));
+    // Pressure and displacement of the contact, and three fields of its slip.
+    let solver = Solver::bytes(slips.solver.method, &grid, slips.boundary);
+    assert!(solver > 0);
+    assert_eq!(by_slip, by_path + 5 * 8 * grid.len() + solver);
 }

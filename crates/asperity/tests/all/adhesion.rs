@@ -282,6 +282,29 @@ fn a_load_of_nothing_holds_the_bodies_together_and_a_pull_below_pull_off_parts_t
 }
 
 #[test]
+fn an_event_at_a_pull_is_met_under_a_prescribed_approach() {
+    let base = sphere(64, exponential(0.93), &[(0.0, 0.0), (1.0, 0.0)], 1);
+    let pull = -1.2 * PI * WORK;
+    let press =
+        Stage { duration: Some(1.0), ..Stage::new(Control::Approach, History::Step { value: unit() }) };
+    let course = Course::RampTo { value: -0.8 * unit(), duration: 1.0 };
+    let times = Some(TimeGrid::Uniform { end: 1.0, steps: 10 });
+    let until = Some(Event::Load(pull));
+    let back = Stage { duration: Some(1.0), times, course, until, ..press.clone() };
+    let times = TimeGrid::Uniform { end: 2.0, steps: 2 };
+    let found = rows(Simulation { loading: Programme::new(vec![press, back]), times, ..base.clone() });
+    let last = found.last().unwrap();
+    // Events are met to a millionth of the largest load so far.
+    let heaviest = found.iter().map(|row| row.load.abs()).fold(0.0, f64::max);
+    assert!((last.load - pull).abs() <= 1e-6 * heaviest, "{last:?}");
+    assert!(last.coordinate.value() < 2.0 && last.contact_area > 0.0, "{last:?}");
+    // The same state as under that load, to the width of a cell of the rim.
+    let loading = Loading { control: Control::Load, history: History::Step { value: pull } }.into();
+    let under = March::new(Simulation { loading, ..base }).unwrap().advance().unwrap().unwrap().row();
+    assert!((last.approach - under.approach).abs() < 2e-3 * unit(), "{last:?} {under:?}");
+}
+
+#[test]
 fn what_adhesion_cannot_do_is_refused() {
     let of = |adhesion| {
         March::new(sphere(32, adhesion, &[(0.0, 0.0), (1.0, 1.0)], 1)).err().map(|e| e.to_string())

@@ -312,3 +312,32 @@ fn any_course_keeps_the_limit_of_friction_and_loses_work() {
         assert!((states[10].row.force[0] - area).abs() < 1e-12);
     }
 }
+
+#[test]
+fn a_step_of_gross_slip_is_solved_once_its_error_is_rounding() {
+    // Steel, at the turn of a displacement far beyond stick. Cells at the rim carry so little that the violation there stays at 1e-4 of the
+    // displacement, four orders above the certified error of the tractions.
+    let grid = Grid::new([64, 64], [0.6e-3, 0.6e-3]).unwrap();
+    let sphere = Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] };
+    let history = History::Sine { mean: 0.0, amplitude: 10e-6, frequency: 1.0 };
+    let mut march = March::new(Simulation {
+        creep: Creep::elastic(2.0 * (1.0 - 0.09) / 210e9),
+        loading: Loading { control: Control::Load, history: History::Step { value: 50.0 } }.into(),
+        times: TimeGrid::Uniform { end: 0.25, steps: 10 },
+        solver: SolverOptions { tolerance: 1e-9, ..SolverOptions::default() },
+        tangential: Some(Arc::new(Tangential {
+            coefficient: 0.6,
+            histories: [history, History::Step { value: 0.0 }],
+            ..along(0, 0.3, TangentialControl::Displacement, &[(0.0, 0.0), (1.0, 0.0)])
+        })),
+        ..Simulation::new(grid, undeformed_gap(&grid, &[sphere]).unwrap())
+    })
+    .unwrap();
+    let mut last = SlipRow::default();
+    while let Some(step) = march.advance().unwrap() {
+        last = step.slip_row().unwrap();
+        assert!(last.outcome.residual <= 1e-9 || last.outcome.certificate < 1e-7, "{:?}", last.outcome);
+    }
+    // All of the contact slips.
+    assert!((last.force[0] / (0.6 * 50.0) - 1.0).abs() < 1e-3 && last.stick_area == 0.0, "{last:?}");
+}

@@ -106,6 +106,9 @@ fn units_and_numbers() {
     says("\"10 mm\"", "true", "surface[0].radius", 8, "wrong-type", &["a length greater than 0"]);
     says("\"10 mm\"", "2020-01-01", "surface[0].radius", 8, "wrong-type", &["a length greater than 0"]);
     says("\"10 mm\"", "nan", "surface[0].radius", 8, "out-of-range", &[]);
+    says("\"10 mm\"", "-inf", "surface[0].radius", 8, "out-of-range", &[]);
+    says("0.4", "nan", "body[0].poisson", 18, "out-of-range", &[]);
+    says("1e-6", "inf", "solver.tolerance", 43, "out-of-range", &[]);
     says("\"10 mm\"", "-0.01", "surface[0].radius", 8, "out-of-range", &["is -0.01"]);
     says(
         "\"1 s\" }",

@@ -37,7 +37,9 @@
 //! (Under Hertz's pressure U falls by 0.64 a p from the middle to the ends of the contact.)
 //!
 //! **Tractions on open cells** (adhesion, fluids) are part of the stress. There all cells with a traction count, those apart before first touch
-//! too, each with the size of its tractions as its weight, so that those far away do not dilute the error of the others.
+//! too, each with the size of its tractions as its weight, so that those far away do not dilute the error of the others. The largest traction
+//! there is that of a cell at the rim, whose error no sum over the cells shows. It has an estimate of its own: what bends the course of u in a
+//! cell, times its traction over the largest one, over the displacement of that cell under its own traction.
 
 use super::load_cell::LoadCell;
 use super::rules::{Driver, Rules};
@@ -65,6 +67,8 @@ const FIRST: f64 = 0.2;
 /// Share of Σ p' a that is the stress of a line whose displacement is known up to a constant: between the whole fall of U over the contact and
 /// its mean.
 const FALL: f64 = 1.0 / 3.0;
+/// Displacement of a square cell under its own pressure, over the pressure, the side and the compliance: 4 ln(1 + sqrt 2)/π (Love 1929).
+const OWN: f64 = 1.122;
 
 /// Sums over the cells at the end of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,6 +84,10 @@ pub(super) struct Survey {
     pub(super) pressed: f64,
     pub(super) alone: f64,
     pub(super) pressed_alone: f64,
+    /// Of what bends it in the cell with the largest traction, or in another one by its traction over the largest; and the displacement of that
+    /// cell under its own traction. 0 where tractions act on cells in contact only.
+    pub(super) peak: f64,
+    pub(super) pressed_peak: f64,
     /// The pressure that these cells could carry at most, over that of all: no error is larger.
     pub(super) largest: f64,
     /// Share of the cells in contact at the start that still are at the end.
@@ -142,6 +150,11 @@ impl Relaxation {
             pressed: if touching > 0.0 { pressed } else { 0.0 },
             alone: 0.0,
             pressed_alone,
+            peak: if found.largest > 0.0 { found.peak / found.largest } else { 0.0 },
+            pressed_peak: match ends.pulls && !self.is_line {
+                true => OWN * self.cell_area.sqrt() * found.largest,
+                false => 0.0,
+            },
             largest: if pressure > 0.0 { found.most / pressure } else { 0.0 },
             staying: if touched > 0.0 { found.stay / touched } else { 1.0 },
             noise,

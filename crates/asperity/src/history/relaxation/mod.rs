@@ -228,7 +228,7 @@ saved! {
         "gone": gone;
         "elapsed": elapsed;
         "rules": rules;
-        "error_left": total_error.left, total_error.left_alone;
+        "error_left": total_error.left, total_error.left_alone, total_error.left_peak;
         "started_at": started_at;
         "solver_left": total_error.solver;
     }

@@ -1,7 +1,7 @@
 //! Sums over the cells at the end of a step, from which its error is estimated (see [`super::estimate`]).
 
-use asperity_sweep::kernel;
 use asperity_sweep::simd::Mask;
+use asperity_sweep::{Max, kernel};
 
 use super::estimate::{LATE, ROUNDING};
 use crate::contact::Hardness;
@@ -17,8 +17,9 @@ kernel! {
         }
         numbers { compliance: f64, approaches: [f64; 2], shifts: [f64; 2], is_weighted: bool, is_line: bool, clock: Clock }
     }
-    fn run<V>(self) -> [f64; 12] {
+    fn run<V>(self) -> ([f64; 12], (Max, Max)) {
         let mut sums = [V::splat(0.0); 12];
+        let [mut peak, mut largest] = [V::splat(0.0); 2];
         let (zero, one, infinite) = (V::splat(0.0), V::splat(1.0), V::splat(f64::INFINITY));
         let [w_before, w] = self.approaches.map(V::splat);
         let [shift_third, shift] = self.shifts.map(V::splat);
@@ -66,8 +67,10 @@ kernel! {
                 V::count(zero.less(t) & zero.less(t_now)),
             ];
             sums = std::array::from_fn(|k| sums[k] + cells[k]);
+            peak = peak.larger((t_now * late.larger(own)).only(is_free));
+            largest = largest.larger(t_now);
         }
-        sums.map(V::sum)
+        (sums.map(V::sum), (Max(peak.largest()), Max(largest.largest())))
     }
 }
 
@@ -90,10 +93,13 @@ pub(super) struct Found {
     pub(super) most: f64,
     pub(super) touched: f64,
     pub(super) stay: f64,
+    /// The largest traction, and the largest product of a traction and what bends the course of u in its cell.
+    pub(super) largest: f64,
+    pub(super) peak: f64,
 }
 
-impl From<[f64; 12]> for Found {
-    fn from(sums: [f64; 12]) -> Self {
+impl From<([f64; 12], (Max, Max))> for Found {
+    fn from((sums, (Max(peak), Max(largest))): ([f64; 12], (Max, Max))) -> Self {
         let [bends, bends_of_old, now, before, displaced, own_of_old, own_of_new, weight, ..] = sums;
         let [.., touching, most, touched, stay] = sums;
         Found {
@@ -109,6 +115,8 @@ impl From<[f64; 12]> for Found {
             most,
             touched,
             stay,
+            largest,
+            peak,
         }
     }
 }

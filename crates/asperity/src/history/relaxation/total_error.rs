@@ -16,6 +16,10 @@
 //! On lines the cells that come into contact are followed by themselves, by an A of their own, and add 2 [ Σ E_i A_i + ζ S/x ] / (Σ p dx):
 //! π/3 of a cell alone, times 2, because the course of u bends at the moment of touch: the chord leaves 3 (1 - θ) times as much as a parabola,
 //! where the touch is after the share θ of the step.
+//!
+//! Where tractions act on open cells (adhesion), the number is at least the error of the largest traction alone, Σ E_i A_i + ζ S/x over the
+//! displacement of its cell under its own traction. S is the estimate of that cell ([`super::estimate`]), and A_i' the larger one of
+//! s exp(-x/τ_i) A_i and 2 b(x/τ_i) S: in the next step it is mostly another cell.
 
 use super::estimate::{Survey, chord_defect};
 use super::{Relaxation, UnderWay};
@@ -28,9 +32,10 @@ const LEAST: f64 = 7.0;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct TotalError {
-    /// A_i \[m\], and that of cells alone.
+    /// A_i \[m\], that of cells alone, and that of the largest traction.
     pub(super) left: Vec<f64>,
     pub(super) left_alone: Vec<f64>,
+    pub(super) left_peak: Vec<f64>,
     /// Relative to the stress.
     pub(super) value: f64,
     /// The estimate by which the length of an adaptive step was chosen.
@@ -43,7 +48,7 @@ impl TotalError {
     /// Of so many branches.
     pub(super) fn new(branches: usize) -> Self {
         let none = vec![0.0; branches];
-        TotalError { left: none.clone(), left_alone: none, ..TotalError::default() }
+        TotalError { left: none.clone(), left_alone: none.clone(), left_peak: none, ..TotalError::default() }
     }
 }
 
@@ -54,26 +59,31 @@ impl Relaxation {
         let survey = if presses { self.survey } else { Survey::default() };
         let mut left = std::mem::take(&mut self.total_error.left);
         let mut alone = std::mem::take(&mut self.total_error.left_alone);
-        let sum = self.carry_on(&mut left, survey.own, presses);
-        let sum_alone = self.carry_on(&mut alone, survey.alone, presses);
+        let mut peak = std::mem::take(&mut self.total_error.left_peak);
+        let add = |left: f64, new: f64| left + new;
+        let sum = self.carry_on(&mut left, survey.own, presses, add);
+        let sum_alone = self.carry_on(&mut alone, survey.alone, presses, add);
+        let sum_peak = self.carry_on(&mut peak, survey.peak, presses, f64::max);
         let over = |sum: f64, stress: f64| if stress > 0.0 { sum / stress } else { 0.0 };
         let all = MARGIN * over(sum, survey.pressed) + MARGIN_ALONE * over(sum_alone, survey.pressed_alone);
+        let all = all.max(over(sum_peak, survey.pressed_peak));
         let all = if survey.pressed > 0.0 { all.min(survey.largest) } else { 0.0 };
         let noise = if presses { self.noise() } else { 0.0 };
         self.total_error.solver = survey.left;
         let TotalError { value, adaptive, .. } = &mut self.total_error;
         *value = all.max(adaptive.map_or(0.0, |own| LEAST * own)).max(noise);
         (self.total_error.left, self.total_error.left_alone) = (left, alone);
+        self.total_error.left_peak = peak;
     }
 
-    /// The A_i at the end of the step, to which it adds `own`; Σ E_i A_i + ζ S/x.
-    fn carry_on(&self, left: &mut [f64], own: f64, presses: bool) -> f64 {
+    /// The A_i at the end of the step, which `join` makes of what is left and the `own` error of the step; Σ E_i A_i + ζ S/x.
+    fn carry_on(&self, left: &mut [f64], own: f64, presses: bool, join: fn(f64, f64) -> f64) -> f64 {
         let (x, relaxation) = (self.rules.length, &self.dual.relaxation);
         let mut sum = if x > 0.0 { relaxation.viscosity * own / x } else { 0.0 };
         for (i, (left, term)) in left.iter_mut().zip(&relaxation.terms).enumerate() {
             if x > 0.0 && presses {
                 let y = x / term.relaxation_time;
-                *left = libm::exp(-y) * self.survey.staying * *left + 2.0 * chord_defect(y) * own;
+                *left = join(libm::exp(-y) * self.survey.staying * *left, 2.0 * chord_defect(y) * own);
             } else if x > 0.0 {
                 // Without pressure strains fade, with their own times.
                 let fades = self.dual.creep.terms.get(i).map_or(0.0, |term| x / term.retardation_time);

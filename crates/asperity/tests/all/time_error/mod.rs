@@ -170,9 +170,7 @@ fn the_stated_error_covers_the_true_one_in_95_of_100_cases() {
         println!("| {} | {all} | {covered} | {close} | {adaptive} | {within} |", class.name());
     }
     for (class, Counts { all, covered, .. }) in Class::ALL.iter().zip(counts) {
-        // Bodies that adhere come together so fast that the largest pressure at a row says when, not how much.
-        let least = if *class == Class::Adhesion { 0.85 } else { 0.95 };
-        assert!(all >= 40 && covered as f64 >= least * all as f64, "{}: {covered} of {all}", class.name());
+        assert!(all >= 40 && covered as f64 >= 0.95 * all as f64, "{}: {covered} of {all}", class.name());
     }
     let [all, close, adaptive, within] = counts.iter().fold([0; 4], |sums, counts| {
         let own = [counts.all, counts.close, counts.adaptive, counts.within];

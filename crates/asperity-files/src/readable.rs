@@ -106,7 +106,8 @@ pub fn superscript(number: i32) -> String {
 /// ```
 pub fn quantity(value: f64, unit: &str) -> String {
     let shown = shown(unit, value.abs());
-    let number = value * shown.factor;
+    // No minus before a zero.
+    let number = value * shown.factor + 0.0;
     let digits =
         if number == 0.0 { 0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize };
     let text = format!("{number:.digits$}");

@@ -181,7 +181,7 @@ fn json_object(summary: &Summary, bars: Option<&Convergence>, error: Option<&Run
         "findings": asperity_io::finding::list(&summary.findings),
     });
     if let Some(bars) = bars {
-        object["error_bars"] = json!(bars.bars);
+        object["error_bars"] = super::answers::bars(&bars.answers, &bars.bars);
     }
     if let Some(error) = error {
         object["error"] = json!(error.to_string());

@@ -138,7 +138,12 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
             let line = row.map(|row| table.rows[kept[row]].line);
             let angular = role == Role::Frequency && unit.is_empty() && is_angular(name);
             let remedy = if angular { Remedy::Radians } else { Remedy::Unit(role) };
-            fault(format!("{} ({place}): {why}", role.name())).remedy(remedy).at(line)
+            // Without a unit the column itself may be a wrong one.
+            let columns = match unit.is_empty() {
+                true => format!("; the columns are {}", table.listed()),
+                false => String::new(),
+            };
+            fault(format!("{} ({place}): {why}{columns}", role.name())).remedy(remedy).at(line)
         })?;
         if unit.is_empty() && !matches!(role, Role::TanDelta | Role::Set) {
             notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));

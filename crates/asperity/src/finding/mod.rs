@@ -256,6 +256,8 @@ codes! {
     SEAL_BEYOND_SWEEP = "seal-beyond-sweep";
     /// The pressures of a sweep leave the leak of a seal open.
     SEAL_SWEEP_COARSE = "seal-sweep-coarse";
+    /// The pressures of a sweep leave the leak of a seal open at other inlet pressures than that of the case.
+    SEAL_CURVE_COARSE = "seal-curve-coarse";
     /// The patch of a seal is tight at no pressure of the sweep.
     SEAL_NEVER_TIGHT = "seal-never-tight";
     /// A seal is not wide against its patch.

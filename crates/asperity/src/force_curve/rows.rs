@@ -72,15 +72,21 @@ impl Rows {
             Branch::Retraction => (top..n).collect(),
             Branch::Approach => (0..=top).rev().collect(),
         };
-        let (part, other) = match options.branch {
-            Branch::Retraction => ("after", "approach"),
-            Branch::Approach => ("before", "retraction"),
+        let (part, other, rows) = match options.branch {
+            Branch::Retraction => ("after", "approach", &loads[..=top]),
+            Branch::Approach => ("before", "retraction", &loads[top..]),
+        };
+        // Where the other one has rows enough, and the attraction that the model needs.
+        let is_pulled = options.model == ForceModel::Hertz || rows.iter().any(|load| *load < 0.0);
+        let help = match rows.len() >= FEWEST && is_pulled {
+            true => format!("; the other branch is `{other}`"),
+            false => String::new(),
         };
         require(
             numbers.len() >= FEWEST,
             "number of rows of the branch",
             format!("{} {part} the largest load", numbers.len()),
-            format!("at least {FEWEST}; the other branch is `{other}`"),
+            format!("at least {FEWEST}{help}"),
         )?;
         let pick = |column: &[f64]| numbers.iter().map(|row| column[*row]).collect::<Vec<_>>();
         let (loads, depths) = (pick(record.loads), pick(record.depths));

@@ -159,6 +159,11 @@ mod tests {
     }
 
     #[test]
+    fn a_zero_has_no_sign() {
+        assert_eq!([quantity(-0.0, "m"), quantity(0.0, "N")], ["0 m", "0 N"]);
+    }
+
+    #[test]
     fn the_prefix_makes_the_largest_number_lie_between_one_and_a_thousand() {
         assert_eq!(text("m", 1e-6), ("µm".into(), 6));
         assert_eq!(text("N", 0.999_98), ("N".into(), 0));

@@ -191,6 +191,12 @@ fn a_fit_says_what_is_wrong() {
     write("half.csv", "f [Hz], E' [MPa]\n1, 2\n2, 3\n");
     let output = asperity(dir.path(), &["material", "fit", "half.csv", "--kind", "dma"]);
     assert!(stderr(&output).contains("--column loss=N"), "{}", stderr(&output));
+    // A frequency without a unit may be cycles or radians; the columns are named.
+    write("good.csv", "frequency,storage,loss\n1,2e6,3e5\n2,3e6,4e5\n");
+    let output = asperity(dir.path(), &["material", "fit", "good.csv"]);
+    for words in ["give Hz", "the columns are 1 \"frequency\", 2 \"storage\", 3 \"loss\""] {
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    }
     // Without units the numbers are SI, and that is said.
     let output = asperity(dir.path(), &["material", "fit", "plain.csv", "--kind", "relaxation"]);
     assert!(stdout(&output).contains("names no unit and is taken in Pa"), "{}", stdout(&output));

@@ -142,6 +142,9 @@ fn a_leak_that_is_taken_back_is_drawn_and_listed_as_such() {
     told(folder, &["report", "wave.zarr", "-o", "wave.html"]);
     let page = std::fs::read_to_string(folder.join("wave.html")).unwrap();
     assert!(page.contains("Not valid: the fluid lifts the seal") && !page.contains("Tight, liquid"));
+    // The summary, without the note of the answer.
+    let headline = page.split_once("\"headline\":").unwrap().1.split("]]").next().unwrap();
+    assert!(headline.contains("not valid") && !headline.contains("tight at all times"), "{headline}");
 }
 
 /// A wave of the slope 2.7, more than 5 times the limit: no number of its rows is an answer, but for what the case prescribes.

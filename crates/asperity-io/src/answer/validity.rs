@@ -350,6 +350,23 @@ mod tests {
     }
 
     #[test]
+    fn the_findings_of_a_part_are_named_and_those_of_both_joined() {
+        let of = |code: &'static str, excess: f64| {
+            Validity::of("leak_rate", [Finding::warning(code, excess, 1.0, "")].iter())
+        };
+        let [taken, see] = [of(WINDOW_IN_LEAK, 1.0), of(LAY_MIRRORED, 1.0)];
+        assert_eq!(taken.clone().of_a_part(), Validity::See(vec!["window-in-leak".into()]));
+        assert_eq!(see.clone().and(taken.clone()), taken);
+        assert_eq!(
+            see.clone().and(of(CONSTRICTION_UNRESOLVED, 1.0)).and(see.clone()),
+            Validity::See(vec!["lay-mirrored".into(), "constriction-unresolved".into()])
+        );
+        let rows = [Finding::warning(WINDOW_IN_LEAK, 1.0, 1.0, "").at(Some([1, 2]))];
+        let at = |row: usize| Validity::at_row("leak_rate", row, rows.iter()).is_valid();
+        assert_eq!([0, 1, 2, 3].map(at), [true, false, false, true]);
+    }
+
+    #[test]
     fn a_finding_counts_for_the_rows_that_it_concerns() {
         let at = Coordinate::Time(2.0);
         let row = |time: f64| Row { coordinate: Coordinate::Time(time), ..Row::default() };

@@ -373,6 +373,13 @@ mod tests {
     }
 
     #[test]
+    fn a_short_logarithmic_axis_has_its_power_of_ten_in_the_unit() {
+        let (title, ticks) = texts(&Axis::log("leak", "m3/s"), [1.1e-14, 2.6e-13]);
+        assert_eq!(title, "leak [10⁻¹⁵ m³/s]");
+        assert_eq!(ticks, ["20", "50", "100", "200"]);
+    }
+
+    #[test]
     fn ticks_are_round_numbers_in_the_unit_shown() {
         let (title, ticks) = texts(&Axis::linear("approach", "m"), [0.0, 3.2e-6]);
         assert_eq!(title, "approach [µm]");

@@ -229,6 +229,8 @@ fn headline(answers: &[Answer], units: &Units, bars: &[ErrorBar], last: Option<&
         bar.map_or_else(|| answer.words(units), |bar| units.plus_minus(bar))
     };
     let note = |answer: &Answer| match answer.note.as_str() {
+        // The reason why it does not hold stands in its place.
+        _ if !answer.validity.is_valid() => String::new(),
         "" => String::new(),
         note => format!(" ({note})"),
     };

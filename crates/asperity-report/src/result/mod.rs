@@ -171,7 +171,10 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
     }
     let taken = plot.answers().iter().map(|name| (name, Validity::of(name, reader.findings().iter())));
     if let Some((name, taken)) = { taken }.find(|(_, validity)| !validity.is_valid()) {
-        figure.caption += &format!(" The {} is {}.", name.replace('_', " "), taken.mark(String::new()));
+        let words = taken.mark(String::new());
+        if !figure.caption.contains(&words) {
+            figure.caption += &format!(" The {} is {words}.", name.replace('_', " "));
+        }
     }
     if plot.is_of_the_load() && nothing_touches(reader, options)? {
         figure.caption += match options.window {

@@ -111,7 +111,7 @@ pub struct Finding {
     pub severity: Severity,
     /// One or two sentences: what was found, how it may affect the result, what to do about it.
     pub text: String,
-    /// The number that was checked, in SI units; the table of docs/findings.md states which.
+    /// The number that was checked, in SI units; docs/findings.md states which.
     pub value: Option<f64>,
     /// The limit that it exceeds, in the same unit.
     pub limit: Option<f64>,

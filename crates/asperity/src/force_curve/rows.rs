@@ -44,6 +44,14 @@ pub(super) struct Rows {
     numbers: Vec<usize>,
 }
 
+/// Whether a branch has loads below zero beyond its noise.
+fn is_pulled(loads: &[f64]) -> bool {
+    let steps: Vec<f64> = (0..loads.len()).map(|k| k as f64).collect();
+    let variances = noise::variances(&steps, loads);
+    let noise = (variances.iter().sum::<f64>() / variances.len() as f64).sqrt();
+    loads.iter().any(|load| *load < -SEEN * noise)
+}
+
 impl Rows {
     pub(super) fn new(record: &ForceRecord, options: &ForceOptions) -> Result<Self> {
         let n = record.loads.len();
@@ -77,8 +85,7 @@ impl Rows {
             Branch::Approach => ("before", "retraction", &loads[top..]),
         };
         // Where the other one has rows enough, and the attraction that the model needs.
-        let is_pulled = options.model == ForceModel::Hertz || rows.iter().any(|load| *load < 0.0);
-        let help = match rows.len() >= FEWEST && is_pulled {
+        let help = match rows.len() >= FEWEST && (options.model == ForceModel::Hertz || is_pulled(rows)) {
             true => format!("; the other branch is `{other}`"),
             false => String::new(),
         };

@@ -84,7 +84,7 @@ fn warn_of_heights(path: &Path, map: &Array2<f64>) {
     let share = map.iter().filter(|gap| **gap < 0.0).count() as f64 / map.len() as f64;
     if share > MOST {
         crate::messages::message!(
-            "warning: {:.0} % of the map {} are below 0 and count as closed: these look like heights of a surface, not like a gap; \
+            "warning: {:.0} % of the cells of {} are below 0 and count as closed: these look like heights of a surface, not like a gap; \
              the gap is the distance of the surfaces, 0 or more",
             100.0 * share,
             path.display()

@@ -158,6 +158,10 @@ fn text(history: &LeakHistory, units: &Units) -> String {
     let standard = table.get("leak_rate_standard");
     let fluid = history.leak.fluid.is_some();
     let validity = history.of_each_time();
+    let is_doubted = |n: usize| match &validity[n] {
+        Validity::Holds => column("leak_resolved")[n] == 0.0,
+        of => of.is_valid(),
+    };
     let mut text = format!("Leakage of {}\n\n{:>12}", history.leak.words(), "time");
     if fluid {
         text += &format!("{:>34}", "leak rate");
@@ -167,8 +171,7 @@ fn text(history: &LeakHistory, units: &Units) -> String {
         text += &format!("{:>12}", units.time(times[n]));
         let tight = column("percolates")[n] == 0.0;
         let taken = !validity[n].is_valid();
-        let is_doubted = column("leak_resolved")[n] == 0.0 || validity[n] != Validity::Holds;
-        let mark = if is_doubted { " ?" } else { "  " };
+        let mark = if is_doubted(n) { " ?" } else { "  " };
         if fluid {
             let words = match tight {
                 _ if taken => validity[n].cell(String::new()),
@@ -187,7 +190,7 @@ fn text(history: &LeakHistory, units: &Units) -> String {
         text += &format!("{:>15}{:>15}", gap("hydraulic_gap"), gap("critical_gap"));
         text += &format!("{:>14}\n", quantity(column("trapped_area")[n], "m2"));
     }
-    if column("leak_resolved").contains(&0.0) || validity.iter().any(|of| *of != Validity::Holds) {
+    if (0..table.len()).any(is_doubted) {
         text += "? see the findings\n";
     }
     let last = history.validity("leak_rate");

@@ -19,7 +19,7 @@ use crate::args::{New, Purpose, SurfaceFile};
 use crate::commands::material::{ROOM, estimated_unless_known, refused};
 use crate::commands::surface;
 use crate::failure::{Failure, refuse};
-use crate::format::{extent, quantity};
+use crate::format::{counted, extent, quantity};
 
 /// The remark behind a value that only the user knows.
 pub(super) const YOURS: &str = "# YOUR VALUE: ";
@@ -413,7 +413,7 @@ fn surface_part(args: &New, topography: &Topography, path: &str, border: Border)
         "outliers = {{ threshold = {SPIKES}, radius = 2 }}   # spikes of the instrument; summits of the surface stay\n"
     );
     if holes > 0 {
-        text += &format!("fill = \"harmonic\"                     # {holes} points are undefined\n");
+        text += &format!("fill = \"harmonic\"                     # {} undefined\n", counted(holes, "point"));
     }
     // Over four points at each border at least.
     let share = (8.0 / nx.min(ny) as f64).clamp(0.1, 1.0);

@@ -254,7 +254,7 @@ seeds = 1
     assert_eq!(seal["answers"][0]["value"].as_f64(), Some(leak));
     // What the runs of the patch say is told in words.
     assert!(
-        told.contains("of the patch, first with") && told.contains("[constriction-unresolved]"),
+        told.contains("of the patch, first at") && told.contains("[constriction-unresolved]"),
         "{told}"
     );
     let vary = "load.history.value=96 kPa:112 kPa:41";

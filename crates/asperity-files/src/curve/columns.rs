@@ -138,8 +138,8 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
             let line = row.map(|row| table.rows[kept[row]].line);
             let angular = role == Role::Frequency && unit.is_empty() && is_angular(name);
             let remedy = if angular { Remedy::Radians } else { Remedy::Unit(role) };
-            // Without a unit the column itself may be a wrong one.
-            let columns = match unit.is_empty() {
+            // Without a unit, or with that of a time, the column itself may be a wrong one.
+            let columns = match unit.is_empty() || role == Role::Frequency {
                 true => format!("; the columns are {}", table.listed()),
                 false => String::new(),
             };

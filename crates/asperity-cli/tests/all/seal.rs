@@ -253,10 +253,7 @@ seeds = 1
     assert_eq!(seal["answers"][0]["name"], "seal_leak");
     assert_eq!(seal["answers"][0]["value"].as_f64(), Some(leak));
     // What the runs of the patch say is told in words.
-    assert!(
-        told.contains("of the patch, first at") && told.contains("[constriction-unresolved]"),
-        "{told}"
-    );
+    assert!(told.contains("of the patch, first at") && told.contains("[constriction-unresolved]"), "{told}");
     let vary = "load.history.value=96 kPa:112 kPa:41";
     let (dense, _) = run(&["study", "patch.toml", "--vary", vary, "-o", "dense", "--json", "--threads", "1"]);
     let sigma = |run: &Value| {

@@ -1,4 +1,4 @@
-"""Markup of the pages: formulas as MathML, anchors as Git forges make them, labelled parts as tabs, tables as sections."""
+"""Markup of the pages: formulas as MathML, anchors as Git forges make them, labelled parts as tabs."""
 
 import re
 
@@ -6,7 +6,6 @@ import math_core
 
 FORMULAS = math_core.LatexToMathML()
 TABS = re.compile(r"^<!-- tabs -->\n(.*?)^<!-- end tabs -->\n", re.M | re.S)
-SECTIONS = re.compile(r"^<!-- sections -->\n((?:\|.*\n)+)", re.M)
 LABEL = re.compile(r"^\*\*(.+)\*\*\n", re.M)
 
 
@@ -43,26 +42,6 @@ def with_tabs(text):
         return "".join(f'=== "{label}"\n\n{indented(body.strip())}\n\n' for label, body in labelled)
 
     return TABS.sub(tabs, text)
-
-
-def with_sections(text):
-    """The table after <!-- sections --> as a section for each row, which the search and links find by the first column."""
-
-    def sections(match):
-        names, _, *rows = (cells(line) for line in match.group(1).splitlines())
-        return "\n".join(section(names, row) for row in rows)
-
-    return SECTIONS.sub(sections, text)
-
-
-def section(names, row):
-    parts = [f"- **{name}:** {cell}" for name, cell in zip(names[1:], row[1:]) if cell]
-    return f"### {row[0]}\n\n" + "\n".join(parts) + "\n"
-
-
-def cells(line):
-    """The cells of a row of a table."""
-    return [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
 
 
 def indented(text):

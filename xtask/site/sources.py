@@ -32,7 +32,7 @@ def stage(root, site, address):
     for source, place in places.items():
         if source.endswith(".md"):
             text = (root / source).read_text(encoding="utf-8")
-            write(site / place, linked(markup.with_sections(markup.with_tabs(text)), source, place, places, root, address))
+            write(site / place, linked(markup.with_tabs(text), source, place, places, root, address))
     shutil.copytree(root / "docs/images", site / "images", dirs_exist_ok=True, ignore=shutil.ignore_patterns("*.py"))
     shutil.copytree(root / "xtask/site/assets", site / "assets", dirs_exist_ok=True)
     return places

@@ -106,7 +106,8 @@ pub fn superscript(number: i32) -> String {
 /// ```
 pub fn quantity(value: f64, unit: &str) -> String {
     let shown = shown(unit, value.abs());
-    let number = value * shown.factor;
+    // No minus before a zero.
+    let number = value * shown.factor + 0.0;
     let digits =
         if number == 0.0 { 0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize };
     let text = format!("{number:.digits$}");
@@ -155,6 +156,11 @@ mod tests {
     fn text(unit: &str, largest: f64) -> (String, i32) {
         let shown = shown(unit, largest);
         (shown.text, shown.factor.log10().round() as i32)
+    }
+
+    #[test]
+    fn a_zero_has_no_sign() {
+        assert_eq!([quantity(-0.0, "m"), quantity(0.0, "N")], ["0 m", "0 N"]);
     }
 
     #[test]

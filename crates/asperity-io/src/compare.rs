@@ -35,6 +35,8 @@ pub struct Number {
     pub last: [f64; 2],
     /// Largest difference at a common time, relative to the largest magnitude of the first result there; `None` without common times.
     pub largest_difference: Option<f64>,
+    /// What the findings of both say of its last value.
+    pub validity: [Validity; 2],
 }
 
 /// An answer of several results.
@@ -233,6 +235,7 @@ pub fn compare(first: &Reader, second: &Reader) -> Result<Comparison, StoreError
     let common = common(&times);
     let theirs: Vec<&'static str> = second.scalars().iter().map(|series| series.name).collect();
     let mut numbers = vec![];
+    let answers = [of_all(first)?, of_all(second)?];
     for series in first.scalars() {
         let is_of_solver = Quantity::from_name(series.name).is_some_and(Quantity::is_of_solver);
         if is_of_solver || WORK.contains(&series.name) || !theirs.contains(&series.name) {
@@ -247,12 +250,32 @@ pub fn compare(first: &Reader, second: &Reader) -> Result<Comparison, StoreError
             units: series.units.to_owned(),
             last: [a, b].map(|values| values.last().copied().unwrap_or(f64::NAN)),
             largest_difference: (!common.is_empty()).then_some(share),
+            validity: [0, 1].map(|n| of_last(readers[n], &answers[n], series.name)),
         });
     }
     let pair =
         |values: Vec<Option<String>>| [values.first().cloned().flatten(), values.last().cloned().flatten()];
     let case = cases(&readers).into_iter().map(|(key, values)| (key, pair(values))).collect();
     Ok(Comparison { case, numbers, common_rows: common.len(), pressure: pressure(readers)? })
+}
+
+/// Names of the answers of a result.
+fn of_all(reader: &Reader) -> Result<Vec<String>, StoreError> {
+    Ok(answer::of(reader, &Units::default())?.into_iter().map(|answer| answer.name).collect())
+}
+
+/// What the findings of a result say of the last value of a number of its rows; nothing of what the case prescribes, which is no answer.
+fn of_last(reader: &Reader, answers: &[String], name: &str) -> Validity {
+    let prescribed = match name {
+        "time" => true,
+        "load" | "mean_pressure" => !answers.iter().any(|answer| answer == "load"),
+        "approach" => !answers.iter().any(|answer| answer == "approach"),
+        _ => false,
+    };
+    match prescribed {
+        true => Validity::Holds,
+        false => Validity::at_row(name, reader.len() - 1, reader.findings().iter()),
+    }
 }
 
 /// Rows of both at the same times; of the two rows of a jump the first ones and the second ones.

@@ -148,9 +148,9 @@ function stressPart() {
   else if (state.live) $("stress-picture").src = "stress.svg";
 }
 
-/** Where the seal closes and opens: events, and a sentence of the first time that it closes. */
+/** Where the seal closes and opens: events, and a sentence of the first time that it closes. Where `open` is null it is not known. */
 function sealing(time, open) {
-  const events = open.flatMap((now, n) => (n > 0 && !now !== !open[n - 1] ? [{ after: time[n - 1], at: time[n], text: now ? (open.slice(0, n).some(Boolean) ? "leaks again" : "leaks") : "tight" }] : []));
+  const events = open.flatMap((now, n) => (n > 0 && now !== null && open[n - 1] !== null && !now !== !open[n - 1] ? [{ after: time[n - 1], at: time[n], text: now ? (open.slice(0, n).some(Boolean) ? "leaks again" : "leaks") : "tight" }] : []));
   const closed = events.find((event) => event.text === "tight");
   const unit = state.rows.unit;
   const note = closed ? `Closes between ${state.rows.symbol} = ${words(closed.after, unit)} and ${words(closed.at, unit)}: then no open path leads from inlet to outlet. A logarithmic axis cannot show zero.` : "";
@@ -168,10 +168,10 @@ function leakPart() {
   const leak = state.leak;
   $("leakage").hidden = !leak;
   if (!leak) return;
-  const x = leak.leak_time.values, open = leak.percolates.values, [events, note] = sealing(x, open);
-  const values = (key, factor = 1) => leak[key].values.map((value) => (value === null ? NaN : factor * value));
+  const x = leak.leak_time.values, open = leak.percolates.values.map((now, n) => (leak.holds[n] ? now : null)), [events, note] = sealing(x, open);
+  const values = (key, factor = 1) => leak[key].values.map((value, n) => (value === null || !leak.holds[n] ? NaN : factor * value));
   const line = (name, key, dashed, factor) => ({ name, x, y: values(key, factor), dashed });
-  const none = `The seal is tight at all ${state.rows.label === "time" ? "times" : "velocities"}: no open path from inlet to outlet.`;
+  const none = leak.taken ? `${leak.taken}.` : `The seal is tight at all ${state.rows.label === "time" ? "times" : "velocities"}: no open path from inlet to outlet.`;
   const specs = [
     { title: "Gaps", none, zero: none, events, x: rowsAxis(), y: { label: "gap", unit: "m", log: true }, series: [line("hydraulic: even gap, same leak", "hydraulic_gap"), line("critical: narrowest on best path", "critical_gap", true)] },
     { title: "Open cells", events, x: rowsAxis(), y: { label: "share of the domain", unit: "" }, zero: "No cell is open.", series: [{ name: "", x, y: leak.open_fraction.values }] },

@@ -1,7 +1,7 @@
 //! Figures of leakage at one state: where the fluid flows, and what is trapped.
 
 use asperity::leakage::{CellKind, flux};
-use asperity_io::answer::Units;
+use asperity_io::answer::{Units, Validity};
 use asperity_io::leakage::{Leak, Leakage};
 use asperity_io::readable::quantity;
 use ndarray::{Array2, ArrayView2, Zip};
@@ -28,10 +28,20 @@ pub(crate) const POCKET: [u8; 3] = [213, 94, 0];
 const DECADES: f64 = 4.0;
 
 /// The leak of one state: passages and pockets, and the flow with its critical constriction; where it is tight the open gap.
-pub fn state(leak: &Leak, found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Figure {
-    let caption = format!("{}. {}", sentence(&leak.words()), words(found));
+/// `validity` is what the findings say of it.
+pub fn state(
+    leak: &Leak,
+    found: &Leakage,
+    validity: &Validity,
+    gap: ArrayView2<'_, f64>,
+    size: [f64; 2],
+) -> Figure {
+    let caption = format!("{}. {}", sentence(&leak.words()), words(found, validity));
     let maps = maps(found, gap, size);
-    Figure::new(heading(found, &Units::default())).with_all(maps).panel_size([300.0, 260.0]).caption(caption)
+    Figure::new(sentence(&validity.mark(heading(found, &Units::default()))))
+        .with_all(maps)
+        .panel_size([300.0, 260.0])
+        .caption(caption)
 }
 
 /// Passages, and the flow; where it is tight, the gap of the cells that are open.
@@ -60,7 +70,7 @@ fn open_gap(found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Map {
             *gap = f64::NAN;
         }
     });
-    Map::new("Tight: gap of the open cells", ["gap", "m"], Colours::Sequential, open.view(), size)
+    Map::new("Gap of the open cells", ["gap", "m"], Colours::Sequential, open.view(), size)
 }
 
 /// The flow per width over its largest value; blank in contact, the lowest colour where the fluid rests.
@@ -95,12 +105,16 @@ pub(crate) fn heading(found: &Leakage, units: &Units) -> String {
     }
 }
 
-pub(crate) fn words(found: &Leakage) -> String {
+/// What is open and what is trapped, and of a leak that is not taken back the gaps.
+pub(crate) fn words(found: &Leakage, validity: &Validity) -> String {
     let open = format!("{:.1} % of the cells are open", 100.0 * found.open_fraction);
     let trapped = match found.trapped_area {
         0.0 => String::new(),
         area => format!(", {} of them in pockets", quantity(area, "m2")),
     };
+    if !validity.is_valid() {
+        return format!("{open}{trapped}.");
+    }
     if !found.percolates {
         return format!("Inlet and outlet are not connected. {open}{trapped}.");
     }

@@ -15,6 +15,9 @@ pub struct Sheet {
     body: String,
 }
 
+/// Pixels of a page for a point of a figure, where there is room: two panels side by side fill it.
+const LARGE: f64 = 2.2;
+
 /// What the pages of results do not need.
 const TABLES: &str = "\
     .wide { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
@@ -74,8 +77,9 @@ impl Sheet {
             }
         };
         let (heading, picture) = (escaped(heading), data(figure));
+        let width = (LARGE * figure.paper()[0]).round();
         self.body += &format!(
-            "<h2>{heading}</h2>\n<p><picture>{narrow}<img alt=\"{heading}\" src=\"{picture}\"></picture></p>\n"
+            "<h2>{heading}</h2>\n<p><picture>{narrow}<img style=\"width: {width}px\" alt=\"{heading}\" src=\"{picture}\"></picture></p>\n"
         );
         self
     }

@@ -5,6 +5,7 @@ use asperity::{Axis, Grid};
 use asperity_io::answer::{self, Answer, Units};
 use asperity_io::converge::ErrorBar;
 use asperity_io::store::Reader;
+use serde_json::{Value, json};
 
 use crate::failure::{Failure, refuse};
 use crate::format::quantity;
@@ -24,6 +25,21 @@ pub fn lines(answers: &[Answer], bars: &[ErrorBar], units: &Units) -> Vec<[Strin
         answer.validity.mark(bar.map_or_else(|| alone(answer, units), |bar| with_error(answer, bar, units)))
     };
     units.without_second_rate(answers).map(|answer| [answer.label(), words(answer)]).collect()
+}
+
+/// The errors of answers as JSON, each with what the findings say of its answer.
+pub fn bars(answers: &[Answer], bars: &[ErrorBar]) -> Value {
+    let told = |bar: &ErrorBar| {
+        let mut object = json!(bar);
+        let answer = answers.iter().find(|answer| answer.name == bar.name);
+        if let (Some(told), Value::Object(marks)) =
+            (object.as_object_mut(), json!(answer.map(|answer| &answer.validity)))
+        {
+            told.extend(marks);
+        }
+        object
+    };
+    bars.iter().map(told).collect()
 }
 
 fn alone(answer: &Answer, units: &Units) -> String {

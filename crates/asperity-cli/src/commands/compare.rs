@@ -1,8 +1,8 @@
 //! `asperity compare`: what differs between results.
 
 use asperity::Axis;
-use asperity_io::answer::Units;
-use asperity_io::compare::{self, Answers, Comparison, FACTOR, answers, cases, unfinished};
+use asperity_io::answer::{Units, Validity};
+use asperity_io::compare::{self, Answers, Comparison, FACTOR, Number, answers, cases, unfinished};
 use asperity_io::store::Reader;
 use serde_json::json;
 
@@ -123,25 +123,33 @@ fn case(found: &Comparison) -> String {
 /// The last rows of two, and what differs at the times that both have.
 fn text(found: &Comparison, readers: &[Reader]) -> String {
     let incomplete = readers.iter().any(|reader| unfinished(reader).is_some());
-    let mut text =
-        format!("\n{:<28}{:<16}{:<16}{:<16}largest difference\n", "at the end", "first", "second", "change");
+    let head = ["at the end", "first", "second", "change", "largest difference"].map(str::to_owned);
     let axis = readers[0].header().axis();
-    for number in &found.numbers {
+    let row = |number: &Number| {
         let units = if number.units == "1" { "" } else { number.units.as_str() };
         let [a, b] = number.last;
+        let holds = number.validity.iter().all(Validity::is_valid);
         let change = match b / a - 1.0 {
+            _ if !holds => "-".to_owned(),
             _ if a == b => "none".to_owned(),
             _ if incomplete => "not complete".to_owned(),
             _ if a == 0.0 => "from 0".to_owned(),
-            change if change >= FACTOR => format!("{:.4} times ", 1.0 + change),
+            change if change >= FACTOR => format!("{:.4} times", 1.0 + change),
             change if change.is_finite() => format!("{:+.3} %", 100.0 * change),
             _ => String::new(),
         };
         let word = |value: f64| if units.is_empty() { format!("{value:.6}") } else { quantity(value, units) };
-        let largest = number.largest_difference.map_or(String::new(), apart);
+        let largest = match number.largest_difference {
+            Some(share) if holds => apart(share),
+            Some(_) => "-".to_owned(),
+            None => String::new(),
+        };
         let name = if number.name == "time" { axis.name() } else { &number.name };
-        text += &format!("{name:<28}{:<16}{:<16}{change:<16}{largest}\n", word(a), word(b));
-    }
+        let [first, second] = [0, 1].map(|n| number.validity[n].cell(word(number.last[n])));
+        vec![name.to_owned(), first, second, change, largest]
+    };
+    let rows: Vec<Vec<String>> = [head.to_vec()].into_iter().chain(found.numbers.iter().map(row)).collect();
+    let mut text = format!("\n{}", columns(&rows, ""));
     text += &match found.common_rows {
         0 => "\nThe results have no row at the same time: only their ends are compared.\n".to_owned(),
         rows => format!(

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use asperity_io::answer::Units;
 use asperity_io::case::Case;
-use asperity_io::converge::{ConvergeError, ConvergeOptions, Convergence, ErrorBar, converge};
+use asperity_io::converge::{ConvergeError, ConvergeOptions, Convergence, converge};
 use serde_json::{Value, json};
 
 use super::answers;
@@ -64,19 +64,7 @@ pub fn of_case(
 }
 
 fn object(found: &Convergence) -> Value {
-    // Each with what the findings say of it.
-    let told = |bar: &ErrorBar| {
-        let answer = found.answers.iter().find(|answer| answer.name == bar.name);
-        let mut object = json!(bar);
-        if let (Some(told), Value::Object(marks)) =
-            (object.as_object_mut(), json!(answer.map(|answer| &answer.validity)))
-        {
-            told.extend(marks);
-        }
-        object
-    };
-    let answers: Vec<Value> = found.bars.iter().map(told).collect();
-    json!({ "answers": answers, "cost": found.cost, "notes": found.notes, "findings": asperity_io::finding::list(&found.findings) })
+    json!({ "answers": answers::bars(&found.answers, &found.bars), "cost": found.cost, "notes": found.notes, "findings": asperity_io::finding::list(&found.findings) })
 }
 
 /// A line for each answer, and how their errors were found.

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::args::Run;
 use crate::failure::Failure;
-use crate::format::{bytes, coordinate, duration, quantity};
+use crate::format::{bytes, coordinate, counted, duration, quantity};
 use crate::progress::ProgressDisplay;
 use crate::verb::{Threads, Verb};
 
@@ -51,7 +51,8 @@ impl Verb for Run {
                     return super::findings::strict(self.strict, &summary.findings);
                 }
                 let (rows, result) = (summary.rows, summary.result.display());
-                Err(Failure::Interrupted(format!("{rows} rows are in {result}; continue with --resume")))
+                let kept = if rows == 1 { "1 row is".to_owned() } else { format!("{rows} rows are") };
+                Err(Failure::Interrupted(format!("{kept} in {result}; continue with --resume")))
             }
             Err(RunError::Case(errors)) => Err(Failure::Case(errors)),
             Err(error @ RunError::Output(_)) => Err(error.into()),
@@ -153,8 +154,8 @@ fn print_summary(
     line(
         "work",
         format!(
-            "{} rows, {} iterations, {} convolutions ({:.1} per row) in {}{memory}",
-            summary.rows,
+            "{}, {} iterations, {} convolutions ({:.1} per row) in {}{memory}",
+            counted(summary.rows, "row"),
             summary.iterations,
             summary.convolutions,
             summary.convolutions as f64 / summary.rows.max(1) as f64,
@@ -181,7 +182,7 @@ fn json_object(summary: &Summary, bars: Option<&Convergence>, error: Option<&Run
         "findings": asperity_io::finding::list(&summary.findings),
     });
     if let Some(bars) = bars {
-        object["error_bars"] = json!(bars.bars);
+        object["error_bars"] = super::answers::bars(&bars.answers, &bars.bars);
     }
     if let Some(error) = error {
         object["error"] = json!(error.to_string());

@@ -46,7 +46,7 @@ fn object(reader: &Reader, answers: &[Answer]) -> Result<String, StoreError> {
     }
     let object = json!({
         "answers": answers,
-        "error_bars": reader.error_bars(),
+        "error_bars": super::answers::bars(answers, &reader.error_bars()),
         "title": reader.header().title,
         "status": reader.status().as_str(),
         "lacks_leakage": reader.lacks_leakage(),

@@ -190,7 +190,19 @@ fn a_fit_says_what_is_wrong() {
     // Hints are options of the command.
     write("half.csv", "f [Hz], E' [MPa]\n1, 2\n2, 3\n");
     let output = asperity(dir.path(), &["material", "fit", "half.csv", "--kind", "dma"]);
-    assert!(stderr(&output).contains("--column loss=1"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("--column loss=N"), "{}", stderr(&output));
+    // A frequency without a unit may be cycles or radians; the columns are named.
+    write("good.csv", "frequency,storage,loss\n1,2e6,3e5\n2,3e6,4e5\n");
+    let output = asperity(dir.path(), &["material", "fit", "good.csv"]);
+    for words in ["give Hz", "the columns are 1 \"frequency\", 2 \"storage\", 3 \"loss\""] {
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    }
+    // A loss modulus without a unit is not taken in Pa beside a storage modulus in MPa.
+    write("mixed.csv", "f [Hz],E' [MPa],E''\n1,2,0.3\n2,3,0.4\n");
+    let output = asperity(dir.path(), &["material", "fit", "mixed.csv"]);
+    for words in ["loss (column 3, \"E''\") names no unit, and storage is in MPa", "--unit 'loss="] {
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    }
     // Without units the numbers are SI, and that is said.
     let output = asperity(dir.path(), &["material", "fit", "plain.csv", "--kind", "relaxation"]);
     assert!(stdout(&output).contains("names no unit and is taken in Pa"), "{}", stdout(&output));

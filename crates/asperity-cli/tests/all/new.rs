@@ -233,3 +233,91 @@ fn a_square_has_one_length() {
     // 3 um is 3e-6 to the last digit.
     assert_eq!(found["size"], serde_json::json!([3e-6, 3e-6]));
 }
+
+/// Warnings of a run.
+fn warned(folder: &std::path::Path, case: &str, set: &[String]) -> Vec<String> {
+    let more: Vec<&str> = set.iter().flat_map(|key| ["--set", key]).collect();
+    let done = asperity(folder, &[&["run", case, "--force", "--quiet", "--json"][..], &more].concat());
+    assert!(done.status.success(), "{case} {set:?}: {}", told(&done));
+    let object: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    let list = object["findings"].as_array().unwrap().clone();
+    let warnings = list.iter().filter(|finding| finding["severity"] == "warning");
+    warnings.map(|finding| finding["code"].as_str().unwrap().to_owned()).collect()
+}
+
+/// What few cells cause: waves, spots, constrictions, rims of adhesion and slip, and edges of moving contacts are a few cells wide.
+const OF_FEW_CELLS: [&str; 7] = [
+    "shortest-wave-unresolved",
+    "spots-unresolved",
+    "few-contact-cells",
+    "constriction-unresolved",
+    "friction-uncertain",
+    "adhesion-unresolved",
+    "slip-unresolved",
+];
+
+#[test]
+fn no_default_of_a_case_with_own_files_causes_a_finding() {
+    let folder = files();
+    let made = asperity(
+        folder.path(),
+        &["surface", "process", "face.npz", "--op", "crop cells=18,12", "-o", "part.npz"],
+    );
+    assert!(made.status.success(), "{}", told(&made));
+    for (purpose, from, material) in [
+        ("seal", "face.npz", "relaxation.csv"),
+        ("seal", "part.npz", "relaxation.csv"),
+        ("friction", "face.npz", "dma.csv"),
+        ("friction", "part.npz", "dma.csv"),
+        ("contact", "face.npz", "dma.csv"),
+        ("contact", "part.npz", "relaxation.csv"),
+        ("indentation", "face.npz", "relaxation.csv"),
+        ("indentation", "record.csv", "relaxation.csv"),
+        ("adhesion", "face.npz", "relaxation.csv"),
+        ("adhesion", "record.csv", "dma.csv"),
+    ] {
+        let words = ["new", "--from", from, "--material", material, "--for", purpose, "own.toml", "--force"];
+        let made = asperity(folder.path(), &words);
+        assert!(made.status.success(), "{purpose}: {}", told(&made));
+        let mut codes = warned(folder.path(), "own.toml", &[]);
+        // The maps have 24 by 16 points at most.
+        codes.retain(|code| from == "record.csv" || !OF_FEW_CELLS.contains(&code.as_str()));
+        assert!(codes.is_empty(), "{purpose} {from}: {codes:?}");
+    }
+}
+
+#[test]
+fn no_starter_case_causes_a_finding() {
+    const CELLS: usize = 48;
+    let folder = tempfile::tempdir().unwrap();
+    for template in asperity_examples::TEMPLATES {
+        // Hundreds of cycles of wear take a minute on any grid.
+        if template.name == "fretting-wear" {
+            continue;
+        }
+        let path = format!("{}.toml", template.name);
+        std::fs::write(folder.path().join(&path), template.text).unwrap();
+        let line = template.text.contains("kind = \"cylinder\"");
+        let cells = if line { "[256]".to_owned() } else { format!("[{CELLS}, {CELLS}]") };
+        let mut set = vec![format!("domain.cells={cells}")];
+        // Waves that these cells resolve.
+        let (_, side) = template.text.split_once("size = [\"").unwrap();
+        let (number, unit) = side.split('"').next().unwrap().split_once(' ').unwrap();
+        for (n, surface) in template.text.split("[[surface]]").skip(1).enumerate() {
+            if surface.contains("\nshortest = ") {
+                let shortest = 4.0 * number.parse::<f64>().unwrap() / CELLS as f64;
+                set.push(format!("surface.{n}.shortest={shortest:.4} {unit}"));
+            }
+        }
+        let mut codes = warned(folder.path(), &path, &set);
+        codes.retain(|code| !OF_FEW_CELLS.contains(&code.as_str()));
+        let expected: &[&str] = match template.name {
+            // What it shows.
+            "subsurface-stress" => &["yield-exceeded"],
+            // Soft rubber on a rough road is beyond small strains, as every linear theory of it.
+            "rubber-friction" => &["large-strain"],
+            _ => &[],
+        };
+        assert_eq!(codes, expected, "{}", template.name);
+    }
+}

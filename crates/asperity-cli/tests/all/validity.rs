@@ -117,3 +117,56 @@ fn a_result_that_is_not_complete_is_compared_without_changes() {
         "{words}"
     );
 }
+
+/// The same where the answer is drawn, in tables of rows and beside its error.
+#[test]
+fn a_leak_that_is_taken_back_is_drawn_and_listed_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("wave.toml"), CASE).unwrap();
+    let run = data(folder, &["run", "wave.toml", "--threads", "1", "--error-bars", "--json", "--quiet"]);
+    let shown = data(folder, &["show", "wave.zarr", "--json"]);
+    for bars in [&run["error_bars"], &shown["error_bars"]] {
+        assert_eq!(answer(bars, "leak_rate")["valid"], false, "{bars}");
+        assert!(answer(bars, "contact_area").get("valid").is_none(), "{bars}");
+    }
+    let table = told(folder, &["leak", "wave.zarr"]);
+    let rows: Vec<&str> = table.lines().filter(|line| line.contains("not valid [fluid-uncoupled]")).collect();
+    assert!(rows.len() == 3 && rows.iter().all(|row| !row.contains("tight")), "{table}");
+    let leak = data(folder, &["leak", "wave.zarr", "--json"]);
+    assert_eq!(leak["leak_valid"], serde_json::json!([false, false, false]));
+    told(folder, &["plot", "wave.zarr", "leak", "-o", "leak.svg"]);
+    let figure = std::fs::read_to_string(folder.join("leak.svg")).unwrap();
+    assert!(figure.contains("not valid: the fluid lifts the seal"), "{figure}");
+    assert!(!figure.contains("Tight") && !figure.contains("tight"), "{figure}");
+    told(folder, &["report", "wave.zarr", "-o", "wave.html"]);
+    let page = std::fs::read_to_string(folder.join("wave.html")).unwrap();
+    assert!(page.contains("Not valid: the fluid lifts the seal") && !page.contains("Tight, liquid"));
+    // The summary, without the note of the answer.
+    let headline = page.split_once("\"headline\":").unwrap().1.split("]]").next().unwrap();
+    assert!(headline.contains("not valid") && !headline.contains("tight at all times"), "{headline}");
+}
+
+/// A wave of the slope 2.7, more than 5 times the limit: no number of its rows is an answer, but for what the case prescribes.
+#[test]
+fn numbers_of_rows_that_are_taken_back_are_not_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("wave.toml"), CASE.split("[leakage]").next().unwrap()).unwrap();
+    told(folder, &["run", "wave.toml", "-o", "flat.zarr", "--threads", "1"]);
+    let steep =
+        ["run", "wave.toml", "-o", "steep.zarr", "--threads", "1", "--set", "surface.0.amplitude=6 um"];
+    told(folder, &steep);
+    let compared = data(folder, &["compare", "flat.zarr", "steep.zarr", "--json"]);
+    let number = |name: &str| answer(&compared["numbers"], name).clone();
+    assert_eq!(number("contact_area")["validity"][1]["valid"], false);
+    assert!(number("contact_area")["validity"][0].get("valid").is_none());
+    assert!(number("load")["validity"][1].get("valid").is_none());
+    let text = told(folder, &["compare", "flat.zarr", "steep.zarr"]);
+    let (_, table) = text.split_once("at the end").unwrap();
+    let row = table.lines().find(|line| line.starts_with("contact_area")).unwrap();
+    assert!(row.contains("not valid [large-slope]") && !row.contains('%'), "{table}");
+    told(folder, &["plot", "steep.zarr", "evolution", "-o", "steep.svg"]);
+    let figure = std::fs::read_to_string(folder.join("steep.svg")).unwrap();
+    assert!(figure.contains("The contact area is not valid"), "{figure}");
+}

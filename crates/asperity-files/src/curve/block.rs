@@ -7,6 +7,7 @@ use asperity::material::{Shift, VerticalShift};
 
 use super::{Curves, Fitted, Series};
 use crate::choice;
+use crate::readable::counted;
 
 /// How a case file writes a model with terms: its name, the quantity of its terms, the key of its constant, and their unit.
 pub(super) struct Model {
@@ -53,12 +54,12 @@ impl Fitted {
     pub fn to_toml(&self, curves: &Curves) -> String {
         let [first, last] = self.window;
         let mut text = format!(
-            "# Fitted to {} points of {} ({}): {} terms, misfit {:.2} % rms and {:.2} % at most;\n\
+            "# Fitted to {} of {} ({}): {}, misfit {:.2} % rms and {:.2} % at most;\n\
              # the data cover times from {first:.3e} s to {last:.3e} s. Behind each term: relative standard deviations.\n",
-            self.data.x.len(),
+            counted(self.data.x.len(), "point"),
             file_name(&curves.path),
             curves.kind.name(),
-            self.terms(),
+            counted(self.terms(), "term"),
             100.0 * self.misfit.rms,
             100.0 * self.misfit.max,
         );

@@ -134,9 +134,12 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
             let line = row.map(|row| table.rows[kept[row]].line);
             let angular = role == Role::Frequency && unit.is_empty() && is_angular(name);
             let remedy = if angular { Remedy::Radians } else { Remedy::Unit(role) };
-            let others =
-                if unit.is_empty() { format!("; the file has {}", table.listed()) } else { String::new() };
-            fault(format!("{} ({place}): {why}{others}", role.name())).remedy(remedy).at(line)
+            // Without a unit, or with that of a time, the column itself may be a wrong one.
+            let columns = match unit.is_empty() || role == Role::Frequency {
+                true => format!("; the columns are {}", table.listed()),
+                false => String::new(),
+            };
+            fault(format!("{} ({place}): {why}{columns}", role.name())).remedy(remedy).at(line)
         })?;
         if unit.is_empty() && !matches!(role, Role::TanDelta | Role::Set) {
             notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));
@@ -145,6 +148,21 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
         let named = !unit.is_empty();
         let unit = if named { unit } else { taken(role).to_owned() };
         used.push(Place { role, column: column + 1, header: header.clone(), unit, named });
+    }
+    let of = |role: Role| used.iter().find(|place| place.role == role);
+    if let (Some(storage), Some(loss)) = (of(Role::Storage), of(Role::Loss))
+        && storage.named != loss.named
+    {
+        let (bare, other) = if storage.named { (loss, storage) } else { (storage, loss) };
+        let quoted = table.quoted(bare.column - 1);
+        return Err(fault(format!(
+            "{} (column {}{quoted}) names no unit, and {} is in {}: taken in Pa it may be wrong by powers of ten",
+            bare.role.name(),
+            bare.column,
+            other.role.name(),
+            other.unit
+        ))
+        .remedy(Remedy::Unit(bare.role)));
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();
     Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })

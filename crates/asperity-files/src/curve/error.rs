@@ -57,11 +57,11 @@ impl Remedy {
             Remedy::Column(role) => {
                 let name = role.name();
                 [
-                    format!("columns = {{ {name} = 1 }}"),
-                    format!("--column {name}=1"),
-                    format!("columns={{\"{name}\": 1}}"),
+                    format!("columns = {{ {name} = N }}"),
+                    format!("--column {name}=N"),
+                    format!("columns={{\"{name}\": N}}"),
                 ]
-                .map(|example| format!("name it as in {example}, by number or header"))
+                .map(|how| format!("name it: {how}, N the number of its column or, in quotes, its header"))
             }
             Remedy::Unit(role) => {
                 let (name, unit) = (role.name(), role.example());
@@ -79,12 +79,15 @@ impl Remedy {
             ]
             .map(|how| format!("fit the part before, as in {how}")),
             Remedy::Loss => [
-                ("columns = { loss = 1 }", "say fit = { moduli = \"storage\" }"),
-                ("--column loss=1", "give --fit storage"),
-                ("columns={\"loss\": 1}", "say moduli=\"storage\""),
+                ("columns = { loss = N }", "say fit = { moduli = \"storage\" }"),
+                ("--column loss=N", "give --fit storage"),
+                ("columns={\"loss\": N}", "say moduli=\"storage\""),
             ]
             .map(|(column, alone)| {
-                format!("name it as in {column} (or tan_delta, phase), or {alone} to fit the storage modulus alone")
+                format!(
+                    "name it: {column} (or tan_delta, phase), N the number of its column or, in quotes, its header; or {alone} to fit the storage \
+                     modulus alone"
+                )
             }),
             Remedy::Radians => [
                 "say units = { frequency = \"rad/s\" }",

@@ -376,9 +376,8 @@ impl Request {
         if kept.len() < 2 {
             let (least, most) = (data.x.first().unwrap_or(&0.0), data.x.last().unwrap_or(&0.0));
             return Err(fault(format!(
-                "{} points lie in the window of the fit, {first:e} to {last:e} (in s, or rad/s of a dma); the data \
-                 run from {least:e} to {most:e}",
-                kept.len()
+                "{} in the window of the fit, {first:e} to {last:e} (in s, or rad/s of a dma); the data run from {least:e} to {most:e}",
+                if kept.len() == 1 { "1 point lies" } else { "0 points lie" }
             )));
         }
         let pick = |values: &Vec<f64>| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();

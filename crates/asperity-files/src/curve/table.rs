@@ -12,6 +12,7 @@ use super::error::{CurveError, Result, fault};
 use super::heading::{self, Dialect};
 use super::names::{is_unit, split_unit, unquoted};
 use super::{role, wide};
+use crate::readable::counted;
 use crate::topography::{dialect, is_numbers, to_text};
 
 /// Columns of a file and its rows of cells.
@@ -153,7 +154,9 @@ impl Table {
             }
             if cells.len() != columns {
                 let found = cells.len();
-                return Err(fault(format!("{found} cells, but {columns} on the lines before")).at(n + 1));
+                return Err(
+                    fault(format!("{}, but {columns} on the lines before", counted(found, "cell"))).at(n + 1)
+                );
             }
             if rows.len() == MOST_ROWS {
                 return Err(fault(format!("there are more than {MOST_ROWS} points")).at(n + 1));

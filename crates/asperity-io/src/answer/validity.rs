@@ -59,6 +59,38 @@ impl Validity {
         }
     }
 
+    /// The same of findings about a part of what the answer is of: they are named, and take nothing back.
+    #[must_use]
+    pub fn of_a_part(self) -> Validity {
+        match self {
+            Validity::TakenBack { code, .. } => Validity::See(vec![code]),
+            other => other,
+        }
+    }
+
+    /// What both say: taken back where one takes it back, else the findings of both.
+    #[must_use]
+    pub fn and(self, other: Validity) -> Validity {
+        match (self, other) {
+            (taken @ Validity::TakenBack { .. }, _) | (_, taken @ Validity::TakenBack { .. }) => taken,
+            (Validity::Holds, other) | (other, Validity::Holds) => other,
+            (Validity::See(mut codes), Validity::See(more)) => {
+                codes.extend(more.into_iter().filter(|code| !codes.contains(code)).collect::<Vec<_>>());
+                Validity::See(codes)
+            }
+        }
+    }
+
+    /// What these findings say of the answer `name` at a row.
+    pub fn at_row<'f>(
+        name: &str,
+        row: usize,
+        findings: impl Iterator<Item = &'f Finding> + Clone,
+    ) -> Validity {
+        let concerns = |finding: &&Finding| finding.rows.is_none_or(|[from, to]| from <= row && row <= to);
+        Validity::of(name, findings.filter(concerns))
+    }
+
     /// What these findings say of the answer `name`.
     pub fn of<'f>(name: &str, findings: impl Iterator<Item = &'f Finding> + Clone) -> Validity {
         let is_of = |rule: &Rule, finding: &Finding| {
@@ -170,6 +202,7 @@ const DEPTH: &[&str] = &["approach", "creep", "load", "relaxation", "dynamic_sti
 const LEAK: &[&str] = &["leak_rate*", "hydraulic_gap", "tight_from"];
 const LAST_LEAK: &[&str] = &["leak_rate*", "hydraulic_gap"];
 const SEAL: &[&str] = &["seal_leak*", "leak_growth", "seal_opening_pressure"];
+const SEAL_CURVE: &[&str] = &["leak_over_inlet"];
 const SEAL_LEAK: &[&str] = &["seal_leak*", "leak_growth"];
 const FLUID: &[&str] = &["leak_rate*", "fluid_load", "time_opened", "closing_pressure"];
 const FRICTION: &[&str] = &["friction_*", "velocity_of_largest_friction"];
@@ -202,6 +235,7 @@ const RULES: &[Rule] = &[
     see(SEAL_BELOW_SWEEP, SEAL),
     takes(SEAL_SWEEP_COARSE, SEAL_LEAK, 5.0, "the pressures of the sweep leave it open"),
     see(SEAL_SWEEP_COARSE, SEAL_LEAK),
+    see(SEAL_CURVE_COARSE, SEAL_CURVE),
     takes(SEAL_NARROW, SEAL, 4.0, "the seal is narrower than its patch"),
     see(SEAL_NARROW, SEAL),
     see(SEAL_PATCH_SMALL, SEAL),
@@ -313,6 +347,23 @@ mod tests {
             json(Validity::of("leak_rate", of(0.03).iter())),
             serde_json::json!({ "see": ["fluid-uncoupled"] })
         );
+    }
+
+    #[test]
+    fn the_findings_of_a_part_are_named_and_those_of_both_joined() {
+        let of = |code: &'static str, excess: f64| {
+            Validity::of("leak_rate", [Finding::warning(code, excess, 1.0, "")].iter())
+        };
+        let [taken, see] = [of(WINDOW_IN_LEAK, 1.0), of(LAY_MIRRORED, 1.0)];
+        assert_eq!(taken.clone().of_a_part(), Validity::See(vec!["window-in-leak".into()]));
+        assert_eq!(see.clone().and(taken.clone()), taken);
+        assert_eq!(
+            see.clone().and(of(CONSTRICTION_UNRESOLVED, 1.0)).and(see.clone()),
+            Validity::See(vec!["lay-mirrored".into(), "constriction-unresolved".into()])
+        );
+        let rows = [Finding::warning(WINDOW_IN_LEAK, 1.0, 1.0, "").at(Some([1, 2]))];
+        let at = |row: usize| Validity::at_row("leak_rate", row, rows.iter()).is_valid();
+        assert_eq!([0, 1, 2, 3].map(at), [true, false, false, true]);
     }
 
     #[test]

@@ -148,12 +148,13 @@ impl Measured {
         let agree = |axis: usize| (size[axis] - domain[axis]).abs() <= SAME * domain[axis];
         if !(agree(0) && agree(1)) {
             let [own, wanted] =
-                [size, domain].map(|size| numbers(size.map(|side| format!("{side:e} m")), " x "));
+                [size, domain].map(|size| numbers(size.map(|side| format!("{:e} m", digits(side))), " x "));
             let is_larger = (0..2).all(|axis| domain[axis] <= size[axis] * (1.0 + SAME));
             // Nobody knows what lies around a measured surface.
             let crop = match is_larger && !line {
                 true => {
-                    let [x, y] = domain.map(|side| if self.is_mirrored() { 0.5 * side } else { side });
+                    let [x, y] =
+                        domain.map(|side| digits(if self.is_mirrored() { 0.5 * side } else { side }));
                     let mirrored =
                         if self.is_mirrored() { ", half of the domain before the reflections" } else { "" };
                     format!(", or keep a part of the surface: crop = {{ size = [{x:e}, {y:e}] }}{mirrored}")
@@ -178,4 +179,9 @@ impl Measured {
         }
         Ok(Part::Heights { name, heights: prepared.surface.heights().to_owned() })
     }
+}
+
+/// A length with nine digits, without what rounding has left behind them.
+fn digits(length: f64) -> f64 {
+    format!("{length:.8e}").parse().unwrap_or(length)
 }

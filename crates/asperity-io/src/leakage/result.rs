@@ -51,6 +51,8 @@ pub struct LeakHistory {
     pub table: LeakTable,
     /// The findings about them.
     pub findings: Vec<Finding>,
+    /// Those about the contact that concern its leaks too.
+    pub of_contact: Vec<Finding>,
     /// Sides of the domain along x and y \[m\].
     pub size: [f64; 2],
 }
@@ -64,7 +66,12 @@ impl LeakHistory {
         let (Some(table), Some(leak)) = (LeakTable::of(reader)?, settings(reader)) else { return Ok(None) };
         let findings = reader.findings().iter().filter(|finding| LeakTable::is_judged_by(&finding.code));
         let (findings, size) = (findings.cloned().collect(), reader.header().grid.size());
-        Ok(Some(LeakHistory { leak, table, findings, size }))
+        Ok(Some(LeakHistory { leak, table, findings, of_contact: of_contact(reader), size }))
+    }
+
+    /// All findings that concern the leaks.
+    pub fn all_findings(&self) -> impl Iterator<Item = &Finding> + Clone {
+        self.findings.iter().chain(&self.of_contact)
     }
 
     /// The numbers of a column; empty if there is none of that name.
@@ -85,11 +92,16 @@ impl LeakHistory {
 
     /// What the findings say of an answer about the last leak.
     pub fn validity(&self, name: &str) -> Validity {
-        let last = self.last("leak_step") as usize;
-        let concerns = |finding: &&Finding| {
-            name == "tight_from" || finding.rows.is_none_or(|[from, to]| from <= last && last <= to)
-        };
-        Validity::of(name, self.findings.iter().filter(concerns))
+        match name {
+            "tight_from" => Validity::of(name, self.all_findings()),
+            _ => Validity::at_row(name, self.last("leak_step") as usize, self.all_findings()),
+        }
+    }
+
+    /// What the findings say of the leak at each of its times.
+    pub fn of_each_time(&self) -> Vec<Validity> {
+        let rows = self.column("leak_step").iter();
+        rows.map(|row| Validity::at_row("leak_rate", *row as usize, self.all_findings())).collect()
     }
 
     fn unmarked(&self, units: &Units) -> String {
@@ -251,5 +263,14 @@ fn evaluate(
     if reader.header().moves_in_time() && reader.findings().iter().all(|found| found.code != moving.code) {
         findings.push(moving);
     }
-    Ok(LeakHistory { leak: leak.clone(), table, findings, size: grid.size() })
+    Ok(LeakHistory { leak: leak.clone(), table, findings, of_contact: of_contact(reader), size: grid.size() })
+}
+
+/// The findings of a result about its contact that concern its leaks.
+fn of_contact(reader: &Reader) -> Vec<Finding> {
+    let concerns = |finding: &&Finding| {
+        !LeakTable::is_judged_by(&finding.code)
+            && Validity::of("leak_rate", std::iter::once(*finding)) != Validity::Holds
+    };
+    reader.findings().iter().filter(concerns).cloned().collect()
 }

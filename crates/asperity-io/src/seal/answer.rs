@@ -4,12 +4,15 @@ use asperity::finding::Finding;
 use asperity::seal::{CELLS, Conductance, Opens, SealFlow, SealState, bounds, flow, opening};
 use rayon::prelude::*;
 
-use super::sweep::{SealError, SealSweep};
-use super::{SealPlan, findings};
+use super::sweep::{PatchFinding, SealError, SealSweep};
+use super::{SealPlan, findings, refine};
 use crate::answer::{Answer, Validity};
 
 /// Inlet pressures of the curve.
 const INLETS: usize = 24;
+/// Largest share of the leak at an inlet pressure of the curve that the sweep may leave open, a factor of two: the leak goes with the cube
+/// of the gap, so that the gap is then known to a quarter.
+pub(super) const COARSE: f64 = 0.5;
 /// By how much the inlet pressure is raised to say how the leak grows with it.
 const RAISE: f64 = 1.1;
 
@@ -59,6 +62,16 @@ pub struct Over {
 }
 
 impl Over {
+    /// Whether the pressures of the sweep leave the leak open by more than a factor of two.
+    pub fn is_coarse(&self) -> bool {
+        self.open() > COARSE
+    }
+
+    /// The share of the leak that the pressures of the sweep leave open.
+    pub(super) fn open(&self) -> f64 {
+        refine::share(std::iter::once(self.bounds))
+    }
+
     /// The same with leaks times a factor.
     #[must_use]
     pub fn times(&self, factor: f64) -> Over {
@@ -159,7 +172,9 @@ impl SealAnswer {
         let known = known.filter(|known| always == 0 || always == known.len());
         let knudsen = flows.iter().zip(&sigmas).filter_map(|(flow, sigma)| knudsen(sigma, flow));
         let knudsen = knudsen.fold(f64::NAN, f64::max);
-        let findings = findings::of(plan, &sweep, &sigmas, &flows, &now)?;
+        let by_inlet = by_inlet?;
+        let mut findings = findings::of(plan, &sweep, &sigmas, &flows, &now)?;
+        findings.extend(findings::of_curve(&by_inlet));
         Ok(SealAnswer {
             plan: plan.clone(),
             leak: now.leak,
@@ -169,7 +184,7 @@ impl SealAnswer {
             opening: known.map(|known| Spread::of(&known)),
             growth,
             knudsen,
-            by_inlet: by_inlet?,
+            by_inlet,
             by_time: by_time?,
             opens,
             flows,
@@ -198,9 +213,16 @@ impl SealAnswer {
         standard.into_iter().chain(numbers).map(answer).collect()
     }
 
-    /// What the findings say of an answer.
+    /// What the findings say of an answer: those of the seal, and those of the patch about its leak or when it is tight. One that not every
+    /// run of the patch has is named.
     pub fn validity(&self, name: &str) -> Validity {
-        Validity::of(name, self.findings.iter())
+        let of_patch = if name == "seal_opening_pressure" { "tight_from" } else { "leak_rate" };
+        let of = |found: &PatchFinding| {
+            let validity = Validity::of(of_patch, std::iter::once(&found.finding));
+            if found.runs == found.of { validity } else { validity.of_a_part() }
+        };
+        let own = Validity::of(name, self.findings.iter());
+        self.sweep.findings.iter().map(of).fold(own, Validity::and)
     }
 
     /// Whether every seed is in this state.

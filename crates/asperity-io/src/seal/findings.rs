@@ -1,11 +1,12 @@
 //! What must be known before the answers about a seal are used.
 
 use asperity::finding::{
-    Finding, SEAL_BELOW_SWEEP, SEAL_BEYOND_SWEEP, SEAL_LIFTED, SEAL_NARROW, SEAL_NEVER_TIGHT,
-    SEAL_PATCH_SMALL, SEAL_SWEEP_COARSE, window_in_leak,
+    Finding, SEAL_BELOW_SWEEP, SEAL_BEYOND_SWEEP, SEAL_CURVE_COARSE, SEAL_LIFTED, SEAL_NARROW,
+    SEAL_NEVER_TIGHT, SEAL_PATCH_SMALL, SEAL_SWEEP_COARSE, window_in_leak,
 };
 use asperity::seal::{Conductance, SealFlow, SealState, flow};
 
+use super::answer::COARSE;
 use super::{Over, SealPlan, SealSweep, refine};
 use crate::readable::quantity;
 
@@ -19,6 +20,32 @@ const UNKNOWN: f64 = 0.02;
 const OPEN: f64 = 0.1;
 /// What the conductance below the sweep may be, times that at its first pressure.
 const BELOW: f64 = 100.0;
+
+/// Where the curve over the inlet pressure is coarse.
+pub(super) fn of_curve(curve: &[Over]) -> Option<Finding> {
+    let open = curve.iter().map(Over::open).fold(0.0, f64::max);
+    let mut ranges: Vec<[f64; 2]> = vec![];
+    let mut before = false;
+    for over in curve {
+        match ranges.last_mut().filter(|_| before) {
+            Some(range) if over.is_coarse() => range[1] = over.at,
+            None if over.is_coarse() => ranges.push([over.at; 2]),
+            _ => {}
+        }
+        before = over.is_coarse();
+    }
+    let words = |[from, to]: &[f64; 2]| match from == to {
+        true => quantity(*from, "Pa"),
+        false => format!("{} to {}", quantity(*from, "Pa"), quantity(*to, "Pa")),
+    };
+    let text = format!(
+        "At inlet pressures of {} the pressures of the sweep leave the leak open by more than a factor of two: of the curve over the inlet \
+         pressure, only the bounds are known there. For the leak at one of them, make it the inlet pressure of the case and give the same \
+         command again, which adds pressures to the sweep.",
+        ranges.iter().map(words).collect::<Vec<_>>().join(", ")
+    );
+    (!ranges.is_empty()).then(|| Finding::warning(SEAL_CURVE_COARSE, open, COARSE, text).as_note())
+}
 
 pub(super) fn of(
     plan: &SealPlan,

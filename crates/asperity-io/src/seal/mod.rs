@@ -18,7 +18,7 @@ use asperity::seal::Profile;
 
 pub use answer::{Over, SealAnswer, Spread};
 pub use store::yearly;
-pub use sweep::{PatchFinding, SealError, SealSweep, SeedSweep, State, sweep};
+pub use sweep::{PatchFinding, SealError, SealSweep, SeedSweep, State, label, sweep};
 
 use crate::leakage::Leak;
 

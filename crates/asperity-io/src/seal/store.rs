@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::answer::{Over, SealAnswer, Spread};
 use super::{SealPlan, State};
-use crate::answer::MBAR_LITRE;
+use crate::answer::{MBAR_LITRE, Validity};
 use crate::finding;
 use crate::output::{WriteError, write_all};
 
@@ -16,7 +16,18 @@ impl SealAnswer {
     pub fn object(&self) -> Value {
         let (x, p0, fluid) = self.inside();
         let over = |name: &str, list: &[Over]| {
-            let one = |over: &Over| json!({ name: over.at, "seal_leak": over.leak, "seal_leak_bounds": over.bounds, "one_way": over.one_way });
+            let one = |over: &Over| {
+                let mut object = json!({
+                    name: over.at,
+                    "seal_leak": over.leak,
+                    "seal_leak_bounds": over.bounds,
+                    "one_way": over.one_way,
+                });
+                if over.is_coarse() {
+                    marked(&mut object, &self.validity("leak_over_inlet"));
+                }
+                object
+            };
             list.iter().map(one).collect::<Vec<_>>()
         };
         let seeds = self.sweep.seeds.iter().zip(&self.flows).zip(&self.opens).zip(&fluid).map(
@@ -70,6 +81,7 @@ impl SealAnswer {
         for (name, factor) in usual(&self.plan) {
             object[name] = json!(self.leak.times(factor));
         }
+        marked(&mut object, &self.validity("seal_leak"));
         if self.plan.is_gas() {
             object["knudsen_number"] = json!(self.knudsen);
         }
@@ -100,6 +112,13 @@ impl SealAnswer {
     pub fn write(&self, folder: &Path) -> Result<(), WriteError> {
         write_all(&folder.join("seal.json"), true, format!("{:#}\n", self.object()).as_bytes())?;
         write_all(&folder.join("seal.csv"), true, self.csv().as_bytes())
+    }
+}
+
+/// Adds what the findings say.
+fn marked(object: &mut Value, validity: &Validity) {
+    if let (Some(object), Value::Object(marks)) = (object.as_object_mut(), json!(validity)) {
+        object.extend(marks);
     }
 }
 

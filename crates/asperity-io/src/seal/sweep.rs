@@ -13,7 +13,7 @@ use asperity::seal::{Conductance, Shape};
 
 use super::{RANGE, SealPlan, refine};
 use crate::case::{Case, CaseErrors};
-use crate::readable::counted;
+use crate::readable::{counted, quantity};
 use crate::store::{Reader, StoreError};
 use crate::study::{self, Event, Options, Row, Study, StudyError};
 
@@ -65,7 +65,7 @@ pub struct PatchFinding {
     /// That of the first run that has it.
     #[serde(flatten)]
     pub finding: Finding,
-    /// What tells this run from the others.
+    /// What tells this run from the others: "1 kPa, seed 2".
     pub run: String,
     /// So many runs have it.
     pub runs: usize,
@@ -76,12 +76,8 @@ pub struct PatchFinding {
 impl std::fmt::Display for PatchFinding {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let PatchFinding { finding, run, runs, of } = self;
-        write!(
-            f,
-            "{}: {runs} of {} of the patch, first with {run}: ",
-            finding.severity,
-            counted(*of, "run")
-        )?;
+        let share = if runs == of { "all".to_owned() } else { format!("{runs} of") };
+        write!(f, "{}: {share} {} of the patch, first at {run}: ", finding.severity, counted(*of, "run"))?;
         write!(f, "{} [{}]", finding.text, finding.code)
     }
 }
@@ -260,13 +256,21 @@ fn swept(
             let why =
                 if let study::State::Failed(why) = &row.state { why.as_str() } else { row.state.word() };
             let message = format!(
-                "the run with {} has no leak: {why}; the same command tries it again",
-                study.plan.label(&row.run)
+                "the run of the patch at {} has no leak: {why}; the same command tries it again",
+                label(row, plan.rough.is_some())
             );
             return Err(SealError::Failed(message));
         }
     }
     outcome.table.rows.iter().map(|row| run(&study, row, plan.rough.is_some())).collect()
+}
+
+/// The mean pressure and the seed of a run of the patch: "1 kPa, seed 2".
+pub fn label(row: &Row, rough: bool) -> String {
+    let pressure = row.run.values[0].number().map_or(f64::NAN, |number| number.0);
+    let seed = row.run.values.get(1).filter(|_| rough);
+    let seed = seed.map_or(String::new(), |seed| format!(", seed {}", seed.text()));
+    quantity(pressure, "Pa") + &seed
 }
 
 /// The conductance that a run has stored, at the times at which it has the pressure asked for.
@@ -288,7 +292,7 @@ fn run(study: &Study, row: &Row, rough: bool) -> Result<Run, SealError> {
         leak_rate: rates[n],
     };
     let states: Vec<(f64, State)> = (0..times.len()).filter(held).map(|n| (times[n], state(n))).collect();
-    let label = study.plan.label(&row.run);
+    let label = label(row, rough);
     // The fluid is taken into account here.
     let findings =
         reader.findings().iter().filter(|finding| finding.code != FLUID_UNCOUPLED).cloned().collect();

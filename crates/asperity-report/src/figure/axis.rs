@@ -41,6 +41,9 @@ const DECADES_WITHOUT_PREFIX: f64 = 6.0;
 /// Times below this are shown in seconds or less \[s\].
 const SECONDS: f64 = 1e4;
 
+/// Over less decades ticks stand at 2 and 5 times a power of ten too.
+const FEW: f64 = 2.0;
+
 /// Smaller numbers are 0 on a linear axis: the steps between their ticks have no digits left.
 const NOTHING: f64 = 1e-250;
 
@@ -110,6 +113,10 @@ impl Ruler {
         let ends = ends(axis, data, margin);
         let unit = prefixed(axis, ends);
         let numbers = match axis.scale {
+            // Their ticks are 1, 2 and 5 times a power of ten, which is wide beside each.
+            Scale::Log if axis.names.is_empty() && ends[1] - ends[0] < FEW => {
+                with_power(&unit, 10f64.powf(ends[1]))
+            }
             Scale::Linear if axis.names.is_empty() => with_power(&unit, ends[0].abs().max(ends[1].abs())),
             _ => unit.clone(),
         };
@@ -323,11 +330,11 @@ fn powers(ends: [f64; 2], factor: f64, every: i64) -> Ticks {
             let value = 10f64.powf(place) / factor;
             let labelled = match digit {
                 1 => n.rem_euclid(every) == 0,
-                2 | 5 => span < 2.0,
+                2 | 5 => span < FEW,
                 _ => false,
             };
             if labelled {
-                ticks.push((value, power(digit, n as i32, span < 2.0)));
+                ticks.push((value, power(digit, n as i32, span < FEW)));
             } else if every == 1 || digit == 1 {
                 minor.push(value);
             }
@@ -363,6 +370,13 @@ mod tests {
     fn texts(axis: &Axis, data: [f64; 2]) -> (String, Vec<String>) {
         let ruler = Ruler::new(axis, data, 0.0, 5.0);
         (ruler.title, ruler.ticks.into_iter().map(|(_, text)| text).collect())
+    }
+
+    #[test]
+    fn a_short_logarithmic_axis_has_its_power_of_ten_in_the_unit() {
+        let (title, ticks) = texts(&Axis::log("leak", "m3/s"), [1.1e-14, 2.6e-13]);
+        assert_eq!(title, "leak [10⁻¹⁵ m³/s]");
+        assert_eq!(ticks, ["20", "50", "100", "200"]);
     }
 
     #[test]

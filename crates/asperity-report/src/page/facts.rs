@@ -2,7 +2,7 @@
 
 use asperity::Axis;
 use asperity_io::cycles;
-use asperity_io::readable::quantity;
+use asperity_io::readable::{counted, quantity};
 use asperity_io::store::{Reader, StoreError};
 use serde_json::{Map, Value};
 
@@ -85,7 +85,7 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     );
     let work = reader.work();
     let per_row = work.convolutions as f64 / reader.len().max(1) as f64;
-    let threads = work.threads.map_or(String::new(), |n| format!(" on {n} threads"));
+    let threads = work.threads.map_or(String::new(), |n| format!(" on {}", counted(n, "thread")));
     line(
         "Work",
         Some(format!(

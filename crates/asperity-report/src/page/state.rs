@@ -2,7 +2,7 @@
 
 use asperity::Coordinate;
 use asperity::cycles::Cycle;
-use asperity_io::answer::{self, Answer, Units};
+use asperity_io::answer::{self, Answer, Units, Validity};
 use asperity_io::converge::ErrorBar;
 use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
@@ -142,6 +142,10 @@ fn leak(reader: &Reader, units: &Units) -> Result<Value, StoreError> {
     columns.insert("acts".into(), json!(history.leak.coupling.is_some()));
     columns.insert("asked".into(), json!(history.leak.words()));
     columns.insert("found".into(), json!(history.sentence(units)));
+    let holds: Vec<bool> = history.of_each_time().iter().map(Validity::is_valid).collect();
+    let last = history.validity("leak_rate");
+    columns.insert("taken".into(), json!((!last.is_valid()).then(|| sentence(&last.mark(String::new())))));
+    columns.insert("holds".into(), json!(holds));
     Ok(Value::Object(columns))
 }
 
@@ -225,6 +229,8 @@ fn headline(answers: &[Answer], units: &Units, bars: &[ErrorBar], last: Option<&
         bar.map_or_else(|| answer.words(units), |bar| units.plus_minus(bar))
     };
     let note = |answer: &Answer| match answer.note.as_str() {
+        // The reason why it does not hold stands in its place.
+        _ if !answer.validity.is_valid() => String::new(),
         "" => String::new(),
         note => format!(" ({note})"),
     };

@@ -1,6 +1,6 @@
 //! Leakage of a result: how it changes over time, and where the fluid flows at an instant.
 
-use asperity_io::answer::Units;
+use asperity_io::answer::{Units, Validity};
 use asperity_io::leakage::settings;
 use asperity_io::store::{At, FieldKind, Reader};
 
@@ -12,7 +12,13 @@ use crate::leak::{heading, maps, words};
 fn curves(reader: &Reader, options: &Options) -> Result<Vec<Curves>, PlotError> {
     let (units, log) = (Units::of(reader, &options.units), options.log);
     let time = reader.leak("leak_time")?;
-    let percolates = reader.leak("percolates")?;
+    let steps = reader.leak("leak_step")?;
+    // A leak that is taken back is not drawn, nor that it is tight.
+    let holds: Vec<bool> = steps.iter().map(|step| validity(reader, *step as usize).is_valid()).collect();
+    let kept = |values: Vec<f64>| -> Vec<f64> {
+        values.into_iter().zip(&holds).map(|(value, holds)| if *holds { value } else { f64::NAN }).collect()
+    };
+    let percolates = kept(reader.leak("percolates")?);
     // A logarithmic axis has no place for t = 0: without being asked for it is of use where the seal leaks later too.
     let leaks_later = time.iter().zip(&percolates).any(|(time, open)| *time > 0.0 && *open > 0.0);
     let log_time = log.unwrap_or(Rows::of(reader)?.log && leaks_later);
@@ -27,7 +33,7 @@ fn curves(reader: &Reader, options: &Options) -> Result<Vec<Curves>, PlotError> 
     let line = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
         // A tight seal has no place on a logarithmic axis.
         let positive = |v: f64| if v > 0.0 { v } else { f64::NAN };
-        let values: Vec<f64> = reader.leak(column)?.into_iter().map(positive).collect();
+        let values: Vec<f64> = kept(reader.leak(column)?).into_iter().map(positive).collect();
         Ok(Series::new(name, style, &time, values))
     };
     let mut all = vec![];
@@ -147,8 +153,15 @@ fn at(reader: &Reader, at: At, units: &Units) -> Result<(Vec<Map>, String), Plot
     let grid = &reader.header().grid;
     let found = leak.of_gap(grid, gap.view(), Some(contact.view()), time)?;
     let moment = units.time(time);
-    let caption = format!("t = {moment}: {}, {}. {}", heading(&found, units), leak.words(), words(&found));
+    let validity = validity(reader, reader.field_steps()[index]);
+    let shown = validity.mark(heading(&found, units));
+    let caption = format!("t = {moment}: {shown}, {}. {}", leak.words(), words(&found, &validity));
     Ok((maps(&found, gap.view(), grid.size()), caption))
+}
+
+/// What the findings say of the leak at a row.
+fn validity(reader: &Reader, row: usize) -> Validity {
+    Validity::at_row("leak_rate", row, reader.findings().iter())
 }
 
 /// The last instant at which the seal leaks, else the last one with a leakage.

@@ -29,7 +29,7 @@ mod wear;
 
 use asperity::Boundary;
 use asperity::material::{Creep, CreepTerm};
-use asperity_io::answer::Units;
+use asperity_io::answer::{Units, Validity};
 use asperity_io::choice;
 use asperity_io::readable::{coordinate, quantity};
 use asperity_io::store::{At, Look, Reader, StoreError};
@@ -168,6 +168,13 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
     let mut figure = plot.draw(reader, &Options { at, ..options.clone() })?;
     if at != options.at {
         figure.caption += IN_PLACE;
+    }
+    let taken = plot.answers().iter().map(|name| (name, Validity::of(name, reader.findings().iter())));
+    if let Some((name, taken)) = { taken }.find(|(_, validity)| !validity.is_valid()) {
+        let words = taken.mark(String::new());
+        if !figure.caption.contains(&words) {
+            figure.caption += &format!(" The {} is {words}.", name.replace('_', " "));
+        }
     }
     if plot.is_of_the_load() && nothing_touches(reader, options)? {
         figure.caption += match options.window {

@@ -125,6 +125,22 @@ impl Plot {
         }
     }
 
+    /// The answers that it shows, the first one by which it is called where a finding takes one back.
+    pub(super) fn answers(self) -> &'static [&'static str] {
+        match self {
+            Plot::Evolution => &["contact_area", "max_pressure", "approach"],
+            Plot::LoadDisplacement | Plot::Map(FieldKind::Displacement) => &["approach"],
+            Plot::Leak => &["leak_rate"],
+            Plot::Fluid => &["fluid_load"],
+            Plot::Friction => &["friction_coefficient"],
+            Plot::Stress => &["max_mises"],
+            Plot::TangentialLoop => &["loop_energy"],
+            Plot::Wear => &["wear_depth_max"],
+            Plot::InitialGap | Plot::Work => &[],
+            _ => &["contact_area"],
+        }
+    }
+
     /// The SI unit of the values whose colours it shows; `None` where it has no such map.
     pub fn unit(self) -> Option<&'static str> {
         match self.declaration().shows {

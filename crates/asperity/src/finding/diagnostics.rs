@@ -256,7 +256,7 @@ impl Diagnostics {
         &self.known
     }
 
-    /// The findings so far, in the order of the table of docs/findings.md: the domain, the surface, the contact, the material,
+    /// The findings so far, in the order of docs/findings.md: the domain, the surface, the contact, the material,
     /// the steps.
     pub fn findings(&self, simulation: &Simulation) -> Vec<Finding> {
         let mut found = self.known.clone();

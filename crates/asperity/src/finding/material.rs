@@ -187,7 +187,7 @@ pub fn modulus_kind(name: &str, named: Modulus, taken: Modulus) -> Option<Findin
 pub fn points_left_out(name: &str, left_out: usize, of: usize) -> Option<Finding> {
     (left_out > 0).then(|| {
         let points =
-            if left_out == 1 { "point lacks a number and is" } else { "points lack a number and are" };
+            if left_out == 1 { "points lacks a number and is" } else { "points lack a number and are" };
         let text = format!("{name}: {left_out} of {of} measured {points} left out of the fit.");
         Finding::warning(POINTS_LEFT_OUT, left_out as f64, 0.0, text).as_note()
     })

@@ -111,7 +111,7 @@ pub struct Finding {
     pub severity: Severity,
     /// One or two sentences: what was found, how it may affect the result, what to do about it.
     pub text: String,
-    /// The number that was checked, in SI units; the table of docs/findings.md states which.
+    /// The number that was checked, in SI units; docs/findings.md states which.
     pub value: Option<f64>,
     /// The limit that it exceeds, in the same unit.
     pub limit: Option<f64>,
@@ -256,6 +256,8 @@ codes! {
     SEAL_BEYOND_SWEEP = "seal-beyond-sweep";
     /// The pressures of a sweep leave the leak of a seal open.
     SEAL_SWEEP_COARSE = "seal-sweep-coarse";
+    /// The pressures of a sweep leave the leak of a seal open at other inlet pressures than that of the case.
+    SEAL_CURVE_COARSE = "seal-curve-coarse";
     /// The patch of a seal is tight at no pressure of the sweep.
     SEAL_NEVER_TIGHT = "seal-never-tight";
     /// A seal is not wide against its patch.

@@ -123,11 +123,12 @@ impl Strain {
             })
         };
         let worst = match self.width.excess >= self.pressure.excess {
+            true if self.radius.is_none() => large(&self.width, deep),
             true => large(&self.width, wide),
             false => large(&self.pressure, hard),
         };
-        let deep = (self.width.value > 1.0).then(|| too_deep(self.width.value).at(self.width.rows));
-        worst.into_iter().chain(deep).collect()
+        let too_deep = (self.width.value > 1.0).then(|| too_deep(self.width.value).at(self.width.rows));
+        worst.into_iter().chain(too_deep).collect()
     }
 }
 
@@ -144,6 +145,11 @@ fn wide(value: f64) -> String {
     format!("The contact radius is {} of the radius of the body", digits(value))
 }
 
+/// "The approach is 0.4 of the radius of the contact", of a cone and other bodies without a radius.
+fn deep(value: f64) -> String {
+    format!("The approach is {} of the radius of the contact", digits(value))
+}
+
 fn hard(value: f64) -> String {
     format!("The contact pressure is {} of the contact modulus", digits(value))
 }
@@ -157,7 +163,7 @@ fn large(what: &str, limit: f64) -> String {
 
 fn too_deep(value: f64) -> Finding {
     let text = format!(
-        "The body is pressed in deeper than its own radius (approach over contact radius: {}). Check the units of load or \
+        "The body is pressed in deeper than the contact is wide (approach over contact radius: {}). Check the units of load or \
          approach, modulus and radius.",
         digits(value)
     );

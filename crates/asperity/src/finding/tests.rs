@@ -278,6 +278,14 @@ fn large_strains_are_found_before_and_after() {
     assert_eq!(codes(&after(of(3.8e-3), &parts)), QUIET);
     let expected = |load: f64| codes(&Expected::of(&of(load), &parts).unwrap().findings(&of(load))).join(" ");
     assert_eq!([expected(30.7e-3), expected(3.8e-3)], [LARGE_STRAIN.to_owned(), String::new()]);
+    // A cone has no radius: w/a = pi slope/2 = 0.47 of the slope 0.3.
+    let cone = [Part::Shape { shape: Shape::Cone { slope: 0.3 }, center: [0.0; 2] }];
+    let found = after(Simulation { loading: step(3.8e-3), ..simulation(&cone) }, &cone);
+    let told = found.iter().find(|finding| finding.code == LARGE_STRAIN).unwrap();
+    assert!(
+        told.text.contains("of the radius of the contact") && !told.text.contains("the body"),
+        "{told:?}"
+    );
     // Deeper than its radius.
     let deep = loaded(Control::Approach, History::Step { value: 0.7e-3 });
     let deep = Simulation { loading: deep, ..simulation(&parts) };

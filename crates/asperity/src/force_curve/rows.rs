@@ -44,6 +44,14 @@ pub(super) struct Rows {
     numbers: Vec<usize>,
 }
 
+/// Whether a branch has loads below zero beyond its noise.
+fn is_pulled(loads: &[f64]) -> bool {
+    let steps: Vec<f64> = (0..loads.len()).map(|k| k as f64).collect();
+    let variances = noise::variances(&steps, loads);
+    let noise = (variances.iter().sum::<f64>() / variances.len() as f64).sqrt();
+    loads.iter().any(|load| *load < -SEEN * noise)
+}
+
 impl Rows {
     pub(super) fn new(record: &ForceRecord, options: &ForceOptions) -> Result<Self> {
         let n = record.loads.len();
@@ -72,15 +80,20 @@ impl Rows {
             Branch::Retraction => (top..n).collect(),
             Branch::Approach => (0..=top).rev().collect(),
         };
-        let (part, other) = match options.branch {
-            Branch::Retraction => ("after", "approach"),
-            Branch::Approach => ("before", "retraction"),
+        let (part, other, rows) = match options.branch {
+            Branch::Retraction => ("after", "approach", &loads[..=top]),
+            Branch::Approach => ("before", "retraction", &loads[top..]),
+        };
+        // Where the other one has rows enough, and the attraction that the model needs.
+        let help = match rows.len() >= FEWEST && (options.model == ForceModel::Hertz || is_pulled(rows)) {
+            true => format!("; the other branch is `{other}`"),
+            false => String::new(),
         };
         require(
             numbers.len() >= FEWEST,
             "number of rows of the branch",
             format!("{} {part} the largest load", numbers.len()),
-            format!("at least {FEWEST}; the other branch is `{other}`"),
+            format!("at least {FEWEST}{help}"),
         )?;
         let pick = |column: &[f64]| numbers.iter().map(|row| column[*row]).collect::<Vec<_>>();
         let (loads, depths) = (pick(record.loads), pick(record.depths));

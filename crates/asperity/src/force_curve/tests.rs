@@ -179,6 +179,14 @@ fn what_is_no_force_curve_is_refused() {
     assert!(refused(&loads[..150], &depths, ForceModel::Hertz).contains("number of depths"));
     let rising: Vec<f64> = loads.iter().rev().copied().collect();
     assert!(refused(&rising, &depths, ForceModel::Hertz).contains("rows of the branch"));
+    // The other branch is named where it helps: with the attraction that the model needs.
+    let help = |model| {
+        let options = ForceOptions { model, ..Default::default() };
+        let record = ForceRecord { loads: &rising, depths: &depths };
+        let refused = fit_force_curve(SPHERE, &record, &options).unwrap_err().to_string();
+        refused.contains("the other branch is `approach`")
+    };
+    assert_eq!([help(ForceModel::Hertz), help(ForceModel::Jkr)], [true, false]);
     assert!(refused(&[f64::NAN; 200], &depths, ForceModel::Hertz).contains("load of row 1"));
     assert!(refused(&[0.0; 200], &depths, ForceModel::Hertz).contains("rows of the branch"));
 }

@@ -192,13 +192,17 @@ fn at_the_ends(fit: &IndentationFit) -> Option<String> {
     };
     let names: Vec<String> =
         named(fit).filter(|(_, interval)| at_an_end(interval)).map(|(name, _)| name).collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "{} of the best fit lies at the end of its interval: materials with other numbers of terms, which are as probable, lie on one side \
-             of it; take the interval, not the value",
+    let others = "materials with other numbers of terms, which are as probable, lie on one side";
+    match names.as_slice() {
+        [] => None,
+        [name] => Some(format!(
+            "{name} of the best fit lies at the end of its interval: {others} of it; take the interval, not the value"
+        )),
+        names => Some(format!(
+            "{} of the best fit lie at the ends of their intervals: {others} of them; take the intervals, not the values",
             names.join(", ")
-        )
-    })
+        )),
+    }
 }
 
 fn number_of_terms(fit: &IndentationFit) -> Option<String> {

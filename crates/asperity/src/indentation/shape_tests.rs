@@ -301,7 +301,7 @@ fn values_at_an_end_of_their_interval_are_told() {
         .into_iter()
         .chain(fit.terms.iter().flatten().copied())
         .any(|x| x.determined && x.value > 0.0 && (x.value == x.low || x.value == x.high));
-    let told = fit.notes.iter().any(|note| note.contains("at the end of its interval"));
+    let told = fit.notes.iter().any(|note| note.contains("at the end"));
     assert_eq!(ends, told, "{fit:?}");
     let own = fit.numbers[fit.terms.len()];
     assert!(own >= 0.05 || fit.notes.iter().any(|note| note.contains("practically excluded")), "{fit:?}");

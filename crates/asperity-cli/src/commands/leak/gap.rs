@@ -4,7 +4,7 @@ use std::path::Path;
 
 use asperity::finding::LeakDiagnostics;
 use asperity::{Boundary, Grid};
-use asperity_io::answer::{MBAR_LITRE, Units};
+use asperity_io::answer::{MBAR_LITRE, Units, Validity};
 use asperity_io::case::leak as checked;
 use asperity_io::finding;
 use asperity_io::leakage::{Fluid, Leakage};
@@ -56,8 +56,9 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
     let mut diagnostics = LeakDiagnostics::default();
     let resolved = diagnostics.see(&state.alone());
     let findings = diagnostics.findings();
+    let validity = Validity::of("leak_rate", findings.iter());
     if let Some(plot) = &args.plot {
-        let figure = asperity_report::leak::state(&leak, &state, gap.heights.view(), grid.size());
+        let figure = asperity_report::leak::state(&leak, &state, &validity, gap.heights.view(), grid.size());
         crate::commands::picture::write(&figure, plot, args.force)?;
     }
     super::super::findings::print(&findings);
@@ -66,9 +67,12 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         object["leakage"] = serde_json::to_value(&leak).unwrap_or_default();
         object["leak_resolved"] = json!(resolved);
         object["findings"] = finding::list(&findings);
+        if let (Some(all), Value::Object(marks)) = (object.as_object_mut(), json!(validity)) {
+            all.extend(marks);
+        }
         format!("{object}\n")
     } else {
-        format!("Leakage of {}\n\n{}", leak.words(), text(&state, &units))
+        format!("Leakage of {}\n\n{}", leak.words(), text(&state, &validity, &units))
     };
     crate::print(&text)
 }
@@ -80,7 +84,7 @@ fn warn_of_heights(path: &Path, map: &Array2<f64>) {
     let share = map.iter().filter(|gap| **gap < 0.0).count() as f64 / map.len() as f64;
     if share > MOST {
         crate::messages::message!(
-            "warning: {:.0} % of the map {} are below 0 and count as closed: these look like heights of a surface, not like a gap; \
+            "warning: {:.0} % of the cells of {} are below 0 and count as closed: these look like heights of a surface, not like a gap; \
              the gap is the distance of the surfaces, 0 or more",
             100.0 * share,
             path.display()
@@ -110,17 +114,17 @@ fn object(state: &Leakage) -> Value {
     })
 }
 
-fn text(state: &Leakage, units: &Units) -> String {
+fn text(state: &Leakage, validity: &Validity, units: &Units) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| text += &format!("{name:<22}{value}\n");
     if state.percolates {
-        line("hydraulic gap", quantity(state.hydraulic_gap, "m"));
+        line("hydraulic gap", validity.mark(quantity(state.hydraulic_gap, "m")));
         let width = state.critical_width.map_or(String::new(), |cells| format!(", {cells} cells wide"));
         let place =
             format!("at ({}, {})", quantity(state.critical[0], "m"), quantity(state.critical[1], "m"));
         line("critical gap", format!("{} {place}{width}", quantity(state.critical_gap, "m")));
     } else {
-        line("seal", "tight: inlet and outlet are not connected".into());
+        line("seal", validity.mark("tight: inlet and outlet are not connected".into()));
     }
     line("effective medium", quantity(state.medium_gap, "m"));
     line("open", format!("{:.3} % of the cells", 100.0 * state.open_fraction));
@@ -139,7 +143,7 @@ fn text(state: &Leakage, units: &Units) -> String {
             Some(_) => format!("{rate:.4e} kg/s"),
             None => format!("{rate:.4e} m3/s"),
         };
-        line("leak rate", one(rate));
+        line("leak rate", validity.mark(one(rate)));
         if let (Some(standard), None) = (state.leak_rate_standard, units.text("leak")) {
             let mbar = MBAR_LITRE * standard;
             line("", format!("{standard:.4e} Pa m3/s at 0 degC, {mbar:.4e} mbar l/s"));

@@ -6,7 +6,8 @@ mod options;
 use std::path::Path;
 
 use asperity::Boundary;
-use asperity_io::answer::Units;
+use asperity::finding::Finding;
+use asperity_io::answer::{Units, Validity};
 use asperity_io::case::leak as checked;
 use asperity_io::choice;
 use asperity_io::finding;
@@ -70,7 +71,7 @@ fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
             found.map_err(failure)?
         }
     };
-    super::findings::print(&history.findings);
+    super::findings::print(&history.all_findings().cloned().collect::<Vec<_>>());
     let series = history.table.series();
     let rates: Vec<&str> =
         series.iter().filter(|one| one.name.starts_with("leak_rate")).map(|one| one.units).collect();
@@ -129,7 +130,9 @@ fn object(path: &Path, history: &LeakHistory) -> String {
         object.insert("conductance".into(), tensors.collect());
     }
     object.insert("leakage".into(), serde_json::to_value(&history.leak).unwrap_or_default());
-    object.insert("findings".into(), finding::list(&history.findings));
+    let findings: Vec<Finding> = history.all_findings().cloned().collect();
+    object.insert("findings".into(), finding::list(&findings));
+    object.insert("leak_valid".into(), history.of_each_time().iter().map(Validity::is_valid).collect());
     object.insert("result".into(), json!(path.to_string_lossy()));
     // What the findings say of the last leak.
     if let Value::Object(marks) = json!(history.validity("leak_rate")) {
@@ -154,6 +157,11 @@ fn text(history: &LeakHistory, units: &Units) -> String {
     let times = column("leak_time");
     let standard = table.get("leak_rate_standard");
     let fluid = history.leak.fluid.is_some();
+    let validity = history.of_each_time();
+    let is_doubted = |n: usize| match &validity[n] {
+        Validity::Holds => column("leak_resolved")[n] == 0.0,
+        of => of.is_valid(),
+    };
     let mut text = format!("Leakage of {}\n\n{:>12}", history.leak.words(), "time");
     if fluid {
         text += &format!("{:>34}", "leak rate");
@@ -162,15 +170,19 @@ fn text(history: &LeakHistory, units: &Units) -> String {
     for n in 0..table.len() {
         text += &format!("{:>12}", units.time(times[n]));
         let tight = column("percolates")[n] == 0.0;
-        let mark = if column("leak_resolved")[n] == 0.0 { " ?" } else { "  " };
+        let taken = !validity[n].is_valid();
+        let mark = if is_doubted(n) { " ?" } else { "  " };
         if fluid {
             let words = match tight {
+                _ if taken => validity[n].cell(String::new()),
                 true => "tight".to_owned(),
                 false => units.rate(column("leak_rate")[n], standard.map(|standard| standard[n])),
             };
             text += &format!("{:>34}", words + mark);
         }
         let gap = |name: &str| match (tight, fluid, name) {
+            _ if taken && name == "hydraulic_gap" => "not valid".to_owned(),
+            _ if taken => "-".to_owned(),
             (false, ..) => quantity(column(name)[n], "m"),
             (true, false, "hydraulic_gap") => "tight".to_owned(),
             (true, ..) => "-".to_owned(),
@@ -178,7 +190,7 @@ fn text(history: &LeakHistory, units: &Units) -> String {
         text += &format!("{:>15}{:>15}", gap("hydraulic_gap"), gap("critical_gap"));
         text += &format!("{:>14}\n", quantity(column("trapped_area")[n], "m2"));
     }
-    if column("leak_resolved").contains(&0.0) {
+    if (0..table.len()).any(is_doubted) {
         text += "? see the findings\n";
     }
     let last = history.validity("leak_rate");

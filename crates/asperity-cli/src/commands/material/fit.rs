@@ -103,7 +103,7 @@ fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
     line("times", format!("{first:.3e} s to {last:.3e} s"));
     if curves.kind == Kind::Dma {
         let hertz = [last, first].map(|time| 1.0 / (std::f64::consts::TAU * time));
-        line("frequencies", format!(" {:.3e} Hz to {:.3e} Hz", hertz[0], hertz[1]));
+        line("frequencies", format!("{:.3e} Hz to {:.3e} Hz", hertz[0], hertz[1]));
     }
     let reason = match args.misfit {
         Some(_) => "the fewest with the misfit asked for",

@@ -5,7 +5,7 @@ use std::path::Path;
 use asperity::traction::AdhesionScale;
 use asperity_io::case::Case;
 
-use super::own::YOURS;
+use super::own::{Material, YOURS};
 use crate::format::quantity;
 
 /// The trap number of the case: below 0.5 the answer does not depend on the grid.
@@ -46,18 +46,19 @@ pub(super) fn section(before: &str, after: &str, folder: &Path) -> String {
     }
 }
 
-/// The surfaces are pressed together for a time, and pulled off in the same time. `height` is how high the roughness is, `end` how long the
-/// material is known.
-pub(super) fn retraction(height: f64, end: f64) -> String {
-    let half = super::own::one_digit(0.5 * end);
+/// The surfaces are pressed together for a time, and pulled off in the same time. `height` is how high the roughness is.
+pub(super) fn retraction(height: f64, material: &Material) -> String {
+    /// Steps while they are pressed.
+    const STEPS: usize = 30;
+    let half = super::own::one_digit(0.5 * material.end());
     let away = quantity(-super::own::one_digit(0.5 * height), "m");
     format!(
         "\n[[load.stages]]\ncontrol = \"pressure\"                  # mean over the surface\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure that \
-         brings them together\nduration = \"{half} s\"                      {YOURS}how long they are pressed\nsteps = 30\nspacing = \"log\"                       # the material relaxes fast at first\nfirst = \"{} s\"\n\
+         brings them together\nduration = \"{half} s\"                      {YOURS}how long they are pressed\nsteps = {STEPS}\nspacing = \"log\"                       # the material relaxes fast at first\nfirst = \"{} s\"\n\
          \n[[load.stages]]\ncontrol = \"approach\"\nhistory = {{ kind = \"ramp\", from = \"current\", value = \"{away}\", duration = \"{half} s\" }}   {YOURS}how fast \
          they part\nduration = \"{half} s\"\nsteps = 200\nuntil = \"contact-lost\"\n\
          \n[time]\nend = \"{} s\"\nsteps = 1\n\n[output]\nfields = [\"pressure\", \"gap\"]\nevery = 20\n",
-        super::own::one_digit(1e-4 * half),
+        material.first(half, STEPS, 1e-4),
         2.0 * half
     )
 }

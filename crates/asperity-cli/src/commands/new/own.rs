@@ -9,6 +9,7 @@ use asperity::indentation::{Given, IndentationRecord, controlled};
 use asperity::material::{Modulus, Shift};
 use asperity::surface::Operation;
 use asperity::surface::process::Outliers;
+use asperity_io::case::Case;
 use asperity_io::curve::{Columns, Curves, Indentation, Kind, Request, ShiftRequest, thinned};
 use asperity_io::output::write_all;
 use asperity_io::topography::Topography;
@@ -18,7 +19,7 @@ use crate::args::{New, Purpose, SurfaceFile};
 use crate::commands::material::{ROOM, estimated_unless_known, refused};
 use crate::commands::surface;
 use crate::failure::{Failure, refuse};
-use crate::format::{extent, quantity};
+use crate::format::{counted, extent, quantity};
 
 /// The remark behind a value that only the user knows.
 pub(super) const YOURS: &str = "# YOUR VALUE: ";
@@ -74,7 +75,7 @@ fn marked(text: &str) -> Vec<String> {
 }
 
 /// What a case needs to know of the material.
-struct Material {
+pub(super) struct Material {
     /// Lines of the body.
     text: String,
     /// Least and greatest time of the data \[s\].
@@ -202,8 +203,20 @@ impl Material {
         text
     }
 
+    /// The first of so many logarithmic steps up to `end` \[s\]: this share of the end, or longer, so that no step is shorter than the data
+    /// of the material tell.
+    pub(super) fn first(&self, end: f64, steps: usize, share: f64) -> f64 {
+        let known = self.times.map_or(0.0, |[first, _]| first);
+        let shortest = |first: f64| first * ((end / first).powf(1.0 / (steps - 1) as f64) - 1.0).min(1.0);
+        let mut first = one_digit(share * end);
+        while shortest(first) < known && first < 0.1 * end {
+            first = one_digit(2.0 * first);
+        }
+        first
+    }
+
     /// The last time of a run: that of the data to one digit, so that the material is known throughout.
-    fn end(&self) -> f64 {
+    pub(super) fn end(&self) -> f64 {
         self.times.map_or(100.0, |[_, last]| one_digit(last))
     }
 }
@@ -265,17 +278,23 @@ fn of_surface(
     };
     text += &domain(&topography, border);
     text += &surface_part(args, &topography, &relative(from, folder), border);
+    let ball = indenter(material, one_digit(topography.size[0]));
     if purpose == Purpose::Indentation {
-        text += &indenter(material, 10.0 * topography.size[0]);
+        text += &ball;
     }
     text += &material.body();
     let rest = match purpose {
         Purpose::Friction => friction(&topography, material),
         Purpose::Adhesion => {
             let [low, high] = extent(topography.heights.iter().copied());
-            adhesion::retraction(high - low, material.end())
+            adhesion::retraction(high - low, material)
         }
-        _ => in_time(purpose, material),
+        Purpose::Indentation => {
+            let side = topography.size[0].min(topography.size[1]);
+            let load = load(&text, material, folder, &ball, side).unwrap_or(1e-3);
+            in_time(purpose, material, load)
+        }
+        _ => in_time(purpose, material, 0.0),
     };
     Ok(with_adhesion(text, rest, purpose, folder))
 }
@@ -394,15 +413,18 @@ fn surface_part(args: &New, topography: &Topography, path: &str, border: Border)
         "outliers = {{ threshold = {SPIKES}, radius = 2 }}   # spikes of the instrument; summits of the surface stay\n"
     );
     if holes > 0 {
-        text += &format!("fill = \"harmonic\"                     # {holes} points are undefined\n");
+        text += &format!("fill = \"harmonic\"                     # {} undefined\n", counted(holes, "point"));
     }
+    // Over four points at each border at least.
+    let share = (8.0 / nx.min(ny) as f64).clamp(0.1, 1.0);
+    let window = format!(
+        "window = {{ shape = \"tukey\", share = {share:.2} }}   # opposite borders match; not for a leak\n"
+    );
     text += match border {
         Border::Mirror => {
             "border = \"mirror\"                     # the surface and its reflections: opposite borders match\n"
         }
-        Border::Window => {
-            "window = { shape = \"tukey\", share = 0.1 }   # opposite borders match; not for a leak\n"
-        }
+        Border::Window => window.as_str(),
         Border::Free | Border::Repeats => "",
     };
     if nx.max(ny) > MOST_CELLS {
@@ -411,12 +433,28 @@ fn surface_part(args: &New, topography: &Topography, path: &str, border: Border)
     text
 }
 
+/// The load \[N\] under which the contact is at most half as wide as the surface, and small beside the indenter: of a ball
+/// F = 4 a³/(3 R C), of a cone π a² slope/(2 C), with the compliance C at the end.
+fn load(before: &str, material: &Material, folder: &Path, indenter: &str, side: f64) -> Option<f64> {
+    let text = [before, &in_time(Purpose::Indentation, material, 1e-3)].concat();
+    let compliance = Case::parse(&text, folder, &[]).ok()?.simulation().ok()?.relaxed();
+    let load = match (ball_radius(indenter), cone_slope(indenter)) {
+        (Some(radius), _) => 4.0 * (0.25 * side).min(0.2 * radius).powi(3) / (3.0 * radius * compliance),
+        (None, Some(slope)) => 0.5 * PI * (0.25 * side).powi(2) * slope / compliance,
+        (None, None) => return None,
+    };
+    Some(one_digit(load)).filter(|load| load.is_finite() && *load > 0.0)
+}
+
 /// Load, times and output of a run in time.
-fn in_time(purpose: Purpose, material: &Material) -> String {
+fn in_time(purpose: Purpose, material: &Material, load: f64) -> String {
+    /// Steps of the run.
+    const STEPS: usize = 40;
     let end = material.end();
     let mut text = match purpose {
         Purpose::Indentation => format!(
-            "\n[load]\ncontrol = \"load\"\nhistory = {{ kind = \"ramp\", value = \"1 mN\", duration = \"{} s\" }}   {YOURS}load, and time to reach it\n",
+            "\n[load]\ncontrol = \"load\"\nhistory = {{ kind = \"ramp\", value = \"{}\", duration = \"{} s\" }}   {YOURS}load, and time to reach it\n",
+            quantity(load, "N"),
             one_digit(end / 10.0)
         ),
         _ => format!(
@@ -424,29 +462,38 @@ fn in_time(purpose: Purpose, material: &Material) -> String {
         ),
     };
     text += &format!(
-        "\n[time]\nend = \"{end} s\"   {YOURS}length of the run; the data of the material reach {}\nsteps = 40\nspacing = \"log\"\nfirst = \"{} s\"\n",
+        "\n[time]\nend = \"{end} s\"   {YOURS}length of the run; the data of the material reach {}\nsteps = {STEPS}\nspacing = \"log\"\nfirst = \"{} s\"\n",
         material.times.map_or("as far as was fitted".to_owned(), |[_, last]| quantity(last, "s")),
-        one_digit(end / 1000.0),
+        material.first(end, STEPS, 1e-3),
     );
     if purpose == Purpose::Seal {
         text += &format!(
-            "\n[solver]\ntolerance = 1e-8                      # narrow gaps need it\n\n[leakage]\ndirection = \"x\"                       {YOURS}from inlet to outlet: \"x\" or \"y\"\npressure_drop = \"0.1 bar\"             {YOURS}between inlet and outlet\nviscosity = \"1 mPa s\"                 {YOURS}water 1 mPa s, oil 100 mPa s; of a gas: gas, inlet and outlet in place of both\n"
+            "\n[solver]\ntolerance = 1e-8                      # narrow gaps need it\n\n[leakage]\ndirection = \"x\"                       {YOURS}from inlet to outlet: \"x\" or \"y\"\npressure_drop = \"1 kPa\"               {YOURS}between inlet and outlet; above 0.02 of the pressure of the load add coupling = \"two-way\"\nviscosity = \"1 mPa s\"                 {YOURS}water 1 mPa s, oil 100 mPa s; of a gas: gas, inlet and outlet in place of both\n"
         );
     }
     text + "\n[output]\nfields = [\"pressure\", \"gap\"]\nevery = 4\n"
 }
 
-/// Velocities at which the material is known: v = f λ with the frequencies f of the data, and waves λ a tenth as long as the surface.
+/// Velocities v = λ/(2π t) at which the material is known: at the times t of its data for every wave λ from two cells to the whole surface or,
+/// where that is less than a decade, for waves of a tenth of its length.
 fn friction(topography: &Topography, material: &Material) -> String {
-    let length = 0.1 * topography.size[0];
-    let [from, to] =
-        material.times.map_or([1e-3, 1.0], |[first, last]| [length / (TAU * last), length / (TAU * first)]);
+    let points = topography.heights.dim().0.min(MOST_CELLS);
+    let whole = topography.size[0];
+    let reach = |longest: f64, shortest: f64| {
+        let times = material.times.unwrap_or([longest / TAU, longest / (TAU * 1e-3)]);
+        // So that rounding does not leave the data.
+        [1.01 * longest / (TAU * times[1]), 0.99 * shortest / (TAU * times[0])]
+    };
+    let all = reach(whole, 2.0 * whole / points as f64);
+    let ([from, to], waves) = match all[1] >= 10.0 * all[0] {
+        true => (all, "all waves of the surface".to_owned()),
+        false => (reach(0.1 * whole, 0.1 * whole), format!("waves of {}", quantity(0.1 * whole, "m"))),
+    };
     let decades = (to / from).log10().max(1.0);
     let at = material.reference.as_ref().map_or(String::new(), |reference| format!(" at {reference}"));
     let count = (3.0 * decades).ceil() as usize + 1;
     format!(
-        "\n[load]\ncontrol = \"pressure\"                  # nominal\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure\n\n[motion]\ndirection = \"x\"                       {YOURS}of sliding: \"x\", \"y\" or an angle\n\n[motion.steady]                       # these velocities deform waves of {} within the data of the material{at}\nvelocities = {{ from = \"{:.3e} m/s\", to = \"{:.3e} m/s\", count = {count}, spacing = \"log\" }}   {YOURS}velocities\n\n[solver]\ntolerance = 1e-4\n\n[output]\nfields = [\"pressure\"]\nevery = 7\n",
-        quantity(length, "m"),
+        "\n[load]\ncontrol = \"pressure\"                  # nominal\nhistory = {{ kind = \"step\", value = \"0.1 MPa\" }}   {YOURS}pressure\n\n[motion]\ndirection = \"x\"                       {YOURS}of sliding: \"x\", \"y\" or an angle\n\n[motion.steady]                       # these velocities deform {waves} within the data of the material{at}\nvelocities = {{ from = \"{:.3e} m/s\", to = \"{:.3e} m/s\", count = {count}, spacing = \"log\" }}   {YOURS}velocities\n\n[solver]\ntolerance = 1e-4\n\n[output]\nfields = [\"pressure\"]\nevery = 7\n",
         from,
         to.max(10.0 * from),
     )
@@ -462,9 +509,16 @@ fn indenter(material: &Material, radius: f64) -> String {
 
 /// The radius \[m\] of the contact at a depth: (R d)^(1/2) under a ball, 2 d/(pi slope) under a cone.
 fn contact_radius(indenter: &str, depth: f64) -> Option<f64> {
-    let ball = quoted(indenter, "radius = ").and_then(|text| text.trim_end_matches(" m").parse::<f64>().ok());
-    let cone = || indenter.split_once("slope = ")?.1.trim().parse::<f64>().ok();
-    ball.map(|radius| (radius * depth).sqrt()).or_else(|| Some(2.0 * depth / (PI * cone()?)))
+    let ball = ball_radius(indenter).map(|radius| (radius * depth).sqrt());
+    ball.or_else(|| Some(2.0 * depth / (PI * cone_slope(indenter)?)))
+}
+
+fn ball_radius(indenter: &str) -> Option<f64> {
+    quoted(indenter, "radius = ")?.trim_end_matches(" m").parse().ok()
+}
+
+fn cone_slope(indenter: &str) -> Option<f64> {
+    indenter.split_once("slope = ")?.1.trim().parse().ok()
 }
 
 /// An indentation by what the test controlled: its depths or its loads. Bodies that stick are moved by the depth, through the largest
@@ -523,19 +577,28 @@ fn indentation_of(
         "# what the test controlled; the other channel is the response"
     };
     let before = format!(
-        "{}[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # some four times as wide as the contact\n{indenter}{}",
+        "{}[domain]\ncells = [192, 192]\nsize = [\"{size:e} m\", \"{size:e} m\"]    # four times as wide as the contact at the largest depth\n{indenter}{}",
         head(title, from),
         material.body(),
     );
+    // Adaptive steps are a tenth of the first one at least.
+    let end = record.times.get(last).copied().unwrap_or(1.0) - start;
+    let known = material.times.map_or(0.0, |[first, _]| 10.0 * first);
+    let first = match known > 1e-3 * end && known < 0.1 * end {
+        true => {
+            format!("first = \"{known:.3e} s\"                    # the data of the material begin there\n")
+        }
+        false => String::new(),
+    };
     let after = format!(
-        "\n[load]                                # {} rows of the record, {} to {}, depth up to {}{thinned}\ncontrol = \"{control}\"{}{by}\nhistory = {{ kind = \"table\", points = [\n{}\n] }}\n\n[time]\nend = \"{:.6e} s\"\nsteps = 80\n\n[output]\nfields = [\"pressure\", \"displacement\"]\nevery = 10\n",
+        "\n[load]                                # {} rows of the record, {} to {}, depth up to {}{thinned}\ncontrol = \"{control}\"{}{by}\nhistory = {{ kind = \"table\", points = [\n{}\n] }}\n\n[time]\nend = \"{:.6e} s\"\nspacing = \"adaptive\"                  # as short as the error of a step asks\n{first}\n[output]\nfields = [\"pressure\", \"displacement\"]\nevery = 10\n",
         record.times.len(),
         quantity(low, "N"),
         quantity(high, "N"),
         quantity(deepest, "m"),
         " ".repeat(16),
         points.join("\n"),
-        record.times.get(last).copied().unwrap_or(1.0) - start,
+        end,
     );
     Ok(with_adhesion(before, after, purpose, folder))
 }

@@ -5,16 +5,16 @@ mod words;
 use std::path::Path;
 
 use asperity_io::case::Case;
-use asperity_io::seal::{SealAnswer, SealError, sweep};
-use asperity_io::study::Options;
+use asperity_io::seal::{SealAnswer, SealError, label, sweep};
+use asperity_io::study::{Event, Options, State};
 use asperity_report::sheet::Sheet;
 
 use super::answers::units;
-use super::study::{told, usual};
+use super::study::usual;
 use crate::args;
 use crate::failure::{Failure, refuse};
 use crate::files::Files;
-use crate::format::counted;
+use crate::format::{duration, quantity};
 use crate::messages::message;
 use crate::verb::{Threads, Verb};
 
@@ -46,14 +46,16 @@ impl Verb for args::Seal {
         if !self.quiet {
             let [least, most] = plan.runs();
             message!(
-                "{least} to {most} runs of the patch, {}, in {}",
-                counted(plan.seeds, "seed"),
+                "the patch of {} runs {least} to {most} times; the results are in {}",
+                self.case.display(),
                 folder.display()
             );
         }
-        let mut tell = |event: &asperity_io::study::Event<'_>| {
+        let (mut done, rough) = (0, plan.rough.is_some());
+        let mut tell = |event: &Event<'_>| {
+            done += 1;
             if !self.quiet {
-                message!("{}", told(event, &units, |answer| answer.name == "hydraulic_gap"));
+                message!("run {done}, {}", told(event, rough));
             }
         };
         let swept =
@@ -67,10 +69,26 @@ impl Verb for args::Seal {
         let rows = words::lines(&answer, &units);
         let figure = asperity_report::seal::figure(&answer, &units);
         super::picture::write(&figure, &folder.join("seal.png"), true)?;
-        sheet(&self.case, &answer, &rows, &figure).write(&folder.join("seal.html"), true)?;
+        let title = case.title.as_deref();
+        sheet(&self.case, title, &answer, &rows, &figure).write(&folder.join("seal.html"), true)?;
         crate::print(&if self.json { format!("{}\n", answer.object()) } else { text(&rows, &folder) })?;
         super::findings::strict(self.strict, &answer.findings)
     }
+}
+
+/// How a run of the patch ended: "patch at 1 kPa, seed 2: hydraulic gap 960 nm (140 ms)". What was found of all runs is told at the end.
+fn told(event: &Event<'_>, rough: bool) -> String {
+    let row = event.row;
+    let came = match &row.state {
+        State::Done => match row.answers.iter().find(|answer| answer.name == "hydraulic_gap") {
+            Some(gap) if gap.value > 0.0 => format!("hydraulic gap {}", quantity(gap.value, "m")),
+            Some(_) => "tight".to_owned(),
+            None => "done".to_owned(),
+        },
+        State::Failed(why) => format!("failed: {why}"),
+        state => state.word().to_owned(),
+    };
+    format!("patch at {}: {came} ({})", label(row, rough), duration(event.seconds))
 }
 
 fn failure(error: SealError) -> Failure {
@@ -85,13 +103,16 @@ fn failure(error: SealError) -> Failure {
 
 fn sheet(
     case: &Path,
+    title: Option<&str>,
     answer: &SealAnswer,
     rows: &[[String; 2]],
     figure: &asperity_report::figure::Figure,
 ) -> Sheet {
-    let title = case.file_stem().unwrap_or_default().to_string_lossy();
+    let name = case.file_stem().unwrap_or_default().to_string_lossy();
+    let title = title.map_or(name.into_owned(), str::to_owned);
+    // Name and value need no head.
     let table: Vec<Vec<String>> =
-        [["answer".to_owned(), "value".to_owned()]].iter().chain(rows).map(|row| row.to_vec()).collect();
+        [[String::new(), String::new()]].iter().chain(rows).map(|row| row.to_vec()).collect();
     let sheet = Sheet::new(title).table("Seal", &table);
     let sheet = answer.findings.iter().fold(sheet, |sheet, finding| sheet.note(&finding.to_string()));
     let sheet = answer.sweep.findings.iter().fold(sheet, |sheet, finding| sheet.note(&finding.to_string()));

@@ -16,22 +16,24 @@ const KNOWN: f64 = 1.2;
 /// Name and words of each answer, the leak first.
 pub(super) fn lines(answer: &SealAnswer, units: &Units) -> Vec<[String; 2]> {
     let words = Words { answer, units };
-    let leak = |text: String| answer.validity("seal_leak").mark(text);
+    let leak = answer.validity("seal_leak");
+    // What only repeats a leak that is taken back, or follows from it, is left out.
+    let follows = |words: Option<String>| words.filter(|_| leak.is_valid());
     let rows = [
-        ("leak of the seal", Some(leak(words.leak()))),
-        ("by the sweep", words.by_the_sweep()),
-        ("per metre", words.per_metre().map(leak)),
-        ("as a volume", words.volume().map(leak)),
-        ("in a year", words.in_a_year().map(leak)),
+        ("leak of the seal", Some(leak.mark(words.leak()))),
+        ("by the sweep", follows(words.by_the_sweep())),
+        ("per metre", follows(words.per_metre())),
+        ("as a volume", follows(words.volume())),
+        ("in a year", follows(words.in_a_year())),
         ("opening pressure", Some(answer.validity("seal_opening_pressure").mark(words.opening()))),
         ("at", Some(words.at())),
-        ("narrowest", words.narrowest()),
-        ("Knudsen number", words.knudsen()),
-        ("opened by the fluid", words.opened()),
-        ("in proportion to", words.proportion()),
-        ("a tenth more pressure", words.growth()),
+        ("narrowest", follows(words.narrowest())),
+        ("Knudsen number", follows(words.knudsen())),
+        ("opened by the fluid", follows(words.opened())),
+        ("in proportion to", follows(words.proportion())),
+        ("a tenth more pressure", follows(words.growth())),
         ("seeds", words.seeds()),
-        ("tightness over time", words.over_time()),
+        ("tightness over time", follows(words.over_time())),
     ];
     rows.into_iter().filter_map(|(name, words)| Some([name.to_owned(), words?])).collect()
 }

@@ -650,7 +650,7 @@ fn faults_of_measured_curves_are_named_with_their_line() {
         ("twice.csv", &["line 5", "line 4"]),
         ("disorder.csv", &["line 5", "point 4 is 5e0 s"]),
         ("zero.csv", &["line 3", "point 2 is 0"]),
-        ("short.csv", &["line 3", "1 cells, but 2"]),
+        ("short.csv", &["line 3", "1 cell, but 2"]),
         ("point.csv", &["is 1"]),
         ("empty.csv", &[]),
         ("none.csv", &[]),
@@ -669,7 +669,7 @@ fn faults_of_measured_curves_are_named_with_their_line() {
     let dma =
         |name: &str, keys: &str| format!(r#"{{ model = "dma", path = "{name}", modulus = "young"{keys} }}"#);
     says(dir, &dma("hertz.csv", ""), at, "data", &[]);
-    says(dir, &dma("good.csv", ""), at, "data", &["column 1, \"t [s]\""]);
+    says(dir, &dma("good.csv", ""), at, "data", &["column 1, \"t [s]\"", "2 \"E [MPa]\""]);
     says(dir, &dma("sweep.csv", ""), at, "data", &["line 4", "the frequency is that of line 3"]);
     says(dir, &dma("loss.csv", ""), at, "data", &[]);
     says(dir, &dma("five.csv", ""), at, "data", &["3 temperatures (0.0 °C, 20.0 °C, 40.0 °C)"]);

@@ -23,6 +23,7 @@ from ._problem import hardness_of
 from ._result import Result, attributes_of
 from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
+from ._states import State, touching
 from ._surface import Surface, check_boundary, per_cell, surface_of
 from ._units import bare, is_labelled
 from ._words import Boundary, Method
@@ -182,6 +183,10 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         """The contact spots as a labelled image; see :meth:`Result.spots`."""
         self._whole("a map of the spots")
         return _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary).reshape(self.pressure.shape)
+
+    def _state(self) -> State:
+        self._whole("its state")
+        return State(self.size, self.boundary, self.gap, self.pressure, touching(self.pressure))
 
     @property
     def _setup(self) -> dict[str, Any]:

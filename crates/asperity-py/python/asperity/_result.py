@@ -24,9 +24,10 @@ from ._leakage import over_time, stored
 from ._methods import paragraph
 from ._rows import Columns, Field, StressColumns
 from ._sealed import Sealed, read_only
+from ._states import State
 from ._stress import Stress, changing, stress
 from ._units import written
-from ._words import Flow, Sides
+from ._words import Flow, Nearest, Sides
 from .plot import Plots
 
 if TYPE_CHECKING:
@@ -62,6 +63,13 @@ class Cycle(NamedTuple):
     loss_angle: float
     #: What of the work the mean load does over the drift of the approach from start to end [J]: 0 where the cycle closes.
     drift_work: float
+
+
+class NotStored(CaseError, KeyError):
+    """Nothing was stored at this time."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
 class Result(OnGrid, Columns, StressColumns, Sealed):
@@ -229,9 +237,14 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             raise CaseError(f"{name!r} is no number of a row; there are {', '.join(COLUMNS)}")
         return COLUMNS[name].attributes(self.is_line)["units"]
 
-    def field(self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> Floats:
-        """A field of shape (nx, ny), of a line contact (n,), at the stored time nearest to `time` [s], or with that index; default the
-        last. Of a sweep at the stored velocity nearest to `velocity` [m/s]. Fields of a contact that moves are in its frame.
+    def field(
+        self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None, method: Nearest | None = None
+    ) -> Floats:
+        """A field of shape (nx, ny), of a line contact (n,), at the stored `time` [s], of a sweep the stored `velocity` [m/s], or with that
+        index; default the last. Fields of a contact that moves are in its frame.
+
+        A time at which nothing was stored is a KeyError that names its neighbours in `field_times`; with ``method="nearest"`` the field
+        at the nearest stored time.
 
         "pressure" [Pa], "gap", "displacement", "flattening" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness, 3 slipping).
         Read-only for a result in memory, a new array for one on disk.
@@ -239,14 +252,14 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         if name not in self._fields:
             choice("the field", name, list(FIELDS))
             raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
-        values: Floats = self._fields[name][self._index(time, velocity, index)]
+        values: Floats = self._fields[name][self._index(time, velocity, index, method)]
         return values
 
     def stress(
-        self, *, time: float | None = None, index: int | None = None, depths: str | Sequence[float] = "auto",
+        self, *, time: float | None = None, index: int | None = None, method: Nearest | None = None, depths: str | Sequence[float] = "auto",
         poisson: float | None = None, body: int = 0
     ) -> Stress:
-        """The stress below the surface at the stored time nearest to `time` [s], or with that index; default the last.
+        """The stress below the surface at the stored `time` [s], or with that index, or at the nearest time, as :meth:`field`; default the last.
 
         It follows from the stored pressure, under a tangential load also from the stored tractions, with the Poisson's ratio of the body of that number, or `poisson`; see
         :func:`asperity.stress`. Where that ratio changes with time (constant bulk modulus), the pressures of all rows must be kept. What a run or ``asperity stress`` stored are attributes over `field_times`: `max_mises` [Pa],
@@ -271,7 +284,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             poisson = known[body] if known else None
             creep = (setup.get("poisson_creep") or [None] * (body + 1))[body]
             if poisson is None and creep is not None and "stage_controls" in setup:
-                last = self._index(time=time, index=index) + 1
+                last = self._index(time=time, index=index, method=method) + 1
                 rows = self._table["time"][:last]
                 if "motion" in setup:
                     raise CaseError("the stress of a contact that moves over a body of constant bulk modulus is not computed; give poisson=...")
@@ -284,10 +297,11 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
                 return changing(setup, body, (self._table["stage"][:last].astype(int).tolist(), rows.tolist()), pressures, self.size, depths)
             if poisson is None:
                 raise CaseError("the result does not say the Poisson's ratio of the body, or it changes with the temperature; give poisson=...")
-        pressure, tractions = self.field("pressure", time=time, index=index), None
+        at: dict[str, Any] = {"time": time, "index": index, "method": method}
+        pressure, tractions = self.field("pressure", **at), None
         if "friction" in setup:
             # What acts on the first body acts the other way on the second.
-            tractions = [(-1.0 if body else 1.0) * self.field(name, time=time, index=index) for name in ("traction_x", "traction_y")]
+            tractions = [(-1.0 if body else 1.0) * self.field(name, **at) for name in ("traction_x", "traction_y")]
         return stress(pressure, size=self.size, poisson=poisson, depths=depths, boundary=setup.get("boundary", "free"), tractions=tractions)
 
     def to_xarray(self) -> Any:
@@ -355,10 +369,10 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         """Figures by matplotlib: ``result.plot.evolution()``, ``result.plot.pressure(time=500.0)``, ..."""
         return Plots(self)
 
-    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> Labels:
+    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, method: Nearest | None = None) -> Labels:
         """The contact spots as a labelled image of shape (nx, ny): the number of the spot of each cell, 1 for the largest, 0 where
-        nothing touches. Cells that share an edge are of one spot, on a periodic domain also across the borders. At the stored time
-        nearest to `time`, as :meth:`field`.
+        nothing touches. Cells that share an edge are of one spot, on a periodic domain also across the borders. At a stored
+        time, as :meth:`field`.
 
         >>> import asperity as asp
         >>> wave = asp.Surface.wave(cells=(32, 32), size=(1e-3, 1e-3), amplitude=1e-6, wavelength=(5e-4, 5e-4))
@@ -366,8 +380,14 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         >>> int(result.spots().max())
         8
         """
-        touches = self._touches(time=time, velocity=velocity, index=index).astype(np.float64)
+        touches = self._touches(time=time, velocity=velocity, index=index, method=method).astype(np.float64)
         return _core.spot_labels(plain(as_plane(touches)), self._setup.get("boundary", "free")).reshape(touches.shape)
+
+    def _state(self) -> State:
+        """The last fields that were kept."""
+        setup, gap = self._setup, self.field("gap") if "gap" in self._fields else None
+        pressure = self.field("pressure") if "pressure" in self._fields else np.zeros(self.cells)
+        return State(self.size, setup.get("boundary", "free"), gap, pressure, self._touches(), setup.get("poisson") or ())
 
     def _touches(self, **at: Any) -> AnyArray:
         """Where the surfaces touch at a stored instant: from the field that tells it."""
@@ -460,8 +480,12 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             rows += [(self._axis.name, f"{last.pop('time'):.6g} {self._axis.unit}"), *told(last, self.is_line)]
         return f"<b>{title}</b>, last row:{_html.table(rows)}"
 
-    def _index(self, time: float | None = None, velocity: float | None = None, index: int | None = None) -> int:
+    def _index(
+        self, time: float | None = None, velocity: float | None = None, index: int | None = None, method: Nearest | None = None
+    ) -> int:
         """The number of the stored instant."""
+        if method is not None:
+            choice("method", method, Nearest)
         kept = len(self._field_steps)
         if kept == 0:
             raise CaseError("no fields were kept")
@@ -477,10 +501,20 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             if not -1e-12 * end <= wanted <= (1 + 1e-12) * end:
                 raise CaseError(f"{what} is {wanted:g} {unit}, but must be one of the run, 0 {unit} to {end:g} {unit}")
             # Of two at the same time, before and after a jump, the later.
-            return int(kept - 1 - np.argmin(np.abs(self.field_times - wanted)[::-1]))
+            nearest = int(kept - 1 - np.argmin(np.abs(self.field_times - wanted)[::-1]))
+            # Times that were computed in another way differ by rounding.
+            if method is None and abs(self.field_times[nearest] - wanted) > 1e-9 * abs(wanted) + 1e-12 * end:
+                raise NotStored(self._neighbours(what, unit, wanted))
+            return nearest
         if not -kept <= (place := -1 if index is None else index) < kept:
             raise CaseError(f"index is {index}, but fields were kept at {kept} times")
         return int(place) % kept
+
+    def _neighbours(self, what: str, unit: str, wanted: float) -> str:
+        """Where the fields beside a time or velocity are."""
+        stored = np.unique(self.field_times)
+        beside = [f"{float(one):.9g} {unit}" for one in (*stored[stored < wanted][-1:], *stored[stored > wanted][:1])]
+        return f'no fields were kept at {what} {wanted:.9g} {unit}, but at {" and ".join(beside)}: give one of these, or method="nearest"'
 
     def _stress_volume(self, name: str) -> Floats:
         """A stored stress field of shape (field_time, depth, x, y), of a line (field_time, depth, x)."""

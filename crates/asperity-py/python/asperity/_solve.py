@@ -26,6 +26,7 @@ from ._record import Keep, Record
 from ._result import Result, open
 from ._rows import Numbers
 from ._sealed import Sealed
+from ._states import State
 
 if TYPE_CHECKING:
     from ._arrays import Floats
@@ -76,6 +77,12 @@ class Step(Numbers, Sealed):
     def gap(self) -> Floats:
         """Gap of the deformed surfaces [m], shape (nx, ny)."""
         return self.field("gap")
+
+    def _state(self) -> State:
+        setup = self._march._setup
+        contact = np.ascontiguousarray(self.field("contact") > 0, dtype=np.uint8)
+        shear = (self.field("traction_x"), self.field("traction_y")) if "friction" in setup else None
+        return State(self._march.size, setup.get("boundary", "free"), self.gap, self.pressure, contact, setup.get("poisson") or (), shear)
 
     def _number(self, name: str) -> float:
         row = self.__dict__["_row"]

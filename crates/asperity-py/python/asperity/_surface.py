@@ -282,9 +282,18 @@ class Surface(OnGrid):
         """Mirrored along "x" or "y"."""
         return self.process(f"flip={axis}")
 
-    def rotate(self, quarter_turns: int = 1) -> Surface:
-        """Turned by quarter turns from x towards y; negative ones turn back."""
-        return self.process(f"rotate={count('quarter_turns', quarter_turns, -(2**31))}")
+    def rotate(self, turns: int = 1, /, *, quarter_turns: int | None = None) -> Surface:
+        """Turned by quarter turns of 90 degrees from x towards y; negative ones turn back. More than 3 need the name `quarter_turns`.
+
+        >>> import asperity as asp, numpy as np
+        >>> asp.Surface(np.array([[1.0, 2.0], [3.0, 4.0]]), size=(1e-6, 1e-6)).rotate(quarter_turns=1).heights.tolist()
+        [[2.0, 4.0], [1.0, 3.0]]
+        """
+        whole = count("quarter_turns", turns if quarter_turns is None else quarter_turns, -(2**31))
+        if quarter_turns is None and abs(whole) > 3:
+            nearest = f" ({whole} degrees are rotate({whole // 90}))" if whole % 90 == 0 and abs(whole) <= 270 else ""
+            raise CaseError(f"rotate turns by quarter turns, and {whole} of them are meant for degrees{nearest}; else write rotate(quarter_turns={whole})")
+        return self.process(f"rotate={whole}")
 
     def invert(self) -> Surface:
         """Heights of the other sign: a replica."""

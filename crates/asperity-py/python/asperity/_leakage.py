@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, choice, field, in_order, number, numbers_of, pair
+from ._arrays import Floats, centres, choice, field, in_order, number, numbers_of, pair
 from ._columns import GAS_LEAKS, LEAKS, dataset, variable
 from ._findings import Finding, findings_of, warn
 from ._sealed import Sealed
@@ -94,6 +94,23 @@ class Leakage(Sealed):
         """
         fluid = {name: value for name, value in locals().items() if name not in ("self", "standard")}
         return float(self._solved(numbers_of(fluid))["leak_rate_standard" if standard else "leak_rate"])
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The numbers of the leak and its fields, `fluid_pressure` (1 at the inlet to 0 at the outlet) and `leak_cells`, as xarray.Dataset.
+
+        >>> import asperity as asp, numpy as np
+        >>> data = asp.leakage(np.full((8, 4), 1e-6), size=(1e-3, 5e-4), sides="periodic").to_xarray()
+        >>> data.hydraulic_gap.attrs["units"], data.fluid_pressure.dims
+        ('m', ('x', 'y'))
+        """
+        numbers = {name: getattr(self, name) for name in LEAKS if name in Leakage.__annotations__}
+        data = {name: LEAKS[name].variable((), bool(value) if name in _FLAGS else value) for name, value in numbers.items()}
+        data["fluid_pressure"] = variable(("x", "y"), self.pressure, "1", "pressure of the fluid over the pressure drop")
+        data["leak_cells"] = variable(("x", "y"), self.cells, "1", "0 closed, 1 through, 2 from the inlet, 3 from the outlet, 4 pocket")
+        if self.conductance is not None:
+            data["conductance"] = variable(("flow_direction", "gradient_direction"), self.conductance, "m^3", "effective conductance")
+        places = {axis: variable(axis, centres(n, length), "m", axis) for axis, n, length in zip("xy", self._gap.shape, self._size)}
+        return dataset(data, places)
 
     def __repr__(self) -> str:
         nx, ny = self._gap.shape

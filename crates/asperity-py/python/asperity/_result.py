@@ -306,13 +306,16 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
 
     def to_xarray(self) -> Any:
         """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk, with the stress below the surface and the
-        leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray."""
+        leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray. The load is ``data["load"]`` and `data.normal_load`:
+        `data.load` is a method of xarray. What else was computed is merged, as in ``data.merge(result.stress().to_xarray())``."""
         along, at, line, table = self._axis.name, f"field_{self._axis.name}", self.is_line, self._table
         data: dict[str, Any] = {
             name: entry.variable((along, "axis")[: table[name].ndim], table[name], line)
             for name, entry in COLUMNS.items()
             if name != "time" and name in table
         }
+        # Under this name too: `load` of a dataset is a method of xarray.
+        data["normal_load"] = COLUMNS["load"].variable(along, table["load"], line)
         data |= {name: FIELDS[name].variable((at, *self._axes), self._stack(name)) for name in self._fields}
         stress = {name: STRESS[name].variable((at, "depth")[: values.ndim], values, line) for name, values in self._stress.items() if name != "depth"}
         for name in self._stress_fields:
@@ -403,12 +406,16 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         return np.ascontiguousarray(gap <= 1e-9 * deepest, dtype=np.uint8)
 
     def to_dataframe(self) -> Any:
-        """The rows as pandas.DataFrame, with the time (of a sweep the velocity) as index and a column for each number; units are in
-        ``frame.attrs["units"]``."""
-        along = self._axis.name
-        columns = {name: np.array(self._table[name]) for name in COLUMNS if name != "time" and name in self._table}
+        """The rows as pandas.DataFrame, with the time (of a sweep the velocity) as index and a column for each number, of a vector two,
+        as `tangential_force_x`; units are in ``frame.attrs["units"]``."""
+        along, columns, units = self._axis.name, {}, {self._axis.name: self.units("time")}
+        for name in (name for name in COLUMNS if name != "time" and name in self._table):
+            values = self._table[name]
+            parts = {f"{name}_{axis}": values[:, n] for n, axis in enumerate("xy")} if name in VECTORS else {name: values}
+            columns |= {part: np.array(column) for part, column in parts.items()}
+            units |= dict.fromkeys(parts, self.units(name))
         rows = frame({along: np.array(self._table["time"]), **columns}).set_index(along)
-        rows.attrs["units"] = {along: self.units("time"), **{name: self.units(name) for name in columns}}
+        rows.attrs["units"] = units
         return rows
 
     def save(self, path: AnyPath, *, force: bool = False) -> None:

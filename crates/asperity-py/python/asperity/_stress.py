@@ -5,18 +5,22 @@ from __future__ import annotations
 import functools
 import json
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
+from ._columns import dataset, variable
 from ._core import CaseError
 from ._findings import warn_caller
 from ._sealed import Sealed
 from ._states import HasState, refuse_beside, said
 from ._surface import _parts
 from ._words import Boundary
-from ._arrays import Floats, Size, array, as_plane, cells_of, choice, field, frozen, number, plain, size_of
+
+if TYPE_CHECKING:
+    import xarray
+from ._arrays import Floats, Size, array, as_plane, cells_of, centres, choice, field, frozen, number, plain, size_of
 
 
 def _lazily(name: str, words: str) -> functools.cached_property[Floats]:
@@ -24,6 +28,15 @@ def _lazily(name: str, words: str) -> functools.cached_property[Floats]:
     made = functools.cached_property(lambda stress: stress._field(name))
     made.__doc__ = words
     return made
+
+
+#: Fields of a dataset.
+_FIELDS = ("xx", "yy", "zz", "xy", "xz", "yz", "mises", "tresca", "tension")
+
+
+def _lower(words: str) -> str:
+    """A sentence as the name of an array."""
+    return (words if words.startswith("von") else words[0].lower() + words[1:]).rstrip(".")
 
 
 class Stress(Sealed):
@@ -94,6 +107,26 @@ class Stress(Sealed):
         if found.pop("unresolved"):
             warn_caller("the largest von Mises stress lies less than two cells below the surface: the grid is too coarse for it", UserWarning)
         return {name: np.asarray(value) if isinstance(value, list) else value for name, value in found.items()}
+
+    def to_xarray(self, *names: str) -> xarray.Dataset:
+        """Fields over depth and cells as xarray.Dataset, by default the six components, `mises`, `tresca` and `tension`, named
+        `stress_xx`, ..., `stress_mises`: beside those of a result in ``result.to_xarray().merge(below.to_xarray())``.
+
+        >>> import asperity as asp
+        >>> ball = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=20e-3)
+        >>> result = asp.solve(ball, asp.Elastic(young=1e6, poisson=0.3), load=1e-3, times=[1.0])
+        >>> whole = result.to_xarray().merge(result.stress(depths=[0.0, 1e-4]).to_xarray("zz", "mises"))
+        >>> whole.stress_mises.dims, whole.stress_zz.attrs["units"], whole.pressure.dims
+        (('depth', 'x', 'y'), 'Pa', ('field_time', 'x', 'y'))
+        """
+        known = {name: str(vars(Stress)[name].__doc__) for name in _FIELDS}
+        axes = ("x", "y")[: self._pressure.ndim]
+        data = {
+            f"stress_{name}": variable(("depth", *axes), getattr(self, name), "Pa", _lower(known[choice("the field", name, list(_FIELDS))]))
+            for name in names or _FIELDS
+        }
+        places = {axis: variable(axis, centres(n, length), "m", axis) for axis, n, length in zip(axes, self._pressure.shape, self._given[1])}
+        return dataset(data, {"depth": variable("depth", self.depths, "m", "depth below the surface"), **places})
 
     def __repr__(self) -> str:
         ratio = "changing with time" if self._poisson is None else f"{self._poisson:g}"

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     import xarray
 
 #: Names that a parameter may not have in the dataset.
-_TAKEN = {*COLUMNS, *FIELDS, *LEAKS, "leak_step", "status", "error", "findings", "finding_codes", "steps", "step", "point"}
+_TAKEN = {*COLUMNS, *FIELDS, *LEAKS, "leak_step", "status", "error", "findings", "finding_codes", "steps", "step", "point", "normal_load"}
 #: And where the dataset holds fields.
 _TAKEN_BY_FIELDS = {"x", "y", "field_step", "field_time"}
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].*?)?\s*")
@@ -449,6 +449,8 @@ class _Table:
             attributes = {"units": " or ".join(sorted(units)) or entry.unit, "long_name": entry.words}
             if name != "time":
                 self.columns[name] = self.array(table, attributes, "step", *["axis"] * (name in VECTORS))
+                if name == "load":  # a method of datasets
+                    self.columns["normal_load"] = self.columns[name]
                 continue
             full = table[steps == most] if most else table
             along = "velocity" if any(result.is_sweep for result in self.whole) else "time"

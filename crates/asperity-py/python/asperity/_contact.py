@@ -66,6 +66,7 @@ class _Planned:
 
     def __init__(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> None:
         self.gap: Floats = frozen(surface.gap())
+        self.origin, self.history = surface._origin, surface.history
         self.size, self.keys, self.kernel = surface.size, {"contact_modulus": modulus, **keys}, kernel
         # The array of the caller may change.
         self.hardness: Any = np.array(hardness) if isinstance(hardness, np.ndarray) else hardness
@@ -194,11 +195,26 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         known = {"boundary": self.boundary, "contact_modulus": self.contact_modulus, "solver_method": self.method, "solver_tolerance": self.tolerance}
         of_cells = isinstance(self.hardness, np.ndarray)
         kernel = "half-space" if self._planned.kernel is None else "given"
-        return {**known, "hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel}
+        told = {"hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel, "steps": self._planned.history}
+        return {**known, **told, **({} if kernel == "given" else {"given": self._case})}
 
-    def methods(self, *, bibtex: bool = False) -> str:
+    @property
+    def _case(self) -> dict[str, Any]:
+        """A case of the same contact: an elastic body of that contact modulus on a rigid one."""
+        body: dict[str, Any] = {"poisson": 0.0, "material": {"model": "elastic", "young": self.contact_modulus}}
+        limit = {"hardness": self.hardness} if isinstance(self.hardness, float) else {}
+        return {
+            "domain": {"cells": list(self.cells), "size": list(self.size), "boundary": self.boundary},
+            "surface": self._planned.origin,
+            "body": [{**body, **limit}],
+            "load": {"control": "load", "history": {"kind": "step", "value": self.load}},
+            "solver": {"method": self.method, "tolerance": self.tolerance},
+            "time": {"times": [1.0]},
+        }
+
+    def methods(self, *, bibtex: bool = False, case: bool = True) -> str:
         """A paragraph on what was computed, as :meth:`Result.methods`."""
-        return _result([self], False).methods(bibtex=bibtex)
+        return _result([self], False).methods(bibtex=bibtex, case=case)
 
     def to_result(self) -> Result:
         """The contact as a result of one row at the time 0, with the fields "pressure", "gap" and "displacement"."""

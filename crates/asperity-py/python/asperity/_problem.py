@@ -95,6 +95,12 @@ class Problem:
             keys["temperature"] = temperature_keys(self.temperature)
         return shape, keys, arrays
 
+    def given(self, shape: Surface, keys: dict[str, Any]) -> dict[str, Any]:
+        """The keys of the case as they were given, without arrays: surfaces by what they were made or read from."""
+        bodies = [{key: value for key, value in body.items() if key != "hardness_array"} for body in keys["body"]]
+        found: dict[str, Any] = _in_json({**keys, "surface": shape._origin, "body": bodies})
+        return found
+
     def load_keys(self, load_unit: str) -> dict[str, Any]:
         """The keys of `[load]`; the unit of a load is N, or N/m of a line contact."""
         control, value = one_of(self.controls(), "give")
@@ -210,6 +216,15 @@ class Solve(Run, InStages):
             attracted = self.adhesion is not None or self.fluid is not None
             along: Sequence[Field] = () if self.tangential is None else ("contact", "traction_x", "traction_y")
             self.fields = ("pressure", "contact_pressure") if attracted else ("pressure", *along)
+
+
+def _in_json(value: Any) -> Any:
+    """Keys without infinite numbers, which JSON does not have: as text, as a case file takes them too."""
+    if isinstance(value, dict):
+        return {key: _in_json(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_in_json(one) for one in value]
+    return str(value) if isinstance(value, float) and not np.isfinite(value) else value
 
 
 def table_keys(given: Problem, name: str, kind: type[Table], section: str) -> dict[str, Any]:

@@ -354,18 +354,25 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         given = numbers_of({name: value for name, value in locals().items() if name != "self"})
         return over_time(self, given) if given or not self._leaks else stored(self)
 
-    def methods(self, *, bibtex: bool = False) -> str:
-        """A paragraph on what was run, for the methods section of a paper: model, materials, load, steps, solver, errors and warnings;
-        with `bibtex` the entries of what it cites follow.
+    def methods(self, *, bibtex: bool = False, case: bool = True) -> str:
+        """A paragraph on what was run, for the methods section of a paper: model, surface, materials, load, steps, solver, errors and
+        warnings; with `case` the text of a case file that runs it again follows, where arrays were given with remarks on them; with
+        `bibtex` the entries of what the paragraph cites.
 
         >>> import asperity as asp
         >>> ball = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=20e-3)
         >>> rubber = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
         >>> result = asp.solve(ball, rubber, load=1e-3, times=asp.uniform(5.0, 20), fields=[])
-        >>> print(result.methods().split(". ")[2])
-        The contact modulus is 4 MPa at once and 2 MPa after relaxation
+        >>> print(result.methods().split(". ")[1])
+        The surface is a sphere (radius 20 mm)
+        >>> again = result.methods().split("SI units:")[1]
+        >>> import tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     same = asp.run(again, output=folder + "/again.zarr")
+        >>> bool((same.approach == result.approach).all())
+        True
         """
-        return paragraph(self, bibtex)
+        return paragraph(self, bibtex, case)
 
     @property
     def plot(self) -> Plots:

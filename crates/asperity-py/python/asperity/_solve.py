@@ -124,7 +124,8 @@ class March(Sealed):
         # Threads that share a march take turns.
         self._turn = threading.Lock()
         self._hold(initial_gap=shape.gap(), size=shape.size)
-        self._setup: dict[str, Any] = {**json.loads(self._core.setup), **({"sampled": given.sampled} if given.sampled else {})}
+        told = {"given": given.given(shape, keys), "steps": shape.history, **({"sampled": given.sampled} if given.sampled else {})}
+        self._setup: dict[str, Any] = {**json.loads(self._core.setup), **told}
         fits = [material.fit for body in bodies_of(given.material) for material in materials_of(body) if material.fit is not None]
         self._of_fits = [finding for fit in fits for finding in fit.findings]
         self._record = Record(self, keep, output, force)

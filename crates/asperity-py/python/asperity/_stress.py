@@ -119,10 +119,12 @@ class Stress(Sealed):
         >>> whole.stress_mises.dims, whole.stress_zz.attrs["units"], whole.pressure.dims
         (('depth', 'x', 'y'), 'Pa', ('field_time', 'x', 'y'))
         """
+        for name in names:
+            choice("the field", name, list(_FIELDS))
         known = {name: str(vars(Stress)[name].__doc__) for name in _FIELDS}
         axes = ("x", "y")[: self._pressure.ndim]
         data = {
-            f"stress_{name}": variable(("depth", *axes), getattr(self, name), "Pa", _lower(known[choice("the field", name, list(_FIELDS))]))
+            f"stress_{name}": variable(("depth", *axes), getattr(self, name), "Pa", _lower(known[name]))
             for name in names or _FIELDS
         }
         places = {axis: variable(axis, centres(n, length), "m", axis) for axis, n, length in zip(axes, self._pressure.shape, self._given[1])}

@@ -96,6 +96,16 @@ class Surface(OnGrid):
         """What it was made with; none of heights that were given, or changed."""
         return dict(self.__dict__.get("_made", {}))
 
+    @property
+    def _origin(self) -> list[dict[str, Any]]:
+        """The parts, as those of a case, that it was made or read from; what was done to them since is in the history."""
+        return list(self.__dict__.get("_from", [{"kind": "array"}]))
+
+    def _of(self, origin: list[dict[str, Any]]) -> Surface:
+        """The surface itself, of this origin."""
+        object.__setattr__(self, "_from", origin)
+        return self
+
     # Operators of numpy arrays leave a surface to its own.
     __array_ufunc__ = None
     __hash__ = None  # type: ignore[assignment]
@@ -108,7 +118,7 @@ class Surface(OnGrid):
         object.__setattr__(self, "metadata", {**known, **(metadata or {})})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        made = {"_made": self._parameters} if self._parameters else None
+        made = {name: self.__dict__[name] for name in ("_made", "_from") if name in self.__dict__} or None
         return functools.partial(Surface, size=self.size, metadata=self.metadata), (self.heights,), made
 
     @property
@@ -147,7 +157,7 @@ class Surface(OnGrid):
         known: dict[str, Any] = {key: one.metadata[key] for one in (self, other) for key in ("format", "single") if key in one.metadata}
         if done := [*self.history, *other.history]:
             known["history"] = done
-        return Surface(self.heights + other.heights, size=self.size, metadata=known)
+        return Surface(self.heights + other.heights, size=self.size, metadata=known)._of([*self._origin, *other._origin])
 
     def __radd__(self, other: Summand) -> Surface:
         if isinstance(other, np.ndarray):
@@ -184,7 +194,8 @@ class Surface(OnGrid):
 
     def _changed(self, heights: Floats, done: list[str], size: Sequence[float] | None = None) -> Surface:
         """The surface with other heights, on which this was done."""
-        return Surface(heights, size=self.size if size is None else size, metadata={**self.metadata, "history": [*self.history, *done]})
+        changed = Surface(heights, size=self.size if size is None else size, metadata={**self.metadata, "history": [*self.history, *done]})
+        return changed._of(self._origin)
 
     def __pos__(self) -> Surface:
         return self
@@ -522,6 +533,8 @@ class Surface(OnGrid):
             heights, extent = np.ascontiguousarray(heights.T), extent if given is not None else extent[::-1]
             found = {**found, "history": [*found.get("history", []), "transposed"]}
         surface = Surface(heights[:, 0] if len(extent) == 1 else heights, size=extent, metadata=found)
+        how = {"size": given, "height_unit": unit, "channel": name, "transpose": transpose, "level": level or "none", "fill": fill}
+        surface._of([{"kind": "file", "path": path, **{key: value for key, value in how.items() if value is not None}}])
         surface = surface if level is None else surface.level(level)
         return surface if fill is None else surface.fill(fill)
 
@@ -638,7 +651,7 @@ def _made(kind: str, cells: Any, size: Any, made: dict[str, Any] | None, keys: d
     surface = Surface(heights.reshape(grid), size=extent, metadata={"single": True} if single else None)
     if made is not None:
         object.__setattr__(surface, "_made", {"kind": kind, **made})
-    return surface
+    return surface._of([{"kind": kind, **given}])
 
 
 def as_surface(value: Any, size: Size) -> Surface:

@@ -23,6 +23,7 @@ from ._problem import hardness_of
 from ._result import Result, attributes_of
 from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
+from ._spoken import spoken
 from ._states import State, touching
 from ._surface import Surface, check_boundary, per_cell, surface_of
 from ._units import bare, is_labelled
@@ -76,7 +77,8 @@ class _Planned:
         """The plan; a copy makes its own when it needs one."""
         limit = self.hardness if isinstance(self.hardness, float) else math.inf
         cells = as_plane(self.hardness) if isinstance(self.hardness, np.ndarray) else None
-        return _core.Elastic(gap=as_plane(self.gap), size=list(self.size), hardness=limit, hardness_map=cells, kernel=self.kernel, **self.keys)
+        with spoken():
+            return _core.Elastic(gap=as_plane(self.gap), size=list(self.size), hardness=limit, hardness_map=cells, kernel=self.kernel, **self.keys)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "core"}
@@ -88,7 +90,9 @@ class _Planned:
 
     def solve(self, control: str, value: float, start: Floats | None, history: bool, out: Any) -> ElasticContact:
         """One contact."""
-        found = self.core.solve(control, value, None if start is None else as_plane(start), history)
+        core = self.core
+        with spoken():
+            found = core.solve(control, value, None if start is None else as_plane(start), history)
         fields = {name: found.pop(name).reshape(self.gap.shape) for name in ("pressure", "displacement")}
         lent = {name: out[name].view() for name in fields if name in out}
         for name, values in lent.items():

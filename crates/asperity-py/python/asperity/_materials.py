@@ -152,7 +152,8 @@ class Material(Sealed):
         return each(lambda times: self._body.relaxation(times, self._of(measure)), "times", t)
 
     def storage_loss(self, omega: ArrayLike, *, measure: Measure | None = None) -> tuple[Floats, Floats]:
-        """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s] (quantities may be in Hz or rpm) of the modulus `measure`,
+        """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s], 2 pi times those in Hz (quantities may be in either, or in
+        rpm), of the modulus `measure`,
         as :meth:`relaxation_modulus`.
 
         >>> import asperity as asp
@@ -169,11 +170,11 @@ class Material(Sealed):
     creep, relaxation = creep_compliance, relaxation_modulus
 
     def storage(self, omega: ArrayLike, *, measure: Measure | None = None) -> Floats:
-        """The storage modulus [Pa], as :meth:`storage_loss`."""
+        """The storage modulus [Pa] at angular frequencies `omega` [rad/s], 2 pi times those in Hz, as :meth:`storage_loss`."""
         return self.storage_loss(omega, measure=measure)[0]
 
     def loss(self, omega: ArrayLike, *, measure: Measure | None = None) -> Floats:
-        """The loss modulus [Pa], as :meth:`storage_loss`.
+        """The loss modulus [Pa] at angular frequencies `omega` [rad/s], 2 pi times those in Hz, as :meth:`storage_loss`.
 
         >>> import asperity as asp
         >>> zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=2.0, poisson=0.5)

@@ -13,6 +13,7 @@ from ._fluid import Fluid
 from ._arrays import AnyPath, ArrayLike, Floats, as_plane, check_places, distinct, in_order, number
 from ._core import CaseError
 from ._declared import Table, check
+from ._fit import Fit
 from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
 from ._layers import Body
 from ._materials import Material
@@ -33,7 +34,7 @@ class Problem:
     """What each kind of run takes; :func:`asperity.solve` describes the fields."""
 
     surface: Any = None
-    material: Material | Body | Sequence[Material | Body] | None = None
+    material: Material | Fit | Body | Sequence[Material | Fit | Body] | None = None
     _: KW_ONLY
     load: History | Function | float | None = None
     pressure: History | Function | float | None = None
@@ -236,7 +237,8 @@ def table_keys(given: Problem, name: str, kind: type[Table], section: str) -> di
 
 def bodies_of(material: Any) -> list[Material | Body]:
     """The deformable bodies, one or two."""
-    bodies = list(material) if isinstance(material, (list, tuple)) else [material]
+    given = list(material) if isinstance(material, (list, tuple)) else [material]
+    bodies = [one.material if isinstance(one, Fit) else one for one in given]
     if 1 <= len(bodies) <= 2 and all(isinstance(body, (Material, Body)) for body in bodies):
         return bodies
     shown = repr(material) if len(repr(material)) < 60 else type(material).__name__

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _core, _html
-from ._arrays import AnyArray, AnyPath, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
+from ._arrays import AnyArray, AnyPath, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, meant, number, numbers_of, plain
 from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, dataset, frame, told, variable
 from ._core import CaseError
 from ._findings import Finding, findings_of
@@ -140,7 +140,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             "field_velocities": "because it is a run in time: its fields have field_times",
             "y": "because a line contact has no y: nothing changes along it",
         }
-        known = f"; it has {', '.join(ROW)}, field(name, time=...) and plot"
+        near = "" if name.startswith("_") else meant(name, [one for one in dir(self) if one[0] != "_"], 0.75)
+        known = near or f"; it has {', '.join(ROW)}, field(name, time=...) and plot"
         raise AttributeError(f"the result has no {name!r}{f', {reasons[name]}' if name in reasons else known}")
 
     if not TYPE_CHECKING:  # where it would hide misspelt names

@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _core
 from ._declared import arguments_of
-from ._arrays import AnyPath, cells_of, path_of
+from ._arrays import AnyPath, cells_of, meant, path_of
 from ._columns import HISTOGRAMS
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
@@ -26,6 +26,7 @@ from ._record import Keep, Record
 from ._result import Result, open
 from ._rows import Numbers
 from ._sealed import Sealed
+from ._spoken import spoken
 from ._states import State
 
 if TYPE_CHECKING:
@@ -88,7 +89,8 @@ class Step(Numbers, Sealed):
         row = self.__dict__["_row"]
         if name not in row or name in HISTOGRAMS:
             numbers = ", ".join(key for key in row if key not in HISTOGRAMS)
-            raise AttributeError(f"a step has no {name!r}; it has {numbers}, row and field(name)")
+            near = meant(name, [*row, "field", "row", "index", "pressure", "gap"], 0.75)
+            raise AttributeError(f"a step has no {name!r}{near or f'; it has {numbers}, row and field(name)'}")
         value: float = row[name]
         return value
 
@@ -120,7 +122,8 @@ class March(Sealed):
     def __init__(self, given: Problem, output: str | None = None, force: bool = False) -> None:
         keep = Keep(given)
         shape, keys, arrays = given.parts()
-        self._core = _core.March(keys, arrays, keep.steps)
+        with spoken():
+            self._core = _core.March(keys, arrays, keep.steps)
         # Threads that share a march take turns.
         self._turn = threading.Lock()
         self._hold(initial_gap=shape.gap(), size=shape.size)
@@ -157,8 +160,9 @@ class March(Sealed):
 
     def __next__(self) -> Step:
         with self._turn:
-            if not self._core.advance():
-                raise StopIteration
+            with spoken():
+                if not self._core.advance():
+                    raise StopIteration
             step = self._step(self._core.done - 1)
             self._record.see(step)
             return step
@@ -189,7 +193,8 @@ class March(Sealed):
         """
         keys = control_keys({"load": load, "pressure": pressure, "approach": approach}, "prescribe", "N/m" if len(self.size) == 1 else "N")
         with self._turn:
-            self._core.prescribe(keys)
+            with spoken():
+                self._core.prescribe(keys)
             self._record.prescribed.append({"row": len(self._record), **keys})
 
     def _step(self, index: int) -> Step:

@@ -20,7 +20,7 @@ from ._findings import findings_of, warn, warn_caller
 from ._grid import OnGrid
 from ._histories import one_of
 from ._parameters import call, parameters
-from ._sealed import ReadOnlyArrays
+from ._sealed import Named, ReadOnlyArrays
 from ._units import carries, factor_of, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
 from .plot import SurfacePlots
@@ -60,7 +60,7 @@ class Autocorrelation(ReadOnlyArrays):
 
 
 @dataclass(frozen=True, eq=False)
-class Surface(OnGrid):
+class Surface(OnGrid, Named):
     """Heights [m] at the cell centres of a rectangle, shape (nx, ny), or of a line, shape (n,), pointing out of their body.
 
     A line is for line contacts in plane strain, in which nothing changes along y; its `size` is one length, (L,).

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, overload
 import numpy as np
 
 from . import _core, _html
-from ._arrays import AnyArray, AnyPath, ArrayLike, Counts, Floats, Labels, Size, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
+from ._arrays import AnyArray, AnyPath, ArrayLike, Counts, Floats, Labels, Scalar, Size, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
 from ._columns import FIELDS, ROW, frame, told
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
@@ -25,12 +25,14 @@ from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
 from ._spoken import spoken
 from ._states import State, touching
-from ._surface import Surface, check_boundary, per_cell, surface_of
+from ._surface import Surface, SurfaceLike, check_boundary, per_cell, surface_of
 from ._units import bare, is_labelled
 from ._words import Boundary, Method
 from .plot import CurvePlots, Plots
 
 if TYPE_CHECKING:
+    import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    import xarray
     from typing_extensions import Unpack
 
 #: A kernel: numbers, or a function of two coordinates that gives them.
@@ -54,7 +56,7 @@ class ConvergenceHistory(ReadOnlyArrays):
     def __len__(self) -> int:
         return len(self.iteration)
 
-    def to_dataframe(self) -> Any:
+    def to_dataframe(self) -> pandas.DataFrame:
         """The history as pandas.DataFrame."""
         return frame(vars(self)).set_index("iteration")
 
@@ -224,7 +226,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         """The contact as a result of one row at the time 0, with the fields "pressure", "gap" and "displacement"."""
         return _result([self], True)
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xarray.Dataset:
         """The contact as xarray.Dataset with coordinates and units."""
         return self.to_result().to_xarray().isel(time=0, field_time=0, drop=True).drop_vars(["time_error", "stage"])
 
@@ -293,11 +295,11 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
     def __iter__(self) -> Iterator[ElasticContact]:
         return iter(self._contacts)
 
-    def to_dataframe(self) -> Any:
+    def to_dataframe(self) -> pandas.DataFrame:
         """The numbers as pandas.DataFrame, a row for each contact."""
         return frame({name: np.array(self._column(name)) for name in OF_CONTACT})
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xarray.Dataset:
         """The numbers and the pressures as xarray.Dataset over what was prescribed, `load`, `mean_pressure` or `approach`, with the values
         as they were given: curves of other surfaces under the same values have the same index."""
         index = {"pressure": "mean_pressure"}.get(self._control, self._control)
@@ -322,7 +324,7 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
 class _How(TypedDict, total=False):
     """What the contacts of :func:`elastic` have in common, one or several."""
 
-    gap: Any
+    gap: SurfaceLike | None
     size: Size
     hardness: float | ArrayLike | None
     boundary: Boundary
@@ -360,16 +362,16 @@ def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
 
 @overload
 def elastic(
-    surface: Any = ..., contact_modulus: float | None = ..., *, load: float | None = ..., pressure: float | None = ..., approach: float | None = ...,
+    surface: SurfaceLike | None = ..., contact_modulus: Scalar | None = ..., *, load: Scalar | None = ..., pressure: Scalar | None = ..., approach: Scalar | None = ...,
     out: Floats | Mapping[str, Floats] | None = ..., **how: Unpack[_How]
 ) -> ElasticContact: ...
 @overload
 def elastic(
-    surface: Any = ..., contact_modulus: float | None = ..., *, load: _Several = ..., pressure: _Several = ..., approach: _Several = ..., **how: Unpack[_How]
+    surface: SurfaceLike | None = ..., contact_modulus: Scalar | None = ..., *, load: _Several = ..., pressure: _Several = ..., approach: _Several = ..., **how: Unpack[_How]
 ) -> ElasticCurve: ...
 def elastic(
-    surface: Any = None, contact_modulus: float | None = None, *, load: Any = None, pressure: Any = None, approach: Any = None,
-    gap: Any = None, size: Size = None, hardness: float | ArrayLike | None = None,
+    surface: SurfaceLike | None = None, contact_modulus: Scalar | None = None, *, load: Any = None, pressure: Any = None, approach: Any = None,
+    gap: SurfaceLike | None = None, size: Size = None, hardness: float | ArrayLike | None = None,
     boundary: Boundary = "free", kernel: Kernel | None = None, start: ElasticContact | ArrayLike | None = None,
     out: Floats | Mapping[str, Floats] | None = None, history: bool = False, method: Method = "projected-cg",
     tolerance: float = 1e-6, max_iterations: int = 5000

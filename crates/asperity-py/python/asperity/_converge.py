@@ -92,7 +92,8 @@ def converge(case: Case | Result | ElasticContact, *, set: Changes = None, refin
         return _errors(text, set, refine) if keys is None else _of_keys(keys, case._setup.get("steps"), -case.initial_gap, case.size, set, refine)
     if isinstance(case, Mapping) and "material" in case:
         function = steady if "velocities" in case else slide if {"velocity", "path"} & case.keys() else solve
-        problem = function.options(**case)  # type: ignore[attr-defined]
+        options: Any = getattr(function, "options")
+        problem = options(**case)
         shape, keys, _ = problem.parts()
         _check_arrays(keys)
         return _of_keys(problem.given(shape, keys), shape.history, shape.heights, shape.size, set, refine)

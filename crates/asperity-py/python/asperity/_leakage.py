@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, centres, choice, field, in_order, number, numbers_of, pair
+from ._arrays import ArrayLike, Floats, Scalar, Size, centres, choice, field, in_order, number, numbers_of, pair
 from ._columns import GAS_LEAKS, LEAKS, dataset, variable
 from ._findings import Finding, findings_of, warn
 from ._sealed import Sealed
 from ._states import HasState, refuse_beside, said
-from ._surface import _parts
+from ._surface import Labelled, SurfaceLike, _parts
 from ._words import Flow, Sides
 
 if TYPE_CHECKING:
@@ -120,8 +120,8 @@ class Leakage(Sealed):
 
 
 def leakage(
-    gap: Any, contact: Any = None, *, size: Sequence[float] | None = None, direction: Flow = "x", sides: Sides | None = None,
-    smallest_gap: float = 0.0
+    gap: SurfaceLike | HasState, contact: ArrayLike | Labelled | None = None, *, size: Size = None, direction: Flow = "x", sides: Sides | None = None,
+    smallest_gap: Scalar = 0.0
 ) -> Leakage:
     """The flow of a fluid through a gap, between opposite borders of the domain, by Reynolds' equation.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ._adhesion import Adhesion
 from ._fluid import Fluid
-from ._arrays import AnyPath, ArrayLike, Floats, as_plane, check_places, distinct, in_order, number
+from ._arrays import AnyPath, ArrayLike, Floats, Scalar, Size, as_plane, check_places, distinct, in_order, number
 from ._core import CaseError
 from ._declared import Table, check
 from ._fit import Fit
@@ -19,7 +19,7 @@ from ._layers import Body
 from ._materials import Material
 from ._rows import Field, Quantity
 from ._shifts import temperature_keys
-from ._surface import Surface, check_boundary, per_cell, surface_of
+from ._surface import Surface, SurfaceLike, check_boundary, per_cell, surface_of
 from ._tangential import Friction, Tangential
 from ._units import bare
 from ._wear import Wear
@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 class Problem:
     """What each kind of run takes; :func:`asperity.solve` describes the fields."""
 
-    surface: Any = None
+    surface: SurfaceLike | None = None
     material: Material | Fit | Body | Sequence[Material | Fit | Body] | None = None
     _: KW_ONLY
-    load: History | Function | float | None = None
-    pressure: History | Function | float | None = None
-    gap: Any = None
-    size: float | Sequence[float] | None = None
+    load: History | Function | Scalar | None = None
+    pressure: History | Function | Scalar | None = None
+    gap: SurfaceLike | None = None
+    size: Size = None
     hardness: float | ArrayLike | None = None
     temperature: float | Sequence[tuple[float, float]] | None = None
     boundary: Boundary = "free"
@@ -158,7 +158,7 @@ class InTime(Problem):
 class InStages(InTime):
     """A run in time at rest, whose control may switch: the arguments of :func:`asperity.march`."""
 
-    approach: History | Function | float | None = None
+    approach: History | Function | Scalar | None = None
     stages: Sequence[Stage] | None = None
     adhesion: Adhesion | None = None
     fluid: Fluid | None = None

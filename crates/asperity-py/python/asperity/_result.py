@@ -31,6 +31,9 @@ from ._words import Flow, Nearest, Sides
 from .plot import Plots
 
 if TYPE_CHECKING:
+    import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    import xarray
+
     from ._converge import ErrorBar
 
 class Axis(NamedTuple):
@@ -305,7 +308,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             tractions = [(-1.0 if body else 1.0) * self.field(name, **at) for name in ("traction_x", "traction_y")]
         return stress(pressure, size=self.size, poisson=poisson, depths=depths, boundary=setup.get("boundary", "free"), tractions=tractions)
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xarray.Dataset:
         """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk, with the stress below the surface and the
         leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray. The load is ``data["load"]`` and `data.normal_load`:
         `data.load` is a method of xarray. What else was computed is merged, as in ``data.merge(result.stress().to_xarray())``."""
@@ -345,7 +348,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         gas: str | None = None, molar_mass: float | None = None, temperature: float | None = None, inlet: float | None = None,
         outlet: float | None = None, rarefaction: str | None = None, sides: Sides | None = None, smallest_gap: float | None = None,
         field: bool | None = None
-    ) -> Any:
+    ) -> xarray.Dataset:
         """Leakage at the times of the stored fields, as xarray.Dataset over `leak_time` (see :func:`leakage` and docs/leakage.md).
 
         Without arguments the leaks that the run stored. Otherwise those of a liquid (`pressure_drop` [Pa], `viscosity` [Pa s]), of a
@@ -413,10 +416,12 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         deepest = np.abs(gap[np.isfinite(gap)]).max(initial=0.0)
         return np.ascontiguousarray(gap <= 1e-9 * deepest, dtype=np.uint8)
 
-    def to_dataframe(self) -> Any:
+    def to_dataframe(self) -> pandas.DataFrame:
         """The rows as pandas.DataFrame, with the time (of a sweep the velocity) as index and a column for each number, of a vector two,
         as `tangential_force_x`; units are in ``frame.attrs["units"]``."""
-        along, columns, units = self._axis.name, {}, {self._axis.name: self.units("time")}
+        along = self._axis.name
+        columns: dict[str, AnyArray] = {}
+        units = {along: self.units("time")}
         for name in (name for name in COLUMNS if name != "time" and name in self._table):
             values = self._table[name]
             parts = {f"{name}_{axis}": values[:, n] for n, axis in enumerate("xy")} if name in VECTORS else {name: values}

@@ -30,7 +30,7 @@ from ._spoken import spoken
 from ._states import State
 
 if TYPE_CHECKING:
-    from ._arrays import Floats
+    from ._arrays import Floats, Scalar
 
 
 #: A case: the path of its file, its text or its keys; and changed keys of it.
@@ -168,7 +168,7 @@ class March(Sealed):
             return step
 
     def prescribe(
-        self, *, load: History | float | None = None, pressure: History | float | None = None, approach: History | float | None = None
+        self, *, load: History | Scalar | None = None, pressure: History | Scalar | None = None, approach: History | Scalar | None = None
     ) -> None:
         """From the last row on this load [N], mean pressure [Pa] or approach [m] is prescribed, in place of what was to come: a stage that
         begins here and lasts to the end of the run, with its times.

@@ -15,12 +15,12 @@ from ._core import CaseError
 from ._findings import warn_caller
 from ._sealed import Sealed
 from ._states import HasState, refuse_beside, said
-from ._surface import _parts
+from ._surface import SurfaceLike, _parts
 from ._words import Boundary
 
 if TYPE_CHECKING:
     import xarray
-from ._arrays import Floats, Size, array, as_plane, cells_of, centres, choice, field, frozen, number, plain, size_of
+from ._arrays import Floats, Scalar, Size, array, as_plane, cells_of, centres, choice, field, frozen, number, plain, size_of
 
 
 def _lazily(name: str, words: str) -> functools.cached_property[Floats]:
@@ -137,7 +137,7 @@ class Stress(Sealed):
 
 
 def stress(
-    pressure: Any, *, size: Size = None, poisson: float | None = None, depths: str | Sequence[float] = "auto",
+    pressure: SurfaceLike | HasState, *, size: Size = None, poisson: Scalar | None = None, depths: str | Sequence[float] = "auto",
     boundary: Boundary | None = None, tractions: Sequence[Any] | None = None
 ) -> Stress:
     """The stress below a pressure on a half-space.
@@ -191,7 +191,7 @@ def stress(
     return Stress(p, size_of("pressure", p, extent), depths, number("poisson", poisson), edges, tractions=shear)
 
 
-def of_state(held: Any, poisson: float | None, depths: str | Sequence[float]) -> Stress:
+def of_state(held: Any, poisson: Scalar | None, depths: str | Sequence[float]) -> Stress:
     """The stress below a contact, a row, or the last fields of a result."""
     if hasattr(held, "field_times"):
         found: Stress = held.stress(depths=depths, poisson=poisson)

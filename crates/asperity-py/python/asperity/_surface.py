@@ -8,12 +8,12 @@ import os
 import re
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field as dataclass_field
-from typing import Any, Protocol, Union
+from typing import TYPE_CHECKING, Any, Protocol, Union
 
 import numpy as np
 
 from . import _core, _foreign, _html
-from ._arrays import AnyArray, AnyPath, Floats, Size, along, angle, as_plane, cell_counts, cells_of, centres, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
+from ._arrays import AnyArray, AnyPath, ArrayLike, Floats, Scalar, Size, along, angle, as_plane, cell_counts, cells_of, centres, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
 from ._arrays import pitch_of, size_of
 from ._core import CaseError
 from ._findings import findings_of, warn, warn_caller
@@ -24,6 +24,10 @@ from ._sealed import Named, ReadOnlyArrays
 from ._units import carries, factor_of, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
 from .plot import SurfacePlots
+
+
+if TYPE_CHECKING:
+    import xarray
 
 
 class Labelled(Protocol):
@@ -42,6 +46,8 @@ class Topography(Protocol):
 
 #: What adds to a surface; of numbers only the 0 with which sum() begins.
 Summand = Union["Surface", AnyArray, Labelled, Topography, int]
+#: What a surface is given as: one of this package, heights as an array, an array of xarray, a topography of SurfaceTopography.
+SurfaceLike = Union["Surface", ArrayLike, Labelled, Topography]
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,7 +206,7 @@ class Surface(OnGrid, Named):
     def __pos__(self) -> Surface:
         return self
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xarray.DataArray:
         """The heights as xarray.DataArray with coordinates x and y, and units."""
         import xarray
 
@@ -540,10 +546,10 @@ class Surface(OnGrid, Named):
 
     @staticmethod
     def self_affine(
-        *, cells: int | Sequence[int], size: float | Sequence[float], hurst: float, longest: float, shortest: float,
-        rms_gradient: float | None = None, rms_height: float | None = None, roll_off: float | None = None, seed: int = 0,
-        lay_angle: float | None = None, lay_ratio: float | None = None, skewness: float | None = None,
-        kurtosis: float | None = None
+        *, cells: int | Sequence[int], size: Size, hurst: Scalar, longest: Scalar, shortest: Scalar,
+        rms_gradient: Scalar | None = None, rms_height: Scalar | None = None, roll_off: Scalar | None = None, seed: int = 0,
+        lay_angle: Scalar | None = None, lay_ratio: Scalar | None = None, skewness: Scalar | None = None,
+        kurtosis: Scalar | None = None
     ) -> Surface:
         """Self-affine roughness, periodic, the same on every machine for one seed.
 
@@ -579,17 +585,17 @@ class Surface(OnGrid, Named):
         return _made("self-affine", cells, (1e-4, 1e-4), None, keys)
 
     @staticmethod
-    def sphere(*, cells: Sequence[int], size: Sequence[float], radius: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
+    def sphere(*, cells: Sequence[int], size: Size, radius: Scalar, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A paraboloid of that radius [m]; `center` [m] from the middle of the domain."""
         return _shape("sphere", cells, size, center, {"radius": radius})
 
     @staticmethod
-    def ellipsoid(*, cells: Sequence[int], size: Sequence[float], radius_x: float, radius_y: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
+    def ellipsoid(*, cells: Sequence[int], size: Size, radius_x: Scalar, radius_y: Scalar, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A paraboloid of two radii [m]; an infinite one makes a cylinder."""
         return _shape("ellipsoid", cells, size, center, {"radius_x": radius_x, "radius_y": radius_y})
 
     @staticmethod
-    def cylinder(*, cells: int | Sequence[int], size: float | Sequence[float], radius: float, center: float | Sequence[float] = 0.0) -> Surface:
+    def cylinder(*, cells: int | Sequence[int], size: Size, radius: Scalar, center: float | Sequence[float] = 0.0) -> Surface:
         """A cylinder along y, as a parabola of that radius [m]; `center` [m] along x from the middle of the domain.
 
         >>> import asperity as asp, numpy as np
@@ -601,18 +607,18 @@ class Surface(OnGrid, Named):
         return _shape("cylinder", cells, size, center, {"radius": radius})
 
     @staticmethod
-    def wedge(*, cells: int | Sequence[int], size: float | Sequence[float], slope: float, center: float | Sequence[float] = 0.0) -> Surface:
+    def wedge(*, cells: int | Sequence[int], size: Size, slope: Scalar, center: float | Sequence[float] = 0.0) -> Surface:
         """A wedge along y that rises by `slope` per length; `center` [m] along x from the middle of the domain."""
         return _shape("wedge", cells, size, center, {"slope": slope})
 
     @staticmethod
-    def cone(*, cells: Sequence[int], size: Sequence[float], slope: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
+    def cone(*, cells: Sequence[int], size: Size, slope: Scalar, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A cone that rises by `slope` per length."""
         return _shape("cone", cells, size, center, {"slope": slope})
 
     @staticmethod
     def flat_punch(
-        *, cells: int | Sequence[int], size: float | Sequence[float], radius: float | None = None,
+        *, cells: int | Sequence[int], size: Size, radius: Scalar | None = None,
         sides: Size = None, center: float | Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch. On a line of cells a strip of
@@ -621,7 +627,7 @@ class Surface(OnGrid, Named):
         return _shape("flat-punch", cells, size, center, {"radius": radius}, face)
 
     @staticmethod
-    def wave(*, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]) -> Surface:
+    def wave(*, cells: int | Sequence[int], size: Size, amplitude: Scalar, wavelength: float | Sequence[float]) -> Surface:
         """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge. On a line one wavelength."""
         return _made("wave", cells, size, {**numbers_of({"amplitude": amplitude}), "wavelength": _along_both("wavelength", wavelength, size)})
 

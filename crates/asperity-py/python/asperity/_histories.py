@@ -238,7 +238,7 @@ def _event_units(load_unit: str) -> dict[str, str]:
     return {"approach": "m", "load": load_unit, "pressure": "Pa", **numbers}
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Stage(Table):
     """A part of a programme: what is prescribed, on a clock that starts with it, and when it ends.
 
